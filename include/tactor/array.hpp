@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The array of tactors: where each one is and how it is driven.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tactor/api.hpp>
+#include <tactor/error.hpp>
+#include <tactor/geometry.hpp>
+
+namespace tactor {
+
+/// One vibrating actuator. Its index is its place in array::tactors.
+struct tactor_spec {
+    point position;                         ///< centre, mm
+    unsigned channel = 0;                   ///< PCM channel, from 0
+    double gain_db = 0.0;                   ///< added to the level in dBFS; not to a level in dB SL
+    double max_dbfs = 0.0;                  ///< hard limit of this channel, <= 0 dBFS
+    std::optional<double> threshold_dbfs;   ///< measured detection threshold, dBFS
+    int polarity = 1;                       ///< 1, or -1 where the actuator is wired the other way round
+    std::string actuator;                   ///< "piezo", "voice-coil", "lra", "erm" or empty (unknown)
+    source_place where;                     ///< where the file says so, for error messages
+};
+
+/// A set of tactors. A plain value.
+struct array {
+    std::string name;
+    std::vector<tactor_spec> tactors;
+    source_place where;
+
+    /// Channels that the map needs: the highest channel + 1.
+    TACTOR_API unsigned channels() const noexcept;
+};
+
+/// The lines of a rectangular grid layout, each in ascending order, mm.
+struct grid_lines {
+    std::vector<double> x_mm;  ///< columns
+    std::vector<double> y_mm;  ///< rows
+};
+
+/// The grid that the tactors form, if every column crosses every row in a tactor and there is no
+/// other tactor; nothing otherwise. Lines nearer than same_place_mm are one line. A single row or
+/// column is a grid too.
+TACTOR_API std::optional<grid_lines> find_grid(const array& a);
+
+/// rows x columns tactors, index = row * columns + column, channel = index, tactor 0 at (0, 0).
+/// \throws error (bad_input) for no rows or columns, more than 16384 tactors or a pitch that is not
+///         positive and finite.
+TACTOR_API array make_grid(std::string name, unsigned rows, unsigned columns, double pitch_x_mm,
+                           double pitch_y_mm);
+
+/// Names of the built-in arrays: "palm-3x3" (Park et al. 2016), "palm-2x4".
+TACTOR_API const std::vector<std::string>& array_presets();
+
+/// A built-in array by name. \throws error (bad_input) that lists the presets.
+TACTOR_API array preset_array(std::string_view name);
+
+/// Checks what every array must satisfy: at least one tactor, finite places, no two tactors on one
+/// place or one channel, limits and gains in range (max_dbfs <= 0, polarity 1 or -1, channel < 1024).
+/// \throws error (bad_input) naming the tactors and their line.
+TACTOR_API void validate(const array& a);
+
+}  // namespace tactor

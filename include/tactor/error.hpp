@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The one exception type that set-up code throws.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include <tactor/api.hpp>
+
+namespace tactor {
+
+/// What kind of failure it was; the command-line tool turns it into its exit status.
+enum class errc {
+    bad_input = 1,      ///< wrong usage or bad input: exit status 2
+    runtime = 2,        ///< failed while running (disk full, stream broken): exit status 1
+    not_available = 3,  ///< a device is missing, busy or cannot do what is asked: exit status 3
+};
+
+TACTOR_API const std::error_category& error_category() noexcept;
+TACTOR_API std::error_code make_error_code(errc e) noexcept;
+
+/// A place in a text that the user wrote. Lines and columns count from 1; 0 means unknown.
+struct source_place {
+    std::string file;
+    unsigned line = 0;
+    unsigned column = 0;
+
+    /// "file:line:column" with the unknown parts left out.
+    TACTOR_API std::string text() const;
+};
+
+/// An error that says what failed, why, and what to do about it.
+///
+/// what() reads "WHAT: WHY (HINT)", or "WHAT: WHY" without a hint.
+class TACTOR_API error : public std::system_error {
+public:
+    error(errc kind, std::string_view what, std::string_view why, std::string_view hint = {});
+
+    /// The kind of failure.
+    errc kind() const noexcept;
+    const char* what() const noexcept override;
+
+private:
+    std::string text_;
+};
+
+}  // namespace tactor
+
+template <>
+struct std::is_error_code_enum<tactor::errc> : std::true_type {};

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// A curve on the skin, by arc length.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tactor/api.hpp>
+#include <tactor/geometry.hpp>
+
+namespace tactor {
+
+/// One open or closed curve of lines, arcs and Beziers. Immutable; copies share it. All members may
+/// be called from any thread and do not block.
+class TACTOR_API path {
+public:
+    /// SVG path data in millimetres, e.g. "M 0 10 C 20 -5 20 45 40 30".
+    /// \throws error (bad_input) with the column for what is not path data, for numbers that are not
+    ///         finite or beyond 1e6 mm, for more than one subpath and for a path without length.
+    static path from_svg(std::string_view data);
+
+    /// Straight lines from point to point (at least two, not all the same). Throws like from_svg.
+    static path polyline(std::span<const point> points);
+
+    /// Circular arc round `centre`; angles in degrees from the x axis towards the y axis (clockwise
+    /// on a screen), |sweep_deg| <= 360. Throws like from_svg.
+    static path arc(point centre, double radius_mm, double from_deg, double sweep_deg);
+
+    /// Length in mm, to 1 um.
+    double length_mm() const noexcept;
+
+    /// The point at arc length s (clamped to 0 ... length), to 1 um. O(log n) in the segments.
+    point at(double s_mm) const noexcept;
+
+    /// Arc lengths, ascending, at which the path meets the line x = x_mm, touching included. A
+    /// stretch that runs along the line (within same_place_mm) gives nothing, its ends included.
+    std::vector<double> meets_x(double x_mm) const;
+    /// The same for the line y = y_mm.
+    std::vector<double> meets_y(double y_mm) const;
+
+    /// SVG path data of the curve, for plots.
+    std::string svg() const;
+
+    struct impl;
+    explicit path(std::shared_ptr<const impl> p) noexcept;
+
+private:
+    std::shared_ptr<const impl> impl_;
+};
+
+}  // namespace tactor

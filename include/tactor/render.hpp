@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// From plans to samples (rendering model, section 7).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <tactor/api.hpp>
+#include <tactor/array.hpp>
+#include <tactor/plan.hpp>
+#include <tactor/sample_format.hpp>
+
+namespace tactor {
+
+/// Where the carrier's phase starts: with each burst, or with the piece.
+enum class phase_mode { burst, continuous };
+
+struct render_options {
+    unsigned rate = 48000;             ///< Hz, 8000 to 768000
+    phase_mode phase = phase_mode::burst;
+    /// Raised-cosine ramp inside each burst. Default: 0 where the burst is a whole number of half
+    /// cycles (within 1 % of one), else 2 ms.
+    std::optional<double> ramp_s;
+    double level_dbfs = -12.0;         ///< peak for amplitude 1, <= 0; a tactor's gain_db is added
+    std::optional<double> sl_db;       ///< instead: dB above each tactor's threshold_dbfs
+    unsigned channels = 0;             ///< 0: as many as the array needs
+};
+
+/// A plan and when it starts.
+struct placed_plan {
+    plan schedule;
+    /// Seconds from the start of the piece; none: at the end of the plan before it (the first: 0).
+    std::optional<double> start_s;
+};
+
+/// Plans at a sample rate and at levels: frames and channels. Immutable, cheap to copy.
+class TACTOR_API score {
+public:
+    /// \throws error (bad_input): carrier at or above half the rate, a level that a tactor may not
+    ///         have (above full scale or its max_dbfs; with its line in the array file), a tactor
+    ///         without a threshold where a sensation level is asked for, too few channels.
+    score(const array& a, std::vector<placed_plan> plans, const render_options& o);
+
+    std::uint64_t frames() const noexcept;   ///< length of the piece
+    unsigned channels() const noexcept;
+    unsigned rate() const noexcept;          ///< Hz
+    /// Start of each plan in frames.
+    const std::vector<std::uint64_t>& starts() const noexcept;
+    const std::vector<placed_plan>& plans() const noexcept;
+
+    struct impl;
+    const std::shared_ptr<const impl>& data() const noexcept;  ///< for the library
+
+private:
+    std::shared_ptr<const impl> impl_;
+};
+
+/// Renders a score offline, block by block. The same mixer as in the player: same score, same
+/// samples, whatever the block sizes. One thread at a time.
+class TACTOR_API renderer {
+public:
+    renderer(const score& s, sample_format f);
+    ~renderer();
+    renderer(renderer&&) noexcept;
+    renderer& operator=(renderer&&) noexcept;
+
+    /// Writes `frames` interleaved frames to out (frames * channels * bytes_of(format) bytes) and
+    /// goes on; silence after the end. Allocates nothing.
+    void process(std::size_t frames, std::byte* out) noexcept;
+
+    /// Next frame to be rendered.
+    std::uint64_t position() const noexcept;
+
+private:
+    struct impl;
+    std::unique_ptr<impl> impl_;
+};
+
+}  // namespace tactor

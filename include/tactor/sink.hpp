@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Where the audio thread writes frames to: a PCM, a test device, or a class of your own.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include <poll.h>
+
+#include <tactor/api.hpp>
+#include <tactor/sample_format.hpp>
+
+namespace tactor {
+
+/// What was negotiated. Does not change while the sink lives.
+struct stream_setup {
+    std::string name;               ///< as the user named it
+    unsigned channels = 0;
+    unsigned rate = 0;              ///< Hz
+    sample_format format = sample_format::s32;
+    unsigned period_frames = 0;
+    unsigned buffer_frames = 0;
+    bool batch = false;             ///< the position moves by whole periods
+    bool has_clock = true;          ///< false: null and file devices, paced by the sink itself
+};
+
+/// What a call on a sink came to. A plain value: the audio thread throws nothing.
+enum class io_status {
+    ok,
+    again,      ///< no room now
+    xrun,       ///< the device ran dry; the stream has stopped
+    suspended,  ///< the system sleeps or slept
+    lost,       ///< unplugged, or it does not move any more
+    failed,     ///< anything else; final
+};
+
+struct io_result {
+    io_status status = io_status::ok;
+    std::size_t frames = 0;  ///< frames taken
+    int code = 0;            ///< negative errno of the device where status is not ok
+};
+
+/// Position of the stream at one instant.
+struct stream_position {
+    std::uint64_t written = 0;   ///< frames given since start() of this epoch
+    std::uint64_t played = 0;    ///< of these, how many have reached the DAC
+    std::int64_t time_ns = 0;    ///< CLOCK_MONOTONIC of the reading
+    bool valid = false;
+};
+
+/// A stream of interleaved frames. Order of calls: write() silence (prefill), start(), then wait on
+/// the descriptors, write(). All `noexcept` members are called by the audio thread only: they
+/// must not block, lock, allocate or log.
+class TACTOR_API sink {
+public:
+    virtual ~sink();
+
+    virtual const stream_setup& setup() const noexcept = 0;
+
+    /// Makes the stream ready to be filled: at first, and again after an xrun. Begins a new epoch.
+    virtual io_status prepare() noexcept = 0;
+    /// Starts the DAC explicitly, after the prefill.
+    virtual io_status start() noexcept = 0;
+    /// Tries to come back from `suspended`; `again` while the device is not ready.
+    virtual io_status resume() noexcept = 0;
+
+    /// Upper bound of the number of descriptors.
+    virtual std::size_t max_descriptors() const noexcept = 0;
+    /// Fills `fds` with what to poll; returns how many.
+    virtual std::size_t descriptors(std::span<pollfd> fds) noexcept = 0;
+    /// Interprets the polled descriptors: `ok` room to write, `again` not yet, or an error.
+    virtual io_status ready(std::span<pollfd> fds) noexcept = 0;
+
+    /// Frames that can be written now.
+    virtual io_result room() noexcept = 0;
+    /// Writes up to `frames` frames; may take fewer, also none.
+    virtual io_result write(const std::byte* data, std::size_t frames) noexcept = 0;
+    virtual stream_position position() noexcept = 0;
+    /// Stops at once and discards what is queued.
+    virtual void drop() noexcept = 0;
+};
+
+}  // namespace tactor

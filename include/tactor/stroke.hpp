@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// A stroke: a path and when the target is where on it.
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tactor/api.hpp>
+#include <tactor/geometry.hpp>
+#include <tactor/path.hpp>
+
+namespace tactor {
+
+/// Where the target is at one time. Times in seconds from the start of the stroke.
+struct timed_point {
+    double t_s = 0.0;
+    point position;
+    double intensity = 1.0;  ///< linear, >= 0; 1 is the intensity asked for
+};
+
+/// A time at which the target is on a line of the grid.
+struct meeting {
+    double t_s = 0.0;
+    point position;
+};
+
+/// Position and intensity over time (rendering model, section 2). Immutable; copies share it; any
+/// thread may call.
+class TACTOR_API trajectory {
+public:
+    /// Along a path at constant speed in `duration_s`.
+    /// \throws error (bad_input) unless 0 < duration_s <= 86400.
+    static trajectory along(path p, double duration_s, double intensity = 1.0);
+
+    /// Linear between timed points: at least two, times strictly ascending from 0, finite.
+    /// \throws error (bad_input) naming the point (counting from 1).
+    static trajectory timed(std::vector<timed_point> points);
+
+    double duration_s() const noexcept;
+    double length_mm() const noexcept;
+
+    /// Position at a time, clamped to 0 ... duration. O(log n).
+    point position(double t_s) const noexcept;
+    /// Intensity at a time (A_v), clamped in the same way.
+    double intensity(double t_s) const noexcept;
+
+    /// The same movement in another time. Throws like along().
+    trajectory with_duration(double duration_s) const;
+
+    /// Times, ascending, at which the target meets x = x_mm (or y = y_mm): see path::meets_x. A
+    /// target that rests on the line meets it when it arrives.
+    std::vector<double> meets_x(double x_mm) const;
+    std::vector<double> meets_y(double y_mm) const;
+
+    struct impl;
+    explicit trajectory(std::shared_ptr<const impl> p) noexcept;
+
+private:
+    std::shared_ptr<const impl> impl_;
+};
+
+/// Speed of a stroke that says neither duration nor speed.
+inline constexpr double default_speed_mm_s = 60.0;
+
+/// One stroke as the user gave it.
+struct stroke {
+    std::string name;
+    trajectory motion;
+    /// Start in seconds from the start of the piece; none: when the stroke before it has ended.
+    std::optional<double> start_s;
+    std::optional<double> carrier_hz;  ///< instead of the common carrier
+    /// "reconstructed" for presets that are not in print; otherwise empty.
+    std::string note;
+};
+
+/// Names of the built-in strokes, "park2016-1" ... "park2016-4".
+TACTOR_API const std::vector<std::string>& stroke_presets();
+
+/// A built-in stroke by name. \throws error (bad_input) that lists the presets.
+TACTOR_API stroke preset_stroke(std::string_view name);
+
+/// Reads a stroke file by its extension: .toml, .csv or .svg; see tactor.toml(5). One or more strokes.
+/// May block on the file system.
+/// \throws error (bad_input) with file, line and column.
+TACTOR_API std::vector<stroke> load_strokes(const std::filesystem::path& file);
+
+/// Stroke file text in TOML; `name` stands for the file in messages.
+TACTOR_API std::vector<stroke> parse_strokes_toml(std::string_view text, const std::string& name);
+/// CSV with a header line naming t_s, x_mm, y_mm and optionally intensity, in any order.
+TACTOR_API std::vector<stroke> parse_strokes_csv(std::string_view text, const std::string& name);
+/// SVG document: each shape's subpaths are strokes, one after the other in document order.
+TACTOR_API std::vector<stroke> parse_strokes_svg(std::string_view text, const std::string& name);
+/// Guesses the kind from the text (SVG if it starts with '<', CSV if its first line names t_s, else TOML).
+TACTOR_API std::vector<stroke> parse_strokes(std::string_view text, const std::string& name);
+
+}  // namespace tactor

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Everything: include this, or the single headers.
+#pragma once
+
+#include <tactor/alsa.hpp>
+#include <tactor/array.hpp>
+#include <tactor/error.hpp>
+#include <tactor/geometry.hpp>
+#include <tactor/path.hpp>
+#include <tactor/phantom.hpp>
+#include <tactor/plan.hpp>
+#include <tactor/player.hpp>
+#include <tactor/render.hpp>
+#include <tactor/sample_format.hpp>
+#include <tactor/setup.hpp>
+#include <tactor/sink.hpp>
+#include <tactor/stroke.hpp>
+#include <tactor/version.hpp>
+#include <tactor/wav.hpp>

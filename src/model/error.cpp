@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include <tactor/error.hpp>
+
+#include <fmt/format.h>
+
+#include <tactor/version.hpp>
+
+namespace tactor {
+namespace {
+
+class category final : public std::error_category {
+public:
+    const char* name() const noexcept override { return "tactor"; }
+
+    std::string message(int e) const override
+    {
+        switch (static_cast<errc>(e)) {
+        case errc::bad_input:
+            return "bad input";
+        case errc::runtime:
+            return "failed while running";
+        case errc::not_available:
+            return "device not available";
+        }
+        return "unknown error";
+    }
+};
+
+}  // namespace
+
+const std::error_category& error_category() noexcept
+{
+    static const category c;
+    return c;
+}
+
+std::error_code make_error_code(errc e) noexcept
+{
+    return {static_cast<int>(e), error_category()};
+}
+
+std::string source_place::text() const
+{
+    std::string t = file;
+    if (line != 0)
+        t += fmt::format("{}{}", t.empty() ? "line " : ":", line);
+    if (column != 0)
+        t += fmt::format(":{}", column);
+    return t;
+}
+
+error::error(errc kind, std::string_view what, std::string_view why, std::string_view hint)
+    : std::system_error(make_error_code(kind)),
+      text_(hint.empty() ? fmt::format("{}: {}", what, why)
+                         : fmt::format("{}: {} ({})", what, why, hint))
+{
+}
+
+errc error::kind() const noexcept
+{
+    return static_cast<errc>(code().value());
+}
+
+const char* error::what() const noexcept
+{
+    return text_.c_str();
+}
+
+const char* version() noexcept
+{
+    return TACTOR_VERSION;
+}
+
+}  // namespace tactor

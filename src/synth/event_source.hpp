@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The drives of a score, one after the other.
+#pragma once
+
+#include <memory>
+
+#include <tactor/render.hpp>
+
+#include "synth/event.hpp"
+
+namespace tactor::synth {
+
+/// Walks through a score in order of start frame. Memory does not grow with the length of what was
+/// walked through; next() does not allocate after the constructor. Control side, one thread at a time.
+class event_source {
+public:
+    explicit event_source(const score& s);
+    ~event_source();
+    event_source(event_source&&) noexcept;
+    event_source& operator=(event_source&&) noexcept;
+
+    /// The next event, or nothing at the end; does not move on.
+    const drive_event* peek() noexcept;
+    /// Moves on.
+    void pop() noexcept;
+
+private:
+    struct impl;
+    std::unique_ptr<impl> impl_;
+};
+
+}  // namespace tactor::synth

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The mixer: drives in, interleaved frames out. Used by the offline renderer and by the audio thread.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <tactor/array.hpp>
+#include <tactor/sample_format.hpp>
+
+#include "synth/event.hpp"
+
+namespace tactor::synth {
+
+/// Sums drives, limits each channel, converts and interleaves. Frames are counted from 0 or from the last
+/// reset(). After construction nothing allocates, throws or blocks; the cost of a block is bounded by the
+/// channels and the drives that sound in it.
+class mixer {
+public:
+    /// `limits`: greatest absolute value of each channel, linear, 0 ... 1; its size is the channel count.
+    /// `capacity`: drives that may wait or sound at once.
+    mixer(std::span<const double> limits, sample_format format, std::size_t capacity = 8192);
+    ~mixer();
+
+    std::size_t channels() const noexcept;
+    /// Drives that can be added now.
+    std::size_t room() const noexcept;
+
+    /// Adds a drive, in any order; one that began in the past starts at once, in its middle (with the
+    /// right phase). False when there is no room: nothing is lost, try later.
+    bool add(const drive_event& e) noexcept;
+
+    /// Renders the next frames. Same drives, same samples, whatever the block sizes.
+    void process(std::size_t frames, std::byte* out) noexcept;
+
+    /// Fades all drives of a score to zero, from the next frame on, in `fade` frames (0: cut), and
+    /// forgets them; drives of that score that are added later are dropped until the fade has ended and
+    /// forgotten after it: the caller stops feeding them. False if 256 fades run already.
+    bool fade_out(std::uint32_t score, std::uint32_t fade) noexcept;
+
+    /// Drops everything at once and counts frames from 0: a new epoch.
+    void reset() noexcept;
+
+    /// Next frame.
+    std::uint64_t position() const noexcept;
+    /// Drives that wait or sound.
+    std::size_t size() const noexcept;
+    /// Samples that the limiter changed so far.
+    std::uint64_t limited() const noexcept;
+
+private:
+    struct impl;
+    std::unique_ptr<impl> impl_;
+};
+
+/// The limits of an array's channels (10^(max_dbfs / 20)) for `channels` channels; channels without a tactor: 0.
+std::vector<double> channel_limits(const array& a, unsigned channels);
+
+}  // namespace tactor::synth
