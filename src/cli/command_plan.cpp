@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "cli/commands.hpp"
+#include "cli/input.hpp"
+#include "cli/plan_output.hpp"
+
+namespace tactor::cli {
+
+command add_plan(CLI::App& app)
+{
+    CLI::App* c = app.add_subcommand("plan", "Print the schedule: who plays when, how strongly");
+    auto s = std::make_shared<settings>();
+    auto options = std::make_shared<option_list>(*c, *s);
+    auto format = std::make_shared<std::string>("text");
+    options->add_stroke_options(false);
+    options->add_sound_options();
+    c->add_option_function<std::string>(
+         "--format",
+         [format](const std::string& t) {
+             if (t != "text" && t != "json" && t != "csv")
+                 throw error(errc::bad_input, "--format", fmt::format("\"{}\" is not known", t),
+                             "one of text, json, csv");
+             *format = t;
+         },
+         "how to print it (default text)")
+        ->type_name("text|json|csv");
+    c->footer("Example: tactor plan park2016-1 --format json");
+    return [s, options, format] {
+        const environment e = read_environment(*s, *options);
+        const piece p = plan_pieces(*s, e).front();
+        make_score(p, e, settle_render(*s, e)); // levels and carrier are checked when planned
+        const auto print = *format == "json" ? print_json : *format == "csv" ? print_csv : print_text;
+        print(stdout, p, e);
+        return status_ok;
+    };
+}
+
+} // namespace tactor::cli

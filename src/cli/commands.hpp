@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The commands: each adds itself to the command line and leaves what runs it.
+#pragma once
+
+#include <functional>
+
+namespace CLI {
+class App;
+}
+
+namespace tactor::cli {
+
+/// Exit statuses (see tactor(1)).
+enum exit_status {
+    status_ok = 0,
+    status_failed = 1,
+    status_usage = 2,
+    status_device = 3,
+    status_interrupted = 130
+};
+
+/// Runs after the command line was parsed; returns the exit status, throws tactor::error.
+using command = std::function<int()>;
+
+command add_plan(CLI::App& app);
+command add_render(CLI::App& app);
+command add_play(CLI::App& app);
+
+} // namespace tactor::cli

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+#include "cli/input.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <iostream>
+#include <iterator>
+
+#include <fmt/format.h>
+
+namespace tactor::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<std::string> from_environment(const char* name)
+{
+    const char* v = std::getenv(name);
+    if (v == nullptr || *v == '\0')
+        return {};
+    return v;
+}
+
+std::string find_config(const settings& s)
+{
+    if (s.config_file)
+        return *s.config_file;
+    if (const auto named = from_environment("TACTOR_CONFIG"))
+        return *named;
+    std::vector<fs::path> places;
+    if (const auto xdg = from_environment("XDG_CONFIG_HOME"))
+        places.emplace_back(*xdg);
+    else if (const auto home = from_environment("HOME"))
+        places.push_back(fs::path(*home) / ".config");
+    places.emplace_back("/etc");
+    for (const fs::path& p : places) {
+        std::error_code ignored;
+        if (fs::exists(p / "tactor/tactor.toml", ignored))
+            return (p / "tactor/tactor.toml").string();
+    }
+    return {};
+}
+
+bool is_preset(const std::vector<std::string>& presets, const std::string& name)
+{
+    return std::find(presets.begin(), presets.end(), name) != presets.end();
+}
+
+// An array file may bring its own output, amplifier and sync: they belong to that array.
+void use_array_file(setup& config, const setup& file)
+{
+    config.layout = file.layout;
+    const auto prefer = [](auto& ours, const auto& theirs) {
+        if (theirs)
+            ours = theirs;
+    };
+    prefer(config.output.pcm, file.output.pcm);
+    prefer(config.output.rate, file.output.rate);
+    // The channel count belongs to the map: one array's count says nothing of another's.
+    config.output.channels = file.output.channels;
+    prefer(config.output.period_frames, file.output.period_frames);
+    prefer(config.output.periods, file.output.periods);
+    prefer(config.amplifier, file.amplifier);
+    prefer(config.sync, file.sync);
+}
+
+array find_array(const settings& s, setup& config)
+{
+    if (!s.array_name)
+        return config.layout ? *config.layout : preset_array("palm-3x3");
+    if (is_preset(array_presets(), *s.array_name)) {
+        config.output.channels.reset();
+        return preset_array(*s.array_name);
+    }
+    if (!fs::exists(*s.array_name) && s.array_name->find_first_of("./") == std::string::npos)
+        return preset_array(*s.array_name); // its error lists the presets
+    const setup file = load_setup(*s.array_name);
+    if (!file.layout)
+        throw error(errc::bad_input, *s.array_name, "says no [array]", "see tactor.toml(5)");
+    use_array_file(config, file);
+    return *file.layout;
+}
+
+std::vector<stroke> read_one(const std::string& argument)
+{
+    if (is_preset(stroke_presets(), argument))
+        return {preset_stroke(argument)};
+    if (argument == "-") {
+        const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
+        return parse_strokes(text, "standard input");
+    }
+    std::error_code ignored;
+    if (!fs::exists(argument, ignored) && argument.find_first_of("./") == std::string::npos)
+        return {preset_stroke(argument)}; // its error lists the presets
+    return load_strokes(argument);
+}
+
+} // namespace
+
+environment read_environment(settings& s, option_list& options)
+{
+    environment e;
+    e.config_name = find_config(s);
+    if (!e.config_name.empty()) {
+        e.config = load_setup(e.config_name);
+        options.apply_defaults(e.config.defaults, e.config_name);
+    }
+    e.tactors = find_array(s, e.config);
+    if (s.slope || s.intercept_s) {
+        timing_profile& p = s.plan.profile;
+        p.slope = s.slope.value_or(p.slope);
+        p.intercept_s = s.intercept_s.value_or(p.intercept_s);
+        p.max_soa_s = p.intercept_s / (1.0 - p.slope);
+    }
+    return e;
+}
+
+std::vector<stroke> read_strokes(const settings& s, const std::string& argument)
+{
+    std::vector<stroke> strokes;
+    if (s.path_data) {
+        path p = path::from_svg(*s.path_data);
+        const double duration = p.length_mm() / s.speed_mm_s.value_or(default_speed_mm_s);
+        strokes.push_back(
+            {"path", trajectory::along(std::move(p), s.duration_s.value_or(duration)), {}, {}, {}});
+        return strokes;
+    }
+    strokes = read_one(argument);
+    for (stroke& k : strokes) {
+        if (s.duration_s)
+            k.motion = k.motion.with_duration(*s.duration_s);
+        else if (s.speed_mm_s && k.motion.length_mm() > 0.0)
+            k.motion = k.motion.with_duration(k.motion.length_mm() / *s.speed_mm_s);
+    }
+    return strokes;
+}
+
+std::vector<piece> plan_pieces(const settings& s, const environment& e)
+{
+    std::vector<std::string> arguments = s.strokes;
+    if (s.path_data) {
+        if (!arguments.empty())
+            throw error(errc::bad_input, "--path",
+                        fmt::format("there is also the stroke \"{}\"", arguments[0]), "give one of them");
+        arguments = {"--path"};
+    }
+    if (arguments.empty())
+        throw error(errc::bad_input, "command line", "no stroke",
+                    "give a preset such as park2016-1, a stroke file, - or --path DATA");
+    const layout faces(e.tactors);
+    std::vector<piece> pieces;
+    for (const std::string& argument : arguments) {
+        piece p{argument, read_strokes(s, argument), {}};
+        for (const stroke& k : p.strokes) {
+            try {
+                p.plans.push_back({make_plan(e.tactors, faces, k, s.plan), k.start_s});
+            } catch (const error& x) {
+                if (p.strokes.size() == 1)
+                    throw;
+                throw error(x.kind(),
+                            fmt::format("{}: stroke {} \"{}\"", argument, p.plans.size() + 1, k.name),
+                            x.what());
+            }
+        }
+        pieces.push_back(std::move(p));
+    }
+    return pieces;
+}
+
+score make_score(const piece& p, const environment& e, const render_options& render)
+{
+    return score(e.tactors, p.plans, render);
+}
+
+render_options settle_render(const settings& s, const environment& e)
+{
+    render_options r = s.render;
+    r.rate = s.rate.value_or(e.config.output.rate.value_or(48000));
+    r.channels = e.config.output.channels.value_or(0);
+    return r;
+}
+
+} // namespace tactor::cli

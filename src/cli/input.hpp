@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// From settings to plain values: configuration, array, strokes, plans.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <tactor/tactor.hpp>
+
+#include "cli/settings.hpp"
+
+namespace tactor::cli {
+
+/// The configuration that applies, and the array file's own [output], [amplifier] and [sync] over it.
+struct environment {
+    setup config;
+    std::string config_name; ///< file it came from; empty: none
+    array tactors;
+};
+
+/// Reads the configuration (--config, $TACTOR_CONFIG, the user's, the system's: the first that exists),
+/// feeds its [defaults] to the options and finds the array. \throws error.
+environment read_environment(settings& s, option_list& options);
+
+/// The strokes of one STROKE argument, or of --path, with --duration or --speed applied.
+std::vector<stroke> read_strokes(const settings& s, const std::string& argument);
+
+/// One piece: what one STROKE argument makes.
+struct piece {
+    std::string name;
+    std::vector<stroke> strokes;
+    std::vector<placed_plan> plans;
+};
+
+/// Reads and plans all STROKE arguments. \throws error.
+std::vector<piece> plan_pieces(const settings& s, const environment& e);
+
+/// The score of a piece with `render.rate` and channels settled. \throws error.
+score make_score(const piece& p, const environment& e, const render_options& render);
+
+/// Rate and channel count from the options, the configuration, then the defaults.
+render_options settle_render(const settings& s, const environment& e);
+
+} // namespace tactor::cli

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#include "cli/interrupt.hpp"
+
+#include <cerrno>
+#include <cstring>
+
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <tactor/error.hpp>
+
+namespace tactor::cli {
+
+interrupt::interrupt()
+{
+    sigset_t set;
+    sigemptyset(&set);
+    for (int s : {SIGINT, SIGTERM, SIGHUP})
+        sigaddset(&set, s);
+    sigprocmask(SIG_BLOCK, &set, &before_);
+    fd_ = signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
+    if (fd_ < 0)
+        throw error(errc::runtime, "signals", std::strerror(errno));
+}
+
+interrupt::~interrupt()
+{
+    close(fd_);
+    sigprocmask(SIG_SETMASK, &before_, nullptr);
+}
+
+int interrupt::poll() noexcept
+{
+    signalfd_siginfo info;
+    if (read(fd_, &info, sizeof info) != sizeof info)
+        return 0;
+    return static_cast<int>(info.ssi_signo);
+}
+
+} // namespace tactor::cli

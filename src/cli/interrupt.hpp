@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Ctrl-C and its kin as a descriptor.
+#pragma once
+
+#include <csignal>
+
+namespace tactor::cli {
+
+/// Blocks SIGINT, SIGTERM and SIGHUP in this thread, and so in those that it starts, and receives them
+/// through a descriptor. Make it before any thread.
+class interrupt {
+public:
+    interrupt();
+    ~interrupt();
+    interrupt(const interrupt&) = delete;
+    interrupt& operator=(const interrupt&) = delete;
+
+    /// Readable when a signal has come.
+    int descriptor() const noexcept { return fd_; }
+    /// The signal that has come, or 0. Does not wait.
+    int poll() noexcept;
+    /// Exit status for a signal: 128 + its number.
+    static int status(int signal) noexcept { return 128 + signal; }
+
+private:
+    int fd_;
+    sigset_t before_;
+};
+
+} // namespace tactor::cli

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <new>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+#include <tactor/version.hpp>
+
+#include "cli/commands.hpp"
+#include "cli/usage.hpp"
+
+namespace tactor::cli {
+namespace {
+
+int status_of(errc kind)
+{
+    switch (kind) {
+    case errc::bad_input:
+        return status_usage;
+    case errc::not_available:
+        return status_device;
+    case errc::runtime:
+        break;
+    }
+    return status_failed;
+}
+
+int run(int argc, char** argv)
+{
+    CLI::App app("Draws on skin: moving tactile strokes over sparse arrays of tactors.", "tactor");
+    app.set_version_flag("--version", std::string("tactor ") + version());
+    app.require_subcommand(1);
+    app.footer("Example: tactor play park2016-3        tactor COMMAND --help says more.");
+    std::array<command, 3> commands{add_plan(app), add_render(app), add_play(app)};
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& e) {
+        return app.exit(e);
+    } catch (const CLI::ParseError& e) {
+        throw usage_error(app, e);
+    }
+    const auto all = app.get_subcommands({});
+    for (std::size_t i = 0; i < commands.size(); ++i)
+        if (app.got_subcommand(all[i]))
+            return commands[i]();
+    return status_usage;
+}
+
+// What was printed must have arrived: a full disk is a failure, not a shorter plan.
+int flushed(int status)
+{
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
+        return status;
+    fmt::print(stderr, "tactor: standard output: {}\n", std::strerror(errno));
+    return status_failed;
+}
+
+} // namespace
+} // namespace tactor::cli
+
+int main(int argc, char** argv)
+{
+    using namespace tactor::cli;
+    try {
+        return flushed(run(argc, argv));
+    } catch (const tactor::error& e) {
+        fmt::print(stderr, "tactor: {}\n", e.what());
+        return status_of(e.kind());
+    } catch (const std::bad_alloc&) {
+        fmt::print(stderr, "tactor: memory: not enough for this input\n");
+    } catch (const std::exception& e) {
+        fmt::print(stderr, "tactor: failed: {}\n", e.what());
+    }
+    return status_failed;
+}

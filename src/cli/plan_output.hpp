@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// A plan as text, JSON (schema tactor-plan/1) and CSV.
+#pragma once
+
+#include <cstdio>
+
+#include "cli/input.hpp"
+
+namespace tactor::cli {
+
+/// All write to `out` as they go: a plan of an hour needs no document in memory.
+void print_text(std::FILE* out, const piece& p, const environment& e);
+void print_json(std::FILE* out, const piece& p, const environment& e);
+void print_csv(std::FILE* out, const piece& p, const environment& e);
+
+} // namespace tactor::cli

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include "cli/plan_output.hpp"
+#include "cli/plan_rows.hpp"
+
+namespace tactor::cli {
+namespace {
+
+std::string heading(const stroke& s, const plan& p, const array& a)
+{
+    const std::string soa = p.soa_s ? fmt::format(", SOA {:.6g} s", *p.soa_s) : "";
+    const std::string bursts = p.at ? "continuous" : fmt::format("{} bursts", p.bursts.size());
+    return fmt::format(
+        "{} on {}: {} with {}, {}{}\n{:.6g} mm in {:.6g} s, {:.6g} s of sound, carrier {:.6g} Hz\n", s.name,
+        a.name, p.algorithm, p.phantom, bursts, soa, p.stroke_length_mm, p.stroke_duration_s, p.total_s,
+        p.carrier_hz);
+}
+
+void print_one(std::FILE* out, const stroke& s, const plan& p, const array& a)
+{
+    fmt::print(out, "{}", heading(s, p, a));
+    if (!s.note.empty())
+        fmt::print(out, "note: {}\n", s.note);
+    fmt::print(out, "\n{:>10} {:>10} {:>9} {:>9}  {}\n", p.at ? "t_s" : "onset_s", "duration_s", "x_mm",
+               "y_mm", "tactor:amplitude");
+    for_each_row(p, [&](const burst& b) {
+        std::string drives;
+        for (const drive& d : b.drives)
+            drives += fmt::format(" {}:{:.4f}", d.tactor, d.amplitude);
+        fmt::print(out, "{:10.6f} {:10.6f} {:9.3f} {:9.3f} {}\n", b.onset_s, b.duration_s, b.position.x_mm,
+                   b.position.y_mm, drives);
+    });
+    for (const conflict& c : p.conflicts)
+        fmt::print(out, "conflict: tactor {} serves two bursts from {:.6f} s to {:.6f} s\n", c.tactor,
+                   c.from_s, c.to_s);
+    for (const meeting& m : p.dropped)
+        fmt::print(out, "dropped: the crossing at ({:.3f}, {:.3f}) mm, {:.6f} s\n", m.position.x_mm,
+                   m.position.y_mm, m.t_s);
+    for (const std::string& w : p.warnings)
+        fmt::print(out, "warning: {}\n", w);
+}
+
+} // namespace
+
+void print_text(std::FILE* out, const piece& p, const environment& e)
+{
+    for (std::size_t i = 0; i < p.plans.size(); ++i) {
+        if (i != 0)
+            fmt::print(out, "\n");
+        print_one(out, p.strokes[i], p.plans[i].schedule, e.tactors);
+    }
+}
+
+void print_csv(std::FILE* out, const piece& p, const environment& e)
+{
+    fmt::print(out, "stroke,start_s,onset_s,duration_s,tau_s,x_mm,y_mm,tactor,channel,amplitude\n");
+    double start = 0.0;
+    for (std::size_t i = 0; i < p.plans.size(); ++i) {
+        const plan& q = p.plans[i].schedule;
+        start = p.plans[i].start_s.value_or(start);
+        for_each_row(q, [&](const burst& b) {
+            const std::string tau = b.tau_s ? fmt::format("{}", *b.tau_s) : "";
+            for (const drive& d : b.drives)
+                fmt::print(out, "{},{},{},{},{},{},{},{},{},{}\n", i, start, b.onset_s, b.duration_s, tau,
+                           b.position.x_mm, b.position.y_mm, d.tactor, e.tactors.tactors[d.tactor].channel,
+                           d.amplitude);
+        });
+        start += q.total_s;
+    }
+}
+
+} // namespace tactor::cli

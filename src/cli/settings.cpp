@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+#include "cli/settings.hpp"
+
+#include <charconv>
+#include <cmath>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace tactor::cli {
+namespace {
+
+// A choice among names that the library can print: "a|b|c" and the value of the one given.
+template <class Enum>
+struct choice {
+    std::vector<Enum> values;
+
+    std::string names(const char* separator) const
+    {
+        std::string all;
+        for (Enum v : values)
+            all += (all.empty() ? "" : separator) + std::string(to_string(v));
+        return all;
+    }
+
+    Enum parse(const std::string& option, const std::string& text) const
+    {
+        for (Enum v : values)
+            if (to_string(v) == text)
+                return v;
+        throw error(errc::bad_input, option, fmt::format("\"{}\" is not known", text),
+                    "one of " + names(", "));
+    }
+};
+
+const choice<algorithm> algorithms{{algorithm::park2016, algorithm::tactile_brush, algorithm::continuous}};
+const choice<phantom_kind> phantoms{{phantom_kind::inverse_distance, phantom_kind::barycentric,
+                                     phantom_kind::linear, phantom_kind::log, phantom_kind::gaussian}};
+const choice<timing> timings{{timing::fixed, timing::fit}};
+const choice<outside> outsides{{outside::error, outside::clamp}};
+const choice<overlap> overlaps{{overlap::energy, overlap::max, overlap::sum}};
+
+phase_mode parse_phase(const std::string& text)
+{
+    if (text == "burst")
+        return phase_mode::burst;
+    if (text == "continuous")
+        return phase_mode::continuous;
+    throw error(errc::bad_input, "--phase", fmt::format("\"{}\" is not known", text),
+                "one of burst, continuous");
+}
+
+bool parse_flag(const std::string& what, const std::string& text)
+{
+    if (text == "true")
+        return true;
+    if (text == "false")
+        return false;
+    throw error(errc::bad_input, what, fmt::format("\"{}\" is neither true nor false", text));
+}
+
+std::string bare(const std::string& names)
+{
+    return names.substr(names.rfind("--") + 2);
+}
+
+} // namespace
+
+double parse_number(const std::string& what, const std::string& text, double lo, double hi,
+                    const std::string& unit)
+{
+    double v = 0.0;
+    const char* end = text.data() + text.size();
+    const auto r = std::from_chars(text.data(), end, v);
+    const std::string range = fmt::format("{} to {} {}", lo, hi, unit);
+    if (r.ec == std::errc::invalid_argument || r.ptr != end)
+        throw error(errc::bad_input, what, fmt::format("\"{}\" is not a number", text), range);
+    if (r.ec != std::errc() || !std::isfinite(v) || v < lo || v > hi)
+        throw error(errc::bad_input, what, fmt::format("{} is out of range", text), range);
+    return v;
+}
+
+option_list::option_list(CLI::App& command, settings& into) : command_(command), settings_(into)
+{
+}
+
+CLI::Option* option_list::value(const std::string& names, const std::string& type, const std::string& help,
+                                setter set)
+{
+    CLI::Option* o = command_.add_option_function<std::string>(names, set, help)->type_name(type);
+    by_name_[bare(names)] = {o, std::move(set)};
+    return o;
+}
+
+CLI::Option* option_list::flag(const std::string& name, const std::string& help, bool& into)
+{
+    CLI::Option* o = command_.add_flag(name, into, help);
+    by_name_[bare(name)] = {o, [name, &into](const std::string& t) { into = parse_flag(name, t); }};
+    return o;
+}
+
+void option_list::add_stroke_options(bool several_strokes)
+{
+    settings& s = settings_;
+    auto* strokes = command_.add_option("STROKE", s.strokes,
+                                        "preset (park2016-1 ... park2016-4), file (.toml, .csv, .svg), or - "
+                                        "for a stroke file on standard input");
+    strokes->type_name("");
+    strokes->expected(0, several_strokes ? 1000 : 1);
+    value("--path", "DATA", "SVG path data in mm instead of STROKE",
+          [&s](const std::string& t) { s.path_data = t; });
+    value("--array", "NAME|FILE", "palm-3x3 (default), palm-2x4, or an array file",
+          [&s](const std::string& t) { s.array_name = t; });
+    value("--algorithm", algorithms.names("|"), "who plays when (default park2016)",
+          [&s](const std::string& t) { s.plan.method = algorithms.parse("--algorithm", t); });
+    value("--phantom", phantoms.names("|"), "how strongly (default inverse-distance)",
+          [&s](const std::string& t) { s.plan.phantom = phantoms.parse("--phantom", t); });
+    auto* duration = value(
+        "--duration", "S", "time of each stroke; default: the file's or preset's",
+        [&s](const std::string& t) { s.duration_s = parse_number("--duration", t, 0.001, 86400, "s"); });
+    auto* speed = value(
+        "--speed", "MM_PER_S", "speed instead of a time (default 60 where nothing says one)",
+        [&s](const std::string& t) { s.speed_mm_s = parse_number("--speed", t, 0.001, 100000, "mm/s"); });
+    duration->excludes(speed);
+    value("--soa", "S", "onset to onset of two bursts (default 0.07)",
+          [&s](const std::string& t) { s.plan.soa_s = parse_number("--soa", t, -1e9, 1e9, "s"); });
+    value("--timing", timings.names("|"), "SOA as given, or fitted to end with the path (default fixed)",
+          [&s](const std::string& t) { s.plan.schedule = timings.parse("--timing", t); });
+    value("--slope", "A", "slope of the timing law SOA = A duration + S (default 0.32)",
+          [&s](const std::string& t) { s.slope = parse_number("--slope", t, 0.01, 0.99, ""); });
+    value("--intercept", "S", "intercept of the timing law (default 0.0473)",
+          [&s](const std::string& t) { s.intercept_s = parse_number("--intercept", t, 0.001, 10, "s"); });
+    value("--outside", outsides.names("|"),
+          "paths that leave the array: refuse, or move to its edge "
+          "(default error)",
+          [&s](const std::string& t) { s.plan.leave = outsides.parse("--outside", t); });
+    flag("--snap", "tactile-brush: move a start or end onto the grid", s.plan.snap);
+    flag("--drop-points", "tactile-brush: leave crossings out until the timing is possible",
+         s.plan.drop_points);
+    value("--overlap", overlaps.names("|"), "bursts that overlap on one tactor (default energy)",
+          [&s](const std::string& t) { s.plan.join = overlaps.parse("--overlap", t); });
+    value("--config", "FILE", "configuration, see tactor.toml(5)",
+          [&s](const std::string& t) { s.config_file = t; });
+}
+
+void option_list::add_sound_options()
+{
+    settings& s = settings_;
+    value("--carrier", "HZ", "frequency of the vibration (default 250)",
+          [&s](const std::string& t) { s.plan.carrier_hz = parse_number("--carrier", t, 1, 384000, "Hz"); });
+    value("--phase", "burst|continuous", "carrier phase starts with each burst or runs on (default burst)",
+          [&s](const std::string& t) { s.render.phase = parse_phase(t); });
+    value("--ramp", "S",
+          "raised-cosine ramp inside each burst (default: 0 for whole half cycles, else 0.002)",
+          [&s](const std::string& t) { s.render.ramp_s = parse_number("--ramp", t, 0, 10, "s"); });
+    auto* level = value("--level-dbfs", "DB", "peak of the carrier for intensity 1 (default -12)",
+                        [&s](const std::string& t) {
+                            s.render.level_dbfs = parse_number("--level-dbfs", t, -200, 0, "dBFS");
+                        });
+    auto* sl = value("--sl", "DB", "instead: dB above each tactor's threshold", [&s](const std::string& t) {
+        s.render.sl_db = parse_number("--sl", t, -60, 100, "dB SL");
+    });
+    level->excludes(sl);
+    value("--rate", "HZ", "sample rate (default 48000)", [&s](const std::string& t) {
+        const double hz = parse_number("--rate", t, 8000, 768000, "Hz");
+        if (hz != std::floor(hz))
+            throw error(errc::bad_input, "--rate", fmt::format("{} is not a whole number", t));
+        s.rate = static_cast<unsigned>(hz);
+    });
+    value("--sample-format", "float|s16|s24|s32", "samples (render: float; play: what the device takes)",
+          [&s](const std::string& t) { s.format = sample_format_from_string(t); });
+}
+
+void option_list::add_device_options()
+{
+    settings& s = settings_;
+    value("-D,--device", "PCM", "ALSA device, e.g. hw:CARD=Tactor (default: the configuration's, else null)",
+          [&s](const std::string& t) { s.pcm = t; });
+}
+
+void option_list::apply_defaults(const std::map<std::string, std::string>& defaults, const std::string& where)
+{
+    const auto given = [this](const char* name) {
+        const auto o = by_name_.find(name);
+        return o != by_name_.end() && o->second.first->count() != 0;
+    };
+    for (const auto& [name, text] : defaults) {
+        const auto o = by_name_.find(name);
+        // Not an option of this command, or the command line says it, in one way or the other.
+        if (o == by_name_.end() || given(name.c_str()) || (name == "speed" && given("duration")) ||
+            (name == "sl" && given("level-dbfs")) || (name == "level-dbfs" && given("sl")))
+            continue;
+        try {
+            o->second.second(text);
+        } catch (const error& e) {
+            throw error(errc::bad_input, where + ": [defaults]", e.what());
+        }
+    }
+}
+
+} // namespace tactor::cli

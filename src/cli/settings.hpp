@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What the command line and the configuration ask for, and the options that say it.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tactor/tactor.hpp>
+
+namespace CLI {
+class App;
+class Option;
+} // namespace CLI
+
+namespace tactor::cli {
+
+/// Everything that one command was asked for. Options not given hold the built-in default.
+struct settings {
+    std::vector<std::string> strokes;       ///< STROKE arguments
+    std::optional<std::string> path_data;   ///< --path
+    std::optional<std::string> array_name;  ///< --array
+    std::optional<std::string> config_file; ///< --config
+    std::optional<std::string> pcm;         ///< -D
+    std::optional<double> duration_s;
+    std::optional<double> speed_mm_s;
+    std::optional<unsigned> rate;
+    std::optional<sample_format> format;
+    std::optional<double> slope;
+    std::optional<double> intercept_s;
+    plan_options plan;
+    render_options render;
+};
+
+/// The options of one command, in a form that the configuration's [defaults] can feed too.
+class option_list {
+public:
+    option_list(CLI::App& command, settings& into);
+
+    /// STROKE, --path and how it is planned.
+    void add_stroke_options(bool several_strokes);
+    /// Carrier, levels and rate.
+    void add_sound_options();
+    /// -D.
+    void add_device_options();
+
+    /// Fills options that the command line does not give from the configuration; `where` names it.
+    /// \throws error (bad_input).
+    void apply_defaults(const std::map<std::string, std::string>& defaults, const std::string& where);
+
+private:
+    using setter = std::function<void(const std::string&)>;
+    CLI::Option* value(const std::string& names, const std::string& type, const std::string& help,
+                       setter set);
+    CLI::Option* flag(const std::string& name, const std::string& help, bool& into);
+
+    CLI::App& command_;
+    settings& settings_;
+    std::map<std::string, std::pair<CLI::Option*, setter>> by_name_;
+};
+
+/// A finite number between lo and hi. \throws error (bad_input) naming `what`, the text and the range.
+double parse_number(const std::string& what, const std::string& text, double lo, double hi,
+                    const std::string& unit);
+
+} // namespace tactor::cli
