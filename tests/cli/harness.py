@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: MIT
+"""What the tests of the tool share: running it, reading WAV files, and the closing line.
+
+Each test file is run as: python3 test_X.py TOOL SOURCE_ROOT
+"""
+import json
+import os
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TOOL = pathlib.Path(sys.argv[1]).resolve()
+ROOT = pathlib.Path(sys.argv[2]).resolve()
+
+# Only what the tests define: neither the user's nor the system's configuration of ALSA or tactor.
+ALSA_CONFIG = """
+pcm.!default { type null }
+pcm.null { type null }
+pcm.raw {
+    @args [ FILE ]
+    @args.FILE { type string }
+    type file
+    slave.pcm { type null }
+    file $FILE
+    format raw
+}
+pcm.eight {
+    type multi
+    slaves.a { pcm { type null } channels 4 }
+    slaves.b { pcm { type null } channels 4 }
+    bindings.0 { slave a channel 0 }
+    bindings.1 { slave a channel 1 }
+    bindings.2 { slave a channel 2 }
+    bindings.3 { slave a channel 3 }
+    bindings.4 { slave b channel 0 }
+    bindings.5 { slave b channel 1 }
+    bindings.6 { slave b channel 2 }
+    bindings.7 { slave b channel 3 }
+}
+"""
+
+
+class ToolTest(unittest.TestCase):
+    """A test with a folder of its own, in which the tool runs."""
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.dir = pathlib.Path(self.folder.name)
+        self.write("alsa.conf", ALSA_CONFIG)
+        self.env = {k: v for k, v in os.environ.items() if k not in ("TACTOR_CONFIG", "DISPLAY")}
+        self.env |= {"XDG_CONFIG_HOME": str(self.dir / "none"), "ALSA_CONFIG_PATH": str(self.dir / "alsa.conf"),
+                     "LC_ALL": "C"}
+
+    def write(self, name, text):
+        path = self.dir / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return path
+
+    def run_tool(self, *args, stdin="", env=None, timeout=60):
+        return subprocess.run([TOOL, *map(str, args)], input=stdin, capture_output=True, text=True, timeout=timeout,
+                              cwd=self.dir, env=self.env | (env or {}), check=False)
+
+    def ok(self, *args, **more):
+        result = self.run_tool(*args, **more)
+        self.assertEqual(result.returncode, 0, f"{args}: {result.stderr}")
+        return result
+
+    def refused(self, status, *args, says=(), **more):
+        """Runs what must fail with this status and one line of error that says all these."""
+        result = self.run_tool(*args, **more)
+        self.assertEqual(result.returncode, status, f"{args}: {result.stdout[:300]} {result.stderr}")
+        self.assertTrue(result.stderr.startswith("tactor: "), result.stderr)
+        for text in says:
+            self.assertIn(text, result.stderr)
+        return result
+
+    def plan(self, *args, **more):
+        return json.loads(self.ok("plan", *args, "--format", "json", **more).stdout)
+
+
+class Wav:
+    """A WAV or RF64 file, read chunk by chunk."""
+
+    def __init__(self, path):
+        data = pathlib.Path(path).read_bytes()
+        assert data[:4] in (b"RIFF", b"RF64") and data[8:12] == b"WAVE", data[:12]
+        self.chunks = {}
+        at = 12
+        while at + 8 <= len(data):
+            name, size = data[at:at + 4], struct.unpack("<I", data[at + 4:at + 8])[0]
+            self.chunks[name] = data[at + 8:at + 8 + size]
+            at += 8 + size + size % 2
+        self.tag, self.channels, self.rate, _, self.frame_bytes, self.bits = struct.unpack(
+            "<HHIIHH", self.chunks[b"fmt "][:16])
+        self.data = self.chunks[b"data"]
+        self.frames = len(self.data) // self.frame_bytes
+
+    def samples(self):
+        """All samples as numbers, full scale 1, frame by frame."""
+        if self.tag == 3:
+            values = [v for (v,) in struct.iter_unpack("<f", self.data)]
+        else:
+            size = self.bits // 8
+            values = [int.from_bytes(self.data[i:i + size], "little", signed=True) / 2.0 ** (self.bits - 1)
+                      for i in range(0, len(self.data), size)]
+        n = self.channels
+        return [values[i:i + n] for i in range(0, len(values), n)]
+
+
+def main():
+    """Runs the file's tests and closes with the line that the suite's summary counts."""
+    result = unittest.TextTestRunner(stream=sys.stdout, verbosity=1).run(
+        unittest.defaultTestLoader.loadTestsFromModule(sys.modules["__main__"]))
+    for test, why in result.skipped:
+        print(f"SKIPPED: {test}: {why}")
+    failed = len(result.failures) + len(result.errors)
+    print(f"{result.testsRun - failed - len(result.skipped)} passed, {failed} failed, {len(result.skipped)} skipped")
+    sys.exit(1 if failed or not result.testsRun else 0)

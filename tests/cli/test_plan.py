@@ -1,0 +1,231 @@
+# SPDX-License-Identifier: MIT
+"""tactor plan: the schedule as JSON, CSV and text, against calculations made here by other means."""
+import csv
+import io
+import math
+import unittest
+
+from harness import ROOT, ToolTest, main
+
+
+def circle(centre, start_deg, sweep_deg, share):
+    angle = math.radians(start_deg + sweep_deg * share)
+    return centre[0] + 16 * math.cos(angle), centre[1] + 16 * math.sin(angle)
+
+
+def square_grid_drives(p, pitch=20.0, n=3):
+    """Rules 1 to 3 of the phantom, by trying everything, on an n x n grid."""
+    places = [(c * pitch, r * pitch) for r in range(n) for c in range(n)]
+    d = [math.dist(p, q) for q in places]
+    near = min(range(n * n), key=lambda i: d[i])
+    if d[near] <= 1e-6:
+        return {near: 1.0}
+    cell = [r * n + c for r in range(n) for c in range(n)
+            if abs(c * pitch - p[0]) <= pitch + 1e-9 and abs(r * pitch - p[1]) <= pitch + 1e-9]
+    on = []
+    for a in cell:
+        for b in cell:
+            side = math.dist(places[a], places[b])
+            if a < b and side <= pitch * 1.5 and d[a] + d[b] - side < 1e-9:
+                on.append((round(side, 6), a, b))
+    if on:
+        _, a, b = min(on)
+        return {a: math.sqrt(d[b] / (d[a] + d[b])), b: math.sqrt(d[a] / (d[a] + d[b]))}
+    three = sorted(range(n * n), key=lambda i: (round(d[i], 6), i))[:3]
+    total = sum(1 / d[i] for i in three)
+    return {i: math.sqrt(1 / d[i] / total) for i in three}
+
+
+class Presets(ToolTest):
+    # centre, first angle, sweep, duration, bursts
+    MOTIONS = {
+        "park2016-1": ((20, 20), -90, -180, 1.4, 21),
+        "park2016-2": ((0, 20), -90, 180, 1.4, 21),
+        "park2016-3": ((20, 20), 90, 270, 2.1, 31),
+        "park2016-4": ((20, 20), 0, -270, 2.1, 31),
+    }
+
+    def test_the_four_target_motions_are_planned_as_the_paper_says(self):
+        for name, (centre, first, sweep, duration, bursts) in self.MOTIONS.items():
+            p = self.plan(name)
+            self.assertEqual(p["schema"], "tactor-plan/1")
+            self.assertEqual((p["algorithm"], p["phantom"]), ("park2016", "inverse-distance"))
+            self.assertEqual(len(p["bursts"]), bursts, name)
+            self.assertEqual(p["soa_s"], 0.07)
+            self.assertAlmostEqual(p["total_s"], duration + 0.07, 9)
+            self.assertAlmostEqual(p["stroke"]["length_mm"], 16 * math.radians(abs(sweep)), 6)
+            for k, burst in enumerate(p["bursts"]):
+                self.assertAlmostEqual(burst["onset_s"], k * 0.07, 9)
+                self.assertAlmostEqual(burst["duration_s"], 0.07, 9)
+                at = circle(centre, first, sweep, k * 0.07 / duration)
+                self.assertAlmostEqual(burst["x_mm"], at[0], 6)
+                self.assertAlmostEqual(burst["y_mm"], at[1], 6)
+                drives = {d["tactor"]: d["amplitude"] for d in burst["drives"]}
+                expected = square_grid_drives(at)
+                self.assertEqual(sorted(drives), sorted(expected), f"{name} burst {k}")
+                for i, a in expected.items():
+                    self.assertAlmostEqual(drives[i], a, 6)
+
+    def test_drives_name_tactor_and_channel_in_order_of_tactor(self):
+        for burst in self.plan("park2016-4")["bursts"]:
+            tactors = [d["tactor"] for d in burst["drives"]]
+            self.assertEqual(tactors, sorted(tactors))
+            self.assertEqual(tactors, [d["channel"] for d in burst["drives"]])
+
+    def test_presets_are_marked_as_reconstructed(self):
+        self.assertIn("reconstructed", self.plan("park2016-1")["stroke"]["note"])
+
+
+class TactileBrush(ToolTest):
+    ARRAY = '[array]\nname = "a"\ngrid = { rows = 3, columns = 4, pitch_mm = 15.0 }\n'
+
+    def brush(self, *args):
+        self.write("a.toml", self.ARRAY)
+        return self.plan("--array", "a.toml", "--algorithm", "tactile-brush", *args)
+
+    def test_the_worked_example_comes_out(self):
+        p = self.brush("--path", "M 10 30 L 45 10", "--duration", "1")
+        expected = [(0, 72.392), (70.465, 398.526), (245.294, 593.592), (482.543, 558.798), (708.659, 291.341)]
+        self.assertEqual(len(p["bursts"]), 5)
+        for burst, (onset, duration) in zip(p["bursts"], expected):
+            self.assertAlmostEqual(burst["onset_s"] * 1000, onset, 3)
+            self.assertAlmostEqual(burst["duration_s"] * 1000, duration, 3)
+            self.assertIn("tau_s", burst)
+        self.assertIsNone(p["soa_s"])
+        self.assertAlmostEqual(p["total_s"], 1.0, 9)
+        self.assertTrue(p["conflicts"] and all(c["from_s"] < c["to_s"] for c in p["conflicts"]))
+        self.assertTrue(any("0.16" in w for w in p["warnings"]))
+
+    def test_too_fast_a_stroke_is_refused_with_a_time_that_works(self):
+        self.write("a.toml", self.ARRAY)
+        args = ["plan", "--array", "a.toml", "--algorithm", "tactile-brush", "--path", "M 10 30 L 45 10"]
+        said = self.refused(2, *args, "--duration", "0.15").stderr
+        times = [float(w.strip("(),;:")) for w in said.replace("=", " ").split()
+                 if w.strip("(),;:").replace(".", "", 1).isdigit() and "." in w]
+        works = [t for t in times if 0.15 < t < 2 and self.run_tool(*args, "--duration", t).returncode == 0]
+        self.assertTrue(works, said)
+
+    def test_points_can_be_dropped_instead(self):
+        p = self.brush("--path", "M 10 30 L 45 10", "--duration", "0.15", "--drop-points")
+        self.assertTrue(p["dropped"])
+        self.assertEqual(len(p["bursts"]) + len(p["dropped"]), 5)
+        self.assertTrue(all(b["duration_s"] >= 0 for b in p["bursts"]))
+
+    def test_an_end_off_the_grid_is_refused_or_snapped(self):
+        self.write("a.toml", self.ARRAY)
+        args = ["--array", "a.toml", "--algorithm", "tactile-brush", "--path", "M 10 29 L 45 10", "--duration", "1"]
+        self.refused(2, "plan", *args, says=["10", "30", "--snap"])
+        self.assertAlmostEqual(self.plan(*args, "--snap")["bursts"][0]["y_mm"], 30.0, 9)
+
+
+class Options(ToolTest):
+    def test_fit_samples_both_ends(self):
+        p = self.plan("--path", "M 0 0 L 40 0", "--duration", "1", "--timing", "fit")
+        self.assertEqual(len(p["bursts"]), 16)
+        self.assertAlmostEqual(p["soa_s"], 1 / 15, 9)
+        self.assertAlmostEqual(p["bursts"][-1]["x_mm"], 40, 9)
+        self.assertAlmostEqual(p["bursts"][0]["duration_s"], (1 / 15 - 0.0473) / 0.32, 9)
+
+    def test_soa_sets_onsets_and_durations(self):
+        p = self.plan("park2016-1", "--soa", "0.06")
+        self.assertAlmostEqual(p["bursts"][1]["onset_s"], 0.06, 9)
+        self.assertAlmostEqual(p["bursts"][1]["duration_s"], (0.06 - 0.0473) / 0.32, 9)
+
+    def test_speed_and_duration_set_the_time(self):
+        self.assertAlmostEqual(self.plan("--path", "M 0 10 L 40 10")["stroke"]["duration_s"], 40 / 60, 9)
+        self.assertAlmostEqual(self.plan("--path", "M 0 10 L 40 10", "--speed", "80")["stroke"]["duration_s"], 0.5, 9)
+        self.assertAlmostEqual(self.plan("park2016-1", "--speed", "50.26548245743669")["stroke"]["duration_s"], 1, 9)
+
+    def test_every_phantom_model_keeps_its_promise(self):
+        for name in ("inverse-distance", "barycentric", "gaussian"):
+            for b in self.plan("park2016-3", "--phantom", name)["bursts"]:
+                self.assertAlmostEqual(sum(d["amplitude"] ** 2 for d in b["drives"]), 1, 9)
+        for b in self.plan("park2016-3", "--phantom", "linear")["bursts"]:
+            self.assertAlmostEqual(sum(d["amplitude"] for d in b["drives"]), 1, 9)
+        for b in self.plan("park2016-3", "--phantom", "log")["bursts"]:
+            self.assertAlmostEqual(sum(2 ** d["amplitude"] - 1 for d in b["drives"]), 1, 9)
+
+    def test_continuous_lists_its_points_instead_of_bursts(self):
+        p = self.plan("park2016-1", "--algorithm", "continuous")
+        self.assertEqual(p["bursts"], [])
+        self.assertIsNone(p["soa_s"])
+        points = p["continuous"]["points"]
+        self.assertEqual(len(points), 1401)
+        self.assertAlmostEqual(points[-1]["t_s"], 1.4, 9)
+        self.assertAlmostEqual(points[700]["x_mm"], 4.0, 6)
+
+    def test_outside_can_be_clamped(self):
+        p = self.plan("--path", "M 0 -5 L 40 -5", "--outside", "clamp")
+        self.assertTrue(all(b["y_mm"] == 0 for b in p["bursts"]))
+
+    def test_config_gives_defaults_that_the_command_line_overrides(self):
+        self.write("c.toml", '[array]\npreset = "palm-2x4"\n[defaults]\nphantom = "barycentric"\nsoa = 0.06\n')
+        p = self.plan("--path", "M 0 0 L 60 0", "--config", "c.toml")
+        self.assertEqual((p["array"]["name"], p["phantom"], p["soa_s"]), ("palm-2x4", "barycentric", 0.06))
+        p = self.plan("--path", "M 0 0 L 40 0", "--config", "c.toml", "--soa", "0.07", "--array", "palm-3x3")
+        self.assertEqual((p["array"]["name"], p["soa_s"]), ("palm-3x3", 0.07))
+        p = self.plan("--path", "M 0 0 L 60 0", env={"TACTOR_CONFIG": "c.toml"})
+        self.assertEqual(p["array"]["name"], "palm-2x4")
+        self.write("xdg/tactor/tactor.toml", "[defaults]\nsoa = 0.05\n")
+        p = self.plan("park2016-1", env={"XDG_CONFIG_HOME": str(self.dir / "xdg")})
+        self.assertEqual(p["soa_s"], 0.05)
+
+    def test_numbers_carry_nine_digits_and_repeat_in_any_locale(self):
+        one = self.ok("plan", "park2016-1", "--format", "json").stdout
+        self.assertIn("0.8944271909", one)
+        for locale in ("de_DE.UTF-8", "fr_FR.UTF-8"):
+            self.assertEqual(self.ok("plan", "park2016-1", "--format", "json", env={"LC_ALL": locale}).stdout, one)
+
+    def test_csv_has_a_line_for_each_drive(self):
+        rows = list(csv.DictReader(io.StringIO(self.ok("plan", "park2016-1", "--format", "csv").stdout)))
+        self.assertEqual(len(rows), sum(len(b["drives"]) for b in self.plan("park2016-1")["bursts"]))
+        self.assertEqual(float(rows[0]["x_mm"]), 20.0)
+
+    def test_text_lists_the_bursts(self):
+        text = self.ok("plan", "park2016-1").stdout
+        self.assertIn("21 bursts", text)
+        self.assertEqual(sum(line.strip().startswith(("0.", "1.")) for line in text.splitlines()), 21)
+
+
+class StrokeFiles(ToolTest):
+    def test_timed_points_from_a_csv_file(self):
+        self.write("s.csv", "t_s,x_mm,y_mm,intensity\n0,0,10,1\n0.7,20,10,0.5\n1.4,40,10,1\n")
+        p = self.plan("s.csv")
+        self.assertEqual(len(p["bursts"]), 21)
+        self.assertAlmostEqual(p["bursts"][10]["x_mm"], 20, 6)
+        energy = sum(d["amplitude"] ** 2 for d in p["bursts"][10]["drives"])
+        self.assertAlmostEqual(math.sqrt(energy), 0.5, 6)
+
+    def test_standard_input_holds_a_stroke_file(self):
+        p = self.plan("-", stdin='[stroke]\npath = "M 0 10 L 40 30"\nduration_s = 1.0\n')
+        self.assertEqual(len(p["bursts"]), 15)
+
+    def test_several_strokes_in_one_file_are_all_listed(self):
+        self.write("two.toml", '[[stroke]]\npath = "M 0 0 L 40 0"\nduration_s = 0.7\n'
+                               '[[stroke]]\nstart_s = 2.0\npath = "M 0 40 L 40 40"\nduration_s = 0.7\n')
+        plans = self.plan("two.toml")["plans"]
+        self.assertEqual([q["start_s"] for q in plans], [0.0, 2.0])
+        self.assertEqual([len(q["bursts"]) for q in plans], [11, 11])
+
+    def test_svg_shapes_are_strokes_in_millimetres(self):
+        self.write("s.svg", '<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="40mm" '
+                            'viewBox="0 0 80 80"><g transform="translate(0 20)"><path d="M 0 0 L 80 0"/></g></svg>')
+        p = self.plan("s.svg")
+        self.assertAlmostEqual(p["stroke"]["length_mm"], 40, 6)
+        self.assertAlmostEqual(p["bursts"][0]["y_mm"], 10, 6)
+
+    def test_every_example_can_be_planned(self):
+        arrays = sorted((ROOT / "examples/arrays").glob("*.toml"))
+        self.assertTrue(arrays)
+        for array in arrays:
+            first = self.plan("--path", "M 0 0 L 1 0", "--array", array, "--outside", "clamp")["array"]["tactors"][0]
+            at = f"M {first['x_mm']} {first['y_mm']} l 0.1 0.1"
+            self.assertTrue(self.plan("--path", at, "--array", array, "--outside", "clamp")["bursts"])
+        strokes = [f for f in sorted((ROOT / "examples/strokes").iterdir()) if f.suffix in (".toml", ".csv", ".svg")]
+        self.assertGreaterEqual({f.suffix for f in strokes}, {".toml", ".csv", ".svg"})
+        for stroke in strokes:
+            self.plan(stroke)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: MIT
+"""Holds the include directions: which room may know which, and which library only one room may know.
+
+Usage: includes.py SOURCE_ROOT. Prints each include that breaks a rule, then counts.
+"""
+import pathlib
+import re
+import sys
+
+# A room may include itself and these.
+MAY_INCLUDE = {
+    "model": set(),
+    "plan": {"model"},
+    "synth": {"model", "plan"},
+    "wav": {"model", "plan", "synth"},
+    "rt": set(),
+    "gpio": {"rt"},
+    "alsa": {"model", "rt"},
+    "engine": {"model", "plan", "synth", "rt", "gpio"},
+    "cli": set(),
+    "server": set(),
+}
+# The room that a public header belongs to; a room may use the public headers of the rooms it may include.
+PUBLIC = {
+    "api": None, "error": None, "version": None, "geometry": None, "tactor": "engine",
+    "array": "model", "path": "model", "setup": "model", "stroke": "model",
+    "phantom": "plan", "plan": "plan",
+    "render": "synth", "sample_format": None, "wav": "wav",
+    "sink": None, "alsa": "alsa", "player": "engine",
+}
+USES_ALL_PUBLIC = {"cli", "server"}
+# Header prefix: the only places that may include it.
+ONLY_IN = {
+    "alsa/asoundlib.h": ["src/alsa/"],
+    "gpiod.h": ["src/gpio/line_v"],
+    "2geom/": ["src/model/"],
+    "pugixml.hpp": ["src/model/"],
+    "toml++/": ["src/model/"],
+    "boost/polygon": ["src/plan/"],
+    "boost/asio": ["src/engine/", "src/server/"],
+    "sndfile": ["src/wav/"],
+    "CLI/": ["src/cli/"],
+    "nlohmann/": ["src/cli/", "src/server/"],
+}
+# Standard headers of threads and clocks that the pure rooms must not see.
+PURE = {"model", "plan", "synth"}
+IMPURE = {"thread", "mutex", "condition_variable", "chrono", "atomic", "future", "poll.h", "unistd.h", "time.h"}
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.M)
+
+
+def complaints(root, file):
+    where = file.relative_to(root).as_posix()
+    parts = where.split("/")
+    room = parts[1] if parts[0] == "src" and len(parts) > 2 else None
+    for header in INCLUDE.findall(file.read_text(encoding="utf-8")):
+        for prefix, places in ONLY_IN.items():
+            if header.startswith(prefix) and not any(where.startswith(p) for p in places):
+                yield f"{where}: includes {header}, which only {', '.join(places)} may"
+        if parts[0] == "include" and not header.startswith("tactor/") and "/" in header:
+            yield f"{where}: a public header includes {header}"
+        if room is None:
+            continue
+        if room in PURE and header in IMPURE:
+            yield f"{where}: {room} is pure and includes {header}"
+        if header.startswith("tactor/"):
+            owner = PUBLIC[header[len("tactor/"):-len(".hpp")]]
+            if owner and room not in USES_ALL_PUBLIC and owner != room and owner not in MAY_INCLUDE[room]:
+                yield f"{where}: {room} may not know {owner} ({header})"
+        elif header.split("/")[0] in MAY_INCLUDE and "/" in header:
+            owner = header.split("/")[0]
+            if (root / "src" / header).exists() and owner != room and owner not in MAY_INCLUDE[room]:
+                yield f"{where}: {room} may not know {owner} ({header})"
+
+
+def main():
+    root = pathlib.Path(sys.argv[1]).resolve()
+    files = [f for top in ("src", "include") for f in sorted((root / top).rglob("*.[ch]pp"))]
+    bad = [c for f in files for c in complaints(root, f)]
+    for line in bad:
+        print(line)
+    broken = len({c.split(":")[0] for c in bad})
+    print(f"{len(files) - broken} passed, {broken} failed")
+    return 1 if bad or not files else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
