@@ -60,7 +60,8 @@ TACTOR_API const std::vector<std::string>& array_presets();
 TACTOR_API array preset_array(std::string_view name);
 
 /// Checks what every array must satisfy: at least one tactor, finite places, no two tactors on one
-/// place or one channel, limits and gains in range (max_dbfs <= 0, polarity 1 or -1, channel < 1024).
+/// place or one channel, limits and gains in range (max_dbfs <= 0, polarity 1 or -1, channel < 16384). A file
+/// that names a channel must stay below 1024, which no PCM exceeds. O(n log n).
 /// \throws error (bad_input) naming the tactors and their line.
 TACTOR_API void validate(const array& a);
 

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// [output], [amplifier] and [sync].
+#include <fmt/format.h>
+
+#include "model/setup_parts.hpp"
+
+namespace tactor::detail {
+namespace {
+
+gpio_line_name read_line(const toml_table& t)
+{
+    gpio_line_name line;
+    line.where = t.where();
+    if (t.one_of({"chip", "name"}) == "name") {
+        if (t.has("offset"))
+            t.fail("offset", fmt::format("{} has both name and offset", t.title()), "a name is enough");
+        line.name = *t.text("name");
+        return line;
+    }
+    line.chip = *t.text("chip");
+    line.offset = t.need(t.whole("offset", 0, 65535), "offset");
+    return line;
+}
+
+} // namespace
+
+void read_output(const toml_table& root, located_setup& out)
+{
+    const auto t = root.table("output", "[output]");
+    if (!t)
+        return;
+    t->only({"pcm", "rate", "channels", "period_frames", "periods"});
+    output_settings& o = out.said.output;
+    if (t->has("pcm"))
+        o.pcm = t->text("pcm");
+    if (t->has("rate"))
+        o.rate = t->whole("rate", 8000, 768000);
+    if (t->has("channels")) {
+        o.channels = t->whole("channels", 1, max_channels);
+        out.channels_at = t->where("channels");
+    }
+    if (t->has("period_frames"))
+        o.period_frames = t->whole("period_frames", 1, 1u << 20);
+    if (t->has("periods"))
+        o.periods = t->whole("periods", 2, 1024);
+}
+
+void read_amplifier(const toml_table& root, located_setup& out)
+{
+    const auto t = root.table("amplifier", "[amplifier]");
+    if (!t)
+        return;
+    t->only({"line", "active_low", "settle_ms"});
+    const toml_table line = t->need(t->table("line", "line = { chip, offset } or { name }"), "line");
+    amplifier_settings a;
+    line.only({"chip", "offset", "name"});
+    a.line = read_line(line);
+    a.active_low = t->boolean("active_low").value_or(a.active_low);
+    a.settle_ms = t->number("settle_ms", {0.0, 10000.0}).value_or(a.settle_ms);
+    out.said.amplifier = a;
+}
+
+void read_sync(const toml_table& root, located_setup& out)
+{
+    const auto t = root.table("sync", "[sync]");
+    if (!t)
+        return;
+    t->only({"out", "channel", "in"});
+    sync_settings s;
+    if (const auto pulse = t->table("out", "out = { chip, offset, pulse_ms }")) {
+        pulse->only({"chip", "offset", "name", "pulse_ms"});
+        s.out = read_line(*pulse);
+        s.pulse_ms = pulse->number("pulse_ms", {0.0, 10000.0, true}).value_or(s.pulse_ms);
+    }
+    if (const auto edge = t->table("in", "in = { chip, offset, edge }")) {
+        edge->only({"chip", "offset", "name", "edge"});
+        s.in = read_line(*edge);
+        s.edge = edge->choice("edge", {"rising", "falling", "both"}).value_or(s.edge);
+    }
+    s.channel = t->whole("channel", 0, max_channels - 1);
+    out.sync_channel_at = t->where("channel");
+    out.said.sync = s;
+}
+
+} // namespace tactor::detail

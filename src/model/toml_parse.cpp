@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// From text to toml++'s tables.
+#include "model/toml_reader.hpp"
+
+namespace tactor::detail {
+namespace {
+
+// Deeper than any table of ours. toml++ limits nested values, but in 3.3 not dotted keys, and frees
+// nested tables by recursion: a key of 100 000 dots would overflow the stack.
+constexpr unsigned max_dots = 16;
+
+bool bare(char c) noexcept
+{
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-' || c == ' ' || c == '\t';
+}
+
+// Behind the string that begins at i, or the end of the text.
+std::size_t after_string(std::string_view t, std::size_t i)
+{
+    const char quote = t[i];
+    const bool multiline = t.substr(i, 3) == std::string(3, quote);
+    const std::string end(multiline ? 3 : 1, quote);
+    for (i += end.size(); i < t.size(); ++i) {
+        if (quote == '"' && t[i] == '\\')
+            ++i;
+        else if (t.compare(i, end.size(), end) == 0) {
+            i += end.size();
+            // A multi-line string may end in up to two quotes of its own.
+            for (unsigned own = 0; multiline && own < 2 && i < t.size() && t[i] == quote; ++own)
+                ++i;
+            return i;
+        } else if (t[i] == '\n' && !multiline)
+            return i; // toml++ will complain
+    }
+    return t.size();
+}
+
+void refuse_deep_keys(std::string_view t, const std::string& name)
+{
+    unsigned dots = 0;
+    unsigned line = 1;
+    std::size_t line_start = 0;
+    for (std::size_t i = 0; i < t.size();) {
+        const std::size_t from = i;
+        if (t[i] == '"' || t[i] == '\'') {
+            i = after_string(t, i);
+        } else if (t[i] == '#') {
+            while (i < t.size() && t[i] != '\n')
+                ++i;
+        } else {
+            if (t[i] == '.')
+                ++dots;
+            else if (!bare(t[i]))
+                dots = 0;
+            ++i;
+        }
+        for (std::size_t k = from; k < i && k < t.size(); ++k) {
+            if (t[k] == '\n') {
+                ++line;
+                line_start = k + 1;
+            }
+        }
+        if (dots > max_dots)
+            fail_at({name, line, static_cast<unsigned>(from - line_start + 1)}, "a key of too many parts",
+                    "no key has more than three");
+    }
+}
+
+} // namespace
+
+toml::table parse_toml(std::string_view text, const std::string& name)
+{
+    refuse_deep_keys(text, name);
+    try {
+        return toml::parse(text, std::string_view(name));
+    } catch (const toml::parse_error& e) {
+        const auto& at = e.source().begin;
+        fail_at({name, at.line, at.column}, e.description(), "see tactor.toml(5)");
+    }
+}
+
+} // namespace tactor::detail
