@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include "rt/thread.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <climits>
+#include <csignal>
+#include <latch>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+#include <sched.h>
+#include <sys/prctl.h>
+
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
+
+namespace tactor::rt {
+namespace {
+
+struct launch {
+    const thread_options& options;
+    std::function<void()> body;
+    std::latch settled{1};
+    int fifo_error = -1;
+};
+
+int become_fifo(int priority) noexcept
+{
+    sched_param p{};
+    p.sched_priority =
+        std::clamp(priority, sched_get_priority_min(SCHED_FIFO), sched_get_priority_max(SCHED_FIFO));
+    // glibc's pthread attributes refuse the reset flag, so the thread does it itself.
+    return sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &p) == 0 ? 0 : errno;
+}
+
+void flush_denormals() noexcept
+{
+#if defined(__SSE2__)
+    _mm_setcsr(_mm_getcsr() | 0x8040U); // FTZ and DAZ
+#elif defined(__aarch64__)
+    unsigned long fpcr = 0;
+    __asm__ volatile("mrs %0, fpcr" : "=r"(fpcr));
+    fpcr |= 1UL << 24;
+    __asm__ volatile("msr fpcr, %0" : : "r"(fpcr));
+#elif defined(__arm__) && defined(__ARM_FP)
+    unsigned fpscr = 0;
+    __asm__ volatile("vmrs %0, fpscr" : "=r"(fpscr));
+    fpscr |= 1U << 24;
+    __asm__ volatile("vmsr fpscr, %0" : : "r"(fpscr));
+#endif
+}
+
+void* enter(void* argument) noexcept
+{
+    launch& l = *static_cast<launch*>(argument);
+    const std::string name = l.options.name.substr(0, 15);
+    pthread_setname_np(pthread_self(), name.c_str());
+    if (l.options.fifo)
+        l.fifo_error = become_fifo(l.options.priority);
+    if (l.options.audio) {
+        prctl(PR_SET_TIMERSLACK, 1UL);
+        flush_denormals();
+    }
+    const std::function<void()> body = std::move(l.body);
+    l.settled.count_down(); // `l` is gone from here on
+    body();
+    return nullptr;
+}
+
+class attributes {
+public:
+    explicit attributes(std::size_t stack_bytes)
+    {
+        pthread_attr_init(&value_);
+        const long least = sysconf_stack_min();
+        pthread_attr_setstacksize(&value_, std::max(stack_bytes, static_cast<std::size_t>(least)));
+    }
+    ~attributes() { pthread_attr_destroy(&value_); }
+    attributes(const attributes&) = delete;
+    attributes& operator=(const attributes&) = delete;
+
+    const pthread_attr_t* get() const noexcept { return &value_; }
+
+private:
+    // PTHREAD_STACK_MIN is a call to sysconf since glibc 2.34, and of type long.
+    static long sysconf_stack_min() { return PTHREAD_STACK_MIN; }
+
+    pthread_attr_t value_{};
+};
+
+} // namespace
+
+thread::thread(const thread_options& o, std::function<void()> body)
+{
+    const attributes attr(o.stack_bytes);
+    launch l{.options = o, .body = std::move(body)};
+
+    sigset_t all;
+    sigset_t before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before); // the new thread inherits the mask
+    const int code = pthread_create(&handle_, attr.get(), enter, &l);
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    if (code != 0)
+        throw std::system_error(code, std::generic_category(), "thread " + o.name);
+
+    joinable_ = true;
+    l.settled.wait();
+    fifo_error_ = l.fifo_error;
+}
+
+thread::~thread()
+{
+    join();
+}
+
+void thread::join() noexcept
+{
+    if (joinable_)
+        pthread_join(handle_, nullptr);
+    joinable_ = false;
+}
+
+bool thread::is_current() const noexcept
+{
+    return joinable_ && pthread_equal(handle_, pthread_self()) != 0;
+}
+
+} // namespace tactor::rt

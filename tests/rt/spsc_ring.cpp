@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include "rt/spsc_ring.hpp"
+
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+using tactor::rt::spsc_ring;
+
+TEST_CASE("capacity is the next power of two")
+{
+    CHECK(spsc_ring<int>(0).capacity() == 1);
+    CHECK(spsc_ring<int>(1).capacity() == 1);
+    CHECK(spsc_ring<int>(3).capacity() == 4);
+    CHECK(spsc_ring<int>(64).capacity() == 64);
+    CHECK(spsc_ring<int>(65).capacity() == 128);
+}
+
+TEST_CASE("every size from 1 to 64 fills, refuses, empties and wraps")
+{
+    for (std::size_t size = 1; size <= 64; ++size) {
+        CAPTURE(size);
+        // Starts so near to the end of the index type that it wraps on the way.
+        spsc_ring<std::size_t> ring(size, std::numeric_limits<std::size_t>::max() - size / 2);
+        std::size_t next = 0;
+        std::size_t expected = 0;
+        std::size_t value = 0;
+        for (int round = 0; round < 5; ++round) {
+            CHECK(ring.size() == 0);
+            CHECK(ring.front() == nullptr);
+            CHECK_FALSE(ring.pop(value));
+            for (std::size_t i = 0; i < ring.capacity(); ++i)
+                REQUIRE(ring.push(next++));
+            CHECK_FALSE(ring.push(std::size_t{99}));
+            CHECK(ring.room() == 0);
+            CHECK(ring.size() == ring.capacity());
+            while (ring.pop(value))
+                REQUIRE(value == expected++);
+            CHECK(expected == next);
+            // Shifts the place of the wrap.
+            REQUIRE(ring.push(next++));
+            REQUIRE(ring.pop(value));
+            REQUIRE(value == expected++);
+        }
+    }
+}
+
+TEST_CASE("behaves as a deque of bounded length")
+{
+    std::mt19937_64 random(1);
+    for (int round = 0; round < 2000; ++round) {
+        spsc_ring<std::uint32_t> ring(1 + random() % 40, random());
+        std::deque<std::uint32_t> model;
+        std::vector<std::uint32_t> some;
+        for (int step = 0; step < 200; ++step) {
+            switch (random() % 4) {
+            case 0: {
+                const auto v = static_cast<std::uint32_t>(random());
+                const bool fits = model.size() < ring.capacity();
+                REQUIRE(ring.push(v) == fits);
+                if (fits)
+                    model.push_back(v);
+                break;
+            }
+            case 1: {
+                some.resize(random() % 50);
+                for (auto& v : some)
+                    v = static_cast<std::uint32_t>(random());
+                const std::size_t n = ring.push(std::span<const std::uint32_t>(some));
+                REQUIRE(n == std::min(some.size(), ring.capacity() - model.size()));
+                model.insert(model.end(), some.begin(), some.begin() + static_cast<std::ptrdiff_t>(n));
+                break;
+            }
+            default: {
+                std::uint32_t v = 0;
+                REQUIRE(ring.pop(v) == !model.empty());
+                if (!model.empty()) {
+                    REQUIRE(v == model.front());
+                    model.pop_front();
+                }
+            }
+            }
+            REQUIRE(ring.size() == model.size());
+            REQUIRE(ring.room() == ring.capacity() - model.size());
+            REQUIRE((ring.front() != nullptr) == !model.empty());
+        }
+    }
+}
+
+namespace {
+
+// Wider than any atomic, so that a torn element would show.
+struct wide {
+    std::uint64_t a = 0;
+    std::uint64_t b = 0;
+    std::uint64_t c = 0;
+};
+
+void stress(std::size_t size, std::uint64_t count)
+{
+    spsc_ring<wide> ring(size, std::numeric_limits<std::size_t>::max() - 1000);
+    std::thread producer([&] {
+        for (std::uint64_t i = 0; i < count;) {
+            if (ring.push(wide{i, ~i, i * 3}))
+                ++i;
+            else
+                std::this_thread::yield();
+        }
+    });
+    std::uint64_t wrong = 0;
+    for (std::uint64_t i = 0; i < count;) {
+        wide w;
+        if (!ring.pop(w)) {
+            std::this_thread::yield();
+            continue;
+        }
+        wrong += static_cast<std::uint64_t>(w.a != i || w.b != ~i || w.c != i * 3);
+        ++i;
+    }
+    producer.join();
+    CHECK(wrong == 0);
+    CHECK(ring.size() == 0);
+}
+
+} // namespace
+
+TEST_CASE("two threads lose, double and tear nothing")
+{
+    stress(1, 20'000);
+    stress(2, 100'000);
+    stress(64, 500'000);
+    stress(1024, 1'000'000);
+}
