@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: MIT
+"""Bad input: a clear error, the right exit status, nothing half written."""
+import os
+import subprocess
+
+from harness import TOOL, ToolTest, main
+
+
+class CommandLine(ToolTest):
+    def test_help_has_an_example_for_every_command(self):
+        for command in ((), ("plan",), ("render",), ("play",)):
+            self.assertIn("Example: tactor ", self.ok(*command, "--help").stdout)
+
+    def test_version(self):
+        self.assertRegex(self.ok("--version").stdout, r"^tactor \d+\.\d+\.\d+")
+
+    def test_wrong_usage(self):
+        self.refused(2, says=["--help"])
+        self.refused(2, "plam", "park2016-1", says=["plam", "plan"])
+        self.refused(2, "plan", "park2016-1", "--speeed", "3", says=["--speeed", "--speed"])
+        self.refused(2, "plan", says=["stroke"])
+        self.refused(2, "plan", "park2016-1", "park2016-2", says=["park2016-2"])
+        self.refused(2, "plan", "park2016-1", "--path", "M 0 0 L 1 1", says=["--path"])
+        self.refused(2, "plan", "park2016-1", "--duration", "1", "--speed", "2", says=["--duration", "--speed"])
+        self.refused(2, "plan", "park2016-1", "--level-dbfs", "-12", "--sl", "7", says=["--sl"])
+        self.refused(2, "render", "park2016-1", says=["-o"])
+        self.refused(2, "plan", "park2016-9", says=["park2016-9", "park2016-1"])
+        self.refused(2, "plan", "park2016-1", "--array", "palm-3x4", says=["palm-3x4", "palm-3x3"])
+        self.refused(2, "plan", "park2016-1", "--algorithm", "park2017", says=["park2017", "park2016"])
+        self.refused(2, "plan", "park2016-1", "--format", "xml", says=["xml", "json"])
+
+    def test_absurd_numbers(self):
+        for option in ("--duration", "--speed", "--soa", "--carrier", "--rate", "--level-dbfs", "--ramp", "--sl"):
+            for value in ("nan", "inf", "-inf", "-1e300", "1e300", "abc", "", "1,5", "0x10", "1e999"):
+                r = self.run_tool("plan", "park2016-1", f"{option}={value}")
+                self.assertEqual(r.returncode, 2, f"{option}={value}: {r.stdout[:200]}{r.stderr}")
+                self.assertTrue(r.stderr.startswith("tactor: "), r.stderr)
+
+    def test_soa_out_of_bounds_names_both(self):
+        for soa in ("0.0473", "0.04", "0.0701", "1", "0", "-1"):
+            self.refused(2, "plan", "park2016-1", "--soa", soa, says=["0.0473", "0.07"])
+        self.ok("plan", "park2016-1", "--soa", "0.0474")
+
+    def test_carriers_above_nyquist(self):
+        self.refused(2, "plan", "park2016-1", "--carrier", "24000", says=["24000", "48000"])
+        self.refused(2, "render", "park2016-1", "--carrier", "5000", "--rate", "8000", "-o", "o.wav", says=["5000"])
+
+    def test_levels_above_full_scale(self):
+        self.refused(2, "plan", "park2016-1", "--level-dbfs", "0.5")
+        self.write("a.toml", '[array]\nname = "a"\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n'
+                             "[[tactor]]\ntactor = 4\ngain_db = 13.0\n")
+        self.refused(2, "plan", "park2016-1", "--array", "a.toml", says=["a.toml:4", "full scale"])
+        self.write("a.toml", '[array]\nname = "a"\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n'
+                             "[[tactor]]\ntactor = 1\nmax_dbfs = -20.0\n")
+        self.refused(2, "plan", "park2016-1", "--array", "a.toml", says=["a.toml:4", "-20"])
+        self.refused(2, "plan", "park2016-1", "--sl", "7", says=["threshold"])
+
+    def test_fit_names_times_that_work(self):
+        said = self.refused(2, "plan", "--path", "M 0 0 L 4 0", "--duration", "0.1", "--timing", "fit").stderr
+        self.assertIn("0.07", said)
+        self.assertIn("0.1074", said)
+
+
+class Paths(ToolTest):
+    def test_what_is_not_a_path(self):
+        for data in ("", "M", "M 0 0", "M 0 0 L", "M 0 0 L nan 3", "M 0 0 L inf 3", "M 0 0 L 1e400 3", "M 0 0 X 1 1",
+                     "L 1 1", "M 0 0 L 0 0", "M 5 5 Z", "M 0 0 L 10 0 M 20 0 L 30 0", "hello", "M 0 0 L 1e9 0"):
+            r = self.run_tool("plan", f"--path={data}")
+            self.assertEqual(r.returncode, 2, f"{data}: {r.stdout[:100]} {r.stderr}")
+            self.assertTrue(r.stderr.startswith("tactor: "), r.stderr)
+
+    def test_a_path_that_leaves_the_array_says_where(self):
+        self.refused(2, "plan", "--path", "M 20 20 L 60 20", says=["40", "--outside"])
+        for algorithm in ("tactile-brush", "continuous"):
+            self.refused(2, "plan", "--path", "M 20 20 L 60 20", "--algorithm", algorithm, says=["40"])
+
+
+class Files(ToolTest):
+    def test_missing_files(self):
+        self.refused(2, "plan", "no/such.toml", says=["no/such.toml"])
+        self.refused(2, "plan", "missing.csv", says=["missing.csv"])
+        self.refused(2, "plan", "park2016-1", "--array", "missing.toml", says=["missing.toml"])
+        self.refused(2, "plan", "park2016-1", "--config", "missing.toml", says=["missing.toml"])
+        self.refused(2, "plan", "park2016-1", env={"TACTOR_CONFIG": "gone.toml"}, says=["gone.toml"])
+        (self.dir / "folder.toml").mkdir()
+        self.refused(2, "plan", "folder.toml", says=["folder.toml"])
+        self.refused(2, "plan", "park2016-1", "--array", "folder.toml", says=["folder.toml"])
+
+    def array_refused(self, text, *says):
+        self.write("a.toml", text)
+        return self.refused(2, "plan", "park2016-1", "--array", "a.toml", says=says)
+
+    def test_arrays(self):
+        grid = '[array]\nname = "a"\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n'
+        pair = "[[tactor]]\nx_mm = 0.0\ny_mm = 0.0\n"
+        self.array_refused("[array\n", "a.toml:1")
+        self.array_refused('[array]\nname = "a"\ngrid = { rows = 3, columns = 3, pich_mm = 20.0 }\n', "a.toml:3",
+                           "pich_mm", "pitch_mm")
+        self.array_refused(grid + "[outputs]\n", "outputs", "output")
+        self.array_refused('[array]\nname = "a"\ngrid = { rows = -3, columns = 3, pitch_mm = 20.0 }\n', "a.toml:3")
+        self.array_refused('[array]\nname = "a"\ngrid = { rows = 3, columns = 3, pitch_mm = nan }\n', "a.toml:3")
+        self.array_refused('[array]\nname = "a"\ngrid = { rows = 3, columns = 3, pitch_mm = inf }\n', "a.toml:3")
+        self.array_refused('[array]\nname = "a"\ngrid = { rows = 100000, columns = 100000, pitch_mm = 1.0 }\n',
+                           "a.toml:3")
+        self.array_refused('[array]\nname = "a"\n' + pair + pair, "a.toml:6", "a.toml:3")
+        self.array_refused('[array]\nname = "a"\n' + pair + "channel = 5\n[[tactor]]\nx_mm = 9.0\ny_mm = 0.0\n"
+                           "channel = 5\n", "channel 5")
+        self.array_refused(grid + "[output]\nchannels = 8\n", "a.toml:5", "8", "9")
+        self.array_refused('[array]\nname = "a"\n', "a.toml")
+        self.array_refused("", "a.toml")
+
+    def test_strokes(self):
+        def bad(name, text, *says):
+            self.write(name, text)
+            self.refused(2, "plan", name, says=says)
+        bad("s.toml", '[stroke]\npath = "M 0 0 L 1 1"\nduraton_s = 3\n', "s.toml:3", "duraton_s", "duration_s")
+        bad("s.toml", "[stroke]\n", "s.toml")
+        bad("s.csv", "t_s,x_mm\n0,0\n", "s.csv:1", "y_mm")
+        bad("s.csv", "t_s,x_mm,y_mm\n0,0,0\n0.5,nan,0\n", "s.csv:3")
+        bad("s.csv", "t_s,x_mm,y_mm\n0,0,0\n0.5,1\n", "s.csv:3")
+        bad("s.csv", "t_s,x_mm,y_mm\n0,0,0\n1,1,0\n0.5,2,0\n", "s.csv:4")
+        bad("s.csv", "", "s.csv")
+        bad("s.svg", "<svg", "s.svg")
+        bad("s.svg", '<svg xmlns="http://www.w3.org/2000/svg"></svg>', "s.svg")
+        self.refused(2, "plan", "-", stdin="", says=["standard input"])
+
+    def test_a_million_points(self):
+        n = 1_000_000
+        lines = (f"{i * 1e-5:.5f},{20 + 15 * ((i % 2000) / 1000 - 1):.4f},20" for i in range(n))
+        self.write("big.csv", "t_s,x_mm,y_mm\n" + "\n".join(lines) + "\n")
+        self.assertEqual(len(self.plan("big.csv")["bursts"]), 143)
+        self.write("big.toml", '[stroke]\nduration_s = 1.0\npath = "M 0 0 L ' +
+                   " ".join(f"{20 + i % 7} {20 + i % 5}" for i in range(n)) + '"\n')
+        self.assertEqual(len(self.plan("big.toml")["bursts"]), 15)
+
+    def test_a_full_disk_under_standard_output_is_a_failure(self):
+        if not os.path.exists("/dev/full"):
+            self.skipTest("there is no /dev/full")
+        with open("/dev/full", "w", encoding="ascii") as full:
+            r = subprocess.run([TOOL, "plan", "park2016-1"], stdout=full, stderr=subprocess.PIPE, text=True,
+                               env=self.env, check=False)
+        self.assertEqual(r.returncode, 1, r.stderr)
+        self.assertTrue(r.stderr.startswith("tactor: standard output: "))
+
+
+if __name__ == "__main__":
+    main()
