@@ -53,6 +53,10 @@ public:
     /// The same movement in another time. Throws like along().
     trajectory with_duration(double duration_s) const;
 
+    /// The same movement with every intensity times `factor`. \throws error (bad_input) unless factor
+    /// is finite and >= 0.
+    trajectory with_intensity(double factor) const;
+
     /// Times, ascending, at which the target meets x = x_mm (or y = y_mm): see path::meets_x. A
     /// target that rests on the line meets it when it arrives.
     std::vector<double> meets_x(double x_mm) const;
