@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// Plays a stroke of Park et al. 2016 on a device and waits until it has been felt.
+//   play_preset [PCM]        default: null, which needs no hardware
+#include <cstdio>
+#include <exception>
+
+#include <tactor/tactor.hpp>
+
+int main(int argc, char** argv)
+try {
+    const tactor::array palm = tactor::preset_array("palm-3x3");
+    const tactor::stroke stroke = tactor::preset_stroke("park2016-3");
+
+    tactor::placed_plan placed{tactor::make_plan(palm, stroke), {}};
+    const tactor::score score(palm, {placed}, {});
+
+    tactor::alsa_options device;
+    device.pcm = argc > 1 ? argv[1] : "null";
+    device.channels = score.channels();
+    device.rate = score.rate();
+    tactor::player player(tactor::open_alsa(device), palm);
+
+    const tactor::stroke_id id = player.submit(score);
+    const auto report = player.wait(id);
+    std::printf("%s after %llu frames\n", std::string(to_string(report->state)).c_str(),
+                static_cast<unsigned long long>(report->frames));
+    return report->state == tactor::stroke_state::finished ? 0 : 1;
+} catch (const std::exception& e) {
+    std::fprintf(stderr, "play_preset: %s\n", e.what());
+    return 1;
+}
