@@ -11,6 +11,7 @@
 namespace tactor::detail {
 namespace {
 
+constexpr std::size_t longest_chain = 16;
 constexpr bounds anywhere{-max_mm, max_mm};
 constexpr bounds limit_db{min_db, 0.0};
 
@@ -44,10 +45,11 @@ array read_included(const toml_table& table, const setup_source& source, located
     const std::filesystem::path file = source.folder / *table.text("file");
     std::error_code ignored;
     const std::filesystem::path full = std::filesystem::weakly_canonical(file, ignored);
-    if (std::find(source.opened.begin(), source.opened.end(), full) != source.opened.end() ||
-        source.opened.size() > 16)
+    if (std::find(source.opened.begin(), source.opened.end(), full) != source.opened.end())
         table.fail("file", fmt::format("{} takes its array from itself", file.string()),
                    "break the circle of files");
+    if (source.opened.size() == longest_chain)
+        table.fail("file", "a chain of too many files", fmt::format("at most {}", longest_chain));
     std::string text;
     try {
         text = read_text_file(file, max_setup_bytes);
@@ -126,7 +128,7 @@ array read_base(const toml_table& table, std::string_view base, const setup_sour
                 located_setup& out)
 {
     if (base == "grid") {
-        const toml_table grid = *table.table("grid", "grid = { rows, columns, pitch_mm }");
+        const toml_table grid = *table.table("grid", "grid", "grid = { rows, columns, pitch_mm }");
         array a = read_grid(grid);
         for (tactor_spec& t : a.tactors)
             t.where = grid.where();
@@ -153,7 +155,7 @@ void read_array(const toml_table& root, const setup_source& source, located_setu
         return;
     const toml::table none;
     const toml_table table =
-        root.table("array", "[array]").value_or(toml_table(none, "[array]", source.name));
+        root.table("array", "[array]", "[array]").value_or(toml_table(none, "[array]", source.name));
     if (table.has("tactor"))
         table.fail("tactor", "tactors inside [array]", "write [[tactor]], which stands beside [array]");
     table.only({"name", "grid", "preset", "file", "actuator"});

@@ -92,7 +92,7 @@ std::string value_of(const toml_table& t, const option& o, const toml::node& n)
 
 void read_defaults(const toml_table& root, setup& out)
 {
-    const auto t = root.table("defaults", "[defaults]");
+    const auto t = root.table("defaults", "[defaults]", "[defaults]");
     if (!t)
         return;
     t->only(std::vector<std::string_view>(setup_default_names().begin(), setup_default_names().end()));

@@ -26,7 +26,7 @@ gpio_line_name read_line(const toml_table& t)
 
 void read_output(const toml_table& root, located_setup& out)
 {
-    const auto t = root.table("output", "[output]");
+    const auto t = root.table("output", "[output]", "[output]");
     if (!t)
         return;
     t->only({"pcm", "rate", "channels", "period_frames", "periods"});
@@ -47,11 +47,11 @@ void read_output(const toml_table& root, located_setup& out)
 
 void read_amplifier(const toml_table& root, located_setup& out)
 {
-    const auto t = root.table("amplifier", "[amplifier]");
+    const auto t = root.table("amplifier", "[amplifier]", "[amplifier]");
     if (!t)
         return;
     t->only({"line", "active_low", "settle_ms"});
-    const toml_table line = t->need(t->table("line", "line = { chip, offset } or { name }"), "line");
+    const toml_table line = t->need(t->table("line", "line", "line = { chip, offset } or { name }"), "line");
     amplifier_settings a;
     line.only({"chip", "offset", "name"});
     a.line = read_line(line);
@@ -62,17 +62,17 @@ void read_amplifier(const toml_table& root, located_setup& out)
 
 void read_sync(const toml_table& root, located_setup& out)
 {
-    const auto t = root.table("sync", "[sync]");
+    const auto t = root.table("sync", "[sync]", "[sync]");
     if (!t)
         return;
     t->only({"out", "channel", "in"});
     sync_settings s;
-    if (const auto pulse = t->table("out", "out = { chip, offset, pulse_ms }")) {
+    if (const auto pulse = t->table("out", "out", "out = { chip, offset, pulse_ms }")) {
         pulse->only({"chip", "offset", "name", "pulse_ms"});
         s.out = read_line(*pulse);
         s.pulse_ms = pulse->number("pulse_ms", {0.0, 10000.0, true}).value_or(s.pulse_ms);
     }
-    if (const auto edge = t->table("in", "in = { chip, offset, edge }")) {
+    if (const auto edge = t->table("in", "in", "in = { chip, offset, edge }")) {
         edge->only({"chip", "offset", "name", "edge"});
         s.in = read_line(*edge);
         s.edge = edge->choice("edge", {"rising", "falling", "both"}).value_or(s.edge);

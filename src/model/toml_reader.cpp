@@ -192,13 +192,14 @@ std::optional<std::string> toml_table::choice(std::string_view key,
     fail(key, fmt::format("{} is {}", key, quoted(*s)), suggestion(*s, {of.begin(), of.size()}, "values"));
 }
 
-std::optional<toml_table> toml_table::table(std::string_view key, std::string title) const
+std::optional<toml_table> toml_table::table(std::string_view key, std::string title,
+                                            std::string_view shape) const
 {
     const toml::node* n = node(key);
     if (!n)
         return std::nullopt;
     if (!n->is_table())
-        wrong_type(key, *n, fmt::format("a table, {}", title));
+        wrong_type(key, *n, fmt::format("a table, {}", shape));
     return toml_table(*n->as_table(), std::move(title), *file_);
 }
 

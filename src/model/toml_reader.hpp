@@ -55,7 +55,8 @@ public:
     std::optional<bool> boolean(std::string_view key) const;
     std::optional<std::string> text(std::string_view key) const; ///< not empty
     std::optional<std::string> choice(std::string_view key, std::initializer_list<std::string_view> of) const;
-    std::optional<toml_table> table(std::string_view key, std::string title) const;
+    /// `shape` shows a wrong value's author how it is written.
+    std::optional<toml_table> table(std::string_view key, std::string title, std::string_view shape) const;
     /// An array of tables, [[key]]; none is an empty list.
     std::vector<toml_table> tables(std::string_view key) const;
     const toml::array* list(std::string_view key, std::string_view of_what) const;
