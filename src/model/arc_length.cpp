@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "model/arc_length.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include <boost/math/quadrature/gauss.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
+
+namespace tactor::detail {
+namespace {
+
+constexpr unsigned deepest = 32;
+
+double gauss(const shape& c, double from, double to)
+{
+    return boost::math::quadrature::gauss<double, 15>::integrate([&c](double t) { return speed(c, t); }, from,
+                                                                 to);
+}
+
+} // namespace
+
+// An interval is fine enough when its two halves give the same length. At a cusp the speed has a kink, and
+// only the interval with the kink is halved further: its error falls with the square of its width.
+arc_length::arc_length(const shape& c) : t_{0.0}, s_{0.0}
+{
+    const double tolerance = std::max(1e-10, 1e-14 * rough_length(c));
+    struct interval {
+        double from;
+        double to;
+        double length;
+        unsigned depth;
+    };
+    std::vector<interval> open{{0.0, 1.0, gauss(c, 0.0, 1.0), 0}};
+    while (!open.empty()) {
+        const interval i = open.back();
+        open.pop_back();
+        const double middle = 0.5 * (i.from + i.to);
+        const double left = gauss(c, i.from, middle);
+        const double right = gauss(c, middle, i.to);
+        if (i.depth == deepest || std::abs(left + right - i.length) <= tolerance) {
+            t_.push_back(i.to);
+            s_.push_back(s_.back() + i.length);
+        } else {
+            open.push_back({middle, i.to, right, i.depth + 1});
+            open.push_back({i.from, middle, left, i.depth + 1});
+        }
+    }
+}
+
+double arc_length::at(const shape& c, double t) const noexcept
+{
+    if (!(t > 0.0))
+        return 0.0;
+    if (t >= 1.0)
+        return total();
+    const auto k = static_cast<std::size_t>(std::upper_bound(t_.begin(), t_.end(), t) - t_.begin()) - 1;
+    return std::min(s_[k] + gauss(c, t_[k], t), s_[k + 1]);
+}
+
+double arc_length::parameter(const shape& c, double s_mm) const noexcept
+{
+    if (!(s_mm > 0.0))
+        return 0.0;
+    if (s_mm >= total())
+        return 1.0;
+    const auto k = static_cast<std::size_t>(std::upper_bound(s_.begin(), s_.end(), s_mm) - s_.begin()) - 1;
+    const auto excess = [&](double t) { return s_[k] + gauss(c, t_[k], t) - s_mm; };
+    const double below = s_[k] - s_mm;
+    const double above = s_[k + 1] - s_mm;
+    if (!(below < 0.0))
+        return t_[k];
+    std::uintmax_t steps = 64;
+    const auto [low, high] = boost::math::tools::toms748_solve(
+        excess, t_[k], t_[k + 1], below, above, boost::math::tools::eps_tolerance<double>(51), steps);
+    return 0.5 * (low + high);
+}
+
+} // namespace tactor::detail

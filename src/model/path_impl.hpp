@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// What is inside a path.
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+#include <tactor/path.hpp>
+
+#include "model/arc_length.hpp"
+#include "model/path_outline.hpp"
+
+namespace tactor {
+
+struct path::impl {
+    struct measured_curve {
+        std::size_t segment;
+        detail::shape form;
+        detail::arc_length measure;
+    };
+
+    std::vector<point> vertices;
+    std::vector<double> s; ///< arc length at each vertex; ascending
+    std::vector<measured_curve> curves;
+
+    /// The curve of a segment; null where it is straight.
+    const measured_curve* curve_of(std::size_t segment) const noexcept;
+};
+
+namespace detail {
+
+/// Measures an outline. `what` stands for it in messages.
+/// \throws error (bad_input) for coordinates that are not finite or beyond max_mm and for no length.
+path make_path(outline o, std::string_view what);
+
+} // namespace detail
+} // namespace tactor

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// Where a movement meets a line of the grid: crossings, touches, and stretches along the line.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include <tactor/geometry.hpp>
+
+namespace tactor::detail {
+
+/// A stretch within same_place_mm of the line that is longer than this runs along it; a shorter one is a
+/// touch. A circle of 16 mm stays within a nanometre of its tangent for 0.01 mm.
+inline constexpr double shortest_run_mm = 0.1;
+
+/// The movement as nodes between which its distance from the line is monotone. N has
+///   size()       number of nodes
+///   off(i)       signed distance of node i from the line, mm
+///   when(i)      node i as the caller counts (arc length or time)
+///   length(i, j) way from node i to node j, mm
+///   root(i)      where between nodes i and i + 1, which are on different sides, the line is
+template <class N>
+class line_meetings {
+public:
+    explicit line_meetings(const N& nodes) : nodes_(nodes) {}
+
+    std::vector<double> find() const
+    {
+        std::vector<double> found;
+        const std::size_t n = nodes_.size();
+        for (std::size_t i = 0; i < n;) {
+            if (!on_line(i)) {
+                if (i + 1 < n && !on_line(i + 1) && crosses(i))
+                    found.push_back(nodes_.root(i));
+                ++i;
+                continue;
+            }
+            std::size_t last = i;
+            while (last + 1 < n && on_line(last + 1))
+                ++last;
+            if (nodes_.length(i, last) <= shortest_run_mm)
+                found.push_back(touch(i, last));
+            i = last + 1;
+        }
+        return found;
+    }
+
+private:
+    bool on_line(std::size_t i) const { return std::abs(nodes_.off(i)) <= same_place_mm; }
+
+    bool crosses(std::size_t i) const { return (nodes_.off(i) < 0.0) != (nodes_.off(i + 1) < 0.0); }
+
+    // One meeting for nodes first ... last, all on the line.
+    double touch(std::size_t first, std::size_t last) const
+    {
+        if (last > first && nodes_.length(first, last) <= same_place_mm)
+            return nodes_.when(first); // it rests: the arrival
+        std::size_t nearest = first;
+        for (std::size_t i = first > 0 ? first - 1 : first; i <= last; ++i) {
+            if (nodes_.off(i) == 0.0)
+                return nodes_.when(i);
+            if (i + 1 < nodes_.size() && nodes_.off(i + 1) != 0.0 && crosses(i))
+                return nodes_.root(i);
+            if (std::abs(nodes_.off(i)) < std::abs(nodes_.off(nearest)))
+                nearest = i;
+        }
+        return nodes_.when(nearest);
+    }
+
+    const N& nodes_;
+};
+
+} // namespace tactor::detail

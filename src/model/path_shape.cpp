@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "model/path_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <boost/math/tools/roots.hpp>
+
+namespace tactor::detail {
+namespace {
+
+point position_on(const cubic& c, double t) noexcept
+{
+    const double r = 1.0 - t;
+    const auto& p = c.p;
+    return r * r * r * p[0] + 3.0 * r * r * t * p[1] + 3.0 * r * t * t * p[2] + t * t * t * p[3];
+}
+
+point position_on(const elliptic& c, double t) noexcept
+{
+    const double angle = c.from + c.sweep * t;
+    return c.centre + std::cos(angle) * c.u + std::sin(angle) * c.v;
+}
+
+point derivative(const cubic& c, double t) noexcept
+{
+    const double r = 1.0 - t;
+    const auto& p = c.p;
+    return 3.0 * r * r * (p[1] - p[0]) + 6.0 * r * t * (p[2] - p[1]) + 3.0 * t * t * (p[3] - p[2]);
+}
+
+point derivative(const elliptic& c, double t) noexcept
+{
+    const double angle = c.from + c.sweep * t;
+    return c.sweep * (std::cos(angle) * c.v - std::sin(angle) * c.u);
+}
+
+std::vector<double> turns_of(const cubic& c, axis a)
+{
+    const double d0 = coordinate(c.p[1] - c.p[0], a);
+    const double d1 = coordinate(c.p[2] - c.p[1], a);
+    const double d2 = coordinate(c.p[3] - c.p[2], a);
+    const auto [t0, t1] = boost::math::tools::quadratic_roots(d0 - 2.0 * d1 + d2, 2.0 * (d1 - d0), d0);
+    return {t0, t1};
+}
+
+std::vector<double> turns_of(const elliptic& c, axis a)
+{
+    const double first = std::atan2(coordinate(c.v, a), coordinate(c.u, a));
+    const double low = std::min(c.from, c.from + c.sweep);
+    const double high = std::max(c.from, c.from + c.sweep);
+    std::vector<double> t;
+    for (double k = std::ceil((low - first) / std::numbers::pi);; k += 1.0) {
+        const double angle = first + k * std::numbers::pi;
+        if (!(angle < high))
+            return t;
+        t.push_back((angle - c.from) / c.sweep);
+    }
+}
+
+cubic mapped_shape(const cubic& c, const affine& m) noexcept
+{
+    return {{m(c.p[0]), m(c.p[1]), m(c.p[2]), m(c.p[3])}};
+}
+
+elliptic mapped_shape(const elliptic& c, const affine& m) noexcept
+{
+    const point origin = m({0.0, 0.0});
+    return {m(c.centre), m(c.u) - origin, m(c.v) - origin, c.from, c.sweep};
+}
+
+} // namespace
+
+point position(const shape& c, double t) noexcept
+{
+    return std::visit([t](const auto& s) { return position_on(s, t); }, c);
+}
+
+double speed(const shape& c, double t) noexcept
+{
+    const point d = std::visit([t](const auto& s) { return derivative(s, t); }, c);
+    return std::hypot(d.x_mm, d.y_mm);
+}
+
+std::vector<double> turns(const shape& c, axis a)
+{
+    std::vector<double> t = std::visit([a](const auto& s) { return turns_of(s, a); }, c);
+    std::erase_if(t, [](double v) { return !(v > 0.0 && v < 1.0); });
+    std::sort(t.begin(), t.end());
+    return t;
+}
+
+double rough_length(const shape& c) noexcept
+{
+    if (const auto* b = std::get_if<cubic>(&c))
+        return distance_mm(b->p[0], b->p[1]) + distance_mm(b->p[1], b->p[2]) + distance_mm(b->p[2], b->p[3]);
+    const auto& e = *std::get_if<elliptic>(&c);
+    return std::abs(e.sweep) * (distance_mm({}, e.u) + distance_mm({}, e.v));
+}
+
+affine operator*(const affine& outer, const affine& inner) noexcept
+{
+    const point origin = outer({inner.e, inner.f});
+    return {outer.a * inner.a + outer.c * inner.b,
+            outer.b * inner.a + outer.d * inner.b,
+            outer.a * inner.c + outer.c * inner.d,
+            outer.b * inner.c + outer.d * inner.d,
+            origin.x_mm,
+            origin.y_mm};
+}
+
+shape mapped(const shape& c, const affine& m) noexcept
+{
+    return std::visit([&m](const auto& s) { return shape(mapped_shape(s, m)); }, c);
+}
+
+} // namespace tactor::detail

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// The four target motions of Park et al. 2016. The figure that shows them is not in the text; these agree
+// with all that the text says of them.
+#include <tactor/stroke.hpp>
+
+#include <array>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <tactor/error.hpp>
+
+#include "model/suggest.hpp"
+
+namespace tactor {
+namespace {
+
+// y points down: from -90 degrees (above the centre), a negative sweep goes over the left side.
+struct motion {
+    std::string_view name;
+    point centre;
+    double from_deg;
+    double sweep_deg;
+};
+
+constexpr double radius_mm = 16.0;
+constexpr double quarter_turn_s = 0.7;
+
+constexpr std::array motions{
+    motion{"park2016-1", {20.0, 20.0}, -90.0, -180.0},
+    motion{"park2016-2", {0.0, 20.0}, -90.0, 180.0},
+    motion{"park2016-3", {20.0, 20.0}, 90.0, 270.0},
+    motion{"park2016-4", {20.0, 20.0}, 0.0, -270.0},
+};
+
+double duration_s(const motion& m)
+{
+    return (m.sweep_deg < 0.0 ? -m.sweep_deg : m.sweep_deg) / 90.0 * quarter_turn_s;
+}
+
+} // namespace
+
+const std::vector<std::string>& stroke_presets()
+{
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all;
+        for (const motion& m : motions)
+            all.emplace_back(m.name);
+        return all;
+    }();
+    return names;
+}
+
+stroke preset_stroke(std::string_view name)
+{
+    for (const motion& m : motions) {
+        if (m.name == name)
+            return {std::string(name),
+                    trajectory::along(path::arc(m.centre, radius_mm, m.from_deg, m.sweep_deg), duration_s(m)),
+                    {},
+                    {},
+                    "reconstructed: the figure that shows it is not in the paper's text"};
+    }
+    throw error(errc::bad_input, "stroke", fmt::format("no preset {}", detail::quoted(name)),
+                fmt::format("presets: {}", fmt::join(stroke_presets(), ", ")));
+}
+
+} // namespace tactor

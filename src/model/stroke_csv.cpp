@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: MIT
+// Timed points as comma-separated values.
+#include <tactor/stroke.hpp>
+
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "model/limits.hpp"
+#include "model/path_number.hpp"
+#include "model/stroke_text.hpp"
+#include "model/suggest.hpp"
+#include "model/trajectory_limits.hpp"
+
+namespace tactor {
+namespace {
+
+enum column : std::size_t { t_s, x_mm, y_mm, intensity, columns };
+
+constexpr std::array<std::string_view, columns> names{"t_s", "x_mm", "y_mm", "intensity"};
+
+struct field {
+    std::string_view text;
+    std::size_t column = 1; ///< where it begins, from 1
+};
+
+class csv_reader {
+public:
+    csv_reader(std::string_view text, const std::string& name)
+        : rest_(detail::without_mark(text)), name_(name)
+    {
+    }
+
+    std::vector<stroke> read()
+    {
+        if (!next_line())
+            fail({}, "is empty", header_hint);
+        header();
+        double start = 0.0;
+        while (next_line()) {
+            timed_point p = row();
+            if (points_.empty())
+                start = p.t_s;
+            p.t_s -= start;
+            points_.push_back(p);
+        }
+        if (points_.size() < 2)
+            fail({}, fmt::format("{} of at least 2 points", points_.size()),
+                 "give where the stroke starts and where it ends");
+        std::optional<double> start_s;
+        if (start > 0.0)
+            start_s = start;
+        return {{detail::stem(name_), trajectory::timed(std::move(points_)), start_s, {}, {}}};
+    }
+
+private:
+    static constexpr std::string_view header_hint =
+        "the first line names the columns: t_s,x_mm,y_mm,intensity";
+
+    // The next line with something on it, into line_.
+    bool next_line()
+    {
+        while (!rest_.empty()) {
+            const std::size_t end = rest_.find('\n');
+            line_ = rest_.substr(0, end);
+            rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+            ++line_number_;
+            std::size_t at = 0;
+            detail::skip_blanks(line_, at);
+            if (at < line_.size() && line_[at] != '#')
+                return true;
+        }
+        return false;
+    }
+
+    // Splits line_ at its commas; quotes and blanks round a field go.
+    void split()
+    {
+        fields_.clear();
+        for (std::size_t at = 0;; ++at) {
+            detail::skip_blanks(line_, at);
+            fields_.push_back(at < line_.size() && line_[at] == '"' ? quoted_field(at) : plain_field(at));
+            if (at == line_.size())
+                return;
+        }
+    }
+
+    field plain_field(std::size_t& at)
+    {
+        const std::size_t begin = at;
+        at = std::min(line_.find(',', begin), line_.size());
+        std::size_t end = at;
+        while (end > begin && detail::blank(line_[end - 1]))
+            --end;
+        return {line_.substr(begin, end - begin), begin + 1};
+    }
+
+    field quoted_field(std::size_t& at)
+    {
+        const std::size_t begin = at + 1;
+        const std::size_t end = line_.find('"', begin);
+        if (end == std::string_view::npos)
+            fail(at + 1, "a quote that does not end", "quotes are not needed");
+        at = end + 1;
+        detail::skip_blanks(line_, at);
+        if (at < line_.size() && line_[at] != ',')
+            fail(at + 1, "text behind a quote", "separate the columns by commas");
+        return {line_.substr(begin, end - begin), begin + 1};
+    }
+
+    void header()
+    {
+        split();
+        for (const field& f : fields_) {
+            std::size_t c = 0;
+            while (c < columns && names[c] != f.text)
+                ++c;
+            if (c == columns)
+                fail(f.column, fmt::format("unknown column {}", detail::quoted(f.text)),
+                     f.text.find_first_of(";\t") != std::string_view::npos
+                         ? "separate the columns by commas"
+                         : "known columns: t_s, x_mm, y_mm, intensity");
+            if (seen_[c])
+                fail(f.column, fmt::format("column {} twice", names[c]), "name each column once");
+            seen_[c] = true;
+            order_.push_back(static_cast<column>(c));
+        }
+        for (const column c : {t_s, x_mm, y_mm}) {
+            if (!seen_[c])
+                fail({}, fmt::format("no column {}", names[c]), header_hint);
+        }
+    }
+
+    timed_point row()
+    {
+        split();
+        if (fields_.size() != order_.size())
+            fail(fields_[std::min(fields_.size(), order_.size()) - 1].column,
+                 fmt::format("{} values where the header names {} columns", fields_.size(), order_.size()),
+                 "numbers have a decimal point, and a comma stands only between them");
+        timed_point p;
+        for (std::size_t i = 0; i < order_.size(); ++i) {
+            const double v = value(fields_[i], order_[i]);
+            (order_[i] == t_s    ? p.t_s
+             : order_[i] == x_mm ? p.position.x_mm
+             : order_[i] == y_mm ? p.position.y_mm
+                                 : p.intensity) = v;
+            if (order_[i] == t_s)
+                check_order(fields_[i], v);
+        }
+        return p;
+    }
+
+    void check_order(const field& f, double time)
+    {
+        if (time <= last_time_)
+            fail(f.column, fmt::format("time {} s is not after {} s of the line before", time, last_time_),
+                 "times ascend");
+        last_time_ = time;
+    }
+
+    double value(const field& f, column c) const
+    {
+        if (f.text.empty())
+            fail(f.column, fmt::format("{} is missing", names[c]), "give a number");
+        std::size_t end = 0;
+        const auto v = detail::scan_number(f.text, end);
+        if (!v || end != f.text.size())
+            fail(f.column, fmt::format("{} is not a number: {}", names[c], detail::quoted(f.text)),
+                 "e.g. 12.5");
+        const bool place = c == x_mm || c == y_mm;
+        const double low = place ? -detail::max_mm : 0.0;
+        const double high = place      ? detail::max_mm
+                            : c == t_s ? detail::longest_stroke_s
+                                       : detail::max_intensity;
+        if (!(*v >= low && *v <= high))
+            fail(f.column,
+                 fmt::format("{} {}", names[c], f.text.size() > 40 ? detail::quoted(f.text) : f.text),
+                 fmt::format("it is between {:g} and {:g}", low, high));
+        return *v;
+    }
+
+    [[noreturn]] void fail(std::optional<std::size_t> at, std::string_view why, std::string_view hint) const
+    {
+        const source_place place{name_, line_number_, static_cast<unsigned>(at.value_or(0))};
+        throw error(errc::bad_input, place.text(), why, hint);
+    }
+
+    std::string_view rest_;
+    const std::string& name_;
+    std::string_view line_;
+    unsigned line_number_ = 0;
+    std::vector<field> fields_;
+    std::array<bool, columns> seen_{};
+    std::vector<column> order_;
+    std::vector<timed_point> points_;
+    double last_time_ = -1.0;
+};
+
+} // namespace
+
+std::vector<stroke> parse_strokes_csv(std::string_view text, const std::string& name)
+{
+    detail::check_size(text, name);
+    return csv_reader(text, name).read();
+}
+
+} // namespace tactor

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: MIT
+// The shapes of an SVG document as strokes.
+#include <tactor/stroke.hpp>
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "model/limits.hpp"
+#include "model/path_impl.hpp"
+#include "model/stroke_svg_document.hpp"
+#include "model/stroke_svg_shapes.hpp"
+#include "model/stroke_text.hpp"
+#include "model/trajectory_limits.hpp"
+
+namespace tactor {
+namespace {
+
+using detail::affine;
+using detail::outline;
+using detail::svg_extent;
+using detail::svg_tag;
+using detail::svg_viewport;
+using pugi::xml_node;
+
+// <use> can multiply a small file without end.
+constexpr unsigned deepest = 100;
+constexpr unsigned most_uses_inside = 16;
+constexpr std::size_t most_elements = 1'000'000;
+constexpr std::size_t most_vertices = 20'000'000;
+constexpr double highest_carrier_hz = 20000.0;
+
+// What an element inherits.
+struct scope {
+    affine to_mm;
+    svg_viewport viewport;
+    std::optional<double> speed_mm_s;
+    double intensity = 1.0;
+    std::optional<double> carrier_hz;
+    unsigned depth = 0;
+    unsigned uses = 0;
+};
+
+bool hidden(xml_node n)
+{
+    const auto is_none = [](std::string_view v) {
+        std::size_t at = 0;
+        detail::skip_blanks(v, at);
+        v.remove_prefix(at);
+        return v.substr(0, 4) == "none" && (v.size() == 4 || detail::blank(v[4]) || v[4] == '!');
+    };
+    std::string_view style = n.attribute("style").value();
+    while (!style.empty()) {
+        const std::size_t end = std::min(style.find(';'), style.size());
+        std::string_view item = style.substr(0, end);
+        style.remove_prefix(std::min(end + 1, style.size()));
+        std::size_t at = 0;
+        detail::skip_blanks(item, at);
+        item.remove_prefix(at);
+        const std::size_t colon = std::min(item.find(':'), item.size());
+        std::string_view key = item.substr(0, colon);
+        while (!key.empty() && detail::blank(key.back()))
+            key.remove_suffix(1);
+        if (key == "display")
+            return is_none(item.substr(std::min(colon + 1, item.size())));
+    }
+    return is_none(n.attribute("display").value());
+}
+
+class svg_reader {
+public:
+    svg_reader(std::string_view text, const std::string& name) : doc_(text, name) {}
+
+    std::vector<stroke> read()
+    {
+        const xml_node root = doc_.root();
+        scope s = root_scope(root);
+        inherit(root, s);
+        if (!hidden(root))
+            children(root, s);
+        if (!strokes_.empty())
+            return std::move(strokes_);
+        if (undrawn_)
+            doc_.fail(undrawn_, fmt::format("{} draws nothing", doc_.called(undrawn_)),
+                      "it needs a size, or path data that draws");
+        throw error(
+            errc::bad_input, doc_.name(), "no shape in it",
+            "strokes are path, line, polyline, polygon, rect, circle and ellipse; make paths of text");
+    }
+
+private:
+    // A document with a size in physical units is as large as it says. In any other, one user unit is one
+    // millimetre and coordinates are as they stand.
+    scope root_scope(xml_node n)
+    {
+        const auto width = doc_.read(n, "width", detail::parse_svg_length);
+        const auto height = doc_.read(n, "height", detail::parse_svg_length);
+        const auto box = doc_.read(n, "viewBox", detail::parse_svg_view_box);
+        using unit = detail::svg_length::unit;
+        const auto has = [](const auto& l, unit u) { return l && l->in == u; };
+        scope s;
+        if (!has(width, unit::mm) && !has(height, unit::mm)) {
+            s.viewport.width = box ? box->width : has(width, unit::none) ? width->value : 100.0;
+            s.viewport.height = box ? box->height : has(height, unit::none) ? height->value : 100.0;
+            return s;
+        }
+        const auto px = [&](const auto& l) -> std::optional<double> {
+            if (!l || l->in == unit::percent)
+                return std::nullopt;
+            if (!(l->value > 0.0))
+                doc_.fail(n, fmt::format("{} has no size", doc_.called(n)),
+                          "width and height are more than 0");
+            return l->in == unit::mm ? l->value / detail::mm_per_px : l->value;
+        };
+        auto w = px(width);
+        auto h = px(height);
+        const double ratio = box ? box->width / box->height : 1.0;
+        if (!w)
+            w = *h * ratio;
+        if (!h)
+            h = *w / ratio;
+        s.to_mm = {detail::mm_per_px, 0.0, 0.0, detail::mm_per_px, 0.0, 0.0};
+        s.viewport = {*w, *h, 1.0 / detail::mm_per_px};
+        if (box)
+            enter_box(n, s, *box, {}, *w, *h);
+        return s;
+    }
+
+    void enter_box(xml_node n, scope& s, const detail::svg_view_box& box, point corner, double width,
+                   double height)
+    {
+        const auto aspect = doc_.read(n, "preserveAspectRatio", detail::parse_svg_aspect);
+        s.to_mm = s.to_mm * fit(box, corner, width, height, aspect.value_or(detail::svg_aspect{}));
+        s.viewport.width = box.width;
+        s.viewport.height = box.height;
+    }
+
+    void inherit(xml_node n, scope& s)
+    {
+        if (const auto t = doc_.read(n, "transform", detail::parse_svg_transform))
+            s.to_mm = s.to_mm * *t;
+        if (const auto v = doc_.number(n, "data-speed-mm-s", 1e-6, detail::max_mm))
+            s.speed_mm_s = v;
+        if (const auto v = doc_.number(n, "data-intensity", 0.0, detail::max_intensity))
+            s.intensity = *v;
+        if (const auto v = doc_.number(n, "data-carrier-hz", 1.0, highest_carrier_hz))
+            s.carrier_hz = v;
+    }
+
+    void children(xml_node n, const scope& s)
+    {
+        for (const xml_node c : n.children()) {
+            if (c.type() == pugi::node_element)
+                visit(c, s);
+        }
+    }
+
+    // What is not named here draws nothing by itself: defs, symbol, clipPath, mask, marker, pattern, text ...
+    void visit(xml_node n, scope s)
+    {
+        if (++elements_ > most_elements || ++s.depth > deepest)
+            doc_.fail(n, elements_ > most_elements ? "too many elements" : "nested too deep",
+                      "simplify the drawing");
+        const std::string_view tag = svg_tag(n);
+        const bool group = tag == "g" || tag == "a" || tag == "switch";
+        if (!(group || tag == "svg" || tag == "use" || detail::is_svg_shape(tag)) || hidden(n))
+            return;
+        inherit(n, s);
+        if (group)
+            children(n, s);
+        else if (tag == "svg")
+            frame(n, n, s,
+                  {doc_.length(n, "x", s.viewport, svg_extent::width),
+                   doc_.length(n, "y", s.viewport, svg_extent::height)});
+        else if (tag == "use")
+            use(n, s);
+        else
+            shape(n, s);
+    }
+
+    // A nested svg, or a symbol that `sized` uses.
+    void frame(xml_node n, xml_node sized, scope s, point corner)
+    {
+        const auto side = [&](const char* attribute, svg_extent e, double whole) {
+            const xml_node from = sized.attribute(attribute) ? sized : n;
+            const double v = doc_.length(from, attribute, s.viewport, e, whole);
+            if (!(v > 0.0))
+                doc_.fail(from, fmt::format("{} has no size", doc_.called(from)),
+                          "width and height are more than 0");
+            return v;
+        };
+        const double width = side("width", svg_extent::width, s.viewport.width);
+        const double height = side("height", svg_extent::height, s.viewport.height);
+        if (const auto box = doc_.read(n, "viewBox", detail::parse_svg_view_box)) {
+            enter_box(n, s, *box, corner, width, height);
+        } else {
+            s.to_mm = s.to_mm * affine{1.0, 0.0, 0.0, 1.0, corner.x_mm, corner.y_mm};
+            s.viewport.width = width;
+            s.viewport.height = height;
+        }
+        children(n, s);
+    }
+
+    void use(xml_node n, scope s)
+    {
+        std::string_view href = n.attribute("href").value();
+        if (href.empty())
+            href = n.attribute("xlink:href").value();
+        if (href.size() < 2 || href.front() != '#')
+            doc_.fail(n, fmt::format("{} refers to nothing in this file", doc_.called(n)), "href=\"#id\"");
+        const xml_node target = doc_.by_id(href.substr(1));
+        if (!target)
+            doc_.fail(n, fmt::format("{} refers to {}, which is not in this file", doc_.called(n), href),
+                      "correct the id");
+        if (++s.uses > most_uses_inside)
+            doc_.fail(n, fmt::format("{} refers to itself, or too deep", doc_.called(n)),
+                      "take the loop out");
+        const point corner{doc_.length(n, "x", s.viewport, svg_extent::width),
+                           doc_.length(n, "y", s.viewport, svg_extent::height)};
+        s.to_mm = s.to_mm * affine{1.0, 0.0, 0.0, 1.0, corner.x_mm, corner.y_mm};
+        const std::string_view tag = svg_tag(target);
+        if (tag != "symbol" && tag != "svg")
+            return visit(target, s);
+        ++s.depth;
+        inherit(target, s);
+        frame(target, n, s, {});
+    }
+
+    void shape(xml_node n, const scope& s)
+    {
+        std::vector<outline> outlines = svg_shape(doc_, n, s.viewport);
+        if (outlines.empty() && !undrawn_)
+            undrawn_ = n;
+        if (outlines.empty())
+            return;
+        const double scale = std::hypot(s.to_mm.a, s.to_mm.b) * std::hypot(s.to_mm.c, s.to_mm.d);
+        if (!(std::abs(s.to_mm.determinant()) > 1e-9 * scale))
+            doc_.fail(n, fmt::format("{} is flattened by its transform", doc_.called(n)),
+                      "a scale of 0 or a skew of 90 degrees leaves no drawing");
+        const std::string what = fmt::format("{}: {}", doc_.where(n).text(), doc_.called(n));
+        std::vector<path> paths;
+        for (outline& o : outlines) {
+            vertices_ += o.vertices.size();
+            if (vertices_ > most_vertices)
+                doc_.fail(n, "too many points", "simplify the drawing");
+            paths.push_back(detail::make_path(mapped(std::move(o), s.to_mm), what));
+        }
+        add(n, s, paths);
+    }
+
+    // A duration is that of the whole shape: its subpaths share it by their lengths.
+    void add(xml_node n, const scope& s, const std::vector<path>& paths)
+    {
+        const auto duration = doc_.number(n, "data-duration-s", 1e-6, detail::longest_stroke_s);
+        auto start = doc_.number(n, "data-start-s", 0.0, detail::longest_stroke_s);
+        if (duration && n.attribute("data-speed-mm-s"))
+            doc_.fail(n, fmt::format("{} has data-duration-s and data-speed-mm-s", doc_.called(n)),
+                      "give one of the two");
+        double all = 0.0;
+        for (const path& p : paths)
+            all += p.length_mm();
+        const std::string_view id = n.attribute("id").value();
+        const std::string name(id.empty() ? svg_tag(n) : id);
+        for (std::size_t i = 0; i < paths.size(); ++i) {
+            const double length = paths[i].length_mm();
+            const double time =
+                duration ? *duration * (length / all) : length / s.speed_mm_s.value_or(default_speed_mm_s);
+            if (time > detail::longest_stroke_s)
+                doc_.fail(n, fmt::format("{} takes {:g} s", doc_.called(n), time),
+                          "a stroke takes at most a day");
+            strokes_.push_back({paths.size() == 1 ? name : fmt::format("{}-{}", name, i + 1),
+                                trajectory::along(paths[i], time, s.intensity),
+                                start,
+                                s.carrier_hz,
+                                {}});
+            start.reset();
+        }
+    }
+
+    detail::svg_document doc_;
+    std::vector<stroke> strokes_;
+    xml_node undrawn_;
+    std::size_t elements_ = 0;
+    std::size_t vertices_ = 0;
+};
+
+} // namespace
+
+std::vector<stroke> parse_strokes_svg(std::string_view text, const std::string& name)
+{
+    detail::check_size(text, name);
+    return svg_reader(text, name).read();
+}
+
+} // namespace tactor
