@@ -17,6 +17,9 @@ using detail::bounds;
 using detail::max_mm;
 using detail::toml_table;
 
+// TOML takes some 40 bytes of memory for one of text: a million timed points fit, 2 GB are not exceeded.
+constexpr std::size_t max_bytes = std::size_t{48} << 20;
+
 constexpr double day_s = detail::longest_stroke_s;
 constexpr bounds positive_time{0.0, day_s, true};
 constexpr bounds anywhere{-max_mm, max_mm};
@@ -135,13 +138,15 @@ stroke read_stroke(const toml_table& t, std::string name)
     if (kind == "timed")
         return described(paced(t, asked, read_timed(t, intensity)), {});
     if (kind == "preset") {
-        stroke s = at_key(t, kind, [&] { return preset_stroke(*t.text("preset")); });
+        const std::string preset = *t.text("preset");
+        stroke s = at_key(t, kind, [&] { return preset_stroke(preset); });
         name = s.name;
         return described(paced(t, asked, s.motion.with_intensity(intensity)), s.note);
     }
     const path way = kind == "points" ? read_points(t)
-                     : kind == "arc"  ? read_arc(t)
-                                      : at_key(t, kind, [&] { return path::from_svg(*t.text("path")); });
+                     : kind == "arc"
+                         ? read_arc(t)
+                         : at_key(t, kind, [&, data = *t.text("path")] { return path::from_svg(data); });
     const double seconds = asked.time_for(way.length_mm()).value_or(way.length_mm() / default_speed_mm_s);
     const std::string_view key = asked.speed_mm_s ? "speed_mm_s" : asked.duration_s ? "duration_s" : kind;
     return described(at_key(t, key, [&] { return trajectory::along(way, seconds, intensity); }), {});
@@ -151,7 +156,9 @@ stroke read_stroke(const toml_table& t, std::string name)
 
 std::vector<stroke> parse_strokes_toml(std::string_view text, const std::string& name)
 {
-    detail::check_size(text, name);
+    if (text.size() > max_bytes)
+        throw error(errc::bad_input, name, fmt::format("longer than {} MB", max_bytes >> 20),
+                    "timed points by the million belong in a CSV file");
     const toml::table document = detail::parse_toml(text, name);
     const toml_table root(document, "a stroke file", name);
     for (const char* key : {"array", "output", "defaults"})
