@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// One stroke that is being planned, and the parts that all algorithms share.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <tactor/plan.hpp>
+
+namespace tactor::detail {
+
+/// What the algorithms work on; lives as long as make_plan().
+struct job {
+    const array& tactors;
+    const layout& faces;
+    const stroke& motion;
+    const plan_options& options;
+    std::shared_ptr<const phantom_model> model;
+
+    /// For messages: stroke "name".
+    std::string name() const;
+};
+
+/// The algorithms; each fills in what is its own.
+void plan_park(const job& j, plan& out);
+void plan_brush(const job& j, plan& out);
+void plan_continuous(const job& j, plan& out);
+
+/// More bursts than this are a mistake in the input.
+inline constexpr double most_bursts = 10e6;
+
+/// \throws error (bad_input) when there are too many.
+void check_burst_count(const job& j, double bursts);
+
+/// Drives from a model. \throws error (bad_input) when a model of the user's own breaks its contract.
+void drives_at(const phantom_model& m, const layout& l, point p, double a_v, std::vector<drive>& out);
+
+/// A burst at a place with its drives; the intensity is the stroke's at t_s.
+burst make_burst(const job& j, double onset_s, double duration_s, point p, double t_s);
+
+/// Where two or more bursts sound on one tactor, by time and then by tactor. `bursts` by onset.
+std::vector<conflict> find_conflicts(const std::vector<burst>& bursts);
+
+/// Places along the stroke, kept in the array as the user wants it.
+class follower {
+public:
+    explicit follower(const job& j) : job_(j) {}
+
+    /// Where the target is, or with `clamp` the point of the hull nearest to it. Times that are
+    /// asked for must not decrease with `error`.
+    /// \throws error (bad_input) that says where the path leaves the array.
+    point at(double t_s);
+
+private:
+    [[noreturn]] void refuse(double t_s) const;
+
+    const job& job_;
+    double inside_s_ = -1.0; // the last time known to be inside
+};
+
+} // namespace tactor::detail

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "plan/job.hpp"
+#include "plan/options.hpp"
+
+namespace tactor {
+namespace {
+
+// Durations beyond this are outside the data from which Eq. (1) was fitted (Israr and Poupyrev 2011).
+constexpr double longest_fitted_s = 0.160;
+
+void warn_of_long_bursts(plan& p)
+{
+    std::size_t count = 0;
+    double longest = 0.0;
+    for (const burst& b : p.bursts) {
+        longest = std::max(longest, b.duration_s);
+        count += b.duration_s > longest_fitted_s + 1e-9 ? 1 : 0;
+    }
+    if (count != 0)
+        p.warnings.push_back(
+            fmt::format("{} of {} bursts last longer than {:.3f} s (up to {:.3f} s), beyond the range "
+                        "for which the timing law was fitted",
+                        count, p.bursts.size(), longest_fitted_s, longest));
+}
+
+std::shared_ptr<const phantom_model> model_of(const layout& l, const plan_options& o)
+{
+    return o.custom_phantom ? o.custom_phantom : make_phantom(o.phantom, l);
+}
+
+} // namespace
+
+plan make_plan(const array& a, const layout& l, const stroke& s, const plan_options& o)
+{
+    detail::check_options(o);
+    if (l.places().size() != a.tactors.size())
+        throw error(errc::bad_input, "layout",
+                    fmt::format("has {} tactors and the array {}", l.places().size(), a.tactors.size()),
+                    "build the layout from the same array");
+    const detail::job j{a, l, s, o, model_of(l, o)};
+    plan p;
+    p.algorithm = to_string(o.method);
+    p.phantom = j.model->name();
+    p.stroke_duration_s = s.motion.duration_s();
+    p.stroke_length_mm = s.motion.length_mm();
+    p.carrier_hz = detail::check_carrier(s.carrier_hz.value_or(o.carrier_hz));
+    p.join = o.join;
+    switch (o.method) {
+    case algorithm::park2016:
+        detail::plan_park(j, p);
+        break;
+    case algorithm::tactile_brush:
+        detail::plan_brush(j, p);
+        break;
+    case algorithm::continuous:
+        detail::plan_continuous(j, p);
+        break;
+    }
+    p.conflicts = detail::find_conflicts(p.bursts);
+    warn_of_long_bursts(p);
+    return p;
+}
+
+plan make_plan(const array& a, const stroke& s, const plan_options& o)
+{
+    return make_plan(a, layout(a), s, o);
+}
+
+namespace detail {
+
+std::string job::name() const
+{
+    return motion.name.empty() ? "stroke" : fmt::format("stroke \"{}\"", motion.name);
+}
+
+void check_burst_count(const job& j, double bursts)
+{
+    if (bursts > most_bursts)
+        throw error(errc::bad_input, j.name(), fmt::format("would need {:.3g} bursts", bursts),
+                    fmt::format("at most {:.0f}; make it shorter or the SOA longer", most_bursts));
+}
+
+void drives_at(const phantom_model& m, const layout& l, point p, double a_v, std::vector<drive>& out)
+{
+    out.clear();
+    if (!(a_v >= 0.0 && std::isfinite(a_v)))
+        throw error(errc::bad_input, "intensity", fmt::format("{} is not a number from 0 up", a_v));
+    if (a_v == 0.0)
+        return;
+    m.weights(p, a_v, out);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const drive& d = out[i];
+        const bool in_order = i == 0 || out[i - 1].tactor < d.tactor;
+        if (!in_order || d.tactor >= l.places().size() || !(d.amplitude > 0.0 && std::isfinite(d.amplitude)))
+            throw error(errc::bad_input, fmt::format("phantom model \"{}\"", m.name()),
+                        fmt::format("gave tactor {} amplitude {}", d.tactor, d.amplitude),
+                        "drives go in order of tactor, with finite amplitudes above 0");
+    }
+}
+
+burst make_burst(const job& j, double onset_s, double duration_s, point p, double t_s)
+{
+    burst b;
+    b.onset_s = onset_s;
+    b.duration_s = duration_s;
+    b.position = p;
+    b.intensity = j.motion.motion.intensity(t_s);
+    drives_at(*j.model, j.faces, p, b.intensity, b.drives);
+    return b;
+}
+
+} // namespace detail
+} // namespace tactor

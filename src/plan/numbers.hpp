@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Times in messages: as few digits as can be, rounded to the side on which they hold.
+#pragma once
+
+#include <string>
+
+#include <tactor/geometry.hpp>
+
+namespace tactor::detail {
+
+/// Times nearer than this are one time, s.
+inline constexpr double same_time_s = 1e-9;
+
+/// In seconds, to the nanosecond, not below t; "1.2345".
+std::string seconds_up(double t_s);
+/// Not above t.
+std::string seconds_down(double t_s);
+
+/// "(40.000, 0.000) mm".
+std::string place(point p);
+
+} // namespace tactor::detail

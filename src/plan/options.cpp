@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "plan/options.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "plan/numbers.hpp"
+
+namespace tactor {
+
+std::string_view to_string(algorithm a) noexcept
+{
+    switch (a) {
+    case algorithm::park2016:
+        return "park2016";
+    case algorithm::tactile_brush:
+        return "tactile-brush";
+    case algorithm::continuous:
+        return "continuous";
+    }
+    return "unknown";
+}
+
+std::string_view to_string(timing t) noexcept
+{
+    return t == timing::fixed ? "fixed" : "fit";
+}
+
+std::string_view to_string(outside o) noexcept
+{
+    return o == outside::error ? "error" : "clamp";
+}
+
+std::string_view to_string(overlap o) noexcept
+{
+    switch (o) {
+    case overlap::energy:
+        return "energy";
+    case overlap::max:
+        return "max";
+    case overlap::sum:
+        return "sum";
+    }
+    return "unknown";
+}
+
+namespace detail {
+
+double law_duration_s(const timing_profile& p, double soa_s)
+{
+    return std::min((soa_s - p.intercept_s) / p.slope, soa_s);
+}
+
+void check_profile(const timing_profile& p)
+{
+    const auto refuse = [](std::string_view what, double value, std::string_view hint) {
+        throw error(errc::bad_input, "timing profile", fmt::format("{} {} cannot be", what, value), hint);
+    };
+    if (!(p.slope > 0.0 && p.slope < 1.0))
+        refuse("a slope of", p.slope, "between 0 and 1; 0.32 on palm and forearm");
+    if (!(p.intercept_s >= 0.0 && std::isfinite(p.intercept_s)))
+        refuse("an intercept in seconds of", p.intercept_s, "0 or more; 0.0473 on palm and forearm");
+    if (!(p.max_soa_s > p.intercept_s && std::isfinite(p.max_soa_s)))
+        refuse("a longest SOA in seconds of", p.max_soa_s,
+               fmt::format("more than the intercept, {}", p.intercept_s));
+}
+
+void check_options(const plan_options& o)
+{
+    if (o.method == algorithm::continuous)
+        return;
+    check_profile(o.profile);
+    if (o.method != algorithm::park2016)
+        return;
+    burst_duration_s(o.profile, o.soa_s);
+    if (o.schedule != timing::fit)
+        return;
+    const double longest = law_duration_s(o.profile, o.soa_s);
+    if (!(o.min_duration_s > 0.0 && o.min_duration_s <= longest))
+        throw error(errc::bad_input, "--timing fit",
+                    fmt::format("bursts of at least {} s cannot be had: an SOA of {} s gives {:.6g} s",
+                                o.min_duration_s, o.soa_s, longest),
+                    "ask for a shorter least duration, above 0 s, or for a longer SOA");
+}
+
+double check_carrier(double hz)
+{
+    if (!(hz > 0.0 && std::isfinite(hz)))
+        throw error(errc::bad_input, "--carrier", fmt::format("{} Hz is not a frequency", hz),
+                    "more than 0; 250 is usual");
+    return hz;
+}
+
+} // namespace detail
+
+double burst_duration_s(const timing_profile& p, double soa_s)
+{
+    detail::check_profile(p);
+    if (!(soa_s > p.intercept_s && soa_s <= p.max_soa_s))
+        throw error(errc::bad_input, "--soa",
+                    fmt::format("{} s is out of bounds: an SOA is longer than {} s and at most {} s", soa_s,
+                                p.intercept_s, p.max_soa_s),
+                    fmt::format("use {}", p.max_soa_s));
+    return detail::law_duration_s(p, soa_s);
+}
+
+} // namespace tactor

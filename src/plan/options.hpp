@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What a plan may be asked for.
+#pragma once
+
+#include <tactor/plan.hpp>
+
+namespace tactor::detail {
+
+/// Eq. (1) turned round, and Eq. (11): a burst never outlasts its SOA. No check of bounds.
+double law_duration_s(const timing_profile& p, double soa_s);
+
+/// \throws error (bad_input) for a law that no SOA can follow.
+void check_profile(const timing_profile& p);
+
+/// \throws error (bad_input) for what the chosen algorithm cannot use.
+void check_options(const plan_options& o);
+
+/// The frequency, if it is one. \throws error (bad_input)
+double check_carrier(double hz);
+
+} // namespace tactor::detail

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "plan/job.hpp"
+#include "plan/numbers.hpp"
+#include "plan/options.hpp"
+
+namespace tactor::detail {
+namespace {
+
+/// `fit`: the fewest intervals no longer than the SOA. \throws error where their bursts are too short.
+double fitted_soa(const job& j, double duration_s)
+{
+    const plan_options& o = j.options;
+    const double n = std::ceil((duration_s - same_time_s) / o.soa_s);
+    const double soa = duration_s / n;
+    const double shortest =
+        std::max(o.profile.slope * o.min_duration_s + o.profile.intercept_s, o.min_duration_s);
+    if (soa >= shortest - same_time_s)
+        return soa;
+    throw error(
+        errc::bad_input, "--timing fit",
+        fmt::format("{} of {} s in {:.0f} equal intervals needs bursts of {:.3f} s, shorter than {} s",
+                    j.name(), seconds_down(duration_s), n, law_duration_s(o.profile, soa), o.min_duration_s),
+        fmt::format("the nearest durations that work are {} s and {} s", seconds_down((n - 1.0) * o.soa_s),
+                    seconds_up(n * shortest)));
+}
+
+} // namespace
+
+void plan_park(const job& j, plan& out)
+{
+    const double end = j.motion.motion.duration_s();
+    const bool one_burst = end < j.options.soa_s - same_time_s;
+    const bool fit = j.options.schedule == timing::fit && !one_burst;
+    const double soa = fit ? fitted_soa(j, end) : j.options.soa_s;
+    const double count = one_burst ? 1.0 : std::floor((end + same_time_s) / soa) + 1.0;
+    check_burst_count(j, count);
+
+    const double duration = law_duration_s(j.options.profile, soa);
+    follower target(j);
+    out.bursts.reserve(static_cast<std::size_t>(count));
+    for (double k = 0.0; k < count; ++k) {
+        // The last one may be a rounding error past the end.
+        const double t = std::min(k * soa, end);
+        out.bursts.push_back(make_burst(j, k * soa, duration, target.at(t), t));
+    }
+    out.soa_s = soa;
+    out.total_s = out.bursts.back().onset_s + duration;
+}
+
+} // namespace tactor::detail

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The built-in phantom models, one factory each.
+#pragma once
+
+#include <memory>
+
+#include <tactor/phantom.hpp>
+
+namespace tactor::detail {
+
+std::shared_ptr<const phantom_model> make_inverse_distance(const layout& l);
+/// `k`: barycentric, linear or log.
+std::shared_ptr<const phantom_model> make_on_triangle(phantom_kind k, const layout& l);
+std::shared_ptr<const phantom_model> make_gaussian(const layout& l);
+
+/// Checks what every model is asked for, and brings p into the hull.
+/// \throws error (bad_input) for a point or an intensity that is no finite number, or < 0.
+point check_request(const layout& l, point p, double a_v);
+
+/// Adds a drive for the tactor of that rank unless its amplitude is nothing.
+void add_drive(const layout& l, unsigned rank, double amplitude, std::vector<drive>& out);
+
+/// Brings drives into the order of tactor.
+void sort_drives(std::vector<drive>& out);
+
+} // namespace tactor::detail
