@@ -100,6 +100,7 @@ private:
 struct trajectory::impl {
     std::variant<constant_speed, timed_points> law;
     double duration_s = 0.0;
+    double gain = 1.0;
 
     /// Time of a timed law at time t of this trajectory.
     double own_time(const timed_points& l, double t_s) const noexcept
@@ -160,7 +161,7 @@ trajectory trajectory::along(path p, double duration_s, double intensity)
 {
     check_duration(duration_s);
     check_intensity("stroke", intensity);
-    return trajectory(std::make_shared<impl>(impl{constant_speed{std::move(p), intensity}, duration_s}));
+    return trajectory(std::make_shared<impl>(impl{constant_speed{std::move(p), intensity}, duration_s, 1.0}));
 }
 
 trajectory trajectory::timed(std::vector<timed_point> points)
@@ -176,29 +177,19 @@ trajectory trajectory::timed(std::vector<timed_point> points)
     }
     const double duration = points.back().t_s;
     auto shared = std::make_shared<const std::vector<timed_point>>(std::move(points));
-    return trajectory(std::make_shared<impl>(impl{timed_points{std::move(shared), length}, duration}));
+    return trajectory(std::make_shared<impl>(impl{timed_points{std::move(shared), length}, duration, 1.0}));
 }
 
 trajectory trajectory::with_duration(double duration_s) const
 {
     check_duration(duration_s);
-    return trajectory(std::make_shared<impl>(impl{impl_->law, duration_s}));
+    return trajectory(std::make_shared<impl>(impl{impl_->law, duration_s, impl_->gain}));
 }
 
 trajectory trajectory::with_intensity(double factor) const
 {
     check_intensity("stroke", factor);
-    impl scaled = *impl_;
-    if (auto* c = std::get_if<constant_speed>(&scaled.law)) {
-        c->intensity *= factor;
-    } else {
-        auto& l = std::get<timed_points>(scaled.law);
-        std::vector<timed_point> points = *l.points;
-        for (timed_point& p : points)
-            p.intensity *= factor;
-        l.points = std::make_shared<const std::vector<timed_point>>(std::move(points));
-    }
-    return trajectory(std::make_shared<impl>(std::move(scaled)));
+    return trajectory(std::make_shared<impl>(impl{impl_->law, impl_->duration_s, impl_->gain * factor}));
 }
 
 double trajectory::duration_s() const noexcept
@@ -224,9 +215,9 @@ point trajectory::position(double t_s) const noexcept
 double trajectory::intensity(double t_s) const noexcept
 {
     if (const auto* c = std::get_if<constant_speed>(&impl_->law))
-        return c->intensity;
+        return impl_->gain * c->intensity;
     const auto b = impl_->find(*std::get_if<timed_points>(&impl_->law), t_s);
-    return b.before->intensity + b.part * (b.after->intensity - b.before->intensity);
+    return impl_->gain * (b.before->intensity + b.part * (b.after->intensity - b.before->intensity));
 }
 
 std::vector<double> trajectory::meets_x(double x_mm) const
