@@ -25,7 +25,8 @@ struct alsa_options {
 
 /// Opens a PCM exactly as asked. Blocks shortly (ALSA reads its configuration).
 /// \throws error: not_available when the PCM does not exist, is busy, may not be opened or cannot do
-///         the whole set asked for (the message prints the set and what the device can do).
+///         the whole set asked for (the message prints the set and what the device can do), bad_input
+///         for numbers that no PCM can have and for configuration text that ALSA cannot read.
 TACTOR_API std::unique_ptr<sink> open_alsa(const alsa_options& o);
 
 }  // namespace tactor

@@ -40,6 +40,7 @@ struct stroke_report {
 struct player_options {
     double horizon_s = 0.5;       ///< how far ahead drives are handed to the audio thread
     double fade_s = 0.010;        ///< fade on cancel and stop
+    double stall_s = 0.5;         ///< a device that stands still for so long (16 periods at least) is lost
     bool realtime = true;         ///< ask for SCHED_FIFO
     bool require_realtime = false;  ///< \throws instead of going on without it
     int priority = 65;
@@ -79,7 +80,7 @@ public:
     const stream_setup& setup() const noexcept;
 
     /// Plays a score as soon as possible, or from a frame of the stream on (a frame that has been written
-    /// already means as soon as possible). Several may sound at once. Does not block for the ring:
+    /// already means as soon as possible). Frames of the stream count on over an xrun. Several may sound at once. Does not block for the ring:
     /// drives that do not fit wait on the control side.
     /// \throws error: bad_input when rate or channels differ from the stream's, runtime when the
     ///         stream has ended.
@@ -88,14 +89,19 @@ public:
     /// Fades a stroke out. False when it has ended or is not known.
     bool cancel(stroke_id id);
 
-    /// Blocks until the stroke has ended and returns how; nothing on time-out. Each report is given
-    /// once by wait() or next_report(), and to the handler when there is one.
+    /// Blocks until the stroke has ended and returns how; nothing on time-out, for a stroke that is not
+    /// known, and in the handler (which runs in the thread that would have to bring the report) for one
+    /// that has not ended. Each report is given once by wait(), and to the handler when there is one; of
+    /// those that nobody waits for, the 4096 newest are kept.
     std::optional<stroke_report> wait(stroke_id id, std::optional<std::chrono::nanoseconds> timeout = {});
 
-    /// Called in the control thread for each ended stroke. Set it before the first submit().
+    /// Called in the control thread for each ended stroke; it must not throw. Set it before the first
+    /// submit().
     void on_report(std::function<void(const stroke_report&)> handler);
 
-    /// Fades everything out, plays silence until it is out, stops. Returns when that is done.
+    /// Fades everything out, plays silence until it is out, stops. What that ends counts as cancelled
+    /// (interrupted, where the destructor does it). Returns when that is done and reported; in the handler
+    /// at once.
     void stop();
 
     player_position position() const noexcept;

@@ -15,7 +15,7 @@
 
 namespace tactor {
 
-/// What was negotiated. Does not change while the sink lives.
+/// What was negotiated. Does not change while the sink lives, but for has_clock.
 struct stream_setup {
     std::string name;               ///< as the user named it
     unsigned channels = 0;
@@ -24,7 +24,7 @@ struct stream_setup {
     unsigned period_frames = 0;
     unsigned buffer_frames = 0;
     bool batch = false;             ///< the position moves by whole periods
-    bool has_clock = true;          ///< false: null and file devices, paced by the sink itself
+    bool has_clock = true;          ///< false: null and file devices, which the sink paces; known after start()
 };
 
 /// What a call on a sink came to. A plain value: the audio thread throws nothing.
@@ -45,7 +45,7 @@ struct io_result {
 
 /// Position of the stream at one instant.
 struct stream_position {
-    std::uint64_t written = 0;   ///< frames given since start() of this epoch
+    std::uint64_t written = 0;   ///< frames given in this epoch, the prefill included
     std::uint64_t played = 0;    ///< of these, how many have reached the DAC
     std::int64_t time_ns = 0;    ///< CLOCK_MONOTONIC of the reading
     bool valid = false;

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Owners of ALSA's objects, and the opening of a PCM by name.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <alsa/asoundlib.h>
+
+#include <tactor/alsa.hpp>
+
+namespace tactor::pcm {
+
+template <auto Free>
+struct deleter {
+    template <typename T>
+    void operator()(T* p) const noexcept
+    {
+        Free(p);
+    }
+};
+
+using handle = std::unique_ptr<snd_pcm_t, deleter<snd_pcm_close>>;
+using hw_params = std::unique_ptr<snd_pcm_hw_params_t, deleter<snd_pcm_hw_params_free>>;
+using sw_params = std::unique_ptr<snd_pcm_sw_params_t, deleter<snd_pcm_sw_params_free>>;
+using status = std::unique_ptr<snd_pcm_status_t, deleter<snd_pcm_status_free>>;
+
+hw_params make_hw_params();
+hw_params copy(const hw_params& p);
+sw_params make_sw_params();
+status make_status();
+
+/// Opens for playback: non-blocking, nothing converted behind the user's back.
+/// \throws error as open_alsa() does.
+handle open(const alsa_options& o);
+
+} // namespace tactor::pcm

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Hardware and software parameters of a PCM.
+#pragma once
+
+#include <alsa/asoundlib.h>
+
+#include <tactor/alsa.hpp>
+
+namespace tactor::pcm {
+
+/// \throws error (bad_input) for numbers that no PCM can have.
+void check(const alsa_options& o);
+
+/// Sets exactly the channels and the rate asked for, the first format that fits, and the nearest
+/// period and buffer; returns what the device made of it.
+/// \throws error (not_available) with the set asked for and what the device can do.
+stream_setup negotiate(snd_pcm_t* p, const alsa_options& o);
+
+/// Explicit start, stop on the first missing frame, silence where nothing was written.
+/// \throws error (not_available).
+void set_software(snd_pcm_t* p, const stream_setup& s);
+
+} // namespace tactor::pcm

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include "alsa/pacer.hpp"
+
+#include <cerrno>
+#include <ctime>
+#include <system_error>
+
+#include <sys/timerfd.h>
+#include <unistd.h>
+
+namespace tactor::pcm {
+
+std::int64_t monotonic_ns() noexcept
+{
+    timespec t{};
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
+}
+
+pacer::pacer(unsigned rate, unsigned buffer_frames, unsigned period_frames)
+    : queue_(rate, buffer_frames),
+      period_(period_frames),
+      fd_(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC))
+{
+    if (fd_ < 0)
+        throw std::system_error(errno, std::generic_category(), "timerfd");
+}
+
+pacer::~pacer()
+{
+    ::close(fd_);
+}
+
+void pacer::start(std::uint64_t written) noexcept
+{
+    queue_.start(monotonic_ns(), written);
+}
+
+void pacer::arm() noexcept
+{
+    const std::int64_t t = queue_.time_of_room(period_);
+    itimerspec when{};
+    when.it_value.tv_sec = static_cast<time_t>(t / 1'000'000'000);
+    when.it_value.tv_nsec = static_cast<long>(t % 1'000'000'000);
+    ::timerfd_settime(fd_, TFD_TIMER_ABSTIME, &when, nullptr);
+}
+
+bool pacer::due() noexcept
+{
+    std::uint64_t expirations = 0;
+    while (::read(fd_, &expirations, sizeof expirations) < 0 && errno == EINTR) {
+    }
+    return queue_.room(monotonic_ns()) >= period_;
+}
+
+} // namespace tactor::pcm

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// A configured PCM as a sink.
+#pragma once
+
+#include <optional>
+
+#include <tactor/alsa.hpp>
+
+#include "alsa/handle.hpp"
+#include "alsa/pacer.hpp"
+
+namespace tactor::pcm {
+
+/// Frames go to snd_pcm_writei(). A device that turns out at start() to have no clock is paced by a timer.
+class pcm_sink final : public sink {
+public:
+    pcm_sink(handle h, stream_setup s);
+
+    const stream_setup& setup() const noexcept override { return setup_; }
+    io_status prepare() noexcept override;
+    io_status start() noexcept override;
+    io_status resume() noexcept override;
+    std::size_t max_descriptors() const noexcept override { return max_descriptors_; }
+    std::size_t descriptors(std::span<pollfd> fds) noexcept override;
+    io_status ready(std::span<pollfd> fds) noexcept override;
+    io_result room() noexcept override;
+    io_result write(const std::byte* data, std::size_t frames) noexcept override;
+    stream_position position() noexcept override;
+    void drop() noexcept override;
+
+private:
+    int state() noexcept { return static_cast<int>(snd_pcm_state(handle_.get())); }
+    long write_paced(const std::byte* data, std::size_t frames) noexcept;
+    bool runs_without_clock() noexcept;
+
+    handle handle_;
+    stream_setup setup_;
+    status status_;
+    pacer pacer_;
+    std::size_t max_descriptors_;
+    std::uint64_t written_ = 0;
+    std::uint64_t played_ = 0;
+    bool paced_ = false;
+};
+
+} // namespace tactor::pcm

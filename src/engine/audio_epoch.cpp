@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+// How the stream starts, breaks, comes back and ends.
+#include <algorithm>
+#include <cerrno>
+
+#include "engine/audio_loop.hpp"
+
+namespace tactor::engine {
+namespace {
+
+constexpr std::int64_t second = 1'000'000'000;
+// snd_pcm_resume() may say "not yet" for ever; a device needs some seconds at most.
+constexpr std::int64_t longest_resume = 10 * second;
+
+reason to_reason(io_status s) noexcept
+{
+    switch (s) {
+    case io_status::xrun:
+        return reason::xrun;
+    case io_status::suspended:
+        return reason::suspended;
+    case io_status::lost:
+        return reason::lost;
+    default:
+        return reason::failed;
+    }
+}
+
+} // namespace
+
+io_result audio_loop::start(std::int64_t now) noexcept
+{
+    const io_result r = begin_epoch();
+    if (r.status == io_status::ok) {
+        phase_ = phase::running;
+        moved(now);
+        publish();
+    }
+    return r;
+}
+
+// The amplifier stays off until the DAC has moved: it belongs after this, where position() tells.
+io_result audio_loop::begin_epoch() noexcept
+{
+    mixer_.reset();
+    pending_ = 0;
+    played_ = 0;
+    if (const io_status s = sink_.prepare(); s != io_status::ok)
+        return {s, 0, 0};
+    std::size_t filled = 0;
+    while (filled < setup_.buffer_frames && pending_ == 0) {
+        mix_period();
+        const io_result r = write_pending();
+        if (r.status != io_status::ok && r.status != io_status::again)
+            return r;
+        filled += r.frames;
+    }
+    if (filled == 0)
+        return {io_status::failed, 0, -EIO};
+    return {sink_.start(), filled, 0};
+}
+
+void audio_loop::broken(io_status s, int code, std::int64_t now) noexcept
+{
+    switch (s) {
+    case io_status::ok:
+    case io_status::again:
+        return;
+    case io_status::xrun:
+        link_.count.xruns.fetch_add(1, std::memory_order_relaxed);
+        // It stopped because it had played everything.
+        silence_all(reason::xrun, code, mixer_.position() - pending_);
+        return restart(now);
+    case io_status::suspended:
+        silence_all(reason::suspended, code, played_);
+        phase_ = phase::suspended;
+        suspended_ns_ = now;
+        return;
+    case io_status::lost:
+    case io_status::failed:
+        return finish(to_reason(s), code);
+    }
+}
+
+// Nothing resumes in mid-burst: what had begun ends here, what had not is handed over again later.
+void audio_loop::silence_all(reason why, int code, std::uint64_t played) noexcept
+{
+    scores_.interrupt(why, code, played, !stop_asked_);
+    offset_ += mixer_.position();
+    mixer_.reset();
+    pending_ = 0;
+    played_ = 0;
+}
+
+void audio_loop::try_resume(std::int64_t now) noexcept
+{
+    if (stop_asked_)
+        return finish(reason::none, 0);
+    if (sink_.resume() == io_status::again && now - suspended_ns_ < longest_resume)
+        return;
+    // Resumed or not, a fresh epoch: what the buffer held belongs to strokes that were interrupted.
+    restart(now);
+}
+
+void audio_loop::restart(std::int64_t now) noexcept
+{
+    if (stop_asked_)
+        return finish(reason::none, 0);
+    io_result r{io_status::xrun, 0, 0};
+    while (r.status == io_status::xrun) {
+        if (too_often(now))
+            return finish(reason::lost, -EPIPE);
+        r = begin_epoch();
+    }
+    if (r.status == io_status::ok) {
+        phase_ = phase::running;
+        moved(now);
+    } else if (r.status == io_status::suspended) {
+        phase_ = phase::suspended;
+        suspended_ns_ = now;
+    } else {
+        finish(to_reason(r.status), r.code);
+    }
+}
+
+bool audio_loop::too_often(std::int64_t now) noexcept
+{
+    std::int64_t& oldest = recoveries_[recovered_ % recoveries_.size()];
+    if (recovered_ >= recoveries_.size() && now - oldest < second)
+        return true;
+    oldest = now;
+    ++recovered_;
+    return false;
+}
+
+void audio_loop::finish_when_silent() noexcept
+{
+    if (!scores_.empty())
+        return;
+    if (stop_frame_ == 0)
+        stop_frame_ = played_ + setup_.period_frames; // beyond the delay of the DAC itself
+    if (played_ >= stop_frame_)
+        finish(reason::none, 0);
+}
+
+void audio_loop::finish(reason why, int code) noexcept
+{
+    if (phase_ == phase::over)
+        return;
+    scores_.interrupt(why, code, played_, false);
+    sink_.drop();
+    phase_ = phase::over;
+    link_.reports.push({.what = report::kind::stream_over, .why = why, .code = code});
+}
+
+} // namespace tactor::engine

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT
+#include "engine/audio_loop.hpp"
+
+#include <algorithm>
+#include <cerrno>
+
+namespace tactor::engine {
+namespace {
+
+// From so many wake-ups in vain on, descriptors are not trusted: the loop sleeps instead of spinning.
+constexpr unsigned many_idle_steps = 16;
+
+template <typename T>
+void raise_to(std::atomic<T>& a, T value) noexcept
+{
+    if (value > a.load(std::memory_order_relaxed))
+        a.store(value, std::memory_order_relaxed);
+}
+
+template <typename T>
+void lower_to(std::atomic<T>& a, T value) noexcept
+{
+    if (value < a.load(std::memory_order_relaxed))
+        a.store(value, std::memory_order_relaxed);
+}
+
+} // namespace
+
+audio_loop::audio_loop(sink& s, link& l, std::span<const double> limits, const loop_options& o)
+    : sink_(s),
+      link_(l),
+      options_(o),
+      setup_(s.setup()),
+      mixer_(limits, setup_.format, o.drives),
+      scores_(mixer_, l, o.fade_frames),
+      frame_bytes_(setup_.channels * bytes_of(setup_.format)),
+      block_(setup_.period_frames * frame_bytes_)
+{
+}
+
+void audio_loop::step(io_status ready, std::int64_t now) noexcept
+{
+    ++idle_steps_;
+    take_requests();
+    switch (phase_) {
+    case phase::idle:
+    case phase::over:
+        return;
+    case phase::suspended:
+        try_resume(now);
+        break;
+    case phase::running:
+        take_commands();
+        // Twice in vain: perhaps a wake-up was lost, or the state changed without one.
+        if (ready == io_status::ok || (ready == io_status::again && idle_steps_ > 2))
+            write_periods(now);
+        else if (ready != io_status::again)
+            broken(ready, 0, now);
+        break;
+    }
+    if (phase_ == phase::running) {
+        look_at_position(now);
+        scores_.update(played_);
+        if (stop_asked_)
+            finish_when_silent();
+    }
+    // Both, so that a process that was stopped and goes on is not taken for a dead device.
+    if (phase_ == phase::running && idle_steps_ >= 4 && now - moved_ns_ > options_.stall_ns)
+        finish(reason::lost, -ETIMEDOUT);
+    publish();
+}
+
+bool audio_loop::polls_sink() const noexcept
+{
+    return phase_ == phase::running && idle_steps_ < many_idle_steps;
+}
+
+std::int64_t audio_loop::timeout_ns() const noexcept
+{
+    const std::int64_t period =
+        std::int64_t{setup_.period_frames} * 1'000'000'000 / std::max<std::int64_t>(setup_.rate, 1);
+    return polls_sink() ? 4 * period : period;
+}
+
+void audio_loop::take_requests() noexcept
+{
+    request r;
+    while (link_.requests.pop(r)) {
+        if (r.what == request::kind::cancel) {
+            scores_.cancel(r.score);
+        } else if (!stop_asked_) {
+            stop_asked_ = true;
+            scores_.stop(r.closing);
+        }
+    }
+}
+
+void audio_loop::take_commands() noexcept
+{
+    const std::size_t waiting = link_.commands.size();
+    std::size_t n = 0;
+    for (; n < waiting && take(*link_.commands.front()); ++n)
+        link_.commands.drop_front();
+    if (n == 0)
+        return;
+    // Either the feeder sees the room when it looks again, or this thread sees that it waits.
+    std::atomic_thread_fence(std::memory_order_seq_cst);
+    if (link_.feeder_waits.exchange(false, std::memory_order_seq_cst))
+        link_.to_control.signal();
+}
+
+bool audio_loop::take(const command& c) noexcept
+{
+    switch (c.what) {
+    case command::kind::begin:
+        scores_.begin(c, offset_);
+        return true;
+    case command::kind::drive:
+        return scores_.add(c);
+    case command::kind::end:
+        scores_.end(c.score);
+        return true;
+    }
+    return true;
+}
+
+void audio_loop::mix_period() noexcept
+{
+    mixer_.process(setup_.period_frames, block_.data());
+    pending_ = setup_.period_frames;
+    pending_from_ = 0;
+    link_.count.periods.fetch_add(1, std::memory_order_relaxed);
+    link_.count.limited.store(mixer_.limited(), std::memory_order_relaxed);
+}
+
+io_result audio_loop::write_pending() noexcept
+{
+    const io_result r = sink_.write(block_.data() + pending_from_ * frame_bytes_, pending_);
+    const std::size_t taken = std::min(r.frames, pending_);
+    pending_ -= taken;
+    pending_from_ += taken;
+    link_.count.frames.fetch_add(taken, std::memory_order_relaxed);
+    return {r.status, taken, r.code};
+}
+
+void audio_loop::write_periods(std::int64_t now) noexcept
+{
+    const io_result room = sink_.room();
+    if (room.status != io_status::ok)
+        return broken(room.status, room.code, now);
+    std::size_t left = room.frames;
+    if (left > setup_.period_frames)
+        raise_to<std::uint64_t>(link_.count.late_frames, left - setup_.period_frames);
+
+    // Bounded also where a device claims more room than it has buffer.
+    left = std::min<std::size_t>(left, setup_.buffer_frames);
+    while (left > 0) {
+        if (pending_ == 0) {
+            if (left < setup_.period_frames)
+                break;
+            take_commands();
+            if (scores_.being_fed())
+                lower_to<std::uint64_t>(link_.count.low_water, mixer_.size());
+            mix_period();
+        }
+        const io_result r = write_pending();
+        if (r.frames > 0)
+            moved(now);
+        if (r.status == io_status::again || (r.status == io_status::ok && r.frames == 0))
+            break;
+        if (r.status != io_status::ok)
+            return broken(r.status, r.code, now);
+        left -= std::min(r.frames, left);
+    }
+}
+
+void audio_loop::look_at_position(std::int64_t now) noexcept
+{
+    const stream_position p = sink_.position();
+    if (!p.valid || p.played <= played_)
+        return;
+    played_ = p.played;
+    moved(now);
+}
+
+void audio_loop::moved(std::int64_t now) noexcept
+{
+    moved_ns_ = now;
+    idle_steps_ = 0;
+}
+
+void audio_loop::publish() noexcept
+{
+    stream_status s{.written = offset_ + mixer_.position(),
+                    .played = offset_ + played_,
+                    .running = phase_ == phase::running};
+    scores_.describe(played_, s);
+    link_.status.store(s);
+
+    const bool hungry = s.written - told_ >= options_.horizon_frames / 8;
+    if (hungry)
+        told_ = s.written;
+    if (hungry || link_.reports.room() != link_.reports.capacity())
+        link_.to_control.signal();
+}
+
+} // namespace tactor::engine

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The audio thread's work, one step at a time: no threads and no clock of its own, so that tests can step
+/// it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <tactor/sink.hpp>
+
+#include "engine/link.hpp"
+#include "engine/score_table.hpp"
+#include "synth/mixer.hpp"
+
+namespace tactor::engine {
+
+struct loop_options {
+    std::uint32_t fade_frames = 480;
+    std::uint64_t horizon_frames = 24'000; ///< the control side is woken each eighth of it
+    std::int64_t stall_ns = 500'000'000;   ///< a device that stands still for so long is lost
+    std::size_t drives = 8192;             ///< capacity of the mixer
+};
+
+/// Owns the mixer and everything that happens to the stream. After the constructor no member but the
+/// destructor allocates, locks, throws or blocks. `now` is CLOCK_MONOTONIC in ns.
+class audio_loop {
+public:
+    audio_loop(sink& s, link& l, std::span<const double> limits, const loop_options& o);
+
+    /// First epoch: prepare, silence, start.
+    io_result start(std::int64_t now) noexcept;
+
+    /// One wake-up; `ready` is what the sink made of the descriptors, `again` when it was not asked.
+    void step(io_status ready, std::int64_t now) noexcept;
+
+    /// Whether the stream has ended; the last report is in the ring then.
+    bool over() const noexcept { return phase_ == phase::over; }
+    /// Whether the sink's descriptors are worth polling now.
+    bool polls_sink() const noexcept;
+    /// When to wake up at the latest, ns from now.
+    std::int64_t timeout_ns() const noexcept;
+
+private:
+    enum class phase { idle, running, suspended, over };
+
+    void take_requests() noexcept;
+    void take_commands() noexcept;
+    bool take(const command& c) noexcept;
+
+    io_result begin_epoch() noexcept;
+    io_result write_pending() noexcept;
+    void write_periods(std::int64_t now) noexcept;
+    void mix_period() noexcept;
+    void look_at_position(std::int64_t now) noexcept;
+    void moved(std::int64_t now) noexcept;
+
+    void broken(io_status s, int code, std::int64_t now) noexcept;
+    void silence_all(reason why, int code, std::uint64_t played) noexcept;
+    void try_resume(std::int64_t now) noexcept;
+    void restart(std::int64_t now) noexcept;
+    bool too_often(std::int64_t now) noexcept;
+    void finish(reason why, int code) noexcept;
+    void finish_when_silent() noexcept;
+    void publish() noexcept;
+
+    sink& sink_;
+    link& link_;
+    loop_options options_;
+    stream_setup setup_;
+    synth::mixer mixer_;
+    score_table scores_;
+    std::size_t frame_bytes_;
+    std::vector<std::byte> block_; ///< one period
+    std::size_t pending_ = 0;      ///< frames of block_ that the sink has not taken yet
+    std::size_t pending_from_ = 0;
+
+    phase phase_ = phase::idle;
+    bool stop_asked_ = false;
+    std::uint64_t stop_frame_ = 0; ///< 0: not silent yet
+    std::uint64_t offset_ = 0;     ///< stream frame at which this epoch began
+    std::uint64_t played_ = 0;     ///< of this epoch
+    std::uint64_t told_ = 0;       ///< stream frame at which the control side was last woken
+    std::int64_t moved_ns_ = 0;    ///< when the stream last got on
+    unsigned idle_steps_ = 0;      ///< wake-ups since then
+    std::int64_t suspended_ns_ = 0;
+    std::array<std::int64_t, 3> recoveries_{};
+    std::size_t recovered_ = 0;
+};
+
+} // namespace tactor::engine

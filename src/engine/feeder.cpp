@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+#include "engine/feeder.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <utility>
+
+namespace tactor::engine {
+
+void feeder::submit(stroke_id id, const score& s, std::uint64_t at)
+{
+    waiting_.emplace(at, waiting{id, s});
+}
+
+bool feeder::cancel(stroke_id id)
+{
+    const auto w = std::find_if(waiting_.begin(), waiting_.end(),
+                                [id](const auto& entry) { return entry.second.id == id; });
+    if (w != waiting_.end()) {
+        reports_.push_back({.id = id, .state = stroke_state::cancelled, .frames = 0, .reason = {}});
+        waiting_.erase(w);
+        return true;
+    }
+    for (const std::uint32_t place : in_use_) {
+        slot& s = slots_[place];
+        if (s.use->id != id || s.use->cancelled)
+            continue;
+        s.use->cancelled = true;
+        s.use->fed = true;
+        link_.requests.push(
+            {.what = request::kind::cancel, .score = place + voices * s.generation, .closing = false});
+        return true;
+    }
+    return false;
+}
+
+void feeder::pump(std::uint64_t written)
+{
+    if (stream_over_)
+        return;
+    admit(written);
+    while (feed_next(written)) {
+    }
+}
+
+// Begins what is due within the horizon, the earliest first.
+void feeder::admit(std::uint64_t written)
+{
+    while (!waiting_.empty() && waiting_.begin()->first <= written + horizon_ && in_use_.size() < voices) {
+        const auto free =
+            std::find_if(slots_.begin(), slots_.end(), [](const slot& s) { return !s.use.has_value(); });
+        const auto place = static_cast<std::uint32_t>(free - slots_.begin());
+        const auto& [at, w] = *waiting_.begin();
+        active a{.id = w.id, .music = w.music, .at = at, .source = synth::event_source(w.music)};
+        if (!push({.what = command::kind::begin,
+                   .score = place + voices * free->generation,
+                   .id = w.id,
+                   .at = at,
+                   .length = w.music.frames()}))
+            return;
+        free->use = std::move(a);
+        in_use_.push_back(place);
+        waiting_.erase(waiting_.begin());
+    }
+}
+
+// Hands over the drive that starts first; false when there is none within the horizon, or no room.
+bool feeder::feed_next(std::uint64_t written)
+{
+    slot* first = nullptr;
+    std::uint32_t first_place = 0;
+    std::uint64_t first_start = 0;
+    for (const std::uint32_t place : in_use_) {
+        active& a = *slots_[place].use;
+        if (a.fed)
+            continue;
+        const synth::drive_event* e = a.source.peek();
+        // Until the audio thread says where it begins, what is certain is: not before this.
+        const std::uint64_t base = a.begun ? a.base : std::max(a.at, written);
+        const std::uint64_t start = e != nullptr ? base + e->start : 0;
+        if (first == nullptr || start < first_start) {
+            first = &slots_[place];
+            first_place = place;
+            first_start = start;
+        }
+    }
+    if (first == nullptr || first_start > written + horizon_)
+        return false;
+
+    active& a = *first->use;
+    const ticket t = first_place + voices * first->generation;
+    const synth::drive_event* e = a.source.peek();
+    if (e == nullptr) {
+        a.fed = push({.what = command::kind::end, .score = t});
+        return a.fed;
+    }
+    command c{.what = command::kind::drive, .score = t, .drive = *e};
+    c.drive.score = t;
+    if (!push(c))
+        return false;
+    a.source.pop();
+    return true;
+}
+
+bool feeder::push(const command& c)
+{
+    if (link_.commands.push(c))
+        return true;
+    link_.feeder_waits.store(true, std::memory_order_seq_cst);
+    std::atomic_thread_fence(std::memory_order_seq_cst);
+    return link_.commands.push(c);
+}
+
+feeder::slot* feeder::slot_of(ticket t) noexcept
+{
+    slot& s = slots_[place_of(t)];
+    return s.use && s.generation == t / voices ? &s : nullptr;
+}
+
+void feeder::release(slot& s) noexcept
+{
+    const auto place = static_cast<std::uint32_t>(&s - slots_.data());
+    in_use_.erase(std::find(in_use_.begin(), in_use_.end(), place));
+    s.use.reset();
+    // Wraps after 16 million uses of one place; 0 stays out.
+    s.generation = s.generation + 1 < UINT32_MAX / voices ? s.generation + 1 : 1;
+}
+
+void feeder::handle(const report& r)
+{
+    if (r.what == report::kind::stream_over)
+        return end_all(r);
+    slot* s = slot_of(r.score);
+    if (s == nullptr)
+        return;
+    active& a = *s->use;
+    switch (r.what) {
+    case report::kind::begun:
+        a.begun = true;
+        a.base = r.frame;
+        return;
+    case report::kind::over:
+        reports_.push_back({.id = a.id, .state = r.state, .frames = r.frame, .reason = text(r.why, r.code)});
+        break;
+    case report::kind::returned:
+        if (a.cancelled)
+            reports_.push_back({.id = a.id, .state = stroke_state::cancelled, .frames = 0, .reason = {}});
+        else
+            submit(a.id, a.music, a.at);
+        break;
+    case report::kind::stream_over:
+        return;
+    }
+    release(*s);
+}
+
+void feeder::end_all(const report& r)
+{
+    stream_over_ = true;
+    stream_reason_ = text(r.why, r.code);
+    const bool cut = r.why != reason::none || closing_;
+    const std::string why = r.why != reason::none ? stream_reason_ : cut ? text(reason::closed, 0) : "";
+    const auto end = [&](stroke_id id, bool cancelled) {
+        const auto state = cut && !cancelled ? stroke_state::interrupted : stroke_state::cancelled;
+        reports_.push_back(
+            {.id = id, .state = state, .frames = 0, .reason = cancelled ? std::string() : why});
+    };
+    while (!in_use_.empty()) {
+        slot& s = slots_[in_use_.front()];
+        end(s.use->id, s.use->cancelled);
+        release(s);
+    }
+    for (const auto& [at, w] : waiting_)
+        end(w.id, false);
+    waiting_.clear();
+}
+
+std::vector<stroke_report> feeder::take_reports()
+{
+    return std::exchange(reports_, {});
+}
+
+bool feeder::knows(stroke_id id) const
+{
+    return std::any_of(in_use_.begin(), in_use_.end(),
+                       [&](std::uint32_t place) { return slots_[place].use->id == id; }) ||
+           std::any_of(reports_.begin(), reports_.end(), [id](const auto& r) { return r.id == id; }) ||
+           std::any_of(waiting_.begin(), waiting_.end(),
+                       [id](const auto& entry) { return entry.second.id == id; });
+}
+
+} // namespace tactor::engine

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The control side's half of playing: hands scores over to the audio thread a horizon ahead.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tactor/player.hpp>
+#include <tactor/render.hpp>
+
+#include "engine/link.hpp"
+#include "engine/messages.hpp"
+#include "synth/event_source.hpp"
+
+namespace tactor::engine {
+
+/// Merges the drives of the submitted scores by start frame and keeps the ring filled. A full ring or
+/// table makes scores wait here; nothing is lost, and memory does not grow with the length of a score. No
+/// threads of its own: one caller at a time.
+class feeder {
+public:
+    feeder(link& l, std::uint64_t horizon_frames) : link_(l), horizon_(horizon_frames) {}
+
+    /// `at`: frame of the stream; 0 for as soon as possible.
+    void submit(stroke_id id, const score& s, std::uint64_t at);
+
+    /// False when the stroke has ended, or is not known, or is being cancelled already.
+    bool cancel(stroke_id id);
+
+    /// Hands over what belongs within the horizon after stream frame `written`, as far as it fits.
+    void pump(std::uint64_t written);
+
+    /// Takes in what the audio thread reports.
+    void handle(const report& r);
+
+    /// Reports since the last call, in order of their ends.
+    std::vector<stroke_report> take_reports();
+
+    /// Whether the stroke has not ended, or take_reports() has still to give its end.
+    bool knows(stroke_id id) const;
+    /// Whether the stream has ended; every stroke has been reported then.
+    bool stream_over() const noexcept { return stream_over_; }
+    /// Why it ended, for people; empty when it was stopped.
+    const std::string& stream_reason() const noexcept { return stream_reason_; }
+    /// From now on what has not been handed over counts as cut by the closing of the player.
+    void set_closing() noexcept { closing_ = true; }
+
+private:
+    struct waiting {
+        stroke_id id = 0;
+        score music;
+    };
+    struct active {
+        stroke_id id = 0;
+        score music;
+        std::uint64_t at = 0;
+        std::uint64_t base = 0; ///< stream frame of its start, once begun
+        synth::event_source source;
+        bool begun = false;
+        bool fed = false;
+        bool cancelled = false;
+    };
+    struct slot {
+        std::uint32_t generation = 1; ///< ticket 0 belongs to no score
+        std::optional<active> use;
+    };
+
+    void admit(std::uint64_t written);
+    bool feed_next(std::uint64_t written);
+    bool push(const command& c);
+    slot* slot_of(ticket t) noexcept;
+    void release(slot& s) noexcept;
+    void end_all(const report& r);
+
+    link& link_;
+    std::uint64_t horizon_;
+    std::multimap<std::uint64_t, waiting> waiting_; ///< by frame of the stream
+    std::array<slot, voices> slots_;
+    std::vector<std::uint32_t> in_use_; ///< places, in order of their beginning
+    std::vector<stroke_report> reports_;
+    bool stream_over_ = false;
+    bool closing_ = false;
+    std::string stream_reason_;
+};
+
+/// A reason for people; empty for `none`.
+std::string text(reason r, int code);
+
+} // namespace tactor::engine

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// All that the control side and the audio thread share.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "engine/messages.hpp"
+#include "rt/event_fd.hpp"
+#include "rt/seqlock.hpp"
+#include "rt/spsc_ring.hpp"
+
+namespace tactor::engine {
+
+/// Where the stream is; frames of the stream run on over xruns.
+struct stream_status {
+    std::uint64_t written = 0; ///< next frame that will be mixed
+    std::uint64_t played = 0;
+    std::uint64_t stroke_frame = 0;
+    stroke_id stroke = 0;
+    bool sounding = false; ///< whether `stroke` says anything
+    bool running = false;
+};
+
+/// Counters, each written by the audio thread only.
+struct counters {
+    std::atomic<std::uint64_t> periods{0};
+    std::atomic<std::uint64_t> frames{0};
+    std::atomic<std::uint64_t> xruns{0};
+    std::atomic<std::uint64_t> limited{0};
+    std::atomic<std::uint64_t> low_water{UINT64_MAX};
+    std::atomic<std::uint64_t> late_frames{0};
+};
+
+struct link {
+    explicit link(std::size_t commands_in_ring = 2048) : commands(commands_in_ring) {}
+
+    rt::spsc_ring<command> commands;
+    // Each ticket is cancelled at most once and stop comes twice at most: never full.
+    rt::spsc_ring<request> requests{2 * voices};
+    // At most two reports a ticket, and a ticket is free again when its last one was read: never full.
+    rt::spsc_ring<report> reports{4 * voices};
+    rt::event_fd to_audio;
+    rt::event_fd to_control;
+    /// Set by the feeder when the command ring is full; the audio thread then says when it no longer is.
+    std::atomic<bool> feeder_waits{false};
+    rt::seqlock<stream_status> status;
+    counters count;
+};
+
+} // namespace tactor::engine

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What crosses the rings between the control side and the audio thread. Trivially copyable.
+#pragma once
+
+#include <cstdint>
+
+#include <tactor/player.hpp>
+
+#include "synth/event.hpp"
+
+namespace tactor::engine {
+
+/// Scores that the audio thread can hold at once, sounding or about to; more wait on the control side.
+inline constexpr std::uint32_t voices = 256;
+
+/// Names one handing-over of a score to the audio thread: place in its table plus voices * generation. A
+/// score that must be handed over again after an xrun gets a new one, and what is still in the ring under
+/// the old one is ignored.
+using ticket = std::uint32_t;
+
+constexpr std::uint32_t place_of(ticket t) noexcept
+{
+    return t % voices;
+}
+
+/// Control to audio, in order.
+struct command {
+    enum class kind : std::uint32_t { begin, drive, end };
+    kind what = kind::begin;
+    ticket score = 0;
+    stroke_id id = 0;           ///< begin
+    std::uint64_t at = 0;       ///< begin: frame of the stream; one that is over means now
+    std::uint64_t length = 0;   ///< begin: frames
+    synth::drive_event drive{}; ///< drive: frames from the start of the score, `score` is the ticket
+};
+
+/// Control to audio, past the commands that wait.
+struct request {
+    enum class kind : std::uint32_t { cancel, stop };
+    kind what = kind::cancel;
+    ticket score = 0;
+    bool closing = false; ///< stop: the player is being closed; its strokes count as interrupted
+};
+
+/// Why a stroke or the stream ended.
+enum class reason : std::uint32_t { none, xrun, suspended, lost, failed, late, closed };
+
+/// Audio to control.
+struct report {
+    enum class kind : std::uint32_t {
+        begun,       ///< `frame`: of the stream, where the score starts
+        over,        ///< `frame`: frames of the score that were played
+        returned,    ///< an xrun came before it had begun: hand it over again
+        stream_over, ///< the last report of all
+    };
+    kind what = kind::begun;
+    ticket score = 0;
+    stroke_state state = stroke_state::finished;
+    reason why = reason::none;
+    int code = 0; ///< negative errno of the device
+    std::uint64_t frame = 0;
+};
+
+} // namespace tactor::engine

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include <tactor/player.hpp>
+
+#include <utility>
+
+#include "engine/player_impl.hpp"
+
+namespace tactor {
+
+player::player(std::unique_ptr<sink> s, const array& a, const player_options& o)
+    : impl_(std::make_unique<impl>(std::move(s), a, o))
+{
+}
+
+player::~player() = default;
+
+const stream_setup& player::setup() const noexcept
+{
+    return impl_->out->setup();
+}
+
+stroke_id player::submit(const score& s, std::optional<std::uint64_t> at_frame)
+{
+    return impl_->submit(s, at_frame.value_or(0));
+}
+
+bool player::cancel(stroke_id id)
+{
+    return impl_->cancel(id);
+}
+
+std::optional<stroke_report> player::wait(stroke_id id, std::optional<std::chrono::nanoseconds> timeout)
+{
+    return impl_->wait(id, timeout);
+}
+
+void player::on_report(std::function<void(const stroke_report&)> handler)
+{
+    const std::lock_guard lock(impl_->mutex);
+    impl_->handler = std::move(handler);
+}
+
+void player::stop()
+{
+    impl_->stop(false);
+}
+
+player_position player::position() const noexcept
+{
+    const engine::stream_status s = impl_->link.status.load();
+    player_position p{.running = s.running, .played = s.played, .stroke = {}, .stroke_frame = s.stroke_frame};
+    if (s.sounding)
+        p.stroke = s.stroke;
+    return p;
+}
+
+player_stats player::stats() const noexcept
+{
+    const engine::counters& c = impl_->link.count;
+    const auto get = [](const std::atomic<std::uint64_t>& a) { return a.load(std::memory_order_relaxed); };
+    const std::uint64_t low = get(c.low_water);
+    return {.periods = get(c.periods),
+            .frames = get(c.frames),
+            .xruns = get(c.xruns),
+            .limited_frames = get(c.limited),
+            .ring_low_water = low == UINT64_MAX ? 0 : low,
+            .latest_wakeup_s = static_cast<double>(get(c.late_frames)) / impl_->out->setup().rate,
+            .realtime = impl_->audio.fifo_error() == 0};
+}
+
+} // namespace tactor

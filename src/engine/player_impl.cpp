@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+#include "engine/player_impl.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+namespace tactor {
+namespace {
+
+// Reports that nobody asked for are kept for so long; a program that only uses the handler must not grow.
+constexpr std::size_t most_unread_reports = 4096;
+
+// At most ten minutes of any rate; also for what is not a number.
+std::uint32_t frames_of(double seconds, unsigned rate, const char* name)
+{
+    if (!(seconds >= 0.0 && seconds <= 600.0))
+        throw error(errc::bad_input, name, fmt::format("{} s", seconds), "give 0 to 600 s");
+    return static_cast<std::uint32_t>(std::lround(seconds * rate));
+}
+
+engine::loop_options loop_options(const player_options& o, const stream_setup& s)
+{
+    engine::loop_options l;
+    l.fade_frames = frames_of(o.fade_s, s.rate, "fade");
+    l.horizon_frames = frames_of(o.horizon_s, s.rate, "horizon");
+    // Long periods make long pauses.
+    const std::int64_t periods = 16LL * s.period_frames * 1'000'000'000 / s.rate;
+    const auto asked = std::int64_t{frames_of(o.stall_s, 1'000'000, "stall")} * 1000;
+    l.stall_ns = std::max(periods, asked);
+    return l;
+}
+
+rt::thread_options thread_options(const player_options& o)
+{
+    return {.name = "tactor-audio",
+            .fifo = o.realtime || o.require_realtime,
+            .priority = o.priority,
+            .audio = true};
+}
+
+std::unique_ptr<sink> not_null(std::unique_ptr<sink> s)
+{
+    if (s == nullptr)
+        throw error(errc::bad_input, "player", "no sink", "open one with open_alsa()");
+    return s;
+}
+
+} // namespace
+
+player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options& o)
+    : out(not_null(std::move(s))),
+      feed(link, frames_of(o.horizon_s, out->setup().rate, "horizon")),
+      loop(*out, link, synth::channel_limits(a, out->setup().channels), loop_options(o, out->setup())),
+      audio(loop, *out, link, thread_options(o))
+{
+    try {
+        check_start(o);
+        control = std::make_unique<engine::control_thread>(link.to_control, [this] { woken(); });
+    } catch (...) {
+        link.requests.push({.what = engine::request::kind::stop, .closing = true});
+        link.to_audio.signal();
+        audio.join();
+        throw;
+    }
+}
+
+void player::impl::check_start(const player_options& o)
+{
+    const std::string what = fmt::format("stream on \"{}\"", out->setup().name);
+    const io_result& r = audio.started();
+    if (r.status == io_status::lost)
+        throw error(errc::not_available, what, "the device is gone", "plug it in again");
+    if (r.status != io_status::ok)
+        throw error(errc::runtime, what,
+                    fmt::format("it does not start ({})", engine::text(engine::reason::failed, r.code)),
+                    "try another PCM, or a longer period");
+    if (o.require_realtime && audio.fifo_error() != 0)
+        throw error(errc::not_available, "real-time priority",
+                    std::error_code(audio.fifo_error(), std::generic_category()).message(),
+                    "allow it with an rtprio limit for the group audio, or do without");
+}
+
+player::impl::~impl()
+{
+    stop(true);
+    audio.join();
+}
+
+stroke_id player::impl::submit(const score& s, std::uint64_t at)
+{
+    const stream_setup& d = out->setup();
+    if (s.rate() != d.rate || s.channels() != d.channels)
+        throw error(errc::bad_input, "stroke",
+                    fmt::format("made for {} channels at {} Hz, the stream has {} at {} Hz", s.channels(),
+                                s.rate(), d.channels, d.rate),
+                    "render it with the stream's rate and channels");
+    const std::lock_guard lock(mutex);
+    if (stopping || feed.stream_over())
+        throw error(errc::runtime, fmt::format("stream on \"{}\"", d.name),
+                    feed.stream_reason().empty() ? "it has been stopped" : feed.stream_reason(),
+                    "open a new player");
+    const stroke_id id = ++last_id;
+    feed.submit(id, s, at);
+    pump();
+    return id;
+}
+
+bool player::impl::cancel(stroke_id id)
+{
+    const std::lock_guard lock(mutex);
+    const bool known = feed.cancel(id);
+    if (known) {
+        link.to_audio.signal();
+        link.to_control.signal(); // one that had not been handed over is reported at once
+    }
+    return known;
+}
+
+// Under the mutex.
+void player::impl::pump()
+{
+    feed.pump(link.status.load().written);
+    link.to_audio.signal();
+}
+
+std::optional<stroke_report> player::impl::wait(stroke_id id, std::optional<std::chrono::nanoseconds> timeout)
+{
+    std::unique_lock lock(mutex);
+    const auto settled = [&] { return ended.contains(id) || !feed.knows(id); };
+    // The control thread would wait for itself.
+    if (!control->is_current()) {
+        if (timeout)
+            news.wait_for(lock, *timeout, settled);
+        else
+            news.wait(lock, settled);
+    }
+    const auto found = ended.find(id);
+    if (found == ended.end())
+        return std::nullopt;
+    std::optional<stroke_report> r(std::move(found->second));
+    ended.erase(found);
+    return r;
+}
+
+void player::impl::stop(bool closing)
+{
+    std::unique_lock lock(mutex);
+    if (!stopping) {
+        stopping = true;
+        if (closing)
+            feed.set_closing();
+        link.requests.push({.what = engine::request::kind::stop, .closing = closing});
+        link.to_audio.signal();
+    }
+    if (!control->is_current())
+        news.wait(lock, [this] { return all_delivered; });
+}
+
+void player::impl::woken()
+{
+    std::unique_lock lock(mutex);
+    engine::report r;
+    while (link.reports.pop(r))
+        feed.handle(r);
+    const std::vector<stroke_report> reports = feed.take_reports();
+    for (const stroke_report& e : reports)
+        ended.insert_or_assign(e.id, e);
+    while (ended.size() > most_unread_reports)
+        ended.erase(ended.begin());
+    if (!feed.stream_over())
+        pump();
+    const bool last = feed.stream_over();
+    const std::function<void(const stroke_report&)> tell = handler;
+    lock.unlock();
+    news.notify_all();
+    if (tell) {
+        for (const stroke_report& e : reports)
+            tell(e);
+    }
+    if (!last)
+        return;
+    lock.lock();
+    all_delivered = true;
+    lock.unlock();
+    news.notify_all();
+}
+
+} // namespace tactor

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The two threads of a player and what its callers share with them.
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include <tactor/player.hpp>
+
+#include "engine/audio_loop.hpp"
+#include "engine/audio_thread.hpp"
+#include "engine/control_thread.hpp"
+#include "engine/feeder.hpp"
+#include "engine/link.hpp"
+
+namespace tactor {
+
+struct player::impl {
+    impl(std::unique_ptr<sink> s, const array& a, const player_options& o);
+    ~impl();
+
+    stroke_id submit(const score& s, std::uint64_t at);
+    bool cancel(stroke_id id);
+    std::optional<stroke_report> wait(stroke_id id, std::optional<std::chrono::nanoseconds> timeout);
+    void stop(bool closing);
+
+    std::unique_ptr<sink> out;
+    engine::link link;
+    std::mutex mutex; ///< guards all that follows but the threads; the audio thread never sees it
+    std::condition_variable news;
+    engine::feeder feed;
+    std::map<stroke_id, stroke_report> ended;
+    std::function<void(const stroke_report&)> handler;
+    stroke_id last_id = 0;
+    bool stopping = false;
+    bool all_delivered = false; ///< the stream is over and the handler has seen all
+
+    engine::audio_loop loop;
+    engine::audio_thread audio;
+    std::unique_ptr<engine::control_thread> control;
+
+private:
+    void check_start(const player_options& o);
+    void woken();
+    void pump();
+};
+
+} // namespace tactor

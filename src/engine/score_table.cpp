@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+#include "engine/score_table.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+namespace tactor::engine {
+namespace {
+
+// Frames of a score that starts at `base` until frame `at`.
+std::uint64_t frames_until(std::uint64_t at, std::uint64_t base, std::uint64_t length) noexcept
+{
+    return at > base ? std::min(at - base, length) : 0;
+}
+
+} // namespace
+
+score_table::entry* score_table::find(ticket t) noexcept
+{
+    entry& e = entries_[place_of(t)];
+    return e.used && e.score == t ? &e : nullptr;
+}
+
+void score_table::begin(const command& c, std::uint64_t offset) noexcept
+{
+    entry& e = entries_[place_of(c.score)];
+    const bool cancelled = e.cancelled_early == c.score;
+    const std::uint64_t next = mixer_.position();
+    const std::uint64_t base = c.at > offset ? std::max(c.at - offset, next) : next;
+    e = {.score = c.score,
+         .id = c.id,
+         .base = base,
+         .length = c.length,
+         .finish = base + c.length,
+         .used = true};
+    ++used_;
+    top_ = std::max(top_, place_of(c.score) + 1);
+    link_.reports.push({.what = report::kind::begun, .score = c.score, .frame = offset + base});
+    if (stopping_)
+        over(e, stop_state_, stop_reason_, 0, 0);
+    else if (cancelled)
+        over(e, stroke_state::cancelled, reason::none, 0, 0);
+}
+
+bool score_table::add(const command& c) noexcept
+{
+    entry* e = find(c.score);
+    if (e == nullptr || e->fading || e->fade_wanted)
+        return true;
+    synth::drive_event d = c.drive;
+    d.start += e->base;
+    if (d.start < mixer_.position()) {
+        // Half a burst would be a step on the skin.
+        want_fade(*e, stroke_state::interrupted, reason::late);
+        return true;
+    }
+    return mixer_.add(d);
+}
+
+void score_table::end(ticket t) noexcept
+{
+    if (entry* e = find(t))
+        e->fed = true;
+}
+
+void score_table::cancel(ticket t) noexcept
+{
+    entry* e = find(t);
+    if (e == nullptr) {
+        // Over already, or still in the command ring: its place tells, for no ticket is used twice.
+        entry& place = entries_[place_of(t)];
+        if (place.score != t)
+            place.cancelled_early = t;
+        return;
+    }
+    want_fade(*e, stroke_state::cancelled, reason::none);
+}
+
+void score_table::want_fade(entry& e, stroke_state s, reason why) noexcept
+{
+    if (e.fading || e.fade_wanted)
+        return;
+    const std::uint64_t next = mixer_.position();
+    if (e.base >= next && e.length > 0 && mixer_.fade_out(e.score, 0)) {
+        over(e, s, why, 0, 0); // nothing of it has been mixed yet
+        return;
+    }
+    if (e.finish <= next && why != reason::late)
+        return; // all of it is on its way to the DAC: it finishes
+    e.state = s;
+    e.why = why;
+    e.fade_wanted = true;
+    fade(e);
+}
+
+void score_table::fade(entry& e) noexcept
+{
+    if (!mixer_.fade_out(e.score, fade_))
+        return; // too many fades at once: again in the next period
+    e.fading = true;
+    e.fade_wanted = false;
+    e.finish = mixer_.position() + fade_;
+}
+
+void score_table::stop(bool closing) noexcept
+{
+    stopping_ = true;
+    stop_state_ = closing ? stroke_state::interrupted : stroke_state::cancelled;
+    stop_reason_ = closing ? reason::closed : reason::none;
+    for (std::uint32_t i = 0; i < top_; ++i) {
+        if (entries_[i].used)
+            want_fade(entries_[i], stop_state_, stop_reason_);
+    }
+}
+
+void score_table::update(std::uint64_t played) noexcept
+{
+    for (std::uint32_t i = 0; i < top_ && used_ != 0; ++i) {
+        entry& e = entries_[i];
+        if (!e.used)
+            continue;
+        if (e.fade_wanted)
+            fade(e);
+        if (e.fade_wanted || played < e.finish)
+            continue;
+        if (e.fading)
+            over(e, e.state, e.why, 0, frames_until(e.finish, e.base, e.length));
+        else if (e.fed)
+            over(e, stroke_state::finished, reason::none, 0, e.length);
+    }
+}
+
+void score_table::interrupt(reason why, int code, std::uint64_t played, bool give_back) noexcept
+{
+    for (std::uint32_t i = 0; i < top_; ++i) {
+        entry& e = entries_[i];
+        if (!e.used)
+            continue;
+        if (give_back && !e.fade_wanted && e.base >= mixer_.position()) {
+            link_.reports.push({.what = report::kind::returned, .score = e.score});
+            e.used = false;
+            --used_;
+            continue;
+        }
+        const std::uint64_t frames = frames_until(played, e.base, e.length);
+        if (!e.fading && e.fed && frames == e.length)
+            over(e, stroke_state::finished, reason::none, 0, frames);
+        else if ((e.fading || e.fade_wanted) && e.why == reason::none)
+            over(e, e.state, e.why, 0, frames); // it was cancelled, and it is silent now
+        else
+            over(e, stroke_state::interrupted, why, code, frames);
+    }
+}
+
+void score_table::over(entry& e, stroke_state s, reason why, int code, std::uint64_t frames) noexcept
+{
+    link_.reports.push({.what = report::kind::over,
+                        .score = e.score,
+                        .state = s,
+                        .why = why,
+                        .code = code,
+                        .frame = frames});
+    e.used = false;
+    --used_;
+}
+
+void score_table::describe(std::uint64_t played, stream_status& s) const noexcept
+{
+    const entry* newest = nullptr;
+    for (std::uint32_t i = 0; i < top_; ++i) {
+        const entry& e = entries_[i];
+        if (!e.used || played < e.base || played >= e.base + e.length)
+            continue;
+        if (newest == nullptr || std::tie(e.base, e.id) > std::tie(newest->base, newest->id))
+            newest = &e;
+    }
+    s.sounding = newest != nullptr;
+    s.stroke = newest != nullptr ? newest->id : 0;
+    s.stroke_frame = newest != nullptr ? played - newest->base : 0;
+}
+
+bool score_table::being_fed() const noexcept
+{
+    const std::uint64_t next = mixer_.position();
+    return std::any_of(entries_.begin(), entries_.begin() + top_,
+                       [next](const entry& e) { return e.used && !e.fed && !e.fading && e.base <= next; });
+}
+
+} // namespace tactor::engine

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The scores that the audio thread plays, and how each of them ends.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "engine/link.hpp"
+#include "engine/messages.hpp"
+#include "synth/mixer.hpp"
+
+namespace tactor::engine {
+
+/// Exactly one end for each score that was begun. Frames are those of the epoch (the mixer's) unless
+/// called stream frames. Audio thread only, nothing allocates.
+class score_table {
+public:
+    score_table(synth::mixer& m, link& l, std::uint32_t fade_frames) noexcept
+        : mixer_(m), link_(l), fade_(fade_frames)
+    {
+    }
+
+    /// `offset`: stream frame at which the epoch began.
+    void begin(const command& c, std::uint64_t offset) noexcept;
+    /// False when the mixer has no room now; the command must be given again.
+    bool add(const command& c) noexcept;
+    void end(ticket t) noexcept;
+    /// Also for a score whose begin() is still to come.
+    void cancel(ticket t) noexcept;
+    /// Fades everything out; scores not yet begun end at once, as do those that come later.
+    void stop(bool closing) noexcept;
+
+    /// Ends what is over when `played` frames have reached the DAC, and starts fades that had to wait.
+    void update(std::uint64_t played) noexcept;
+
+    /// The stream broke: ends what had begun to sound, and with `give_back` returns the rest.
+    void interrupt(reason why, int code, std::uint64_t played, bool give_back) noexcept;
+
+    bool empty() const noexcept { return used_ == 0; }
+    /// Fills in the newest score that sounds at `played`.
+    void describe(std::uint64_t played, stream_status& s) const noexcept;
+    /// Whether a score that sounds now still waits for drives.
+    bool being_fed() const noexcept;
+
+private:
+    struct entry {
+        ticket score = 0;
+        ticket cancelled_early = 0;
+        stroke_id id = 0;
+        std::uint64_t base = 0;
+        std::uint64_t length = 0;
+        std::uint64_t finish = 0; ///< over when this frame has been played
+        bool used = false;
+        bool fed = false;
+        bool fade_wanted = false;
+        bool fading = false;
+        stroke_state state = stroke_state::finished;
+        reason why = reason::none;
+    };
+
+    entry* find(ticket t) noexcept;
+    void want_fade(entry& e, stroke_state s, reason why) noexcept;
+    void fade(entry& e) noexcept;
+    void over(entry& e, stroke_state s, reason why, int code, std::uint64_t frames) noexcept;
+
+    synth::mixer& mixer_;
+    link& link_;
+    std::uint32_t fade_;
+    std::array<entry, voices> entries_{};
+    std::uint32_t used_ = 0;
+    std::uint32_t top_ = 0; ///< entries from here on were never used
+    bool stopping_ = false;
+    stroke_state stop_state_ = stroke_state::cancelled;
+    reason stop_reason_ = reason::none;
+};
+
+} // namespace tactor::engine

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include <cerrno>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "engine/feeder.hpp"
+
+namespace tactor {
+
+std::string_view to_string(stroke_state s) noexcept
+{
+    switch (s) {
+    case stroke_state::finished:
+        return "finished";
+    case stroke_state::cancelled:
+        return "cancelled";
+    case stroke_state::interrupted:
+        return "interrupted";
+    }
+    return "unknown";
+}
+
+namespace engine {
+
+std::string text(reason r, int code)
+{
+    switch (r) {
+    case reason::none:
+        return "";
+    case reason::xrun:
+        return "xrun: the device ran dry";
+    case reason::suspended:
+        return "the system was suspended";
+    case reason::lost:
+        switch (-code) {
+        case ETIMEDOUT:
+            return "the device does not move any more";
+        case EPIPE:
+            return "the device was given up: one xrun after the other";
+        default:
+            return "the device is gone";
+        }
+    case reason::failed:
+        return code == 0 ? "the device failed"
+                         : fmt::format("the device failed: {}",
+                                       std::error_code(-code, std::generic_category()).message());
+    case reason::late:
+        return "the computer was too slow to prepare the stroke in time";
+    case reason::closed:
+        return "the player was closed";
+    }
+    return "";
+}
+
+} // namespace engine
+} // namespace tactor
