@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "synth/carrier.hpp"
+
+#include <algorithm>
+
+namespace tactor::synth {
+
+void carrier_block::forget() noexcept
+{
+    plain_place_ = {};
+    shaped_place_ = {};
+}
+
+const double* carrier_block::get(const voice& v, const fade* f, std::uint64_t at, unsigned lo,
+                                 unsigned hi) noexcept
+{
+    const place here{at, lo, hi, v.cycles_per_frame, v.phase};
+    if (!(here == plain_place_)) {
+        const auto frame = static_cast<double>(static_cast<std::int64_t>(v.phase + at));
+        sine_block(tables_.get(v.cycles_per_frame), sincos_cycles(frame * v.cycles_per_frame), lo, hi,
+                   plain_.data());
+        plain_place_ = here;
+    }
+    const auto first = static_cast<std::int64_t>(v.window_place + at);
+    if (f == nullptr && window_is_flat(first + lo, first + hi, v.window, v.ramp)) {
+        return plain_.data();
+    }
+    shape wanted{v.window_place, v.window, v.ramp, 0, 0};
+    if (f != nullptr) {
+        wanted.fade_place = static_cast<std::int64_t>(at - f->start);
+        wanted.fade_length = f->length;
+    }
+    if (here == shaped_place_ && wanted == shaped_shape_) {
+        return shaped_.data();
+    }
+    std::copy(plain_.begin() + lo, plain_.begin() + hi, shaped_.begin() + lo);
+    window_block(tables_, first, v.window, v.ramp, lo, hi, shaped_.data());
+    if (f != nullptr) {
+        fade_block(tables_, wanted.fade_place, f->length, lo, hi, shaped_.data());
+    }
+    shaped_place_ = here;
+    shaped_shape_ = wanted;
+    return shaped_.data();
+}
+
+void add_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept
+{
+    const double* __restrict in = s;
+    double* __restrict out = sum;
+    for (unsigned j = lo; j < hi; ++j) {
+        out[j] += a * in[j];
+    }
+}
+
+void add_line(const double* s, double a, double slope, double k, unsigned lo, unsigned hi,
+              double* sum) noexcept
+{
+    const double* __restrict in = s;
+    double* __restrict out = sum;
+    for (int j = static_cast<int>(lo); j < static_cast<int>(hi); ++j) {
+        out[j] += (a + slope * (k + j)) * in[j];
+    }
+}
+
+} // namespace tactor::synth

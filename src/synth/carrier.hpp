@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The carrier of a voice, window and fade included, shared by the voices that have it in common.
+#pragma once
+
+#include <cstdint>
+
+#include "synth/fades.hpp"
+#include "synth/oscillator.hpp"
+#include "synth/voice.hpp"
+
+namespace tactor::synth {
+
+/// Keeps the latest block: the events of one burst, and of a whole continuous stroke, ask for the same.
+class carrier_block {
+public:
+    /// Samples of the frames `at` + lo ... `at` + hi - 1, to be indexed with lo ... hi - 1. `at` is a
+    /// multiple of block_frames. Valid until the next call.
+    const double* get(const voice& v, const fade* f, std::uint64_t at, unsigned lo, unsigned hi) noexcept;
+    void forget() noexcept;
+
+private:
+    struct place {
+        std::uint64_t at = ~std::uint64_t{0};
+        unsigned lo = 0;
+        unsigned hi = 0;
+        double cycles_per_frame = 0.0;
+        std::uint64_t phase = 0;
+        bool operator==(const place&) const = default;
+    };
+    struct shape {
+        std::uint64_t window_place = 0;
+        std::uint64_t window = 0;
+        std::uint32_t ramp = 0;
+        std::int64_t fade_place = 0;
+        std::uint64_t fade_length = 0;
+        bool operator==(const shape&) const = default;
+    };
+    oscillator_tables tables_;
+    place plain_place_;
+    place shaped_place_;
+    shape shaped_shape_;
+    alignas(32) block plain_{};
+    alignas(32) block shaped_{};
+};
+
+/// sum[j] += a * s[j] for lo <= j < hi.
+void add_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept;
+
+/// sum[j] += (a + slope * (k + j)) * s[j] for lo <= j < hi.
+void add_line(const double* s, double a, double slope, double k, unsigned lo, unsigned hi,
+              double* sum) noexcept;
+
+} // namespace tactor::synth

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "synth/expander.hpp"
+
+#include <algorithm>
+
+#include "synth/frames.hpp"
+
+namespace tactor::synth {
+
+void expander::begin(const score::impl& s, std::size_t item_number, control_points* points) noexcept
+{
+    score_ = &s;
+    item_ = &s.list.items[item_number];
+    points_ = points;
+    number_ = item_number;
+    position_ = item_->start;
+    step_end_ = item_->start;
+    step_ = 0;
+    next_ = 0;
+    done_ = false;
+    if (item_->kind == item_kind::continuous) {
+        points_->before.clear();
+        points_->changes.clear();
+        drives_at(s.plans[item_->plan].schedule, 0.0, s.tactors.size(), points_->now);
+    }
+    advance();
+}
+
+void expander::advance() noexcept
+{
+    switch (item_->kind) {
+    case item_kind::burst:
+        burst_event();
+        break;
+    case item_kind::joined:
+        joined_event();
+        break;
+    case item_kind::continuous:
+        continuous_event();
+        break;
+    }
+}
+
+/// Begins an event at a frame of the score.
+void expander::stretch(std::uint64_t start, std::uint64_t length) noexcept
+{
+    const plan& p = score_->plans[item_->plan].schedule;
+    event_.start = start;
+    event_.length = static_cast<std::uint32_t>(length);
+    event_.phase_frame = score_->phase == phase_mode::burst ? start - item_->start : start;
+    event_.cycles_per_frame = p.carrier_hz / score_->rate;
+    event_.ramp_position = start - item_->start;
+    event_.window = item_->length;
+    event_.ramp = item_->ramp;
+    event_.drives = 0;
+}
+
+void expander::add(std::uint32_t tactor, double from, double to) noexcept
+{
+    const tactor_level& t = score_->tactors[tactor];
+    event_.drive[event_.drives++] = {t.gain * from, t.gain * to, t.channel};
+}
+
+void expander::burst_event() noexcept
+{
+    if (next_ == item_->count) {
+        next_ = 0;
+        position_ += event_.length;
+    }
+    if (position_ >= item_->end()) {
+        done_ = true;
+        return;
+    }
+    stretch(position_, std::min(item_->end() - position_, longest_event));
+    for (; next_ < item_->count && event_.drives < drives_per_event; ++next_) {
+        const item_drive& d = score_->list.drives[item_->first + next_];
+        add(d.tactor, d.amplitude, d.amplitude);
+    }
+}
+
+void expander::joined_event() noexcept
+{
+    if (position_ >= item_->end()) {
+        done_ = true;
+        return;
+    }
+    const joined_stretch s = join_members(score_->list.members.data() + item_->first, item_->count, next_,
+                                          position_, score_->plans[item_->plan].schedule.join);
+    stretch(position_, s.end - position_);
+    add(item_->tactor, s.from, s.to);
+    position_ = s.end;
+}
+
+void expander::continuous_event() noexcept
+{
+    while (next_ == points_->changes.size()) {
+        if (!next_points()) {
+            done_ = true;
+            return;
+        }
+    }
+    stretch(position_, step_end_ - position_);
+    for (; next_ < points_->changes.size() && event_.drives < drives_per_event; ++next_) {
+        const control_points::change& c = points_->changes[next_];
+        add(c.tactor, c.from, c.to);
+    }
+}
+
+} // namespace tactor::synth

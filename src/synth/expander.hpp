@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// An item's events, one after the other.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "synth/event.hpp"
+#include "synth/score.hpp"
+
+namespace tactor::synth {
+
+/// A continuous stroke at its latest two control points.
+struct control_points {
+    void reserve(std::size_t tactors);
+
+    struct change {
+        std::uint32_t tactor;
+        double from;
+        double to;
+    };
+    std::vector<drive> before;
+    std::vector<change> changes;
+    burst now;
+};
+
+/// Gives the events of one item in order of start. Allocates nothing.
+class expander {
+public:
+    /// `points` for a continuous item; not to be shared while this expander is in use.
+    void begin(const score::impl& s, std::size_t item_number, control_points* points) noexcept;
+
+    bool done() const noexcept { return done_; }
+    const drive_event& event() const noexcept { return event_; }
+    std::size_t item_number() const noexcept { return number_; }
+    control_points* points() const noexcept { return points_; }
+    void advance() noexcept;
+
+private:
+    void stretch(std::uint64_t start, std::uint64_t length) noexcept;
+    void add(std::uint32_t tactor, double from, double to) noexcept;
+    void burst_event() noexcept;
+    void joined_event() noexcept;
+    void continuous_event() noexcept;
+    bool next_points() noexcept;
+
+    const score::impl* score_ = nullptr;
+    const item* item_ = nullptr;
+    control_points* points_ = nullptr;
+    std::size_t number_ = 0;
+    std::uint64_t position_ = 0; ///< first frame of the stretch whose events come next
+    std::uint64_t step_end_ = 0; ///< continuous: frame of the later control point
+    std::uint64_t step_ = 0;     ///< continuous: number of the later control point
+    std::size_t next_ = 0;       ///< drive, member or change that is next
+    bool done_ = true;
+    drive_event event_;
+};
+
+/// Amplitude of a group's carrier from one frame to another.
+struct joined_stretch {
+    std::uint64_t end = 0;
+    double from = 0.0;
+    double to = 0.0;
+};
+
+/// The stretch from frame `at` on in which the amplitude is taken as linear: to the next start or end of a
+/// member, in ramps to the next 64th of the ramp. `first`: member before which all have ended; moved on.
+joined_stretch join_members(const item_member* members, std::size_t count, std::size_t& first,
+                            std::uint64_t at, overlap rule) noexcept;
+
+/// Frame of control point k of a stroke of `length` frames, from its start. Points beyond the end are at it.
+std::uint64_t control_frame(std::uint64_t k, unsigned rate, std::uint64_t length) noexcept;
+
+/// The drives of a continuous plan at a time, in order of tactor; what is not in the array is left out. A
+/// plan that throws has none.
+void drives_at(const plan& p, double t_s, std::size_t tactors, burst& out) noexcept;
+
+} // namespace tactor::synth

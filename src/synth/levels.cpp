@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "synth/levels.hpp"
+
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+namespace tactor::synth {
+
+namespace {
+
+std::string name_of(const array& a, std::size_t i)
+{
+    const std::string line = a.tactors[i].where.text();
+    return line.empty() ? fmt::format("tactor {}", i) : line;
+}
+
+double level_db(const array& a, std::size_t i, const render_options& o)
+{
+    const tactor_spec& t = a.tactors[i];
+    if (o.sl_db) {
+        if (!t.threshold_dbfs) {
+            throw error(
+                errc::bad_input, name_of(a, i),
+                fmt::format("tactor {} has no threshold_dbfs, but a sensation level of {} dB is asked for", i,
+                            *o.sl_db),
+                "measure its detection threshold, or use --level-dbfs");
+        }
+        return *t.threshold_dbfs + *o.sl_db;
+    }
+    const double level = o.level_dbfs + t.gain_db;
+    if (!(level <= 1e-9)) {
+        throw error(
+            errc::bad_input, name_of(a, i),
+            fmt::format("gain_db = {} on a level of {} dBFS takes tactor {} to {:.4g} dBFS, over full scale",
+                        t.gain_db, o.level_dbfs, i, level),
+            fmt::format("lower gain_db, or --level-dbfs to {:.4g} or less", -t.gain_db));
+    }
+    return level;
+}
+
+} // namespace
+
+std::vector<tactor_level> tactor_levels(const array& a, const render_options& o)
+{
+    if (o.sl_db && !std::isfinite(*o.sl_db)) {
+        throw error(errc::bad_input, "--sl", fmt::format("{} is not a level", *o.sl_db),
+                    "the paper uses 7 dB SL");
+    }
+    if (!o.sl_db && !(std::isfinite(o.level_dbfs) && o.level_dbfs <= 0.0)) {
+        throw error(errc::bad_input, "--level-dbfs",
+                    fmt::format("{} dBFS is not a level of 0 dBFS or less", o.level_dbfs),
+                    "the default is -12");
+    }
+    std::vector<tactor_level> levels;
+    levels.reserve(a.tactors.size());
+    for (std::size_t i = 0; i < a.tactors.size(); ++i) {
+        const tactor_spec& t = a.tactors[i];
+        const double gain = std::pow(10.0, level_db(a, i, o) / 20.0);
+        levels.push_back({t.channel, t.polarity < 0 ? -gain : gain});
+    }
+    return levels;
+}
+
+} // namespace tactor::synth

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// How strongly each tactor is driven, and whether it may be.
+#pragma once
+
+#include <vector>
+
+#include "synth/score.hpp"
+
+namespace tactor::synth {
+
+/// Gain of each tactor. \throws error (bad_input) for levels over full scale and missing thresholds.
+std::vector<tactor_level> tactor_levels(const array& a, const render_options& o);
+
+/// Compares what the items ask of each tactor, added up where they sound together, with its limit and with
+/// full scale. Continuous strokes are looked at in their control points, in about a million of them at most;
+/// the limiter guards what lies between. \throws error (bad_input) with the tactor's line.
+void check_peaks(const score::impl& s, const array& a, const render_options& o);
+
+} // namespace tactor::synth

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Carriers block by block: one exact angle a block, the rest by angle addition from a table, so no error
+/// piles up however long the carrier runs.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "synth/sincos.hpp"
+
+namespace tactor::synth {
+
+/// Frames of a block. Blocks lie at multiples of it in the stream, whatever the sizes that are asked for.
+inline constexpr unsigned block_frames = 64;
+
+using block = std::array<double, block_frames>;
+
+/// Sine and cosine of the first frames of one frequency.
+struct oscillator_table {
+    alignas(32) block sin;
+    alignas(32) block cos;
+};
+
+/// The tables of the frequencies in use. A frequency that is not there takes the place of the oldest.
+class oscillator_tables {
+public:
+    oscillator_tables() noexcept;
+    /// Valid until the next call.
+    const oscillator_table& get(double cycles_per_frame) noexcept;
+
+private:
+    static constexpr std::size_t places = 32;
+    std::array<double, places> keys_;
+    std::array<oscillator_table, places> tables_;
+    std::size_t latest_ = 0;
+    std::size_t oldest_ = 0;
+};
+
+/// out[j] = sin(2 pi (base + j f)) for lo <= j < hi; `base` is the angle of j = 0 and `t` f's table.
+void sine_block(const oscillator_table& t, sine_cosine base, unsigned lo, unsigned hi, double* out) noexcept;
+
+/// out[j] *= offset + scale * cos(2 pi (base + j f)) for lo <= j < hi: both halves of a raised cosine.
+void times_cosine(const oscillator_table& t, sine_cosine base, double offset, double scale, unsigned lo,
+                  unsigned hi, double* out) noexcept;
+
+} // namespace tactor::synth

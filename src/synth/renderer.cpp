@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+
+#include <tactor/render.hpp>
+
+#include "synth/event_source.hpp"
+#include "synth/mixer.hpp"
+#include "synth/oscillator.hpp"
+#include "synth/score.hpp"
+
+namespace tactor {
+
+struct renderer::impl {
+    /// Room for what sounds at once, and for what begins in the block meanwhile.
+    impl(const score& s, sample_format f)
+        : source(s),
+          mix(s.data()->limits, f, s.data()->open_events + 256),
+          frame_bytes(s.channels() * bytes_of(f))
+    {
+    }
+
+    /// Hands over what starts before a frame. Returns the frame up to which nothing is missing.
+    std::uint64_t feed(std::uint64_t until) noexcept
+    {
+        for (const synth::drive_event* e = source.peek(); e != nullptr && e->start < until;
+             e = source.peek()) {
+            if (!mix.add(*e)) {
+                return e->start;
+            }
+            source.pop();
+        }
+        return until;
+    }
+
+    synth::event_source source;
+    synth::mixer mix;
+    std::size_t frame_bytes;
+};
+
+renderer::renderer(const score& s, sample_format f) : impl_(std::make_unique<impl>(s, f))
+{
+}
+
+renderer::~renderer() = default;
+renderer::renderer(renderer&&) noexcept = default;
+renderer& renderer::operator=(renderer&&) noexcept = default;
+
+void renderer::process(std::size_t frames, std::byte* out) noexcept
+{
+    // Whole blocks of the mixer, several at once: little to keep waiting, little to do between.
+    constexpr std::uint64_t stride = 16 * synth::block_frames;
+    while (frames > 0) {
+        const std::uint64_t at = impl_->mix.position();
+        const std::uint64_t until = std::min(at + frames, at / stride * stride + stride);
+        const std::uint64_t ready = std::max(impl_->feed(until), at + 1);
+        const auto n = static_cast<std::size_t>(ready - at);
+        impl_->mix.process(n, out);
+        out += n * impl_->frame_bytes;
+        frames -= n;
+    }
+}
+
+std::uint64_t renderer::position() const noexcept
+{
+    return impl_->mix.position();
+}
+
+} // namespace tactor

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <limits>
+
+#include <doctest/doctest.h>
+
+#include <tactor/error.hpp>
+
+#include "pieces.hpp"
+#include "synth/converter.hpp"
+#include "synth/limiter.hpp"
+
+using namespace tactor;
+using namespace pieces;
+
+namespace {
+
+std::vector<std::byte> converted(sample_format f, const std::vector<double>& x)
+{
+    std::vector<std::byte> out(x.size() * bytes_of(f));
+    for (std::size_t i = 0; i < x.size(); i += 64) {
+        const auto n = static_cast<unsigned>(std::min<std::size_t>(64, x.size() - i));
+        synth::convert(f, x.data() + i, n, out.data() + i * bytes_of(f), bytes_of(f));
+    }
+    return out;
+}
+
+} // namespace
+
+TEST_CASE("full scale does not wrap in any format")
+{
+    const std::vector<double> x{1.0, -1.0, 1.0 - 1e-12, -1.0 + 1e-12, 1.0 + 1e-12, -1.0 - 1e-12};
+    for (const sample_format f : all_formats) {
+        const auto bytes = converted(f, x);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            CAPTURE(to_string(f));
+            CAPTURE(x[i]);
+            if (f == sample_format::float32) {
+                CHECK(std::abs(static_cast<double>(sample<float>(bytes, i)) - x[i]) < 1e-6);
+            } else {
+                const double want = x[i] > 0.0 ? scale_of(f) - 1.0 : -scale_of(f);
+                CHECK(std::abs(static_cast<double>(integer(bytes, f, i)) - want) <=
+                      (f == sample_format::s32 ? 1.0 : 0.0));
+            }
+        }
+    }
+    CHECK(integer(converted(sample_format::s32, {1.0}), sample_format::s32, 0) == 2147483647);
+    CHECK(integer(converted(sample_format::s32, {-1.0}), sample_format::s32, 0) == -2147483648LL);
+}
+
+TEST_CASE("integers are rounded to the nearest, ties to even")
+{
+    for (const sample_format f : all_formats) {
+        if (f == sample_format::float32) {
+            continue;
+        }
+        std::vector<double> x;
+        for (int i = -1000; i <= 1000; ++i) {
+            x.push_back(0.125 * i / scale_of(f));
+        }
+        const auto bytes = converted(f, x);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            CHECK(static_cast<double>(integer(bytes, f, i)) == std::nearbyint(x[i] * scale_of(f)));
+        }
+    }
+}
+
+TEST_CASE("S24 in four bytes is right-aligned and sign-extended")
+{
+    const auto bytes = converted(sample_format::s24, {-0.5, 0.5});
+    CHECK(sample<std::int32_t>(bytes, 0) == -4194304);
+    CHECK(sample<std::int32_t>(bytes, 1) == 4194304);
+}
+
+TEST_CASE("silence has no negative zeros")
+{
+    const auto bytes = converted(sample_format::float32, {-0.0, 0.0, -1e-300});
+    CHECK(sample<std::uint32_t>(bytes, 0) == 0U);
+    CHECK(sample<std::uint32_t>(bytes, 1) == 0U);
+}
+
+TEST_CASE("samples are written with a stride and nothing between is touched")
+{
+    for (const sample_format f : all_formats) {
+        std::vector<std::byte> out(64 * 16, std::byte{0x55});
+        const std::vector<double> x(50, 0.3);
+        synth::convert(f, x.data(), 50, out.data(), 16);
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            if (i % 16 >= bytes_of(f) || i / 16 >= 50) {
+                CHECK(out[i] == std::byte{0x55});
+            }
+        }
+    }
+}
+
+TEST_CASE("the limiter clamps, silences what is no number, and counts")
+{
+    const double inf = std::numeric_limits<double>::infinity();
+    std::vector<double> x{0.0, 0.4, -0.5, 0.6, -7.0, inf, -inf, std::nan("")};
+    CHECK(synth::limit_block(x.data(), 8, 0.5) == 5);
+    CHECK((x == std::vector<double>{0.0, 0.4, -0.5, 0.5, -0.5, 0.5, -0.5, 0.0}));
+    CHECK(synth::limit_block(x.data(), 8, 0.5) == 0);
+    CHECK(synth::limit_block(x.data(), 8, 0.0) == 6);
+    std::vector<double> noise{0.5 * (1.0 + 4e-16)};
+    CHECK(synth::limit_block(noise.data(), 1, 0.5) == 0);
+    CHECK(noise[0] == 0.5);
+}
+
+TEST_CASE("sample formats have names and sizes")
+{
+    for (const sample_format f : all_formats) {
+        CHECK(sample_format_from_string(to_string(f)) == f);
+    }
+    CHECK(bytes_of(sample_format::s24_3) == 3);
+    CHECK(bytes_of(sample_format::s24) == 4);
+    CHECK(bytes_of(sample_format::s16) == 2);
+    CHECK_THROWS_AS(sample_format_from_string("s25"), error);
+    CHECK_THROWS_AS(sample_format_from_string(""), error);
+}

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Small arrays, plans and renderings for the tests of synth and wav.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <random>
+#include <span>
+#include <vector>
+
+#include <tactor/array.hpp>
+#include <tactor/plan.hpp>
+#include <tactor/render.hpp>
+
+namespace pieces {
+
+inline constexpr double pi = 3.14159265358979323846;
+
+/// n tactors in a row, channel = index.
+inline tactor::array row(unsigned n)
+{
+    tactor::array a;
+    a.name = "row";
+    for (unsigned i = 0; i < n; ++i) {
+        tactor::tactor_spec t;
+        t.position = {20.0 * i, 0.0};
+        t.channel = i;
+        a.tactors.push_back(t);
+    }
+    return a;
+}
+
+inline tactor::burst make_burst(double onset_s, double duration_s, std::vector<tactor::drive> drives,
+                                double a_v = 1.0)
+{
+    tactor::burst b;
+    b.onset_s = onset_s;
+    b.duration_s = duration_s;
+    b.intensity = a_v;
+    b.drives = std::move(drives);
+    return b;
+}
+
+inline tactor::plan make_plan(std::vector<tactor::burst> bursts, double carrier_hz = 250.0)
+{
+    tactor::plan p;
+    p.algorithm = "by hand";
+    p.carrier_hz = carrier_hz;
+    for (const tactor::burst& b : bursts) {
+        p.total_s = std::max(p.total_s, b.onset_s + b.duration_s);
+    }
+    p.stroke_duration_s = p.total_s;
+    p.bursts = std::move(bursts);
+    return p;
+}
+
+/// Intensity walks from tactor 0 over the row to the last; each moment has one or two tactors.
+inline tactor::plan make_continuous(unsigned tactors, double duration_s, double carrier_hz = 250.0)
+{
+    tactor::plan p;
+    p.algorithm = "continuous";
+    p.carrier_hz = carrier_hz;
+    p.total_s = p.stroke_duration_s = duration_s;
+    p.at = [tactors, duration_s](double t, tactor::burst& out) {
+        const double place = t / duration_s * (tactors - 1);
+        const auto left = static_cast<unsigned>(place);
+        const double f = place - left;
+        out.drives.clear();
+        out.drives.push_back({left, std::sqrt(1.0 - f)});
+        if (f > 0.0) {
+            out.drives.push_back({left + 1, std::sqrt(f)});
+        }
+    };
+    return p;
+}
+
+/// Bursts at random, many of them on top of each other.
+inline tactor::plan make_random(std::mt19937_64& random, unsigned tactors, unsigned bursts, double total_s)
+{
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    std::vector<tactor::burst> all;
+    for (unsigned i = 0; i < bursts; ++i) {
+        std::vector<tactor::drive> drives;
+        for (unsigned t = 0; t < tactors; ++t) {
+            if (unit(random) < 0.5) {
+                drives.push_back({t, 0.01 + 0.4 * unit(random)});
+            }
+        }
+        all.push_back(make_burst(total_s * unit(random), 0.001 + 0.1 * unit(random), drives));
+    }
+    std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.onset_s < b.onset_s; });
+    return make_plan(std::move(all), 100.0 + 300.0 * unit(random));
+}
+
+/// The whole piece in blocks of the size that next() gives.
+template <class Next>
+std::vector<std::byte> render(const tactor::score& s, tactor::sample_format f, Next next, std::size_t frames)
+{
+    const std::size_t frame_bytes = s.channels() * tactor::bytes_of(f);
+    std::vector<std::byte> out(frames * frame_bytes, std::byte{0x55});
+    tactor::renderer r(s, f);
+    for (std::size_t done = 0; done < frames;) {
+        const std::size_t n = std::min<std::size_t>(frames - done, next());
+        r.process(n, out.data() + done * frame_bytes);
+        done += n;
+    }
+    return out;
+}
+
+inline std::vector<std::byte> render(const tactor::score& s, tactor::sample_format f)
+{
+    return render(
+        s, f, [&s] { return std::max<std::size_t>(1, s.frames()); }, s.frames());
+}
+
+template <class T>
+T sample(const std::vector<std::byte>& bytes, std::size_t i)
+{
+    T v;
+    std::memcpy(&v, bytes.data() + i * sizeof(T), sizeof(T));
+    return v;
+}
+
+/// Sample i of a rendering as an integer, whatever the format (not float).
+inline std::int64_t integer(const std::vector<std::byte>& bytes, tactor::sample_format f, std::size_t i)
+{
+    switch (f) {
+    case tactor::sample_format::s16:
+        return sample<std::int16_t>(bytes, i);
+    case tactor::sample_format::s24_3: {
+        std::uint32_t v = 0;
+        std::memcpy(&v, bytes.data() + 3 * i, 3);
+        return static_cast<std::int32_t>(v << 8) >> 8;
+    }
+    default:
+        return sample<std::int32_t>(bytes, i);
+    }
+}
+
+inline double scale_of(tactor::sample_format f)
+{
+    switch (f) {
+    case tactor::sample_format::s16:
+        return 32768.0;
+    case tactor::sample_format::s32:
+        return 2147483648.0;
+    default:
+        return 8388608.0;
+    }
+}
+
+inline constexpr tactor::sample_format all_formats[] = {
+    tactor::sample_format::float32, tactor::sample_format::s16, tactor::sample_format::s24_3,
+    tactor::sample_format::s24, tactor::sample_format::s32};
+
+/// One channel of a rendering in floats.
+inline std::vector<double> channel(const tactor::score& s, unsigned c)
+{
+    const auto bytes = render(s, tactor::sample_format::float32);
+    std::vector<double> x(s.frames());
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        x[k] = static_cast<double>(sample<float>(bytes, k * s.channels() + c));
+    }
+    return x;
+}
+
+/// Section 7's window, from the formula.
+inline double window(std::int64_t k, std::int64_t n, std::int64_t r)
+{
+    if (k < r) {
+        return 0.5 * (1.0 - std::cos(pi * static_cast<double>(k) / static_cast<double>(r)));
+    }
+    if (k >= n - r) {
+        return 0.5 * (1.0 - std::cos(pi * static_cast<double>(n - k) / static_cast<double>(r)));
+    }
+    return 1.0;
+}
+
+/// FNV-1a, 64 bits.
+inline std::uint64_t digest(std::span<const std::byte> bytes)
+{
+    std::uint64_t h = 14695981039346656037U;
+    for (const std::byte b : bytes) {
+        h = (h ^ static_cast<std::uint64_t>(b)) * 1099511628211U;
+    }
+    return h;
+}
+
+} // namespace pieces
