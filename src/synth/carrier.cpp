@@ -62,4 +62,4 @@ void add_line(const double* s, double a, double slope, double k, unsigned lo, un
     }
 }
 
-} // namespace tactor::synth
+}  // namespace tactor::synth

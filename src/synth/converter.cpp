@@ -48,7 +48,7 @@ void integers(const double* x, unsigned n, double scale, std::byte* out, std::si
     scatter<Bytes>(v.data(), n, out, stride);
 }
 
-} // namespace
+}  // namespace
 
 void convert(sample_format f, const double* x, unsigned n, std::byte* out, std::size_t stride) noexcept
 {
@@ -74,4 +74,4 @@ void convert(sample_format f, const double* x, unsigned n, std::byte* out, std::
     }
 }
 
-} // namespace tactor::synth
+}  // namespace tactor::synth

@@ -76,4 +76,4 @@ std::uint64_t control_frame(std::uint64_t k, unsigned rate, std::uint64_t length
 /// plan that throws has none.
 void drives_at(const plan& p, double t_s, std::size_t tactors, burst& out) noexcept;
 
-} // namespace tactor::synth
+}  // namespace tactor::synth

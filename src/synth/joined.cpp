@@ -10,7 +10,7 @@ namespace tactor::synth {
 
 namespace {
 
-/// Fine enough for 1e-3, and exact (one frame a step) for the default ramp at up to 48 kHz.
+/// Fine enough for 0.2 %, and exact (one frame a step) for the default ramp at up to 48 kHz.
 constexpr std::uint32_t ramp_steps = 64;
 
 /// Next frame after `at` where this member's window is not linear any more, or its start if it is to come.
@@ -61,7 +61,7 @@ double amplitude(const item_member* first, const item_member* last, std::uint64_
     return std::min(intensity, std::sqrt(energy));
 }
 
-} // namespace
+}  // namespace
 
 joined_stretch join_members(const item_member* members, std::size_t count, std::size_t& first,
                             std::uint64_t at, overlap rule) noexcept
@@ -86,4 +86,4 @@ joined_stretch join_members(const item_member* members, std::size_t count, std::
     return s;
 }
 
-} // namespace tactor::synth
+}  // namespace tactor::synth

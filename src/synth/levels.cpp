@@ -12,37 +12,38 @@ namespace tactor::synth {
 
 namespace {
 
-std::string name_of(const array& a, std::size_t i)
-{
-    const std::string line = a.tactors[i].where.text();
-    return line.empty() ? fmt::format("tactor {}", i) : line;
-}
-
 double level_db(const array& a, std::size_t i, const render_options& o)
 {
     const tactor_spec& t = a.tactors[i];
     if (o.sl_db) {
         if (!t.threshold_dbfs) {
-            throw error(
-                errc::bad_input, name_of(a, i),
-                fmt::format("tactor {} has no threshold_dbfs, but a sensation level of {} dB is asked for", i,
-                            *o.sl_db),
+            refuse_tactor(
+                a, i, fmt::format("has no threshold_dbfs, but a sensation level of {} dB is asked for", *o.sl_db),
                 "measure its detection threshold, or use --level-dbfs");
         }
         return *t.threshold_dbfs + *o.sl_db;
     }
     const double level = o.level_dbfs + t.gain_db;
     if (!(level <= 1e-9)) {
-        throw error(
-            errc::bad_input, name_of(a, i),
-            fmt::format("gain_db = {} on a level of {} dBFS takes tactor {} to {:.4g} dBFS, over full scale",
-                        t.gain_db, o.level_dbfs, i, level),
-            fmt::format("lower gain_db, or --level-dbfs to {:.4g} or less", -t.gain_db));
+        refuse_tactor(a, i,
+                      fmt::format("would be driven at {:.4g} dBFS, above full scale: gain_db = {} on a level of {} dBFS",
+                                  level, t.gain_db, o.level_dbfs),
+                      fmt::format("lower gain_db, or --level-dbfs to {:.4g} or less", -t.gain_db));
     }
     return level;
 }
 
-} // namespace
+}  // namespace
+
+void refuse_tactor(const array& a, std::size_t i, std::string_view why, std::string_view hint)
+{
+    const std::string line = a.tactors[i].where.text();
+    const std::string name = fmt::format("tactor {}", i);
+    if (line.empty()) {
+        throw error(errc::bad_input, name, why, hint);
+    }
+    throw error(errc::bad_input, line, fmt::format("{} {}", name, why), hint);
+}
 
 std::vector<tactor_level> tactor_levels(const array& a, const render_options& o)
 {
@@ -65,4 +66,4 @@ std::vector<tactor_level> tactor_levels(const array& a, const render_options& o)
     return levels;
 }
 
-} // namespace tactor::synth
+}  // namespace tactor::synth

@@ -54,4 +54,4 @@ void times_cosine(const oscillator_table& t, sine_cosine base, double offset, do
     }
 }
 
-} // namespace tactor::synth
+}  // namespace tactor::synth

@@ -45,4 +45,4 @@ void sine_block(const oscillator_table& t, sine_cosine base, unsigned lo, unsign
 void times_cosine(const oscillator_table& t, sine_cosine base, double offset, double scale, unsigned lo,
                   unsigned hi, double* out) noexcept;
 
-} // namespace tactor::synth
+}  // namespace tactor::synth

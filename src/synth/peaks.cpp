@@ -99,24 +99,23 @@ double in_db(double amplitude)
     return 20.0 * std::log10(amplitude);
 }
 
-void check(const tactor_spec& t, std::size_t i, double peak, const render_options& o)
+void check(const array& a, std::size_t i, double peak, const render_options& o)
 {
-    if (peak <= std::min(1.0, std::pow(10.0, t.max_dbfs / 20.0)) * (1.0 + 1e-9)) {
+    const double limit_db = std::min(0.0, a.tactors[i].max_dbfs);
+    if (peak <= std::pow(10.0, limit_db / 20.0) * (1.0 + 1e-9)) {
         return;
     }
-    const double limit_db = std::min(0.0, t.max_dbfs);
-    const std::string line = t.where.text();
+    const double excess_db = std::max(0.01, std::ceil((in_db(peak) - limit_db) * 100.0) / 100.0);
+    const bool limited = limit_db < 0.0;
     const std::string limit =
-        limit_db < 0.0 ? fmt::format("its limit of {:.4g} dBFS (max_dbfs)", limit_db) : "full scale (0 dBFS)";
-    const double excess = std::max(0.01, std::ceil((in_db(peak) - limit_db) * 100.0) / 100.0);
-    throw error(errc::bad_input, line.empty() ? fmt::format("tactor {}", i) : line,
-                fmt::format("tactor {} would be driven at {:.4g} dBFS, above {}", i, in_db(peak), limit),
-                fmt::format("lower {} by {:.2f} dB or more{}",
-                            o.sl_db ? "--sl" : "--level-dbfs or the tactor's gain_db", excess,
-                            limit_db < 0.0 ? ", or raise max_dbfs" : ""));
+        limited ? fmt::format("its limit of {:.4g} dBFS (max_dbfs)", limit_db) : "full scale (0 dBFS)";
+    refuse_tactor(a, i, fmt::format("would be driven at {:.4g} dBFS, above {}", in_db(peak), limit),
+                  fmt::format("lower {} by {:.2f} dB or more{}",
+                              o.sl_db ? "--sl" : "--level-dbfs or the tactor's gain_db", excess_db,
+                              limited ? ", or raise max_dbfs" : ""));
 }
 
-} // namespace
+}  // namespace
 
 void check_peaks(const score::impl& s, const array& a, const render_options& o)
 {
@@ -132,8 +131,8 @@ void check_peaks(const score::impl& s, const array& a, const render_options& o)
             sum += changes[i].by;
             peak = std::max(peak, sum);
         }
-        check(a.tactors[tactor], tactor, peak, o);
+        check(a, tactor, peak, o);
     }
 }
 
-} // namespace tactor::synth
+}  // namespace tactor::synth

@@ -58,7 +58,7 @@ struct item_list {
     std::vector<item_member> members;
 };
 
-} // namespace tactor::synth
+}  // namespace tactor::synth
 
 namespace tactor {
 
@@ -78,4 +78,4 @@ struct score::impl {
     std::size_t open_events = 0;     ///< most events that sound in one frame
 };
 
-} // namespace tactor
+}  // namespace tactor

@@ -60,4 +60,4 @@ inline sine_cosine sincos_cycles(double x) noexcept
     }
 }
 
-} // namespace tactor::synth
+}  // namespace tactor::synth
