@@ -35,7 +35,7 @@ constexpr std::array options{
     option{"snap", kind::flag},
     option{"drop-points", kind::flag},
     option{"overlap", kind::word, {}, {"energy", "max", "sum"}},
-    option{"carrier", kind::number, {0.0, max_hz, true}},
+    option{"carrier", kind::number, {1.0, max_hz}},
     option{"phase", kind::word, {}, {"burst", "continuous"}},
     option{"ramp", kind::number, {0.0, 10.0}},
     option{"level-dbfs", kind::number, {min_db, 0.0}},

@@ -130,7 +130,7 @@ stroke read_stroke(const toml_table& t, std::string name)
     const pace asked = read_pace(t);
     const double intensity = t.number("intensity", {0.0, 1.0}).value_or(1.0);
     const auto start = t.number("start_s", {0.0, day_s});
-    const auto carrier = t.number("carrier_hz", {0.0, 384000.0, true});
+    const auto carrier = t.number("carrier_hz", {1.0, 384000.0});
 
     const auto described = [&](trajectory motion, std::string note) {
         return stroke{t.text("name").value_or(name), std::move(motion), start, carrier, std::move(note)};
