@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "model/path_svg_data.hpp"
 
+#include <algorithm>
 #include <climits>
 #include <cmath>
+#include <new>
+#include <string>
 
 #include <2geom/elliptical-arc.h>
 #include <2geom/path-sink.h>
@@ -105,11 +108,20 @@ std::vector<outline> detail::parse_path_data(std::string_view data, double limit
         throw std::move(*check.fault);
     if (data.size() > INT_MAX)
         throw value_fault{0, "is too long", "split it"};
+    // lib2geom does not know that a form feed is a blank.
+    std::string without_feeds;
+    if (data.find('\f') != std::string_view::npos) {
+        without_feeds = data;
+        std::replace(without_feeds.begin(), without_feeds.end(), '\f', ' ');
+        data = without_feeds;
+    }
     std::vector<outline> found;
     outline_sink sink(found);
     try {
         Geom::SVGPathParser(sink).parse(data.data(), static_cast<int>(data.size()));
-    } catch (const Geom::Exception& e) {
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& e) {
         throw value_fault{0, fmt::format("is not path data: {}", e.what()), {}};
     }
     return found;
