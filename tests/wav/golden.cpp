@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+// The bytes of WAV files that must not change unnoticed. If one differs, something that users hear or see
+// differs: say so in NEWS.md, and put the number that the failure prints here.
+#include <clocale>
+#include <cstdint>
+#include <locale>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include <tactor/plan.hpp>
+#include <tactor/stroke.hpp>
+#include <tactor/wav.hpp>
+
+#include "../synth/pieces.hpp"
+#include "folder.hpp"
+
+using namespace tactor;
+
+namespace {
+
+struct golden {
+    algorithm method;
+    sample_format format;
+    std::uint64_t digest;
+};
+
+const golden all_golden[] = {
+    {algorithm::park2016, sample_format::float32, 0x4667c12b8e688f12U},      {algorithm::park2016, sample_format::s16, 0x8af13b4bca8b7500U},
+    {algorithm::park2016, sample_format::s24_3, 0x2103b24f6d27edcbU},        {algorithm::park2016, sample_format::s32, 0xf95615bd3d77b174U},
+    {algorithm::tactile_brush, sample_format::float32, 0xf987f8a613a8f535U}, {algorithm::tactile_brush, sample_format::s16, 0x77551240e3a72c21U},
+    {algorithm::tactile_brush, sample_format::s24_3, 0xa10a3bd23ecf835bU},   {algorithm::tactile_brush, sample_format::s32, 0xe5959743f9673606U},
+    {algorithm::continuous, sample_format::float32, 0xc537706c6ab283f8U},    {algorithm::continuous, sample_format::s16, 0x8fb1701e87184617U},
+    {algorithm::continuous, sample_format::s24_3, 0x9c0b3468dd63677bU},      {algorithm::continuous, sample_format::s32, 0xf980c8980dc59b09U},
+};
+
+std::string file_of(const folder& dir, algorithm method, sample_format f, const char* preset = "park2016-1")
+{
+    const array a = preset_array("palm-3x3");
+    plan_options o;
+    o.method = method;
+    // Motion 1 starts 4 mm below a row of the grid, and crosses one twice in less time than two bursts need.
+    o.snap = true;
+    o.drop_points = true;
+    const score s(a, {{make_plan(a, preset_stroke(preset), o), {}}}, {});
+    write_wav(s, f, dir / "a.wav");
+    return dir.bytes("a.wav");
+}
+
+std::uint64_t digest_of(const std::string& bytes)
+{
+    return pieces::digest(std::as_bytes(std::span(bytes)));
+}
+
+struct comma : std::numpunct<char> {
+    char do_decimal_point() const override { return ','; }
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+};
+
+/// A comma as decimal point, in C where the system has such a locale and in C++ always.
+class comma_locale {
+public:
+    comma_locale() : before_(std::locale::global(std::locale(std::locale(), new comma)))
+    {
+        for (const char* name :
+             {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "fr_FR.utf8", "de_DE", "fr_FR"}) {
+            if (std::setlocale(LC_ALL, name) != nullptr) {
+                break;
+            }
+        }
+    }
+    ~comma_locale()
+    {
+        std::setlocale(LC_ALL, "C");
+        std::locale::global(before_);
+    }
+    comma_locale(const comma_locale&) = delete;
+    comma_locale& operator=(const comma_locale&) = delete;
+
+private:
+    std::locale before_;
+};
+
+}  // namespace
+
+TEST_CASE("the bytes of park2016-1 are those of the last release, in any locale")
+{
+    const folder dir;
+    for (const golden& g : all_golden) {
+        CAPTURE(std::string(to_string(g.method)));
+        CAPTURE(std::string(to_string(g.format)));
+        CHECK(digest_of(file_of(dir, g.method, g.format)) == g.digest);
+        const comma_locale with_comma;
+        CHECK(digest_of(file_of(dir, g.method, g.format)) == g.digest);
+    }
+}
+
+TEST_CASE("park2016-1 is 70560 frames of 9 channels")
+{
+    const folder dir;
+    CHECK(file_of(dir, algorithm::park2016, sample_format::s16).size() == 44 + 70560 * 9 * 2);
+}
