@@ -2,9 +2,7 @@
 #include "plan/box_index.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 // Boost 1.74 includes a header of its own that it deprecates.
@@ -35,13 +33,6 @@ tree_box around(point p, double margin_mm)
 {
     return {to_tree({p.x_mm - margin_mm, p.y_mm - margin_mm}),
             to_tree({p.x_mm + margin_mm, p.y_mm + margin_mm})};
-}
-
-double distance_mm(point p, const tree_box& b)
-{
-    const auto beyond = [](double v, double low, double high) { return std::max({low - v, v - high, 0.0}); };
-    return std::hypot(beyond(p.x_mm, b.min_corner().x(), b.max_corner().x()),
-                      beyond(p.y_mm, b.min_corner().y(), b.max_corner().y()));
 }
 
 std::vector<entry> entries(const std::vector<box>& boxes)
@@ -85,13 +76,13 @@ void box_index::near(point p, double margin_mm, std::vector<unsigned>& out) cons
 
 unsigned box_index::nearest(point p, const std::function<double(unsigned)>& distance) const
 {
-    const tree_point at = to_tree(p);
-    const auto query = bgi::nearest(at, static_cast<unsigned>(tree_->items.size()));
-    double least = std::numeric_limits<double>::infinity();
-    unsigned best = std::numeric_limits<unsigned>::max();
+    // The item with the nearest box says how far to look.
+    entry guess;
+    tree_->items.query(bgi::nearest(to_tree(p), 1U), &guess);
+    unsigned best = guess.second;
+    double least = distance(best);
+    const auto query = bgi::intersects(around(p, least));
     for (auto it = tree_->items.qbegin(query); it != tree_->items.qend(); ++it) {
-        if (distance_mm(p, it->first) > least)
-            break;
         const double d = distance(it->second);
         if (d < least || (d == least && it->second < best)) {
             least = d;

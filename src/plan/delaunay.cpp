@@ -92,12 +92,8 @@ public:
         : points_(points),
           triangles_(triangles),
           edges_(borders(triangles)),
-          dropped_(triangles.size(), false),
-          uses_(points.size(), 0)
+          dropped_(triangles.size(), false)
     {
-        for (const triangle& t : triangles_)
-            for (const unsigned v : t)
-                ++uses_[v];
     }
 
     void run()
@@ -162,21 +158,20 @@ private:
     bool drop(unsigned index)
     {
         const triangle& t = triangles_[index];
-        // A tactor must keep a face of its own, however thin.
-        const bool needed = std::any_of(t.begin(), t.end(), [&](unsigned v) { return uses_[v] < 2; });
-        if (dropped_[index] || needed || !on_hull(longest(t)))
+        if (dropped_[index] || !on_hull(longest(t)))
             return false;
-        dropped_[index] = true;
-        for (const unsigned v : t)
-            --uses_[v];
-        return true;
+        // Its other two edges must stay edges of other triangles, or there would be a gap.
+        int outer = 0;
+        for (unsigned i = 0; i < 3; ++i)
+            outer += on_hull(ordered(t[i], t[(i + 1) % 3])) ? 1 : 0;
+        dropped_[index] = outer == 1;
+        return dropped_[index];
     }
 
     const std::vector<point>& points_;
     std::vector<triangle>& triangles_;
     std::vector<bordering> edges_;
     std::vector<bool> dropped_;
-    std::vector<unsigned> uses_;
 };
 
 } // namespace

@@ -154,10 +154,23 @@ rank_pair nearest_edge(const layout::impl& l, unsigned face, point p)
 rank_triple fan_triangle(const layout::impl& l, unsigned face, point p)
 {
     const std::vector<unsigned>& ring = l.faces[face];
-    const auto last = ring.end() - 1;
-    auto after = std::partition_point(
-        ring.begin() + 2, last, [&](unsigned v) { return turn(l.points[ring[0]], l.points[v], p) > 0.0; });
-    return {ring[0], *(after - 1), *after};
+    rank_triple best{};
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 2; i < ring.size(); ++i) {
+        const point a = l.points[ring[0]];
+        const point b = l.points[ring[i - 1]];
+        const point c = l.points[ring[i]];
+        const bool inside = turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
+        // Halving would do but for faces so thin that rounding bends them.
+        const double off = inside ? 0.0
+                                  : std::min({segment_distance_mm(a, b, p), segment_distance_mm(b, c, p),
+                                              segment_distance_mm(c, a, p)});
+        if (off < least) {
+            least = off;
+            best = {ring[0], ring[i - 1], ring[i]};
+        }
+    }
+    return best;
 }
 
 } // namespace tactor::detail

@@ -29,7 +29,7 @@ std::optional<rank_triple> triangle_at(const layout::impl& l, unsigned face, poi
 /// The segment between neighbours on the face's ring that is nearest to p.
 rank_pair nearest_edge(const layout::impl& l, unsigned face, point p);
 
-/// The triangle that holds p when the face is split as a fan from its lowest tactor; for faces of
+/// The triangle that holds p, or else is nearest, of the fan from the face's lowest tactor; for faces of
 /// three and more tactors.
 rank_triple fan_triangle(const layout::impl& l, unsigned face, point p);
 

@@ -113,17 +113,20 @@ std::vector<box> boxes_of(const std::vector<point>& points)
     return boxes;
 }
 
-double median_pitch(const std::vector<point>& points, const box_index& index)
+/// A tactor's nearest neighbour is always next to it on the ring of one of its faces.
+double median_pitch(const rings& faces, const std::vector<point>& points)
 {
     if (points.size() < 2)
         return 0.0;
-    std::vector<double> d;
-    for (unsigned i = 0; i < points.size(); ++i) {
-        const auto to_others = [&](unsigned j) {
-            return i == j ? HUGE_VAL : distance_mm(points[i], points[j]);
-        };
-        d.push_back(to_others(index.nearest(points[i], to_others)));
-    }
+    std::vector<double> d(points.size(), HUGE_VAL);
+    for (const auto& f : faces)
+        for (std::size_t i = 0; i < f.size(); ++i) {
+            const unsigned a = f[i];
+            const unsigned b = f[(i + 1) % f.size()];
+            const double length = distance_mm(points[a], points[b]);
+            d[a] = std::min(d[a], length);
+            d[b] = std::min(d[b], length);
+        }
     const auto middle = d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2);
     std::nth_element(d.begin(), middle, d.end());
     return d.size() % 2 == 1 ? *middle : std::midpoint(*middle, *std::max_element(d.begin(), middle));
@@ -163,7 +166,7 @@ layout::impl layout::impl::build(const array& a)
     box_index face_index(boxes_of(faces, points));
     box_index rim_index(boxes_of(rim));
     box_index tactor_index(boxes_of(points));
-    const double pitch = median_pitch(points, tactor_index);
+    const double pitch = median_pitch(faces, points);
     return {std::move(places),     std::move(by_index),  std::move(points),      std::move(order),
             std::move(faces),      std::move(hull),      std::move(rim),         pitch,
             std::move(face_index), std::move(rim_index), std::move(tactor_index)};

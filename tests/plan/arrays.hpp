@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Arrays of all kinds for property tests.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <tactor/array.hpp>
+#include <tactor/phantom.hpp>
+
+namespace tactor::test {
+
+using generator = std::mt19937_64;
+
+inline double between(generator& g, double low, double high)
+{
+    return std::uniform_real_distribution<double>(low, high)(g);
+}
+
+inline unsigned pick(generator& g, unsigned low, unsigned high)
+{
+    return std::uniform_int_distribution<unsigned>(low, high)(g);
+}
+
+inline array array_of(const std::vector<point>& places)
+{
+    array a;
+    a.name = "test";
+    for (const point& p : places) {
+        tactor_spec t;
+        t.position = p;
+        t.channel = static_cast<unsigned>(a.tactors.size());
+        a.tactors.push_back(t);
+    }
+    return a;
+}
+
+inline array ring_of(unsigned n, double radius_mm, bool centre, double turn_rad = 0.0)
+{
+    std::vector<point> p;
+    for (unsigned i = 0; i < n; ++i) {
+        const double angle = turn_rad + 2.0 * std::numbers::pi * i / n;
+        p.push_back({radius_mm * std::cos(angle), radius_mm * std::sin(angle)});
+    }
+    if (centre)
+        p.push_back({0.0, 0.0});
+    return array_of(p);
+}
+
+inline array staggered(unsigned rows, unsigned columns, double pitch_mm)
+{
+    std::vector<point> p;
+    for (unsigned r = 0; r < rows; ++r)
+        for (unsigned c = 0; c < columns; ++c)
+            p.push_back({pitch_mm * (c + (r % 2 == 1 ? 0.5 : 0.0)), pitch_mm * r * std::sqrt(0.75)});
+    return array_of(p);
+}
+
+inline array cloud(generator& g, unsigned n)
+{
+    std::vector<point> p;
+    while (p.size() < n) {
+        const point q{between(g, -50.0, 50.0), between(g, -50.0, 50.0)};
+        if (std::none_of(p.begin(), p.end(), [&](point o) { return distance_mm(o, q) < 0.5; }))
+            p.push_back(q);
+    }
+    return array_of(p);
+}
+
+inline array line(generator& g, unsigned n)
+{
+    const double angle = between(g, 0.0, 6.3);
+    std::vector<point> p;
+    double at = 0.0;
+    for (unsigned i = 0; i < n; ++i) {
+        p.push_back({3.0 + at * std::cos(angle), -7.0 + at * std::sin(angle)});
+        at += between(g, 2.0, 30.0);
+    }
+    return array_of(p);
+}
+
+constexpr unsigned kinds_of_array = 9;
+
+inline array some_array(generator& g, unsigned kind)
+{
+    switch (kind) {
+    case 0:
+        return make_grid("grid", pick(g, 2, 6), pick(g, 2, 6), 20.0, 20.0);
+    case 1:
+        return make_grid("grid", pick(g, 2, 6), pick(g, 2, 6), between(g, 5.0, 40.0), between(g, 5.0, 40.0));
+    case 2:
+        return staggered(pick(g, 2, 5), pick(g, 2, 5), between(g, 5.0, 40.0));
+    case 3:
+        return ring_of(pick(g, 3, 24), between(g, 10.0, 60.0), false, between(g, 0.0, 6.3));
+    case 4:
+        return ring_of(pick(g, 3, 24), between(g, 10.0, 60.0), true, between(g, 0.0, 6.3));
+    case 5:
+        return line(g, pick(g, 3, 9));
+    case 6:
+        return line(g, 2);
+    case 7:
+        return array_of({{between(g, -9.0, 9.0), between(g, -9.0, 9.0)}});
+    default:
+        return cloud(g, pick(g, 3, 40));
+    }
+}
+
+/// A point in the hull: anywhere, on a segment between tactors, or on a tactor.
+inline point some_point(generator& g, const layout& l)
+{
+    const std::vector<point>& t = l.places();
+    const auto any = [&] { return t[pick(g, 0, static_cast<unsigned>(t.size()) - 1)]; };
+    const point a = any();
+    const point b = any();
+    const point c = any();
+    const unsigned how = pick(g, 0, 9);
+    if (how == 0)
+        return a;
+    const double u = how == 1 ? 0.5 : between(g, 0.0, 1.0);
+    const double v = how <= 2 ? 0.0 : between(g, 0.0, 1.0 - u);
+    return l.nearest({a.x_mm + u * (b.x_mm - a.x_mm) + v * (c.x_mm - a.x_mm),
+                      a.y_mm + u * (b.y_mm - a.y_mm) + v * (c.y_mm - a.y_mm)});
+}
+
+inline double energy(const std::vector<drive>& d)
+{
+    double sum = 0.0;
+    for (const drive& x : d)
+        sum += x.amplitude * x.amplitude;
+    return sum;
+}
+
+inline point energy_centroid(const layout& l, const std::vector<drive>& d)
+{
+    point c;
+    for (const drive& x : d) {
+        const double w = x.amplitude * x.amplitude / energy(d);
+        c.x_mm += w * l.places()[x.tactor].x_mm;
+        c.y_mm += w * l.places()[x.tactor].y_mm;
+    }
+    return c;
+}
+
+/// The same array with its tactors in another order; second: where each one of the old order went.
+inline std::pair<array, std::vector<unsigned>> shuffled(generator& g, const array& a)
+{
+    std::vector<unsigned> old(a.tactors.size());
+    for (unsigned i = 0; i < old.size(); ++i)
+        old[i] = i;
+    std::shuffle(old.begin(), old.end(), g);
+    array b = a;
+    std::vector<unsigned> now(old.size());
+    for (unsigned i = 0; i < old.size(); ++i) {
+        b.tactors[i] = a.tactors[old[i]];
+        now[old[i]] = i;
+    }
+    return {b, now};
+}
+
+} // namespace tactor::test

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Strokes for tests, and what an error says.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <tactor/error.hpp>
+#include <tactor/plan.hpp>
+
+namespace tactor::test {
+
+inline stroke stroke_of(trajectory t)
+{
+    return {"", std::move(t), {}, {}, ""};
+}
+
+inline stroke along(std::string_view svg, double duration_s)
+{
+    return stroke_of(trajectory::along(path::from_svg(svg), duration_s));
+}
+
+inline stroke timed(std::vector<timed_point> p)
+{
+    return stroke_of(trajectory::timed(std::move(p)));
+}
+
+/// What the planner says against it; empty if nothing.
+inline std::string refusal(const array& a, const stroke& s, const plan_options& o)
+{
+    try {
+        make_plan(a, s, o);
+    } catch (const error& e) {
+        return e.kind() == errc::bad_input ? e.what() : std::string("of the wrong kind: ") + e.what();
+    }
+    return {};
+}
+
+/// The number after `word` in a text.
+inline double number_after(const std::string& text, std::string_view word)
+{
+    const auto at = text.find(word);
+    return at == std::string::npos ? -1.0 : std::stod(text.substr(at + word.size()));
+}
+
+} // namespace tactor::test
