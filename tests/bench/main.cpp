@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// The usual report, and what it means: how the mixer stands against a plain loop, memset and memcpy.
+#include <cstdio>
+#include <map>
+#include <string>
+
+#include <benchmark/benchmark.h>
+
+namespace {
+
+class reporter : public benchmark::ConsoleReporter {
+public:
+    void ReportRuns(const std::vector<Run>& runs) override
+    {
+        ConsoleReporter::ReportRuns(runs);
+        for (const Run& r : runs) {
+            const auto rate = r.counters.find("items_per_second");
+            if (rate != r.counters.end()) {
+                frames_per_s_[r.benchmark_name()] = rate->second.value;
+            }
+        }
+    }
+
+    void Finalize() override
+    {
+        ConsoleReporter::Finalize();
+        std::printf("\n%-24s %14s %10s %10s %10s\n", "", "frames/s", "x std_sin", "x memset", "x memcpy");
+        for (const std::string piece : {"synth_9/", "synth_64/"}) {
+            for (const std::string format : {"float", "s16", "s24", "s32"}) {
+                line(piece, "mixer_" + format);
+            }
+        }
+    }
+
+private:
+    void line(const std::string& piece, const std::string& name)
+    {
+        const double frames = frames_per_s_[piece + name];
+        if (frames > 0.0) {
+            std::printf("%-24s %14.0f", (piece + name).c_str(), frames);
+            for (const char* other : {"std_sin", "memset", "memcpy"}) {
+                std::printf(" %10.3f", frames / frames_per_s_[piece + other]);
+            }
+            std::printf("\n");
+        }
+    }
+
+    std::map<std::string, double> frames_per_s_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+    benchmark::Initialize(&argc, argv);
+    if (benchmark::ReportUnrecognizedArguments(argc, argv)) {
+        return 2;
+    }
+    reporter r;
+    benchmark::RunSpecifiedBenchmarks(&r);
+    benchmark::Shutdown();
+    return 0;
+}
