@@ -1,35 +1,53 @@
 // SPDX-License-Identifier: MIT
 #include "synth/oscillator.hpp"
 
+#include <bit>
 #include <limits>
 
 namespace tactor::synth {
 
-oscillator_tables::oscillator_tables() noexcept
+namespace {
+
+/// Spreads the bits of a frequency over `rows`: Knuth's multiplicative hash.
+std::size_t row_of(double cycles_per_frame, std::size_t rows) noexcept
 {
-    keys_.fill(std::numeric_limits<double>::quiet_NaN());
+    return static_cast<std::size_t>((std::bit_cast<std::uint64_t>(cycles_per_frame) * 0x9E3779B97F4A7C15U) >>
+                                    40) %
+           rows;
 }
 
-const oscillator_table& oscillator_tables::get(double cycles_per_frame) noexcept
+void fill(oscillator_table& t, double cycles_per_frame) noexcept
 {
-    if (keys_[latest_] == cycles_per_frame) {
-        return tables_[latest_];
-    }
-    for (std::size_t i = 0; i < places; ++i) {
-        if (keys_[i] == cycles_per_frame) {
-            latest_ = i;
-            return tables_[i];
-        }
-    }
-    latest_ = oldest_;
-    oldest_ = (oldest_ + 1) % places;
-    keys_[latest_] = cycles_per_frame;
-    oscillator_table& t = tables_[latest_];
     for (unsigned j = 0; j < block_frames; ++j) {
         const sine_cosine v = sincos_cycles(cycles_per_frame * j);
         t.sin[j] = v.sin;
         t.cos[j] = v.cos;
     }
+}
+
+}  // namespace
+
+oscillator_tables::oscillator_tables() : tables_(rows * places)
+{
+    for (row& r : rows_) {
+        r.keys.fill(std::numeric_limits<double>::quiet_NaN());
+    }
+}
+
+const oscillator_table& oscillator_tables::get(double cycles_per_frame) noexcept
+{
+    const std::size_t number = row_of(cycles_per_frame, rows);
+    row& r = rows_[number];
+    for (std::size_t i = 0; i < places; ++i) {
+        if (r.keys[i] == cycles_per_frame) {
+            return tables_[number * places + i];
+        }
+    }
+    const std::size_t i = r.oldest;
+    r.oldest = (i + 1) % places;
+    r.keys[i] = cycles_per_frame;
+    oscillator_table& t = tables_[number * places + i];
+    fill(t, cycles_per_frame);
     return t;
 }
 

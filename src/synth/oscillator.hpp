@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "synth/sincos.hpp"
 
@@ -23,19 +24,23 @@ struct oscillator_table {
     alignas(32) block cos;
 };
 
-/// The tables of the frequencies in use. A frequency that is not there takes the place of the oldest.
+/// The tables of the frequencies in use: a few places for each by its bits; a new one takes the place of the
+/// oldest there.
 class oscillator_tables {
 public:
-    oscillator_tables() noexcept;
+    oscillator_tables();
     /// Valid until the next call.
     const oscillator_table& get(double cycles_per_frame) noexcept;
 
 private:
-    static constexpr std::size_t places = 32;
-    std::array<double, places> keys_;
-    std::array<oscillator_table, places> tables_;
-    std::size_t latest_ = 0;
-    std::size_t oldest_ = 0;
+    static constexpr std::size_t rows = 64;
+    static constexpr std::size_t places = 4;
+    struct row {
+        std::array<double, places> keys;
+        std::size_t oldest = 0;
+    };
+    std::array<row, rows> rows_;
+    std::vector<oscillator_table> tables_;
 };
 
 /// out[j] = sin(2 pi (base + j f)) for lo <= j < hi; `base` is the angle of j = 0 and `t` f's table.

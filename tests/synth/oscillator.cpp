@@ -35,17 +35,20 @@ TEST_CASE("sine and cosine are good to 4e-16")
 
 TEST_CASE("an hour of carrier stays within 1e-4 of the exact sine")
 {
-    for (const double hz : {250.0, 249.7, 333.333, 40.0}) {
+    // One frequency all the way, the others from the last second of the hour on.
+    for (const double hz : {249.7, 250.0, 333.333, 40.0}) {
+        const std::uint64_t first = hz == 249.7 ? 0 : 3599;
         synth::mixer m(std::vector<double>{1.0}, sample_format::float32, 4);
         synth::drive_event e;
         e.length = 3700U * 48000U;
+        e.phase_frame = first * 48000;
         e.cycles_per_frame = hz / 48000.0;
         e.drives = 1;
         e.drive[0] = {1.0, 1.0, 0};
         m.add(e);
         std::vector<float> x(48000);
         double worst = 0.0;
-        for (std::uint64_t second = 0; second < 3601; ++second) {
+        for (std::uint64_t second = first; second < 3601; ++second) {
             m.process(x.size(), reinterpret_cast<std::byte*>(x.data()));
             for (std::uint64_t k = 0; k < x.size(); k += 1009) {
                 const std::uint64_t frame = second * 48000 + k;
@@ -85,8 +88,8 @@ TEST_CASE("more frequencies than tables only cost time")
 {
     synth::oscillator_tables tables;
     for (int round = 0; round < 3; ++round) {
-        for (int i = 0; i < 100; ++i) {
-            const double f = 0.001 * (i + 1);
+        for (int i = 0; i < 1000; ++i) {
+            const double f = 0.0001 * (i + 1);
             const synth::oscillator_table& t = tables.get(f);
             CHECK(std::abs(t.sin[63] - std::sin(2.0 * pi * f * 63)) < 1e-13);
             CHECK(std::abs(t.cos[5] - std::cos(2.0 * pi * f * 5)) < 1e-13);
