@@ -11,14 +11,26 @@ void carrier_block::forget() noexcept
     shaped_place_ = {};
 }
 
+/// The part that ends in one block goes on in the next.
+sine_cosine carrier_block::base_angle(double cycles_per_frame, std::int64_t frame) noexcept
+{
+    if (base_frame_ != frame || base_cycles_ != cycles_per_frame) {
+        base_frame_ = frame;
+        base_cycles_ = cycles_per_frame;
+        base_ = sincos_cycles(static_cast<double>(frame) * cycles_per_frame);
+    }
+    return base_;
+}
+
 const double* carrier_block::get(const voice& v, const fade* f, std::uint64_t at, unsigned lo,
                                  unsigned hi) noexcept
 {
     const place here{at, lo, hi, v.cycles_per_frame, v.phase};
     if (!(here == plain_place_)) {
-        const auto frame = static_cast<double>(static_cast<std::int64_t>(v.phase + at));
-        sine_block(tables_.get(v.cycles_per_frame), sincos_cycles(frame * v.cycles_per_frame), lo, hi,
-                   plain_.data());
+        const oscillator_table& t = tables_.get(v.cycles_per_frame);
+        for_each_part(static_cast<std::int64_t>(v.phase + at), lo, hi, [&](const table_part& p) {
+            sine_block(t, base_angle(v.cycles_per_frame, p.base), p, plain_.data());
+        });
         plain_place_ = here;
     }
     const auto first = static_cast<std::int64_t>(v.window_place + at);

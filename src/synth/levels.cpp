@@ -18,17 +18,20 @@ double level_db(const array& a, std::size_t i, const render_options& o)
     if (o.sl_db) {
         if (!t.threshold_dbfs) {
             refuse_tactor(
-                a, i, fmt::format("has no threshold_dbfs, but a sensation level of {} dB is asked for", *o.sl_db),
+                a, i,
+                fmt::format("has no threshold_dbfs, but a sensation level of {} dB is asked for", *o.sl_db),
                 "measure its detection threshold, or use --level-dbfs");
         }
         return *t.threshold_dbfs + *o.sl_db;
     }
     const double level = o.level_dbfs + t.gain_db;
     if (!(level <= 1e-9)) {
-        refuse_tactor(a, i,
-                      fmt::format("would be driven at {:.4g} dBFS, above full scale: gain_db = {} on a level of {} dBFS",
-                                  level, t.gain_db, o.level_dbfs),
-                      fmt::format("lower gain_db, or --level-dbfs to {:.4g} or less", -t.gain_db));
+        refuse_tactor(
+            a, i,
+            fmt::format(
+                "would be driven at {:.4g} dBFS, above full scale: gain_db = {} on a level of {} dBFS", level,
+                t.gain_db, o.level_dbfs),
+            fmt::format("lower gain_db, or --level-dbfs to {:.4g} or less", -t.gain_db));
     }
     return level;
 }

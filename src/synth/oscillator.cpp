@@ -51,23 +51,25 @@ const oscillator_table& oscillator_tables::get(double cycles_per_frame) noexcept
     return t;
 }
 
-void sine_block(const oscillator_table& t, sine_cosine base, unsigned lo, unsigned hi, double* out) noexcept
+void sine_block(const oscillator_table& t, sine_cosine base, const table_part& p, double* out) noexcept
 {
-    const double* __restrict s = t.sin.data();
-    const double* __restrict c = t.cos.data();
-    double* __restrict o = out;
-    for (unsigned j = lo; j < hi; ++j) {
+    const double* __restrict s = t.sin.data() + p.offset;
+    const double* __restrict c = t.cos.data() + p.offset;
+    double* __restrict o = out + p.lo;
+    const unsigned n = p.hi - p.lo;
+    for (unsigned j = 0; j < n; ++j) {
         o[j] = base.sin * c[j] + base.cos * s[j];
     }
 }
 
-void times_cosine(const oscillator_table& t, sine_cosine base, double offset, double scale, unsigned lo,
-                  unsigned hi, double* out) noexcept
+void times_cosine(const oscillator_table& t, sine_cosine base, double offset, double scale,
+                  const table_part& p, double* out) noexcept
 {
-    const double* __restrict s = t.sin.data();
-    const double* __restrict c = t.cos.data();
-    double* __restrict o = out;
-    for (unsigned j = lo; j < hi; ++j) {
+    const double* __restrict s = t.sin.data() + p.offset;
+    const double* __restrict c = t.cos.data() + p.offset;
+    double* __restrict o = out + p.lo;
+    const unsigned n = p.hi - p.lo;
+    for (unsigned j = 0; j < n; ++j) {
         o[j] *= offset + scale * (base.cos * c[j] - base.sin * s[j]);
     }
 }

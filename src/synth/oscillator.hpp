@@ -43,11 +43,35 @@ private:
     std::vector<oscillator_table> tables_;
 };
 
-/// out[j] = sin(2 pi (base + j f)) for lo <= j < hi; `base` is the angle of j = 0 and `t` f's table.
-void sine_block(const oscillator_table& t, sine_cosine base, unsigned lo, unsigned hi, double* out) noexcept;
+/// What lies between two multiples of block_frames of a carrier's own count: `base` is the frame of the
+/// multiple. The angle addition starts there, wherever the blocks of the stream lie, so that a stroke has the
+/// same samples wherever it begins.
+struct table_part {
+    std::int64_t base = 0;
+    unsigned lo = 0; ///< in the stream's block
+    unsigned hi = 0;
+    unsigned offset = 0; ///< place in the table of lo
+};
 
-/// out[j] *= offset + scale * cos(2 pi (base + j f)) for lo <= j < hi: both halves of a raised cosine.
-void times_cosine(const oscillator_table& t, sine_cosine base, double offset, double scale, unsigned lo,
-                  unsigned hi, double* out) noexcept;
+/// Calls f(table_part) for the one or two parts of frames first + lo ... first + hi - 1.
+template <class F>
+void for_each_part(std::int64_t first, unsigned lo, unsigned hi, F f) noexcept
+{
+    while (lo < hi) {
+        const std::int64_t k = first + lo;
+        const auto offset = static_cast<unsigned>(static_cast<std::uint64_t>(k) % block_frames);
+        const unsigned end = hi - lo < block_frames - offset ? hi : lo + block_frames - offset;
+        f(table_part{k - offset, lo, end, offset});
+        lo = end;
+    }
+}
+
+/// out[j] = sin(2 pi (a + (offset + j - lo) f)) for the part's j; `base` is a's sine and cosine, `t` f's
+/// table.
+void sine_block(const oscillator_table& t, sine_cosine base, const table_part& p, double* out) noexcept;
+
+/// out[j] *= offset + scale * cos(...) of the same angle: both halves of a raised cosine.
+void times_cosine(const oscillator_table& t, sine_cosine base, double offset, double scale,
+                  const table_part& p, double* out) noexcept;
 
 }  // namespace tactor::synth

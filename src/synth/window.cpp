@@ -34,6 +34,19 @@ struct part {
     bool empty() const noexcept { return lo >= hi; }
 };
 
+/// out[j] *= 0.5 + scale * cos(pi k / ramp) with k = first + j.
+void half_cosine(oscillator_tables& tables, std::int64_t first, std::uint64_t ramp, double scale, part p,
+                 double* out) noexcept
+{
+    if (p.empty()) {
+        return;
+    }
+    const oscillator_table& t = tables.get(cycles_of(ramp));
+    for_each_part(first, p.lo, p.hi, [&](const table_part& q) {
+        times_cosine(t, sincos_cycles(turns(q.base, ramp)), 0.5, scale, q, out);
+    });
+}
+
 void zero(part p, double* out) noexcept
 {
     if (!p.empty()) {
@@ -73,13 +86,8 @@ void window_block(oscillator_tables& tables, std::int64_t first, std::uint64_t l
     const part fall(first, std::max(r, n - r), n, lo, hi);
     zero(part(first, first, 0, lo, hi), out);
     zero(part(first, n, std::max(end, n), lo, hi), out);
-    const oscillator_table& t = tables.get(cycles_of(ramp));
-    if (!rise.empty()) {
-        times_cosine(t, sincos_cycles(turns(first, ramp)), 0.5, -0.5, rise.lo, rise.hi, out);
-    }
-    if (!fall.empty()) {
-        times_cosine(t, sincos_cycles(turns(first - n, ramp)), 0.5, -0.5, fall.lo, fall.hi, out);
-    }
+    half_cosine(tables, first, ramp, -0.5, rise, out);
+    half_cosine(tables, first - n, ramp, -0.5, fall, out);
 }
 
 void fade_block(oscillator_tables& tables, std::int64_t first, std::uint64_t length, unsigned lo, unsigned hi,
@@ -88,10 +96,7 @@ void fade_block(oscillator_tables& tables, std::int64_t first, std::uint64_t len
     const auto n = static_cast<std::int64_t>(length);
     const part falling(first, 0, n, lo, hi);
     zero(part(first, n, std::max<std::int64_t>(first + block_frames, n), lo, hi), out);
-    if (!falling.empty()) {
-        times_cosine(tables.get(cycles_of(length)), sincos_cycles(turns(first, length)), 0.5, 0.5, falling.lo,
-                     falling.hi, out);
-    }
+    half_cosine(tables, first, length, 0.5, falling, out);
 }
 
 }  // namespace tactor::synth

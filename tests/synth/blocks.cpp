@@ -80,3 +80,25 @@ TEST_CASE("more voices than a block has frames keep their order")
     CHECK((whole == render(
                         s, sample_format::float32, [&] { return 1 + random() % 300; }, s.frames())));
 }
+
+TEST_CASE("a stroke has the same bytes wherever it starts")
+{
+    std::mt19937_64 random(23);
+    for (int i = 0; i < 20; ++i) {
+        const plan parts[] = {make_random(random, 3, 12, 0.2), make_continuous(3, 0.1)};
+        for (const plan& p : parts) {
+            const double later_s = 1.0 + static_cast<double>(random() % 100000) / 48000.0;
+            render_options o;
+            o.level_dbfs = -20.0;
+            const score first(row(3), {{p, {}}}, o);
+            const score later(row(3), {{p, later_s}}, o);
+            for (const sample_format f : {sample_format::float32, sample_format::s32}) {
+                const auto x = render(first, f);
+                const auto y = render(later, f);
+                REQUIRE(y.size() - x.size() == later.starts()[0] * 12);
+                CHECK(std::equal(x.begin(), x.end(),
+                                 y.begin() + static_cast<std::ptrdiff_t>(y.size() - x.size())));
+            }
+        }
+    }
+}
