@@ -41,4 +41,4 @@ private:
     int failure_ = 0;
 };
 
-} // namespace tactor::wav
+}  // namespace tactor::wav

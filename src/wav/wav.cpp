@@ -2,8 +2,11 @@
 #include "wav/write.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <cstring>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -85,7 +88,35 @@ sound_file open(const score& s, sample_format f, container c, temporary_file& to
     return out;
 }
 
-} // namespace
+/// libsndfile 1.2 writes the PEAK chunk into an RF64 file whether it is wanted or not. Its place is kept as a
+/// chunk of junk, which readers skip.
+void blank_peak(temporary_file& f)
+{
+    constexpr std::uint32_t first_chunk = 12;
+    std::array<char, 8> head{};
+    for (std::int64_t at = first_chunk; at < static_cast<std::int64_t>(header_bytes);) {
+        f.seek(at, SEEK_SET);
+        if (f.read(head.data(), head.size()) != static_cast<std::int64_t>(head.size())) {
+            return;
+        }
+        const std::string_view id(head.data(), 4);
+        std::uint32_t bytes = 0;
+        std::memcpy(&bytes, head.data() + 4, sizeof bytes);
+        if (id == "data") {
+            return;
+        }
+        if (id == "PEAK" && bytes < header_bytes) {
+            const std::vector<char> zeros(bytes, 0);
+            f.seek(at, SEEK_SET);
+            f.write("JUNK", 4);
+            f.seek(at + static_cast<std::int64_t>(head.size()), SEEK_SET);
+            f.write(zeros.data(), bytes);
+        }
+        at += static_cast<std::int64_t>(head.size()) + bytes + bytes % 2;
+    }
+}
+
+}  // namespace
 
 bool write(const score& s, sample_format f, const std::filesystem::path& file, container c,
            const wav_progress& progress)
@@ -110,6 +141,9 @@ bool write(const score& s, sample_format f, const std::filesystem::path& file, c
         done += n;
     }
     const int closed = sf_close(out.release());
+    if (c == container::rf64) {
+        blank_peak(to);
+    }
     if (closed != 0 || to.failure() != 0) {
         to.fail(to.failure() != 0 ? to.failure() : EIO);
     }
@@ -120,7 +154,7 @@ bool write(const score& s, sample_format f, const std::filesystem::path& file, c
     return true;
 }
 
-} // namespace wav
+}  // namespace wav
 
 bool write_wav(const score& s, sample_format f, const std::filesystem::path& file,
                const wav_progress& progress)
@@ -128,4 +162,4 @@ bool write_wav(const score& s, sample_format f, const std::filesystem::path& fil
     return wav::write(s, f, file, wav::container_for(s.frames(), s.channels() * bytes_of(f)), progress);
 }
 
-} // namespace tactor
+}  // namespace tactor
