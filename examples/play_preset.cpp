@@ -11,7 +11,7 @@ try {
     const tactor::array palm = tactor::preset_array("palm-3x3");
     const tactor::stroke stroke = tactor::preset_stroke("park2016-3");
 
-    tactor::placed_plan placed{tactor::make_plan(palm, stroke), {}};
+    tactor::placed_plan placed{tactor::make_plan(palm, stroke)};
     const tactor::score score(palm, {placed}, {});
 
     tactor::alsa_options device;

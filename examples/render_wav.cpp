@@ -15,11 +15,11 @@ try {
     const tactor::array palm = tactor::preset_array("palm-3x3");
     const tactor::path path = tactor::path::from_svg("M 0 10 C 20 -5 20 45 40 30");
     const double speed_mm_s = 80.0;
-    const tactor::stroke stroke{"curve", tactor::trajectory::along(path, path.length_mm() / speed_mm_s), {}, {}, {}};
+    const tactor::stroke stroke{"curve", tactor::trajectory::along(path, path.length_mm() / speed_mm_s)};
 
     tactor::plan_options options;
     options.phantom = tactor::phantom_kind::barycentric;
-    tactor::placed_plan placed{tactor::make_plan(palm, stroke, options), {}};
+    tactor::placed_plan placed{tactor::make_plan(palm, stroke, options)};
     const tactor::score score(palm, {placed}, {.level_dbfs = -6.0});
     tactor::write_wav(score, tactor::sample_format::s24_3, argv[1]);
     std::printf("%s: %u channels, %.3f s\n", argv[1], score.channels(),

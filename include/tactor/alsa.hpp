@@ -13,14 +13,15 @@
 namespace tactor {
 
 struct alsa_options {
-    std::string pcm = "null";               ///< any ALSA name
-    unsigned channels = 0;                  ///< exact
-    unsigned rate = 48000;                  ///< exact, Hz; never resampled by us
-    std::optional<sample_format> format;    ///< none: the first of s32, float, s24_3, s24, s16 that it takes
-    unsigned period_frames = 96;            ///< wished; the device may round it
-    unsigned periods = 3;                   ///< wished, >= 2
+    std::string pcm = "null"; ///< any ALSA name
+    unsigned channels = 0;    ///< exact
+    unsigned rate = 48000;    ///< exact, Hz; never resampled by us
+    std::optional<sample_format> format =
+        {};                      ///< none: the first of s32, float, s24_3, s24, s16 that it takes
+    unsigned period_frames = 96; ///< wished; the device may round it
+    unsigned periods = 3;        ///< wished, >= 2
     /// ALSA configuration text in which `pcm` is looked up instead of the system's; empty: the system's.
-    std::string config_text;
+    std::string config_text = {};
 };
 
 /// Opens a PCM exactly as asked. Blocks shortly (ALSA reads its configuration).
@@ -29,4 +30,4 @@ struct alsa_options {
 ///         for numbers that no PCM can have and for configuration text that ALSA cannot read.
 TACTOR_API std::unique_ptr<sink> open_alsa(const alsa_options& o);
 
-}  // namespace tactor
+} // namespace tactor

@@ -16,21 +16,21 @@ namespace tactor {
 
 /// One vibrating actuator. Its index is its place in array::tactors.
 struct tactor_spec {
-    point position;                         ///< centre, mm
-    unsigned channel = 0;                   ///< PCM channel, from 0
-    double gain_db = 0.0;                   ///< added to the level in dBFS; not to a level in dB SL
-    double max_dbfs = 0.0;                  ///< hard limit of this channel, <= 0 dBFS
-    std::optional<double> threshold_dbfs;   ///< measured detection threshold, dBFS
-    int polarity = 1;                       ///< 1, or -1 where the actuator is wired the other way round
-    std::string actuator;                   ///< "piezo", "voice-coil", "lra", "erm" or empty (unknown)
-    source_place where;                     ///< where the file says so, for error messages
+    point position = {};                       ///< centre, mm
+    unsigned channel = 0;                      ///< PCM channel, from 0
+    double gain_db = 0.0;                      ///< added to the level in dBFS; not to a level in dB SL
+    double max_dbfs = 0.0;                     ///< hard limit of this channel, <= 0 dBFS
+    std::optional<double> threshold_dbfs = {}; ///< measured detection threshold, dBFS
+    int polarity = 1;                          ///< 1, or -1 where the actuator is wired the other way round
+    std::string actuator = {};                 ///< "piezo", "voice-coil", "lra", "erm" or empty (unknown)
+    source_place where = {};                   ///< where the file says so, for error messages
 };
 
 /// A set of tactors. A plain value.
 struct array {
-    std::string name;
-    std::vector<tactor_spec> tactors;
-    source_place where;
+    std::string name = {};
+    std::vector<tactor_spec> tactors = {};
+    source_place where = {};
 
     /// Channels that the map needs: the highest channel + 1.
     TACTOR_API unsigned channels() const noexcept;
@@ -38,8 +38,8 @@ struct array {
 
 /// The lines of a rectangular grid layout, each in ascending order, mm.
 struct grid_lines {
-    std::vector<double> x_mm;  ///< columns
-    std::vector<double> y_mm;  ///< rows
+    std::vector<double> x_mm = {}; ///< columns
+    std::vector<double> y_mm = {}; ///< rows
 };
 
 /// The grid that the tactors form, if every column crosses every row in a tactor and there is no
@@ -65,4 +65,4 @@ TACTOR_API array preset_array(std::string_view name);
 /// \throws error (bad_input) naming the tactors and their line.
 TACTOR_API void validate(const array& a);
 
-}  // namespace tactor
+} // namespace tactor

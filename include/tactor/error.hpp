@@ -3,6 +3,7 @@
 /// The one exception type that set-up code throws.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -13,9 +14,9 @@ namespace tactor {
 
 /// What kind of failure it was; the command-line tool turns it into its exit status.
 enum class errc {
-    bad_input = 1,      ///< wrong usage or bad input: exit status 2
-    runtime = 2,        ///< failed while running (disk full, stream broken): exit status 1
-    not_available = 3,  ///< a device is missing, busy or cannot do what is asked: exit status 3
+    bad_input = 1,     ///< wrong usage or bad input: exit status 2
+    runtime = 2,       ///< failed while running (disk full, stream broken): exit status 1
+    not_available = 3, ///< a device is missing, busy or cannot do what is asked: exit status 3
 };
 
 TACTOR_API const std::error_category& error_category() noexcept;
@@ -46,7 +47,12 @@ private:
     std::string text_;
 };
 
-}  // namespace tactor
+/// The one of `known` that `name` is a slip of, e.g. "chanel" of "channel" or "pitch" of "pitch_mm",
+/// for a hint in an error; empty if none is near.
+TACTOR_API std::string_view nearest_name(std::string_view name, std::span<const std::string_view> known);
+
+} // namespace tactor
 
 template <>
-struct std::is_error_code_enum<tactor::errc> : std::true_type {};
+struct std::is_error_code_enum<tactor::errc> : std::true_type {
+};

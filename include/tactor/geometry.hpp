@@ -24,4 +24,4 @@ inline double distance_mm(point a, point b) noexcept
 /// Two places nearer to each other than this are the same place (a nanometre).
 inline constexpr double same_place_mm = 1e-6;
 
-}  // namespace tactor
+} // namespace tactor

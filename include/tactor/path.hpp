@@ -52,4 +52,4 @@ private:
     std::shared_ptr<const impl> impl_;
 };
 
-}  // namespace tactor
+} // namespace tactor

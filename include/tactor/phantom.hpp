@@ -43,7 +43,7 @@ public:
     double pitch_mm() const noexcept;
 
     struct impl;
-    const impl& data() const noexcept;  ///< for the models inside the library
+    const impl& data() const noexcept; ///< for the models inside the library
 
 private:
     std::shared_ptr<const impl> impl_;
@@ -62,11 +62,11 @@ public:
 
 /// Built-in models.
 enum class phantom_kind {
-    inverse_distance,  ///< Park et al. 2016, Eqs. (2) and (10)
-    barycentric,       ///< sqrt of barycentric coordinates: equal energy, continuous, no centroid error
-    linear,            ///< barycentric coordinates as amplitudes
-    log,               ///< log2(1 + b)
-    gaussian,          ///< all tactors near, exp(-d^2 / (2 (0.6 pitch)^2)), equal energy
+    inverse_distance, ///< Park et al. 2016, Eqs. (2) and (10)
+    barycentric,      ///< sqrt of barycentric coordinates: equal energy, continuous, no centroid error
+    linear,           ///< barycentric coordinates as amplitudes
+    log,              ///< log2(1 + b)
+    gaussian,         ///< all tactors near, exp(-d^2 / (2 (0.6 pitch)^2)), equal energy
 };
 
 TACTOR_API std::string_view to_string(phantom_kind k) noexcept;
@@ -76,4 +76,4 @@ TACTOR_API phantom_kind phantom_from_string(std::string_view name);
 /// A built-in model on a layout. O(log n) in the tactors for each point.
 TACTOR_API std::shared_ptr<const phantom_model> make_phantom(phantom_kind k, const layout& l);
 
-}  // namespace tactor
+} // namespace tactor

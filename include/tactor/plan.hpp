@@ -22,7 +22,7 @@ namespace tactor {
 struct timing_profile {
     double slope = 0.32;
     double intercept_s = 0.0473;
-    double max_soa_s = 0.07;  ///< Eq. (11), as the paper rounds it: intercept / (1 - slope)
+    double max_soa_s = 0.07; ///< Eq. (11), as the paper rounds it: intercept / (1 - slope)
 };
 
 enum class algorithm { park2016, tactile_brush, continuous };
@@ -40,14 +40,14 @@ struct plan_options {
     algorithm method = algorithm::park2016;
     phantom_kind phantom = phantom_kind::inverse_distance;
     /// A model of your own instead of `phantom`; it must outlive nothing, the plan shares it.
-    std::shared_ptr<const phantom_model> custom_phantom;
+    std::shared_ptr<const phantom_model> custom_phantom = {};
     timing_profile profile;
-    double soa_s = 0.07;           ///< intercept < soa <= max_soa
+    double soa_s = 0.07; ///< intercept < soa <= max_soa
     timing schedule = timing::fixed;
     double min_duration_s = 0.020; ///< shortest burst that `fit` may use
     outside leave = outside::error;
-    bool snap = false;             ///< Tactile Brush: move a start or end onto the grid
-    bool drop_points = false;      ///< Tactile Brush: leave crossings out until the timing is possible
+    bool snap = false;        ///< Tactile Brush: move a start or end onto the grid
+    bool drop_points = false; ///< Tactile Brush: leave crossings out until the timing is possible
     overlap join = overlap::energy;
     double carrier_hz = 250.0;
 };
@@ -56,10 +56,10 @@ struct plan_options {
 struct burst {
     double onset_s = 0.0;
     double duration_s = 0.0;
-    point position;
-    double intensity = 1.0;        ///< A_v
-    std::optional<double> tau_s;   ///< Tactile Brush: when the target is at `position`
-    std::vector<drive> drives;     ///< in order of tactor
+    point position = {};
+    double intensity = 1.0;           ///< A_v
+    std::optional<double> tau_s = {}; ///< Tactile Brush: when the target is at `position`
+    std::vector<drive> drives = {};   ///< in order of tactor
 };
 
 /// Two or more bursts on one tactor at once.
@@ -71,22 +71,22 @@ struct conflict {
 
 /// Who plays, when and how strongly. A value: the same input gives the same plan.
 struct plan {
-    std::string algorithm;
-    std::string phantom;
+    std::string algorithm = {};
+    std::string phantom = {};
     double stroke_duration_s = 0.0;
     double stroke_length_mm = 0.0;
     double carrier_hz = 250.0;
     overlap join = overlap::energy;
-    std::optional<double> soa_s;   ///< none where bursts have no common SOA
-    double total_s = 0.0;          ///< end of the last sound
-    std::vector<burst> bursts;     ///< by onset; empty for `continuous`
-    std::vector<conflict> conflicts;
-    std::vector<meeting> dropped;
-    std::vector<std::string> warnings;
+    std::optional<double> soa_s = {}; ///< none where bursts have no common SOA
+    double total_s = 0.0;             ///< end of the last sound
+    std::vector<burst> bursts = {};   ///< by onset; empty for `continuous`
+    std::vector<conflict> conflicts = {};
+    std::vector<meeting> dropped = {};
+    std::vector<std::string> warnings = {};
 
     /// `continuous` only: position, intensity and drives at a time in 0 ... stroke_duration_s, as a
     /// burst without duration. Replaces `out`. Empty for plans of bursts.
-    std::function<void(double t_s, burst& out)> at;
+    std::function<void(double t_s, burst& out)> at = {};
 };
 
 /// Interval at which `continuous` evaluates the phantom; linear between.
@@ -105,4 +105,4 @@ TACTOR_API plan make_plan(const array& a, const stroke& s, const plan_options& o
 /// intercept < soa <= max_soa; the message names both bounds.
 TACTOR_API double burst_duration_s(const timing_profile& p, double soa_s);
 
-}  // namespace tactor
+} // namespace tactor

@@ -23,9 +23,9 @@ using stroke_id = std::uint32_t;
 
 /// How a submitted score ended. Each ends in exactly one of these.
 enum class stroke_state {
-    finished,     ///< its last frame reached the DAC
-    cancelled,    ///< faded out because it was asked for
-    interrupted,  ///< an xrun, the loss of the device or a failure cut it
+    finished,    ///< its last frame reached the DAC
+    cancelled,   ///< faded out because it was asked for
+    interrupted, ///< an xrun, the loss of the device or a failure cut it
 };
 
 TACTOR_API std::string_view to_string(stroke_state s) noexcept;
@@ -33,26 +33,26 @@ TACTOR_API std::string_view to_string(stroke_state s) noexcept;
 struct stroke_report {
     stroke_id id = 0;
     stroke_state state = stroke_state::finished;
-    std::uint64_t frames = 0;   ///< frames of the score that were played
-    std::string reason;         ///< why it was interrupted
+    std::uint64_t frames = 0; ///< frames of the score that were played
+    std::string reason = {};  ///< why it was interrupted
 };
 
 struct player_options {
-    double horizon_s = 0.5;       ///< how far ahead drives are handed to the audio thread
-    double fade_s = 0.010;        ///< fade on cancel and stop
-    double stall_s = 0.5;         ///< a device that stands still for so long (16 periods at least) is lost
-    bool realtime = true;         ///< ask for SCHED_FIFO
-    bool require_realtime = false;  ///< \throws instead of going on without it
+    double horizon_s = 0.5;        ///< how far ahead drives are handed to the audio thread
+    double fade_s = 0.010;         ///< fade on cancel and stop
+    double stall_s = 0.5;          ///< a device that stands still for so long (16 periods at least) is lost
+    bool realtime = true;          ///< ask for SCHED_FIFO
+    bool require_realtime = false; ///< \throws instead of going on without it
     int priority = 65;
 };
 
 /// Counters since the player was opened.
 struct player_stats {
     std::uint64_t periods = 0;
-    std::uint64_t frames = 0;            ///< frames written
+    std::uint64_t frames = 0; ///< frames written
     std::uint64_t xruns = 0;
-    std::uint64_t limited_frames = 0;    ///< frames that the limiter changed
-    std::uint64_t ring_low_water = 0;    ///< fewest drives that waited while a stroke played
+    std::uint64_t limited_frames = 0; ///< frames that the limiter changed
+    std::uint64_t ring_low_water = 0; ///< fewest drives that waited while a stroke played
     double latest_wakeup_s = 0.0;
     bool realtime = false;
 };
@@ -60,9 +60,9 @@ struct player_stats {
 /// Where the stream is, for displays.
 struct player_position {
     bool running = false;
-    std::uint64_t played = 0;            ///< frame at the DAC
-    std::optional<stroke_id> stroke;     ///< the newest that sounds
-    std::uint64_t stroke_frame = 0;      ///< its frame at the DAC
+    std::uint64_t played = 0;             ///< frame at the DAC
+    std::optional<stroke_id> stroke = {}; ///< the newest that sounds
+    std::uint64_t stroke_frame = 0;       ///< its frame at the DAC
 };
 
 /// Owns the sink, the audio thread and the control thread. Its members may be called from any thread
@@ -80,9 +80,9 @@ public:
     const stream_setup& setup() const noexcept;
 
     /// Plays a score as soon as possible, or from a frame of the stream on (a frame that has been written
-    /// already means as soon as possible). Frames of the stream count on over an xrun. Several may sound at once. Does not block for the ring:
-    /// drives that do not fit wait on the control side.
-    /// \throws error: bad_input when rate or channels differ from the stream's, runtime when the
+    /// already means as soon as possible). Frames of the stream count on over an xrun. Several may sound at
+    /// once. Does not block for the ring: drives that do not fit wait on the control side. \throws error:
+    /// bad_input when rate or channels differ from the stream's, runtime when the
     ///         stream has ended.
     stroke_id submit(const score& s, std::optional<std::uint64_t> at_frame = {});
 
@@ -112,4 +112,4 @@ private:
     std::unique_ptr<impl> impl_;
 };
 
-}  // namespace tactor
+} // namespace tactor

@@ -20,21 +20,21 @@ namespace tactor {
 enum class phase_mode { burst, continuous };
 
 struct render_options {
-    unsigned rate = 48000;             ///< Hz, 8000 to 768000
+    unsigned rate = 48000; ///< Hz, 8000 to 768000
     phase_mode phase = phase_mode::burst;
     /// Raised-cosine ramp inside each burst. Default: 0 where the burst is a whole number of half
     /// cycles (within 1 % of one), else 2 ms.
-    std::optional<double> ramp_s;
-    double level_dbfs = -12.0;         ///< peak for amplitude 1, <= 0; a tactor's gain_db is added
-    std::optional<double> sl_db;       ///< instead: dB above each tactor's threshold_dbfs
-    unsigned channels = 0;             ///< 0: as many as the array needs
+    std::optional<double> ramp_s = {};
+    double level_dbfs = -12.0;        ///< peak for amplitude 1, <= 0; a tactor's gain_db is added
+    std::optional<double> sl_db = {}; ///< instead: dB above each tactor's threshold_dbfs
+    unsigned channels = 0;            ///< 0: as many as the array needs
 };
 
 /// A plan and when it starts.
 struct placed_plan {
-    plan schedule;
+    plan schedule = {};
     /// Seconds from the start of the piece; none: at the end of the plan before it (the first: 0).
-    std::optional<double> start_s;
+    std::optional<double> start_s = {};
 };
 
 /// Plans at a sample rate and at levels: frames and channels. Immutable, cheap to copy.
@@ -45,15 +45,15 @@ public:
     ///         without a threshold where a sensation level is asked for, too few channels.
     score(const array& a, std::vector<placed_plan> plans, const render_options& o);
 
-    std::uint64_t frames() const noexcept;   ///< length of the piece
+    std::uint64_t frames() const noexcept; ///< length of the piece
     unsigned channels() const noexcept;
-    unsigned rate() const noexcept;          ///< Hz
+    unsigned rate() const noexcept; ///< Hz
     /// Start of each plan in frames.
     const std::vector<std::uint64_t>& starts() const noexcept;
     const std::vector<placed_plan>& plans() const noexcept;
 
     struct impl;
-    const std::shared_ptr<const impl>& data() const noexcept;  ///< for the library
+    const std::shared_ptr<const impl>& data() const noexcept; ///< for the library
 
 private:
     std::shared_ptr<const impl> impl_;
@@ -80,4 +80,4 @@ private:
     std::unique_ptr<impl> impl_;
 };
 
-}  // namespace tactor
+} // namespace tactor

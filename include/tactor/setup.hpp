@@ -16,46 +16,46 @@ namespace tactor {
 
 /// [output]: the PCM. Anything not said is chosen by the program.
 struct output_settings {
-    std::optional<std::string> pcm;         ///< ALSA name
-    std::optional<unsigned> rate;           ///< Hz, 8000 to 768000
-    std::optional<unsigned> channels;       ///< exact channel count
-    std::optional<unsigned> period_frames;  ///< frames in a period
-    std::optional<unsigned> periods;        ///< periods in the buffer, >= 2
+    std::optional<std::string> pcm = {};        ///< ALSA name
+    std::optional<unsigned> rate = {};          ///< Hz, 8000 to 768000
+    std::optional<unsigned> channels = {};      ///< exact channel count
+    std::optional<unsigned> period_frames = {}; ///< frames in a period
+    std::optional<unsigned> periods = {};       ///< periods in the buffer, >= 2
 };
 
 /// A GPIO line: either chip (label or path) and offset, or a line name.
 struct gpio_line_name {
-    std::string chip;
-    std::optional<unsigned> offset;
-    std::string name;
-    source_place where;
+    std::string chip = {};
+    std::optional<unsigned> offset = {};
+    std::string name = {};
+    source_place where = {};
 };
 
 /// [amplifier]: the line that enables the amplifier.
 struct amplifier_settings {
-    gpio_line_name line;
+    gpio_line_name line = {};
     bool active_low = false;
-    double settle_ms = 10.0;  ///< turn-on time of the amplifier
+    double settle_ms = 10.0; ///< turn-on time of the amplifier
 };
 
 /// [sync]: triggers out and in.
 struct sync_settings {
-    std::optional<gpio_line_name> out;
+    std::optional<gpio_line_name> out = {};
     double pulse_ms = 5.0;
-    std::optional<unsigned> channel;  ///< marker on a spare PCM channel
-    std::optional<gpio_line_name> in;
-    std::string edge = "rising";      ///< "rising", "falling" or "both"
+    std::optional<unsigned> channel = {}; ///< marker on a spare PCM channel
+    std::optional<gpio_line_name> in = {};
+    std::string edge = "rising"; ///< "rising", "falling" or "both"
 };
 
 /// All that a file may say.
 struct setup {
-    std::optional<array> layout;
+    std::optional<array> layout = {};
     output_settings output;
-    std::optional<amplifier_settings> amplifier;
-    std::optional<sync_settings> sync;
+    std::optional<amplifier_settings> amplifier = {};
+    std::optional<sync_settings> sync = {};
     /// [defaults]: option name (without dashes) to value as text, e.g. "phantom" -> "barycentric".
     /// Only names that setup_default_names() lists.
-    std::map<std::string, std::string> defaults;
+    std::map<std::string, std::string> defaults = {};
 };
 
 /// Options that a [defaults] table may set.
@@ -69,4 +69,4 @@ TACTOR_API setup load_setup(const std::filesystem::path& file);
 /// against the current directory.
 TACTOR_API setup parse_setup(std::string_view toml, const std::string& name);
 
-}  // namespace tactor
+} // namespace tactor

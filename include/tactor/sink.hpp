@@ -17,37 +17,37 @@ namespace tactor {
 
 /// What was negotiated. Does not change while the sink lives, but for has_clock.
 struct stream_setup {
-    std::string name;               ///< as the user named it
+    std::string name; ///< as the user named it
     unsigned channels = 0;
-    unsigned rate = 0;              ///< Hz
+    unsigned rate = 0; ///< Hz
     sample_format format = sample_format::s32;
     unsigned period_frames = 0;
     unsigned buffer_frames = 0;
-    bool batch = false;             ///< the position moves by whole periods
-    bool has_clock = true;          ///< false: null and file devices, which the sink paces; known after start()
+    bool batch = false;    ///< the position moves by whole periods
+    bool has_clock = true; ///< false: null and file devices, which the sink paces; known after start()
 };
 
 /// What a call on a sink came to. A plain value: the audio thread throws nothing.
 enum class io_status {
     ok,
-    again,      ///< no room now
-    xrun,       ///< the device ran dry; the stream has stopped
-    suspended,  ///< the system sleeps or slept
-    lost,       ///< unplugged, or it does not move any more
-    failed,     ///< anything else; final
+    again,     ///< no room now
+    xrun,      ///< the device ran dry; the stream has stopped
+    suspended, ///< the system sleeps or slept
+    lost,      ///< unplugged, or it does not move any more
+    failed,    ///< anything else; final
 };
 
 struct io_result {
     io_status status = io_status::ok;
-    std::size_t frames = 0;  ///< frames taken
-    int code = 0;            ///< negative errno of the device where status is not ok
+    std::size_t frames = 0; ///< frames taken
+    int code = 0;           ///< negative errno of the device where status is not ok
 };
 
 /// Position of the stream at one instant.
 struct stream_position {
-    std::uint64_t written = 0;   ///< frames given in this epoch, the prefill included
-    std::uint64_t played = 0;    ///< of these, how many have reached the DAC
-    std::int64_t time_ns = 0;    ///< CLOCK_MONOTONIC of the reading
+    std::uint64_t written = 0; ///< frames given in this epoch, the prefill included
+    std::uint64_t played = 0;  ///< of these, how many have reached the DAC
+    std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC of the reading
     bool valid = false;
 };
 
@@ -83,4 +83,4 @@ public:
     virtual void drop() noexcept = 0;
 };
 
-}  // namespace tactor
+} // namespace tactor

@@ -20,14 +20,14 @@ namespace tactor {
 /// Where the target is at one time. Times in seconds from the start of the stroke.
 struct timed_point {
     double t_s = 0.0;
-    point position;
-    double intensity = 1.0;  ///< linear, >= 0; 1 is the intensity asked for
+    point position = {};
+    double intensity = 1.0; ///< linear, >= 0; 1 is the intensity asked for
 };
 
 /// A time at which the target is on a line of the grid.
 struct meeting {
     double t_s = 0.0;
-    point position;
+    point position = {};
 };
 
 /// Position and intensity over time (rendering model, section 2). Immutable; copies share it; any
@@ -66,7 +66,7 @@ public:
     explicit trajectory(std::shared_ptr<const impl> p) noexcept;
 
 private:
-    std::shared_ptr<const impl> impl_;
+    std::shared_ptr<const impl> impl_ = {};
 };
 
 /// Speed of a stroke that says neither duration nor speed.
@@ -74,13 +74,13 @@ inline constexpr double default_speed_mm_s = 60.0;
 
 /// One stroke as the user gave it.
 struct stroke {
-    std::string name;
+    std::string name = {};
     trajectory motion;
     /// Start in seconds from the start of the piece; none: when the stroke before it has ended.
-    std::optional<double> start_s;
-    std::optional<double> carrier_hz;  ///< instead of the common carrier
+    std::optional<double> start_s = {};
+    std::optional<double> carrier_hz = {}; ///< instead of the common carrier
     /// "reconstructed" for presets that are not in print; otherwise empty.
-    std::string note;
+    std::string note = {};
 };
 
 /// Names of the built-in strokes, "park2016-1" ... "park2016-4".
@@ -103,4 +103,4 @@ TACTOR_API std::vector<stroke> parse_strokes_svg(std::string_view text, const st
 /// Guesses the kind from the text (SVG if it starts with '<', CSV if its first line names t_s, else TOML).
 TACTOR_API std::vector<stroke> parse_strokes(std::string_view text, const std::string& name);
 
-}  // namespace tactor
+} // namespace tactor

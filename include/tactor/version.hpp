@@ -10,4 +10,4 @@ namespace tactor {
 /// "0.1.0".
 TACTOR_API const char* version() noexcept;
 
-}  // namespace tactor
+} // namespace tactor

@@ -25,4 +25,4 @@ using wav_progress = std::function<bool(std::uint64_t done, std::uint64_t all)>;
 TACTOR_API bool write_wav(const score& s, sample_format f, const std::filesystem::path& file,
                           const wav_progress& progress = {});
 
-}  // namespace tactor
+} // namespace tactor

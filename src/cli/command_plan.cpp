@@ -16,7 +16,7 @@ command add_plan(CLI::App& app)
     auto s = std::make_shared<settings>();
     auto options = std::make_shared<option_list>(*c, *s);
     auto format = std::make_shared<std::string>("text");
-    options->add_stroke_options(false);
+    options->add_stroke_options();
     options->add_sound_options();
     c->add_option_function<std::string>(
          "--format",
@@ -31,7 +31,7 @@ command add_plan(CLI::App& app)
     c->footer("Example: tactor plan park2016-1 --format json");
     return [s, options, format] {
         const environment e = read_environment(*s, *options);
-        const piece p = plan_pieces(*s, e).front();
+        const piece p = plan_one_piece(*s, e);
         make_score(p, e, settle_render(*s, e)); // levels and carrier are checked when planned
         const auto print = *format == "json" ? print_json : *format == "csv" ? print_csv : print_text;
         print(stdout, p, e);

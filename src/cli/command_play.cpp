@@ -135,7 +135,7 @@ command add_play(CLI::App& app)
     CLI::App* c = app.add_subcommand("play", "Play on the array");
     auto s = std::make_shared<settings>();
     auto options = std::make_shared<option_list>(*c, *s);
-    options->add_stroke_options(true);
+    options->add_stroke_options();
     options->add_sound_options();
     options->add_device_options();
     c->footer("Example: tactor play park2016-3 -D hw:CARD=Tactor");

@@ -48,7 +48,7 @@ private:
 int render(settings& s, option_list& options, const std::string& file)
 {
     const environment e = read_environment(s, options);
-    const piece p = plan_pieces(s, e).front();
+    const piece p = plan_one_piece(s, e);
     const score sc = make_score(p, e, settle_render(s, e));
     const sample_format format = s.format.value_or(sample_format::float32);
     for (const placed_plan& q : p.plans)
@@ -79,7 +79,7 @@ command add_render(CLI::App& app)
     auto s = std::make_shared<settings>();
     auto options = std::make_shared<option_list>(*c, *s);
     auto file = std::make_shared<std::string>();
-    options->add_stroke_options(false);
+    options->add_stroke_options();
     options->add_sound_options();
     c->add_option("-o,--output", *file, "the file to write")->type_name("FILE.wav")->required();
     c->footer("Example: tactor render --path \"M 0 10 L 40 30\" --speed 80 -o stroke.wav");

@@ -64,7 +64,7 @@ void use_array_file(setup& config, const setup& file)
     prefer(config.sync, file.sync);
 }
 
-array find_array(const settings& s, setup& config)
+array find_array(const settings& s, option_list& options, setup& config)
 {
     if (!s.array_name)
         return config.layout ? *config.layout : preset_array("palm-3x3");
@@ -77,8 +77,21 @@ array find_array(const settings& s, setup& config)
     const setup file = load_setup(*s.array_name);
     if (!file.layout)
         throw error(errc::bad_input, *s.array_name, "says no [array]", "see tactor.toml(5)");
+    options.apply_defaults(file.defaults, *s.array_name);
     use_array_file(config, file);
     return *file.layout;
+}
+
+// A configuration's marker channel may meet another file's array.
+void check_sync_channel(const environment& e)
+{
+    if (!e.config.sync || !e.config.sync->channel)
+        return;
+    for (const tactor_spec& t : e.tactors.tactors)
+        if (t.channel == *e.config.sync->channel)
+            throw error(errc::bad_input, "[sync] channel",
+                        fmt::format("channel {} drives a tactor of {}", t.channel, e.tactors.name),
+                        "choose a spare channel");
 }
 
 std::vector<stroke> read_one(const std::string& argument)
@@ -93,26 +106,6 @@ std::vector<stroke> read_one(const std::string& argument)
     if (!fs::exists(argument, ignored) && argument.find_first_of("./") == std::string::npos)
         return {preset_stroke(argument)}; // its error lists the presets
     return load_strokes(argument);
-}
-
-} // namespace
-
-environment read_environment(settings& s, option_list& options)
-{
-    environment e;
-    e.config_name = find_config(s);
-    if (!e.config_name.empty()) {
-        e.config = load_setup(e.config_name);
-        options.apply_defaults(e.config.defaults, e.config_name);
-    }
-    e.tactors = find_array(s, e.config);
-    if (s.slope || s.intercept_s) {
-        timing_profile& p = s.plan.profile;
-        p.slope = s.slope.value_or(p.slope);
-        p.intercept_s = s.intercept_s.value_or(p.intercept_s);
-        p.max_soa_s = p.intercept_s / (1.0 - p.slope);
-    }
-    return e;
 }
 
 std::vector<stroke> read_strokes(const settings& s, const std::string& argument)
@@ -135,36 +128,72 @@ std::vector<stroke> read_strokes(const settings& s, const std::string& argument)
     return strokes;
 }
 
-std::vector<piece> plan_pieces(const settings& s, const environment& e)
+std::vector<std::string> stroke_arguments(const settings& s)
 {
-    std::vector<std::string> arguments = s.strokes;
-    if (s.path_data) {
-        if (!arguments.empty())
-            throw error(errc::bad_input, "--path",
-                        fmt::format("there is also the stroke \"{}\"", arguments[0]), "give one of them");
-        arguments = {"--path"};
-    }
-    if (arguments.empty())
+    if (s.path_data && !s.strokes.empty())
+        throw error(errc::bad_input, "--path", fmt::format("there is also the stroke \"{}\"", s.strokes[0]),
+                    "give one of them");
+    if (s.path_data)
+        return {"--path"};
+    if (s.strokes.empty())
         throw error(errc::bad_input, "command line", "no stroke",
                     "give a preset such as park2016-1, a stroke file, - or --path DATA");
+    return s.strokes;
+}
+
+piece plan_piece(const settings& s, const environment& e, const layout& faces, const std::string& argument)
+{
+    piece p{argument, read_strokes(s, argument), {}};
+    for (const stroke& k : p.strokes) {
+        try {
+            p.plans.push_back({make_plan(e.tactors, faces, k, s.plan), k.start_s});
+        } catch (const error& x) {
+            if (p.strokes.size() == 1)
+                throw;
+            throw error(x.kind(), fmt::format("{}: stroke {} \"{}\"", argument, p.plans.size() + 1, k.name),
+                        x.what());
+        }
+    }
+    return p;
+}
+
+} // namespace
+
+environment read_environment(settings& s, option_list& options)
+{
+    environment e;
+    e.config_name = find_config(s);
+    if (!e.config_name.empty()) {
+        e.config = load_setup(e.config_name);
+        options.apply_defaults(e.config.defaults, e.config_name);
+    }
+    e.tactors = find_array(s, options, e.config);
+    check_sync_channel(e);
+    if (s.slope || s.intercept_s) {
+        timing_profile& p = s.plan.profile;
+        p.slope = s.slope.value_or(p.slope);
+        p.intercept_s = s.intercept_s.value_or(p.intercept_s);
+        p.max_soa_s = p.intercept_s / (1.0 - p.slope);
+    }
+    return e;
+}
+
+std::vector<piece> plan_pieces(const settings& s, const environment& e)
+{
     const layout faces(e.tactors);
     std::vector<piece> pieces;
-    for (const std::string& argument : arguments) {
-        piece p{argument, read_strokes(s, argument), {}};
-        for (const stroke& k : p.strokes) {
-            try {
-                p.plans.push_back({make_plan(e.tactors, faces, k, s.plan), k.start_s});
-            } catch (const error& x) {
-                if (p.strokes.size() == 1)
-                    throw;
-                throw error(x.kind(),
-                            fmt::format("{}: stroke {} \"{}\"", argument, p.plans.size() + 1, k.name),
-                            x.what());
-            }
-        }
-        pieces.push_back(std::move(p));
-    }
+    for (const std::string& argument : stroke_arguments(s))
+        pieces.push_back(plan_piece(s, e, faces, argument));
     return pieces;
+}
+
+piece plan_one_piece(const settings& s, const environment& e)
+{
+    const auto arguments = stroke_arguments(s);
+    if (arguments.size() > 1)
+        throw error(errc::bad_input, arguments[1], "one argument too many",
+                    "only play takes several strokes");
+    return plan_piece(s, e, layout(e.tactors), arguments.front());
 }
 
 score make_score(const piece& p, const environment& e, const render_options& render)
@@ -176,7 +205,8 @@ render_options settle_render(const settings& s, const environment& e)
 {
     render_options r = s.render;
     r.rate = s.rate.value_or(e.config.output.rate.value_or(48000));
-    r.channels = e.config.output.channels.value_or(0);
+    const unsigned marker = e.config.sync && e.config.sync->channel ? *e.config.sync->channel + 1 : 0;
+    r.channels = e.config.output.channels.value_or(std::max(e.tactors.channels(), marker));
     return r;
 }
 

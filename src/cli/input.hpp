@@ -23,9 +23,6 @@ struct environment {
 /// feeds its [defaults] to the options and finds the array. \throws error.
 environment read_environment(settings& s, option_list& options);
 
-/// The strokes of one STROKE argument, or of --path, with --duration or --speed applied.
-std::vector<stroke> read_strokes(const settings& s, const std::string& argument);
-
 /// One piece: what one STROKE argument makes.
 struct piece {
     std::string name;
@@ -35,6 +32,9 @@ struct piece {
 
 /// Reads and plans all STROKE arguments. \throws error.
 std::vector<piece> plan_pieces(const settings& s, const environment& e);
+
+/// The same where only one STROKE is taken.
+piece plan_one_piece(const settings& s, const environment& e);
 
 /// The score of a piece with `render.rate` and channels settled. \throws error.
 score make_score(const piece& p, const environment& e, const render_options& render);

@@ -10,6 +10,8 @@
 namespace tactor::cli {
 namespace {
 
+constexpr int max_strokes = 10000; // on one command line
+
 // A choice among names that the library can print: "a|b|c" and the value of the one given.
 template <class Enum>
 struct choice {
@@ -99,14 +101,14 @@ CLI::Option* option_list::flag(const std::string& name, const std::string& help,
     return o;
 }
 
-void option_list::add_stroke_options(bool several_strokes)
+void option_list::add_stroke_options()
 {
     settings& s = settings_;
     auto* strokes = command_.add_option("STROKE", s.strokes,
                                         "preset (park2016-1 ... park2016-4), file (.toml, .csv, .svg), or - "
                                         "for a stroke file on standard input");
     strokes->type_name("");
-    strokes->expected(0, several_strokes ? 1000 : 1);
+    strokes->expected(0, max_strokes);
     value("--path", "DATA", "SVG path data in mm instead of STROKE",
           [&s](const std::string& t) { s.path_data = t; });
     value("--array", "NAME|FILE", "palm-3x3 (default), palm-2x4, or an array file",

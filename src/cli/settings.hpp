@@ -42,7 +42,7 @@ public:
     option_list(CLI::App& command, settings& into);
 
     /// STROKE, --path and how it is planned.
-    void add_stroke_options(bool several_strokes);
+    void add_stroke_options();
     /// Carrier, levels and rate.
     void add_sound_options();
     /// -D.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/usage.hpp"
 
-#include <algorithm>
-#include <numeric>
 #include <string>
 #include <vector>
 
@@ -12,34 +10,10 @@
 namespace tactor::cli {
 namespace {
 
-std::size_t edit_distance(const std::string& a, const std::string& b)
-{
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t diagonal = row[0]++;
-        for (std::size_t j = 0; j < b.size(); ++j) {
-            const std::size_t change = diagonal + (a[i] == b[j] ? 0 : 1);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, change});
-        }
-    }
-    return row.back();
-}
-
-// The name most like `given`, if one is like it at all.
 std::string nearest(const std::string& given, const std::vector<std::string>& names)
 {
-    std::string best;
-    std::size_t best_distance = std::max<std::size_t>(2, given.size() / 3) + 1;
-    for (const std::string& n : names) {
-        const std::size_t d = edit_distance(given, n);
-        if (d < best_distance) {
-            best_distance = d;
-            best = n;
-        }
-    }
-    return best;
+    const std::vector<std::string_view> views(names.begin(), names.end());
+    return std::string(nearest_name(given, views));
 }
 
 const CLI::App& used_command(const CLI::App& app)

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <tactor/error.hpp>
+
 namespace tactor::detail {
 namespace {
 
@@ -55,25 +57,6 @@ bool same_stem(std::string_view a, std::string_view b)
 
 } // namespace
 
-std::string_view nearest_name(std::string_view name, std::span<const std::string_view> known)
-{
-    if (name.empty() || name.size() > longest)
-        return {};
-    std::string_view best;
-    std::size_t best_edits = std::max<std::size_t>(1, name.size() / 3) + 1;
-    for (const std::string_view k : known) {
-        if (k.size() > longest)
-            continue;
-        const std::size_t e = same_stem(name, k) ? 1 : edits(name, k);
-        // A one-letter name is one edit from every other.
-        if (e < best_edits && e < std::max(name.size(), k.size())) {
-            best = k;
-            best_edits = e;
-        }
-    }
-    return best;
-}
-
 std::string suggestion(std::string_view name, std::span<const std::string_view> known, std::string_view kind)
 {
     if (const std::string_view n = nearest_name(name, known); !n.empty())
@@ -99,3 +82,26 @@ std::string quoted(std::string_view name)
 }
 
 } // namespace tactor::detail
+
+namespace tactor {
+
+std::string_view nearest_name(std::string_view name, std::span<const std::string_view> known)
+{
+    if (name.empty() || name.size() > detail::longest)
+        return {};
+    std::string_view best;
+    std::size_t best_edits = std::max<std::size_t>(1, name.size() / 3) + 1;
+    for (const std::string_view k : known) {
+        if (k.size() > detail::longest)
+            continue;
+        const std::size_t e = detail::same_stem(name, k) ? 1 : detail::edits(name, k);
+        // A one-letter name is one edit from every other.
+        if (e < best_edits && e < std::max(name.size(), k.size())) {
+            best = k;
+            best_edits = e;
+        }
+    }
+    return best;
+}
+
+} // namespace tactor

@@ -8,10 +8,6 @@
 
 namespace tactor::detail {
 
-/// The one of `known` that `name` is a slip of, e.g. "chanel" of "channel", "pitch" of "pitch_mm";
-/// empty if none is near.
-std::string_view nearest_name(std::string_view name, std::span<const std::string_view> known);
-
 /// A hint: "did you mean 'channel'?", or "known keys: a, b, c" where nothing is near. `kind` is the
 /// plural of what the names are.
 std::string suggestion(std::string_view name, std::span<const std::string_view> known, std::string_view kind);

@@ -17,7 +17,7 @@ class CommandLine(ToolTest):
     def test_wrong_usage(self):
         self.refused(2, says=["--help"])
         self.refused(2, "plam", "park2016-1", says=["plam", "plan"])
-        self.refused(2, "plan", "park2016-1", "--speeed", "3", says=["--speeed", "--speed"])
+        self.refused(2, "plan", "park2016-1", "--speeed", "3", says=["--speeed", "did you mean --speed"])
         self.refused(2, "plan", says=["stroke"])
         self.refused(2, "plan", "park2016-1", "park2016-2", says=["park2016-2"])
         self.refused(2, "plan", "park2016-1", "--path", "M 0 0 L 1 1", says=["--path"])

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: MIT
+"""Checks that all C++ files are formatted, and that the man pages are clean.
+
+Usage: format.py SOURCE_ROOT. Versions of clang-format differ in taste: only version 14 (Debian 12's) counts.
+"""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+FORMAT_VERSION = 14
+
+
+def run(*args):
+    environment = os.environ | {"LC_ALL": "C.UTF-8", "MANWIDTH": "80", "MANROFFOPT": "", "MAN_KEEP_FORMATTING": "1"}
+    r = subprocess.run(args, capture_output=True, text=True, env=environment, check=False)
+    return r.returncode, r.stdout, r.stderr
+
+
+def unformatted(files):
+    for f in files:
+        status, _, said = run("clang-format", "--dry-run", "-Werror", str(f))
+        if status:
+            yield f"{f}: not formatted: clang-format -i {f} ({said.splitlines()[0]})"
+
+
+def unclean(page):
+    _, said, _ = run("mandoc", "-Tlint", str(page))
+    # That another page is not installed here says nothing about this one.
+    yield from (line for line in said.splitlines() if "referenced manual not found" not in line)
+    _, _, said = run("man", "--warnings", "-E", "UTF-8", "-l", "-Tutf8", "-Z", str(page))
+    yield from (f"{page}: {line}" for line in said.splitlines())
+
+
+def main():
+    root = pathlib.Path(sys.argv[1]).resolve()
+    passed, failed, skipped = 0, 0, 0
+    version = re.search(r"version (\d+)", run("clang-format", "--version")[1]) if shutil.which("clang-format") else None
+    if version and int(version[1]) == FORMAT_VERSION:
+        files = [f for top in ("src", "include", "tests", "examples") for f in sorted((root / top).rglob("*.[ch]pp"))]
+        bad = list(unformatted(files))
+        print(*bad, sep="\n", end="\n" if bad else "")
+        passed, failed = passed + len(files) - len(bad), failed + len(bad)
+    else:
+        print(f"SKIPPED: formatting: clang-format {FORMAT_VERSION} is not here")
+        skipped += 1
+    for page in sorted((root / "man").glob("*.[1-8]")):
+        bad = list(unclean(page))
+        print(*bad, sep="\n", end="\n" if bad else "")
+        passed, failed = passed + (not bad), failed + bool(bad)
+    print(f"{passed} passed, {failed} failed, {skipped} skipped")
+    return 1 if failed or not passed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
