@@ -11,7 +11,7 @@
 namespace tactor::detail {
 namespace {
 
-constexpr unsigned deepest = 32;
+constexpr unsigned deepest = 48;
 
 double gauss(const shape& c, double from, double to)
 {
@@ -19,32 +19,49 @@ double gauss(const shape& c, double from, double to)
                                                                  to);
 }
 
+struct interval {
+    double from;
+    double to;
+    double length;
+    unsigned depth = 0;
+};
+
+// Near a cusp the speed has a kink, or nearly one, in a stretch that may be narrower than the gaps between
+// the nodes, so comparing lengths does not find it. Cusps are ends of intervals: there, the speed must be
+// seen to be even before the interval is large enough to matter.
+bool kink_at_end(const shape& c, const interval& i)
+{
+    constexpr double harmless_mm = 1e-6;
+    const double mean = i.length / (i.to - i.from);
+    return i.length > harmless_mm && std::min(speed(c, i.from), speed(c, i.to)) < 0.1 * mean;
+}
+
 } // namespace
 
-// An interval is fine enough when its two halves give the same length. At a cusp the speed has a kink, and
-// only the interval with the kink is halved further: its error falls with the square of its width.
+// An interval is fine enough when its two halves give the same length.
 arc_length::arc_length(const shape& c) : t_{0.0}, s_{0.0}
 {
     const double tolerance = std::max(1e-10, 1e-14 * rough_length(c));
-    struct interval {
-        double from;
-        double to;
-        double length;
-        unsigned depth;
-    };
-    std::vector<interval> open{{0.0, 1.0, gauss(c, 0.0, 1.0), 0}};
-    while (!open.empty()) {
-        const interval i = open.back();
-        open.pop_back();
-        const double middle = 0.5 * (i.from + i.to);
-        const double left = gauss(c, i.from, middle);
-        const double right = gauss(c, middle, i.to);
-        if (i.depth == deepest || std::abs(left + right - i.length) <= tolerance) {
-            t_.push_back(i.to);
-            s_.push_back(s_.back() + i.length);
-        } else {
-            open.push_back({middle, i.to, right, i.depth + 1});
-            open.push_back({i.from, middle, left, i.depth + 1});
+    std::vector<double> ends = speed_turns(c);
+    ends.push_back(1.0);
+    for (const double end : ends) {
+        if (end <= t_.back())
+            continue;
+        std::vector<interval> open{{t_.back(), end, gauss(c, t_.back(), end)}};
+        while (!open.empty()) {
+            const interval i = open.back();
+            open.pop_back();
+            const double middle = 0.5 * (i.from + i.to);
+            const double left = gauss(c, i.from, middle);
+            const double right = gauss(c, middle, i.to);
+            const bool same = std::abs(left + right - i.length) <= tolerance;
+            if (i.depth == deepest || (same && !kink_at_end(c, i))) {
+                t_.push_back(i.to);
+                s_.push_back(s_.back() + i.length);
+            } else {
+                open.push_back({middle, i.to, right, i.depth + 1});
+                open.push_back({i.from, middle, left, i.depth + 1});
+            }
         }
     }
 }

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include <boost/math/tools/roots.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
 
 namespace tactor::detail {
 namespace {
@@ -45,18 +47,80 @@ std::vector<double> turns_of(const cubic& c, axis a)
     return {t0, t1};
 }
 
-std::vector<double> turns_of(const elliptic& c, axis a)
+// Where the angle is `first` and every `period` from there.
+// Where the angle is `first` and every `period` from there.
+std::vector<double> at_angles(const elliptic& c, double first, double period)
 {
-    const double first = std::atan2(coordinate(c.v, a), coordinate(c.u, a));
     const double low = std::min(c.from, c.from + c.sweep);
     const double high = std::max(c.from, c.from + c.sweep);
     std::vector<double> t;
-    for (double k = std::ceil((low - first) / std::numbers::pi);; k += 1.0) {
-        const double angle = first + k * std::numbers::pi;
+    for (double k = std::ceil((low - first) / period);; k += 1.0) {
+        const double angle = first + k * period;
         if (!(angle < high))
             return t;
         t.push_back((angle - c.from) / c.sweep);
     }
+}
+
+std::vector<double> turns_of(const elliptic& c, axis a)
+{
+    return at_angles(c, std::atan2(coordinate(c.v, a), coordinate(c.u, a)), std::numbers::pi);
+}
+
+double dot(point a, point b) noexcept
+{
+    return a.x_mm * b.x_mm + a.y_mm * b.y_mm;
+}
+
+// Roots of f . s, where f is the first derivative and s the second: a cubic with these Bernstein
+// coefficients. It is monotone between the roots of its own derivative.
+std::vector<double> speed_turns_of(const cubic& c)
+{
+    const std::array f{c.p[1] - c.p[0], c.p[2] - c.p[1], c.p[3] - c.p[2]};
+    const std::array s{f[1] - f[0], f[2] - f[1]};
+    const std::array b{dot(f[0], s[0]), (2.0 * dot(f[1], s[0]) + dot(f[0], s[1])) / 3.0,
+                       (dot(f[2], s[0]) + 2.0 * dot(f[1], s[1])) / 3.0, dot(f[2], s[1])};
+    const auto value = [&b](double t) {
+        const double r = 1.0 - t;
+        return r * r * r * b[0] + 3.0 * r * r * t * b[1] + 3.0 * r * t * t * b[2] + t * t * t * b[3];
+    };
+    const std::array d{b[1] - b[0], b[2] - b[1], b[3] - b[2]};
+    const auto [t0, t1] =
+        boost::math::tools::quadratic_roots(d[0] - 2.0 * d[1] + d[2], 2.0 * (d[1] - d[0]), d[0]);
+    std::vector<double> ends{0.0};
+    for (const double t : {std::min(t0, t1), std::max(t0, t1)}) {
+        if (t > ends.back() && t < 1.0)
+            ends.push_back(t);
+    }
+    ends.push_back(1.0);
+    std::vector<double> roots;
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+        const double low = value(ends[i]);
+        const double high = value(ends[i + 1]);
+        std::uintmax_t steps = 100;
+        if ((low < 0.0 && high > 0.0) || (low > 0.0 && high < 0.0)) {
+            const auto [a, z] = boost::math::tools::toms748_solve(
+                value, ends[i], ends[i + 1], low, high, boost::math::tools::eps_tolerance<double>(52), steps);
+            roots.push_back(0.5 * (a + z));
+        } else if (low == 0.0) {
+            roots.push_back(ends[i]);
+        }
+    }
+    return roots;
+}
+
+// |derivative|^2 = |u|^2 sin^2 + |v|^2 cos^2 - u . v sin 2 angle
+std::vector<double> speed_turns_of(const elliptic& c)
+{
+    return at_angles(c, 0.5 * std::atan2(2.0 * dot(c.u, c.v), dot(c.u, c.u) - dot(c.v, c.v)),
+                     0.5 * std::numbers::pi);
+}
+
+std::vector<double> inside(std::vector<double> t)
+{
+    std::erase_if(t, [](double v) { return !(v > 0.0 && v < 1.0); });
+    std::sort(t.begin(), t.end());
+    return t;
 }
 
 cubic mapped_shape(const cubic& c, const affine& m) noexcept
@@ -85,10 +149,12 @@ double speed(const shape& c, double t) noexcept
 
 std::vector<double> turns(const shape& c, axis a)
 {
-    std::vector<double> t = std::visit([a](const auto& s) { return turns_of(s, a); }, c);
-    std::erase_if(t, [](double v) { return !(v > 0.0 && v < 1.0); });
-    std::sort(t.begin(), t.end());
-    return t;
+    return inside(std::visit([a](const auto& s) { return turns_of(s, a); }, c));
+}
+
+std::vector<double> speed_turns(const shape& c)
+{
+    return inside(std::visit([](const auto& s) { return speed_turns_of(s); }, c));
 }
 
 double rough_length(const shape& c) noexcept

@@ -62,6 +62,9 @@ double speed(const shape& c, double t) noexcept;
 /// Where inside (0, 1) a coordinate turns round; ascending. Between them it is monotone.
 std::vector<double> turns(const shape& c, axis a);
 
+/// Where inside (0, 1) the speed is least or greatest; ascending. A cusp is among them.
+std::vector<double> speed_turns(const shape& c);
+
 /// Upper bound of the length, for tolerances.
 double rough_length(const shape& c) noexcept;
 

@@ -11,6 +11,7 @@
 #include "model/limits.hpp"
 #include "model/path_impl.hpp"
 #include "model/stroke_svg_document.hpp"
+#include "model/stroke_svg_scope.hpp"
 #include "model/stroke_svg_shapes.hpp"
 #include "model/stroke_text.hpp"
 #include "model/trajectory_limits.hpp"
@@ -19,10 +20,13 @@ namespace tactor {
 namespace {
 
 using detail::affine;
+using detail::enter_svg_box;
+using detail::inherit_svg;
 using detail::outline;
 using detail::svg_extent;
+using detail::svg_hidden;
 using detail::svg_tag;
-using detail::svg_viewport;
+using scope = detail::svg_scope;
 using pugi::xml_node;
 
 // <use> can multiply a small file without end.
@@ -30,44 +34,6 @@ constexpr unsigned deepest = 100;
 constexpr unsigned most_uses_inside = 16;
 constexpr std::size_t most_elements = 1'000'000;
 constexpr std::size_t most_vertices = 20'000'000;
-constexpr double highest_carrier_hz = 20000.0;
-
-// What an element inherits.
-struct scope {
-    affine to_mm;
-    svg_viewport viewport;
-    std::optional<double> speed_mm_s;
-    double intensity = 1.0;
-    std::optional<double> carrier_hz;
-    unsigned depth = 0;
-    unsigned uses = 0;
-};
-
-bool hidden(xml_node n)
-{
-    const auto is_none = [](std::string_view v) {
-        std::size_t at = 0;
-        detail::skip_blanks(v, at);
-        v.remove_prefix(at);
-        return v.substr(0, 4) == "none" && (v.size() == 4 || detail::blank(v[4]) || v[4] == '!');
-    };
-    std::string_view style = n.attribute("style").value();
-    while (!style.empty()) {
-        const std::size_t end = std::min(style.find(';'), style.size());
-        std::string_view item = style.substr(0, end);
-        style.remove_prefix(std::min(end + 1, style.size()));
-        std::size_t at = 0;
-        detail::skip_blanks(item, at);
-        item.remove_prefix(at);
-        const std::size_t colon = std::min(item.find(':'), item.size());
-        std::string_view key = item.substr(0, colon);
-        while (!key.empty() && detail::blank(key.back()))
-            key.remove_suffix(1);
-        if (key == "display")
-            return is_none(item.substr(std::min(colon + 1, item.size())));
-    }
-    return is_none(n.attribute("display").value());
-}
 
 class svg_reader {
 public:
@@ -76,9 +42,9 @@ public:
     std::vector<stroke> read()
     {
         const xml_node root = doc_.root();
-        scope s = root_scope(root);
-        inherit(root, s);
-        if (!hidden(root))
+        scope s = detail::svg_root_scope(doc_);
+        inherit_svg(doc_, root, s);
+        if (!svg_hidden(root))
             children(root, s);
         if (!strokes_.empty())
             return std::move(strokes_);
@@ -91,64 +57,6 @@ public:
     }
 
 private:
-    // A document with a size in physical units is as large as it says. In any other, one user unit is one
-    // millimetre and coordinates are as they stand.
-    scope root_scope(xml_node n)
-    {
-        const auto width = doc_.read(n, "width", detail::parse_svg_length);
-        const auto height = doc_.read(n, "height", detail::parse_svg_length);
-        const auto box = doc_.read(n, "viewBox", detail::parse_svg_view_box);
-        using unit = detail::svg_length::unit;
-        const auto has = [](const auto& l, unit u) { return l && l->in == u; };
-        scope s;
-        if (!has(width, unit::mm) && !has(height, unit::mm)) {
-            s.viewport.width = box ? box->width : has(width, unit::none) ? width->value : 100.0;
-            s.viewport.height = box ? box->height : has(height, unit::none) ? height->value : 100.0;
-            return s;
-        }
-        const auto px = [&](const auto& l) -> std::optional<double> {
-            if (!l || l->in == unit::percent)
-                return std::nullopt;
-            if (!(l->value > 0.0))
-                doc_.fail(n, fmt::format("{} has no size", doc_.called(n)),
-                          "width and height are more than 0");
-            return l->in == unit::mm ? l->value / detail::mm_per_px : l->value;
-        };
-        auto w = px(width);
-        auto h = px(height);
-        const double ratio = box ? box->width / box->height : 1.0;
-        if (!w)
-            w = *h * ratio;
-        if (!h)
-            h = *w / ratio;
-        s.to_mm = {detail::mm_per_px, 0.0, 0.0, detail::mm_per_px, 0.0, 0.0};
-        s.viewport = {*w, *h, 1.0 / detail::mm_per_px};
-        if (box)
-            enter_box(n, s, *box, {}, *w, *h);
-        return s;
-    }
-
-    void enter_box(xml_node n, scope& s, const detail::svg_view_box& box, point corner, double width,
-                   double height)
-    {
-        const auto aspect = doc_.read(n, "preserveAspectRatio", detail::parse_svg_aspect);
-        s.to_mm = s.to_mm * fit(box, corner, width, height, aspect.value_or(detail::svg_aspect{}));
-        s.viewport.width = box.width;
-        s.viewport.height = box.height;
-    }
-
-    void inherit(xml_node n, scope& s)
-    {
-        if (const auto t = doc_.read(n, "transform", detail::parse_svg_transform))
-            s.to_mm = s.to_mm * *t;
-        if (const auto v = doc_.number(n, "data-speed-mm-s", 1e-6, detail::max_mm))
-            s.speed_mm_s = v;
-        if (const auto v = doc_.number(n, "data-intensity", 0.0, detail::max_intensity))
-            s.intensity = *v;
-        if (const auto v = doc_.number(n, "data-carrier-hz", 1.0, highest_carrier_hz))
-            s.carrier_hz = v;
-    }
-
     void children(xml_node n, const scope& s)
     {
         for (const xml_node c : n.children()) {
@@ -165,9 +73,9 @@ private:
                       "simplify the drawing");
         const std::string_view tag = svg_tag(n);
         const bool group = tag == "g" || tag == "a" || tag == "switch";
-        if (!(group || tag == "svg" || tag == "use" || detail::is_svg_shape(tag)) || hidden(n))
+        if (!(group || tag == "svg" || tag == "use" || detail::is_svg_shape(tag)) || svg_hidden(n))
             return;
-        inherit(n, s);
+        inherit_svg(doc_, n, s);
         if (group)
             children(n, s);
         else if (tag == "svg")
@@ -194,7 +102,7 @@ private:
         const double width = side("width", svg_extent::width, s.viewport.width);
         const double height = side("height", svg_extent::height, s.viewport.height);
         if (const auto box = doc_.read(n, "viewBox", detail::parse_svg_view_box)) {
-            enter_box(n, s, *box, corner, width, height);
+            enter_svg_box(doc_, n, s, *box, corner, width, height);
         } else {
             s.to_mm = s.to_mm * affine{1.0, 0.0, 0.0, 1.0, corner.x_mm, corner.y_mm};
             s.viewport.width = width;
@@ -224,7 +132,7 @@ private:
         if (tag != "symbol" && tag != "svg")
             return visit(target, s);
         ++s.depth;
-        inherit(target, s);
+        inherit_svg(doc_, target, s);
         frame(target, n, s, {});
     }
 

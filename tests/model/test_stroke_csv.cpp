@@ -123,7 +123,8 @@ TEST_CASE("changed CSV gives a stroke or an error, nothing else")
     std::mt19937_64 random(555);
     const std::string good =
         "# a\nt_s,x_mm,y_mm,intensity\n0,0,10,1\n0.5,20,20,0.5\n\"1.5\",40,30,0\n2,1e1,-3.5,1\n";
-    const std::string alphabet("0123456789.,-+eE\"#\n\r\t ;tsxym_\0\xff", 33);
+    constexpr char letters[] = "0123456789.,-+eE\"#\n\r\t ;tsxym_\0\xff";
+    const std::string alphabet(letters, sizeof letters - 1);
     std::uniform_int_distribution<std::size_t> letter(0, alphabet.size() - 1);
     int read = 0;
     for (int n = 0; n < 20000; ++n) {

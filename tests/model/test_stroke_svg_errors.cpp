@@ -128,7 +128,8 @@ TEST_CASE("changed SVG gives strokes or an error, nothing else")
         "<use href='#s' width='10' height='10'/><rect width='30' height='2cm' rx='5'/></g>"
         "<svg x='5' viewBox='0 0 9 9'><circle r='10%'/><ellipse rx='3' ry='2' data-duration-s='2'/></svg>"
         "<polygon points='0,0 3,0 3,4' transform='skewX(10)'/></svg>\n";
-    const std::string alphabet("0123456789.,-+e<>/='\"&;#%() gpsvxyrdMz\0\xff\xc3", 42);
+    constexpr char letters[] = "0123456789.,-+e<>/='\"&;#%() gpsvxyrdMz\0\xff\xc3";
+    const std::string alphabet(letters, sizeof letters - 1);
     std::uniform_int_distribution<std::size_t> letter(0, alphabet.size() - 1);
     int drawn = 0;
     for (int n = 0; n < 10000; ++n) {
