@@ -37,7 +37,8 @@ public:
     point at(double s_mm) const noexcept;
 
     /// Arc lengths, ascending, at which the path meets the line x = x_mm, touching included. A
-    /// stretch that runs along the line (within same_place_mm) gives nothing, its ends included.
+    /// stretch longer than 0.1 mm that runs along the line (within same_place_mm) gives nothing, its
+    /// ends included; a shorter one is a touch.
     std::vector<double> meets_x(double x_mm) const;
     /// The same for the line y = y_mm.
     std::vector<double> meets_y(double y_mm) const;
