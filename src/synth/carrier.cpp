@@ -22,19 +22,18 @@ sine_cosine carrier_block::base_angle(double cycles_per_frame, std::int64_t fram
     return base_;
 }
 
-const double* carrier_block::get(const voice& v, const fade* f, std::uint64_t at, unsigned lo,
-                                 unsigned hi) noexcept
+const double* carrier_block::get(const voice& v, const fade* f, std::uint64_t at, unsigned n) noexcept
 {
-    const place here{at, lo, hi, v.cycles_per_frame, v.phase};
+    const place here{at, n, v.cycles_per_frame, v.phase};
     if (!(here == plain_place_)) {
         const oscillator_table& t = tables_.get(v.cycles_per_frame);
-        for_each_part(static_cast<std::int64_t>(v.phase + at), lo, hi, [&](const table_part& p) {
+        for_each_part(static_cast<std::int64_t>(v.phase + at), 0, n, [&](const table_part& p) {
             sine_block(t, base_angle(v.cycles_per_frame, p.base), p, plain_.data());
         });
         plain_place_ = here;
     }
     const auto first = static_cast<std::int64_t>(v.window_place + at);
-    if (f == nullptr && window_is_flat(first + lo, first + hi, v.window, v.ramp)) {
+    if (f == nullptr && window_is_flat(first, first + n, v.window, v.ramp)) {
         return plain_.data();
     }
     shape wanted{v.window_place, v.window, v.ramp, 0, 0};
@@ -45,14 +44,23 @@ const double* carrier_block::get(const voice& v, const fade* f, std::uint64_t at
     if (here == shaped_place_ && wanted == shaped_shape_) {
         return shaped_.data();
     }
-    std::copy(plain_.begin() + lo, plain_.begin() + hi, shaped_.begin() + lo);
-    window_block(tables_, first, v.window, v.ramp, lo, hi, shaped_.data());
+    std::copy(plain_.begin(), plain_.begin() + n, shaped_.begin());
+    window_block(tables_, first, v.window, v.ramp, 0, n, shaped_.data());
     if (f != nullptr) {
-        fade_block(tables_, wanted.fade_place, f->length, lo, hi, shaped_.data());
+        fade_block(tables_, wanted.fade_place, f->length, 0, n, shaped_.data());
     }
     shaped_place_ = here;
     shaped_shape_ = wanted;
     return shaped_.data();
+}
+
+void set_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept
+{
+    const double* __restrict in = s;
+    double* __restrict out = sum;
+    for (unsigned j = lo; j < hi; ++j) {
+        out[j] = a * in[j];
+    }
 }
 
 void add_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept

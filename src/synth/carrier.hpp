@@ -14,16 +14,15 @@ namespace tactor::synth {
 /// Keeps the latest block: the events of one burst, and of a whole continuous stroke, ask for the same.
 class carrier_block {
 public:
-    /// Samples of the frames `at` + lo ... `at` + hi - 1, to be indexed with lo ... hi - 1. `at` is a
-    /// multiple of block_frames. Valid until the next call.
-    const double* get(const voice& v, const fade* f, std::uint64_t at, unsigned lo, unsigned hi) noexcept;
+    /// Samples of the n frames (at most block_frames) from frame `at` of the stream on. Valid until the next
+    /// call.
+    const double* get(const voice& v, const fade* f, std::uint64_t at, unsigned n) noexcept;
     void forget() noexcept;
 
 private:
     struct place {
         std::uint64_t at = ~std::uint64_t{0};
-        unsigned lo = 0;
-        unsigned hi = 0;
+        unsigned n = 0;
         double cycles_per_frame = 0.0;
         std::uint64_t phase = 0;
         bool operator==(const place&) const = default;
@@ -45,9 +44,12 @@ private:
     place plain_place_;
     place shaped_place_;
     shape shaped_shape_;
-    alignas(32) block plain_{};
-    alignas(32) block shaped_{};
+    alignas(64) block plain_{};
+    alignas(64) block shaped_{};
 };
+
+/// sum[j] = a * s[j] for lo <= j < hi.
+void set_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept;
 
 /// sum[j] += a * s[j] for lo <= j < hi.
 void add_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept;

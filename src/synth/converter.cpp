@@ -27,7 +27,7 @@ void scatter(const T* v, unsigned n, std::byte* out, std::size_t stride) noexcep
 void to_float(const double* __restrict x, unsigned n, float* __restrict v) noexcept
 {
     for (unsigned i = 0; i < n; ++i) {
-        v[i] = static_cast<float>(x[i] + 0.0); // -0 + 0 = +0
+        v[i] = static_cast<float>(x[i] + 0.0);  // -0 + 0 = +0
     }
 }
 

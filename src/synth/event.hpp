@@ -24,15 +24,15 @@ struct channel_drive {
 ///     amplitude(j) * w(ramp_position + j) * sin(2 pi cycles_per_frame (phase_frame + j))
 /// with w the raised cosine of `ramp` frames at both ends of a window of `window` frames.
 struct drive_event {
-    std::uint64_t start = 0;          ///< frames since the start of the score (source) or of the epoch (mixer)
-    std::uint64_t phase_frame = 0;    ///< carrier frame at `start`
-    double cycles_per_frame = 0.0;    ///< carrier / rate
+    std::uint64_t start = 0;         ///< frames since the start of the score (source) or of the epoch (mixer)
+    std::uint64_t phase_frame = 0;   ///< carrier frame at `start`
+    double cycles_per_frame = 0.0;   ///< carrier / rate
     std::uint64_t ramp_position = 0;  ///< place of `start` in the window
-    std::uint64_t window = 0;         ///< frames of the whole burst (or of the continuous stroke)
-    std::uint32_t ramp = 0;           ///< 0: no window
-    std::uint32_t length = 0;         ///< frames
-    std::uint32_t score = 0;          ///< the submitted score it belongs to
-    std::uint32_t drives = 0;         ///< how many of `drive` are used
+    std::uint64_t window = 0;        ///< frames of the whole burst (or of the continuous stroke)
+    std::uint32_t ramp = 0;          ///< 0: no window
+    std::uint32_t length = 0;        ///< frames
+    std::uint32_t score = 0;         ///< the submitted score it belongs to
+    std::uint32_t drives = 0;        ///< how many of `drive` are used
     std::array<channel_drive, drives_per_event> drive{};
 };
 static_assert(std::is_trivially_copyable_v<drive_event>);

@@ -17,9 +17,9 @@ namespace {
 
 /// One channel's sum in the current block.
 struct strip {
-    alignas(32) block sum;
+    alignas(64) block sum;
     double limit = 0.0;
-    double peak = 0.0; ///< what the voices could reach together
+    double peak = 0.0;  ///< what the voices could reach together
     bool sounding = false;
 };
 
@@ -44,9 +44,9 @@ struct mixer::impl {
         frame_bytes = strips.size() * bytes_of(format);
     }
 
-    void segment(std::uint64_t at, unsigned lo, unsigned hi, std::byte* out) noexcept;
-    void mix(const voice& v, std::uint64_t at, unsigned lo, unsigned hi) noexcept;
-    void write(unsigned lo, unsigned hi, std::byte* out) noexcept;
+    void segment(unsigned n, std::byte* out) noexcept;
+    void mix(const voice& v, unsigned n) noexcept;
+    void write(unsigned n, std::byte* out) noexcept;
     void end_fades() noexcept;
 
     sample_format format;
@@ -154,43 +154,47 @@ void mixer::process(std::size_t frames, std::byte* out) noexcept
             frames -= silent;
             m.position += silent;
         } else {
-            const auto lo = static_cast<unsigned>(m.position % block_frames);
-            const auto hi = static_cast<unsigned>(std::min<std::size_t>(block_frames, lo + frames));
-            m.segment(m.position - lo, lo, hi, out);
-            out += (hi - lo) * m.frame_bytes;
-            frames -= hi - lo;
-            m.position += hi - lo;
+            const auto n = static_cast<unsigned>(std::min<std::size_t>(block_frames, frames));
+            m.segment(n, out);
+            out += n * m.frame_bytes;
+            frames -= n;
+            m.position += n;
             m.voices.retire(m.position);
         }
         m.end_fades();
     }
 }
 
-void mixer::impl::segment(std::uint64_t at, unsigned lo, unsigned hi, std::byte* out) noexcept
+void mixer::impl::segment(unsigned n, std::byte* out) noexcept
 {
-    voices.activate(at + hi);
+    voices.activate(position + n);
     for (const std::uint32_t slot : voices.active()) {
-        mix(voices[slot], at, lo, hi);
+        mix(voices[slot], n);
     }
-    write(lo, hi, out);
+    write(n, out);
 }
 
-void mixer::impl::mix(const voice& v, std::uint64_t at, unsigned lo, unsigned hi) noexcept
+void mixer::impl::mix(const voice& v, unsigned n) noexcept
 {
-    const auto from = static_cast<unsigned>(std::max(v.start, at + lo) - at);
-    const auto to = static_cast<unsigned>(std::min(v.end, at + hi) - at);
-    const double* s = carrier.get(v, v.fade == fades::none ? nullptr : &fading[v.fade], at, lo, hi);
-    const auto k = static_cast<double>(static_cast<std::int64_t>(at - v.start));
+    const auto from = static_cast<unsigned>(std::max(v.start, position) - position);
+    const auto to = static_cast<unsigned>(std::min(v.end, position + n) - position);
+    const double* s = carrier.get(v, v.fade == fades::none ? nullptr : &fading[v.fade], position, n);
+    const auto k = static_cast<double>(static_cast<std::int64_t>(position - v.start));
     for (std::uint32_t i = 0; i < v.drives; ++i) {
         const voice_drive& d = v.drive[i];
         strip& t = strips[d.channel];
         if (!t.sounding) {
             t.sounding = true;
-            t.peak = 0.0;
+            t.peak = d.peak;
             sounding.push_back(d.channel);
-            std::fill(t.sum.begin() + lo, t.sum.begin() + hi, 0.0);
+            if (d.slope == 0.0 && to - from == n) {
+                set_constant(s, d.from, 0, n, t.sum.data());
+                continue;
+            }
+            std::fill_n(t.sum.begin(), n, 0.0);
+        } else {
+            t.peak += d.peak;
         }
-        t.peak += d.peak;
         if (d.slope == 0.0) {
             add_constant(s, d.from, from, to, t.sum.data());
         } else {
@@ -199,18 +203,18 @@ void mixer::impl::mix(const voice& v, std::uint64_t at, unsigned lo, unsigned hi
     }
 }
 
-void mixer::impl::write(unsigned lo, unsigned hi, std::byte* out) noexcept
+void mixer::impl::write(unsigned n, std::byte* out) noexcept
 {
     if (sounding.size() < strips.size()) {
-        std::memset(out, 0, (hi - lo) * frame_bytes);
+        std::memset(out, 0, n * frame_bytes);
     }
     const std::size_t sample = bytes_of(format);
     for (const std::uint32_t c : sounding) {
         strip& t = strips[c];
         if (!within_limit(t.peak, t.limit)) {
-            limited += limit_block(t.sum.data() + lo, hi - lo, t.limit);
+            limited += limit_block(t.sum.data(), n, t.limit);
         }
-        convert(format, t.sum.data() + lo, hi - lo, out + c * sample, frame_bytes);
+        convert(format, t.sum.data(), n, out + c * sample, frame_bytes);
         t.sounding = false;
     }
     sounding.clear();

@@ -57,7 +57,8 @@ private:
     std::unique_ptr<impl> impl_;
 };
 
-/// The limits of an array's channels (10^(max_dbfs / 20)) for `channels` channels; channels without a tactor: 0.
+/// The limits of an array's channels (10^(max_dbfs / 20)) for `channels` channels; channels without a tactor:
+/// 0.
 std::vector<double> channel_limits(const array& a, unsigned channels);
 
 }  // namespace tactor::synth

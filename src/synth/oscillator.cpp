@@ -18,7 +18,7 @@ std::size_t row_of(double cycles_per_frame, std::size_t rows) noexcept
 
 void fill(oscillator_table& t, double cycles_per_frame) noexcept
 {
-    for (unsigned j = 0; j < block_frames; ++j) {
+    for (unsigned j = 0; j < table_frames; ++j) {
         const sine_cosine v = sincos_cycles(cycles_per_frame * j);
         t.sin[j] = v.sin;
         t.cos[j] = v.cos;

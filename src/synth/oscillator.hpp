@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Carriers block by block: one exact angle a block, the rest by angle addition from a table, so no error
-/// piles up however long the carrier runs.
+/// Carriers: one exact angle each 64 frames, the rest by angle addition from a table, so no error piles up
+/// however long the carrier runs.
 #pragma once
 
 #include <array>
@@ -13,15 +13,17 @@
 
 namespace tactor::synth {
 
-/// Frames of a block. Blocks lie at multiples of it in the stream, whatever the sizes that are asked for.
-inline constexpr unsigned block_frames = 64;
+/// Most frames that are mixed at once. What a block holds does not depend on where it begins.
+inline constexpr unsigned block_frames = 128;
+/// Frames from one exact angle to the next.
+inline constexpr unsigned table_frames = 64;
 
 using block = std::array<double, block_frames>;
 
 /// Sine and cosine of the first frames of one frequency.
 struct oscillator_table {
-    alignas(32) block sin;
-    alignas(32) block cos;
+    alignas(64) std::array<double, table_frames> sin;
+    alignas(64) std::array<double, table_frames> cos;
 };
 
 /// The tables of the frequencies in use: a few places for each by its bits; a new one takes the place of the
@@ -43,24 +45,24 @@ private:
     std::vector<oscillator_table> tables_;
 };
 
-/// What lies between two multiples of block_frames of a carrier's own count: `base` is the frame of the
+/// What lies between two multiples of table_frames of a carrier's own count: `base` is the frame of the
 /// multiple. The angle addition starts there, wherever the blocks of the stream lie, so that a stroke has the
 /// same samples wherever it begins.
 struct table_part {
     std::int64_t base = 0;
-    unsigned lo = 0; ///< in the stream's block
+    unsigned lo = 0;  ///< in the block
     unsigned hi = 0;
-    unsigned offset = 0; ///< place in the table of lo
+    unsigned offset = 0;  ///< place in the table of lo
 };
 
-/// Calls f(table_part) for the one or two parts of frames first + lo ... first + hi - 1.
+/// Calls f(table_part) for the parts of frames first + lo ... first + hi - 1.
 template <class F>
 void for_each_part(std::int64_t first, unsigned lo, unsigned hi, F f) noexcept
 {
     while (lo < hi) {
         const std::int64_t k = first + lo;
-        const auto offset = static_cast<unsigned>(static_cast<std::uint64_t>(k) % block_frames);
-        const unsigned end = hi - lo < block_frames - offset ? hi : lo + block_frames - offset;
+        const auto offset = static_cast<unsigned>(static_cast<std::uint64_t>(k) % table_frames);
+        const unsigned end = hi - lo < table_frames - offset ? hi : lo + table_frames - offset;
         f(table_part{k - offset, lo, end, offset});
         lo = end;
     }

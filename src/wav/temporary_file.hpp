@@ -36,7 +36,7 @@ private:
 
     std::filesystem::path asked_;     ///< as the user named it, for messages
     std::filesystem::path target_;    ///< links followed
-    std::filesystem::path temporary_; ///< empty: written to directly
+    std::filesystem::path temporary_;  ///< empty: written to directly
     int fd_ = -1;
     int failure_ = 0;
 };

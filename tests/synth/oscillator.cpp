@@ -105,8 +105,8 @@ TEST_CASE("the window of any place is the formula")
         const auto n = static_cast<std::int64_t>(1 + random() % 300);
         const auto r = static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(n / 2 + 1));
         const auto first = static_cast<std::int64_t>(random() % 500) - 100;
-        const auto lo = static_cast<unsigned>(random() % 64);
-        const auto hi = lo + static_cast<unsigned>(random() % (65 - lo));
+        const auto lo = static_cast<unsigned>(random() % synth::block_frames);
+        const auto hi = lo + static_cast<unsigned>(random() % (synth::block_frames + 1 - lo));
         synth::block x;
         x.fill(1.0);
         synth::window_block(tables, first, static_cast<std::uint64_t>(n), static_cast<std::uint64_t>(r), lo,
