@@ -17,18 +17,19 @@ MAY_INCLUDE = {
     "gpio": {"rt"},
     "alsa": {"model", "rt"},
     "engine": {"model", "plan", "synth", "rt", "gpio"},
-    "cli": set(),
+    "plot": set(),
+    "cli": {"plot"},
     "server": set(),
 }
 # The room that a public header belongs to; a room may use the public headers of the rooms it may include.
 PUBLIC = {
     "api": None, "error": None, "version": None, "geometry": None, "tactor": "engine",
     "array": "model", "path": "model", "setup": "model", "stroke": "model",
-    "phantom": "plan", "plan": "plan",
+    "phantom": "plan", "plan": "plan", "percept": "plan",
     "render": "synth", "sample_format": None, "wav": "wav",
     "sink": None, "alsa": "alsa", "player": "engine",
 }
-USES_ALL_PUBLIC = {"cli", "server"}
+USES_ALL_PUBLIC = {"cli", "plot", "server"}
 # Header prefix: the only places that may include it.
 ONLY_IN = {
     "alsa/asoundlib.h": ["src/alsa/"],
@@ -40,6 +41,7 @@ ONLY_IN = {
     "boost/asio": ["src/engine/", "src/server/"],
     "sndfile": ["src/wav/"],
     "CLI/": ["src/cli/"],
+    "cairo": ["src/plot/"],
     "nlohmann/": ["src/cli/", "src/server/"],
 }
 # Standard headers of threads and clocks that the pure rooms must not see.
