@@ -73,7 +73,9 @@ TACTOR_API std::string_view to_string(phantom_kind k) noexcept;
 /// \throws error (bad_input) that lists the names.
 TACTOR_API phantom_kind phantom_from_string(std::string_view name);
 
-/// A built-in model on a layout. O(log n) in the tactors for each point.
+/// A built-in model on a layout. O(log n) in the tactors for each point, and O(k log k) in those of the
+/// face, which matters only where hundreds lie on one circle. A point outside the hull is taken for the
+/// nearest point of it. \throws error (bad_input), from weights(), for what is not finite or below 0.
 TACTOR_API std::shared_ptr<const phantom_model> make_phantom(phantom_kind k, const layout& l);
 
 } // namespace tactor

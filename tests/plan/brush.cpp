@@ -7,6 +7,7 @@
 #include <tactor/plan.hpp>
 
 #include "arrays.hpp"
+#include "plan/job.hpp"
 #include "strokes.hpp"
 
 using namespace tactor;
@@ -128,6 +129,10 @@ TEST_CASE("a closed path starts and ends at one place, and both play")
         CHECK(p.bursts[i].drives[0].tactor == expected[i]);
         CHECK(*p.bursts[i].tau_s == doctest::Approx(i).epsilon(1e-6));
     }
+    // A place that is left and met again counts twice.
+    CHECK(
+        make_plan(palm, along("M 10 0 L 20 10 L 30 5 L 30 15 L 20 10 L 10 20", 4.0), brush()).bursts.size() ==
+        4);
     // A loop inside one cell meets nothing else.
     CHECK(make_plan(palm, along("M 0 10 L 10 5 L 10 15 Z", 2.0), brush()).bursts.size() == 2);
 }
@@ -165,6 +170,30 @@ TEST_CASE("a start or end off the grid is refused with the nearest point on it; 
     const plan q = make_plan(palm, along("M 10 21 L 10 0", 1.0), o);
     REQUIRE(q.bursts.size() == 2);
     CHECK(q.bursts[0].position == point{10.0, 20.0});
+}
+
+TEST_CASE("conflicts of bursts inside one another, one after the other, and side by side")
+{
+    const auto sounds = [](unsigned tactor, double from, double to) {
+        burst b;
+        b.onset_s = from;
+        b.duration_s = to - from;
+        b.drives = {{tactor, 1.0}};
+        return b;
+    };
+    const auto found =
+        detail::find_conflicts({sounds(3, 0.0, 1.0), sounds(2, 0.05, 0.3), sounds(3, 0.1, 0.5),
+                                sounds(2, 0.1, 0.2), sounds(3, 0.2, 0.3), sounds(3, 0.7, 0.8),
+                                sounds(3, 0.8, 1.2), sounds(2, 0.3, 0.4), sounds(3, 1.2 - 1e-10, 1.4)});
+    REQUIRE(found.size() == 3);
+    CHECK(found[0].tactor == 2);
+    CHECK(found[0].from_s == doctest::Approx(0.1));
+    CHECK(found[0].to_s == doctest::Approx(0.2));
+    CHECK(found[1].tactor == 3);
+    CHECK(found[1].from_s == doctest::Approx(0.1));
+    CHECK(found[1].to_s == doctest::Approx(0.5));
+    CHECK(found[2].from_s == doctest::Approx(0.7));
+    CHECK(found[2].to_s == doctest::Approx(1.0));
 }
 
 TEST_CASE("conflicts: when two bursts or more sound on one tactor, merged, by time and then by tactor")

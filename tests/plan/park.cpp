@@ -101,7 +101,11 @@ TEST_CASE("fit: both ends of the path are sampled, with the fewest intervals")
         REQUIRE(p.bursts[0].duration_s >= 0.02 - 1e-8);
         REQUIRE(p.bursts[0].duration_s == doctest::Approx(std::min((*p.soa_s - 0.0473) / 0.32, *p.soa_s)));
     }
-    CHECK(make_plan(palm, across(1.4), o).bursts.size() == 21);
+    for (unsigned n = 1; n <= 500; ++n) {
+        const plan p = make_plan(palm, across(n * 0.07), o);
+        REQUIRE(p.bursts.size() == n + 1);
+        REQUIRE(*p.soa_s == doctest::Approx(0.07).epsilon(1e-12));
+    }
     CHECK(make_plan(palm, across(0.05), o).bursts.size() == 1);
     CHECK(make_plan(palm, across(0.05), o).soa_s == 0.07);
 }

@@ -173,3 +173,23 @@ TEST_CASE("the energy centroid of inverse distance misses the point by up to 4.7
         }
     CHECK(worst == doctest::Approx(4.7).epsilon(0.02));
 }
+
+TEST_CASE("ties in distance go to the lowest tactor by row and column, within a nanometre")
+{
+    for (const double noise : {0.0, 3e-7}) {
+        array a = preset_array("palm-3x3");
+        for (std::size_t i = 0; i < 9; ++i)
+            a.tactors[i].position.y_mm += i % 2 == 0 ? noise : 0.0;
+        const layout l(a);
+        const auto at = [&](double x, double y) {
+            return tactors_of(weights(l, phantom_kind::inverse_distance, {x, y}));
+        };
+        CAPTURE(noise);
+        CHECK(at(10.0, 3.0) == std::vector<unsigned>{0, 1, 3});
+        CHECK(at(3.0, 10.0) == std::vector<unsigned>{0, 1, 3});
+        CHECK(at(10.0, 17.0) == std::vector<unsigned>{0, 3, 4});
+        CHECK(at(17.0, 10.0) == std::vector<unsigned>{0, 1, 4});
+        CHECK(at(10.0, 10.0) == std::vector<unsigned>{0, 4});
+        CHECK(at(30.0, 30.0) == std::vector<unsigned>{4, 8});
+    }
+}
