@@ -14,7 +14,7 @@ MAY_INCLUDE = {
     "synth": {"model", "plan"},
     "wav": {"model", "plan", "synth"},
     "rt": set(),
-    "gpio": {"rt"},
+    "gpio": {"model", "rt"},
     "alsa": {"model", "rt"},
     "engine": {"model", "plan", "synth", "rt", "gpio"},
     "plot": set(),
@@ -27,7 +27,7 @@ PUBLIC = {
     "array": "model", "path": "model", "setup": "model", "stroke": "model",
     "phantom": "plan", "plan": "plan", "percept": "plan",
     "render": "synth", "sample_format": None, "wav": "wav",
-    "sink": None, "alsa": "alsa", "player": "engine",
+    "gpio": "gpio", "sink": None, "alsa": "alsa", "player": "engine",
 }
 USES_ALL_PUBLIC = {"cli", "plot", "server"}
 # Header prefix: the only places that may include it.

@@ -7,6 +7,7 @@
 #include <tactor/array.hpp>
 #include <tactor/error.hpp>
 #include <tactor/geometry.hpp>
+#include <tactor/gpio.hpp>
 #include <tactor/path.hpp>
 #include <tactor/percept.hpp>
 #include <tactor/phantom.hpp>

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// GPIO lines: amplifier enable, sync pulses, start triggers. Through libgpiod, version 1 or 2.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tactor/api.hpp>
+#include <tactor/setup.hpp>
+
+namespace tactor {
+
+/// One output that is on or off, e.g. the enable input of an amplifier. Derive from it for hardware of your
+/// own.
+class TACTOR_API enable_line {
+public:
+    virtual ~enable_line();
+    /// Switches. False when that failed; the player then stops the stream. One ioctl or write of a few
+    /// microseconds, no allocation. Not the audio thread.
+    virtual bool set(bool on) noexcept = 0;
+};
+
+/// The amplifier's enable line, owned by a small process of its own (the holder), which switches it off when
+/// this process ends in any way, SIGKILL included, and when it is told to. Requested as off. Blocks until
+/// the holder has the line. Call it before real-time threads exist; it forks.
+/// \throws error: not_available when there is no such chip or line (which there are), it is busy (by whom),
+/// or
+///         may not be opened (which group to join).
+TACTOR_API std::unique_ptr<enable_line> open_amplifier(const amplifier_settings& s);
+
+/// A line of this process's own, requested as an output that is off; switched off again when destroyed. For
+/// sync pulses. Throws like open_amplifier.
+TACTOR_API std::unique_ptr<enable_line> open_output(const gpio_line_name& line, bool active_low = false);
+
+/// One edge on an input.
+struct gpio_edge {
+    std::int64_t time_ns = 0; ///< CLOCK_MONOTONIC, stamped by the kernel
+    bool rising = true;
+};
+
+/// An input that reports edges.
+class TACTOR_API edge_input {
+public:
+    virtual ~edge_input();
+    /// Readable when an edge waits; owned by this object.
+    virtual int descriptor() const noexcept = 0;
+    /// The next edge, or nothing. Does not block.
+    virtual std::optional<gpio_edge> read() noexcept = 0;
+};
+
+/// `edge`: "rising", "falling" or "both". Edges that follow another within `debounce_ms` are dropped.
+/// `pull`: "up", "down", "none" or "as-is". Throws like open_amplifier, bad_input for an unknown word.
+TACTOR_API std::unique_ptr<edge_input> open_edges(const gpio_line_name& line, const std::string& edge,
+                                                  double debounce_ms = 1.0,
+                                                  const std::string& pull = "as-is");
+
+/// What `tactor devices` lists.
+struct gpio_line_info {
+    unsigned offset = 0;
+    std::string name = {};     ///< empty: none
+    std::string consumer = {}; ///< who holds it; empty: nobody
+    bool output = false;
+};
+struct gpio_chip_info {
+    std::string path = {};  ///< /dev/gpiochipN
+    std::string name = {};  ///< gpiochipN
+    std::string label = {}; ///< e.g. "pinctrl-rp1"
+    std::vector<gpio_line_info> lines = {};
+    std::string error = {}; ///< why it could not be opened; empty: it could
+};
+
+/// All GPIO chips, by path. Does not throw for chips that cannot be opened. Blocks shortly.
+TACTOR_API std::vector<gpio_chip_info> list_gpio();
+
+} // namespace tactor
