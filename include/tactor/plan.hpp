@@ -42,7 +42,7 @@ struct plan_options {
     /// A model of your own instead of `phantom`; it must outlive nothing, the plan shares it.
     std::shared_ptr<const phantom_model> custom_phantom = {};
     timing_profile profile;
-    double soa_s = 0.07; ///< intercept < soa <= max_soa
+    double soa_s = 0.07; ///< intercept < soa <= max_soa; for `fit` the longest one
     timing schedule = timing::fixed;
     double min_duration_s = 0.020; ///< shortest burst that `fit` may use
     outside leave = outside::error;
@@ -90,6 +90,8 @@ struct plan {
 };
 
 /// Interval at which `continuous` evaluates the phantom; linear between.
+/// Also the interval at which its planning looks for where the path leaves the array, wider for strokes
+/// of more than 1000 s (a million looks at most); what slips through is clamped.
 inline constexpr double continuous_step_s = 0.001;
 
 /// Plans one stroke on an array. `l` must be the layout of `a`.
