@@ -8,8 +8,8 @@ namespace tactor::detail {
 namespace {
 
 // Where the path leaves the array is looked for each continuous_step_s, but not oftener than this; a stroke
-// of of more than about a quarter of an hour is looked at in wider steps. more than about a quarter of an
-// hour is looked at in wider steps.
+// of more than about a quarter of an hour is looked at in wider steps.
+constexpr double most_checks = 1e6;
 
 void check_inside(const job& j)
 {
