@@ -70,7 +70,7 @@ void audio_loop::broken(io_status s, int code, std::int64_t now) noexcept
         link_.count.xruns.fetch_add(1, std::memory_order_relaxed);
         // It stopped because it had played everything.
         silence_all(reason::xrun, code, mixer_.position() - pending_);
-        return restart(now);
+        return too_often(now) ? finish(reason::lost, -EPIPE) : restart(now);
     case io_status::suspended:
         silence_all(reason::suspended, code, played_);
         phase_ = phase::suspended;
@@ -106,7 +106,7 @@ void audio_loop::restart(std::int64_t now) noexcept
 {
     if (stop_asked_)
         return finish(reason::none, 0);
-    io_result r{io_status::xrun, 0, 0};
+    io_result r = begin_epoch();
     while (r.status == io_status::xrun) {
         if (too_often(now))
             return finish(reason::lost, -EPIPE);
@@ -116,7 +116,7 @@ void audio_loop::restart(std::int64_t now) noexcept
         phase_ = phase::running;
         moved(now);
     } else if (r.status == io_status::suspended) {
-        phase_ = phase::suspended;
+        phase_ = phase::suspended; // not awake yet: once more in the next period
         suspended_ns_ = now;
     } else {
         finish(to_reason(r.status), r.code);

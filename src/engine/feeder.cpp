@@ -38,34 +38,38 @@ void feeder::pump(std::uint64_t written)
 {
     if (stream_over_)
         return;
-    admit(written);
-    while (feed_next(written)) {
+    // While a score waits for room, the others may not use up what becomes free.
+    const std::uint64_t horizon = admit(written) ? horizon_ : horizon_ / 2;
+    while (feed_next(written, horizon)) {
     }
 }
 
-// Begins what is due within the horizon, the earliest first.
-void feeder::admit(std::uint64_t written)
+// Begins what is due within the horizon, the earliest first; false when the ring had too little room. Some
+// drives must follow a begin at once, or the first would come too late.
+bool feeder::admit(std::uint64_t written)
 {
+    const std::size_t enough = std::min(link_.commands.capacity(), 2 + link_.commands.capacity() / 8);
     while (!waiting_.empty() && waiting_.begin()->first <= written + horizon_ && in_use_.size() < voices) {
         const auto free =
             std::find_if(slots_.begin(), slots_.end(), [](const slot& s) { return !s.use.has_value(); });
         const auto place = static_cast<std::uint32_t>(free - slots_.begin());
         const auto& [at, w] = *waiting_.begin();
-        active a{.id = w.id, .music = w.music, .at = at, .source = synth::event_source(w.music)};
-        if (!push({.what = command::kind::begin,
-                   .score = place + voices * free->generation,
-                   .id = w.id,
-                   .at = at,
-                   .length = w.music.frames()}))
-            return;
-        free->use = std::move(a);
+        if (!has_room(enough))
+            return false;
+        free->use = active{.id = w.id, .music = w.music, .at = at, .source = synth::event_source(w.music)};
+        push({.what = command::kind::begin,
+              .score = place + voices * free->generation,
+              .id = w.id,
+              .at = at,
+              .length = w.music.frames()});
         in_use_.push_back(place);
         waiting_.erase(waiting_.begin());
     }
+    return true;
 }
 
 // Hands over the drive that starts first; false when there is none within the horizon, or no room.
-bool feeder::feed_next(std::uint64_t written)
+bool feeder::feed_next(std::uint64_t written, std::uint64_t horizon)
 {
     slot* first = nullptr;
     std::uint32_t first_place = 0;
@@ -84,7 +88,7 @@ bool feeder::feed_next(std::uint64_t written)
             first_start = start;
         }
     }
-    if (first == nullptr || first_start > written + horizon_)
+    if (first == nullptr || first_start > written + horizon)
         return false;
 
     active& a = *first->use;
@@ -102,13 +106,19 @@ bool feeder::feed_next(std::uint64_t written)
     return true;
 }
 
-bool feeder::push(const command& c)
+bool feeder::has_room(std::size_t n)
 {
-    if (link_.commands.push(c))
+    if (link_.commands.room() >= n)
         return true;
+    // The audio thread either sees this flag after it made room, or the room is there already.
     link_.feeder_waits.store(true, std::memory_order_seq_cst);
     std::atomic_thread_fence(std::memory_order_seq_cst);
-    return link_.commands.push(c);
+    return link_.commands.room() >= n;
+}
+
+bool feeder::push(const command& c)
+{
+    return has_room(1) && link_.commands.push(c);
 }
 
 feeder::slot* feeder::slot_of(ticket t) noexcept

@@ -70,8 +70,9 @@ private:
         std::optional<active> use;
     };
 
-    void admit(std::uint64_t written);
-    bool feed_next(std::uint64_t written);
+    bool admit(std::uint64_t written);
+    bool feed_next(std::uint64_t written, std::uint64_t horizon);
+    bool has_room(std::size_t n);
     bool push(const command& c);
     slot* slot_of(ticket t) noexcept;
     void release(slot& s) noexcept;

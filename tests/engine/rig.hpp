@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The engine without its threads: a fake DAC, the audio loop and the feeder, stepped by hand.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <random>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <poll.h>
+
+#include <tactor/sink.hpp>
+
+#include "alsa/adopt.hpp"
+#include "engine/audio_loop.hpp"
+#include "engine/feeder.hpp"
+#include "fake_dac.hpp"
+#include "scores.hpp"
+
+namespace tactor::test {
+
+/// Takes fewer frames than it could, and often none.
+class stingy_sink final : public sink {
+public:
+    explicit stingy_sink(std::unique_ptr<sink> s) : inner_(std::move(s)) {}
+
+    const stream_setup& setup() const noexcept override { return inner_->setup(); }
+    io_status prepare() noexcept override { return inner_->prepare(); }
+    io_status start() noexcept override { return inner_->start(); }
+    io_status resume() noexcept override { return inner_->resume(); }
+    std::size_t max_descriptors() const noexcept override { return inner_->max_descriptors(); }
+    std::size_t descriptors(std::span<pollfd> f) noexcept override { return inner_->descriptors(f); }
+    io_status ready(std::span<pollfd> f) noexcept override { return inner_->ready(f); }
+    io_result room() noexcept override { return inner_->room(); }
+    io_result write(const std::byte* data, std::size_t frames) noexcept override
+    {
+        switch (random_() % 4) {
+        case 0:
+            return {};
+        case 1:
+            return {io_status::again, 0, -EAGAIN};
+        case 2:
+            return inner_->write(data, 1 + random_() % frames);
+        default:
+            return inner_->write(data, frames);
+        }
+    }
+    stream_position position() noexcept override { return inner_->position(); }
+    void drop() noexcept override { inner_->drop(); }
+
+private:
+    std::unique_ptr<sink> inner_;
+    std::minstd_rand random_;
+};
+
+struct rig_options {
+    sample_format format = sample_format::s32;
+    unsigned channels = 9;
+    unsigned period = 96;
+    unsigned periods = 3;
+    std::size_t ring = 2048;
+    bool stingy = false;
+    engine::loop_options loop{};
+    fake_dac_options dac{};
+};
+
+class rig {
+public:
+    explicit rig(const rig_options& o = {})
+        : dac(o.dac),
+          out(pcm::adopt(dac.pcm(), {.pcm = "fake",
+                                     .channels = o.channels,
+                                     .rate = rate,
+                                     .format = o.format,
+                                     .period_frames = o.period,
+                                     .periods = o.periods,
+                                     .config_text = {}})),
+          link(o.ring),
+          feed(link, o.loop.horizon_frames),
+          limits(o.channels, 1.0),
+          loop(o.stingy ? make_stingy() : *out, link, limits, o.loop),
+          options(o)
+    {
+    }
+
+    io_result start() { return loop.start(now); }
+
+    stroke_id submit(const score& s, std::uint64_t at = 0)
+    {
+        feed.submit(++last_id, s, at);
+        feed.pump(status().written);
+        return last_id;
+    }
+
+    engine::stream_status status() const { return link.status.load(); }
+
+    /// One wake-up of the audio thread: poll, step.
+    void step()
+    {
+        io_status ready = io_status::again;
+        if (loop.polls_sink()) {
+            std::array<pollfd, 4> fds{};
+            const std::size_t n = out->descriptors(fds);
+            ::poll(fds.data(), n, 0);
+            ready = out->ready(std::span(fds).first(n));
+        }
+        now += static_cast<std::int64_t>(1e9 * options.period / rate);
+        loop.step(ready, now);
+    }
+
+    /// One wake-up of the control thread.
+    void control()
+    {
+        engine::report r;
+        while (link.reports.pop(r))
+            feed.handle(r);
+        for (const stroke_report& e : feed.take_reports())
+            ended[e.id].push_back(e);
+        feed.pump(status().written);
+    }
+
+    /// The DAC plays so many frames, a period at a time, and both threads do their work.
+    void play(std::uint64_t frames)
+    {
+        for (std::uint64_t n = 0; n < frames && !loop.over(); n += options.period) {
+            dac.advance_queued(options.period);
+            step();
+            control();
+        }
+    }
+
+    /// Plays until all strokes have ended; gives up after a while.
+    void play_out()
+    {
+        for (int i = 0; i < 100'000 && ended.size() < last_id && !loop.over(); ++i)
+            play(options.period);
+    }
+
+    /// The only report of a stroke, if there is exactly one.
+    std::optional<stroke_report> report(stroke_id id) const
+    {
+        const auto found = ended.find(id);
+        if (found == ended.end() || found->second.size() != 1)
+            return std::nullopt;
+        return found->second.front();
+    }
+
+    /// Frames captured from `from` on, as many as `frames`; zeros beyond the end.
+    std::vector<std::byte> captured(std::uint64_t from, std::uint64_t frames) const
+    {
+        const std::vector<std::byte> all = dac.captured();
+        const std::size_t size = dac.frame_bytes();
+        std::vector<std::byte> part(frames * size);
+        const std::size_t first = std::min<std::size_t>(from * size, all.size());
+        const std::size_t n = std::min(part.size(), all.size() - first);
+        std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(first), n, part.begin());
+        return part;
+    }
+
+    /// First captured frame that is not silent; none if all is.
+    std::optional<std::uint64_t> first_sound(std::uint64_t from = 0) const
+    {
+        const std::vector<std::byte> all = dac.captured();
+        const auto begin = all.begin() + static_cast<std::ptrdiff_t>(
+                                             std::min<std::size_t>(from * dac.frame_bytes(), all.size()));
+        const auto found = std::find_if(begin, all.end(), [](std::byte b) { return b != std::byte{0}; });
+        if (found == all.end())
+            return std::nullopt;
+        return static_cast<std::uint64_t>(found - all.begin()) / dac.frame_bytes();
+    }
+
+    sink& make_stingy()
+    {
+        out = std::make_unique<stingy_sink>(std::move(out));
+        return *out;
+    }
+
+    fake_dac dac;
+    std::unique_ptr<sink> out;
+    engine::link link;
+    engine::feeder feed;
+    std::vector<double> limits;
+    engine::audio_loop loop;
+    rig_options options;
+    std::int64_t now = 1'000'000'000'000;
+    stroke_id last_id = 0;
+    std::map<stroke_id, std::vector<stroke_report>> ended;
+};
+
+} // namespace tactor::test

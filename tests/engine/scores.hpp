@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Scores for the tests, and what the renderer makes of them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include <tactor/array.hpp>
+#include <tactor/render.hpp>
+
+namespace tactor::test {
+
+inline constexpr unsigned rate = 48000;
+
+/// Nine channels, 3 x 3.
+inline array palm()
+{
+    return make_grid("palm", 3, 3, 20.0, 20.0);
+}
+
+/// Bursts of 20 to 90 ms on one to three tactors, each after the other with an SOA of 70 ms.
+inline score random_score(std::uint64_t seed, unsigned bursts, unsigned channels = 0, const array& a = palm())
+{
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    plan p;
+    for (unsigned k = 0; k < bursts; ++k) {
+        burst b;
+        b.onset_s = 0.07 * k;
+        b.duration_s = 0.02 + 0.05 * uniform(random);
+        const auto first = static_cast<unsigned>(random() % (a.tactors.size() - 2));
+        for (unsigned i = 0; i <= random() % 3; ++i)
+            b.drives.push_back({.tactor = first + i, .amplitude = 0.05 + 0.5 * uniform(random)});
+        p.bursts.push_back(b);
+        p.total_s = b.onset_s + b.duration_s;
+        p.stroke_duration_s = p.total_s;
+    }
+    render_options o;
+    o.rate = rate;
+    o.channels = channels;
+    return {a, {{.schedule = p, .start_s = {}}}, o};
+}
+
+/// One burst on one tactor.
+inline score tone(double seconds, unsigned tactor = 0)
+{
+    plan p;
+    burst b;
+    b.duration_s = seconds;
+    b.drives = {{.tactor = tactor, .amplitude = 1.0}};
+    p.bursts.push_back(b);
+    p.total_s = seconds;
+    p.stroke_duration_s = seconds;
+    render_options o;
+    o.rate = rate;
+    return {palm(), {{.schedule = p, .start_s = {}}}, o};
+}
+
+/// What the offline renderer makes of a score, in one call.
+inline std::vector<std::byte> rendered(const score& s, sample_format f)
+{
+    std::vector<std::byte> out(s.frames() * s.channels() * bytes_of(f));
+    renderer(s, f).process(s.frames(), out.data());
+    return out;
+}
+
+} // namespace tactor::test

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+// Each stroke ends once, in the state that is true.
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "rig.hpp"
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+std::int32_t sample(const std::vector<std::byte>& bytes, std::size_t i)
+{
+    std::int32_t v = 0;
+    std::memcpy(&v, &bytes[i * 4], 4);
+    return v;
+}
+
+// Largest step from frame to frame in channel 0, relative to the peak of a tone of `amplitude`.
+double largest_step(const std::vector<std::byte>& bytes, unsigned channels)
+{
+    double worst = 0.0;
+    for (std::size_t f = 1; f < bytes.size() / 4 / channels; ++f) {
+        const double a = sample(bytes, (f - 1) * channels);
+        const double b = sample(bytes, f * channels);
+        worst = std::max(worst, std::abs(b - a));
+    }
+    return worst / 2147483648.0;
+}
+
+} // namespace
+
+TEST_CASE("a stroke is not finished before its last frame has reached the DAC")
+{
+    rig r;
+    REQUIRE(r.start().status == io_status::ok);
+    const score s = tone(0.01);
+    const std::uint64_t end = r.status().written + s.frames();
+    const stroke_id id = r.submit(s);
+    while (r.status().played < end) {
+        CHECK(r.ended.empty());
+        r.play(96);
+        REQUIRE_FALSE(r.loop.over());
+    }
+    REQUIRE(r.report(id));
+    CHECK(r.report(id)->state == stroke_state::finished);
+    CHECK(r.report(id)->frames == s.frames());
+    CHECK(r.report(id)->reason.empty());
+}
+
+TEST_CASE("a cancelled stroke fades and is then reported once, with the frames that it got")
+{
+    rig r;
+    REQUIRE(r.start().status == io_status::ok);
+    const std::uint64_t from = r.status().written;
+    const stroke_id id = r.submit(tone(10.0));
+    r.play(9600);
+    const std::uint64_t fade_from = r.status().written;
+    CHECK(r.feed.cancel(id));
+    CHECK_FALSE(r.feed.cancel(id));
+    r.play(9600);
+    REQUIRE(r.report(id));
+    CHECK(r.report(id)->state == stroke_state::cancelled);
+    CHECK(r.report(id)->frames == fade_from + 480 - from);
+    CHECK_FALSE(r.first_sound(fade_from + 480));
+    CHECK(r.first_sound(fade_from + 470));
+    // A 250 Hz sine of -12 dBFS moves by at most 0.0083 a frame; a fade of 10 ms adds next to nothing.
+    const double tone_step = 0.2512 * 2 * 3.14159265 * 250 / rate;
+    CHECK(largest_step(r.captured(from, fade_from + 600 - from), 9) < tone_step * 1.1);
+    CHECK_FALSE(r.feed.cancel(id));
+    CHECK(r.feed.take_reports().empty());
+}
+
+TEST_CASE("cancelling leaves the other strokes alone")
+{
+    rig r({.format = sample_format::s32});
+    REQUIRE(r.start().status == io_status::ok);
+    const score other = random_score(4, 10);
+    const std::uint64_t from = r.status().written;
+    r.submit(other);
+    const stroke_id id = r.submit(tone(0.5, 8), from + 10 * 48000);
+    r.play(960);
+    CHECK(r.feed.cancel(id));
+    r.play_out();
+    CHECK(r.captured(from, other.frames()) == rendered(other, sample_format::s32));
+    CHECK(r.report(1)->state == stroke_state::finished);
+    CHECK(r.report(id)->state == stroke_state::cancelled);
+    CHECK(r.report(id)->frames == 0);
+}
+
+TEST_CASE("a cancel before, in, and after the hand-over ends a stroke once and without a sound")
+{
+    for (const std::uint64_t ahead : {std::uint64_t{1'000'000}, std::uint64_t{10'000}, std::uint64_t{0}}) {
+        CAPTURE(ahead);
+        rig r;
+        REQUIRE(r.start().status == io_status::ok);
+        const stroke_id id = r.submit(tone(0.5), ahead == 0 ? 0 : r.status().written + ahead);
+        if (ahead == 10'000)
+            r.play(960);
+        CHECK(r.feed.cancel(id));
+        r.play(20'000);
+        REQUIRE(r.report(id));
+        CHECK(r.report(id)->state == stroke_state::cancelled);
+        CHECK(r.report(id)->frames == 0);
+        CHECK_FALSE(r.first_sound());
+        CHECK(r.feed.stream_over() == false);
+    }
+}
+
+TEST_CASE("an unknown stroke cannot be cancelled")
+{
+    rig r;
+    CHECK_FALSE(r.feed.cancel(1));
+}
+
+TEST_CASE("cancels at random times: each stroke ends once, and the stream goes on")
+{
+    std::mt19937_64 random(21);
+    rig r({.ring = 64});
+    REQUIRE(r.start().status == io_status::ok);
+    unsigned cancelled = 0;
+    for (int i = 0; i < 3000; ++i) {
+        if (random() % 8 == 0)
+            r.submit(tone(0.001 + 0.2 * static_cast<double>(random() % 100) / 100, random() % 9),
+                     random() % 2 == 0 ? 0 : r.status().written + random() % 40'000);
+        if (random() % 8 == 0 && r.last_id > 0)
+            cancelled +=
+                static_cast<unsigned>(r.feed.cancel(1 + static_cast<stroke_id>(random() % r.last_id)));
+        r.play(96);
+    }
+    r.play_out();
+    CHECK(cancelled > 10);
+    CHECK(r.ended.size() == r.last_id);
+    unsigned reported = 0;
+    for (const auto& [id, reports] : r.ended) {
+        REQUIRE(reports.size() == 1);
+        CHECK(reports[0].state != stroke_state::interrupted);
+        reported += static_cast<unsigned>(reports[0].state == stroke_state::cancelled);
+    }
+    // One that was all on its way to the DAC when it was cancelled has finished.
+    CHECK(reported <= cancelled);
+    CHECK(r.status().running);
+}
+
+TEST_CASE("stop fades what sounds, waits until it is out, and drops the stream")
+{
+    for (const bool closing : {false, true}) {
+        CAPTURE(closing);
+        rig r;
+        REQUIRE(r.start().status == io_status::ok);
+        const stroke_id sounding = r.submit(tone(5.0));
+        const stroke_id later = r.submit(tone(5.0), r.status().written + 12'000);
+        const stroke_id far = r.submit(tone(5.0), r.status().written + 10 * rate);
+        r.play(4800);
+        const std::uint64_t next = r.status().written;
+        if (closing)
+            r.feed.set_closing();
+        r.link.requests.push({.what = engine::request::kind::stop, .closing = closing});
+        r.play(48'000);
+        CHECK(r.loop.over());
+        CHECK_FALSE(r.dac.running());
+        CHECK(r.feed.stream_over());
+        const auto state = closing ? stroke_state::interrupted : stroke_state::cancelled;
+        for (const stroke_id id : {sounding, later, far}) {
+            REQUIRE(r.report(id));
+            CHECK(r.report(id)->state == state);
+            CHECK(r.report(id)->reason == (closing ? "the player was closed" : ""));
+            CHECK((r.report(id)->frames > 0) == (id == sounding));
+        }
+        CHECK_FALSE(r.first_sound(next + 480));
+        // The fade and a period of silence left the buffer before the drop.
+        CHECK(r.dac.captured_frames() >= next + 480 + 96);
+        CHECK(r.dac.captured_frames() <= next + 480 + 96 * 8);
+    }
+}
+
+TEST_CASE("a stopped loop stays stopped")
+{
+    rig r;
+    REQUIRE(r.start().status == io_status::ok);
+    r.link.requests.push({.what = engine::request::kind::stop});
+    r.play(48'000);
+    REQUIRE(r.loop.over());
+    const std::uint64_t frames = r.dac.captured_frames();
+    for (int i = 0; i < 10; ++i)
+        r.step();
+    CHECK(r.dac.captured_frames() == frames);
+}
+
+TEST_CASE("drives that come too late end the stroke instead of starting in mid-burst")
+{
+    rig r({.loop = {.horizon_frames = 2400}});
+    REQUIRE(r.start().status == io_status::ok);
+    const std::uint64_t from = r.status().written;
+    const score s = random_score(31, 20);
+    const stroke_id id = r.submit(s);
+    // The control thread sleeps for much longer than its horizon.
+    for (int i = 0; i < 200; ++i) {
+        r.dac.advance_queued(96);
+        r.step();
+    }
+    r.play_out();
+    REQUIRE(r.report(id));
+    CHECK(r.report(id)->state == stroke_state::interrupted);
+    CHECK(r.report(id)->reason.find("too slow") != std::string::npos);
+    // What sounded is a true beginning of the stroke.
+    const std::uint64_t sure = 2400 - 480;
+    const std::vector<std::byte> all = rendered(s, sample_format::s32);
+    const std::vector<std::byte> got = r.captured(from, sure);
+    CHECK(std::equal(got.begin(), got.end(), all.begin()));
+    CHECK_FALSE(r.first_sound(from + 2400 + 4800 + 480));
+}
+
+TEST_CASE("the display sees the newest stroke that sounds")
+{
+    rig r;
+    REQUIRE(r.start().status == io_status::ok);
+    CHECK(r.status().running);
+    CHECK_FALSE(r.status().sounding);
+    const std::uint64_t base = r.status().written;
+    const stroke_id a = r.submit(tone(1.0));
+    const stroke_id b = r.submit(tone(0.2), base + 9600);
+    r.play(4800);
+    CHECK(r.status().sounding);
+    CHECK(r.status().stroke == a);
+    CHECK(r.status().stroke_frame == r.status().played - base);
+    r.play(9600);
+    CHECK(r.status().stroke == b);
+    CHECK(r.status().stroke_frame == r.status().played - base - 9600);
+    r.play(9600);
+    CHECK(r.status().stroke == a);
+    r.play(48'000);
+    CHECK_FALSE(r.status().sounding);
+}

@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: MIT
+// Devices that run dry, sleep, vanish, or stand still.
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "rig.hpp"
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+// Plays until the stream is over; how long that took.
+std::int64_t run_until_over(rig& r, int steps)
+{
+    const std::int64_t begun = r.now;
+    for (int i = 0; i < steps && !r.loop.over(); ++i) {
+        r.step();
+        r.control();
+    }
+    return r.now - begun;
+}
+
+} // namespace
+
+TEST_CASE("the stream starts once, after a full buffer of silence")
+{
+    rig r;
+    REQUIRE(r.start().status == io_status::ok);
+    CHECK(r.dac.starts() == 1);
+    CHECK(r.dac.captured_frames() == 288);
+    CHECK(r.dac.queued() == 288);
+    CHECK(r.out->setup().has_clock);
+    CHECK_FALSE(r.first_sound());
+}
+
+TEST_CASE("an xrun interrupts what sounded, and the stream goes on in silence")
+{
+    rig r;
+    REQUIRE(r.start().status == io_status::ok);
+    const std::uint64_t base = r.status().written;
+    const stroke_id id = r.submit(tone(1.0));
+    r.play(9600);
+    const std::uint64_t written = r.dac.captured_frames();
+    r.dac.advance(1000);
+    r.step();
+    r.control();
+    REQUIRE(r.report(id));
+    CHECK(r.report(id)->state == stroke_state::interrupted);
+    CHECK(r.report(id)->reason == "xrun: the device ran dry");
+    CHECK(r.report(id)->frames == written - base);
+    CHECK(r.link.count.xruns == 1);
+    CHECK(r.dac.starts() == 2);
+    CHECK(r.status().running);
+    r.play(48'000);
+    CHECK_FALSE(r.first_sound(written));
+
+    const std::uint64_t again = r.dac.captured_frames();
+    const score s = random_score(2, 3);
+    const stroke_id next = r.submit(s);
+    r.play_out();
+    CHECK(r.report(next)->state == stroke_state::finished);
+    CHECK(r.captured(again, s.frames()) == rendered(s, sample_format::s32));
+}
+
+TEST_CASE("a stroke that had not begun survives an xrun and keeps its distance")
+{
+    for (const std::uint64_t ahead : {std::uint64_t{5'000}, std::uint64_t{15'000}, std::uint64_t{200'000}}) {
+        CAPTURE(ahead);
+        rig r;
+        REQUIRE(r.start().status == io_status::ok);
+        const score s = random_score(5, 4);
+        const std::uint64_t at = r.status().written + ahead;
+        const stroke_id id = r.submit(s, at);
+        r.play(1920);
+        REQUIRE(r.status().written < at);
+        r.dac.advance(1000);
+        r.step();
+        r.control();
+        r.play_out();
+        REQUIRE(r.report(id));
+        CHECK(r.report(id)->state == stroke_state::finished);
+        CHECK(r.captured(at, s.frames()) == rendered(s, sample_format::s32));
+        CHECK(r.first_sound() > at - 1);
+    }
+}
+
+TEST_CASE("a cancelled stroke that an xrun cuts is still cancelled, a finished one finished")
+{
+    rig r;
+    REQUIRE(r.start().status == io_status::ok);
+    const stroke_id cancelled = r.submit(tone(1.0));
+    r.play(9600);
+    const stroke_id done = r.submit(tone(0.001));
+    CHECK(r.feed.cancel(cancelled));
+    r.dac.advance_queued(96);
+    r.step();
+    r.dac.advance(1000);
+    r.step();
+    r.control();
+    REQUIRE(r.report(cancelled));
+    CHECK(r.report(cancelled)->state == stroke_state::cancelled);
+    REQUIRE(r.report(done));
+    CHECK(r.report(done)->state == stroke_state::finished);
+}
+
+TEST_CASE("three xruns a second are survived, the fourth is the end")
+{
+    rig r;
+    REQUIRE(r.start().status == io_status::ok);
+    const stroke_id far = r.submit(tone(0.1), 10 * rate);
+    for (int i = 0; i < 3; ++i) {
+        r.play(4800);
+        r.dac.advance(1000);
+        r.step();
+        CHECK(r.status().running);
+    }
+    r.play(4800);
+    r.dac.advance(1000);
+    r.step();
+    r.control();
+    CHECK(r.loop.over());
+    CHECK(r.link.count.xruns == 4);
+    CHECK(r.feed.stream_over());
+    REQUIRE(r.report(far));
+    CHECK(r.report(far)->state == stroke_state::interrupted);
+    CHECK(r.report(far)->reason == "the device was given up: one xrun after the other");
+}
+
+TEST_CASE("xruns that are further apart never end the stream")
+{
+    rig r;
+    REQUIRE(r.start().status == io_status::ok);
+    for (int i = 0; i < 20; ++i) {
+        r.play(17'000);
+        r.dac.advance(1000);
+        r.step();
+        REQUIRE(r.status().running);
+    }
+    CHECK(r.link.count.xruns == 20);
+}
+
+TEST_CASE("a suspended device is resumed when it can, with a fresh stream")
+{
+    for (const bool can_resume : {true, false}) {
+        CAPTURE(can_resume);
+        rig r;
+        REQUIRE(r.start().status == io_status::ok);
+        const std::uint64_t base = r.status().written;
+        const stroke_id id = r.submit(tone(1.0));
+        r.play(9600);
+        const std::uint64_t played = r.status().played;
+        r.dac.suspend();
+        for (int i = 0; i < 50; ++i) {
+            r.step();
+            r.control();
+        }
+        CHECK_FALSE(r.status().running);
+        CHECK_FALSE(r.loop.polls_sink());
+        CHECK(r.loop.timeout_ns() == 2'000'000);
+        CHECK_FALSE(r.loop.over());
+        REQUIRE(r.report(id));
+        CHECK(r.report(id)->state == stroke_state::interrupted);
+        CHECK(r.report(id)->reason == "the system was suspended");
+        CHECK(r.report(id)->frames <= played - base);
+
+        const stroke_id waiting = r.submit(tone(0.01));
+        r.step();
+        CHECK(r.ended.size() == 1);
+        r.dac.wake(can_resume);
+        const std::uint64_t captured = r.dac.captured_frames();
+        r.step();
+        CHECK(r.status().running);
+        CHECK(r.dac.captured_frames() == captured + 288);
+        CHECK(r.dac.starts() == 2);
+        r.play_out();
+        CHECK(r.report(waiting)->state == stroke_state::finished);
+        // Nothing of the old stroke is heard again.
+        CHECK(r.first_sound(captured) == captured + 289);
+        CHECK(r.link.count.xruns == 0);
+    }
+}
+
+TEST_CASE("a device that never wakes up is prepared afresh in the end")
+{
+    rig r;
+    REQUIRE(r.start().status == io_status::ok);
+    r.dac.suspend();
+    const std::int64_t took = run_until_over(r, 10'000);
+    CHECK(r.loop.over() == false);
+    // prepare() says "suspended" again, and so on: no end, no spinning, no xrun.
+    CHECK(took >= 10'000 * 1'900'000LL);
+    CHECK(r.link.count.xruns == 0);
+}
+
+TEST_CASE("stop ends a suspended stream at once")
+{
+    rig r;
+    REQUIRE(r.start().status == io_status::ok);
+    r.dac.suspend();
+    r.play(960);
+    r.link.requests.push({.what = engine::request::kind::stop});
+    r.step();
+    r.control();
+    CHECK(r.loop.over());
+    CHECK(r.feed.stream_over());
+    CHECK(r.feed.stream_reason().empty());
+}
+
+TEST_CASE("an unplugged device ends the stream and every stroke")
+{
+    rig r;
+    REQUIRE(r.start().status == io_status::ok);
+    const stroke_id sounding = r.submit(tone(1.0));
+    const stroke_id near = r.submit(tone(1.0), r.status().written + 15'000);
+    const stroke_id far = r.submit(tone(1.0), 10 * rate);
+    r.play(4800);
+    r.dac.disconnect();
+    run_until_over(r, 10);
+    r.control();
+    CHECK(r.loop.over());
+    for (const stroke_id id : {sounding, near, far}) {
+        REQUIRE(r.report(id));
+        CHECK(r.report(id)->state == stroke_state::interrupted);
+        CHECK(r.report(id)->reason == "the device is gone");
+        CHECK((r.report(id)->frames > 0) == (id == sounding));
+    }
+    CHECK(r.feed.stream_reason() == "the device is gone");
+}
+
+TEST_CASE("a device that stands still is lost after its time, whether it says ready or not")
+{
+    for (const bool cries : {false, true}) {
+        CAPTURE(cries);
+        rig r;
+        REQUIRE(r.start().status == io_status::ok);
+        const stroke_id id = r.submit(tone(1.0));
+        r.play(4800);
+        r.dac.cry_ready(cries);
+        const std::int64_t took = run_until_over(r, 10'000);
+        CHECK(r.loop.over());
+        CHECK(took >= 500'000'000);
+        CHECK(took <= 520'000'000);
+        r.control();
+        CHECK(r.report(id)->state == stroke_state::interrupted);
+        CHECK(r.report(id)->reason == "the device does not move any more");
+        CHECK(r.link.count.xruns == 0);
+    }
+}
+
+TEST_CASE("descriptors that lie are left out after a while, so that nothing spins")
+{
+    rig r;
+    REQUIRE(r.start().status == io_status::ok);
+    r.dac.cry_ready(true);
+    for (int i = 0; i < 30; ++i)
+        r.step();
+    CHECK_FALSE(r.loop.polls_sink());
+    CHECK(r.loop.timeout_ns() == 2'000'000);
+    r.dac.cry_ready(false);
+    r.play(960);
+    CHECK(r.loop.polls_sink());
+}
+
+TEST_CASE("a process that was stopped for a minute does not take its device for dead")
+{
+    rig r;
+    REQUIRE(r.start().status == io_status::ok);
+    r.play(4800);
+    r.now += 60'000'000'000;
+    r.play(4800);
+    CHECK(r.status().running);
+}
+
+TEST_CASE("a device that does not prepare or start any more ends the stream")
+{
+    for (const bool prepares : {false, true}) {
+        rig r;
+        REQUIRE(r.start().status == io_status::ok);
+        const stroke_id id = r.submit(tone(1.0));
+        r.play(960);
+        if (prepares)
+            r.dac.fail_start(-EIO);
+        else
+            r.dac.fail_prepare(-EIO);
+        r.dac.advance(1000);
+        run_until_over(r, 10);
+        r.control();
+        CHECK(r.loop.over());
+        CHECK(r.report(id)->state == stroke_state::interrupted);
+        CHECK(r.report(id)->reason == "xrun: the device ran dry");
+        CHECK(r.feed.stream_reason().find("device failed") != std::string::npos);
+    }
+}
+
+TEST_CASE("a device that does not start at first says so")
+{
+    rig r;
+    r.dac.fail_start(-EIO);
+    CHECK(r.start().status == io_status::failed);
+    CHECK_FALSE(r.status().running);
+}
+
+TEST_CASE("faults at random: every stroke ends once, nothing is heard twice")
+{
+    std::mt19937_64 random(77);
+    for (int round = 0; round < 200; ++round) {
+        CAPTURE(round);
+        rig r({.ring = std::size_t{8} << random() % 8});
+        REQUIRE(r.start().status == io_status::ok);
+        for (int i = 0; i < 400 && !r.loop.over(); ++i) {
+            if (random() % 20 == 0)
+                r.submit(random_score(random(), 1 + random() % 5),
+                         random() % 2 == 0 ? 0 : r.status().written + random() % 30'000);
+            if (random() % 30 == 0 && r.last_id > 0)
+                r.feed.cancel(1 + static_cast<stroke_id>(random() % r.last_id));
+            switch (random() % 200) {
+            case 0:
+                r.dac.advance(5000);
+                break;
+            case 1:
+                r.dac.suspend();
+                break;
+            case 2:
+                if (random() % 4 == 0)
+                    r.dac.disconnect();
+                break;
+            case 3:
+                r.link.requests.push({.what = engine::request::kind::stop});
+                break;
+            default:
+                if (random() % 8 == 0)
+                    r.dac.wake(random() % 2 == 0);
+                break;
+            }
+            if (random() % 10 != 0)
+                r.dac.advance_queued(96);
+            r.step();
+            if (random() % 3 != 0)
+                r.control();
+        }
+        r.link.requests.push({.what = engine::request::kind::stop});
+        r.dac.wake(true);
+        for (int i = 0; i < 1000 && !r.feed.stream_over(); ++i)
+            r.play(96);
+        r.control();
+        CHECK(r.feed.stream_over());
+        CHECK(r.ended.size() == r.last_id);
+        for (const auto& [id, reports] : r.ended)
+            REQUIRE(reports.size() == 1);
+    }
+}

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// The audio thread's work touches no heap, and the feeder's memory does not grow with a score.
+#include <cstdlib>
+
+#include <doctest/doctest.h>
+
+#include "count_allocations.hpp"
+#include "rig.hpp"
+
+using namespace tactor;
+using namespace tactor::test;
+
+TEST_CASE("the audio loop calls the heap in none of 100 000 periods, xruns and cancels included")
+{
+    if (!counts_allocations())
+        return;
+    rig r;
+    r.dac.reserve_capture(1 << 16);
+    REQUIRE(r.start().status == io_status::ok);
+    std::uint64_t calls = 0;
+    const score strokes = random_score(1, 30);
+    for (int i = 0; i < 100'000; ++i) {
+        if (i % 700 == 0)
+            r.submit(strokes, i % 1400 == 0 ? 0 : r.status().written + 5000);
+        if (i % 1500 == 0)
+            r.feed.cancel(r.last_id);
+        if (i % 9000 == 8999)
+            r.dac.advance(10'000);
+        r.dac.advance_queued(96);
+        {
+            const count_allocations count;
+            r.step();
+            calls += count.calls();
+        }
+        r.control();
+    }
+    CHECK(calls == 0);
+    CHECK(r.link.count.xruns == 11);
+    CHECK(r.link.count.periods >= 100'000);
+    CHECK(r.ended.size() > 100);
+}
+
+TEST_CASE("the counter counts")
+{
+    if (!counts_allocations())
+        return;
+    std::uint64_t calls = 0;
+    std::int64_t held = 0;
+    std::int64_t left = 0;
+    {
+        const count_allocations count;
+        void* volatile p = std::malloc(400); // volatile: a pair of calls may be left out otherwise
+        held = count.bytes();
+        std::free(p);
+        calls = count.calls();
+        left = count.bytes();
+    }
+    CHECK(calls == 2);
+    CHECK(held >= 400);
+    CHECK(left == 0);
+}
+
+TEST_CASE("an hour of strokes needs no more memory in the feeder than a second")
+{
+    if (!counts_allocations())
+        return;
+    const score hour = random_score(3, 51'000);
+    REQUIRE(hour.frames() > std::uint64_t{3500} * rate);
+    rig r;
+    r.dac.reserve_capture(1 << 16);
+    REQUIRE(r.start().status == io_status::ok);
+    r.submit(hour);
+    r.play(48'000);
+    std::uint64_t calls = 0;
+    std::uint64_t most_in_ring = 0;
+    while (r.ended.empty()) {
+        r.dac.advance_queued(96);
+        r.step();
+        engine::report report;
+        while (r.link.reports.pop(report))
+            r.feed.handle(report);
+        {
+            const count_allocations count;
+            r.feed.pump(r.status().written);
+            calls += count.calls();
+        }
+        most_in_ring = std::max<std::uint64_t>(most_in_ring, r.link.commands.size());
+        for (const stroke_report& e : r.feed.take_reports())
+            r.ended[e.id].push_back(e);
+    }
+    CHECK(calls == 0);
+    CHECK(most_in_ring < 64);
+    CHECK(r.report(1)->state == stroke_state::finished);
+    CHECK(r.report(1)->frames == hour.frames());
+}

@@ -1,0 +1,416 @@
+// SPDX-License-Identifier: MIT
+// The player with its real threads. Time is the fake DAC's; the tests wait for conditions.
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <mutex>
+#include <random>
+#include <thread>
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <tactor/alsa.hpp>
+#include <tactor/error.hpp>
+#include <tactor/player.hpp>
+
+#include "alsa/adopt.hpp"
+#include "fake_dac.hpp"
+#include "scores.hpp"
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+alsa_options nine(sample_format f = sample_format::s32)
+{
+    alsa_options o;
+    o.channels = 9;
+    o.format = f;
+    return o;
+}
+
+// The PCM called t of a configuration.
+alsa_options configured(const std::string& text, sample_format f = sample_format::s32)
+{
+    alsa_options o = nine(f);
+    o.pcm.assign(1, 't');
+    o.config_text = text;
+    return o;
+}
+
+// The fake clock stands still while the test thinks: not a reason to give the device up.
+player_options patient()
+{
+    player_options o;
+    o.stall_s = 600.0;
+    return o;
+}
+
+// Plays a period whenever the player has refilled the buffer, until the condition holds.
+template <typename Condition>
+void run_until(fake_dac& dac, std::uint64_t buffer, Condition done)
+{
+    while (!done()) {
+        dac.await([&] { return done() || dac.queued() >= buffer || !dac.running(); });
+        if (!done())
+            dac.advance_queued(96);
+    }
+}
+
+// Lets the DAC run in a thread of its own for as long as it lives: for the calls that block.
+class running_clock {
+public:
+    explicit running_clock(fake_dac& dac)
+        : thread_([this, &dac] {
+              while (!end_) {
+                  if (dac.queued() >= 192)
+                      dac.advance_queued(96);
+                  std::this_thread::yield();
+              }
+          })
+    {
+    }
+    ~running_clock()
+    {
+        end_ = true;
+        thread_.join();
+    }
+
+private:
+    std::atomic<bool> end_{false};
+    std::thread thread_;
+};
+
+std::vector<std::byte> part(const std::vector<std::byte>& all, std::size_t from, std::size_t n)
+{
+    REQUIRE(from + n <= all.size());
+    return {all.begin() + static_cast<std::ptrdiff_t>(from),
+            all.begin() + static_cast<std::ptrdiff_t>(from + n)};
+}
+
+std::vector<std::byte> read_file(const std::filesystem::path& p)
+{
+    std::ifstream in(p, std::ios::binary);
+    const std::vector<char> raw{std::istreambuf_iterator<char>(in), {}};
+    std::vector<std::byte> bytes(raw.size());
+    std::transform(raw.begin(), raw.end(), bytes.begin(), [](char c) { return static_cast<std::byte>(c); });
+    return bytes;
+}
+
+std::size_t first_sound(const std::vector<std::byte>& all)
+{
+    return static_cast<std::size_t>(
+        std::find_if(all.begin(), all.end(), [](std::byte b) { return b != std::byte{0}; }) - all.begin());
+}
+
+class temporary_folder {
+public:
+    temporary_folder()
+    {
+        std::string name = (std::filesystem::temp_directory_path() / "tactor-XXXXXX").string();
+        REQUIRE(::mkdtemp(name.data()) != nullptr);
+        path = name;
+    }
+    ~temporary_folder() { std::filesystem::remove_all(path); }
+
+    std::filesystem::path path;
+};
+
+} // namespace
+
+TEST_CASE("threads and all: the bytes are the renderer's, and the report comes once")
+{
+    fake_dac dac;
+    std::vector<stroke_report> told;
+    std::mutex mutex;
+    const score s = random_score(1, 8);
+    {
+        player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+        CHECK(p.setup().channels == 9);
+        CHECK(p.setup().has_clock);
+        p.on_report([&](const stroke_report& r) {
+            const std::lock_guard lock(mutex);
+            told.push_back(r);
+        });
+        const std::uint64_t from = dac.captured_frames();
+        const stroke_id id = p.submit(s);
+        run_until(dac, 288, [&] { return p.position().played >= from + s.frames() + 288; });
+        const auto r = p.wait(id);
+        REQUIRE(r);
+        CHECK(r->state == stroke_state::finished);
+        CHECK(r->frames == s.frames());
+        CHECK_FALSE(p.wait(id));
+        CHECK(part(dac.captured(), from * 36, s.frames() * 36) == rendered(s, sample_format::s32));
+        CHECK(p.stats().frames == dac.captured_frames());
+        CHECK(p.stats().periods * 96 == p.stats().frames);
+        CHECK(p.stats().xruns == 0);
+        const running_clock clock(dac);
+        p.stop();
+        CHECK_FALSE(p.position().running);
+    }
+    CHECK(dac.closed());
+    REQUIRE(told.size() == 1);
+    CHECK(told[0].state == stroke_state::finished);
+}
+
+TEST_CASE("cancel and stop from another thread than the one that waits")
+{
+    fake_dac dac;
+    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    const stroke_id id = p.submit(tone(100.0));
+    const stroke_id other = p.submit(tone(100.0, 3));
+    const running_clock clock(dac);
+    std::thread canceller([&] { CHECK(p.cancel(id)); });
+    const auto r = p.wait(id);
+    canceller.join();
+    REQUIRE(r);
+    CHECK(r->state == stroke_state::cancelled);
+    CHECK_FALSE(p.cancel(id));
+    std::thread stopper([&] { p.stop(); });
+    const auto o = p.wait(other);
+    stopper.join();
+    REQUIRE(o);
+    CHECK(o->state == stroke_state::cancelled);
+    CHECK_THROWS_AS(p.submit(tone(0.1)), error);
+    p.stop();
+}
+
+TEST_CASE("a player that is destroyed while strokes sound reports them as interrupted")
+{
+    fake_dac dac;
+    const running_clock clock(dac);
+    std::vector<stroke_report> told;
+    {
+        player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+        p.on_report([&](const stroke_report& r) { told.push_back(r); });
+        p.submit(tone(100.0));
+        p.submit(tone(100.0), 48'000'000);
+    }
+    REQUIRE(told.size() == 2);
+    for (const stroke_report& r : told) {
+        CHECK(r.state == stroke_state::interrupted);
+        CHECK(r.reason == "the player was closed");
+    }
+    CHECK(dac.closed());
+}
+
+TEST_CASE("the handler may submit, cancel and stop, and is not made to wait for itself")
+{
+    fake_dac dac;
+    const running_clock clock(dac);
+    std::atomic<int> rounds{0};
+    std::atomic<stroke_id> last{0};
+    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    p.on_report([&](const stroke_report& r) {
+        if (rounds++ < 5) {
+            last = p.submit(tone(0.01));
+            CHECK_FALSE(p.wait(last));
+            CHECK_FALSE(p.cancel(r.id));
+        } else {
+            p.stop();
+        }
+        rounds.notify_all();
+    });
+    p.submit(tone(0.01));
+    for (int n = rounds; n < 6; n = rounds)
+        rounds.wait(n);
+    p.stop();
+    CHECK(rounds == 6);
+}
+
+TEST_CASE("several producers: every stroke ends once")
+{
+    fake_dac dac;
+    const running_clock clock(dac);
+    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    std::atomic<int> finished{0};
+    std::vector<std::thread> producers;
+    for (unsigned t = 0; t < 4; ++t) {
+        producers.emplace_back([&, t] {
+            for (int i = 0; i < 25; ++i) {
+                const auto r = p.wait(p.submit(tone(0.002, t)));
+                finished += static_cast<int>(r && r->state == stroke_state::finished);
+            }
+        });
+    }
+    for (std::thread& t : producers)
+        t.join();
+    CHECK(finished == 100);
+}
+
+TEST_CASE("an unplugged device ends the waits and the stream")
+{
+    fake_dac dac;
+    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    const stroke_id id = p.submit(tone(100.0));
+    dac.disconnect();
+    const auto r = p.wait(id);
+    REQUIRE(r);
+    CHECK(r->state == stroke_state::interrupted);
+    CHECK(r->reason == "the device is gone");
+    try {
+        p.submit(tone(0.1));
+        FAIL("no error");
+    } catch (const error& e) {
+        CHECK(e.kind() == errc::runtime);
+        CHECK(std::string(e.what()).find("the device is gone") != std::string::npos);
+    }
+    p.stop();
+}
+
+TEST_CASE("an xrun is counted and survived")
+{
+    fake_dac dac;
+    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    const stroke_id id = p.submit(tone(100.0));
+    run_until(dac, 288, [&] { return p.position().stroke == id; });
+    dac.advance(10'000);
+    const auto r = p.wait(id);
+    REQUIRE(r);
+    CHECK(r->state == stroke_state::interrupted);
+    CHECK(r->reason == "xrun: the device ran dry");
+    dac.await([&] { return dac.starts() == 2; });
+    CHECK(p.stats().xruns == 1);
+    const running_clock clock(dac);
+    CHECK(p.wait(p.submit(tone(0.01)))->state == stroke_state::finished);
+    p.stop(); // while the clock still runs
+}
+
+TEST_CASE("a wait can time out, and one for an unknown stroke does not block")
+{
+    fake_dac dac;
+    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    CHECK_FALSE(p.wait(17));
+    const stroke_id id = p.submit(tone(100.0));
+    CHECK_FALSE(p.wait(id, std::chrono::nanoseconds(1)));
+    CHECK(p.cancel(id));
+    const running_clock clock(dac);
+    CHECK(p.wait(id));
+    p.stop();
+}
+
+TEST_CASE("a score for another stream is refused")
+{
+    fake_dac dac;
+    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    CHECK_THROWS_AS(p.submit(random_score(1, 1, 10)), error);
+    const running_clock clock(dac);
+    p.stop();
+}
+
+TEST_CASE("a device that does not start, options out of range and no sink are errors")
+{
+    fake_dac broken;
+    broken.fail_start(-EIO);
+    CHECK_THROWS_AS(player(pcm::adopt(broken.pcm(), nine()), palm()), error);
+    CHECK(broken.closed());
+    CHECK_THROWS_AS(player(nullptr, palm()), error);
+    for (const double bad : {-1.0, 1e9, std::nan("")}) {
+        fake_dac dac;
+        player_options o;
+        o.fade_s = bad;
+        CHECK_THROWS_AS(player(pcm::adopt(dac.pcm(), nine()), palm(), o), error);
+    }
+}
+
+TEST_CASE("real-time priority that is required and refused is an error; otherwise a note")
+{
+    fake_dac dac;
+    player_options o = patient();
+    o.require_realtime = true;
+    const running_clock clock(dac);
+    bool realtime = true;
+    try {
+        const player p(pcm::adopt(dac.pcm(), nine()), palm(), o);
+        CHECK(p.stats().realtime);
+    } catch (const error& e) {
+        CHECK(e.kind() == errc::not_available);
+        realtime = false;
+    }
+    fake_dac other;
+    const running_clock other_clock(other);
+    const player p(pcm::adopt(other.pcm(), nine()), palm(), patient());
+    CHECK(p.stats().realtime == realtime);
+}
+
+TEST_CASE("what a file PCM receives is silence, the renderer's bytes without a gap, silence")
+{
+    for (const sample_format f : {sample_format::s32, sample_format::s16}) {
+        CAPTURE(to_string(f));
+        const temporary_folder folder;
+        const std::filesystem::path file = folder.path / "out.raw";
+        const alsa_options o = configured(
+            fmt::format("pcm.n {{ type null }} pcm.t {{ type file slave.pcm n file \"{}\" format raw }}",
+                        file.string()),
+            f);
+        const score a = random_score(5, 6);
+        const score b = random_score(6, 2);
+        {
+            player p(open_alsa(o), palm());
+            CHECK_FALSE(p.setup().has_clock);
+            const stroke_id id = p.submit(a);
+            REQUIRE(p.wait(id));
+            const auto r = p.wait(p.submit(b));
+            REQUIRE(r);
+            CHECK(r->state == stroke_state::finished);
+            p.stop();
+            CHECK(p.stats().xruns == 0);
+        }
+        const std::size_t frame = 9 * bytes_of(f);
+        std::vector<std::byte> all = read_file(file);
+        CHECK(all.size() % frame == 0);
+        for (const score& s : {a, b}) {
+            const std::vector<std::byte> want = rendered(s, f);
+            // The renderer's first frame is the zero of a sine.
+            const std::size_t from = first_sound(all) / frame * frame - first_sound(want) / frame * frame;
+            REQUIRE(from + want.size() <= all.size());
+            CHECK(part(all, from, want.size()) == want);
+            all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(from + want.size()));
+        }
+        CHECK(first_sound(all) == all.size());
+    }
+}
+
+TEST_CASE("a file that cannot be written ends the stream with the reason")
+{
+    player p(open_alsa(configured(
+                 "pcm.n { type null } pcm.t { type file slave.pcm n file \"/dev/full\" format raw }")),
+             palm());
+    // It may fail before or after the stroke begins.
+    std::string said;
+    try {
+        const auto r = p.wait(p.submit(tone(60.0)));
+        REQUIRE(r);
+        CHECK(r->state == stroke_state::interrupted);
+        said = r->reason;
+    } catch (const error& e) {
+        CHECK(e.kind() == errc::runtime);
+        said = e.what();
+    }
+    CHECK(said.find("the device failed: Input/output error") != std::string::npos);
+}
+
+TEST_CASE("null paces a stroke in real time, multi of nulls too")
+{
+    const std::string multi =
+        "pcm.n { type null }\n"
+        "pcm.t { type multi slaves.a { pcm n channels 8 } slaves.b { pcm n channels 1 }\n"
+        "bindings { 0 { slave a channel 0 } 1 { slave a channel 1 } 2 { slave a channel 2 }\n"
+        "3 { slave a channel 3 } 4 { slave a channel 4 } 5 { slave a channel 5 }\n"
+        "6 { slave a channel 6 } 7 { slave a channel 7 } 8 { slave b channel 0 } } }\n";
+    for (const bool many : {false, true}) {
+        CAPTURE(many);
+        player p(open_alsa(many ? configured(multi) : nine()), palm());
+        const auto begun = std::chrono::steady_clock::now();
+        const auto r = p.wait(p.submit(tone(0.1)));
+        REQUIRE(r);
+        CHECK(r->state == stroke_state::finished);
+        CHECK(std::chrono::steady_clock::now() - begun >= std::chrono::milliseconds(100));
+        CHECK(p.stats().xruns == 0);
+    }
+}

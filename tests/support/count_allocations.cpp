@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+#include "count_allocations.hpp"
+
+#include <cerrno>
+#include <cstddef>
+
+#include <malloc.h>
+
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define TACTOR_SANITIZED 1
+#endif
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define TACTOR_SANITIZED 1
+#endif
+
+namespace {
+
+// constinit: reading them must not itself allocate.
+thread_local constinit bool counting = false;
+thread_local constinit std::uint64_t calls_made = 0;
+thread_local constinit std::int64_t bytes_held = 0;
+
+} // namespace
+
+#if !defined(TACTOR_SANITIZED)
+
+// NOLINTBEGIN: glibc's own entry points, which have reserved names.
+extern "C" {
+void* __libc_malloc(std::size_t n);
+void* __libc_calloc(std::size_t n, std::size_t size);
+void* __libc_realloc(void* p, std::size_t n);
+void* __libc_memalign(std::size_t alignment, std::size_t n);
+void __libc_free(void* p);
+}
+// NOLINTEND
+
+namespace {
+
+void* taken(void* p) noexcept
+{
+    if (counting) {
+        ++calls_made;
+        bytes_held += p != nullptr ? static_cast<std::int64_t>(malloc_usable_size(p)) : 0;
+    }
+    return p;
+}
+
+void given(void* p) noexcept
+{
+    if (counting && p != nullptr) {
+        ++calls_made;
+        bytes_held -= static_cast<std::int64_t>(malloc_usable_size(p));
+    }
+}
+
+} // namespace
+
+extern "C" {
+
+void* malloc(std::size_t n)
+{
+    return taken(__libc_malloc(n));
+}
+
+void* calloc(std::size_t n, std::size_t size)
+{
+    return taken(__libc_calloc(n, size));
+}
+
+void* realloc(void* p, std::size_t n)
+{
+    given(p);
+    return taken(__libc_realloc(p, n));
+}
+
+void* memalign(std::size_t alignment, std::size_t n)
+{
+    return taken(__libc_memalign(alignment, n));
+}
+
+void* aligned_alloc(std::size_t alignment, std::size_t n)
+{
+    return taken(__libc_memalign(alignment, n));
+}
+
+int posix_memalign(void** p, std::size_t alignment, std::size_t n)
+{
+    *p = taken(__libc_memalign(alignment, n));
+    return *p != nullptr ? 0 : ENOMEM;
+}
+
+void free(void* p)
+{
+    given(p);
+    __libc_free(p);
+}
+
+} // extern "C"
+
+#endif
+
+namespace tactor::test {
+
+bool counts_allocations() noexcept
+{
+#if defined(TACTOR_SANITIZED)
+    return false;
+#else
+    return true;
+#endif
+}
+
+count_allocations::count_allocations() noexcept
+{
+    calls_made = 0;
+    bytes_held = 0;
+    counting = true;
+}
+
+count_allocations::~count_allocations()
+{
+    counting = false;
+}
+
+std::uint64_t count_allocations::calls() const noexcept
+{
+    return calls_made;
+}
+
+std::int64_t count_allocations::bytes() const noexcept
+{
+    return bytes_held;
+}
+
+} // namespace tactor::test

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Counts the heap calls of one thread: link count_allocations.cpp into the test. Not with sanitizers.
+#pragma once
+
+#include <cstdint>
+
+namespace tactor::test {
+
+/// Whether this program counts (it does not under sanitizers).
+bool counts_allocations() noexcept;
+
+/// Counts malloc, calloc, realloc, free and the like of the calling thread while it lives.
+class count_allocations {
+public:
+    count_allocations() noexcept;
+    ~count_allocations();
+    count_allocations(const count_allocations&) = delete;
+    count_allocations& operator=(const count_allocations&) = delete;
+
+    std::uint64_t calls() const noexcept;
+    /// Bytes asked for and not given back.
+    std::int64_t bytes() const noexcept;
+};
+
+} // namespace tactor::test
