@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "synth/clones.hpp"
+
 namespace tactor::synth {
 
 void carrier_block::forget() noexcept
@@ -54,7 +56,7 @@ const double* carrier_block::get(const voice& v, const fade* f, std::uint64_t at
     return shaped_.data();
 }
 
-void set_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept
+TACTOR_CLONES void set_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept
 {
     const double* __restrict in = s;
     double* __restrict out = sum;
@@ -63,7 +65,7 @@ void set_constant(const double* s, double a, unsigned lo, unsigned hi, double* s
     }
 }
 
-void add_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept
+TACTOR_CLONES void add_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept
 {
     const double* __restrict in = s;
     double* __restrict out = sum;
@@ -72,8 +74,8 @@ void add_constant(const double* s, double a, unsigned lo, unsigned hi, double* s
     }
 }
 
-void add_line(const double* s, double a, double slope, double k, unsigned lo, unsigned hi,
-              double* sum) noexcept
+TACTOR_CLONES void add_line(const double* s, double a, double slope, double k, unsigned lo, unsigned hi,
+                            double* sum) noexcept
 {
     const double* __restrict in = s;
     double* __restrict out = sum;

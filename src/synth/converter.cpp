@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "synth/clones.hpp"
 #include "synth/oscillator.hpp"
 #include "synth/sincos.hpp"
 
@@ -24,14 +25,15 @@ void scatter(const T* v, unsigned n, std::byte* out, std::size_t stride) noexcep
     }
 }
 
-void to_float(const double* __restrict x, unsigned n, float* __restrict v) noexcept
+TACTOR_CLONES void to_float(const double* __restrict x, unsigned n, float* __restrict v) noexcept
 {
     for (unsigned i = 0; i < n; ++i) {
         v[i] = static_cast<float>(x[i] + 0.0);  // -0 + 0 = +0
     }
 }
 
-void to_integer(const double* __restrict x, unsigned n, double scale, std::int32_t* __restrict v) noexcept
+TACTOR_CLONES void to_integer(const double* __restrict x, unsigned n, double scale,
+                              std::int32_t* __restrict v) noexcept
 {
     for (unsigned i = 0; i < n; ++i) {
         const double r = nearest(x[i] * scale);

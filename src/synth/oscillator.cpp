@@ -4,6 +4,8 @@
 #include <bit>
 #include <limits>
 
+#include "synth/clones.hpp"
+
 namespace tactor::synth {
 
 namespace {
@@ -51,7 +53,8 @@ const oscillator_table& oscillator_tables::get(double cycles_per_frame) noexcept
     return t;
 }
 
-void sine_block(const oscillator_table& t, sine_cosine base, const table_part& p, double* out) noexcept
+TACTOR_CLONES void sine_block(const oscillator_table& t, sine_cosine base, const table_part& p,
+                              double* out) noexcept
 {
     const double* __restrict s = t.sin.data() + p.offset;
     const double* __restrict c = t.cos.data() + p.offset;
@@ -62,8 +65,8 @@ void sine_block(const oscillator_table& t, sine_cosine base, const table_part& p
     }
 }
 
-void times_cosine(const oscillator_table& t, sine_cosine base, double offset, double scale,
-                  const table_part& p, double* out) noexcept
+TACTOR_CLONES void times_cosine(const oscillator_table& t, sine_cosine base, double offset, double scale,
+                                const table_part& p, double* out) noexcept
 {
     const double* __restrict s = t.sin.data() + p.offset;
     const double* __restrict c = t.cos.data() + p.offset;

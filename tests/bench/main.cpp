@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The usual report, and what it means: how the mixer stands against a plain loop, memset and memcpy.
+// The usual report, and what it means: how the mixer stands against a plain loop, memset and memcpy
+// of as many floats.
 #include <cstdio>
 #include <map>
 #include <string>

@@ -10,10 +10,11 @@ using namespace tactor;
 
 namespace {
 
-void count(benchmark::State& state, const score& s)
+void count(benchmark::State& state, const score& s, sample_format f = sample_format::float32)
 {
     state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * bench::block));
-    state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations() * bench::block * s.channels() * 4));
+    state.SetBytesProcessed(
+        static_cast<std::int64_t>(state.iterations() * bench::block * s.channels() * bytes_of(f)));
 }
 
 void render(benchmark::State& state, const score& s, sample_format f)
@@ -29,7 +30,7 @@ void render(benchmark::State& state, const score& s, sample_format f)
         r.process(bench::block, out.data());
         benchmark::DoNotOptimize(out.data());
     }
-    count(state, s);
+    count(state, s, f);
 }
 
 void plain(benchmark::State& state, const score& s)
