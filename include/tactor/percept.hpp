@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What a plan is predicted to feel like: a model, never a measurement.
+/// What a plan is predicted to feel like (rendering model, section 9): a model, never a measurement.
 #pragma once
 
 #include <optional>
@@ -21,28 +21,49 @@ struct percept_sample {
     std::optional<point> felt = {};
     double intensity = 0.0; ///< square root of the summed energy, linear
     double target_intensity = 1.0;
-    bool shared = false;     ///< a tactor serves two bursts
-    double speed_mm_s = 0.0; ///< of the felt position, smoothed over 0.1 s
+    bool shared = false; ///< a tactor serves two bursts
+    /// Speed of the felt position, smoothed over percept_window_s. None near the ends, where the window
+    /// would reach out of the movement or back to before anything was felt.
+    std::optional<double> speed_mm_s = {};
 };
 
 /// How far the prediction is from the target.
 struct percept_summary {
-    double rms_error_mm = 0.0;
-    double largest_error_mm = 0.0;
-    double speed_cv = 0.0;     ///< coefficient of variation (standard deviation / mean) of speed
-    double intensity_cv = 0.0; ///< the same of intensity
+    std::optional<double> rms_error_mm = {};     ///< none where nothing is felt
+    std::optional<double> largest_error_mm = {}; ///< none where nothing is felt
+    /// Coefficient of variation (standard deviation / mean) of speed; none for a movement that is too short
+    /// to have a speed, or that is not felt to move.
+    std::optional<double> speed_cv = {};
+    /// The same of intensity, silence being intensity 0; none where nothing is felt.
+    std::optional<double> intensity_cv = {};
     double silent_share = 0.0; ///< share of the time without a sounding tactor, 0 ... 1
     double shared_share = 0.0; ///< share of the time in which one tactor serves two bursts, 0 ... 1
 };
 
 /// Interval of the samples.
 inline constexpr double percept_step_s = 0.001;
+/// Width of the centred moving average: 50 samples on either side of the one in the middle.
+inline constexpr double percept_window_s = 0.1;
+/// The longest movement that is looked at, s.
+inline constexpr double longest_percept_s = 3600.0;
 
-/// Samples each millisecond from 0 to the end of the target's movement. `p` must be a plan of `s` on `a`.
-/// \throws error (bad_input) where the movement has more than 10 million samples.
+/// What is felt at 0, 1, 2 ... ms, as long as the target moves: up to the end of the stroke, and at the end
+/// where it is a multiple of 1 ms (within 1 ns). `p` must be a plan of `s` on `a`.
+///
+/// A burst sounds from its onset until before its end (within 1 ns). Only at the very end of the movement
+/// does a burst that ends there count as well, if no other sounds. Bursts that overlap on one tactor are
+/// joined as the plan says (plan::join).
+///
+/// Speed: where nothing sounds, the position felt last is held; the average over percept_window_s runs over
+/// the positions so completed; speed is the central difference of the average.
+///
+/// O(samples * log n) for a stroke of n points, and O(1) for each burst in as many as overlap with it.
+/// \throws error (bad_input) where the stroke is longer than longest_percept_s, or the plan names a tactor
+///         that the array does not have.
 TACTOR_API std::vector<percept_sample> predict_percept(const array& a, const stroke& s, const plan& p);
 
-/// Sums samples up. Errors and speed count only where something is felt.
+/// Sums samples up. Errors and speed count only where something is felt. Standard deviations are those of the
+/// population (divided by n).
 TACTOR_API percept_summary summarise(const std::vector<percept_sample>& samples);
 
 } // namespace tactor
