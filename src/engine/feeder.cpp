@@ -3,9 +3,15 @@
 
 #include <algorithm>
 #include <atomic>
+#include <span>
 #include <utility>
 
 namespace tactor::engine {
+
+feeder::feeder(link& l, std::uint64_t horizon_frames) : link_(l), horizon_(horizon_frames)
+{
+    batch_.reserve(std::min(l.commands.capacity(), 2 + l.commands.capacity() / 8));
+}
 
 void feeder::submit(stroke_id id, const score& s, std::uint64_t at)
 {
@@ -44,28 +50,52 @@ void feeder::pump(std::uint64_t written)
     }
 }
 
-// Begins what is due within the horizon, the earliest first; false when the ring had too little room. Some
-// drives must follow a begin at once, or the first would come too late.
+// Begins what is due within the horizon, the earliest first; false when the ring had too little room.
 bool feeder::admit(std::uint64_t written)
 {
-    const std::size_t enough = std::min(link_.commands.capacity(), 2 + link_.commands.capacity() / 8);
     while (!waiting_.empty() && waiting_.begin()->first <= written + horizon_ && in_use_.size() < voices) {
+        if (!has_room(batch_.capacity()))
+            return false;
         const auto free =
             std::find_if(slots_.begin(), slots_.end(), [](const slot& s) { return !s.use.has_value(); });
-        const auto place = static_cast<std::uint32_t>(free - slots_.begin());
         const auto& [at, w] = *waiting_.begin();
-        if (!has_room(enough))
-            return false;
         free->use = active{.id = w.id, .music = w.music, .at = at, .source = synth::event_source(w.music)};
-        push({.what = command::kind::begin,
-              .score = place + voices * free->generation,
-              .id = w.id,
-              .at = at,
-              .length = w.music.frames()});
+        const auto place = static_cast<std::uint32_t>(free - slots_.begin());
         in_use_.push_back(place);
+        hand_over_beginning(*free->use, place + voices * free->generation);
         waiting_.erase(waiting_.begin());
     }
     return true;
+}
+
+// The begin and its first drives become visible together: the audio thread starts the score as soon as it
+// sees the begin, and this thread may lose its processor at any point.
+void feeder::hand_over_beginning(active& a, ticket t)
+{
+    batch_.clear();
+    batch_.push_back(
+        {.what = command::kind::begin, .score = t, .id = a.id, .at = a.at, .length = a.music.frames()});
+    while (batch_.size() < batch_.capacity() && !a.fed) {
+        const synth::drive_event* e = a.source.peek();
+        if (e != nullptr && e->start > horizon_ / 8)
+            break;
+        batch_.push_back(next_command(a, t));
+    }
+    link_.commands.push(std::span<const command>(batch_));
+}
+
+// Takes the next drive from the source, or its end.
+command feeder::next_command(active& a, ticket t) noexcept
+{
+    const synth::drive_event* e = a.source.peek();
+    if (e == nullptr) {
+        a.fed = true;
+        return {.what = command::kind::end, .score = t};
+    }
+    command c{.what = command::kind::drive, .score = t, .drive = *e};
+    c.drive.score = t;
+    a.source.pop();
+    return c;
 }
 
 // Hands over the drive that starts first; false when there is none within the horizon, or no room.
@@ -91,18 +121,9 @@ bool feeder::feed_next(std::uint64_t written, std::uint64_t horizon)
     if (first == nullptr || first_start > written + horizon)
         return false;
 
-    active& a = *first->use;
-    const ticket t = first_place + voices * first->generation;
-    const synth::drive_event* e = a.source.peek();
-    if (e == nullptr) {
-        a.fed = push({.what = command::kind::end, .score = t});
-        return a.fed;
-    }
-    command c{.what = command::kind::drive, .score = t, .drive = *e};
-    c.drive.score = t;
-    if (!push(c))
+    if (!has_room(1))
         return false;
-    a.source.pop();
+    link_.commands.push(next_command(*first->use, first_place + voices * first->generation));
     return true;
 }
 
@@ -114,11 +135,6 @@ bool feeder::has_room(std::size_t n)
     link_.feeder_waits.store(true, std::memory_order_seq_cst);
     std::atomic_thread_fence(std::memory_order_seq_cst);
     return link_.commands.room() >= n;
-}
-
-bool feeder::push(const command& c)
-{
-    return has_room(1) && link_.commands.push(c);
 }
 
 feeder::slot* feeder::slot_of(ticket t) noexcept

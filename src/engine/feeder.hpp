@@ -24,7 +24,7 @@ namespace tactor::engine {
 /// threads of its own: one caller at a time.
 class feeder {
 public:
-    feeder(link& l, std::uint64_t horizon_frames) : link_(l), horizon_(horizon_frames) {}
+    feeder(link& l, std::uint64_t horizon_frames);
 
     /// `at`: frame of the stream; 0 for as soon as possible.
     void submit(stroke_id id, const score& s, std::uint64_t at);
@@ -73,7 +73,8 @@ private:
     bool admit(std::uint64_t written);
     bool feed_next(std::uint64_t written, std::uint64_t horizon);
     bool has_room(std::size_t n);
-    bool push(const command& c);
+    void hand_over_beginning(active& a, ticket t);
+    static command next_command(active& a, ticket t) noexcept;
     slot* slot_of(ticket t) noexcept;
     void release(slot& s) noexcept;
     void end_all(const report& r);
@@ -83,6 +84,7 @@ private:
     std::multimap<std::uint64_t, waiting> waiting_; ///< by frame of the stream
     std::array<slot, voices> slots_;
     std::vector<std::uint32_t> in_use_; ///< places, in order of their beginning
+    std::vector<command> batch_;        ///< of fixed capacity
     std::vector<stroke_report> reports_;
     bool stream_over_ = false;
     bool closing_ = false;

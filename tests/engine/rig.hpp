@@ -5,12 +5,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
-#include <random>
 #include <span>
 #include <utility>
 #include <vector>
@@ -27,10 +26,10 @@
 
 namespace tactor::test {
 
-/// Takes fewer frames than it could, and often none.
-class stingy_sink final : public sink {
+/// Another sink, to change single members of.
+class forwarding_sink : public sink {
 public:
-    explicit stingy_sink(std::unique_ptr<sink> s) : inner_(std::move(s)) {}
+    explicit forwarding_sink(std::unique_ptr<sink> s) : inner_(std::move(s)) {}
 
     const stream_setup& setup() const noexcept override { return inner_->setup(); }
     io_status prepare() noexcept override { return inner_->prepare(); }
@@ -40,25 +39,12 @@ public:
     std::size_t descriptors(std::span<pollfd> f) noexcept override { return inner_->descriptors(f); }
     io_status ready(std::span<pollfd> f) noexcept override { return inner_->ready(f); }
     io_result room() noexcept override { return inner_->room(); }
-    io_result write(const std::byte* data, std::size_t frames) noexcept override
-    {
-        switch (random_() % 4) {
-        case 0:
-            return {};
-        case 1:
-            return {io_status::again, 0, -EAGAIN};
-        case 2:
-            return inner_->write(data, 1 + random_() % frames);
-        default:
-            return inner_->write(data, frames);
-        }
-    }
+    io_result write(const std::byte* d, std::size_t n) noexcept override { return inner_->write(d, n); }
     stream_position position() noexcept override { return inner_->position(); }
     void drop() noexcept override { inner_->drop(); }
 
 private:
     std::unique_ptr<sink> inner_;
-    std::minstd_rand random_;
 };
 
 struct rig_options {
@@ -67,7 +53,7 @@ struct rig_options {
     unsigned period = 96;
     unsigned periods = 3;
     std::size_t ring = 2048;
-    bool stingy = false;
+    std::function<std::unique_ptr<sink>(std::unique_ptr<sink>)> wrap{};
     engine::loop_options loop{};
     fake_dac_options dac{};
 };
@@ -86,7 +72,7 @@ public:
           link(o.ring),
           feed(link, o.loop.horizon_frames),
           limits(o.channels, 1.0),
-          loop(o.stingy ? make_stingy() : *out, link, limits, o.loop),
+          loop(wrapped(o), link, limits, o.loop),
           options(o)
     {
     }
@@ -177,9 +163,10 @@ public:
         return static_cast<std::uint64_t>(found - all.begin()) / dac.frame_bytes();
     }
 
-    sink& make_stingy()
+    sink& wrapped(const rig_options& o)
     {
-        out = std::make_unique<stingy_sink>(std::move(out));
+        if (o.wrap)
+            out = o.wrap(std::move(out));
         return *out;
     }
 

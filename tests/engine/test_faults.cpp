@@ -11,6 +11,14 @@ using namespace tactor::test;
 
 namespace {
 
+// Says "not yet" whenever it is asked to resume.
+class sleepy_sink final : public forwarding_sink {
+public:
+    using forwarding_sink::forwarding_sink;
+
+    io_status resume() noexcept override { return io_status::again; }
+};
+
 // Plays until the stream is over; how long that took.
 std::int64_t run_until_over(rig& r, int steps)
 {
@@ -192,6 +200,25 @@ TEST_CASE("a device that never wakes up is prepared afresh in the end")
     // prepare() says "suspended" again, and so on: no end, no spinning, no xrun.
     CHECK(took >= 10'000 * 1'900'000LL);
     CHECK(r.link.count.xruns == 0);
+}
+
+TEST_CASE("a resume that is never ready is given up after ten seconds, for a fresh start")
+{
+    rig r({.wrap = [](auto s) { return std::make_unique<sleepy_sink>(std::move(s)); }});
+    REQUIRE(r.start().status == io_status::ok);
+    r.play(960);
+    r.dac.suspend();
+    r.step();
+    CHECK_FALSE(r.status().running);
+    r.dac.wake(false);
+    const std::int64_t begun = r.now;
+    while (!r.status().running && !r.loop.over())
+        r.step();
+    CHECK(r.status().running);
+    CHECK(r.now - begun >= 9'900'000'000);
+    CHECK(r.now - begun <= 10'100'000'000);
+    r.play(9600);
+    CHECK(r.status().running);
 }
 
 TEST_CASE("stop ends a suspended stream at once")

@@ -43,11 +43,13 @@ alsa_options configured(const std::string& text, sample_format f = sample_format
     return o;
 }
 
-// The fake clock stands still while the test thinks: not a reason to give the device up.
+// The fake clock stands still while the test thinks, and runs as fast as it can when it runs: neither is a
+// reason to give up.
 player_options patient()
 {
     player_options o;
     o.stall_s = 600.0;
+    o.horizon_s = 600.0;
     return o;
 }
 

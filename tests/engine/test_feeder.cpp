@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+// What the control side puts into the ring, and when.
+#include <map>
+#include <thread>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "engine/feeder.hpp"
+#include "scores.hpp"
+
+using namespace tactor;
+using namespace tactor::test;
+using engine::command;
+
+namespace {
+
+std::vector<command> take_all(engine::link& l)
+{
+    std::vector<command> all;
+    for (command c; l.commands.pop(c);)
+        all.push_back(c);
+    return all;
+}
+
+} // namespace
+
+TEST_CASE("a beginning and its first drives become visible at once")
+{
+    // Otherwise a producer that loses its processor in between makes its own stroke late.
+    for (int round = 0; round < 300; ++round) {
+        engine::link link;
+        engine::feeder feed(link, 24'000);
+        std::size_t seen = 0;
+        std::thread audio([&] {
+            while (seen == 0)
+                seen = link.commands.size();
+        });
+        feed.submit(1, tone(0.05), 0);
+        feed.pump(0);
+        audio.join();
+        REQUIRE(seen == 3);
+    }
+}
+
+TEST_CASE("nothing beyond the horizon is handed over, and what is within it at once")
+{
+    engine::link link;
+    engine::feeder feed(link, 4800);
+    const score s = random_score(1, 100);
+    feed.submit(1, s, 0);
+    feed.pump(0);
+    std::vector<command> got = take_all(link);
+    REQUIRE(got.size() > 1);
+    CHECK(got.front().what == command::kind::begin);
+    CHECK(got.front().length == s.frames());
+    CHECK(got.back().drive.start <= 4800);
+    feed.handle({.what = engine::report::kind::begun, .score = got.front().score, .frame = 10'000});
+    feed.pump(10'000);
+    CHECK(take_all(link).empty());
+    std::uint64_t last = got.back().drive.start;
+    for (std::uint64_t written = 10'096; written < 10'000 + s.frames(); written += 96) {
+        feed.pump(written);
+        for (const command& c : take_all(link)) {
+            if (c.what == command::kind::end)
+                continue;
+            REQUIRE(c.what == command::kind::drive);
+            CHECK(c.drive.start >= last);
+            CHECK(c.drive.start + 10'000 <= written + 4800);
+            CHECK(c.drive.start + 10'000 > written + 4800 - 96);
+            last = c.drive.start;
+        }
+    }
+}
+
+TEST_CASE("drives of several strokes come in the order of their start")
+{
+    engine::link link;
+    engine::feeder feed(link, 1'000'000);
+    for (stroke_id id = 1; id <= 5; ++id)
+        feed.submit(id, random_score(id, 100), 1000 * id);
+    feed.pump(0);
+    std::map<engine::ticket, std::uint64_t> starts;
+    std::uint64_t last = 0;
+    std::size_t drives = 0;
+    for (const command& c : take_all(link)) {
+        if (c.what == command::kind::begin)
+            starts[c.score] = c.at;
+        if (c.what != command::kind::drive)
+            continue;
+        ++drives;
+        // What goes with a beginning, an eighth of the horizon, is in the order of the strokes instead.
+        if (c.drive.start <= 125'000)
+            continue;
+        CHECK(c.drive.start + starts[c.score] >= last);
+        last = c.drive.start + starts[c.score];
+    }
+    CHECK(starts.size() == 5);
+    CHECK(drives >= 5 * 100);
+    CHECK(last > 0);
+}
+
+TEST_CASE("a full ring asks to be told, and the feeder goes on where it was")
+{
+    engine::link link(4);
+    engine::feeder feed(link, 1'000'000);
+    feed.submit(1, random_score(1, 30), 0);
+    feed.pump(0);
+    CHECK(link.commands.size() == 4);
+    CHECK(link.feeder_waits);
+    std::size_t n = 0;
+    std::size_t ends = 0;
+    for (int i = 0; i < 100; ++i) {
+        for (const command& c : take_all(link)) {
+            ++n;
+            ends += static_cast<std::size_t>(c.what == command::kind::end);
+        }
+        feed.pump(0);
+    }
+    CHECK(n >= 32);
+    CHECK(ends == 1);
+}
