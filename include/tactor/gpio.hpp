@@ -22,11 +22,17 @@ public:
     /// Switches. False when that failed; the player then stops the stream. One ioctl or write of a few
     /// microseconds, no allocation. Not the audio thread.
     virtual bool set(bool on) noexcept = 0;
+    /// Says that the player lives; called every 50 ms while the line is on, by the thread that calls set().
+    /// False when the line is no longer on: it went off by itself because the player was silent for too long
+    /// (stopped by a signal, or hanging), or it was lost. Until the next set(true) it stays off. Does not
+    /// block.
+    virtual bool beat() noexcept { return true; }
 };
 
 /// The amplifier's enable line, owned by a small process of its own (the holder), which switches it off when
-/// this process ends in any way, SIGKILL included, and when it is told to. Requested as off. Blocks until
-/// the holder has the line. Call it before real-time threads exist; it forks.
+/// this process ends in any way, SIGKILL included, when it is told to, and 150 ms after the last beat() or
+/// set(). Requested as off. Blocks until the holder has the line. Call it before real-time threads exist and
+/// before memory is locked; it forks.
 /// \throws error: not_available when there is no such chip or line (which there are), it is busy (by whom),
 /// or
 ///         may not be opened (which group to join).
@@ -52,8 +58,9 @@ public:
     virtual std::optional<gpio_edge> read() noexcept = 0;
 };
 
-/// `edge`: "rising", "falling" or "both". Edges that follow another within `debounce_ms` are dropped.
-/// `pull`: "up", "down", "none" or "as-is". Throws like open_amplifier, bad_input for an unknown word.
+/// `edge`: "rising", "falling" or "both". Edges that follow another of these within `debounce_ms` (0 to
+/// 10000) are dropped. `pull`: "up", "down", "none" or "as-is". Throws like open_amplifier, bad_input for an
+/// unknown word.
 TACTOR_API std::unique_ptr<edge_input> open_edges(const gpio_line_name& line, const std::string& edge,
                                                   double debounce_ms = 1.0,
                                                   const std::string& pull = "as-is");

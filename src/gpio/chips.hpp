@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The chips of this machine.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <tactor/setup.hpp>
+
+#include "gpio/find.hpp"
+
+namespace tactor::gpio {
+
+/// Device nodes gpiochipN in a folder, by number. Links are left out: Raspberry Pi kernels keep gpiochip4
+/// as a second name of gpiochip0.
+std::vector<std::string> chip_paths(const std::filesystem::path& folder = "/dev");
+
+/// Name of the group that owns a file, "gpio" where that cannot be found out.
+std::string group_of(const std::string& path);
+
+/// What is to be opened.
+struct located_line {
+    std::string path;
+    unsigned offset = 0;
+};
+
+/// Looks the line up among the chips that there are now. Throws as find_line() does.
+located_line locate(const gpio_line_name& wanted);
+
+/// Opens every chip.
+std::vector<chip> read_chips();
+
+/// Who holds a line now; empty: nobody, or it cannot be known.
+std::string holder_of(const located_line& l);
+
+} // namespace tactor::gpio

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The holder: a process that owns the amplifier's line and outlives the player by as long as it takes to
+/// switch off. What it runs after fork() is async-signal-safe, for the player may have threads: it neither
+/// allocates nor locks, and everything it needs was made before.
+#pragma once
+
+#include <cstdint>
+
+namespace tactor::gpio {
+
+/// Without a command or a beat for so long, a line that is on goes off. Beats come every 50 ms.
+inline constexpr int silence_ms = 150;
+
+/// Message kinds, player to holder and back. Each command is answered with its own kind and number.
+enum class message_kind : std::uint8_t {
+    hello,  ///< from the holder: it runs and has the line
+    on,     ///< command
+    off,    ///< command
+    beat,   ///< command: the player lives
+    lapsed, ///< from the holder: it switched off because the player was silent
+};
+
+struct message {
+    message_kind kind = message_kind::hello;
+    std::uint8_t number = 0; ///< of the command
+    bool done = true;        ///< answer: the line did it
+    std::int32_t pid = 0;    ///< hello: of the holder
+};
+
+/// All that the holder needs, made before the fork.
+struct holder_job {
+    bool (*set)(void* line, bool on) noexcept = nullptr; ///< async-signal-safe
+    void* line = nullptr;
+    int socket = -1;         ///< of messages, to the player
+    int player = -1;         ///< pidfd of the player; -1: this kernel has none
+    int player_socket = -1;  ///< the player's end, to be closed
+    int* keep = nullptr;     ///< descriptors that `set` needs, sorted; null: not known, close nothing
+    unsigned keep_count = 0; ///< how many
+};
+
+/// The holder's whole life, in the process that forked off. Ends with the process.
+[[noreturn]] void run_holder(const holder_job& job) noexcept;
+
+} // namespace tactor::gpio
