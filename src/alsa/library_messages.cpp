@@ -15,7 +15,8 @@ namespace {
 thread_local bool listening = false;
 thread_local std::array<char, 200> text{};
 
-extern "C" void collect(const char*, int, const char*, int, const char* format, ...)
+extern "C" [[gnu::format(printf, 5, 6)]] void collect(const char*, int, const char*, int, const char* format,
+                                                      ...)
 {
     if (!listening || text[0] != '\0')
         return;
