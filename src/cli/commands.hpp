@@ -24,6 +24,7 @@ enum exit_status {
 using command = std::function<int()>;
 
 command add_plan(CLI::App& app);
+command add_compare(CLI::App& app);
 command add_render(CLI::App& app);
 command add_play(CLI::App& app);
 

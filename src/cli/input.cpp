@@ -141,6 +141,15 @@ std::vector<std::string> stroke_arguments(const settings& s)
     return s.strokes;
 }
 
+std::string only_argument(const settings& s)
+{
+    const auto arguments = stroke_arguments(s);
+    if (arguments.size() > 1)
+        throw error(errc::bad_input, arguments[1], "one argument too many",
+                    "only play takes several strokes");
+    return arguments.front();
+}
+
 piece plan_piece(const settings& s, const environment& e, const layout& faces, const std::string& argument)
 {
     piece p{argument, read_strokes(s, argument), {}};
@@ -187,13 +196,15 @@ std::vector<piece> plan_pieces(const settings& s, const environment& e)
     return pieces;
 }
 
+piece read_one_piece(const settings& s)
+{
+    const std::string argument = only_argument(s);
+    return {argument, read_strokes(s, argument), {}};
+}
+
 piece plan_one_piece(const settings& s, const environment& e)
 {
-    const auto arguments = stroke_arguments(s);
-    if (arguments.size() > 1)
-        throw error(errc::bad_input, arguments[1], "one argument too many",
-                    "only play takes several strokes");
-    return plan_piece(s, e, layout(e.tactors), arguments.front());
+    return plan_piece(s, e, layout(e.tactors), only_argument(s));
 }
 
 score make_score(const piece& p, const environment& e, const render_options& render)

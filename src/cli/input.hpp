@@ -33,7 +33,10 @@ struct piece {
 /// Reads and plans all STROKE arguments. \throws error.
 std::vector<piece> plan_pieces(const settings& s, const environment& e);
 
-/// The same where only one STROKE is taken.
+/// Reads the only STROKE argument without planning it. \throws error.
+piece read_one_piece(const settings& s);
+
+/// Reads and plans where only one STROKE is taken.
 piece plan_one_piece(const settings& s, const environment& e);
 
 /// The score of a piece with `render.rate` and channels settled. \throws error.

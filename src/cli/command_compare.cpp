@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <memory>
+#include <set>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "cli/commands.hpp"
+#include "cli/compare_rows.hpp"
+#include "cli/input.hpp"
+
+namespace tactor::cli {
+namespace {
+
+const std::vector<algorithm> all_algorithms{algorithm::park2016, algorithm::tactile_brush,
+                                            algorithm::continuous};
+const std::vector<phantom_kind> all_phantoms{phantom_kind::inverse_distance, phantom_kind::barycentric,
+                                             phantom_kind::linear, phantom_kind::log, phantom_kind::gaussian};
+
+template <class Enum>
+std::string names_of(const std::vector<Enum>& values)
+{
+    std::string names;
+    for (const Enum v : values)
+        names += (names.empty() ? "" : ",") + std::string(to_string(v));
+    return names;
+}
+
+// "a,b,c", each once, in the order given.
+template <class Enum>
+std::vector<Enum> parse_list(const char* option, std::string_view text, const std::vector<Enum>& known)
+{
+    std::vector<Enum> list;
+    for (std::size_t at = 0; at <= text.size();) {
+        const std::size_t end = std::min(text.find(',', at), text.size());
+        const std::string_view name = text.substr(at, end - at);
+        const auto v = std::find_if(known.begin(), known.end(), [&](Enum e) { return to_string(e) == name; });
+        if (v == known.end())
+            throw error(errc::bad_input, option, fmt::format("\"{}\" is not known", name),
+                        "one or more of " + names_of(known));
+        if (std::find(list.begin(), list.end(), *v) != list.end())
+            throw error(errc::bad_input, option, fmt::format("\"{}\" is there twice", name),
+                        "name each once");
+        list.push_back(*v);
+        at = end + 1;
+    }
+    return list;
+}
+
+// The options of this command alone.
+struct compare_options {
+    comparison_choice choice;
+    std::string format = "text";
+};
+
+void add_lists(CLI::App& c, const std::shared_ptr<compare_options>& o)
+{
+    auto* algorithms = c.add_option_function<std::string>(
+        "--algorithms",
+        [o](const std::string& t) { o->choice.algorithms = parse_list("--algorithms", t, all_algorithms); },
+        "what to compare (default all three)");
+    algorithms->type_name(names_of(all_algorithms));
+    auto* phantoms = c.add_option_function<std::string>(
+        "--phantoms",
+        [o](const std::string& t) { o->choice.phantoms = parse_list("--phantoms", t, all_phantoms); },
+        "with which phantom models (default that of --phantom)");
+    phantoms->type_name(names_of(all_phantoms));
+    c.get_option("--algorithm")->description("only this one; see --algorithms")->excludes(algorithms);
+    c.get_option("--phantom")->excludes(phantoms);
+    c.add_option_function<std::string>(
+         "--format",
+         [o](const std::string& t) {
+             if (t != "text" && t != "json" && t != "csv")
+                 throw error(errc::bad_input, "--format", fmt::format("\"{}\" is not known", t),
+                             "one of text, json, csv");
+             o->format = t;
+         },
+         "how to print it (default text)")
+        ->type_name("text|json|csv");
+}
+
+// Why strokes that no algorithm can play are refused. All reasons but the last are printed, each once.
+error why_refused(const std::vector<comparison>& all)
+{
+    std::vector<error> reasons;
+    std::set<std::string> seen;
+    for (const comparison& c : all)
+        if (!c.playable())
+            for (const comparison_row& r : c.rows)
+                if (seen.insert(r.refused->what()).second)
+                    reasons.push_back(*r.refused);
+    for (std::size_t i = 0; i + 1 < reasons.size(); ++i)
+        fmt::print(stderr, "tactor: {}\n", reasons[i].what());
+    return reasons.back();
+}
+
+int run(settings& s, option_list& options, const compare_options& asked, bool one_algorithm)
+{
+    const environment e = read_environment(s, options);
+    comparison_choice choice = asked.choice;
+    if (choice.algorithms.empty())
+        choice.algorithms = one_algorithm ? std::vector{s.plan.method} : all_algorithms;
+    if (choice.phantoms.empty())
+        choice.phantoms = {s.plan.phantom};
+
+    // A row says what an algorithm cannot do; what nobody may ask for is wrong usage.
+    burst_duration_s(s.plan.profile, s.plan.soa_s);
+    const layout faces(e.tactors);
+    std::vector<comparison> all;
+    for (const stroke& k : read_one_piece(s).strokes)
+        all.push_back(compare(k, e.tactors, faces, s.plan, choice));
+    const auto playable = std::count_if(all.begin(), all.end(), [](const auto& c) { return c.playable(); });
+    if (playable == 0)
+        throw why_refused(all);
+    const auto print = asked.format == "json" ? print_json : asked.format == "csv" ? print_csv : print_text;
+    print(stdout, all, e.tactors);
+    if (static_cast<std::size_t>(playable) < all.size())
+        throw why_refused(all);
+    return status_ok;
+}
+
+} // namespace
+
+command add_compare(CLI::App& app)
+{
+    CLI::App* c =
+        app.add_subcommand("compare", "Print what algorithms are predicted to feel like, side by side");
+    auto s = std::make_shared<settings>();
+    auto options = std::make_shared<option_list>(*c, *s);
+    auto asked = std::make_shared<compare_options>();
+    options->add_stroke_options();
+    options->add_sound_options();
+    add_lists(*c, asked);
+    c->footer("Example: tactor compare park2016-3 --phantoms inverse-distance,barycentric");
+    const CLI::Option* algorithm = c->get_option("--algorithm");
+    return [s, options, asked, algorithm] { return run(*s, *options, *asked, algorithm->count() != 0); };
+}
+
+} // namespace tactor::cli

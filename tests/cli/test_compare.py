@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: MIT
+"""tactor compare: its figures against a calculation made here from the plan, and what it says of refusals."""
+import csv
+import io
+import json
+import math
+
+from harness import ToolTest, main
+
+MOTIONS = {  # centre, first angle, sweep, duration
+    "park2016-1": ((20, 20), -90, -180, 1.4),
+    "park2016-2": ((0, 20), -90, 180, 1.4),
+    "park2016-3": ((20, 20), 90, 270, 2.1),
+    "park2016-4": ((20, 20), 0, -270, 2.1),
+}
+ALGORITHMS = ("park2016", "tactile-brush", "continuous")
+FIGURES = ("rms_error_mm", "largest_error_mm", "speed_cv", "intensity_cv", "silent_share", "shared_share")
+
+
+def on_circle(name, t):
+    (x, y), first, sweep, duration = MOTIONS[name]
+    angle = math.radians(first + sweep * t / duration)
+    return x + 16 * math.cos(angle), y + 16 * math.sin(angle)
+
+
+def cv(values):
+    mean = sum(values) / len(values)
+    return math.sqrt(sum((v - mean) ** 2 for v in values) / len(values)) / mean
+
+
+def sounding(plan, t, last):
+    """The bursts that sound at t: those that have begun and not ended, to the nanosecond."""
+    now = [b for b in plan["bursts"] if b["onset_s"] <= t + 1e-9 and t < b["onset_s"] + b["duration_s"] - 1e-9]
+    if last and not now:
+        return [b for b in plan["bursts"] if abs(b["onset_s"] + b["duration_s"] - t) <= 1e-9]
+    return now
+
+
+def felt(plan, i, last):
+    """Position (or None), intensity and whether a tactor is shared, at i ms."""
+    at = {t["tactor"]: (t["x_mm"], t["y_mm"]) for t in plan["array"]["tactors"]}
+    now = [plan["continuous"]["points"][i]] if "continuous" in plan else sounding(plan, i / 1000, last)
+    on = {}
+    for burst in now:
+        for d in burst["drives"]:
+            on.setdefault(d["tactor"], []).append((d["amplitude"], burst["intensity"]))
+    energy = {k: sum(a * a for a, _ in v) if len(v) == 1 else min(max(i for _, i in v) ** 2, sum(a * a for a, _ in v))
+              for k, v in on.items()}
+    total = sum(energy.values())
+    place = tuple(sum(e * at[k][c] for k, e in energy.items()) / total for c in (0, 1)) if total else None
+    return place, math.sqrt(total), any(len(v) > 1 for v in on.values())
+
+
+def figures(plan, target):
+    """Section 9 of the rendering model, one sample at a time."""
+    duration = plan["stroke"]["duration_s"]
+    n = math.floor(duration * 1000 + 1e-6) + 1
+    samples = [felt(plan, i, abs(i / 1000 - duration) < 1e-9) for i in range(n)]
+    errors = [math.dist(s[0], target(i / 1000)) for i, s in enumerate(samples) if s[0]]
+    first = next(i for i, s in enumerate(samples) if s[0])
+    held = []
+    for s in samples[first:]:
+        held.append(s[0] or held[-1])
+    smooth = {i: tuple(math.fsum(p[c] for p in held[i - 50:i + 51]) / 101 for c in (0, 1))
+              for i in range(50, len(held) - 50)}
+    speeds = [math.dist(smooth[i + 1], smooth[i - 1]) / 0.002 for i in smooth
+              if i - 1 in smooth and i + 1 in smooth and samples[first + i][0]]
+    return {
+        "rms_error_mm": math.sqrt(sum(e * e for e in errors) / len(errors)),
+        "largest_error_mm": max(errors),
+        "speed_cv": cv(speeds),
+        "intensity_cv": cv([s[1] for s in samples]),
+        "silent_share": sum(s[0] is None for s in samples) / n,
+        "shared_share": sum(s[2] for s in samples) / n,
+    }
+
+
+class CompareTest(ToolTest):
+    def compare(self, *args, **more):
+        return json.loads(self.ok("compare", *args, "--format", "json", **more).stdout)
+
+    def agrees(self, result, expected, where):
+        for name in FIGURES:
+            self.assertAlmostEqual(result[name], expected[name], delta=1e-6, msg=f"{where}: {name}")
+
+    def check(self, *args, target, algorithms=ALGORITHMS):
+        for result in self.compare(*args, "--algorithms", ",".join(algorithms))["results"]:
+            p = self.plan(*args, "--algorithm", result["algorithm"])
+            self.assertEqual(result["phantom"], p["phantom"])
+            self.agrees(result, figures(p, target), (args, result["algorithm"]))
+
+
+class Figures(CompareTest):
+    def test_the_four_target_motions_agree_with_a_calculation_from_the_plan(self):
+        for name in MOTIONS:
+            for phantom in ("inverse-distance", "barycentric"):
+                self.check(name, "--phantom", phantom, target=lambda t, name=name: on_circle(name, t))
+
+    def test_the_other_phantom_models_agree_too(self):
+        for phantom in ("linear", "log", "gaussian"):
+            self.check("park2016-3", "--phantom", phantom, target=lambda t: on_circle("park2016-3", t))
+
+    def test_silence_between_bursts(self):
+        args = ("park2016-2", "--soa", "0.06")
+        self.check(*args, target=lambda t: on_circle("park2016-2", t), algorithms=("park2016",))
+        result = self.compare(*args, "--algorithms", "park2016")["results"][0]
+        self.assertAlmostEqual(result["silent_share"], 0.33, delta=0.01)
+        self.assertGreater(result["intensity_cv"], 0.5)
+
+    def test_changing_speed_and_intensity(self):
+        points = [(0, 0, 20, 1.0), (0.3, 20, 20, 0.4), (0.9017, 20, 30, 2.0), (1.2, 20, 40, 0.7)]
+        self.write("s.csv", "t_s,x_mm,y_mm,intensity\n" + "".join(f"{t},{x},{y},{i}\n" for t, x, y, i in points))
+
+        def target(t):
+            for (t0, *p, _), (t1, *q, _) in zip(points, points[1:]):
+                if t <= t1 + 1e-12:
+                    u = (t - t0) / (t1 - t0)
+                    return tuple(a + u * (b - a) for a, b in zip(p, q))
+            return points[-1][1:3]
+        self.check("s.csv", target=target)
+
+    def test_a_straight_line_by_hand(self):
+        # Onsets at 0 and 70 ms; the centroid of two tactors is the point itself, so the error is how far the
+        # target has gone on since: 0, 0.1, ... 6.9 mm, then 0, 0.1, ... 3 mm.
+        self.write("a.toml", '[array]\nname = "pair"\n[[tactor]]\nx_mm = 0.0\ny_mm = 0.0\n'
+                             "[[tactor]]\nx_mm = 10.0\ny_mm = 0.0\n")
+        result = self.compare("--path", "M 0 0 L 10 0", "--duration", "0.1", "--array", "a.toml",
+                              "--algorithms", "park2016")["results"][0]
+        squares = sum(i * i for i in range(70)) + sum(i * i for i in range(31))
+        self.assertAlmostEqual(result["rms_error_mm"], 0.1 * math.sqrt(squares / 101), 12)
+        self.assertAlmostEqual(result["largest_error_mm"], 6.9, 12)
+        self.assertIsNone(result["speed_cv"])
+        self.assertEqual((result["bursts"], result["silent_share"], result["shared_share"]), (2, 0, 0))
+
+    def test_the_model_says_of_the_two_algorithms_what_the_readme_says(self):
+        gain = {}
+        for name in MOTIONS:
+            rows = {r["algorithm"]: r for r in self.compare(name)["results"]}
+            park, brush = rows["park2016"], rows["tactile-brush"]
+            self.assertLess(park["rms_error_mm"], brush["rms_error_mm"])
+            self.assertLess(park["speed_cv"], brush["speed_cv"])
+            gain[name] = [brush[f] - park[f] for f in ("rms_error_mm", "speed_cv")]
+        for long in ("park2016-3", "park2016-4"):
+            for short in ("park2016-1", "park2016-2"):
+                self.assertGreater(gain[long][0], gain[short][0] + 0.4)
+                self.assertLess(abs(gain[long][1] - gain[short][1]), 0.1)  # no such difference in speed
+
+
+class Table(CompareTest):
+    def test_every_chosen_algorithm_with_every_chosen_phantom(self):
+        c = self.compare("park2016-1", "--algorithms", "continuous,park2016", "--phantoms", "barycentric,linear")
+        self.assertEqual(c["schema"], "tactor-compare/1")
+        self.assertIn("not a measurement", c["note"])
+        self.assertEqual([(r["algorithm"], r["phantom"]) for r in c["results"]],
+                         [("continuous", "barycentric"), ("continuous", "linear"),
+                          ("park2016", "barycentric"), ("park2016", "linear")])
+        self.assertAlmostEqual(c["stroke"]["length_mm"], 16 * math.pi, 6)
+        self.assertIn("reconstructed", c["stroke"]["note"])
+        self.assertEqual(len(c["array"]["tactors"]), 9)
+        self.assertEqual([r["bursts"] for r in c["results"]], [None, None, 21, 21])
+
+    def test_the_defaults_are_three_algorithms_and_the_chosen_phantom(self):
+        self.assertEqual([r["algorithm"] for r in self.compare("park2016-1")["results"]], list(ALGORITHMS))
+        self.write("c.toml", '[defaults]\nphantom = "log"\nalgorithm = "continuous"\n')
+        results = self.compare("park2016-1", "--config", "c.toml")["results"]
+        self.assertEqual([(r["algorithm"], r["phantom"]) for r in results], [(a, "log") for a in ALGORITHMS])
+        self.assertEqual(len(self.compare("park2016-1", "--algorithm", "tactile-brush")["results"]), 1)
+
+    def test_text_and_csv_hold_the_same_figures(self):
+        results = self.compare("park2016-3", "--phantoms", "inverse-distance,gaussian")["results"]
+        text = self.ok("compare", "park2016-3", "--phantoms", "inverse-distance,gaussian")
+        rows = [line.split() for line in text.stdout.splitlines() if line.split(" ")[0] in ALGORITHMS]
+        table = list(csv.DictReader(io.StringIO(self.ok("compare", "park2016-3", "--phantoms",
+                                                        "inverse-distance,gaussian", "--format", "csv").stdout)))
+        self.assertEqual((len(rows), len(table)), (6, 6))
+        for row, line, result in zip(rows, table, results):
+            self.assertEqual(row[:2], [result["algorithm"], result["phantom"]])
+            shown = [f"{result[f]:.3f}" for f in FIGURES[:4]] + [f"{100 * result[f]:.1f}" for f in FIGURES[4:]]
+            self.assertEqual(row[3:], shown)
+            self.assertEqual([float(line[f]) for f in FIGURES], [result[f] for f in FIGURES])
+            self.assertEqual(line["bursts"], "" if result["bursts"] is None else str(result["bursts"]))
+        self.assertTrue(all(len(line) <= 80 for line in text.stdout.splitlines() if line[:4] in ("park", "tact", "cont")))
+        self.assertIn("not a measurement", text.stdout)
+        self.assertEqual(text.stdout.count("warning: tactile-brush"), 1)
+
+    def test_strokes_of_a_file_are_compared_each(self):
+        self.write("two.toml", '[[stroke]]\nname = "a, b"\npath = "M 0 0 L 40 0"\nduration_s = 0.7\n'
+                               '[[stroke]]\nname = "c"\npath = "M 0 40 L 40 40"\nduration_s = 0.8\n')
+        c = self.compare("two.toml")
+        self.assertEqual([x["stroke"]["name"] for x in c["comparisons"]], ["a, b", "c"])
+        self.assertEqual([len(x["results"]) for x in c["comparisons"]], [3, 3])
+        rows = list(csv.DictReader(io.StringIO(self.ok("compare", "two.toml", "--format", "csv").stdout)))
+        self.assertEqual([(r["stroke"], r["name"]) for r in rows], [("0", "a, b")] * 3 + [("1", "c")] * 3)
+        self.assertEqual(self.ok("compare", "two.toml").stdout.count("error mm"), 2)
+
+    def test_the_same_in_any_locale(self):
+        for form in ("text", "json", "csv"):
+            seen = {self.ok("compare", "park2016-2", "--format", form, env={"LC_ALL": locale}).stdout
+                    for locale in ("C", "de_DE.UTF-8", "fr_FR.UTF-8")}
+            self.assertEqual(len(seen), 1)
+
+
+class Refusals(CompareTest):
+    OFF_GRID = ("--path", "M 3 3 L 37 30", "--duration", "1")
+
+    def test_an_algorithm_that_cannot_play_the_stroke_says_why_in_its_row(self):
+        rows = self.compare(*self.OFF_GRID)["results"]
+        self.assertIn("--snap", rows[1]["refused"])
+        self.assertNotIn("rms_error_mm", rows[1])
+        self.assertEqual([rows[0]["refused"], rows[2]["refused"]], [None, None])
+        self.assertIn("tactile-brush inverse-distance refused: ", self.ok("compare", *self.OFF_GRID).stdout)
+        line = list(csv.DictReader(io.StringIO(self.ok("compare", *self.OFF_GRID, "--format", "csv").stdout)))[1]
+        self.assertIn("--snap", line["refused"])
+        self.assertEqual(line["rms_error_mm"], "")
+
+    def test_what_the_user_allows_is_done(self):
+        self.assertIsNone(self.compare(*self.OFF_GRID, "--snap")["results"][1]["refused"])
+        fast = ("park2016-3", "--duration", "0.12")
+        self.assertIn("--drop-points", self.compare(*fast)["results"][1]["refused"])
+        brush = self.compare(*fast, "--drop-points")["results"][1]
+        self.assertIn("left out", brush["warnings"][0])
+
+    def test_a_stroke_that_none_can_play_is_bad_input(self):
+        r = self.refused(2, "compare", "--path", "M 20 20 L 60 20", says=["40", "--outside"])
+        self.assertEqual((r.stdout, r.stderr.count("\n")), ("", 1))
+        self.refused(2, "compare", *self.OFF_GRID, "--algorithms", "tactile-brush", says=["--snap"])
+        self.write("two.toml", '[[stroke]]\npath = "M 0 0 L 40 0"\n[[stroke]]\npath = "M 0 40 L 50 40"\n')
+        r = self.refused(2, "compare", "two.toml", "--format", "json", says=["40"])
+        self.assertEqual(len(json.loads(r.stdout)["comparisons"]), 2)
+
+    def test_wrong_usage(self):
+        self.refused(2, "compare", says=["stroke"])
+        self.refused(2, "compare", "park2016-1", "park2016-2", says=["park2016-2"])
+        self.refused(2, "compare", "park2016-1", "--algorithms", "park2017", says=["park2017", "tactile-brush"])
+        self.refused(2, "compare", "park2016-1", "--algorithms", "", says=["--algorithms"])
+        self.refused(2, "compare", "park2016-1", "--algorithms", "park2016,", says=["--algorithms"])
+        self.refused(2, "compare", "park2016-1", "--phantoms", "log,log", says=["log", "twice"])
+        self.refused(2, "compare", "park2016-1", "--phantoms", "log", "--phantom", "log", says=["--phantom"])
+        self.refused(2, "compare", "park2016-1", "--format", "xml", says=["xml", "csv"])
+        self.refused(2, "compare", "park2016-1", "--soa", "0.08", says=["0.0473", "0.07"])
+        self.refused(2, "compare", "park2016-1", "--duration", "3601", says=["3601", "3600"])
+        self.assertIn("Example: tactor compare", self.ok("compare", "--help").stdout)
+
+
+if __name__ == "__main__":
+    main()
