@@ -80,9 +80,10 @@ void plan_brush(const job& j, plan& out)
         const double after = i + 1 < points.size() ? before[i + 1] : 0.0;
         burst b = make_burst(j, tau[i] - before[i], before[i] + after, points[i].position, tau[i]);
         b.tau_s = tau[i];
+        // The last burst ends with the stroke, but the one before it may sound on for longer.
+        out.total_s = std::max(out.total_s, b.onset_s + b.duration_s);
         out.bursts.push_back(std::move(b));
     }
-    out.total_s = out.stroke_duration_s;
 }
 
 } // namespace tactor::detail

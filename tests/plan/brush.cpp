@@ -63,7 +63,7 @@ TEST_CASE("Tactile Brush: the check value of the rendering model, to a microseco
     }
     CHECK(p.algorithm == "tactile-brush");
     CHECK_FALSE(p.soa_s);
-    CHECK(p.total_s == 1.0);
+    CHECK(std::abs(p.total_s - 1.041341) < 1e-6); // the fourth burst outlasts the stroke
     CHECK(p.dropped.empty());
     CHECK(p.bursts[1].position.x_mm == 15.0);
     REQUIRE(p.warnings.size() == 1);

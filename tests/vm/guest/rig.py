@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: MIT
+"""The guest's bench: the tool, a loopback card to capture from, and a simulated GPIO chip."""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+ROOT = pathlib.Path(sys.argv[1])
+BUILD = pathlib.Path(sys.argv[2])
+TOOL = BUILD / "src/cli/tactor"
+RATE = 48000
+# The loopback card runs on jiffies: at 250 Hz, 240 frames are the shortest period that it keeps.
+PERIOD, PERIODS = 240, 16
+OUT, BACK = "hw:CARD=Loopback,DEV=0,SUBDEV={}", "hw:CARD=Loopback,DEV=1,SUBDEV={}"
+
+
+def wait_for(condition, what, seconds=20.0):
+    """Polls a condition that nothing announces (sysfs, /proc)."""
+    end = time.monotonic() + seconds
+    while True:
+        value = condition()
+        if value:
+            return value
+        if time.monotonic() > end:
+            raise AssertionError(f"not within {seconds} s: {what}")
+        time.sleep(0.002)
+
+
+class Capture:
+    """arecord on the other end of the loopback."""
+
+    def __init__(self, folder, channels, sample_format, subdevice=0):
+        self.path = folder / f"capture{subdevice}.raw"
+        self.frame_bytes = channels * {"S16_LE": 2, "S32_LE": 4}[sample_format]
+        self.process = subprocess.Popen(
+            ["arecord", "-q", "-D", BACK.format(subdevice), "-t", "raw", "-f", sample_format, "-c", str(channels),
+             "-r", str(RATE), "--period-size=1024", "--buffer-size=16384", str(self.path)],
+            stderr=subprocess.PIPE)
+        wait_for(lambda: self.path.exists() or self.process.poll() is not None, "arecord starts")
+
+    def stop(self):
+        self.process.terminate()
+        self.process.communicate(timeout=30)
+        data = self.path.read_bytes()
+        return data[:len(data) - len(data) % self.frame_bytes]
+
+
+class GpioSim:
+    """A simulated chip: outputs are read, inputs are pulled through sysfs."""
+    COUNT = 0
+
+    def __init__(self, lines=8, names=()):
+        GpioSim.COUNT += 1
+        self.config = pathlib.Path(f"/sys/kernel/config/gpio-sim/t{os.getpid()}-{GpioSim.COUNT}")
+        bank = self.config / "bank0"
+        bank.mkdir(parents=True)
+        (bank / "num_lines").write_text(str(lines))
+        self.label = f"tactor-sim-{GpioSim.COUNT}"
+        (bank / "label").write_text(self.label)
+        for offset, name in names:
+            (bank / f"line{offset}").mkdir()
+            (bank / f"line{offset}/name").write_text(name)
+        (self.config / "live").write_text("1")
+        self.chip = (bank / "chip_name").read_text().strip()
+        self.sysfs = pathlib.Path("/sys/devices/platform") / (self.config / "dev_name").read_text().strip() / self.chip
+
+    def value(self, offset):
+        return int((self.sysfs / f"sim_gpio{offset}/value").read_text())
+
+    def pull(self, offset, up):
+        (self.sysfs / f"sim_gpio{offset}/pull").write_text("pull-up" if up else "pull-down")
+
+    def close(self):
+        (self.config / "live").write_text("0")
+
+
+class RigTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.dir = pathlib.Path(folder.name)
+        self.env = os.environ | {"XDG_CONFIG_HOME": str(self.dir), "HOME": str(self.dir)}
+
+    def write(self, name, text):
+        (self.dir / name).write_text(text)
+        return self.dir / name
+
+    def tool(self, *args, timeout=300):
+        return subprocess.run([TOOL, *map(str, args)], capture_output=True, text=True, cwd=self.dir, env=self.env,
+                              timeout=timeout, check=False)
+
+    def start(self, *args):
+        p = subprocess.Popen([TOOL, *map(str, args)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                             cwd=self.dir, env=self.env)
+        self.addCleanup(lambda: p.poll() is None and p.kill())
+        return p
+
+    def grid(self, channels=9, extra=""):
+        """An array file for the loopback card."""
+        rows, columns = {9: (3, 3), 16: (4, 4)}[channels]
+        return self.write("array.toml", f"""
+[array]
+name = "vm"
+grid = {{ rows = {rows}, columns = {columns}, pitch_mm = 20.0 }}
+[output]
+pcm = "{OUT.format(0)}"
+period_frames = {PERIOD}
+periods = {PERIODS}
+{extra}""")

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: MIT
+"""What a card receives is what render writes."""
+from rig import OUT, PERIOD, PERIODS, Capture, RigTest
+
+
+def wav_data(path):
+    data = path.read_bytes()
+    at = 12
+    while data[at:at + 4] != b"data":
+        at += 8 + int.from_bytes(data[at + 4:at + 8], "little")
+    return data[at + 8:]
+
+
+class Loopback(RigTest):
+    def compare(self, channels, name, alsa_name, stroke):
+        array = self.grid(channels)
+        rendered = self.tool("render", *stroke, "--array", array, "--sample-format", name, "-o", "o.wav")
+        self.assertEqual(rendered.returncode, 0, rendered.stderr)
+        capture = Capture(self.dir, channels, alsa_name)
+        played = self.tool("play", *stroke, "--array", array, "--sample-format", name)
+        got = capture.stop()
+        self.assertEqual(played.returncode, 0, played.stderr)
+        data, frame = wav_data(self.dir / "o.wav"), capture.frame_bytes
+        lead = next(i for i, v in enumerate(data) if v) // frame
+        start = next(i for i, v in enumerate(got) if v) // frame - lead
+        heard = got[start * frame:start * frame + len(data)]
+        self.assertEqual(len(heard), len(data))
+        self.assertTrue(heard == data, f"{channels} channels {name}")
+        print(f"{channels} channels {name}: {len(data) // frame} frames identical, device {OUT.format(0)}, "
+              f"{PERIODS} periods of {PERIOD}")
+
+    def test_nine_and_sixteen_channels_arrive_bit_by_bit(self):
+        for channels, name, alsa_name in ((9, "s16", "S16_LE"), (9, "s32", "S32_LE"), (16, "s16", "S16_LE"),
+                                          (16, "s32", "S32_LE")):
+            self.compare(channels, name, alsa_name, ["park2016-1"])
+
+    def test_the_other_algorithms_arrive_too(self):
+        for algorithm in ("tactile-brush", "continuous"):
+            self.compare(9, "s32", "S32_LE", ["park2016-3", "--algorithm", algorithm])
