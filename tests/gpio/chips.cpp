@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// The chips of a machine that has none, and folders that look like /dev.
+#include "gpio/chips.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include <tactor/error.hpp>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct folder {
+    fs::path path;
+    folder()
+    {
+        std::string name = (fs::temp_directory_path() / "tactor-gpio-XXXXXX").string();
+        path = ::mkdtemp(name.data());
+    }
+    ~folder() { fs::remove_all(path); }
+    void file(const std::string& name) const { std::ofstream(path / name) << "x"; }
+};
+
+} // namespace
+
+TEST_CASE("chips are listed by number, each once")
+{
+    const folder f;
+    for (const char* name :
+         {"gpiochip10", "gpiochip2", "gpiochip0", "gpiochip", "gpiochip1x", "gpiomem", "mygpiochip1"})
+        f.file(name);
+    fs::create_symlink("gpiochip0", f.path / "gpiochip4");
+    const auto at = [&](const char* name) { return (f.path / name).string(); };
+    CHECK(tactor::gpio::chip_paths(f.path) ==
+          std::vector{at("gpiochip0"), at("gpiochip2"), at("gpiochip10")});
+    CHECK(tactor::gpio::chip_paths(f.path / "nowhere").empty());
+}
+
+TEST_CASE("a file's group has a name, a missing file's is the usual one")
+{
+    CHECK(tactor::gpio::group_of("/dev/null") == "root");
+    CHECK(tactor::gpio::group_of("/nowhere") == "gpio");
+}
+
+TEST_CASE("what is no GPIO chip is not opened as one")
+{
+    const folder f;
+    f.file("gpiochip0");
+    for (const std::string& path :
+         {(f.path / "gpiochip0").string(), std::string("/dev/null"), f.path.string()}) {
+        const tactor::gpio::chip c = tactor::gpio::read_chip(path);
+        CHECK(c.code != 0);
+        CHECK(c.info.path == path);
+        CHECK(c.info.lines.empty());
+    }
+    CHECK(tactor::gpio::read_chip("/nowhere").code == ENOENT);
+}
+
+TEST_CASE("a path that is no GPIO chip is an error that says so")
+{
+    const tactor::gpio_line_name l{.chip = "/dev/null", .offset = 3};
+    std::string text;
+    try {
+        tactor::open_output(l);
+    } catch (const tactor::error& e) {
+        CHECK(e.kind() == tactor::errc::not_available);
+        text = e.what();
+    }
+    CHECK(text == "GPIO line 3 of /dev/null: /dev/null is not a GPIO chip (tactor devices lists the chips)");
+}

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+#include "fake_line.hpp"
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <ctime>
+#include <fstream>
+#include <stdexcept>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sched.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace tactor::test {
+namespace {
+
+bool readable(int fd, int timeout_ms)
+{
+    pollfd p{fd, POLLIN, 0};
+    return ::poll(&p, 1, timeout_ms) > 0;
+}
+
+std::array<int, 2> make_pipe()
+{
+    std::array<int, 2> ends{};
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0)
+        throw std::runtime_error("pipe");
+    return ends;
+}
+
+} // namespace
+
+std::int64_t now_ns() noexcept
+{
+    timespec t{};
+    ::clock_gettime(CLOCK_MONOTONIC, &t);
+    return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
+}
+
+fake_line::fake_line()
+{
+    const auto ends = make_pipe();
+    read_ = ends[0];
+    state_.fd = ends[1];
+}
+
+fake_line::~fake_line()
+{
+    ::close(read_);
+    ::close(state_.fd);
+}
+
+gpio::held_line fake_line::held()
+{
+    return {&set, &state_, {state_.fd}};
+}
+
+bool fake_line::set(void* line, bool on) noexcept
+{
+    const state& s = *static_cast<state*>(line);
+    if (on && s.broken)
+        return false;
+    const switched record{on, now_ns()};
+    return ::write(s.fd, &record, sizeof record) == static_cast<ssize_t>(sizeof record);
+}
+
+std::optional<switched> fake_line::next(int timeout_ms) const
+{
+    switched s;
+    if (!readable(read_, timeout_ms) || ::read(read_, &s, sizeof s) != static_cast<ssize_t>(sizeof s))
+        return std::nullopt;
+    return s;
+}
+
+player::player(fake_line& line, const body& b, const std::function<void()>& before)
+{
+    const auto ends = make_pipe();
+    const auto tell = [&](int n) {
+        if (::write(ends[1], &n, sizeof n) != static_cast<ssize_t>(sizeof n))
+            ::_exit(9);
+    };
+    pid_ = ::fork();
+    if (pid_ == 0) {
+        before();
+        auto h = gpio::start_holder(line.held(), [] { return true; });
+        tell(h->pid());
+        if (!h->set(true))
+            ::_exit(8);
+        b(*h, tell);
+        ::_exit(0); // as abort() would: the link's destructor does not run
+    }
+    ::close(ends[1]);
+    told_ = ends[0];
+    holder_ = told();
+    const auto s = line.next();
+    if (holder_ <= 0 || !s || !s->on)
+        throw std::runtime_error("the player did not switch on");
+}
+
+player::~player()
+{
+    ::kill(pid_, SIGKILL);
+    while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
+    }
+    ::close(told_);
+}
+
+int player::told() const
+{
+    int n = -1;
+    if (!readable(told_, 5000) || ::read(told_, &n, sizeof n) != static_cast<ssize_t>(sizeof n))
+        return -1;
+    return n;
+}
+
+std::int64_t player::signal(int number) const
+{
+    const std::int64_t t = now_ns();
+    ::kill(pid_, number);
+    return t;
+}
+
+void keep_beating(gpio::holder_link& h, const std::function<void(int)>&)
+{
+    for (;;) {
+        ::poll(nullptr, 0, 50);
+        h.beat();
+    }
+}
+
+std::int64_t promised_ms(pid_t holder)
+{
+    return ::sched_getscheduler(holder) == SCHED_FIFO ? 200 : 1000;
+}
+
+int open_pidfd(pid_t pid)
+{
+    return static_cast<int>(::syscall(SYS_pidfd_open, pid, 0U));
+}
+
+bool ends(int pidfd)
+{
+    return readable(pidfd, 5000);
+}
+
+std::string status_of(pid_t pid, const std::string& field)
+{
+    std::ifstream in("/proc/" + std::to_string(pid) + "/status");
+    for (std::string line; std::getline(in, line);)
+        if (line.starts_with(field + ":"))
+            return line.substr(line.find_first_not_of(" \t", field.size() + 1));
+    return {};
+}
+
+} // namespace tactor::test

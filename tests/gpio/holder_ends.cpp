@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+// However the player ends, the line goes off, and soon. Real processes and real time: what is promised is
+// about both. The line's own records are what is measured.
+#include <csignal>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <doctest/doctest.h>
+
+#include "fake_line.hpp"
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+void check_off(const fake_line& line, std::int64_t since_ns, std::int64_t within_ms)
+{
+    const auto s = line.next();
+    REQUIRE(s.has_value());
+    CHECK(!s->on);
+    CHECK((s->time_ns - since_ns) / 1'000'000 < within_ms);
+}
+
+// doctest's own handlers would report a crash.
+void die_quietly()
+{
+    const rlimit no_core{0, 0};
+    ::setrlimit(RLIMIT_CORE, &no_core);
+    for (int s = 1; s < SIGRTMIN; ++s)
+        ::signal(s, SIG_DFL);
+}
+
+} // namespace
+
+TEST_CASE("a player that is killed in any way leaves the line off")
+{
+    for (const int number : {SIGKILL, SIGTERM, SIGINT, SIGHUP, SIGABRT, SIGSEGV}) {
+        CAPTURE(number);
+        fake_line line;
+        const player p(line, keep_beating, die_quietly);
+        const int holder = open_pidfd(p.holder());
+        const std::int64_t limit = promised_ms(p.holder());
+        check_off(line, p.signal(number), limit);
+        CHECK(ends(holder));
+        ::close(holder);
+        CHECK(!line.next(0).has_value());
+    }
+}
+
+TEST_CASE("a player that exits without a word leaves the line off")
+{
+    fake_line line;
+    std::int64_t before = now_ns();
+    const player p(line, [](gpio::holder_link&, const auto&) { ::_exit(3); });
+    check_off(line, before, 1000);
+}
+
+TEST_CASE("a player that is stopped leaves the line off, learns of it, and may switch on again")
+{
+    fake_line line;
+    const player p(line, [](gpio::holder_link& h, const std::function<void(int)>& tell) {
+        while (h.beat())
+            ::poll(nullptr, 0, 50);
+        tell(h.beat() ? 1 : 0);
+        h.set(true);
+        tell(h.beat() ? 1 : 0);
+        keep_beating(h, tell);
+    });
+    const std::int64_t limit = promised_ms(p.holder());
+    check_off(line, p.signal(SIGSTOP), limit);
+    CHECK(!line.next(200).has_value());
+    p.signal(SIGCONT);
+    CHECK(p.told() == 0);
+    const auto again = line.next();
+    REQUIRE(again.has_value());
+    CHECK(again->on);
+    CHECK(p.told() == 1);
+    check_off(line, p.signal(SIGKILL), limit);
+}
+
+TEST_CASE("signals to the player's group and to the holder do not touch the holder")
+{
+    constexpr int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGQUIT, SIGUSR1, SIGALRM, SIGPIPE, SIGTTOU};
+    fake_line line;
+    const player p(line, keep_beating, [&] {
+        ::setpgid(0, 0);
+        for (const int s : signals)
+            ::signal(s, SIG_IGN);
+    });
+    CHECK(::getsid(p.holder()) != ::getsid(p.pid()));
+    for (const int s : signals) {
+        CHECK(::kill(-p.pid(), s) == 0);
+        CHECK(::kill(p.holder(), s) == 0);
+    }
+    CHECK(!line.next(400).has_value()); // neither switched nor lapsed
+    const std::int64_t limit = promised_ms(p.holder());
+    const std::int64_t t = now_ns();
+    ::kill(-p.pid(), SIGKILL);
+    check_off(line, t, limit);
+}
+
+TEST_CASE("a terminal that is closed leaves the line off")
+{
+    const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+    if (terminal < 0 || ::grantpt(terminal) != 0 || ::unlockpt(terminal) != 0) {
+        MESSAGE("SKIPPED: there are no pseudo-terminals here");
+        return;
+    }
+    const std::string name = ::ptsname(terminal);
+    fake_line line;
+    const player p(line, keep_beating, [&] {
+        ::close(terminal);
+        ::setsid();
+        ::ioctl(::open(name.c_str(), O_RDWR), TIOCSCTTY, 0);
+    });
+    const std::int64_t limit = promised_ms(p.holder());
+    const std::int64_t t = now_ns();
+    ::close(terminal);
+    check_off(line, t, limit);
+}
+
+TEST_CASE("another process that keeps the player's descriptors open does not keep the line on")
+{
+    fake_line line;
+    const player p(line, [](gpio::holder_link& h, const std::function<void(int)>& tell) {
+        const pid_t other = ::fork();
+        if (other == 0)
+            for (;;)
+                ::pause();
+        tell(other);
+        keep_beating(h, tell);
+    });
+    const pid_t other = p.told();
+    REQUIRE(other > 0);
+    const std::int64_t limit = promised_ms(p.holder());
+    const std::int64_t t = p.signal(SIGKILL);
+    const auto s = line.next(100); // sooner than silence would
+    ::kill(other, SIGKILL);
+    REQUIRE(s.has_value());
+    CHECK(!s->on);
+    CHECK((s->time_ns - t) / 1'000'000 < limit);
+}
