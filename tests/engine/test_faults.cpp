@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Devices that run dry, sleep, vanish, or stand still.
-#include <random>
-
+// Devices that run dry, vanish, or stand still.
 #include <doctest/doctest.h>
 
 #include "rig.hpp"
@@ -10,14 +8,6 @@ using namespace tactor;
 using namespace tactor::test;
 
 namespace {
-
-// Says "not yet" whenever it is asked to resume.
-class sleepy_sink final : public forwarding_sink {
-public:
-    using forwarding_sink::forwarding_sink;
-
-    io_status resume() noexcept override { return io_status::again; }
-};
 
 // Plays until the stream is over; how long that took.
 std::int64_t run_until_over(rig& r, int steps)
@@ -149,92 +139,6 @@ TEST_CASE("xruns that are further apart never end the stream")
     CHECK(r.link.count.xruns == 20);
 }
 
-TEST_CASE("a suspended device is resumed when it can, with a fresh stream")
-{
-    for (const bool can_resume : {true, false}) {
-        CAPTURE(can_resume);
-        rig r;
-        REQUIRE(r.start().status == io_status::ok);
-        const std::uint64_t base = r.status().written;
-        const stroke_id id = r.submit(tone(1.0));
-        r.play(9600);
-        const std::uint64_t played = r.status().played;
-        r.dac.suspend();
-        for (int i = 0; i < 50; ++i) {
-            r.step();
-            r.control();
-        }
-        CHECK_FALSE(r.status().running);
-        CHECK_FALSE(r.loop.polls_sink());
-        CHECK(r.loop.timeout_ns() == 2'000'000);
-        CHECK_FALSE(r.loop.over());
-        REQUIRE(r.report(id));
-        CHECK(r.report(id)->state == stroke_state::interrupted);
-        CHECK(r.report(id)->reason == "the system was suspended");
-        CHECK(r.report(id)->frames <= played - base);
-
-        const stroke_id waiting = r.submit(tone(0.01));
-        r.step();
-        CHECK(r.ended.size() == 1);
-        r.dac.wake(can_resume);
-        const std::uint64_t captured = r.dac.captured_frames();
-        r.step();
-        CHECK(r.status().running);
-        CHECK(r.dac.captured_frames() == captured + 288);
-        CHECK(r.dac.starts() == 2);
-        r.play_out();
-        CHECK(r.report(waiting)->state == stroke_state::finished);
-        // Nothing of the old stroke is heard again.
-        CHECK(r.first_sound(captured) == captured + 289);
-        CHECK(r.link.count.xruns == 0);
-    }
-}
-
-TEST_CASE("a device that never wakes up is prepared afresh in the end")
-{
-    rig r;
-    REQUIRE(r.start().status == io_status::ok);
-    r.dac.suspend();
-    const std::int64_t took = run_until_over(r, 10'000);
-    CHECK(r.loop.over() == false);
-    // prepare() says "suspended" again, and so on: no end, no spinning, no xrun.
-    CHECK(took >= 10'000 * 1'900'000LL);
-    CHECK(r.link.count.xruns == 0);
-}
-
-TEST_CASE("a resume that is never ready is given up after ten seconds, for a fresh start")
-{
-    rig r({.wrap = [](auto s) { return std::make_unique<sleepy_sink>(std::move(s)); }});
-    REQUIRE(r.start().status == io_status::ok);
-    r.play(960);
-    r.dac.suspend();
-    r.step();
-    CHECK_FALSE(r.status().running);
-    r.dac.wake(false);
-    const std::int64_t begun = r.now;
-    while (!r.status().running && !r.loop.over())
-        r.step();
-    CHECK(r.status().running);
-    CHECK(r.now - begun >= 9'900'000'000);
-    CHECK(r.now - begun <= 10'100'000'000);
-    r.play(9600);
-    CHECK(r.status().running);
-}
-
-TEST_CASE("stop ends a suspended stream at once")
-{
-    rig r;
-    REQUIRE(r.start().status == io_status::ok);
-    r.dac.suspend();
-    r.play(960);
-    r.link.requests.push({.what = engine::request::kind::stop});
-    r.step();
-    r.control();
-    CHECK(r.loop.over());
-    CHECK(r.feed.stream_over());
-    CHECK(r.feed.stream_reason().empty());
-}
-
 TEST_CASE("an unplugged device ends the stream and every stroke")
 {
     rig r;
@@ -327,54 +231,4 @@ TEST_CASE("a device that does not start at first says so")
     r.dac.fail_start(-EIO);
     CHECK(r.start().status == io_status::failed);
     CHECK_FALSE(r.status().running);
-}
-
-TEST_CASE("faults at random: every stroke ends once, nothing is heard twice")
-{
-    std::mt19937_64 random(77);
-    for (int round = 0; round < 200; ++round) {
-        CAPTURE(round);
-        rig r({.ring = std::size_t{8} << random() % 8});
-        REQUIRE(r.start().status == io_status::ok);
-        for (int i = 0; i < 400 && !r.loop.over(); ++i) {
-            if (random() % 20 == 0)
-                r.submit(random_score(random(), 1 + random() % 5),
-                         random() % 2 == 0 ? 0 : r.status().written + random() % 30'000);
-            if (random() % 30 == 0 && r.last_id > 0)
-                r.feed.cancel(1 + static_cast<stroke_id>(random() % r.last_id));
-            switch (random() % 200) {
-            case 0:
-                r.dac.advance(5000);
-                break;
-            case 1:
-                r.dac.suspend();
-                break;
-            case 2:
-                if (random() % 4 == 0)
-                    r.dac.disconnect();
-                break;
-            case 3:
-                r.link.requests.push({.what = engine::request::kind::stop});
-                break;
-            default:
-                if (random() % 8 == 0)
-                    r.dac.wake(random() % 2 == 0);
-                break;
-            }
-            if (random() % 10 != 0)
-                r.dac.advance_queued(96);
-            r.step();
-            if (random() % 3 != 0)
-                r.control();
-        }
-        r.link.requests.push({.what = engine::request::kind::stop});
-        r.dac.wake(true);
-        for (int i = 0; i < 1000 && !r.feed.stream_over(); ++i)
-            r.play(96);
-        r.control();
-        CHECK(r.feed.stream_over());
-        CHECK(r.ended.size() == r.last_id);
-        for (const auto& [id, reports] : r.ended)
-            REQUIRE(reports.size() == 1);
-    }
 }

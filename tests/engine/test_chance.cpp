@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// Everything that can go wrong, in any order.
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "rig.hpp"
+
+using namespace tactor;
+using namespace tactor::test;
+
+TEST_CASE("faults at random: every stroke ends once, nothing is heard twice")
+{
+    std::mt19937_64 random(77);
+    for (int round = 0; round < 200; ++round) {
+        CAPTURE(round);
+        rig r({.ring = std::size_t{8} << random() % 8});
+        REQUIRE(r.start().status == io_status::ok);
+        for (int i = 0; i < 400 && !r.loop.over(); ++i) {
+            if (random() % 20 == 0)
+                r.submit(random_score(random(), 1 + random() % 5),
+                         random() % 2 == 0 ? 0 : r.status().written + random() % 30'000);
+            if (random() % 30 == 0 && r.last_id > 0)
+                r.feed.cancel(1 + static_cast<stroke_id>(random() % r.last_id));
+            switch (random() % 200) {
+            case 0:
+                r.dac.advance(5000);
+                break;
+            case 1:
+                r.dac.suspend();
+                break;
+            case 2:
+                if (random() % 4 == 0)
+                    r.dac.disconnect();
+                break;
+            case 3:
+                r.link.requests.push({.what = engine::request::kind::stop});
+                break;
+            default:
+                if (random() % 8 == 0)
+                    r.dac.wake(random() % 2 == 0);
+                break;
+            }
+            if (random() % 10 != 0)
+                r.dac.advance_queued(96);
+            r.step();
+            if (random() % 3 != 0)
+                r.control();
+        }
+        r.link.requests.push({.what = engine::request::kind::stop});
+        r.dac.wake(true);
+        for (int i = 0; i < 1000 && !r.feed.stream_over(); ++i)
+            r.play(96);
+        r.control();
+        CHECK(r.feed.stream_over());
+        CHECK(r.ended.size() == r.last_id);
+        for (const auto& [id, reports] : r.ended)
+            REQUIRE(reports.size() == 1);
+    }
+}

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// What a test can see of the fake DAC.
+#include "fake_dac.hpp"
+
+namespace tactor::test {
+
+std::vector<std::byte> fake_dac::captured() const
+{
+    const std::lock_guard lock(mutex_);
+    return captured_;
+}
+
+std::size_t fake_dac::captured_frames() const
+{
+    const std::lock_guard lock(mutex_);
+    return static_cast<std::size_t>(total_);
+}
+
+std::size_t fake_dac::frame_bytes() const
+{
+    const std::lock_guard lock(mutex_);
+    return frame_bytes_;
+}
+
+std::uint64_t fake_dac::queued() const
+{
+    const std::lock_guard lock(mutex_);
+    return queued_locked();
+}
+
+unsigned fake_dac::starts() const
+{
+    const std::lock_guard lock(mutex_);
+    return starts_;
+}
+
+unsigned fake_dac::prepares() const
+{
+    const std::lock_guard lock(mutex_);
+    return prepares_;
+}
+
+unsigned fake_dac::drops() const
+{
+    const std::lock_guard lock(mutex_);
+    return drops_;
+}
+
+bool fake_dac::closed() const
+{
+    const std::lock_guard lock(mutex_);
+    return closed_;
+}
+
+bool fake_dac::running() const
+{
+    const std::lock_guard lock(mutex_);
+    return running_;
+}
+
+void fake_dac::reserve_capture(std::size_t bytes)
+{
+    const std::lock_guard lock(mutex_);
+    captured_.reserve(bytes);
+    capture_limit_ = bytes;
+}
+
+} // namespace tactor::test
