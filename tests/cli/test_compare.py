@@ -30,10 +30,9 @@ def cv(values):
 
 def sounding(plan, t, last):
     """The bursts that sound at t: those that have begun and not ended, to the nanosecond."""
-    now = [b for b in plan["bursts"] if b["onset_s"] <= t + 1e-9 and t < b["onset_s"] + b["duration_s"] - 1e-9]
-    if last and not now:
-        return [b for b in plan["bursts"] if abs(b["onset_s"] + b["duration_s"] - t) <= 1e-9]
-    return now
+    closing = last and not any(abs(b["onset_s"] - t) <= 1e-9 for b in plan["bursts"])
+    end = t - 1e-9 if closing else t + 1e-9
+    return [b for b in plan["bursts"] if b["onset_s"] <= t + 1e-9 and b["onset_s"] + b["duration_s"] > end]
 
 
 def felt(plan, i, last):
