@@ -51,8 +51,8 @@ inline constexpr double longest_percept_s = 3600.0;
 /// where it is a multiple of 1 ms (within 1 ns). `p` must be a plan of `s` on `a`.
 ///
 /// A burst sounds from its onset until before its end (within 1 ns). Only at the very end of the movement
-/// does a burst that ends there count as well, if no other sounds. Bursts that overlap on one tactor are
-/// joined as the plan says (plan::join).
+/// does a burst that ends there count as well, unless another begins there. Bursts that overlap on one tactor
+/// are joined as the plan says (plan::join).
 ///
 /// Speed: where nothing sounds, the position felt last is held; the average over percept_window_s runs over
 /// the positions so completed; speed is the central difference of the average.

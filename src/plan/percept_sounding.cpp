@@ -60,13 +60,12 @@ bool sounding::end_bursts(double t_s)
 {
     if (first_end_s_ > t_s + same_time_s)
         return false;
-    const auto ends_by = [this](double limit_s) {
-        return [this, limit_s](std::size_t i) { return end_of(plan_.bursts[i]) <= limit_s; };
-    };
-    const bool all = std::all_of(active_.begin(), active_.end(), ends_by(t_s + same_time_s));
-    // The Tactile Brush's last burst ends with the movement: its last sample is not silence.
-    const bool closing = all && t_s > end_s_ - same_time_s;
-    std::erase_if(active_, ends_by(closing ? t_s - same_time_s : t_s + same_time_s));
+    // The Tactile Brush's last burst ends with the movement, the one before it often later: what they did
+    // together is still felt at the last sample.
+    const bool begun = next_ > 0 && plan_.bursts[next_ - 1].onset_s >= t_s - same_time_s;
+    const bool closing = t_s > end_s_ - same_time_s && !begun;
+    const double limit_s = closing ? t_s - same_time_s : t_s + same_time_s;
+    std::erase_if(active_, [&](std::size_t i) { return end_of(plan_.bursts[i]) <= limit_s; });
     first_end_s_ = never_s;
     for (const std::size_t i : active_)
         first_end_s_ = std::min(first_end_s_, end_of(plan_.bursts[i]));

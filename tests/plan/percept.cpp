@@ -175,7 +175,7 @@ TEST_CASE("silence is intensity 0, has no error, and holds the position for the 
     CHECK(*samples[71].speed_mm_s == doctest::Approx(10.0 / 101.0 / 0.001));
 }
 
-TEST_CASE("a burst that ends with the movement is still felt at its last sample, unless another begins")
+TEST_CASE("a burst that ends with the movement is still felt at its last sample, unless another begins there")
 {
     const stroke s = along("M 0 0 L 10 0", 0.1);
     const auto alone = predict_percept(pair, s, plan_of({burst_of(0.0, 0.1, {{0, 1.0}})}));
@@ -186,6 +186,9 @@ TEST_CASE("a burst that ends with the movement is still felt at its last sample,
     CHECK(next[99].felt->x_mm == 0.0);
     CHECK(next.back().felt->x_mm == 10.0);
     CHECK_FALSE(next.back().shared);
+    const auto longer = predict_percept(
+        pair, s, plan_of({burst_of(0.0, 0.12, {{0, 1.0}}), burst_of(0.05, 0.05, {{1, 1.0}})}));
+    CHECK(longer.back().felt->x_mm == doctest::Approx(5.0));
     const auto early = predict_percept(pair, s, plan_of({burst_of(0.0, 0.0999, {{0, 1.0}})}));
     CHECK_FALSE(early.back().felt);
 }
