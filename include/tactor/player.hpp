@@ -13,6 +13,7 @@
 
 #include <tactor/api.hpp>
 #include <tactor/array.hpp>
+#include <tactor/gpio.hpp>
 #include <tactor/render.hpp>
 #include <tactor/sink.hpp>
 
@@ -65,13 +66,23 @@ struct player_position {
     std::uint64_t stroke_frame = 0;       ///< its frame at the DAC
 };
 
+/// Lines that the player drives or listens to; each may be empty.
+struct player_lines {
+    std::unique_ptr<enable_line> amplifier = {}; ///< on only while the stream is known to run
+    double settle_s = 0.010;                     ///< turn-on time of the amplifier, silence
+    std::unique_ptr<enable_line> sync_out = {};  ///< a pulse at each stroke's first sample at the DAC
+    double pulse_s = 0.005;
+    std::unique_ptr<edge_input> trigger = {}; ///< starts armed strokes
+    double trigger_delay_s = 0.050;           ///< from the edge to the first sample at the DAC
+};
+
 /// Owns the sink, the audio thread and the control thread. Its members may be called from any thread
 /// but the audio thread; they lock, so that several producers are safe.
 class TACTOR_API player {
 public:
     /// Starts the stream with silence. `a` gives the limit of each channel.
     /// \throws error: not_available or runtime when the stream does not start.
-    player(std::unique_ptr<sink> s, const array& a, const player_options& o = {});
+    player(std::unique_ptr<sink> s, const array& a, const player_options& o = {}, player_lines lines = {});
     /// stop(), then closes.
     ~player();
     player(const player&) = delete;

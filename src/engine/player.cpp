@@ -7,8 +7,8 @@
 
 namespace tactor {
 
-player::player(std::unique_ptr<sink> s, const array& a, const player_options& o)
-    : impl_(std::make_unique<impl>(std::move(s), a, o))
+player::player(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines lines)
+    : impl_(std::make_unique<impl>(std::move(s), a, o, std::move(lines)))
 {
 }
 

@@ -51,8 +51,9 @@ std::unique_ptr<sink> not_null(std::unique_ptr<sink> s)
 
 } // namespace
 
-player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options& o)
+player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines l)
     : out(not_null(std::move(s))),
+      lines(std::move(l)),
       feed(link, frames_of(o.horizon_s, out->setup().rate, "horizon")),
       loop(*out, link, synth::channel_limits(a, out->setup().channels), loop_options(o, out->setup())),
       audio(loop, *out, link, thread_options(o))

@@ -21,7 +21,7 @@
 namespace tactor {
 
 struct player::impl {
-    impl(std::unique_ptr<sink> s, const array& a, const player_options& o);
+    impl(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines l);
     ~impl();
 
     stroke_id submit(const score& s, std::uint64_t at);
@@ -30,6 +30,7 @@ struct player::impl {
     void stop(bool closing);
 
     std::unique_ptr<sink> out;
+    player_lines lines;
     engine::link link;
     std::mutex mutex; ///< guards all that follows but the threads; the audio thread never sees it
     std::condition_variable news;
