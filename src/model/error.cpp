@@ -26,7 +26,7 @@ public:
     }
 };
 
-}  // namespace
+} // namespace
 
 const std::error_category& error_category() noexcept
 {
@@ -51,8 +51,7 @@ std::string source_place::text() const
 
 error::error(errc kind, std::string_view what, std::string_view why, std::string_view hint)
     : std::system_error(make_error_code(kind)),
-      text_(hint.empty() ? fmt::format("{}: {}", what, why)
-                         : fmt::format("{}: {} ({})", what, why, hint))
+      text_(hint.empty() ? fmt::format("{}: {}", what, why) : fmt::format("{}: {} ({})", what, why, hint))
 {
 }
 
@@ -71,4 +70,4 @@ const char* version() noexcept
     return TACTOR_VERSION;
 }
 
-}  // namespace tactor
+} // namespace tactor

@@ -84,4 +84,4 @@ TACTOR_CLONES void add_line(const double* s, double a, double slope, double k, u
     }
 }
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

@@ -58,4 +58,4 @@ void add_constant(const double* s, double a, unsigned lo, unsigned hi, double* s
 void add_line(const double* s, double a, double slope, double k, unsigned lo, unsigned hi,
               double* sum) noexcept;
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

@@ -4,7 +4,7 @@
 /// do. All do the same operations on each sample, without contraction, so the samples are the same.
 #pragma once
 
-#include <cstddef>  // defines __GLIBC__ where it is glibc
+#include <cstddef> // defines __GLIBC__ where it is glibc
 
 // Sanitizers are not ready yet when the loader chooses.
 #if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) &&    \

@@ -69,4 +69,4 @@ bool expander::next_points() noexcept
     return true;
 }
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

@@ -28,7 +28,7 @@ void scatter(const T* v, unsigned n, std::byte* out, std::size_t stride) noexcep
 TACTOR_CLONES void to_float(const double* __restrict x, unsigned n, float* __restrict v) noexcept
 {
     for (unsigned i = 0; i < n; ++i) {
-        v[i] = static_cast<float>(x[i] + 0.0);  // -0 + 0 = +0
+        v[i] = static_cast<float>(x[i] + 0.0); // -0 + 0 = +0
     }
 }
 
@@ -50,7 +50,7 @@ void integers(const double* x, unsigned n, double scale, std::byte* out, std::si
     scatter<Bytes>(v.data(), n, out, stride);
 }
 
-}  // namespace
+} // namespace
 
 void convert(sample_format f, const double* x, unsigned n, std::byte* out, std::size_t stride) noexcept
 {
@@ -76,4 +76,4 @@ void convert(sample_format f, const double* x, unsigned n, std::byte* out, std::
     }
 }
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

@@ -15,4 +15,4 @@ namespace tactor::synth {
 /// integer. Float is the nearest float. Never a negative zero. x must not hold NaN.
 void convert(sample_format f, const double* x, unsigned n, std::byte* out, std::size_t stride) noexcept;
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

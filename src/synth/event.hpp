@@ -27,7 +27,7 @@ struct drive_event {
     std::uint64_t start = 0;         ///< frames since the start of the score (source) or of the epoch (mixer)
     std::uint64_t phase_frame = 0;   ///< carrier frame at `start`
     double cycles_per_frame = 0.0;   ///< carrier / rate
-    std::uint64_t ramp_position = 0;  ///< place of `start` in the window
+    std::uint64_t ramp_position = 0; ///< place of `start` in the window
     std::uint64_t window = 0;        ///< frames of the whole burst (or of the continuous stroke)
     std::uint32_t ramp = 0;          ///< 0: no window
     std::uint32_t length = 0;        ///< frames
@@ -37,4 +37,4 @@ struct drive_event {
 };
 static_assert(std::is_trivially_copyable_v<drive_event>);
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

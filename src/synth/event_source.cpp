@@ -112,4 +112,4 @@ void event_source::pop() noexcept
     }
 }
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

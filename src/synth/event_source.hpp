@@ -30,4 +30,4 @@ private:
     std::unique_ptr<impl> impl_;
 };
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

@@ -106,4 +106,4 @@ void expander::continuous_event() noexcept
     }
 }
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

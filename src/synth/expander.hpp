@@ -49,8 +49,8 @@ private:
     const item* item_ = nullptr;
     control_points* points_ = nullptr;
     std::size_t number_ = 0;
-    std::uint64_t position_ = 0;  ///< first frame of the stretch whose events come next
-    std::uint64_t step_end_ = 0;  ///< continuous: frame of the later control point
+    std::uint64_t position_ = 0; ///< first frame of the stretch whose events come next
+    std::uint64_t step_end_ = 0; ///< continuous: frame of the later control point
     std::uint64_t step_ = 0;     ///< continuous: number of the later control point
     std::size_t next_ = 0;       ///< drive, member or change that is next
     bool done_ = true;
@@ -76,4 +76,4 @@ std::uint64_t control_frame(std::uint64_t k, unsigned rate, std::uint64_t length
 /// plan that throws has none.
 void drives_at(const plan& p, double t_s, std::size_t tactors, burst& out) noexcept;
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

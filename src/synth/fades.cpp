@@ -14,7 +14,7 @@ std::int32_t first(const Fades& all, Test test) noexcept
     return i == all.end() ? fades::none : static_cast<std::int32_t>(i - all.begin());
 }
 
-}  // namespace
+} // namespace
 
 std::int32_t fades::find(std::uint32_t score) const noexcept
 {
@@ -48,4 +48,4 @@ void fades::clear() noexcept
     used_ = 0;
 }
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

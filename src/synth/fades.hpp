@@ -39,4 +39,4 @@ private:
     std::uint32_t used_ = 0;
 };
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

@@ -38,4 +38,4 @@ inline std::uint32_t ramp_frames(std::optional<double> ramp_s, double duration_s
     return static_cast<std::uint32_t>(std::min({frames, length / 2, longest_event}));
 }
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

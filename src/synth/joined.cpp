@@ -61,7 +61,7 @@ double amplitude(const item_member* first, const item_member* last, std::uint64_
     return std::min(intensity, std::sqrt(energy));
 }
 
-}  // namespace
+} // namespace
 
 joined_stretch join_members(const item_member* members, std::size_t count, std::size_t& first,
                             std::uint64_t at, overlap rule) noexcept
@@ -86,4 +86,4 @@ joined_stretch join_members(const item_member* members, std::size_t count, std::
     return s;
 }
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

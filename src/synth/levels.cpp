@@ -36,7 +36,7 @@ double level_db(const array& a, std::size_t i, const render_options& o)
     return level;
 }
 
-}  // namespace
+} // namespace
 
 void refuse_tactor(const array& a, std::size_t i, std::string_view why, std::string_view hint)
 {
@@ -69,4 +69,4 @@ std::vector<tactor_level> tactor_levels(const array& a, const render_options& o)
     return levels;
 }
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

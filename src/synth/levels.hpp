@@ -21,4 +21,4 @@ std::vector<tactor_level> tactor_levels(const array& a, const render_options& o)
 /// the limiter guards what lies between. \throws error (bad_input) with the tactor's line.
 void check_peaks(const score::impl& s, const array& a, const render_options& o);
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

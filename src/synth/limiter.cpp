@@ -21,4 +21,4 @@ std::uint64_t limit_block(double* x, unsigned n, double limit) noexcept
     return changed;
 }
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

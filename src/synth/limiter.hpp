@@ -17,4 +17,4 @@ inline bool within_limit(double peak, double limit) noexcept
     return peak <= limit * (1.0 - 1e-12);
 }
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

@@ -19,7 +19,7 @@ namespace {
 struct strip {
     alignas(64) block sum;
     double limit = 0.0;
-    double peak = 0.0;  ///< what the voices could reach together
+    double peak = 0.0; ///< what the voices could reach together
     bool sounding = false;
 };
 
@@ -29,7 +29,7 @@ double clean_limit(double l) noexcept
     return l > 0.0 ? std::min(l, 1.0) : 0.0;
 }
 
-}  // namespace
+} // namespace
 
 struct mixer::impl {
     impl(std::span<const double> limits, sample_format f, std::size_t capacity)
@@ -239,4 +239,4 @@ std::vector<double> channel_limits(const array& a, unsigned channels)
     return limits;
 }
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

@@ -61,4 +61,4 @@ private:
 /// 0.
 std::vector<double> channel_limits(const array& a, unsigned channels);
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

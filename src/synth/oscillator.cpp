@@ -27,7 +27,7 @@ void fill(oscillator_table& t, double cycles_per_frame) noexcept
     }
 }
 
-}  // namespace
+} // namespace
 
 oscillator_tables::oscillator_tables() : tables_(rows * places)
 {
@@ -77,4 +77,4 @@ TACTOR_CLONES void times_cosine(const oscillator_table& t, sine_cosine base, dou
     }
 }
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

@@ -50,9 +50,9 @@ private:
 /// same samples wherever it begins.
 struct table_part {
     std::int64_t base = 0;
-    unsigned lo = 0;  ///< in the block
+    unsigned lo = 0; ///< in the block
     unsigned hi = 0;
-    unsigned offset = 0;  ///< place in the table of lo
+    unsigned offset = 0; ///< place in the table of lo
 };
 
 /// Calls f(table_part) for the parts of frames first + lo ... first + hi - 1.
@@ -76,4 +76,4 @@ void sine_block(const oscillator_table& t, sine_cosine base, const table_part& p
 void times_cosine(const oscillator_table& t, sine_cosine base, double offset, double scale,
                   const table_part& p, double* out) noexcept;
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

@@ -115,7 +115,7 @@ void check(const array& a, std::size_t i, double peak, const render_options& o)
                               limited ? ", or raise max_dbfs" : ""));
 }
 
-}  // namespace
+} // namespace
 
 void check_peaks(const score::impl& s, const array& a, const render_options& o)
 {
@@ -135,4 +135,4 @@ void check_peaks(const score::impl& s, const array& a, const render_options& o)
     }
 }
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

@@ -150,7 +150,7 @@ std::uint64_t place_bursts(const plan& p, std::uint32_t plan, std::uint64_t star
     return end;
 }
 
-}  // namespace
+} // namespace
 
 std::uint64_t place_plan(const plan& p, std::uint32_t plan, std::uint64_t start, std::size_t tactors,
                          unsigned rate, std::optional<double> ramp_s, item_list& out)
@@ -177,4 +177,4 @@ std::uint64_t place_plan(const plan& p, std::uint32_t plan, std::uint64_t start,
     return std::max(total, it.end());
 }
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

@@ -16,4 +16,4 @@ namespace tactor::synth {
 std::uint64_t place_plan(const plan& p, std::uint32_t plan, std::uint64_t start, std::size_t tactors,
                          unsigned rate, std::optional<double> ramp_s, item_list& out);
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

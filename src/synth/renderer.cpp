@@ -65,4 +65,4 @@ std::uint64_t renderer::position() const noexcept
     return impl_->mix.position();
 }
 
-}  // namespace tactor
+} // namespace tactor

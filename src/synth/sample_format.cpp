@@ -20,7 +20,7 @@ constexpr std::array<std::pair<std::string_view, sample_format>, 5> names{{
     {"s32", sample_format::s32},
 }};
 
-}  // namespace
+} // namespace
 
 std::size_t bytes_of(sample_format f) noexcept
 {
@@ -58,4 +58,4 @@ sample_format sample_format_from_string(std::string_view name)
                 "use float, s16, s24, s24-4 or s32");
 }
 
-}  // namespace tactor
+} // namespace tactor

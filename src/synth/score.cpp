@@ -154,7 +154,7 @@ std::shared_ptr<const score::impl> make_score(const array& a, std::vector<placed
     return s;
 }
 
-}  // namespace
+} // namespace
 
 score::score(const array& a, std::vector<placed_plan> plans, const render_options& o)
     : impl_(make_score(a, std::move(plans), o))
@@ -191,4 +191,4 @@ const std::shared_ptr<const score::impl>& score::data() const noexcept
     return impl_;
 }
 
-}  // namespace tactor
+} // namespace tactor

@@ -13,7 +13,7 @@ namespace tactor::synth {
 /// A tactor's way to its channel.
 struct tactor_level {
     std::uint32_t channel = 0;
-    double gain = 0.0;  ///< linear peak for amplitude 1, polarity included
+    double gain = 0.0; ///< linear peak for amplitude 1, polarity included
 };
 
 /// A tactor's part in a burst: amplitude 1 is the intensity asked for.
@@ -28,14 +28,14 @@ struct item_member {
     std::uint64_t length = 0;
     std::uint32_t ramp = 0;
     double amplitude = 0.0;
-    double intensity = 0.0;  ///< A_v
+    double intensity = 0.0; ///< A_v
     std::uint64_t end() const noexcept { return start + length; }
 };
 
 enum class item_kind : std::uint8_t {
     burst,      ///< drives that share one carrier and one window
     joined,     ///< one tactor, several bursts under one carrier
-    continuous,  ///< a whole continuous stroke
+    continuous, ///< a whole continuous stroke
 };
 
 /// A stretch of one carrier. Frames of the score.
@@ -45,7 +45,7 @@ struct item {
     std::uint32_t plan = 0;
     std::uint32_t ramp = 0;
     item_kind kind = item_kind::burst;
-    std::uint32_t tactor = 0;  ///< of a joined one
+    std::uint32_t tactor = 0; ///< of a joined one
     std::size_t first = 0;    ///< of its drives (burst) or members (joined)
     std::size_t count = 0;
     std::uint64_t end() const noexcept { return start + length; }
@@ -58,7 +58,7 @@ struct item_list {
     std::vector<item_member> members;
 };
 
-}  // namespace tactor::synth
+} // namespace tactor::synth
 
 namespace tactor {
 
@@ -66,7 +66,7 @@ struct score::impl {
     std::vector<placed_plan> plans;
     std::vector<std::uint64_t> starts;
     std::vector<std::uint64_t> ends;          ///< of each plan
-    std::vector<synth::tactor_level> tactors;  ///< by index
+    std::vector<synth::tactor_level> tactors; ///< by index
     std::vector<double> limits;               ///< by channel
     synth::item_list list;
     std::uint64_t frames = 0;
@@ -74,8 +74,8 @@ struct score::impl {
     unsigned rate = 0;
     phase_mode phase = phase_mode::burst;
     std::size_t open_items = 0;      ///< most items that have started and not ended at once
-    std::size_t open_continuous = 0;  ///< of these, continuous ones
+    std::size_t open_continuous = 0; ///< of these, continuous ones
     std::size_t open_events = 0;     ///< most events that sound in one frame
 };
 
-}  // namespace tactor
+} // namespace tactor

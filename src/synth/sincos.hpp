@@ -17,7 +17,7 @@ struct sine_cosine {
 /// Rounds to the nearest integer, half to even, in plain arithmetic; |x| < 2^51.
 inline double nearest(double x) noexcept
 {
-    constexpr double magic = 6755399441055744.0;  // 1.5 * 2^52: no room for a fraction
+    constexpr double magic = 6755399441055744.0; // 1.5 * 2^52: no room for a fraction
     return (x + magic) - magic;
 }
 
@@ -60,4 +60,4 @@ inline sine_cosine sincos_cycles(double x) noexcept
     }
 }
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

@@ -102,4 +102,4 @@ void schedule::heapify() noexcept
     std::make_heap(heap_.begin(), heap_.end(), later);
 }
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

@@ -123,4 +123,4 @@ void schedule::forget_if(Gone gone) noexcept
     heapify();
 }
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

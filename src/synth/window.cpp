@@ -54,7 +54,7 @@ void zero(part p, double* out) noexcept
     }
 }
 
-}  // namespace
+} // namespace
 
 double window_at(std::int64_t k, std::uint64_t length, std::uint64_t ramp) noexcept
 {
@@ -99,4 +99,4 @@ void fade_block(oscillator_tables& tables, std::int64_t first, std::uint64_t len
     half_cosine(tables, first, length, 0.5, falling, out);
 }
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

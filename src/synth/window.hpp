@@ -25,4 +25,4 @@ void window_block(oscillator_tables& tables, std::int64_t first, std::uint64_t l
 void fade_block(oscillator_tables& tables, std::int64_t first, std::uint64_t length, unsigned lo, unsigned hi,
                 double* out) noexcept;
 
-}  // namespace tactor::synth
+} // namespace tactor::synth

@@ -19,4 +19,4 @@ constexpr container container_for(std::uint64_t frames, std::uint64_t frame_byte
     return frame_bytes != 0 && frames > most / frame_bytes ? container::rf64 : container::wave;
 }
 
-}  // namespace tactor::wav
+} // namespace tactor::wav

@@ -45,7 +45,7 @@ fs::path folder_of(const fs::path& p)
     throw error(errc::bad_input, file.string(), why, hint);
 }
 
-}  // namespace
+} // namespace
 
 temporary_file::temporary_file(const fs::path& file) : asked_(file), target_(follow_links(file))
 {
@@ -170,4 +170,4 @@ void temporary_file::commit()
     temporary_.clear();
 }
 
-}  // namespace tactor::wav
+} // namespace tactor::wav

@@ -36,9 +36,9 @@ private:
 
     std::filesystem::path asked_;     ///< as the user named it, for messages
     std::filesystem::path target_;    ///< links followed
-    std::filesystem::path temporary_;  ///< empty: written to directly
+    std::filesystem::path temporary_; ///< empty: written to directly
     int fd_ = -1;
     int failure_ = 0;
 };
 
-}  // namespace tactor::wav
+} // namespace tactor::wav

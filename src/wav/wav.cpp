@@ -116,7 +116,7 @@ void blank_peak(temporary_file& f)
     }
 }
 
-}  // namespace
+} // namespace
 
 bool write(const score& s, sample_format f, const std::filesystem::path& file, container c,
            const wav_progress& progress)
@@ -154,7 +154,7 @@ bool write(const score& s, sample_format f, const std::filesystem::path& file, c
     return true;
 }
 
-}  // namespace wav
+} // namespace wav
 
 bool write_wav(const score& s, sample_format f, const std::filesystem::path& file,
                const wav_progress& progress)
@@ -162,4 +162,4 @@ bool write_wav(const score& s, sample_format f, const std::filesystem::path& fil
     return wav::write(s, f, file, wav::container_for(s.frames(), s.channels() * bytes_of(f)), progress);
 }
 
-}  // namespace tactor
+} // namespace tactor

@@ -12,4 +12,4 @@ namespace tactor::wav {
 bool write(const score& s, sample_format f, const std::filesystem::path& file, container c,
            const wav_progress& progress);
 
-}  // namespace tactor::wav
+} // namespace tactor::wav

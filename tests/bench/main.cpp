@@ -49,7 +49,7 @@ private:
     std::map<std::string, double> frames_per_s_;
 };
 
-}  // namespace
+} // namespace
 
 int main(int argc, char** argv)
 {

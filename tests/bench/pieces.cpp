@@ -15,7 +15,7 @@ constexpr int repeats = 20;
 constexpr double level = 0.05;
 constexpr double two_pi = 6.283185307179586477;
 
-}  // namespace
+} // namespace
 
 score palm()
 {
@@ -77,4 +77,4 @@ void plain_loop::process(std::size_t frames, float* out)
     position_ = end;
 }
 
-}  // namespace bench
+} // namespace bench

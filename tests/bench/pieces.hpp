@@ -35,7 +35,7 @@ private:
         double amplitude;
         double hz;
     };
-    std::vector<tone> tones_;  ///< by start
+    std::vector<tone> tones_; ///< by start
     std::size_t first_ = 0;
     std::uint64_t longest_ = 0;
     std::uint64_t position_ = 0;
@@ -44,4 +44,4 @@ private:
     double rate_;
 };
 
-}  // namespace bench
+} // namespace bench

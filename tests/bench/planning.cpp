@@ -42,4 +42,4 @@ void locate(benchmark::State& state)
 }
 BENCHMARK(locate)->Name("phantom/tactors_side")->Arg(3)->Arg(32);
 
-}  // namespace
+} // namespace

@@ -97,4 +97,4 @@ const bool added = [] {
     return true;
 }();
 
-}  // namespace
+} // namespace

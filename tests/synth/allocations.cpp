@@ -67,7 +67,7 @@ score busy_score()
             o};
 }
 
-}  // namespace
+} // namespace
 
 TEST_CASE("the counter counts")
 {

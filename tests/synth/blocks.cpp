@@ -32,7 +32,7 @@ std::vector<score> various()
     return all;
 }
 
-}  // namespace
+} // namespace
 
 TEST_CASE("any block size gives the same bytes")
 {

@@ -81,7 +81,7 @@ std::vector<example> examples()
     return all;
 }
 
-}  // namespace
+} // namespace
 
 TEST_CASE("a burst is the formula to one float ulp")
 {

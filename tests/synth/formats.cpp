@@ -25,7 +25,7 @@ std::vector<std::byte> converted(sample_format f, const std::vector<double>& x)
     return out;
 }
 
-}  // namespace
+} // namespace
 
 TEST_CASE("full scale does not wrap in any format")
 {

@@ -45,7 +45,7 @@ bool holds(const std::string& text, const std::string& part)
     return true;
 }
 
-}  // namespace
+} // namespace
 
 TEST_CASE("the level is -12 dBFS unless told, and gain_db is added to it")
 {

@@ -54,7 +54,7 @@ bool silent(const std::vector<float>& x)
     return std::all_of(x.begin(), x.end(), [](float v) { return v == 0.0F; });
 }
 
-}  // namespace
+} // namespace
 
 TEST_CASE("a drive sounds where it was asked for and nowhere else")
 {

@@ -28,7 +28,7 @@ score score_of(const plan& p, double ramp_s, phase_mode phase = phase_mode::burs
     return {row(2), {{p, {}}}, o};
 }
 
-}  // namespace
+} // namespace
 
 TEST_CASE("overlapping bursts share one carrier that starts with the first")
 {

@@ -187,4 +187,4 @@ inline std::uint64_t digest(std::span<const std::byte> bytes)
     return h;
 }
 
-}  // namespace pieces
+} // namespace pieces

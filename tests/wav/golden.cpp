@@ -88,7 +88,7 @@ private:
     std::locale before_;
 };
 
-}  // namespace
+} // namespace
 
 TEST_CASE("the bytes of park2016-1 are those of the last release, in any locale")
 {

@@ -87,7 +87,7 @@ errc kind_of(const fs::path& p, sample_format f = sample_format::s16)
     return errc::runtime;
 }
 
-}  // namespace
+} // namespace
 
 TEST_CASE("a WAV file holds the renderer's bytes, its rate and its channels")
 {
