@@ -77,6 +77,9 @@ private:
 /// Beats every 50 ms for ever.
 void keep_beating(gpio::holder_link& h, const std::function<void(int)>& tell);
 
+/// For a new process: no core file, and none of the handlers with which doctest reports a crash.
+void die_quietly();
+
 /// How long a holder may take, in ms: what is promised where it runs in real time, more where it may not.
 std::int64_t promised_ms(pid_t holder);
 

@@ -119,7 +119,6 @@ TEST_CASE("the holder keeps nothing of the player but the line")
     CHECK(std::filesystem::read_symlink(proc / "cwd") == "/");
     CHECK(status_of(h->pid(), "Name") == "tactor-amp");
     CHECK(status_of(h->pid(), "VmLck") == "0 kB");
-    CHECK(status_of(h->pid(), "Threads") == "1");
     CHECK(::getsid(h->pid()) == h->pid());
     CHECK(status_of(h->pid(), "PPid") != std::to_string(::getpid()));
 }

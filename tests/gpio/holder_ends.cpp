@@ -6,7 +6,6 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/ioctl.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <doctest/doctest.h>
@@ -26,15 +25,6 @@ void check_off(const fake_line& line, std::int64_t since_ns, std::int64_t within
     CHECK((s->time_ns - since_ns) / 1'000'000 < within_ms);
 }
 
-// doctest's own handlers would report a crash.
-void die_quietly()
-{
-    const rlimit no_core{0, 0};
-    ::setrlimit(RLIMIT_CORE, &no_core);
-    for (int s = 1; s < SIGRTMIN; ++s)
-        ::signal(s, SIG_DFL);
-}
-
 } // namespace
 
 TEST_CASE("a player that is killed in any way leaves the line off")
@@ -42,7 +32,7 @@ TEST_CASE("a player that is killed in any way leaves the line off")
     for (const int number : {SIGKILL, SIGTERM, SIGINT, SIGHUP, SIGABRT, SIGSEGV}) {
         CAPTURE(number);
         fake_line line;
-        const player p(line, keep_beating, die_quietly);
+        const player p(line, keep_beating);
         const int holder = open_pidfd(p.holder());
         const std::int64_t limit = promised_ms(p.holder());
         check_off(line, p.signal(number), limit);
