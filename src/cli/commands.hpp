@@ -27,5 +27,6 @@ command add_plan(CLI::App& app);
 command add_compare(CLI::App& app);
 command add_render(CLI::App& app);
 command add_play(CLI::App& app);
+command add_plot(CLI::App& app);
 
 } // namespace tactor::cli

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "cli/commands.hpp"
+#include "cli/input.hpp"
+#include "plot/figure.hpp"
+#include "plot/output.hpp"
+
+namespace tactor::cli {
+namespace {
+
+using plot::figure_view;
+
+struct plot_settings {
+    std::string file;
+    plot::figure_options figure;
+    unsigned dpi = 300;
+};
+
+figure_view parse_view(const std::string& text)
+{
+    if (text == "array")
+        return figure_view::array;
+    if (text == "timing")
+        return figure_view::timing;
+    if (text == "wave")
+        return figure_view::wave;
+    if (text == "both")
+        return figure_view::both;
+    throw error(errc::bad_input, "--view", fmt::format("\"{}\" is not known", text),
+                "one of array, timing, wave, both");
+}
+
+void add_picture_options(CLI::App& c, plot_settings& p)
+{
+    c.add_option("-o,--output", p.file, "the file to write")->type_name("FILE.svg|.png|.pdf")->required();
+    c.add_option_function<std::string>(
+         "--view", [&p](const std::string& t) { p.figure.view = parse_view(t); },
+         "what is shown: the array, who plays when, the samples, or the first two (default both)")
+        ->type_name("array|timing|wave|both");
+    c.add_option_function<std::string>(
+         "--width",
+         [&p](const std::string& t) {
+             p.figure.width_mm = parse_number("--width", t, plot::least_width_mm, plot::most_width_mm, "mm");
+         },
+         "width of the picture (default 85, one print column)")
+        ->type_name("MM");
+    c.add_option_function<std::string>(
+         "--dpi",
+         [&p](const std::string& t) {
+             p.dpi = static_cast<unsigned>(parse_number("--dpi", t, plot::least_dpi, plot::most_dpi, "dpi"));
+         },
+         "resolution of a PNG (default 300)")
+        ->type_name("N");
+}
+
+// Of what is drawn: a stroke's own name, or that of the file that holds several.
+std::string name_of(const piece& p)
+{
+    if (p.strokes.size() == 1 && !p.strokes[0].name.empty())
+        return p.strokes[0].name;
+    return p.name == "-" ? "standard input" : std::filesystem::path(p.name).filename().string();
+}
+
+int draw(settings& s, option_list& options, const plot_settings& p)
+{
+    plot::format_of(p.file); // before the work
+    const environment e = read_environment(s, options);
+    const piece q = plan_one_piece(s, e);
+    // Only the samples have levels: a picture of a plan needs none that a card could play.
+    std::optional<score> sound;
+    if (p.figure.view == figure_view::wave)
+        sound = make_score(q, e, settle_render(s, e));
+    const plot::canvas picture =
+        plot::draw_figure({e.tactors, name_of(q), q.strokes, q.plans, sound ? &*sound : nullptr}, p.figure);
+    plot::save(picture, p.file, p.dpi);
+    for (const placed_plan& k : q.plans)
+        for (const std::string& w : k.schedule.warnings)
+            fmt::print(stderr, "tactor: warning: {}\n", w);
+    fmt::print("{}: {:.4g} x {:.4g} mm\n", p.file, picture.width / plot::pt_per_mm,
+               picture.height / plot::pt_per_mm);
+    return status_ok;
+}
+
+} // namespace
+
+command add_plot(CLI::App& app)
+{
+    CLI::App* c = app.add_subcommand("plot", "Draw the array, the path, the bursts and who plays when");
+    auto s = std::make_shared<settings>();
+    auto options = std::make_shared<option_list>(*c, *s);
+    auto p = std::make_shared<plot_settings>();
+    options->add_stroke_options();
+    options->add_sound_options();
+    add_picture_options(*c, *p);
+    c->footer("Example: tactor plot park2016-3 -o park2016-3.pdf");
+    return [s, options, p] { return draw(*s, *options, *p); };
+}
+
+} // namespace tactor::cli

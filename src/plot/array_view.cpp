@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT
+#include "plot/array_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "plot/array_frame.hpp"
+#include "plot/axes.hpp"
+#include "plot/path_marks.hpp"
+#include "plot/text.hpp"
+
+namespace tactor::plot {
+namespace {
+
+constexpr double legend_height = 13.0;
+constexpr double note_height = 8.0;
+constexpr double least_spacing = 3.6; // of bursts on the page, pt
+constexpr std::size_t always_shown = 24;
+
+// How fine the marks are: the more bursts, the finer.
+struct fineness {
+    double dot = 2.4;  // radius, pt
+    double join = 2.0; // width of a joining line at full amplitude, pt
+    double alpha = 0.8;
+};
+
+fineness fineness_for(std::size_t shown) noexcept
+{
+    if (shown <= 12)
+        return {};
+    if (shown <= 40)
+        return {2.2, 1.5, 0.6};
+    return {1.6, 0.8, 0.4};
+}
+
+class view {
+public:
+    view(canvas& c, const scene& s, const timeline& t, box at_most)
+        : canvas_(c),
+          scene_(s),
+          time_(t),
+          frame_(fit_array(s.tactors, shown_extent(s.tactors, s.strokes),
+                           {at_most.x, at_most.y, at_most.width, at_most.height - legend_height})),
+          taken_({at_most.x, frame_.area.y - 3.0, at_most.width, frame_.area.height + 3.0}),
+          stride_(stride()),
+          fine_(fineness_for(t.bursts.size() / stride_ + 1)),
+          where_(at_most)
+    {
+    }
+
+    double draw()
+    {
+        const group all(canvas_, {.id = "array",
+                                  .data = {{"mm-scale", fmt::format("{:.9g}", frame_.scale)},
+                                           {"x0", fmt::format("{:.9g}", frame_.origin.x)},
+                                           {"y0", fmt::format("{:.9g}", frame_.origin.y)},
+                                           {"stride", fmt::format("{}", stride_)}}});
+        const std::vector<bool> plays = who_plays();
+        const numbering numbers = place_numbers();
+        if (numbers == numbering::beside)
+            frame_.radius = std::min(frame_.radius, 4.6);
+        draw_joins();
+        draw_paths();
+        draw_tactors(canvas_, frame_, scene_.tactors, plays, numbers, taken_);
+        draw_dots();
+        draw_path_marks(canvas_, scene_, frame_, fine_.dot, taken_);
+        draw_tactor_labels(canvas_, frame_, scene_.tactors, plays, numbers, taken_);
+        const double y = frame_.area.bottom() + legend_height / 2.0;
+        draw_scale_bar(canvas_, frame_, {where_.x, y});
+        draw_amplitude_legend(y);
+        return frame_.area.height + legend_height + draw_note(y + legend_height / 2.0);
+    }
+
+private:
+    // One in how many bursts is drawn.
+    std::size_t stride() const
+    {
+        const std::size_t n = std::max<std::size_t>(1, time_.bursts.size());
+        double length = 0.0;
+        for (const stroke& s : scene_.strokes)
+            length += s.motion.length_mm() * frame_.scale;
+        const double fitting = std::clamp(length / least_spacing, static_cast<double>(always_shown),
+                                          static_cast<double>(most_shown_bursts));
+        return static_cast<std::size_t>(std::ceil(static_cast<double>(n) / fitting));
+    }
+
+    std::vector<bool> who_plays() const
+    {
+        std::vector<bool> plays(scene_.tactors.tactors.size(), false);
+        for (const unsigned i : time_.playing)
+            plays[i] = true;
+        return plays;
+    }
+
+    // Inside the circles where they are large enough and nothing would lie on a number.
+    numbering place_numbers() const
+    {
+        if (frame_.radius < 4.6)
+            return numbering::beside;
+        std::vector<spot> marks;
+        for (const stroke& s : scene_.strokes)
+            for (const double t : {0.0, s.motion.duration_s()})
+                marks.push_back(frame_(s.motion.position(t)));
+        for_each_shown([&](const shown_burst&, spot at, colour) { marks.push_back(at); });
+        for (const tactor_spec& t : scene_.tactors.tactors) {
+            const spot at = frame_(t.position);
+            for (const spot& m : marks)
+                if (std::hypot(m.x - at.x, m.y - at.y) < frame_.radius + fine_.dot - 1.5)
+                    return numbering::beside;
+        }
+        return numbering::inside;
+    }
+
+    // What of the bursts is not drawn.
+    double draw_note(double top)
+    {
+        std::string note;
+        if (time_.sampled)
+            note =
+                fmt::format("positions each {} s", number(time_.sample_s * static_cast<double>(stride_), 6));
+        else if (stride_ > 1)
+            note = fmt::format("one burst in {} is drawn on the array", stride_);
+        if (note.empty())
+            return 0.0;
+        canvas_.text({where_.x, top + cap_height(small_text) + 1.0}, note, {.size = small_text},
+                     {.kind = "note"});
+        return note_height;
+    }
+
+    double width_of(double amplitude) const { return std::max(0.15, fine_.join * amplitude / time_.peak); }
+
+    template <class Draw>
+    void for_each_shown(Draw&& draw) const
+    {
+        for (std::size_t i = 0; i < time_.bursts.size(); i += stride_)
+            draw(time_.bursts[i], frame_(time_.bursts[i].what->position),
+                 time_colour(time_, time_.bursts[i].target_s));
+    }
+
+    void draw_joins()
+    {
+        const group all(canvas_, {.id = "joins"});
+        for_each_shown([&](const shown_burst& b, spot at, colour c) {
+            const group one(canvas_, {.kind = "joins", .data = {{"burst", fmt::format("{}", b.number)}}});
+            for (const drive& d : b.what->drives) {
+                const spot to = frame_(scene_.tactors.tactors[d.tactor].position);
+                taken_.block_line({at, to}, 2.0, 0.1);
+                canvas_.line(at, to, {.stroke = with_alpha(c, fine_.alpha), .width = width_of(d.amplitude)},
+                             {.kind = "join",
+                              .data = {{"tactor", fmt::format("{}", d.tactor)},
+                                       {"amplitude", fmt::format("{:.6g}", d.amplitude)}}});
+            }
+        });
+    }
+
+    void draw_paths()
+    {
+        const group all(canvas_, {.id = "paths"});
+        for (const stroke& s : scene_.strokes)
+            for (std::vector<spot>& part : path_on_page(frame_, s.motion)) {
+                taken_.block_line(part, 2.0, 6.0);
+                canvas_.poly(std::move(part), false, {.stroke = ink, .width = 0.7},
+                             {.kind = "path", .title = s.name});
+            }
+    }
+
+    void draw_dots()
+    {
+        const group all(canvas_, {.id = "bursts"});
+        for_each_shown([&](const shown_burst& b, spot at, colour c) {
+            taken_.block_disc(at, fine_.dot, 6.0);
+            const std::string end = b.to_s > b.from_s ? fmt::format(" to {} s", number(b.to_s, 6)) : " s";
+            canvas_.circle(
+                at, fine_.dot, {.fill = c, .stroke = ink, .width = 0.35},
+                {.id = fmt::format("burst-{}", b.number),
+                 .kind = "burst",
+                 .title = fmt::format("burst {}: {}{}, at {}, {} mm", b.number, number(b.from_s, 6), end,
+                                      number(b.what->position.x_mm), number(b.what->position.y_mm))});
+        });
+    }
+
+    void draw_amplitude_legend(double y)
+    {
+        const group g(canvas_, {.id = "amplitude-legend"});
+        double x = where_.right();
+        for (const double part : {1.0, 0.5, 0.25}) {
+            const double amplitude = part * time_.peak;
+            const std::string text = number(amplitude, 3);
+            x -= text_width(text, small_text);
+            canvas_.text({x, y + cap_height(small_text) / 2.0}, text, {.size = small_text});
+            canvas_.line({x - 15.0, y}, {x - 2.5, y}, {.stroke = dark_grey, .width = width_of(amplitude)});
+            x -= 21.0;
+        }
+        canvas_.text({x + 3.0, y + cap_height(small_text) / 2.0}, "amplitude",
+                     {.size = small_text, .anchor = align::end});
+    }
+
+    canvas& canvas_;
+    const scene& scene_;
+    const timeline& time_;
+    array_frame frame_;
+    label_placer taken_;
+    std::size_t stride_;
+    fineness fine_;
+    box where_;
+};
+
+} // namespace
+
+colour time_colour(const timeline& t, double at_s) noexcept
+{
+    return ordered(t.total_s > 0.0 ? at_s / t.total_s : 0.0);
+}
+
+double draw_array_view(canvas& c, const scene& s, const timeline& t, box at_most)
+{
+    return view(c, s, t, at_most).draw();
+}
+
+void draw_time_strip(canvas& c, const timeline&, box where)
+{
+    constexpr int steps = 128;
+    const group g(c, {.id = "time-colours", .title = "colour of each time"});
+    // Each reaches to the end, so that no seam shows between two.
+    for (int i = 0; i < steps; ++i) {
+        const double part = static_cast<double>(i) / steps;
+        c.rect({where.x + part * where.width, where.y, (1.0 - part) * where.width, where.height},
+               {.fill = ordered((i + 0.5) / steps)});
+    }
+    c.rect(where, {.stroke = ink, .width = 0.4});
+}
+
+} // namespace tactor::plot

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "plot/figure.hpp"
+
+#include <fmt/format.h>
+
+#include "plot/array_view.hpp"
+#include "plot/axes.hpp"
+#include "plot/text.hpp"
+#include "plot/timing_view.hpp"
+#include "plot/wave_view.hpp"
+
+namespace tactor::plot {
+namespace {
+
+constexpr double margin = 5.0; // pt
+constexpr double title_size = 8.0;
+constexpr double line_pitch = 8.0;
+
+// What is the same in all plans, e.g. the algorithm; empty where they differ.
+template <class Get>
+std::string common(const scene& s, Get&& get)
+{
+    const std::string first = get(s.plans.front().schedule);
+    for (const placed_plan& p : s.plans)
+        if (get(p.schedule) != first)
+            return {};
+    return first;
+}
+
+// The movement's own time; of several, that of the piece.
+double seconds(const scene& s, const timeline& t)
+{
+    return s.plans.size() == 1 ? s.plans[0].schedule.stroke_duration_s : t.total_s;
+}
+
+std::vector<std::string> details(const scene& s, const timeline& t)
+{
+    double length = 0.0;
+    for (const placed_plan& p : s.plans)
+        length += p.schedule.stroke_length_mm;
+    std::vector<std::string> d{clean(s.tactors.name)};
+    d.push_back(common(s, [](const plan& p) { return p.algorithm; }));
+    d.push_back(common(s, [](const plan& p) { return p.phantom; }));
+    if (s.plans.size() > 1)
+        d.push_back(fmt::format("{} strokes", s.plans.size()));
+    if (!t.sampled)
+        d.push_back(fmt::format("{} burst{}", t.bursts.size(), t.bursts.size() == 1 ? "" : "s"));
+    d.push_back(fmt::format("{} mm in {} s", number(length, 4), number(seconds(s, t), 4)));
+    d.push_back(common(s, [](const plan& p) { return fmt::format("{} Hz", number(p.carrier_hz, 5)); }));
+    return d;
+}
+
+std::string describe(const std::vector<std::string>& parts)
+{
+    std::string all;
+    for (const std::string& p : parts)
+        if (!p.empty())
+            all += (all.empty() ? "" : ", ") + p;
+    return all;
+}
+
+double draw_heading(canvas& c, const scene& s, const std::vector<std::string>& parts, box where)
+{
+    const group g(c, {.id = "heading"});
+    double y = where.y + cap_height(title_size);
+    c.text({where.x, y}, shorten(s.name, title_size, where.width, true), {.size = title_size, .bold = true});
+    for (const std::string& line : wrap(parts, ", ", small_text, where.width, 3)) {
+        y += line_pitch;
+        c.text({where.x, y}, line, {.size = small_text, .ink = dark_grey});
+    }
+    return y + 4.0 - where.y;
+}
+
+// Under an array that stands alone: what its colours mean.
+double draw_time_key(canvas& c, const timeline& t, box where)
+{
+    const scale x{0.0, std::max(t.total_s, 1e-9), where.x + 6.0, where.right() - 10.0};
+    draw_time_strip(c, t, {x.page_from, where.y, x.page_to - x.page_from, 6.0});
+    draw_horizontal_axis(c, x, where.y + 6.0, where.y + 6.0, "time (s)");
+    return 6.0 + axis_height;
+}
+
+} // namespace
+
+canvas draw_figure(const scene& s, const figure_options& o)
+{
+    const timeline t = make_timeline(s);
+    canvas c;
+    c.width = o.width_mm * pt_per_mm;
+    const std::vector<std::string> parts = details(s, t);
+    const bool with_array = o.view == figure_view::array || o.view == figure_view::both;
+    c.title = fmt::format("{} on {}", clean(s.name), clean(s.tactors.name));
+    c.description = describe(parts);
+    box rest{margin, margin, c.width - 2.0 * margin, 0.0};
+    rest.y += draw_heading(c, s, parts, rest);
+    if (with_array) {
+        rest.height = 0.8 * c.width;
+        rest.y += draw_array_view(c, s, t, rest) + 4.0;
+    }
+    if (o.view == figure_view::array)
+        rest.y += draw_time_key(c, t, rest);
+    else if (o.view == figure_view::wave)
+        rest.y += draw_wave_view(c, s, t, rest);
+    else
+        rest.y += draw_timing_view(c, s, t, rest, true);
+    c.height = rest.y + margin;
+    return c;
+}
+
+} // namespace tactor::plot

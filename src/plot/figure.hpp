@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The whole picture.
+#pragma once
+
+#include "plot/canvas.hpp"
+#include "plot/timeline.hpp"
+
+namespace tactor::plot {
+
+enum class figure_view { array, timing, wave, both };
+
+struct figure_options {
+    figure_view view = figure_view::both;
+    double width_mm = 85.0; ///< one print column
+};
+
+inline constexpr double least_width_mm = 60.0;
+inline constexpr double most_width_mm = 1000.0;
+
+/// Draws a scene. The height follows from the content, and is bounded whatever it is.
+/// \throws error (bad_input), for the waveform, see draw_wave_view().
+canvas draw_figure(const scene& s, const figure_options& o);
+
+} // namespace tactor::plot

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Which way a stroke runs: arrows, start and end.
+#pragma once
+
+#include "plot/array_frame.hpp"
+#include "plot/timeline.hpp"
+
+namespace tactor::plot {
+
+/// Arrowheads on the path where they cover least, a ring at the start and a square at the end with their
+/// labels. `dot`: radius of the bursts' dots, pt.
+void draw_path_marks(canvas& c, const scene& s, const array_frame& f, double dot, label_placer& taken);
+
+} // namespace tactor::plot

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Text in pictures: how wide it is at most, and what of it fits.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tactor::plot {
+
+/// Width in pt, from a table of DejaVu Sans, the widest of the usual fonts without serifs: layout must not
+/// depend on the fonts of one machine.
+double text_width(std::string_view utf8, double size, bool bold = false) noexcept;
+
+/// Height of digits and capitals, pt.
+constexpr double cap_height(double size) noexcept
+{
+    return 0.73 * size;
+}
+
+/// Valid UTF-8 without control characters: what XML and Cairo refuse becomes U+FFFD.
+std::string clean(std::string_view text);
+
+/// The text, or its beginning and an ellipsis where it is wider than `width` pt.
+std::string shorten(std::string_view text, double size, double width, bool bold = false);
+
+/// Lines of at most `width` pt, broken after separators; the last of `max_lines` is shortened.
+std::vector<std::string> wrap(const std::vector<std::string>& parts, std::string_view separator, double size,
+                              double width, std::size_t max_lines);
+
+/// At most `digits` significant digits, no trailing zeros, the same in every locale.
+std::string number(double v, int digits = 4);
+
+} // namespace tactor::plot

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+#include "plot/wave_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "plot/axes.hpp"
+#include "plot/lanes.hpp"
+#include "plot/text.hpp"
+#include "plot/waveform.hpp"
+
+namespace tactor::plot {
+namespace {
+
+constexpr std::size_t most_high_rows = 16;
+constexpr double row_factor = 1.6;   // rows are higher than in the timing diagram
+constexpr double peak_column = 26.0; // for the levels on the right, pt
+constexpr double least_cycle = 1.5;  // pt: shorter cycles are shown by their envelope
+constexpr double points_per_cycle = 14.0;
+constexpr double heading_height = 12.0;
+constexpr double legend_height = 10.0;
+
+double dbfs(double linear)
+{
+    return 20.0 * std::log10(linear);
+}
+
+class view {
+public:
+    view(canvas& c, const scene& s, const timeline& t, box where)
+        : canvas_(c), scene_(s), where_(where), lanes_(make_lanes(s.tactors, t.playing))
+    {
+        if (lanes_.rows.size() <= most_high_rows)
+            lanes_.height *= row_factor;
+        const double total = std::max(static_cast<double>(s.sound->frames()) / s.sound->rate(), 1e-9);
+        const double left = where.x + lanes_.label_width + 4.0;
+        x_ = {0.0, total, left, where.right() - peak_column};
+        top_ = where.y + heading_height;
+        double highest = 0.0;
+        double lowest = std::numeric_limits<double>::infinity();
+        for (const placed_plan& p : s.plans) {
+            highest = std::max(highest, p.schedule.carrier_hz);
+            lowest = std::min(lowest, p.schedule.carrier_hz);
+        }
+        const double cycle = x_.per_unit() / highest;
+        carrier_ = cycle >= least_cycle;
+        // The envelope needs a whole cycle in each column.
+        const double columns = carrier_
+                                   ? total * highest * points_per_cycle
+                                   : std::min((x_.page_to - x_.page_from) / column_width, total * lowest);
+        wave_ = look_at(*s.sound, channels(t), static_cast<std::size_t>(std::max(1.0, columns)));
+    }
+
+    double draw()
+    {
+        const group all(canvas_, {.id = "wave",
+                                  .data = {{"x0", fmt::format("{:.9g}", x_(0.0))},
+                                           {"x-scale", fmt::format("{:.9g}", x_.per_unit())},
+                                           {"drawn", carrier_ ? "carrier" : "envelope"}}});
+        for (const float p : wave_.peaks)
+            peak_ = std::max(peak_, static_cast<double>(p));
+        const double bottom = top_ + lanes_.all_height();
+        draw_horizontal_axis(canvas_, x_, bottom + 1.5, top_, "time (s)");
+        draw_headings();
+        for (std::size_t i = 0; i < lanes_.rows.size(); ++i)
+            draw_row(i);
+        const double y = bottom + 1.5 + axis_height + legend_height / 2.0;
+        if (peak_ > 0.0)
+            canvas_.text({where_.x, y + cap_height(small_text) / 2.0},
+                         fmt::format("height of a row: \xC2\xB1 {} of full scale", number(peak_, 3)),
+                         {.size = small_text});
+        return y + legend_height / 2.0 - where_.y;
+    }
+
+private:
+    // One channel a tactor; rows of several show the first that plays loudest.
+    std::vector<unsigned> channels(const timeline& t) const
+    {
+        std::vector<unsigned> c;
+        for (const unsigned i : t.playing)
+            c.push_back(scene_.tactors.tactors[i].channel);
+        return c;
+    }
+
+    void draw_headings()
+    {
+        draw_lane_labels(canvas_, lanes_, x_.page_from - 3.0, top_);
+        const double y = top_ - 4.0;
+        canvas_.text({x_.page_from - 3.0, y}, lane_heading,
+                     {.size = small_text, .anchor = align::end, .ink = dark_grey});
+        canvas_.text({where_.right(), y}, "peak (dBFS)",
+                     {.size = small_text, .anchor = align::end, .ink = dark_grey});
+    }
+
+    void draw_row(std::size_t row)
+    {
+        const double middle = top_ + (static_cast<double>(row) + 0.5) * lanes_.height;
+        const group g(canvas_, {.kind = "channel", .data = {{"row", fmt::format("{}", row)}}});
+        canvas_.line({x_.page_from, middle}, {x_.page_to, middle}, {.stroke = light_grey, .width = 0.4});
+        std::size_t first = 0;
+        for (std::size_t i = 0; i < row; ++i)
+            first += lanes_.rows[i].tactors.size();
+        float loudest = 0.0F;
+        for (std::size_t k = first; k < first + lanes_.rows[row].tactors.size(); ++k)
+            loudest = std::max(loudest, wave_.peaks[k]);
+        if (!(loudest > 0.0F))
+            return;
+        for (std::size_t k = first; k < first + lanes_.rows[row].tactors.size(); ++k)
+            carrier_ ? draw_carrier(k, middle) : draw_envelope(k, middle);
+        if (lanes_.height >= 7.0)
+            canvas_.text({where_.right(), middle + cap_height(small_text) / 2.0},
+                         fmt::format("{:.1f}", dbfs(static_cast<double>(loudest))),
+                         {.size = small_text, .anchor = align::end}, {.kind = "peak"});
+    }
+
+    double y_of(double sample, double middle) const { return middle - 0.46 * lanes_.height * sample / peak_; }
+
+    double time_of(std::size_t stretch) const { return static_cast<double>(stretch) * wave_.stretch_s; }
+
+    void draw_carrier(std::size_t k, double middle)
+    {
+        std::vector<spot> line;
+        const std::vector<sample_range>& w = wave_.by_channel[k];
+        for (std::size_t i = 0; i < w.size(); ++i) {
+            const double sample = std::abs(w[i].low) > std::abs(w[i].high) ? w[i].low : w[i].high;
+            line.push_back({x_(std::min(time_of(i) + wave_.stretch_s / 2.0, x_.to)), y_of(sample, middle)});
+        }
+        canvas_.poly(simplify(line, 0.02), false, {.stroke = ink, .width = 0.4}, {.kind = "curve"});
+    }
+
+    void draw_envelope(std::size_t k, double middle)
+    {
+        const std::vector<sample_range>& w = wave_.by_channel[k];
+        for (std::size_t i = 0; i < w.size();) {
+            const std::size_t first = i;
+            while (i < w.size() && (w[i].low < 0.0F || w[i].high > 0.0F))
+                ++i;
+            if (i > first)
+                draw_run(w, first, i, middle);
+            i = std::max(i, first + 1);
+        }
+    }
+
+    void draw_run(const std::vector<sample_range>& w, std::size_t first, std::size_t end, double middle)
+    {
+        std::vector<spot> above;
+        std::vector<spot> below;
+        for (std::size_t i = first; i < end; ++i)
+            for (const double x : {x_(time_of(i)), x_(std::min(time_of(i + 1), x_.to))}) {
+                above.push_back({x, y_of(static_cast<double>(w[i].high), middle)});
+                below.push_back({x, y_of(static_cast<double>(w[i].low), middle)});
+            }
+        std::vector<spot> shape = simplify(above, 0.02);
+        const std::vector<spot> lower = simplify(below, 0.02);
+        shape.insert(shape.end(), lower.rbegin(), lower.rend());
+        canvas_.poly(std::move(shape), true, {.fill = grey, .stroke = ink, .width = 0.35},
+                     {.kind = "envelope"});
+    }
+
+    canvas& canvas_;
+    const scene& scene_;
+    box where_;
+    lanes lanes_;
+    scale x_;
+    double top_ = 0.0;
+    bool carrier_ = false;
+    waveform wave_;
+    double peak_ = 0.0;
+};
+
+} // namespace
+
+double draw_wave_view(canvas& c, const scene& s, const timeline& t, box where)
+{
+    return view(c, s, t, where).draw();
+}
+
+} // namespace tactor::plot
