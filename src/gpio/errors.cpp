@@ -24,6 +24,8 @@ std::string open_reason(const chip& c)
     case ENOTTY:
     case ENODEV:
         return fmt::format("{} is not a GPIO chip", path);
+    case ENOENT: // the node is there, but libgpiod asks sysfs what it is
+        return fmt::format("{} is not a GPIO chip, or /sys is not mounted", path);
     default:
         return fmt::format("{} cannot be opened: {}", path, words(c.code));
     }

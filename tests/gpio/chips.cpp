@@ -71,5 +71,6 @@ TEST_CASE("a path that is no GPIO chip is an error that says so")
         CHECK(e.kind() == tactor::errc::not_available);
         text = e.what();
     }
-    CHECK(text == "GPIO line 3 of /dev/null: /dev/null is not a GPIO chip (tactor devices lists the chips)");
+    CHECK(text.starts_with("GPIO line 3 of /dev/null: /dev/null is not a GPIO chip"));
+    CHECK(text.ends_with("(tactor devices lists the chips)"));
 }
