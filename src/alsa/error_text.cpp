@@ -1,17 +1,123 @@
 // SPDX-License-Identifier: MIT
 #include "alsa/error_text.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
+#include <string_view>
 
 #include <alsa/asoundlib.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace tactor::pcm {
 namespace {
 
+constexpr std::size_t most_names = 12; // of PCMs in one message
+constexpr const char* no_card_hint = "load the card's driver or overlay, or plug it in; aplay -L lists what "
+                                     "there is; the PCM null needs no card";
+
 std::string thing(const std::string& name)
 {
     return fmt::format("PCM \"{}\"", name);
+}
+
+std::string near(const std::string& name, const std::vector<std::string>& known)
+{
+    const std::vector<std::string_view> views(known.begin(), known.end());
+    const std::string_view like = nearest_name(name, views);
+    return like.empty() ? "" : fmt::format("did you mean {}? ", like);
+}
+
+std::vector<std::string> ids(const std::vector<card>& cards)
+{
+    std::vector<std::string> all;
+    for (const card& c : cards)
+        all.push_back(c.id);
+    return all;
+}
+
+error no_card(const std::string& name, const device_name& d, const std::vector<card>& cards)
+{
+    if (cards.empty())
+        return {errc::not_available, thing(name), "there is no sound card", no_card_hint};
+    return {errc::not_available, thing(name), fmt::format("there is no card {}", d.card),
+            fmt::format("{}cards: {}; aplay -L lists all", near(d.card, ids(cards)),
+                        fmt::join(ids(cards), ", "))};
+}
+
+error no_device(const std::string& name, unsigned device, const card& c, const surroundings& s)
+{
+    const auto devices = playback_devices(s.root, c.index);
+    const std::string why = fmt::format("card {} has no playback device {}", c.id, device);
+    if (devices.empty())
+        return {errc::not_available, thing(name), why, "it has none at all: take another card"};
+    return {errc::not_available, thing(name), why,
+            fmt::format("its playback devices: {}", fmt::join(devices, ", "))};
+}
+
+error no_pcm(const std::string& name, const std::string& detail, const surroundings& s)
+{
+    const auto cards = sound_cards(s.root);
+    if (const auto d = named_device(name)) {
+        const auto c = find_card(cards, d->card);
+        if (!c)
+            return no_card(name, *d, cards);
+        const auto devices = playback_devices(s.root, c->index);
+        if (std::find(devices.begin(), devices.end(), d->device) == devices.end())
+            return no_device(name, d->device, *c, s);
+    }
+    const std::string plain = name.substr(0, name.find(':'));
+    const bool defined = std::find(s.pcms.begin(), s.pcms.end(), plain) != s.pcms.end();
+    if (defined && cards.empty())
+        return {errc::not_available, thing(name), with_detail("there is no sound card", detail),
+                no_card_hint};
+    std::string hint = near(plain, s.pcms);
+    if (hint.empty() && !s.pcms.empty() && s.pcms.size() <= most_names)
+        hint = fmt::format("known: {}; ", fmt::join(s.pcms, ", "));
+    if (!cards.empty())
+        hint += fmt::format("cards: {}; ", fmt::join(ids(cards), ", "));
+    return {errc::not_available, thing(name), with_detail("no such PCM", detail),
+            hint + "aplay -L lists all"};
+}
+
+bool is_sound_server(const std::string& program)
+{
+    constexpr std::array servers{"pipewire", "pipewire-pulse", "wireplumber", "pulseaudio", "jackd"};
+    return std::find(servers.begin(), servers.end(), program) != servers.end();
+}
+
+error busy(const std::string& name, const surroundings& s)
+{
+    std::optional<unsigned> index;
+    if (const auto d = named_device(name))
+        if (const auto c = find_card(sound_cards(s.root), d->card))
+            index = c->index;
+    const auto holders = playback_holders(s.root, index);
+    if (holders.empty())
+        return {errc::not_available, thing(name), "it is busy: another program plays on it",
+                "stop that program; sudo fuser -v /dev/snd/* names it"};
+    std::string who;
+    bool server = false;
+    for (const holder& h : holders) {
+        who += fmt::format("{}{} (process {})", who.empty() ? "" : ", ",
+                           h.program.empty() ? "a program" : h.program, h.pid);
+        server = server || is_sound_server(h.program);
+    }
+    return {errc::not_available, thing(name), fmt::format("it is busy: {} plays on it", who),
+            server ? "a sound server has it: the udev rules keep those off the card Tactor"
+                   : fmt::format("stop it, e.g. kill {}", holders.front().pid)};
+}
+
+error forbidden(const std::string& name, const surroundings& s)
+{
+    const std::string group = playback_group(s.root);
+    if (group == "root")
+        return {errc::not_available, thing(name), "no permission to open it",
+                "/dev/snd is root's alone: run as root, or let udev give it to the group audio"};
+    return {errc::not_available, thing(name), "no permission to open it",
+            fmt::format("join the group {0}: sudo usermod -aG {0} $USER, then log in again",
+                        group.empty() ? "audio" : group)};
 }
 
 } // namespace
@@ -21,22 +127,20 @@ std::string with_detail(const std::string& text, const std::string& detail)
     return detail.empty() ? text : fmt::format("{}: {}", text, detail);
 }
 
-error open_error(const std::string& name, int code, const std::string& detail)
+error open_error(const std::string& name, int code, const std::string& detail, const surroundings& s)
 {
-    const std::string what = thing(name);
     switch (-code) {
     case ENOENT:
     case ENODEV:
     case ENXIO:
-        return {errc::not_available, what, with_detail("no such PCM", detail), "list them with aplay -L"};
+        return no_pcm(name, detail, s);
     case EBUSY:
-        return {errc::not_available, what, "it is busy: another program plays on it",
-                "stop that program; fuser -v /dev/snd/* names it"};
+        return busy(name, s);
     case EACCES:
     case EPERM:
-        return {errc::not_available, what, "no permission to open it", "add the user to the group audio"};
+        return forbidden(name, s);
     default:
-        return {errc::not_available, what, with_detail(snd_strerror(code), detail),
+        return {errc::not_available, thing(name), with_detail(snd_strerror(code), detail),
                 "list the PCMs with aplay -L"};
     }
 }

@@ -2,6 +2,8 @@
 #include "alsa/handle.hpp"
 
 #include <new>
+#include <string>
+#include <vector>
 
 #include "alsa/error_text.hpp"
 #include "alsa/library_messages.hpp"
@@ -34,6 +36,33 @@ configuration parse(const std::string& text, const library_messages& said)
     return configuration(c);
 }
 
+// The PCMs that a configuration defines, for those who mistyped one.
+std::vector<std::string> pcm_names(snd_config_t* top)
+{
+    std::vector<std::string> names;
+    snd_config_t* pcms = nullptr;
+    if (top == nullptr || snd_config_search(top, "pcm", &pcms) < 0 ||
+        snd_config_get_type(pcms) != SND_CONFIG_TYPE_COMPOUND)
+        return names;
+    snd_config_iterator_t i = snd_config_iterator_first(pcms);
+    for (; i != snd_config_iterator_end(pcms); i = snd_config_iterator_next(i)) {
+        const char* id = nullptr;
+        if (snd_config_get_id(snd_config_iterator_entry(i), &id) == 0 && id != nullptr)
+            names.emplace_back(id);
+    }
+    return names;
+}
+
+std::vector<std::string> system_pcm_names()
+{
+    snd_config_t* top = nullptr;
+    if (snd_config_update_ref(&top) < 0)
+        return {};
+    std::vector<std::string> names = pcm_names(top);
+    snd_config_unref(top);
+    return names;
+}
+
 } // namespace
 
 hw_params make_hw_params()
@@ -63,14 +92,19 @@ handle open(const alsa_options& o)
     const library_messages said;
     snd_pcm_t* p = nullptr;
     int code = 0;
+    surroundings there;
     if (o.config_text.empty()) {
         code = snd_pcm_open(&p, o.pcm.c_str(), SND_PCM_STREAM_PLAYBACK, mode);
+        if (code < 0)
+            there.pcms = system_pcm_names();
     } else {
         const configuration c = parse(o.config_text, said);
         code = snd_pcm_open_lconf(&p, o.pcm.c_str(), SND_PCM_STREAM_PLAYBACK, mode, c.get());
+        if (code < 0)
+            there.pcms = pcm_names(c.get());
     }
     if (code < 0)
-        throw open_error(o.pcm, code, said.first());
+        throw open_error(o.pcm, code, said.first(), there);
     handle h(p);
     // Plugins made from other plugins do not always take the flag of open().
     if (code = snd_pcm_nonblock(h.get(), 1); code < 0)

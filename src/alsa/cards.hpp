@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The sound cards that there are and who plays on them, as the kernel tells in files.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tactor::pcm {
+
+/// Where /proc and /dev are looked for; another folder in tests.
+using system_root = std::filesystem::path;
+
+struct card {
+    unsigned index = 0;
+    std::string id = {}; ///< as in hw:CARD=ID
+};
+
+/// By index; none where there is no sound driver.
+std::vector<card> sound_cards(const system_root& root);
+
+/// Numbers of a card's playback devices.
+std::vector<unsigned> playback_devices(const system_root& root, unsigned card_index);
+
+/// The card and the device that an ALSA name says, as in "hw:CARD=Tactor,DEV=1" or "plughw:0,1".
+struct device_name {
+    std::string card = {}; ///< id or index
+    unsigned device = 0;
+};
+std::optional<device_name> named_device(std::string_view pcm);
+
+/// The card of that id or index, if there is one.
+std::optional<card> find_card(const std::vector<card>& cards, const std::string& id_or_index);
+
+struct holder {
+    int pid = 0;
+    std::string program = {};
+};
+
+/// Processes that have a playback device of this card (without one: of any) open, by number. Of other
+/// users' processes only what the sound driver tells is seen.
+std::vector<holder> playback_holders(const system_root& root, std::optional<unsigned> card_index);
+
+/// The group whose members may open the playback devices; empty where that cannot be told.
+std::string playback_group(const system_root& root);
+
+} // namespace tactor::pcm

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+// What is said when a PCM cannot be opened, on a system made of files.
+#include <cerrno>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include <tactor/alsa.hpp>
+#include <tactor/error.hpp>
+
+#include "alsa/cards.hpp"
+#include "alsa/error_text.hpp"
+
+using namespace tactor;
+namespace fs = std::filesystem;
+
+namespace {
+
+// A folder with a /proc and a /dev of its own.
+class fake_system {
+public:
+    fake_system()
+    {
+        std::string name = (fs::temp_directory_path() / "tactor-system-XXXXXX").string();
+        REQUIRE(::mkdtemp(name.data()) != nullptr);
+        root_ = name;
+    }
+    ~fake_system() { fs::remove_all(root_); }
+    fake_system(const fake_system&) = delete;
+    fake_system& operator=(const fake_system&) = delete;
+
+    void write(const fs::path& file, const std::string& text) const
+    {
+        fs::create_directories((root_ / file).parent_path());
+        std::ofstream(root_ / file) << text;
+    }
+    void two_cards() const
+    {
+        write("proc/asound/cards", " 0 [Headphones     ]: bcm2835_headpho - bcm2835 Headphones\n"
+                                   "                      bcm2835 Headphones\n"
+                                   " 2 [DAC8x          ]: HifiberryDac8x - snd_rpi_hifiberry_dac8x\n"
+                                   "                      snd_rpi_hifiberry_dac8x\n");
+        write("proc/asound/pcm", "00-00: bcm2835 Headphones : bcm2835 Headphones : playback 8\n"
+                                 "02-00: HifiBerry DAC8x : : playback 1\n"
+                                 "02-01: HifiBerry DAC8x : : capture 1\n"
+                                 "02-03: more : : playback 1 : capture 1\n");
+    }
+    void process(int pid, const std::string& program, const fs::path& opened) const
+    {
+        const fs::path folder = root_ / "proc" / std::to_string(pid);
+        write(folder / "comm", program + "\n");
+        fs::create_directories(folder / "fd");
+        fs::create_symlink("/dev/null", folder / "fd/0");
+        fs::create_symlink(opened, folder / "fd/7");
+    }
+    std::string says(const std::string& pcm, int code,
+                     std::vector<std::string> pcms = {"default", "null"}) const
+    {
+        const error e = pcm::open_error(pcm, code, "", {std::move(pcms), root_});
+        CHECK(e.kind() == errc::not_available);
+        return e.what();
+    }
+    const fs::path& root() const { return root_; }
+
+private:
+    fs::path root_;
+};
+
+bool has(const std::string& text, const std::string& part)
+{
+    INFO(text);
+    INFO(part);
+    const bool found = text.find(part) != std::string::npos;
+    CHECK(found);
+    return found;
+}
+
+} // namespace
+
+TEST_CASE("a busy device names the programs that play on it, found by their descriptors")
+{
+    const fake_system s;
+    s.two_cards();
+    s.process(812, "mpd", "/dev/snd/pcmC2D0p");
+    s.process(900, "arecord", "/dev/snd/pcmC2D0c");
+    s.process(901, "aplay", "/dev/snd/pcmC0D0p");
+    const std::string text = s.says("hw:CARD=DAC8x", -EBUSY);
+    has(text, "mpd (process 812)");
+    has(text, "kill 812");
+    CHECK(text.find("900") == std::string::npos);
+    CHECK(text.find("901") == std::string::npos);
+    // A name that hides its card: all that play.
+    has(s.says("mine", -EBUSY), "mpd (process 812), aplay (process 901)");
+}
+
+TEST_CASE("a busy device names the program of another user, which only the driver tells")
+{
+    const fake_system s;
+    s.two_cards();
+    s.write("proc/asound/card2/pcm0p/sub0/status", "state: RUNNING\nowner_pid   : 4243\n");
+    s.write("proc/asound/card0/pcm0p/sub0/status", "closed\n");
+    s.write("proc/4243/status", "Name:\tdata-loop.0\nTgid:\t4240\n");
+    s.write("proc/4240/comm", "pipewire\n");
+    const std::string text = s.says("plughw:2,0", -EBUSY);
+    has(text, "pipewire (process 4240)");
+    has(text, "udev");
+    CHECK(text.find("kill") == std::string::npos);
+}
+
+TEST_CASE("a busy device with nobody to be seen still says what to do")
+{
+    const fake_system s;
+    has(s.says("hw:0", -EBUSY), "fuser");
+}
+
+TEST_CASE("an unknown card lists those that there are")
+{
+    const fake_system s;
+    s.two_cards();
+    for (const char* name : {"hw:CARD=DAC8", "hw:DAC8", "plughw:CARD=DAC8,DEV=0", "front:CARD=DAC8,DEV=0"}) {
+        const std::string text = s.says(name, -ENODEV);
+        has(text, "no card DAC8 ");
+        has(text, "did you mean DAC8x?");
+        has(text, "cards: Headphones, DAC8x");
+    }
+    has(s.says("hw:1", -ENOENT), "no card 1");
+}
+
+TEST_CASE("an unknown device of a card lists the ones that play")
+{
+    const fake_system s;
+    s.two_cards();
+    const std::string text = s.says("hw:CARD=DAC8x,DEV=1", -ENOENT);
+    has(text, "card DAC8x has no playback device 1");
+    has(text, "0, 3");
+}
+
+TEST_CASE("without any card that is said, and that null needs none")
+{
+    const fake_system s;
+    for (const char* name : {"hw:CARD=Tactor", "default", "hw:0,0"}) {
+        const std::string text = s.says(name, -ENOENT);
+        has(text, "there is no sound card");
+        has(text, "null");
+    }
+    s.write("proc/asound/cards", "--- no soundcards ---\n");
+    has(s.says("hw:0", -ENOENT), "there is no sound card");
+}
+
+TEST_CASE("an unknown PCM names a near one, or all when they are few")
+{
+    const fake_system s;
+    s.two_cards();
+    has(s.says("tactro", -ENOENT, {"default", "null", "tactor"}), "did you mean tactor?");
+    has(s.says("xyz", -ENOENT, {"default", "null", "tactor"}), "known: default, null, tactor");
+    has(s.says("xyz", -ENOENT), "cards: Headphones, DAC8x");
+}
+
+TEST_CASE("names that are defined in a configuration text are those that are proposed")
+{
+    try {
+        open_alsa({.pcm = "palmm", .channels = 1, .config_text = "pcm.palm { type null }"});
+        FAIL("it opened");
+    } catch (const error& e) {
+        has(e.what(), "did you mean palm?");
+    }
+}
+
+TEST_CASE("no permission says which group to join, and how")
+{
+    const fake_system s;
+    has(s.says("hw:0", -EACCES), "sudo usermod -aG audio $USER");
+    s.write("dev/snd/pcmC0D0p", ""); // a node of the group that runs this test
+    const std::string group = pcm::playback_group(s.root());
+    if (group == "root")
+        has(s.says("hw:0", -EPERM), "root's alone");
+    else
+        has(s.says("hw:0", -EPERM), "usermod -aG " + (group.empty() ? "audio" : group) + " $USER");
+}
+
+TEST_CASE("the card and the device in an ALSA name")
+{
+    const auto is = [](const char* name, const std::string& card, unsigned device) {
+        const auto d = pcm::named_device(name);
+        INFO(name);
+        REQUIRE(d);
+        CHECK(d->card == card);
+        CHECK(d->device == device);
+    };
+    is("hw:CARD=Tactor", "Tactor", 0);
+    is("hw:CARD=Tactor,DEV=2", "Tactor", 2);
+    is("hw:Tactor,3", "Tactor", 3);
+    is("plughw:1,2,0", "1", 2);
+    is("surround71:CARD=PCH,DEV=0", "PCH", 0);
+    for (const char* name : {"null", "default", "raw:/tmp/x", "", ":", "file:hw"})
+        CHECK_FALSE(pcm::named_device(name));
+}
