@@ -45,6 +45,8 @@ io_result audio_loop::begin_epoch() noexcept
     mixer_.reset();
     pending_ = 0;
     played_ = 0;
+    clock_.begin_epoch(offset_);
+    link_.clock.store(clock_.line());
     if (const io_status s = sink_.prepare(); s != io_status::ok)
         return {s, 0, 0};
     std::size_t filled = 0;
@@ -87,6 +89,7 @@ void audio_loop::silence_all(reason why, int code, std::uint64_t played) noexcep
 {
     scores_.interrupt(why, code, played, !stop_asked_);
     offset_ += mixer_.position();
+    link_.clock.store({});
     mixer_.reset();
     pending_ = 0;
     played_ = 0;
@@ -149,6 +152,7 @@ void audio_loop::finish(reason why, int code) noexcept
         return;
     scores_.interrupt(why, code, played_, false);
     sink_.drop();
+    link_.clock.store({});
     phase_ = phase::over;
     link_.reports.push({.what = report::kind::stream_over, .why = why, .code = code});
 }

@@ -33,6 +33,7 @@ audio_loop::audio_loop(sink& s, link& l, std::span<const double> limits, const l
       setup_(s.setup()),
       mixer_(limits, setup_.format, o.drives),
       scores_(mixer_, l, o.fade_frames),
+      clock_(setup_.rate, setup_.batch ? setup_.period_frames : 0),
       frame_bytes_(setup_.channels * bytes_of(setup_.format)),
       block_(setup_.period_frames * frame_bytes_)
 {
@@ -180,6 +181,8 @@ void audio_loop::look_at_position(std::int64_t now) noexcept
     if (!p.valid || p.played <= played_)
         return;
     played_ = p.played;
+    clock_.add(p.time_ns, offset_ + p.played);
+    link_.clock.store(clock_.line());
     moved(now);
 }
 

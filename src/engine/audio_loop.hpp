@@ -12,6 +12,7 @@
 
 #include <tactor/sink.hpp>
 
+#include "engine/dac_clock.hpp"
 #include "engine/link.hpp"
 #include "engine/score_table.hpp"
 #include "synth/mixer.hpp"
@@ -73,6 +74,7 @@ private:
     stream_setup setup_;
     synth::mixer mixer_;
     score_table scores_;
+    dac_clock clock_;
     std::size_t frame_bytes_;
     std::vector<std::byte> block_; ///< one period
     std::size_t pending_ = 0;      ///< frames of block_ that the sink has not taken yet

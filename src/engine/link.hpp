@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "engine/dac_clock.hpp"
 #include "engine/messages.hpp"
 #include "rt/event_fd.hpp"
 #include "rt/seqlock.hpp"
@@ -46,6 +47,8 @@ struct link {
     /// Set by the feeder when the command ring is full; the audio thread then says when it no longer is.
     std::atomic<bool> feeder_waits{false};
     rt::seqlock<stream_status> status;
+    /// What the audio thread knows of the DAC's clock; any thread may read it, none waits.
+    rt::seqlock<clock_line> clock;
     counters count;
 };
 
