@@ -98,7 +98,7 @@ int fork_holder(const holder_job& job) noexcept
     if (between < 0)
         return errno;
     if (between == 0) {
-        const pid_t holder = ::fork();
+        const pid_t holder = ::_Fork(); // async-signal-safe, unlike fork()
         if (holder == 0)
             run_holder(job);
         ::_exit(holder < 0 ? errno : 0);
