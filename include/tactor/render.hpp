@@ -19,6 +19,19 @@ namespace tactor {
 /// Where the carrier's phase starts: with each burst, or with the piece.
 enum class phase_mode { burst, continuous };
 
+/// What the array may be given at run time, over and above each channel's own max_dbfs. Plans within these
+/// limits are not touched in a single bit. The defaults are safe guesses: know your actuators.
+struct drive_limits {
+    /// Greatest power of all tactors together, in dB above one channel's sine at full scale. Default: that of
+    /// three; infinite: no limit. The gain of all falls within the wave, without a click, and returns with
+    /// 50 ms.
+    double power_dbfs = 4.771212547196624;
+    /// Longest time that one tactor is driven (above -40 dBFS) within any window; then its channel fades out
+    /// until half of that time has left the window. Not below window_s: no limit.
+    double max_drive_s = 5.0;
+    double window_s = 10.0;
+};
+
 struct render_options {
     unsigned rate = 48000; ///< Hz, 8000 to 768000
     phase_mode phase = phase_mode::burst;
@@ -28,6 +41,12 @@ struct render_options {
     double level_dbfs = -12.0;        ///< peak for amplitude 1, <= 0; a tactor's gain_db is added
     std::optional<double> sl_db = {}; ///< instead: dB above each tactor's threshold_dbfs
     unsigned channels = 0;            ///< 0: as many as the array needs
+    /// Applied by the renderer; the player has its own. None: the piece as it was designed.
+    std::optional<drive_limits> limits = {};
+    /// A spare channel on which each stroke's first frames are marked, at full scale and to the frame: the
+    /// sync signal that no scheduler can delay.
+    std::optional<unsigned> marker_channel = {};
+    double marker_s = 0.005; ///< above 0, at most 1 s
 };
 
 /// A plan and when it starts.

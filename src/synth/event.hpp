@@ -22,7 +22,8 @@ struct channel_drive {
 /// Up to four channels that share one carrier from frame `start` for `length` frames. The signal at
 /// frame start + j is
 ///     amplitude(j) * w(ramp_position + j) * sin(2 pi cycles_per_frame (phase_frame + j))
-/// with w the raised cosine of `ramp` frames at both ends of a window of `window` frames.
+/// (1 in place of the sine where cycles_per_frame is 0: a marker, which only a channel without a tactor
+/// takes) with w the raised cosine of `ramp` frames at both ends of a window of `window` frames.
 struct drive_event {
     std::uint64_t start = 0;         ///< frames since the start of the score (source) or of the epoch (mixer)
     std::uint64_t phase_frame = 0;   ///< carrier frame at `start`

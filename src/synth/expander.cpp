@@ -38,6 +38,9 @@ void expander::advance() noexcept
     case item_kind::continuous:
         continuous_event();
         break;
+    case item_kind::marker:
+        marker_event();
+        break;
     }
 }
 
@@ -89,6 +92,18 @@ void expander::joined_event() noexcept
     stretch(position_, s.end - position_);
     add(item_->tactor, s.from, s.to);
     position_ = s.end;
+}
+
+void expander::marker_event() noexcept
+{
+    if (position_ >= item_->end()) {
+        done_ = true;
+        return;
+    }
+    stretch(position_, item_->length);
+    event_.cycles_per_frame = 0.0;
+    event_.drive[event_.drives++] = {1.0, 1.0, item_->tactor};
+    position_ = item_->end();
 }
 
 void expander::continuous_event() noexcept

@@ -43,6 +43,7 @@ private:
     void burst_event() noexcept;
     void joined_event() noexcept;
     void continuous_event() noexcept;
+    void marker_event() noexcept;
     bool next_points() noexcept;
 
     const score::impl* score_ = nullptr;

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "synth/mixer.hpp"
+
 namespace tactor::synth {
 
 std::uint64_t limit_block(double* x, unsigned n, double limit) noexcept
@@ -19,6 +21,17 @@ std::uint64_t limit_block(double* x, unsigned n, double limit) noexcept
         x[i] = low > -limit ? low : -limit;
     }
     return changed;
+}
+
+std::vector<double> channel_limits(const array& a, unsigned channels)
+{
+    std::vector<double> limits(channels, 0.0);
+    for (const tactor_spec& t : a.tactors) {
+        if (t.channel < channels) {
+            limits[t.channel] = clean_limit(std::pow(10.0, t.max_dbfs / 20.0));
+        }
+    }
+    return limits;
 }
 
 } // namespace tactor::synth

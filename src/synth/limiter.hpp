@@ -3,6 +3,7 @@
 /// The last guard of a tactor.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 namespace tactor::synth {
@@ -15,6 +16,12 @@ std::uint64_t limit_block(double* x, unsigned n, double limit) noexcept;
 inline bool within_limit(double peak, double limit) noexcept
 {
     return peak <= limit * (1.0 - 1e-12);
+}
+
+/// The limit as given, but nothing outside 0 ... 1.
+inline double clean_limit(double l) noexcept
+{
+    return l > 0.0 ? std::min(l, 1.0) : 0.0;
 }
 
 } // namespace tactor::synth

@@ -13,6 +13,7 @@
 #include <tactor/sample_format.hpp>
 
 #include "synth/event.hpp"
+#include "synth/guard.hpp"
 
 namespace tactor::synth {
 
@@ -23,7 +24,10 @@ class mixer {
 public:
     /// `limits`: greatest absolute value of each channel, linear, 0 ... 1; its size is the channel count.
     /// `capacity`: drives that may wait or sound at once.
-    mixer(std::span<const double> limits, sample_format format, std::size_t capacity = 8192);
+    /// A channel whose limit is 0 has no tactor: markers sound on it, and nothing else does. Markers sound
+    /// nowhere else. `guards` hold what the channels are given together and over time.
+    mixer(std::span<const double> limits, sample_format format, std::size_t capacity = 8192,
+          const guard_settings& guards = {});
     ~mixer();
 
     std::size_t channels() const noexcept;
@@ -42,7 +46,8 @@ public:
     /// forgotten after it: the caller stops feeding them. False if 256 fades run already.
     bool fade_out(std::uint32_t score, std::uint32_t fade) noexcept;
 
-    /// Drops everything at once and counts frames from 0: a new epoch.
+    /// Drops everything at once and counts frames from 0: a new epoch. What the channels were given before
+    /// still counts.
     void reset() noexcept;
 
     /// Next frame.
@@ -51,6 +56,10 @@ public:
     std::size_t size() const noexcept;
     /// Samples that the limiter changed so far.
     std::uint64_t limited() const noexcept;
+    /// Frames in which the limit on the summed power acted.
+    std::uint64_t power_limited() const noexcept;
+    /// How often a channel was cut because it was driven for too long.
+    std::uint64_t drives_cut() const noexcept;
 
 private:
     struct impl;

@@ -83,6 +83,8 @@ std::vector<change> changes_of(const score::impl& s)
         case item_kind::continuous:
             note_continuous(s, it, changes);
             break;
+        case item_kind::marker:
+            break;
         case item_kind::burst:
             for (std::size_t k = it.first; k < it.first + it.count; ++k) {
                 const item_drive& d = s.list.drives[k];

@@ -14,9 +14,14 @@ struct renderer::impl {
     /// Room for what sounds at once, and for what begins in the block meanwhile.
     impl(const score& s, sample_format f)
         : source(s),
-          mix(s.data()->limits, f, s.data()->open_events + 256),
+          mix(s.data()->limits, f, s.data()->open_events + 256, guards(*s.data())),
           frame_bytes(s.channels() * bytes_of(f))
     {
+    }
+
+    static synth::guard_settings guards(const score::impl& s)
+    {
+        return s.guards ? synth::guards_of(*s.guards, s.rate) : synth::guard_settings{};
     }
 
     /// Hands over what starts before a frame. Returns the frame up to which nothing is missing.

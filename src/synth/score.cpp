@@ -10,6 +10,7 @@
 #include <tactor/error.hpp>
 
 #include "synth/frames.hpp"
+#include "synth/guard.hpp"
 #include "synth/levels.hpp"
 #include "synth/mixer.hpp"
 #include "synth/place.hpp"
@@ -49,6 +50,44 @@ void check_options(const render_options& o)
     if (o.ramp_s && !(*o.ramp_s >= 0.0 && *o.ramp_s <= latest_start_s)) {
         throw error(errc::bad_input, "--ramp", fmt::format("{} s is not a ramp", *o.ramp_s),
                     "use 0 or more, e.g. 0.002");
+    }
+}
+
+void check_marker(const array& a, const render_options& o, unsigned channels)
+{
+    if (!o.marker_channel) {
+        return;
+    }
+    const std::string what = fmt::format("marker channel {}", *o.marker_channel);
+    if (*o.marker_channel >= channels) {
+        throw error(errc::bad_input, what, fmt::format("there are {} channels", channels),
+                    fmt::format("ask for {} channels or more", *o.marker_channel + 1));
+    }
+    for (std::size_t i = 0; i < a.tactors.size(); ++i) {
+        if (a.tactors[i].channel == *o.marker_channel) {
+            throw error(errc::bad_input, what, fmt::format("it drives tactor {}", i),
+                        "choose a spare channel");
+        }
+    }
+    if (!(o.marker_s > 0.0 && o.marker_s <= 1.0)) {
+        throw error(errc::bad_input, "marker", fmt::format("{} s is not its length", o.marker_s),
+                    "use above 0 to 1 s, e.g. 0.005");
+    }
+}
+
+/// One at the start of each plan; none makes the piece longer.
+void place_markers(score::impl& s, std::uint64_t length, unsigned channel)
+{
+    for (std::size_t i = 0; i < s.starts.size(); ++i) {
+        item it;
+        it.kind = item_kind::marker;
+        it.start = s.starts[i];
+        it.length = std::min(std::max<std::uint64_t>(length, 1), s.frames - std::min(it.start, s.frames));
+        it.plan = static_cast<std::uint32_t>(i);
+        it.tactor = channel;
+        if (it.length > 0) {
+            s.list.items.push_back(it);
+        }
     }
 }
 
@@ -119,6 +158,7 @@ void measure(score::impl& s)
         case item_kind::continuous:
             return events(s.tactors.size());
         case item_kind::joined:
+        case item_kind::marker:
             break;
         }
         return 1;
@@ -134,6 +174,10 @@ std::shared_ptr<const score::impl> make_score(const array& a, std::vector<placed
     s->rate = o.rate;
     s->phase = o.phase;
     s->channels = channels_of(a, o);
+    check_marker(a, o, s->channels);
+    if (o.limits) {
+        synth::check_limits(*o.limits);
+    }
     s->tactors = synth::tactor_levels(a, o);
     s->limits = synth::channel_limits(a, s->channels);
     s->plans = std::move(plans);
@@ -147,6 +191,10 @@ std::shared_ptr<const score::impl> make_score(const array& a, std::vector<placed
         s->ends.push_back(end);
         s->frames = std::max(s->frames, end);
     }
+    if (o.marker_channel) {
+        place_markers(*s, synth::frame_at(o.marker_s, o.rate), *o.marker_channel);
+    }
+    s->guards = o.limits;
     std::stable_sort(s->list.items.begin(), s->list.items.end(),
                      [](const item& x, const item& y) { return x.start < y.start; });
     synth::check_peaks(*s, a, o);

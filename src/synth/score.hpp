@@ -36,6 +36,7 @@ enum class item_kind : std::uint8_t {
     burst,      ///< drives that share one carrier and one window
     joined,     ///< one tactor, several bursts under one carrier
     continuous, ///< a whole continuous stroke
+    marker,     ///< a stroke's beginning, on a channel without a tactor
 };
 
 /// A stretch of one carrier. Frames of the score.
@@ -45,7 +46,7 @@ struct item {
     std::uint32_t plan = 0;
     std::uint32_t ramp = 0;
     item_kind kind = item_kind::burst;
-    std::uint32_t tactor = 0; ///< of a joined one
+    std::uint32_t tactor = 0; ///< of a joined one; of a marker, the channel
     std::size_t first = 0;    ///< of its drives (burst) or members (joined)
     std::size_t count = 0;
     std::uint64_t end() const noexcept { return start + length; }
@@ -73,6 +74,7 @@ struct score::impl {
     unsigned channels = 0;
     unsigned rate = 0;
     phase_mode phase = phase_mode::burst;
+    std::optional<drive_limits> guards;
     std::size_t open_items = 0;      ///< most items that have started and not ended at once
     std::size_t open_continuous = 0; ///< of these, continuous ones
     std::size_t open_events = 0;     ///< most events that sound in one frame
