@@ -10,6 +10,9 @@
 #include "cli/commands.hpp"
 #include "cli/compare_rows.hpp"
 #include "cli/input.hpp"
+#include "plot/compare_figure.hpp"
+#include "plot/figure.hpp"
+#include "plot/output.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -53,6 +56,9 @@ std::vector<Enum> parse_list(const char* option, std::string_view text, const st
 struct compare_options {
     comparison_choice choice;
     std::string format = "text";
+    std::string picture; // empty: none
+    double width_mm = plot::figure_options{}.width_mm;
+    unsigned dpi = 300;
 };
 
 void add_lists(CLI::App& c, const std::shared_ptr<compare_options>& o)
@@ -79,6 +85,47 @@ void add_lists(CLI::App& c, const std::shared_ptr<compare_options>& o)
          },
          "how to print it (default text)")
         ->type_name("text|json|csv");
+}
+
+void add_picture_options(CLI::App& c, const std::shared_ptr<compare_options>& o)
+{
+    c.add_option_function<std::string>(
+         "-o,--output",
+         [o](const std::string& t) {
+             plot::format_of(t);
+             o->picture = t;
+             o->choice.keep_samples = true;
+         },
+         "draw it too: target and prediction on the array, speed over time")
+        ->type_name("FILE.svg|.png|.pdf");
+    c.add_option_function<std::string>(
+         "--width",
+         [o](const std::string& t) {
+             o->width_mm = parse_number("--width", t, plot::least_width_mm, plot::most_width_mm, "mm");
+         },
+         "width of the picture (default 85, one print column)")
+        ->type_name("MM");
+    c.add_option_function<std::string>(
+         "--dpi",
+         [o](const std::string& t) {
+             o->dpi = static_cast<unsigned>(parse_number("--dpi", t, plot::least_dpi, plot::most_dpi, "dpi"));
+         },
+         "resolution of a PNG (default 300)")
+        ->type_name("N");
+}
+
+void draw(const compare_options& o, const comparison& c, const array& a)
+{
+    std::vector<plot::prediction> rows;
+    for (const comparison_row& r : c.rows)
+        rows.push_back({std::string(to_string(r.method)), std::string(to_string(r.phantom)), r.samples,
+                        r.felt, r.refused ? r.refused->what() : ""});
+    plot::save(plot::draw_comparison(
+                   a, c.target, rows,
+                   std::string("The ring is the start; dots are where the felt position rests. This is ") +
+                       prediction_note + ".",
+                   o.width_mm),
+               o.picture, o.dpi);
 }
 
 // Why strokes that no algorithm can play are refused. All reasons but the last are printed, each once.
@@ -108,13 +155,19 @@ int run(settings& s, option_list& options, const compare_options& asked, bool on
     // A row says what an algorithm cannot do; what nobody may ask for is wrong usage.
     burst_duration_s(s.plan.profile, s.plan.soa_s);
     const layout faces(e.tactors);
+    const std::vector<stroke> strokes = read_one_piece(s).strokes;
+    if (!asked.picture.empty() && strokes.size() > 1)
+        throw error(errc::bad_input, "-o", fmt::format("there are {} strokes", strokes.size()),
+                    "a picture shows one");
     std::vector<comparison> all;
-    for (const stroke& k : read_one_piece(s).strokes)
+    for (const stroke& k : strokes)
         all.push_back(compare(k, e.tactors, faces, s.plan, choice));
     const auto playable = std::count_if(all.begin(), all.end(), [](const auto& c) { return c.playable(); });
     if (playable == 0)
         throw why_refused(all);
     const auto print = asked.format == "json" ? print_json : asked.format == "csv" ? print_csv : print_text;
+    if (!asked.picture.empty())
+        draw(asked, all[0], e.tactors);
     print(stdout, all, e.tactors);
     if (static_cast<std::size_t>(playable) < all.size())
         throw why_refused(all);
@@ -133,6 +186,7 @@ command add_compare(CLI::App& app)
     options->add_stroke_options();
     options->add_sound_options();
     add_lists(*c, asked);
+    add_picture_options(*c, asked);
     c->footer("Example: tactor compare park2016-3 --phantoms inverse-distance,barycentric");
     const CLI::Option* algorithm = c->get_option("--algorithm");
     return [s, options, asked, algorithm] { return run(*s, *options, *asked, algorithm->count() != 0); };

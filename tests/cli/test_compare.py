@@ -4,6 +4,9 @@ import csv
 import io
 import json
 import math
+import struct
+import xml.etree.ElementTree as ElementTree
+import zlib
 
 from harness import ToolTest, main
 
@@ -197,6 +200,91 @@ class Table(CompareTest):
             seen = {self.ok("compare", "park2016-2", "--format", form, env={"LC_ALL": locale}).stdout
                     for locale in ("C", "de_DE.UTF-8", "fr_FR.UTF-8")}
             self.assertEqual(len(seen), 1)
+
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def of_kind(tree, kind, tag="*"):
+    return [e for e in tree.iter() if e.get("class") == kind and (tag == "*" or e.tag == SVG + tag)]
+
+
+def spots(polyline):
+    numbers = [float(n) for n in polyline.get("points").replace(",", " ").split()]
+    return list(zip(numbers[::2], numbers[1::2]))
+
+
+class Pictures(CompareTest):
+    def picture(self, *args):
+        self.ok("compare", *args, "-o", "c.svg")
+        return ElementTree.parse(self.dir / "c.svg").getroot()
+
+    def test_the_bursts_are_drawn_where_they_are_felt(self):
+        tree = self.picture("park2016-3")
+        panels = of_kind(tree, "panel")
+        self.assertEqual([p.get("data-algorithm") for p in panels], list(ALGORITHMS))
+        p = self.plan("park2016-3")
+        tactors = [(float(c.get("cx")), float(c.get("cy"))) for c in of_kind(panels[0], "tactor", "circle")]
+        self.assertEqual(len(tactors), 9)
+        scale = (tactors[8][0] - tactors[0][0]) / 40
+
+        def page(x, y):
+            return tactors[0][0] + scale * x, tactors[0][1] + scale * y
+        dots = [(float(c.get("cx")), float(c.get("cy"))) for c in of_kind(panels[0], "felt-at", "circle")]
+        self.assertEqual(len(dots), 31)
+        for dot, burst in zip(dots, p["bursts"]):
+            place, _, _ = felt(p | {"bursts": [burst]}, round(burst["onset_s"] * 1000), False)
+            self.assertLess(math.dist(dot, page(*place)), 0.01)
+        for x, y in spots(of_kind(panels[0], "target", "polyline")[0]):
+            self.assertAlmostEqual(math.dist((x, y), page(20, 20)), 16 * scale, delta=0.06)
+        start = of_kind(panels[1], "start", "circle")
+        self.assertEqual(len(start), 1)
+        self.assertEqual(len(of_kind(panels[2], "felt-at")), 0)
+        self.assertTrue(of_kind(panels[2], "felt", "polyline"))
+
+    def test_speeds_are_drawn_to_scale_beside_the_target(self):
+        tree = self.picture("park2016-1", "--phantom", "barycentric")
+        chart, = of_kind(tree, "chart")
+        self.assertEqual([s.get("data-name") for s in of_kind(chart, "series")], ["target", *ALGORITHMS])
+        x0, kx, y0, ky = (float(chart.get(f"data-{n}")) for n in ("x0", "x-scale", "y0", "y-scale"))
+        speed = 16 * math.pi / 1.4
+        for name in ("target", "continuous"):
+            line = next(s for s in of_kind(chart, "series") if s.get("data-name") == name)
+            for x, y in (s for curve in of_kind(line, "curve") for s in spots(curve)):
+                self.assertAlmostEqual((y - y0) / ky, speed, delta=0.5)
+                self.assertTrue(-0.001 < (x - x0) / kx < 1.401)
+        text = [t.text for t in tree.iter(SVG + "text")]
+        self.assertIn("speed (mm/s)", text)
+        self.assertIn("time (s)", text)
+        self.assertTrue(any("not a measurement" in t for t in text))
+
+    def test_each_phantom_has_a_row_and_refusals_say_why(self):
+        tree = self.picture(*Refusals.OFF_GRID, "--phantoms", "inverse-distance,linear,gaussian")
+        self.assertEqual((len(of_kind(tree, "panel")), len(of_kind(tree, "chart"))), (9, 3))
+        self.assertTrue(any("refused" in t.text for t in of_kind(tree, "refused", "text")))
+        ids = [e.get("id") for e in tree.iter() if e.get("id")]
+        self.assertEqual(len(ids), len(set(ids)))
+
+    def test_png_and_pdf(self):
+        self.ok("compare", "park2016-1", "-o", "c.pdf")
+        self.assertTrue((self.dir / "c.pdf").read_bytes().startswith(b"%PDF-"))
+        self.ok("compare", "park2016-1", "-o", "c.png", "--width", "120", "--dpi", "100")
+        data = (self.dir / "c.png").read_bytes()
+        self.assertAlmostEqual(struct.unpack(">I", data[16:20])[0], 120 / 25.4 * 100, delta=1)
+        at, pixels = 8, b""
+        while at < len(data):
+            size, kind = struct.unpack(">I4s", data[at:at + 8])
+            pixels += data[at + 8:at + 8 + size] if kind == b"IDAT" else b""
+            at += 12 + size
+        self.assertGreater(len(set(zlib.decompress(pixels))), 50)
+
+    def test_what_cannot_be_drawn(self):
+        self.refused(2, "compare", "park2016-1", "-o", "c.gif", says=["c.gif", "svg"])
+        self.refused(2, "compare", "park2016-1", "-o", "c.svg", "--width", "5", says=["--width"])
+        self.refused(2, "compare", "park2016-1", "-o", "c.png", "--dpi", "1e9", says=["--dpi"])
+        self.write("two.toml", '[[stroke]]\npath = "M 0 0 L 40 0"\n[[stroke]]\npath = "M 0 40 L 40 40"\n')
+        self.refused(2, "compare", "two.toml", "-o", "c.svg", says=["-o", "2 strokes"])
+        self.assertFalse((self.dir / "c.svg").exists())
 
 
 class Refusals(CompareTest):

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+#include "plot/compare_figure.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "plot/axes.hpp"
+#include "plot/compare_panel.hpp"
+#include "plot/figure.hpp"
+#include "plot/text.hpp"
+
+namespace tactor::plot {
+namespace {
+
+constexpr double margin = 5.0; // pt
+constexpr double title_size = 8.0;
+constexpr double line_pitch = 8.0;
+constexpr double chart_height = 105.0;
+
+// Of algorithms, in order: they differ in hue, lightness and dash.
+constexpr std::array<style, 3> looks{style{.stroke = blue, .width = 0.9},
+                                     style{.stroke = vermilion, .width = 0.9, .dash = 3.0},
+                                     style{.stroke = ink, .width = 0.9, .dash = 1.1}};
+
+std::vector<std::string> names(const std::vector<prediction>& all, std::string prediction::*name)
+{
+    std::vector<std::string> list;
+    for (const prediction& p : all)
+        if (std::find(list.begin(), list.end(), p.*name) == list.end())
+            list.push_back(p.*name);
+    return list;
+}
+
+series felt_speed(const prediction& p, const style& look)
+{
+    series s{p.algorithm, {}, look};
+    s.values.reserve(p.samples.size());
+    for (const percept_sample& x : p.samples)
+        s.values.push_back({x.t_s, x.speed_mm_s.value_or(std::numeric_limits<double>::quiet_NaN())});
+    return s;
+}
+
+series target_speed(const std::vector<percept_sample>& samples)
+{
+    series s{"target", {}, target_look};
+    for (std::size_t i = 1; i + 1 < samples.size(); ++i)
+        s.values.push_back({samples[i].t_s, distance_mm(samples[i + 1].target, samples[i - 1].target) /
+                                                (samples[i + 1].t_s - samples[i - 1].t_s)});
+    return s;
+}
+
+double largest(const std::vector<series>& lines)
+{
+    double v = 0.0;
+    for (const series& s : lines)
+        for (const spot& x : s.values)
+            v = std::isfinite(x.y) ? std::max(v, x.y) : v;
+    return v > 0.0 ? 1.05 * v : 1.0;
+}
+
+double draw_heading(canvas& c, const array& a, const stroke& target, box where)
+{
+    double y = where.y + cap_height(title_size);
+    c.text({where.x, y}, shorten(clean(target.name), title_size, where.width, true),
+           {.size = title_size, .bold = true});
+    y += line_pitch;
+    const trajectory& m = target.motion;
+    const std::string facts =
+        fmt::format("on {}, {} mm in {} s", clean(a.name), number(m.length_mm()), number(m.duration_s(), 6));
+    c.text({where.x, y}, shorten(facts, small_text, where.width), {.size = small_text, .ink = dark_grey});
+    return y + 6.0 - where.y;
+}
+
+double draw_note(canvas& c, const std::string& note, box where)
+{
+    std::vector<std::string> words;
+    for (std::size_t at = 0; at < note.size();) {
+        const std::size_t end = std::min(note.find(' ', at), note.size());
+        words.push_back(note.substr(at, end - at));
+        at = end + 1;
+    }
+    double y = where.y;
+    for (const std::string& line : wrap(words, " ", small_text, where.width, 6)) {
+        y += line_pitch;
+        c.text({where.x, y}, line, {.size = small_text, .ink = dark_grey}, {.kind = "note"});
+    }
+    return y - where.y;
+}
+
+double draw_speeds(canvas& c, const std::string& phantom, std::vector<series> lines, double end_s, box where)
+{
+    chart ch;
+    ch.id = "speed-" + phantom;
+    ch.where = {where.x, where.y, where.width, chart_height};
+    ch.x_to = end_s;
+    ch.y_to = largest(lines);
+    ch.x_title = "time (s)";
+    ch.y_title = "speed (mm/s)";
+    ch.lines = std::move(lines);
+    draw_chart(c, ch);
+    return chart_height;
+}
+
+// The panels of one phantom model and their speeds.
+double draw_row(canvas& c, const panel_ground& g, const std::vector<prediction>& all,
+                const std::vector<std::string>& algorithms, const std::string& phantom, box where)
+{
+    double y = where.y + cap_height(title_text);
+    c.text({where.x, y}, "phantom: " + phantom, {.size = title_text, .bold = true});
+    y += 5.0;
+    const double width = where.width / static_cast<double>(algorithms.size());
+    double tallest = 0.0;
+    std::vector<series> lines;
+    for (const prediction& p : all) {
+        if (p.phantom != phantom)
+            continue;
+        const auto column = static_cast<std::size_t>(
+            std::find(algorithms.begin(), algorithms.end(), p.algorithm) - algorithms.begin());
+        const style& look = looks[column % looks.size()];
+        const box cell{where.x + width * static_cast<double>(column), y, width, std::min(width, 260.0)};
+        tallest = std::max(tallest, draw_panel(c, g, p, look, cell));
+        if (lines.empty() && p.refused.empty())
+            lines.push_back(target_speed(p.samples));
+        if (p.refused.empty())
+            lines.push_back(felt_speed(p, look));
+    }
+    y += tallest;
+    if (!lines.empty())
+        y += draw_speeds(c, phantom, std::move(lines), g.target.motion.duration_s(),
+                         {where.x, y + 2.0, where.width, 0.0});
+    return y + 8.0 - where.y;
+}
+
+} // namespace
+
+canvas draw_comparison(const array& a, const stroke& target, const std::vector<prediction>& all,
+                       const std::string& note, double width_mm)
+{
+    if (!(width_mm >= least_width_mm && width_mm <= most_width_mm))
+        throw error(errc::bad_input, "picture", fmt::format("{} mm wide", width_mm),
+                    fmt::format("{} to {} mm", least_width_mm, most_width_mm));
+    canvas c;
+    c.width = width_mm * pt_per_mm;
+    c.title = fmt::format("{} on {}: predicted percepts", clean(target.name), clean(a.name));
+    c.description = note;
+    const panel_ground g{a, target, shown_extent(a, {target})};
+    const std::vector<std::string> algorithms = names(all, &prediction::algorithm);
+    box rest{margin, margin, c.width - 2.0 * margin, 0.0};
+    rest.y += draw_heading(c, a, target, rest);
+    for (const std::string& phantom : names(all, &prediction::phantom))
+        rest.y += draw_row(c, g, all, algorithms, phantom, rest);
+    rest.y += draw_note(c, note, rest);
+    c.height = rest.y + margin;
+    return c;
+}
+
+} // namespace tactor::plot

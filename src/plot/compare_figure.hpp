@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What several algorithms are predicted to feel like (as figure 6 of Park et al. 2016), and how fast.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <tactor/array.hpp>
+#include <tactor/percept.hpp>
+#include <tactor/stroke.hpp>
+
+#include "plot/canvas.hpp"
+
+namespace tactor::plot {
+
+/// One algorithm with one phantom model.
+struct prediction {
+    std::string algorithm;
+    std::string phantom;
+    const std::vector<percept_sample>& samples; ///< empty where refused
+    percept_summary felt;
+    std::string refused; ///< why there is no prediction; empty where there is
+};
+
+/// For each phantom model a row of panels, one for each algorithm, and under it all their speeds over time.
+/// `note` stands under the picture. \throws error (bad_input) for a width out of bounds (figure.hpp).
+canvas draw_comparison(const array& a, const stroke& target, const std::vector<prediction>& all,
+                       const std::string& note, double width_mm);
+
+} // namespace tactor::plot

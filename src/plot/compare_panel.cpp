@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include "plot/compare_panel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "plot/axes.hpp"
+#include "plot/text.hpp"
+
+namespace tactor::plot {
+namespace {
+
+constexpr double line_pitch = 8.0;
+constexpr std::size_t most_dots = 400;
+constexpr std::size_t most_points = 20000;
+
+// Where the felt position is, and where it rests: bursts, not a continuous movement.
+struct track {
+    std::vector<spot> line = {};
+    std::vector<spot> rests = {};
+};
+
+track follow(const array_frame& f, const std::vector<percept_sample>& samples)
+{
+    track t;
+    std::optional<point> last;
+    bool rested = false;
+    for (const percept_sample& x : samples) {
+        if (!x.felt)
+            continue;
+        if (last == x.felt) {
+            if (!rested)
+                t.rests.push_back(f(*x.felt));
+            rested = true;
+            continue;
+        }
+        rested = false;
+        last = x.felt;
+        t.line.push_back(f(*x.felt));
+    }
+    // A burst at the very end has one sample only.
+    if (!t.rests.empty() && !rested && !t.line.empty())
+        t.rests.push_back(t.line.back());
+    const std::size_t stride = t.line.size() / most_points + 1;
+    std::vector<spot> fewer;
+    for (std::size_t i = 0; i < t.line.size(); i += stride)
+        fewer.push_back(t.line[i]);
+    t.line = simplify(fewer, 0.04);
+    return t;
+}
+
+void draw_track(canvas& c, const track& t, const style& look)
+{
+    if (t.line.size() > 1)
+        c.poly(t.line, false, look, {.kind = "felt"});
+    if (t.rests.size() > most_dots)
+        return;
+    // Where they lie close, white rims would rub each other out.
+    double length = 0.0;
+    for (std::size_t i = 1; i < t.line.size(); ++i)
+        length += std::hypot(t.line[i].x - t.line[i - 1].x, t.line[i].y - t.line[i - 1].y);
+    const bool close = length < 2.6 * static_cast<double>(t.rests.size());
+    const style dot =
+        close ? style{.fill = look.stroke} : style{.fill = look.stroke, .stroke = white, .width = 0.25};
+    for (const spot& s : t.rests)
+        c.circle(s, close ? 0.8 : 1.3, dot, {.kind = "felt-at"});
+}
+
+void draw_ground(canvas& c, const panel_ground& g, const array_frame& f)
+{
+    const double radius = std::min(0.55 * f.radius, 3.0);
+    for (const tactor_spec& t : g.tactors.tactors)
+        c.circle(f(t.position), radius, {.fill = white, .stroke = grey, .width = std::min(0.5, 0.3 * radius)},
+                 {.kind = "tactor"});
+    for (std::vector<spot>& part : path_on_page(f, g.target.motion))
+        c.poly(std::move(part), false, target_look, {.kind = "target"});
+    c.circle(f(g.target.motion.position(0.0)), 2.2, {.fill = white, .stroke = ink, .width = 0.7},
+             {.kind = "start", .title = "start"});
+}
+
+std::string figures(const percept_summary& s, bool error, double width)
+{
+    const std::optional<double> v = error ? s.rms_error_mm : s.speed_cv;
+    const std::string text = v ? fmt::format("{:.2f}", *v) : "-";
+    if (!error)
+        return fmt::format("speed CV {}", text);
+    const std::string full = fmt::format("RMS error {} mm", text);
+    return text_width(full, small_text) < width ? full : fmt::format("RMS {} mm", text);
+}
+
+double draw_refusal(canvas& c, const std::string& why, box where)
+{
+    std::vector<std::string> words;
+    for (std::size_t at = 0; at < why.size();) {
+        const std::size_t end = std::min(why.find(' ', at), why.size());
+        words.push_back(clean(why.substr(at, end - at)));
+        at = end + 1;
+    }
+    double y = where.y;
+    for (const std::string& line : wrap(words, " ", small_text, where.width, 12)) {
+        y += line_pitch;
+        c.text({where.x, y}, line, {.size = small_text, .ink = dark_grey}, {.kind = "refused"});
+    }
+    return y - where.y;
+}
+
+} // namespace
+
+double draw_panel(canvas& c, const panel_ground& g, const prediction& p, const style& look, box where)
+{
+    const group one(c, {.id = fmt::format("panel-{}-{}", p.algorithm, p.phantom),
+                        .kind = "panel",
+                        .data = {{"algorithm", p.algorithm}, {"phantom", p.phantom}}});
+    double y = where.y + cap_height(label_text);
+    c.text({where.x, y}, p.algorithm, {.size = label_text, .bold = true});
+    if (!p.refused.empty()) {
+        y += draw_refusal(c, "refused: " + p.refused, {where.x, y, where.width - 6.0, 0.0});
+        return y - where.y;
+    }
+    for (const bool error : {true, false}) {
+        y += line_pitch;
+        c.text({where.x, y}, figures(p.felt, error, where.width - 4.0),
+               {.size = small_text, .ink = dark_grey});
+    }
+    y += 2.0;
+    const array_frame f = fit_array(g.tactors, g.shown, {where.x, y, where.width, where.height});
+    draw_ground(c, g, f);
+    draw_track(c, follow(f, p.samples), look);
+    return f.area.bottom() - where.y;
+}
+
+} // namespace tactor::plot
