@@ -55,7 +55,13 @@ struct player_stats {
     std::uint64_t limited_frames = 0; ///< frames that the limiter changed
     std::uint64_t ring_low_water = 0; ///< fewest drives that waited while a stroke played
     double latest_wakeup_s = 0.0;
-    bool realtime = false;
+    /// Page faults of the audio thread after its first wake-ups: 0 where memory is locked. Counted once a
+    /// second.
+    std::uint64_t minor_faults = 0;
+    std::uint64_t major_faults = 0; ///< those that had to wait for a disk
+    bool realtime = false;          ///< the audio thread has SCHED_FIFO
+    /// How long the stream stood in the newest 64 xruns, oldest first; 0 where the device cannot tell.
+    std::vector<double> xrun_s = {};
 };
 
 /// Where the stream is, for displays.
@@ -116,7 +122,7 @@ public:
     void stop();
 
     player_position position() const noexcept;
-    player_stats stats() const noexcept;
+    player_stats stats() const;
 
 private:
     struct impl;

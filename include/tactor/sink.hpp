@@ -66,6 +66,9 @@ public:
     virtual io_status start() noexcept = 0;
     /// Tries to come back from `suspended`; `again` while the device is not ready.
     virtual io_status resume() noexcept = 0;
+    /// For how long the stream has stood still when an xrun was just reported, ns; 0 where that cannot be
+    /// told. Asked before prepare().
+    virtual std::int64_t xrun_ns() noexcept;
 
     /// Upper bound of the number of descriptors.
     virtual std::size_t max_descriptors() const noexcept = 0;

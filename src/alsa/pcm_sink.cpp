@@ -8,6 +8,14 @@
 #include "alsa/classify.hpp"
 
 namespace tactor::pcm {
+namespace {
+
+std::int64_t nanoseconds(const snd_htimestamp_t& t) noexcept
+{
+    return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
+}
+
+} // namespace
 
 pcm_sink::pcm_sink(handle h, stream_setup s)
     : handle_(std::move(h)),
@@ -59,6 +67,20 @@ io_status pcm_sink::resume() noexcept
     if (code >= 0)
         return io_status::ok;
     return code == -EAGAIN ? io_status::again : io_status::failed;
+}
+
+// Drivers stamp the stop; plugins leave the stamp of the start, and there the last position tells.
+std::int64_t pcm_sink::xrun_ns() noexcept
+{
+    const std::int64_t now = monotonic_ns();
+    if (snd_pcm_status(handle_.get(), status_.get()) == 0) {
+        snd_htimestamp_t stamp{};
+        snd_pcm_status_get_trigger_htstamp(status_.get(), &stamp);
+        const std::int64_t stopped = nanoseconds(stamp);
+        if (stopped > seen_ns_ && stopped <= now)
+            return now - stopped;
+    }
+    return dry_ns_ == 0 ? 0 : std::max<std::int64_t>(now - dry_ns_, 0);
 }
 
 std::size_t pcm_sink::descriptors(std::span<pollfd> fds) noexcept
@@ -146,10 +168,12 @@ stream_position pcm_sink::position() noexcept
         played_ = std::max(played_, written_ - queued);
     snd_htimestamp_t stamp{};
     snd_pcm_status_get_htstamp(status_.get(), &stamp);
-    const std::int64_t at = std::int64_t{stamp.tv_sec} * 1'000'000'000 + stamp.tv_nsec;
+    const std::int64_t at = nanoseconds(stamp);
     // Plugins may leave the stamp empty or in another clock.
     const bool sane = at <= now && now - at < 1'000'000'000;
-    return {written_, played_, sane ? at : now, true};
+    seen_ns_ = sane ? at : now;
+    dry_ns_ = seen_ns_ + static_cast<std::int64_t>(queued * 1'000'000'000 / setup_.rate);
+    return {written_, played_, seen_ns_, true};
 }
 
 void pcm_sink::drop() noexcept

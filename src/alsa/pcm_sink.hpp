@@ -21,6 +21,7 @@ public:
     io_status prepare() noexcept override;
     io_status start() noexcept override;
     io_status resume() noexcept override;
+    std::int64_t xrun_ns() noexcept override;
     std::size_t max_descriptors() const noexcept override { return max_descriptors_; }
     std::size_t descriptors(std::span<pollfd> fds) noexcept override;
     io_status ready(std::span<pollfd> fds) noexcept override;
@@ -41,6 +42,8 @@ private:
     std::size_t max_descriptors_;
     std::uint64_t written_ = 0;
     std::uint64_t played_ = 0;
+    std::int64_t seen_ns_ = 0; ///< when the stream was last seen running
+    std::int64_t dry_ns_ = 0;  ///< when it runs dry, as seen then
     bool paced_ = false;
 };
 

@@ -69,7 +69,7 @@ void audio_loop::broken(io_status s, int code, std::int64_t now) noexcept
     case io_status::again:
         return;
     case io_status::xrun:
-        link_.count.xruns.fetch_add(1, std::memory_order_relaxed);
+        link_.count.count_xrun(sink_.xrun_ns());
         // It stopped because it had played everything.
         silence_all(reason::xrun, code, mixer_.position() - pending_);
         return too_often(now) ? finish(reason::lost, -EPIPE) : restart(now);

@@ -4,6 +4,8 @@
 #include <ctime>
 #include <latch>
 
+#include <sys/resource.h>
+
 namespace tactor::engine {
 namespace {
 
@@ -13,6 +15,42 @@ std::int64_t now_ns() noexcept
     clock_gettime(CLOCK_MONOTONIC, &t);
     return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
 }
+
+// Page faults of this thread once its first wake-ups have touched what it needs; one look a second.
+class fault_watch {
+public:
+    explicit fault_watch(counters& c) noexcept : count_(c) {}
+
+    void step(std::int64_t now) noexcept
+    {
+        constexpr unsigned warm_up = 16;
+        if (steps_ < warm_up) {
+            if (++steps_ == warm_up && getrusage(RUSAGE_THREAD, &before_) == 0)
+                looked_ns_ = now;
+        } else if (now - looked_ns_ >= 1'000'000'000) {
+            look();
+            looked_ns_ = now;
+        }
+    }
+
+    void look() noexcept
+    {
+        rusage u{};
+        if (looked_ns_ == 0 || getrusage(RUSAGE_THREAD, &u) != 0)
+            return;
+        const auto store = [](std::atomic<std::uint64_t>& a, long n) {
+            a.store(static_cast<std::uint64_t>(n), std::memory_order_relaxed);
+        };
+        store(count_.minor_faults, u.ru_minflt - before_.ru_minflt);
+        store(count_.major_faults, u.ru_majflt - before_.ru_majflt);
+    }
+
+private:
+    counters& count_;
+    rusage before_{};
+    std::int64_t looked_ns_ = 0;
+    unsigned steps_ = 0;
+};
 
 } // namespace
 
@@ -33,10 +71,14 @@ audio_thread::audio_thread(audio_loop& loop, sink& s, link& l, const rt::thread_
 
 void audio_thread::run() noexcept
 {
+    fault_watch faults(link_.count);
     while (!loop_.over()) {
         const io_status ready = wait();
-        loop_.step(ready, now_ns());
+        const std::int64_t now = now_ns();
+        loop_.step(ready, now);
+        faults.step(now);
     }
+    faults.look();
     link_.to_control.signal();
 }
 

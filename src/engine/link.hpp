@@ -3,7 +3,9 @@
 /// All that the control side and the audio thread share.
 #pragma once
 
+#include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 
 #include "engine/dac_clock.hpp"
@@ -32,6 +34,17 @@ struct counters {
     std::atomic<std::uint64_t> limited{0};
     std::atomic<std::uint64_t> low_water{UINT64_MAX};
     std::atomic<std::uint64_t> late_frames{0};
+    std::atomic<std::uint64_t> minor_faults{0};
+    std::atomic<std::uint64_t> major_faults{0};
+    /// Length of xrun number n at n modulo the size: the newest are kept.
+    std::array<std::atomic<std::int64_t>, 64> xrun_ns{};
+
+    void count_xrun(std::int64_t length_ns) noexcept
+    {
+        const std::uint64_t n = xruns.load(std::memory_order_relaxed);
+        xrun_ns[n % xrun_ns.size()].store(length_ns, std::memory_order_relaxed);
+        xruns.store(n + 1, std::memory_order_release);
+    }
 };
 
 struct link {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <tactor/player.hpp>
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "engine/player_impl.hpp"
 
@@ -54,18 +56,26 @@ player_position player::position() const noexcept
     return p;
 }
 
-player_stats player::stats() const noexcept
+player_stats player::stats() const
 {
     const engine::counters& c = impl_->link.count;
     const auto get = [](const std::atomic<std::uint64_t>& a) { return a.load(std::memory_order_relaxed); };
     const std::uint64_t low = get(c.low_water);
+    const std::uint64_t xruns = c.xruns.load(std::memory_order_acquire);
+    std::vector<double> lengths;
+    for (std::uint64_t n = xruns - std::min<std::uint64_t>(xruns, c.xrun_ns.size()); n < xruns; ++n)
+        lengths.push_back(
+            static_cast<double>(c.xrun_ns[n % c.xrun_ns.size()].load(std::memory_order_relaxed)) / 1e9);
     return {.periods = get(c.periods),
             .frames = get(c.frames),
-            .xruns = get(c.xruns),
+            .xruns = xruns,
             .limited_frames = get(c.limited),
             .ring_low_water = low == UINT64_MAX ? 0 : low,
             .latest_wakeup_s = static_cast<double>(get(c.late_frames)) / impl_->out->setup().rate,
-            .realtime = impl_->audio.fifo_error() == 0};
+            .minor_faults = get(c.minor_faults),
+            .major_faults = get(c.major_faults),
+            .realtime = impl_->audio.fifo_error() == 0,
+            .xrun_s = std::move(lengths)};
 }
 
 } // namespace tactor

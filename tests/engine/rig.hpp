@@ -35,6 +35,7 @@ public:
     io_status prepare() noexcept override { return inner_->prepare(); }
     io_status start() noexcept override { return inner_->start(); }
     io_status resume() noexcept override { return inner_->resume(); }
+    std::int64_t xrun_ns() noexcept override { return inner_->xrun_ns(); }
     std::size_t max_descriptors() const noexcept override { return inner_->max_descriptors(); }
     std::size_t descriptors(std::span<pollfd> f) noexcept override { return inner_->descriptors(f); }
     io_status ready(std::span<pollfd> f) noexcept override { return inner_->ready(f); }
