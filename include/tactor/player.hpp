@@ -14,19 +14,62 @@
 #include <tactor/api.hpp>
 #include <tactor/array.hpp>
 #include <tactor/gpio.hpp>
+#include <tactor/live.hpp>
 #include <tactor/render.hpp>
 #include <tactor/sink.hpp>
 
 namespace tactor {
 
-/// Number of a submitted score, unique in one player.
-using stroke_id = std::uint32_t;
+/// When a stroke starts. A plain value.
+class start_at {
+public:
+    enum class kind { frame, time, trigger };
+
+    /// As soon as possible.
+    constexpr start_at() noexcept = default;
+    /// The same as frame(), for short.
+    constexpr start_at(std::uint64_t stream_frame) noexcept : frame_(stream_frame) {}
+    constexpr start_at(std::optional<std::uint64_t> stream_frame) noexcept : frame_(stream_frame.value_or(0))
+    {
+    }
+
+    /// With the next period that is written.
+    static constexpr start_at now() noexcept { return {}; }
+    /// From a frame of the stream on; one that has been written already means as soon as possible.
+    /// Frames of the stream count on over an xrun.
+    static constexpr start_at frame(std::uint64_t stream_frame) noexcept { return {stream_frame}; }
+    /// CLOCK_MONOTONIC, ns, at which the first sample is to be at the DAC: within half a frame and the error
+    /// of the DAC clock. What is over already means as soon as possible; see stroke_report::late_s.
+    static constexpr start_at time(std::int64_t monotonic_ns) noexcept
+    {
+        start_at s;
+        s.kind_ = kind::time;
+        s.time_ns_ = monotonic_ns;
+        return s;
+    }
+    /// Armed: waits, silent, for an edge at player_lines::trigger or for player::fire(), whichever is first.
+    static constexpr start_at trigger() noexcept
+    {
+        start_at s;
+        s.kind_ = kind::trigger;
+        return s;
+    }
+
+    constexpr kind what() const noexcept { return kind_; }
+    constexpr std::uint64_t stream_frame() const noexcept { return frame_; }
+    constexpr std::int64_t time_ns() const noexcept { return time_ns_; }
+
+private:
+    kind kind_ = kind::frame;
+    std::uint64_t frame_ = 0;
+    std::int64_t time_ns_ = 0;
+};
 
 /// How a submitted score ended. Each ends in exactly one of these.
 enum class stroke_state {
     finished,    ///< its last frame reached the DAC
     cancelled,   ///< faded out because it was asked for
-    interrupted, ///< an xrun, the loss of the device or a failure cut it
+    interrupted, ///< an xrun, the loss of the device, a failure or a live stroke's silent producer cut it
 };
 
 TACTOR_API std::string_view to_string(stroke_state s) noexcept;
@@ -34,8 +77,13 @@ TACTOR_API std::string_view to_string(stroke_state s) noexcept;
 struct stroke_report {
     stroke_id id = 0;
     stroke_state state = stroke_state::finished;
-    std::uint64_t frames = 0; ///< frames of the score that were played
+    std::uint64_t frames = 0; ///< frames of it that were played, from its first on
     std::string reason = {};  ///< why it was interrupted
+    /// How much later than asked for its first sample came; 0 when in time, and for start_at::now().
+    double late_s = 0.0;
+    /// CLOCK_MONOTONIC of its first sample at the DAC; none when it never sounded or the DAC's clock was
+    /// not known yet.
+    std::optional<std::int64_t> started_ns = {};
 };
 
 struct player_options {
@@ -96,14 +144,27 @@ public:
 
     const stream_setup& setup() const noexcept;
 
-    /// Plays a score as soon as possible, or from a frame of the stream on (a frame that has been written
-    /// already means as soon as possible). Frames of the stream count on over an xrun. Several may sound at
-    /// once. Does not block for the ring: drives that do not fit wait on the control side. \throws error:
-    /// bad_input when rate or channels differ from the stream's, runtime when the
+    /// Plays a score as soon as possible, from a frame of the stream or a time on, or when triggered.
+    /// Several may sound at once. Does not block for the ring: drives that do not fit wait on the control
+    /// side. With periods of P frames and N periods of buffer, a score that is to start now has its first
+    /// sample in the device's buffer within one period of this call and at the DAC within N + 1; one that is
+    /// to start at a time is in time when that is N + 1 periods away or more.
+    /// \throws error: bad_input when rate or channels differ from the stream's, runtime when the
     ///         stream has ended.
-    stroke_id submit(const score& s, std::optional<std::uint64_t> at_frame = {});
+    stroke_id submit(const score& s, start_at start = {});
 
-    /// Fades a stroke out. False when it has ended or is not known.
+    /// Starts all armed strokes, so that their first samples are at the DAC at a CLOCK_MONOTONIC time, ns,
+    /// or as soon as possible when that is over. Returns how many there were. An edge at the trigger line
+    /// does the same with its own time and player_lines::trigger_delay_s. Does not block.
+    std::size_t fire(std::int64_t monotonic_ns);
+
+    /// Begins a stroke that is fed point by point; silent until the first. It ends in a report like all
+    /// strokes. At most 16 at a time sound; further ones wait.
+    /// \throws error: bad_input for options that cannot be (levels, carrier, SOA, Tactile Brush), runtime
+    ///         when the stream has ended.
+    live_stroke begin(const live_options& o = {});
+
+    /// Fades a stroke out. One that waits or is armed ends at once. False when it has ended or is not known.
     bool cancel(stroke_id id);
 
     /// Blocks until the stroke has ended and returns how; nothing on time-out, for a stroke that is not
@@ -115,6 +176,11 @@ public:
     /// Called in the control thread for each ended stroke; it must not throw. Set it before the first
     /// submit().
     void on_report(std::function<void(const stroke_report&)> handler);
+
+    /// Calls `done` once when a stroke has ended: in the control thread, or at once and here when it has
+    /// ended already. It must not throw. False, without a call, for a stroke that is not known (any more).
+    /// Several may be set for one stroke. See <tactor/asio.hpp> for completion tokens.
+    bool on_end(stroke_id id, std::function<void(const stroke_report&)> done);
 
     /// Fades everything out, plays silence until it is out, stops. What that ends counts as cancelled
     /// (interrupted, where the destructor does it). Returns when that is done and reported; in the handler

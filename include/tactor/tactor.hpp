@@ -8,6 +8,7 @@
 #include <tactor/error.hpp>
 #include <tactor/geometry.hpp>
 #include <tactor/gpio.hpp>
+#include <tactor/live.hpp>
 #include <tactor/path.hpp>
 #include <tactor/percept.hpp>
 #include <tactor/phantom.hpp>

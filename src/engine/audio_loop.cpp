@@ -10,6 +10,12 @@ namespace {
 // From so many wake-ups in vain on, descriptors are not trusted: the loop sleeps instead of spinning.
 constexpr unsigned many_idle_steps = 16;
 
+// Drives of the mixer that scores may not use up.
+std::size_t live_reserve(const stream_setup& s) noexcept
+{
+    return live_voices * live_drives(s.channels, s.period_frames, s.rate);
+}
+
 template <typename T>
 void raise_to(std::atomic<T>& a, T value) noexcept
 {
@@ -31,8 +37,8 @@ audio_loop::audio_loop(sink& s, link& l, std::span<const double> limits, const l
       link_(l),
       options_(o),
       setup_(s.setup()),
-      mixer_(limits, setup_.format, o.drives),
-      scores_(mixer_, l, o.fade_frames),
+      mixer_(limits, setup_.format, o.drives + live_reserve(setup_)),
+      scores_(mixer_, l, o.fade_frames, live_reserve(setup_)),
       clock_(setup_.rate, setup_.batch ? setup_.period_frames : 0),
       frame_bytes_(setup_.channels * bytes_of(setup_.format)),
       block_(setup_.period_frames * frame_bytes_)
@@ -121,12 +127,15 @@ bool audio_loop::take(const command& c) noexcept
     case command::kind::end:
         scores_.end(c.score);
         return true;
+    case command::kind::live:
+        return scores_.begin_live(c);
     }
     return true;
 }
 
 void audio_loop::mix_period() noexcept
 {
+    scores_.render_live(setup_.period_frames, offset_);
     mixer_.process(setup_.period_frames, block_.data());
     pending_ = setup_.period_frames;
     pending_from_ = 0;

@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include <boost/asio/post.hpp>
+
 namespace tactor::engine {
 
 control_thread::control_thread(rt::event_fd& e, std::function<void()> woken)
@@ -24,6 +26,27 @@ control_thread::~control_thread()
     // The descriptor would close what belongs to the eventfd.
     descriptor_.cancel();
     descriptor_.release();
+    for (watched& w : watched_) {
+        w.descriptor.cancel();
+        w.descriptor.release();
+    }
+}
+
+void control_thread::watch(int fd, std::function<bool()> readable)
+{
+    boost::asio::post(context_, [this, fd, f = std::move(readable)]() mutable {
+        wait(watched_.emplace_back(
+            watched{boost::asio::posix::stream_descriptor(context_, fd), std::move(f)}));
+    });
+}
+
+void control_thread::wait(watched& w)
+{
+    w.descriptor.async_wait(boost::asio::posix::stream_descriptor::wait_read,
+                            [this, &w](const boost::system::error_code& failed) {
+                                if (!failed && w.readable())
+                                    wait(w);
+                            });
 }
 
 void control_thread::wait()

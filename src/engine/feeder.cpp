@@ -13,37 +13,29 @@ feeder::feeder(link& l, std::uint64_t horizon_frames) : link_(l), horizon_(horiz
     batch_.reserve(std::min(l.commands.capacity(), 2 + l.commands.capacity() / 8));
 }
 
-void feeder::submit(stroke_id id, const score& s, std::uint64_t at)
-{
-    waiting_.emplace(at, waiting{id, s});
-}
-
 bool feeder::cancel(stroke_id id)
 {
-    const auto w = std::find_if(waiting_.begin(), waiting_.end(),
-                                [id](const auto& entry) { return entry.second.id == id; });
-    if (w != waiting_.end()) {
-        reports_.push_back({.id = id, .state = stroke_state::cancelled, .frames = 0, .reason = {}});
-        waiting_.erase(w);
+    if (cancel_waiting(id))
         return true;
-    }
     for (const std::uint32_t place : in_use_) {
         slot& s = slots_[place];
         if (s.use->id != id || s.use->cancelled)
             continue;
         s.use->cancelled = true;
         s.use->fed = true;
-        link_.requests.push(
-            {.what = request::kind::cancel, .score = place + voices * s.generation, .closing = false});
+        link_.requests.push({.what = request::kind::cancel, .score = ticket_of(place), .closing = false});
         return true;
     }
     return false;
 }
 
-void feeder::pump(std::uint64_t written)
+void feeder::pump(std::uint64_t written, const clock_line& clock)
 {
+    clock_ = clock;
     if (stream_over_)
         return;
+    find_due(written);
+    admit_live();
     // While a score waits for room, the others may not use up what becomes free.
     const std::uint64_t horizon = admit(written) ? horizon_ : horizon_ / 2;
     while (feed_next(written, horizon)) {
@@ -56,16 +48,25 @@ bool feeder::admit(std::uint64_t written)
     while (!waiting_.empty() && waiting_.begin()->first <= written + horizon_ && in_use_.size() < voices) {
         if (!has_room(batch_.capacity()))
             return false;
-        const auto free =
-            std::find_if(slots_.begin(), slots_.end(), [](const slot& s) { return !s.use.has_value(); });
-        const auto& [at, w] = *waiting_.begin();
-        free->use = active{.id = w.id, .music = w.music, .at = at, .source = synth::event_source(w.music)};
-        const auto place = static_cast<std::uint32_t>(free - slots_.begin());
-        in_use_.push_back(place);
-        hand_over_beginning(*free->use, place + voices * free->generation);
+        const auto& [at, t] = *waiting_.begin();
+        const std::uint32_t place = take_slot({.id = t.id,
+                                               .music = t.music,
+                                               .due_ns = t.due_ns,
+                                               .at = at,
+                                               .source = synth::event_source(t.music)});
+        hand_over_beginning(*slots_[place].use, ticket_of(place));
         waiting_.erase(waiting_.begin());
     }
     return true;
+}
+
+std::uint32_t feeder::take_slot(active a)
+{
+    const auto free = std::find_if(slots_.begin(), slots_.end(), [](const slot& s) { return !s.use; });
+    free->use = std::move(a);
+    const auto place = static_cast<std::uint32_t>(free - slots_.begin());
+    in_use_.push_back(place);
+    return place;
 }
 
 // The begin and its first drives become visible together: the audio thread starts the score as soon as it
@@ -74,9 +75,9 @@ void feeder::hand_over_beginning(active& a, ticket t)
 {
     batch_.clear();
     batch_.push_back(
-        {.what = command::kind::begin, .score = t, .id = a.id, .at = a.at, .length = a.music.frames()});
+        {.what = command::kind::begin, .score = t, .id = a.id, .at = a.at, .length = a.music->frames()});
     while (batch_.size() < batch_.capacity() && !a.fed) {
-        const synth::drive_event* e = a.source.peek();
+        const synth::drive_event* e = a.source->peek();
         if (e != nullptr && e->start > horizon_ / 8)
             break;
         batch_.push_back(next_command(a, t));
@@ -87,14 +88,14 @@ void feeder::hand_over_beginning(active& a, ticket t)
 // Takes the next drive from the source, or its end.
 command feeder::next_command(active& a, ticket t) noexcept
 {
-    const synth::drive_event* e = a.source.peek();
+    const synth::drive_event* e = a.source->peek();
     if (e == nullptr) {
         a.fed = true;
         return {.what = command::kind::end, .score = t};
     }
     command c{.what = command::kind::drive, .score = t, .drive = *e};
     c.drive.score = t;
-    a.source.pop();
+    a.source->pop();
     return c;
 }
 
@@ -108,7 +109,7 @@ bool feeder::feed_next(std::uint64_t written, std::uint64_t horizon)
         active& a = *slots_[place].use;
         if (a.fed)
             continue;
-        const synth::drive_event* e = a.source.peek();
+        const synth::drive_event* e = a.source->peek();
         // Until the audio thread says where it begins, what is certain is: not before this.
         const std::uint64_t base = a.begun ? a.base : std::max(a.at, written);
         const std::uint64_t start = e != nullptr ? base + e->start : 0;
@@ -123,7 +124,7 @@ bool feeder::feed_next(std::uint64_t written, std::uint64_t horizon)
 
     if (!has_room(1))
         return false;
-    link_.commands.push(next_command(*first->use, first_place + voices * first->generation));
+    link_.commands.push(next_command(*first->use, ticket_of(first_place)));
     return true;
 }
 
@@ -147,6 +148,8 @@ void feeder::release(slot& s) noexcept
 {
     const auto place = static_cast<std::uint32_t>(&s - slots_.data());
     in_use_.erase(std::find(in_use_.begin(), in_use_.end(), place));
+    if (s.use->voice)
+        --live_in_use_;
     s.use.reset();
     // Wraps after 16 million uses of one place; 0 stays out.
     s.generation = s.generation + 1 < UINT32_MAX / voices ? s.generation + 1 : 1;
@@ -162,17 +165,22 @@ void feeder::handle(const report& r)
     active& a = *s->use;
     switch (r.what) {
     case report::kind::begun:
-        a.begun = true;
-        a.base = r.frame;
-        return;
+        return begun(a, r.frame);
     case report::kind::over:
-        reports_.push_back({.id = a.id, .state = r.state, .frames = r.frame, .reason = text(r.why, r.code)});
+        tell({.id = a.id,
+              .state = r.state,
+              .frames = r.frame,
+              .reason = text(r.why, r.code),
+              .late_s = a.late_s,
+              .started_ns = a.started_ns});
         break;
     case report::kind::returned:
         if (a.cancelled)
-            reports_.push_back({.id = a.id, .state = stroke_state::cancelled, .frames = 0, .reason = {}});
+            tell({.id = a.id, .state = stroke_state::cancelled, .frames = 0, .reason = {}});
+        else if (a.due_ns)
+            timed_.emplace(*a.due_ns, task{a.id, *a.music, a.due_ns});
         else
-            submit(a.id, a.music, a.at);
+            waiting_.emplace(a.at, task{a.id, *a.music});
         break;
     case report::kind::stream_over:
         return;
@@ -188,17 +196,29 @@ void feeder::end_all(const report& r)
     const std::string why = r.why != reason::none ? stream_reason_ : cut ? text(reason::closed, 0) : "";
     const auto end = [&](stroke_id id, bool cancelled) {
         const auto state = cut && !cancelled ? stroke_state::interrupted : stroke_state::cancelled;
-        reports_.push_back(
-            {.id = id, .state = state, .frames = 0, .reason = cancelled ? std::string() : why});
+        tell({.id = id, .state = state, .frames = 0, .reason = cancelled ? std::string() : why});
     };
     while (!in_use_.empty()) {
         slot& s = slots_[in_use_.front()];
         end(s.use->id, s.use->cancelled);
+        if (s.use->voice)
+            s.use->voice->close();
         release(s);
     }
-    for (const auto& [at, w] : waiting_)
-        end(w.id, false);
+    for (const auto& [id, t] : armed_)
+        end(id, false);
+    for (const auto& [at, t] : waiting_)
+        end(t.id, false);
+    for (const auto& [time, t] : timed_)
+        end(t.id, false);
+    for (const auto& [id, voice] : waiting_live_) {
+        voice->close();
+        end(id, false);
+    }
+    armed_.clear();
     waiting_.clear();
+    timed_.clear();
+    waiting_live_.clear();
 }
 
 std::vector<stroke_report> feeder::take_reports()
@@ -208,11 +228,10 @@ std::vector<stroke_report> feeder::take_reports()
 
 bool feeder::knows(stroke_id id) const
 {
-    return std::any_of(in_use_.begin(), in_use_.end(),
+    return waits(id) ||
+           std::any_of(in_use_.begin(), in_use_.end(),
                        [&](std::uint32_t place) { return slots_[place].use->id == id; }) ||
-           std::any_of(reports_.begin(), reports_.end(), [id](const auto& r) { return r.id == id; }) ||
-           std::any_of(waiting_.begin(), waiting_.end(),
-                       [id](const auto& entry) { return entry.second.id == id; });
+           std::any_of(reports_.begin(), reports_.end(), [id](const auto& r) { return r.id == id; });
 }
 
 } // namespace tactor::engine

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 #include <tactor/render.hpp>
 
 #include "engine/link.hpp"
+#include "engine/live_voice.hpp"
 #include "engine/messages.hpp"
 #include "synth/event_source.hpp"
 
@@ -26,14 +28,19 @@ class feeder {
 public:
     feeder(link& l, std::uint64_t horizon_frames);
 
-    /// `at`: frame of the stream; 0 for as soon as possible.
-    void submit(stroke_id id, const score& s, std::uint64_t at);
+    void submit(stroke_id id, const score& s, start_at start);
+    /// A live stroke, to begin as soon as possible. `voice` is kept until it has ended.
+    void submit(stroke_id id, std::shared_ptr<live_voice> voice);
+
+    /// Lets the armed ones start at a CLOCK_MONOTONIC time, ns; returns how many.
+    std::size_t fire(std::int64_t time_ns);
 
     /// False when the stroke has ended, or is not known, or is being cancelled already.
     bool cancel(stroke_id id);
 
-    /// Hands over what belongs within the horizon after stream frame `written`, as far as it fits.
-    void pump(std::uint64_t written);
+    /// Hands over what belongs within the horizon after stream frame `written`, as far as it fits. What is
+    /// to start at a time waits until the clock is known.
+    void pump(std::uint64_t written, const clock_line& clock = {});
 
     /// Takes in what the audio thread reports.
     void handle(const report& r);
@@ -51,16 +58,21 @@ public:
     void set_closing() noexcept { closing_ = true; }
 
 private:
-    struct waiting {
+    struct task {
         stroke_id id = 0;
         score music;
+        std::optional<std::int64_t> due_ns{}; ///< CLOCK_MONOTONIC that was asked for
     };
     struct active {
         stroke_id id = 0;
-        score music;
+        std::optional<score> music{};
+        std::shared_ptr<live_voice> voice{};
+        std::optional<std::int64_t> due_ns{};
         std::uint64_t at = 0;
         std::uint64_t base = 0; ///< stream frame of its start, once begun
-        synth::event_source source;
+        double late_s = 0.0;
+        std::optional<std::int64_t> started_ns{};
+        std::optional<synth::event_source> source{};
         bool begun = false;
         bool fed = false;
         bool cancelled = false;
@@ -70,7 +82,15 @@ private:
         std::optional<active> use;
     };
 
+    void find_due(std::uint64_t written);
     bool admit(std::uint64_t written);
+    void admit_live();
+    std::uint32_t take_slot(active a);
+    ticket ticket_of(std::uint32_t place) const noexcept { return place + voices * slots_[place].generation; }
+    bool cancel_waiting(stroke_id id);
+    bool waits(stroke_id id) const;
+    void begun(active& a, std::uint64_t frame);
+    void tell(stroke_report r);
     bool feed_next(std::uint64_t written, std::uint64_t horizon);
     bool has_room(std::size_t n);
     void hand_over_beginning(active& a, ticket t);
@@ -81,7 +101,12 @@ private:
 
     link& link_;
     std::uint64_t horizon_;
-    std::multimap<std::uint64_t, waiting> waiting_; ///< by frame of the stream
+    std::multimap<std::uint64_t, task> waiting_; ///< by frame of the stream
+    std::multimap<std::int64_t, task> timed_;    ///< by CLOCK_MONOTONIC, ns
+    std::map<stroke_id, task> armed_;
+    std::map<stroke_id, std::shared_ptr<live_voice>> waiting_live_;
+    std::size_t live_in_use_ = 0;
+    clock_line clock_;
     std::array<slot, voices> slots_;
     std::vector<std::uint32_t> in_use_; ///< places, in order of their beginning
     std::vector<command> batch_;        ///< of fixed capacity

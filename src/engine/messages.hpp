@@ -11,6 +11,8 @@
 
 namespace tactor::engine {
 
+class live_voice;
+
 /// Scores that the audio thread can hold at once, sounding or about to; more wait on the control side.
 inline constexpr std::uint32_t voices = 256;
 
@@ -26,13 +28,14 @@ constexpr std::uint32_t place_of(ticket t) noexcept
 
 /// Control to audio, in order.
 struct command {
-    enum class kind : std::uint32_t { begin, drive, end };
+    enum class kind : std::uint32_t { begin, drive, end, live };
     kind what = kind::begin;
     ticket score = 0;
-    stroke_id id = 0;           ///< begin
-    std::uint64_t at = 0;       ///< begin: frame of the stream; one that is over means now
-    std::uint64_t length = 0;   ///< begin: frames
-    synth::drive_event drive{}; ///< drive: frames from the start of the score, `score` is the ticket
+    stroke_id id = 0;            ///< begin
+    std::uint64_t at = 0;        ///< begin: frame of the stream; one that is over means now
+    std::uint64_t length = 0;    ///< begin: frames
+    live_voice* voice = nullptr; ///< live: outlives the ticket
+    synth::drive_event drive{};  ///< drive: frames from the start of the score, `score` is the ticket
 };
 
 /// Control to audio, past the commands that wait.
@@ -44,7 +47,7 @@ struct request {
 };
 
 /// Why a stroke or the stream ended.
-enum class reason : std::uint32_t { none, xrun, suspended, lost, failed, late, closed };
+enum class reason : std::uint32_t { none, xrun, suspended, lost, failed, late, closed, starved };
 
 /// Audio to control.
 struct report {

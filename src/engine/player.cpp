@@ -21,9 +21,24 @@ const stream_setup& player::setup() const noexcept
     return impl_->out->setup();
 }
 
-stroke_id player::submit(const score& s, std::optional<std::uint64_t> at_frame)
+stroke_id player::submit(const score& s, start_at start)
 {
-    return impl_->submit(s, at_frame.value_or(0));
+    return impl_->submit(s, start);
+}
+
+std::size_t player::fire(std::int64_t monotonic_ns)
+{
+    return impl_->fire(monotonic_ns);
+}
+
+live_stroke player::begin(const live_options& o)
+{
+    return impl_->begin(o);
+}
+
+bool player::on_end(stroke_id id, std::function<void(const stroke_report&)> done)
+{
+    return impl_->on_end(id, std::move(done));
 }
 
 bool player::cancel(stroke_id id)

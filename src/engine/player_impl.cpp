@@ -55,12 +55,15 @@ player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options
     : out(not_null(std::move(s))),
       lines(std::move(l)),
       feed(link, frames_of(o.horizon_s, out->setup().rate, "horizon")),
+      tactors(a),
       loop(*out, link, synth::channel_limits(a, out->setup().channels), loop_options(o, out->setup())),
       audio(loop, *out, link, thread_options(o))
 {
     try {
         check_start(o);
         control = std::make_unique<engine::control_thread>(link.to_control, [this] { woken(); });
+        if (lines.trigger != nullptr)
+            control->watch(lines.trigger->descriptor(), [this] { return edges(); });
     } catch (...) {
         link.requests.push({.what = engine::request::kind::stop, .closing = true});
         link.to_audio.signal();
@@ -91,7 +94,7 @@ player::impl::~impl()
     audio.join();
 }
 
-stroke_id player::impl::submit(const score& s, std::uint64_t at)
+stroke_id player::impl::submit(const score& s, start_at start)
 {
     const stream_setup& d = out->setup();
     if (s.rate() != d.rate || s.channels() != d.channels)
@@ -100,14 +103,19 @@ stroke_id player::impl::submit(const score& s, std::uint64_t at)
                                 s.rate(), d.channels, d.rate),
                     "render it with the stream's rate and channels");
     const std::lock_guard lock(mutex);
-    if (stopping || feed.stream_over())
-        throw error(errc::runtime, fmt::format("stream on \"{}\"", d.name),
-                    feed.stream_reason().empty() ? "it has been stopped" : feed.stream_reason(),
-                    "open a new player");
+    check_open();
     const stroke_id id = ++last_id;
-    feed.submit(id, s, at);
+    feed.submit(id, s, start);
     pump();
     return id;
+}
+
+void player::impl::check_open() const
+{
+    if (stopping || feed.stream_over())
+        throw error(errc::runtime, fmt::format("stream on \"{}\"", out->setup().name),
+                    feed.stream_reason().empty() ? "it has been stopped" : feed.stream_reason(),
+                    "open a new player");
 }
 
 bool player::impl::cancel(stroke_id id)
@@ -124,7 +132,7 @@ bool player::impl::cancel(stroke_id id)
 // Under the mutex.
 void player::impl::pump()
 {
-    feed.pump(link.status.load().written);
+    feed.pump(link.status.load().written, link.clock.load());
     link.to_audio.signal();
 }
 
@@ -175,13 +183,9 @@ void player::impl::woken()
     if (!feed.stream_over())
         pump();
     const bool last = feed.stream_over();
-    const std::function<void(const stroke_report&)> tell = handler;
     lock.unlock();
     news.notify_all();
-    if (tell) {
-        for (const stroke_report& e : reports)
-            tell(e);
-    }
+    tell(reports);
     if (!last)
         return;
     lock.lock();

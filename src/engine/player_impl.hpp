@@ -10,6 +10,7 @@
 #include <mutex>
 #include <optional>
 
+#include <tactor/phantom.hpp>
 #include <tactor/player.hpp>
 
 #include "engine/audio_loop.hpp"
@@ -24,7 +25,10 @@ struct player::impl {
     impl(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines l);
     ~impl();
 
-    stroke_id submit(const score& s, std::uint64_t at);
+    stroke_id submit(const score& s, start_at start);
+    std::size_t fire(std::int64_t time_ns);
+    live_stroke begin(const live_options& o);
+    bool on_end(stroke_id id, std::function<void(const stroke_report&)> done);
     bool cancel(stroke_id id);
     std::optional<stroke_report> wait(stroke_id id, std::optional<std::chrono::nanoseconds> timeout);
     void stop(bool closing);
@@ -37,8 +41,12 @@ struct player::impl {
     engine::feeder feed;
     std::map<stroke_id, stroke_report> ended;
     std::function<void(const stroke_report&)> handler;
+    std::multimap<stroke_id, std::function<void(const stroke_report&)>> watchers;
+    array tactors;
+    std::optional<layout> faces; ///< of the array, once a live stroke needs it
     stroke_id last_id = 0;
     bool stopping = false;
+    int empty_reads = 0;        ///< of the trigger line, control thread
     bool all_delivered = false; ///< the stream is over and the handler has seen all
 
     engine::audio_loop loop;
@@ -49,6 +57,9 @@ private:
     void check_start(const player_options& o);
     void woken();
     void pump();
+    void check_open() const;
+    bool edges();
+    void tell(const std::vector<stroke_report>& reports);
 };
 
 } // namespace tactor

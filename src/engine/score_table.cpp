@@ -36,9 +36,15 @@ void score_table::begin(const command& c, std::uint64_t offset) noexcept
     ++used_;
     top_ = std::max(top_, place_of(c.score) + 1);
     link_.reports.push({.what = report::kind::begun, .score = c.score, .frame = offset + base});
+    settle(e, cancelled);
+}
+
+// Ends at once what is not to begin any more.
+void score_table::settle(entry& e, bool cancelled_early) noexcept
+{
     if (stopping_)
         over(e, stop_state_, stop_reason_, 0, 0);
-    else if (cancelled)
+    else if (cancelled_early)
         over(e, stroke_state::cancelled, reason::none, 0, 0);
 }
 
@@ -54,7 +60,7 @@ bool score_table::add(const command& c) noexcept
         want_fade(*e, stroke_state::interrupted, reason::late);
         return true;
     }
-    return mixer_.add(d);
+    return mixer_.room() > reserve_ && mixer_.add(d);
 }
 
 void score_table::end(ticket t) noexcept
@@ -81,7 +87,11 @@ void score_table::want_fade(entry& e, stroke_state s, reason why) noexcept
     if (e.fading || e.fade_wanted)
         return;
     const std::uint64_t next = mixer_.position();
-    if (e.base >= next && e.length > 0 && mixer_.fade_out(e.score, 0)) {
+    if (e.live != nullptr && e.base == never) {
+        over(e, s, why, 0, 0);
+        return;
+    }
+    if (e.live == nullptr && e.base >= next && e.length > 0 && mixer_.fade_out(e.score, 0)) {
         over(e, s, why, 0, 0); // nothing of it has been mixed yet
         return;
     }
@@ -95,8 +105,13 @@ void score_table::want_fade(entry& e, stroke_state s, reason why) noexcept
 
 void score_table::fade(entry& e) noexcept
 {
-    if (!mixer_.fade_out(e.score, fade_))
+    // What follows its points has no drives beyond this period that the mixer could fade.
+    const bool follows = e.live != nullptr && !e.live->is_bursts();
+    if (follows)
+        e.live->fade(mixer_, fade_);
+    else if (!mixer_.fade_out(e.score, fade_))
         return; // too many fades at once: again in the next period
+    close_live(e);
     e.fading = true;
     e.fade_wanted = false;
     e.finish = mixer_.position() + fade_;
@@ -136,7 +151,9 @@ void score_table::interrupt(reason why, int code, std::uint64_t played, bool giv
         entry& e = entries_[i];
         if (!e.used)
             continue;
-        if (give_back && !e.fade_wanted && e.base >= mixer_.position()) {
+        if (give_back && e.base == never)
+            continue; // a live stroke that waits for its first point goes on waiting
+        if (give_back && !e.fade_wanted && e.live == nullptr && e.base >= mixer_.position()) {
             link_.reports.push({.what = report::kind::returned, .score = e.score});
             e.used = false;
             --used_;
@@ -154,6 +171,7 @@ void score_table::interrupt(reason why, int code, std::uint64_t played, bool giv
 
 void score_table::over(entry& e, stroke_state s, reason why, int code, std::uint64_t frames) noexcept
 {
+    close_live(e);
     link_.reports.push({.what = report::kind::over,
                         .score = e.score,
                         .state = s,

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "engine/link.hpp"
+#include "engine/live_voice.hpp"
 #include "engine/messages.hpp"
 #include "synth/mixer.hpp"
 
@@ -16,8 +17,9 @@ namespace tactor::engine {
 /// called stream frames. Audio thread only, nothing allocates.
 class score_table {
 public:
-    score_table(synth::mixer& m, link& l, std::uint32_t fade_frames) noexcept
-        : mixer_(m), link_(l), fade_(fade_frames)
+    /// `reserve`: drives of the mixer that are kept for live strokes.
+    score_table(synth::mixer& m, link& l, std::uint32_t fade_frames, std::size_t reserve = 0) noexcept
+        : mixer_(m), link_(l), fade_(fade_frames), reserve_(reserve)
     {
     }
 
@@ -26,6 +28,11 @@ public:
     /// False when the mixer has no room now; the command must be given again.
     bool add(const command& c) noexcept;
     void end(ticket t) noexcept;
+    /// A live stroke; silent until its first point comes. False when there are too many: the command must
+    /// be given again.
+    bool begin_live(const command& c) noexcept;
+    /// Adds the live strokes' drives of the next frames; before each mix. `offset` as in begin().
+    void render_live(std::uint64_t frames, std::uint64_t offset) noexcept;
     /// Also for a score whose begin() is still to come.
     void cancel(ticket t) noexcept;
     /// Fades everything out; scores not yet begun end at once, as do those that come later.
@@ -44,6 +51,9 @@ public:
     bool being_fed() const noexcept;
 
 private:
+    /// Base of a live stroke before its first point, and the length of one that is fed.
+    static constexpr std::uint64_t never = std::uint64_t{1} << 62;
+
     struct entry {
         ticket score = 0;
         ticket cancelled_early = 0;
@@ -55,11 +65,16 @@ private:
         bool fed = false;
         bool fade_wanted = false;
         bool fading = false;
+        live_voice* live = nullptr; ///< while it is fed
         stroke_state state = stroke_state::finished;
         reason why = reason::none;
     };
 
     entry* find(ticket t) noexcept;
+    void settle(entry& e, bool cancelled_early) noexcept;
+    void look_at_wishes(entry& e) noexcept;
+    void render_live(entry& e, std::uint64_t frames, std::uint64_t offset) noexcept;
+    void close_live(entry& e) noexcept;
     void want_fade(entry& e, stroke_state s, reason why) noexcept;
     void fade(entry& e) noexcept;
     void over(entry& e, stroke_state s, reason why, int code, std::uint64_t frames) noexcept;
@@ -67,9 +82,12 @@ private:
     synth::mixer& mixer_;
     link& link_;
     std::uint32_t fade_;
+    std::size_t reserve_;
     std::array<entry, voices> entries_{};
     std::uint32_t used_ = 0;
     std::uint32_t top_ = 0; ///< entries from here on were never used
+    std::array<entry*, live_voices> live_{};
+    std::size_t live_count_ = 0;
     bool stopping_ = false;
     stroke_state stop_state_ = stroke_state::cancelled;
     reason stop_reason_ = reason::none;

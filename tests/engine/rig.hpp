@@ -48,6 +48,24 @@ private:
     std::unique_ptr<sink> inner_;
 };
 
+/// Stamps the device's positions with the test's own time.
+class virtual_time_sink : public forwarding_sink {
+public:
+    virtual_time_sink(std::unique_ptr<sink> s, const std::int64_t& now)
+        : forwarding_sink(std::move(s)), now_(now)
+    {
+    }
+    stream_position position() noexcept override
+    {
+        stream_position p = forwarding_sink::position();
+        p.time_ns = now_;
+        return p;
+    }
+
+private:
+    const std::int64_t& now_;
+};
+
 struct rig_options {
     sample_format format = sample_format::s32;
     unsigned channels = 9;
@@ -80,10 +98,10 @@ public:
 
     io_result start() { return loop.start(now); }
 
-    stroke_id submit(const score& s, std::uint64_t at = 0)
+    stroke_id submit(const score& s, start_at at = {})
     {
         feed.submit(++last_id, s, at);
-        feed.pump(status().written);
+        feed.pump(status().written, link.clock.load());
         return last_id;
     }
 
@@ -111,7 +129,7 @@ public:
             feed.handle(r);
         for (const stroke_report& e : feed.take_reports())
             ended[e.id].push_back(e);
-        feed.pump(status().written);
+        feed.pump(status().written, link.clock.load());
     }
 
     /// The DAC plays so many frames, a period at a time, and both threads do their work.
@@ -166,11 +184,13 @@ public:
 
     sink& wrapped(const rig_options& o)
     {
+        out = std::make_unique<virtual_time_sink>(std::move(out), now);
         if (o.wrap)
             out = o.wrap(std::move(out));
         return *out;
     }
 
+    std::int64_t now = 1'000'000'000'000;
     fake_dac dac;
     std::unique_ptr<sink> out;
     engine::link link;
@@ -178,7 +198,6 @@ public:
     std::vector<double> limits;
     engine::audio_loop loop;
     rig_options options;
-    std::int64_t now = 1'000'000'000'000;
     stroke_id last_id = 0;
     std::map<stroke_id, std::vector<stroke_report>> ended;
 };

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+// What waits on the control side: for its frame, its time, a trigger or a free place.
+#include <algorithm>
+#include <utility>
+
+#include "engine/feeder.hpp"
+
+namespace tactor::engine {
+namespace {
+
+template <typename Tasks>
+auto find_task(Tasks& tasks, stroke_id id)
+{
+    return std::find_if(tasks.begin(), tasks.end(),
+                        [id](const auto& entry) { return entry.second.id == id; });
+}
+
+template <typename Tasks>
+bool erase_task(Tasks& tasks, stroke_id id)
+{
+    const auto found = find_task(tasks, id);
+    if (found == tasks.end())
+        return false;
+    tasks.erase(found);
+    return true;
+}
+
+} // namespace
+
+void feeder::submit(stroke_id id, const score& s, start_at start)
+{
+    switch (start.what()) {
+    case start_at::kind::frame:
+        waiting_.emplace(start.stream_frame(), task{id, s});
+        return;
+    case start_at::kind::time:
+        timed_.emplace(start.time_ns(), task{id, s, start.time_ns()});
+        return;
+    case start_at::kind::trigger:
+        armed_.emplace(id, task{id, s});
+        return;
+    }
+}
+
+void feeder::submit(stroke_id id, std::shared_ptr<live_voice> voice)
+{
+    waiting_live_.emplace(id, std::move(voice));
+}
+
+std::size_t feeder::fire(std::int64_t time_ns)
+{
+    const std::size_t n = armed_.size();
+    for (auto& [id, t] : armed_) {
+        t.due_ns = time_ns;
+        timed_.emplace(time_ns, std::move(t));
+    }
+    armed_.clear();
+    return n;
+}
+
+// Times become frames as late as that may be, when the clock knows best.
+void feeder::find_due(std::uint64_t written)
+{
+    while (!timed_.empty() && clock_.valid()) {
+        const auto next = timed_.begin();
+        const std::uint64_t at = clock_.frame_at(next->first);
+        if (at > written + horizon_)
+            return;
+        waiting_.emplace(at, std::move(next->second));
+        timed_.erase(next);
+    }
+}
+
+void feeder::admit_live()
+{
+    while (!waiting_live_.empty() && live_in_use_ < live_voices && in_use_.size() < voices && has_room(1)) {
+        const auto next = waiting_live_.begin();
+        live_voice* const voice = next->second.get();
+        const std::uint32_t place =
+            take_slot({.id = next->first, .voice = std::move(next->second), .fed = true});
+        ++live_in_use_;
+        link_.commands.push(
+            {.what = command::kind::live, .score = ticket_of(place), .id = next->first, .voice = voice});
+        waiting_live_.erase(next);
+    }
+}
+
+bool feeder::cancel_waiting(stroke_id id)
+{
+    const auto live = waiting_live_.find(id);
+    if (live != waiting_live_.end()) {
+        live->second->close();
+        waiting_live_.erase(live);
+    } else if (!erase_task(waiting_, id) && !erase_task(timed_, id) && !erase_task(armed_, id)) {
+        return false;
+    }
+    tell({.id = id, .state = stroke_state::cancelled, .frames = 0, .reason = {}});
+    return true;
+}
+
+bool feeder::waits(stroke_id id) const
+{
+    return armed_.contains(id) || waiting_live_.contains(id) || find_task(waiting_, id) != waiting_.end() ||
+           find_task(timed_, id) != timed_.end();
+}
+
+void feeder::begun(active& a, std::uint64_t frame)
+{
+    a.begun = true;
+    a.base = frame;
+    const bool known = clock_.valid() && frame >= clock_.first;
+    if (known)
+        a.started_ns = clock_.time_of(frame);
+    if (a.due_ns && known) {
+        // Within a frame is as good as it gets.
+        const auto late = static_cast<double>(*a.started_ns - *a.due_ns);
+        a.late_s = late > clock_.ns_per_frame ? late * 1e-9 : 0.0;
+    } else if (!a.due_ns && a.at != 0 && frame > a.at && a.music) {
+        a.late_s = static_cast<double>(frame - a.at) / a.music->rate();
+    }
+}
+
+void feeder::tell(stroke_report r)
+{
+    reports_.push_back(std::move(r));
+}
+
+} // namespace tactor::engine

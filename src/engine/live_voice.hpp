@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// A live stroke between its producer and the audio thread.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "engine/messages.hpp"
+#include "rt/triple_buffer.hpp"
+#include "synth/mixer.hpp"
+
+namespace tactor::engine {
+
+/// Live strokes that the audio thread renders at once.
+inline constexpr std::size_t live_voices = 16;
+
+struct live_setup {
+    std::size_t channels = 0;
+    double cycles_per_frame = 0.0;
+    std::uint64_t step = 48; ///< continuous: frames from one set of weights to the next, at least
+    std::uint64_t timeout = 24'000;
+    bool bursts = false;
+    std::uint64_t soa = 0;
+    std::uint64_t duration = 0;
+    std::uint32_t ramp = 0;
+    bool phase_runs_on = false; ///< bursts: the carrier's phase is the stroke's, not the burst's
+};
+
+/// Shortest SOA of live bursts.
+inline constexpr double least_live_soa_s = 0.01;
+
+/// Drives of the mixer that one live stroke has at most.
+std::size_t live_drives(std::size_t channels, unsigned period_frames, unsigned rate) noexcept;
+
+/// The producer writes amplitudes by channel; the audio thread makes drives of them, period by period, so
+/// that no point waits for a plan. What the producer asks for besides is a flag.
+class live_voice {
+public:
+    enum class wish : std::uint32_t { go_on, end, cancel };
+
+    explicit live_voice(const live_setup& s);
+
+    // The producer, one thread at a time.
+    std::vector<double>& draft() noexcept { return points_.draft(); }
+    void publish() noexcept { points_.publish(); }
+
+    // Any thread.
+    void ask(wish w) noexcept;
+    bool closed() const noexcept { return closed_.load(std::memory_order_acquire); }
+    /// It has ended, or will without further points.
+    void close() noexcept { closed_.store(true, std::memory_order_release); }
+
+    // The audio thread.
+    wish asked() const noexcept { return asked_.load(std::memory_order_acquire); }
+    bool is_bursts() const noexcept { return setup_.bursts; }
+    /// Whether a point waits.
+    bool has_news() const noexcept { return points_.has_news(); }
+    /// Takes the first point, if it has come; the stroke begins with the mixer's next frame.
+    bool try_begin(ticket t, std::uint64_t next) noexcept;
+    /// Adds the drives of the next frames. False when the mixer had no room for them.
+    bool render(synth::mixer& m, std::uint64_t frames) noexcept;
+    bool starved() const noexcept { return idle_ > setup_.timeout; }
+    /// Continuous: falls to zero in `frames`. False when the mixer had no room.
+    bool fade(synth::mixer& m, std::uint32_t frames) noexcept;
+    /// Frame at which what has been added is over.
+    std::uint64_t end() const noexcept { return end_; }
+
+private:
+    bool follow(synth::mixer& m, std::uint64_t frames) noexcept;
+    bool burst(synth::mixer& m, std::uint64_t at) noexcept;
+    double amplitude(std::size_t channel) const noexcept;
+    template <typename Part>
+    bool add(synth::mixer& m, synth::drive_event e, Part part) noexcept;
+
+    live_setup setup_;
+    rt::triple_buffer<std::vector<double>> points_;
+    std::atomic<wish> asked_{wish::go_on};
+    std::atomic<bool> closed_{false};
+
+    ticket ticket_ = 0;
+    std::uint64_t base_ = 0;
+    std::uint64_t end_ = 0;
+    std::uint64_t next_burst_ = 0;
+    std::uint64_t idle_ = 0;   ///< frames since a point came
+    std::uint64_t length_ = 1; ///< of the line between two sets of amplitudes
+    std::uint64_t place_ = 1;  ///< on it
+    std::vector<double> from_; ///< by channel
+    std::vector<double> to_;
+};
+
+} // namespace tactor::engine

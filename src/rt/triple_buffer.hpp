@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The newest value from one writer to one reader; neither waits, and the value may be of any size.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+namespace tactor::rt {
+
+/// Three values: one is written, one is read, and one lies between. What is not fetched in time is
+/// overwritten by what is newer.
+template <typename T>
+class triple_buffer {
+    static_assert(std::atomic<std::uint32_t>::is_always_lock_free);
+
+public:
+    explicit triple_buffer(const T& value) : values_{value, value, value} {}
+
+    /// Writer: what publish() will hand over. Holds an older value.
+    T& draft() noexcept { return values_[write_]; }
+    void publish() noexcept { write_ = between_.exchange(write_ | fresh, std::memory_order_acq_rel) & place; }
+
+    /// Reader: takes the newest value; false when it has it already.
+    bool fetch() noexcept
+    {
+        if (!has_news())
+            return false;
+        read_ = between_.exchange(read_, std::memory_order_acq_rel) & place;
+        return true;
+    }
+    /// Reader: whether fetch() would bring something.
+    bool has_news() const noexcept { return (between_.load(std::memory_order_relaxed) & fresh) != 0; }
+    /// Reader: valid until the next fetch().
+    const T& value() const noexcept { return values_[read_]; }
+
+private:
+    static constexpr std::uint32_t place = 3;
+    static constexpr std::uint32_t fresh = 4;
+
+    std::array<T, 3> values_;
+    alignas(64) std::atomic<std::uint32_t> between_{1};
+    alignas(64) std::uint32_t write_ = 0;
+    alignas(64) std::uint32_t read_ = 2;
+};
+
+} // namespace tactor::rt
