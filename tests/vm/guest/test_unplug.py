@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: MIT
+"""The card goes away in mid-stroke, and comes back."""
+import json
+import pathlib
+import subprocess
+
+from rig import GpioSim, RigTest, wait_for
+
+DRIVER = pathlib.Path("/sys/bus/platform/drivers/snd_aloop")
+DEVICE = "snd_aloop.0"
+LINE = 2
+
+
+class Unplug(RigTest):
+    def setUp(self):
+        super().setUp()
+        self.gpio = GpioSim()
+        self.addCleanup(self.gpio.close)
+        self.addCleanup(self.plug_in)
+        self.array = self.grid(extra=f'[amplifier]\nline = {{ chip = "{self.gpio.label}", offset = {LINE} }}\n')
+
+    def plug_in(self):
+        if not (DRIVER / DEVICE).exists():
+            (DRIVER / "bind").write_text(DEVICE)
+        wait_for(lambda: "Loopback" in pathlib.Path("/proc/asound/cards").read_text(), "the card is back")
+
+    def pull_out(self):
+        # Waits in the kernel until the player has closed the card: not in this process.
+        return subprocess.Popen(["sh", "-c", f"echo {DEVICE} > {DRIVER}/unbind"])
+
+    def test_the_stroke_is_interrupted_and_the_amplifier_off(self):
+        p = self.start("play", "--path", "M 0 10 L 40 30", "--duration", "60", "--array", self.array, "--format", "json")
+        wait_for(lambda: self.gpio.value(LINE) == 1, "the amplifier is on")
+        pull = self.pull_out()
+        wait_for(lambda: self.gpio.value(LINE) == 0, "the amplifier is off", 2)
+        out, said = p.communicate(timeout=30)
+        pull.wait(20)
+        self.assertEqual(p.returncode, 1, said)
+        self.assertIn("interrupted", said)
+        states = [s["state"] for s in json.loads(out)["strokes"]]
+        self.assertEqual(states, ["interrupted"])
+
+    def test_playing_goes_on_when_the_card_comes_back(self):
+        p = self.start("play", "park2016-1", "park2016-2", "--duration", "5", "--array", self.array, "--reopen-s", "60",
+                       "--format", "json")
+        wait_for(lambda: self.gpio.value(LINE) == 1, "the amplifier is on")
+        pull = self.pull_out()
+        wait_for(lambda: self.gpio.value(LINE) == 0, "the amplifier is off", 2)
+        pull.wait(20)
+        self.plug_in()
+        wait_for(lambda: self.gpio.value(LINE) == 1 or p.poll() is not None, "the amplifier is on again", 30)
+        out, said = p.communicate(timeout=60)
+        states = [s["state"] for s in json.loads(out)["strokes"]]
+        self.assertEqual(states, ["interrupted", "finished"], said)
+        self.assertEqual(self.gpio.value(LINE), 0)
