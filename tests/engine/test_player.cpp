@@ -16,6 +16,7 @@
 #include <tactor/player.hpp>
 
 #include "alsa/adopt.hpp"
+#include "clock_runner.hpp"
 #include "fake_dac.hpp"
 #include "player_support.hpp"
 #include "scores.hpp"
@@ -24,16 +25,6 @@ using namespace tactor;
 using namespace tactor::test;
 
 namespace {
-
-// The fake clock stands still while the test thinks, and runs as fast as it can when it runs: neither is a
-// reason to give up.
-player_options patient()
-{
-    player_options o;
-    o.stall_s = 600.0;
-    o.horizon_s = 600.0;
-    return o;
-}
 
 // Plays a period whenever the player has refilled the buffer, until the condition holds.
 template <typename Condition>
@@ -45,30 +36,6 @@ void run_until(fake_dac& dac, std::uint64_t buffer, Condition done)
             dac.advance_queued(96);
     }
 }
-
-// Lets the DAC run in a thread of its own for as long as it lives: for the calls that block.
-class running_clock {
-public:
-    explicit running_clock(fake_dac& dac)
-        : thread_([this, &dac] {
-              while (!end_) {
-                  if (dac.queued() >= 192)
-                      dac.advance_queued(96);
-                  std::this_thread::yield();
-              }
-          })
-    {
-    }
-    ~running_clock()
-    {
-        end_ = true;
-        thread_.join();
-    }
-
-private:
-    std::atomic<bool> end_{false};
-    std::thread thread_;
-};
 
 } // namespace
 

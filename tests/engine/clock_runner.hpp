@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// For the tests of the player with its real threads.
+#pragma once
+
+#include <atomic>
+#include <thread>
+
+#include <tactor/player.hpp>
+
+#include "fake_dac.hpp"
+
+namespace tactor::test {
+
+/// The fake clock stands still while the test thinks, and runs as fast as it can when it runs: neither is a
+/// reason to give up.
+inline player_options patient()
+{
+    player_options o;
+    o.stall_s = 600.0;
+    o.horizon_s = 600.0;
+    return o;
+}
+
+/// Lets the DAC run in a thread of its own for as long as it lives: for the calls that block.
+class running_clock {
+public:
+    explicit running_clock(fake_dac& dac)
+        : thread_([this, &dac] {
+              while (!end_) {
+                  if (dac.queued() >= 192)
+                      dac.advance_queued(96);
+                  std::this_thread::yield();
+              }
+          })
+    {
+    }
+    ~running_clock()
+    {
+        end_ = true;
+        thread_.join();
+    }
+
+private:
+    std::atomic<bool> end_{false};
+    std::thread thread_;
+};
+
+} // namespace tactor::test

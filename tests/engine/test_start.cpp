@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+// When strokes start: at a frame, at a time, or when triggered. Time is virtual.
+#include <cmath>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "rig.hpp"
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+constexpr std::int64_t ms = 1'000'000;
+
+// A rig whose DAC is 40 ppm slow.
+class slow_rig : public rig {
+public:
+    using rig::rig;
+
+    void run(unsigned periods)
+    {
+        for (unsigned i = 0; i < periods && !loop.over(); ++i) {
+            now += 80; // of 2 ms
+            play(96);
+        }
+    }
+    void run_out()
+    {
+        for (int i = 0; i < 100'000 && ended.size() < last_id && !loop.over(); ++i)
+            run(1);
+    }
+    /// When the DAC really has a frame of the first epoch.
+    double true_time(std::uint64_t frame) const
+    {
+        const auto ahead = static_cast<double>(static_cast<std::int64_t>(frame - status().played));
+        return static_cast<double>(now) + ahead * (2e6 + 80.0) / 96.0;
+    }
+};
+
+} // namespace
+
+TEST_CASE("a start at a time: the first sample is at the DAC then, within a frame, however far ahead")
+{
+    std::mt19937_64 random(3);
+    slow_rig r;
+    REQUIRE(r.start().status == io_status::ok);
+    r.run(500);
+    for (int round = 0; round < 60; ++round) {
+        const std::int64_t ahead = 9 * ms + static_cast<std::int64_t>(random() % 3'000'000'000);
+        const std::int64_t due = r.now + ahead;
+        const std::uint64_t from = r.dac.captured_frames();
+        const stroke_id id = r.submit(tone(0.01), start_at::time(due));
+        r.run_out();
+        REQUIRE(r.report(id));
+        const stroke_report report = *r.report(id);
+        CHECK(report.state == stroke_state::finished);
+        CHECK(report.late_s == 0.0);
+        const auto sound = r.first_sound(from);
+        REQUIRE(sound);
+        const double heard = r.true_time(*sound - 1); // a sine begins with a zero
+        CHECK(std::abs(heard - static_cast<double>(due)) < 1.05e9 / rate);
+        REQUIRE(report.started_ns);
+        CHECK(std::abs(static_cast<double>(*report.started_ns) - heard) < 1e9 / rate);
+    }
+}
+
+TEST_CASE("a time that is over means now, and how late it is is reported")
+{
+    for (const std::int64_t ago :
+         {std::int64_t{0}, 5 * ms, 100 * ms, std::int64_t{900'000'000'000}, INT64_MAX / 2}) {
+        CAPTURE(ago);
+        slow_rig r;
+        REQUIRE(r.start().status == io_status::ok);
+        r.run(100);
+        const std::uint64_t next = r.status().written;
+        const std::int64_t due = r.now - ago;
+        const stroke_id id = r.submit(tone(0.01), start_at::time(due));
+        r.run_out();
+        REQUIRE(r.report(id));
+        CHECK(r.first_sound() == next + 1);
+        CHECK(r.report(id)->late_s ==
+              doctest::Approx((r.true_time(next) - static_cast<double>(due)) / 1e9).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("the most that is not late: the buffer's length and a period ahead")
+{
+    slow_rig r;
+    REQUIRE(r.start().status == io_status::ok);
+    r.run(100);
+    const stroke_id id = r.submit(tone(0.01), start_at::time(r.now + 8 * ms));
+    r.run_out();
+    CHECK(r.report(id)->late_s == 0.0);
+}
+
+TEST_CASE("a start at a time that is given before the clock is known waits for the clock")
+{
+    slow_rig r;
+    const stroke_id id = r.submit(tone(0.01), start_at::time(r.now + 300 * ms));
+    CHECK_FALSE(r.link.clock.load().valid());
+    REQUIRE(r.start().status == io_status::ok);
+    const std::int64_t due = r.now + 300 * ms;
+    r.run_out();
+    CHECK(r.report(id)->state == stroke_state::finished);
+    CHECK(std::abs(r.true_time(*r.first_sound() - 1) - static_cast<double>(due)) < 1.05e9 / rate);
+}
+
+TEST_CASE("a start at a frame that is over is late by so much")
+{
+    rig r;
+    REQUIRE(r.start().status == io_status::ok);
+    r.play(9600);
+    const std::uint64_t next = r.status().written;
+    const stroke_id late = r.submit(tone(0.01), start_at::frame(next - 4800));
+    const stroke_id good = r.submit(tone(0.01), next + 4800);
+    const stroke_id now = r.submit(tone(0.01), start_at::now());
+    r.play_out();
+    CHECK(r.report(late)->late_s == doctest::Approx(0.1));
+    CHECK(r.report(good)->late_s == 0.0);
+    CHECK(r.report(now)->late_s == 0.0);
+}
+
+TEST_CASE("armed strokes are silent until they are fired, and then start together at the time given")
+{
+    slow_rig r;
+    REQUIRE(r.start().status == io_status::ok);
+    const stroke_id a = r.submit(tone(0.02, 0), start_at::trigger());
+    const stroke_id b = r.submit(tone(0.01, 4), start_at::trigger());
+    r.run(2000);
+    CHECK(r.ended.empty());
+    CHECK(r.feed.knows(a));
+    CHECK_FALSE(r.first_sound());
+    const std::int64_t due = r.now + 50 * ms;
+    CHECK(r.feed.fire(due) == 2);
+    CHECK(r.feed.fire(due + 1) == 0);
+    r.run_out();
+    for (const stroke_id id : {a, b}) {
+        REQUIRE(r.report(id));
+        CHECK(r.report(id)->state == stroke_state::finished);
+        CHECK(r.report(id)->late_s == 0.0);
+        CHECK(std::abs(*r.report(id)->started_ns - due) < 1'000'000'000 / rate);
+    }
+    CHECK(std::abs(r.true_time(*r.first_sound() - 1) - static_cast<double>(due)) < 1.05e9 / rate);
+    // One that is armed later waits for the next.
+    const stroke_id c = r.submit(tone(0.01), start_at::trigger());
+    r.run(100);
+    CHECK(r.ended.size() == 2);
+    CHECK(r.feed.fire(r.now - 20 * ms) == 1);
+    r.run_out();
+    CHECK(r.report(c)->late_s > 0.020);
+}
+
+TEST_CASE("armed strokes can be cancelled, before and after they are fired, and end when the stream does")
+{
+    for (const bool closing : {false, true}) {
+        rig r;
+        REQUIRE(r.start().status == io_status::ok);
+        const stroke_id a = r.submit(tone(0.1), start_at::trigger());
+        const stroke_id b = r.submit(tone(0.1), start_at::trigger());
+        const stroke_id c = r.submit(tone(0.1), start_at::time(r.now + 3600'000 * ms));
+        CHECK(r.feed.cancel(a));
+        CHECK_FALSE(r.feed.cancel(a));
+        r.play(960);
+        CHECK(r.feed.fire(r.now + 1000 * ms) == 1);
+        CHECK(r.feed.cancel(b));
+        CHECK(r.feed.cancel(c));
+        const stroke_id d = r.submit(tone(0.1), start_at::trigger());
+        const stroke_id e = r.submit(tone(0.1), start_at::time(r.now + 3600'000 * ms));
+        if (closing)
+            r.feed.set_closing();
+        r.link.requests.push({.what = engine::request::kind::stop, .closing = closing});
+        r.play(9600);
+        r.control();
+        for (const stroke_id id : {a, b, c})
+            CHECK(r.report(id)->state == stroke_state::cancelled);
+        for (const stroke_id id : {d, e})
+            CHECK(r.report(id)->state == (closing ? stroke_state::interrupted : stroke_state::cancelled));
+        CHECK_FALSE(r.first_sound());
+    }
+}
+
+TEST_CASE("an xrun between the shot and the start: the time is kept, in the new epoch's frames")
+{
+    rig r;
+    REQUIRE(r.start().status == io_status::ok);
+    r.play(9600);
+    const stroke_id id = r.submit(tone(0.01), start_at::trigger());
+    const std::int64_t due = r.now + 200 * ms;
+    r.feed.fire(due);
+    r.play(960);
+    r.dac.advance(1000); // dry, while the stroke is in the audio thread already
+    r.now += 30 * ms;
+    r.step();
+    r.play_out();
+    REQUIRE(r.report(id));
+    CHECK(r.report(id)->state == stroke_state::finished);
+    CHECK(r.report(id)->late_s == 0.0);
+    CHECK(r.link.clock.load().epoch == 2);
+    CHECK(std::abs(*r.report(id)->started_ns - due) < 2'000'000'000 / rate);
+}
