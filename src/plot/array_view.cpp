@@ -186,6 +186,8 @@ private:
         const group g(canvas_, {.id = "amplitude-legend"});
         double x = where_.right();
         for (const double part : {1.0, 0.5, 0.25}) {
+            if (part == 0.25 && where_.width < 205.0)
+                continue; // a narrow page
             const double amplitude = part * time_.peak;
             const std::string text = number(amplitude, 3);
             x -= text_width(text, small_text);

@@ -45,7 +45,8 @@ std::vector<std::string> details(const scene& s, const timeline& t)
         d.push_back(fmt::format("{} strokes", s.plans.size()));
     if (!t.sampled)
         d.push_back(fmt::format("{} burst{}", t.bursts.size(), t.bursts.size() == 1 ? "" : "s"));
-    d.push_back(fmt::format("{} mm in {} s", number(length, 4), number(seconds(s, t), 4)));
+    d.push_back(
+        fmt::format("{} mm in {} s", number(length, length < 1000.0 ? 4 : 7), number(seconds(s, t), 4)));
     d.push_back(common(s, [](const plan& p) { return fmt::format("{} Hz", number(p.carrier_hz, 5)); }));
     return d;
 }
@@ -97,12 +98,15 @@ canvas draw_figure(const scene& s, const figure_options& o)
         rest.height = 0.8 * c.width;
         rest.y += draw_array_view(c, s, t, rest) + 4.0;
     }
+    if (o.view == figure_view::timing)
+        rest.y += 4.0;
     if (o.view == figure_view::array)
         rest.y += draw_time_key(c, t, rest);
     else if (o.view == figure_view::wave)
         rest.y += draw_wave_view(c, s, t, rest);
     else
         rest.y += draw_timing_view(c, s, t, rest, true);
+
     c.height = rest.y + margin;
     return c;
 }

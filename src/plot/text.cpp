@@ -104,6 +104,8 @@ std::string shorten(std::string_view text, double size, double width, bool bold)
 std::vector<std::string> wrap(const std::vector<std::string>& parts, std::string_view separator, double size,
                               double width, std::size_t max_lines)
 {
+    const std::string_view tail = separator.substr(0, separator.find_last_not_of(' ') + 1);
+    const double room = width - text_width(tail, size);
     std::vector<std::string> lines;
     for (const std::string& p : parts) {
         if (p.empty())
@@ -111,10 +113,10 @@ std::vector<std::string> wrap(const std::vector<std::string>& parts, std::string
         const std::string longer = lines.empty() ? p : fmt::format("{}{}{}", lines.back(), separator, p);
         if (lines.empty()) {
             lines.push_back(p);
-        } else if (text_width(longer, size) <= width || lines.size() == max_lines) {
+        } else if (text_width(longer, size) <= room || lines.size() == max_lines) {
             lines.back() = longer;
         } else {
-            lines.back() += separator.substr(0, separator.find_last_not_of(' ') + 1);
+            lines.back() += tail;
             lines.push_back(p);
         }
     }

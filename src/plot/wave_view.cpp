@@ -76,7 +76,7 @@ public:
     }
 
 private:
-    // One channel a tactor; rows of several show the first that plays loudest.
+    // One channel a tactor, in the order of the rows.
     std::vector<unsigned> channels(const timeline& t) const
     {
         std::vector<unsigned> c;
