@@ -42,6 +42,8 @@ public:
     bool over() const noexcept { return phase_ == phase::over; }
     /// Whether the sink's descriptors are worth polling now.
     bool polls_sink() const noexcept;
+    /// Drives that wait or sound.
+    std::size_t drives() const noexcept { return mixer_.size(); }
     /// When to wake up at the latest, ns from now.
     std::int64_t timeout_ns() const noexcept;
 

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <map>
 #include <string>
+#include <vector>
 
 #include <benchmark/benchmark.h>
 
@@ -15,6 +16,11 @@ public:
     {
         ConsoleReporter::ReportRuns(runs);
         for (const Run& r : runs) {
+            const auto worst = r.counters.find("worst_us");
+            if (worst != r.counters.end()) {
+                periods_.push_back({r.benchmark_name(), r.GetAdjustedRealTime(), worst->second.value,
+                                    r.counters.at("period_us").value});
+            }
             const auto rate = r.counters.find("items_per_second");
             if (rate != r.counters.end()) {
                 frames_per_s_[r.benchmark_name()] = rate->second.value;
@@ -31,9 +37,22 @@ public:
                 line(piece, "mixer_" + format);
             }
         }
+        std::printf("\n%-56s %10s %10s %10s %8s %8s\n", "cost of a period to the audio thread", "mean us",
+                    "worst us", "period us", "mean %", "worst %");
+        for (const period_cost& p : periods_) {
+            std::printf("%-56s %10.2f %10.2f %10.1f %8.2f %8.2f\n", p.name.c_str(), p.mean_us, p.worst_us,
+                        p.period_us, 100.0 * p.mean_us / p.period_us, 100.0 * p.worst_us / p.period_us);
+        }
     }
 
 private:
+    struct period_cost {
+        std::string name;
+        double mean_us;
+        double worst_us;
+        double period_us;
+    };
+
     void line(const std::string& piece, const std::string& name)
     {
         const double frames = frames_per_s_[piece + name];
@@ -47,6 +66,7 @@ private:
     }
 
     std::map<std::string, double> frames_per_s_;
+    std::vector<period_cost> periods_;
 };
 
 } // namespace

@@ -15,6 +15,21 @@ constexpr int repeats = 20;
 constexpr double level = 0.05;
 constexpr double two_pi = 6.283185307179586477;
 
+plan field_plan(const array& a, int i)
+{
+    const point from{20.0 * (i % 7) + 3.0, 20.0 * (i / 8 % 7) + 2.0};
+    const point to{from.x_mm + 12.0, from.y_mm + 9.0};
+    const point ends[] = {from, to};
+    return make_plan(a, {"", trajectory::along(path::polyline(ends), 1.4), {}, 150.0 + 2.0 * i, ""});
+}
+
+render_options field_levels()
+{
+    render_options o;
+    o.level_dbfs = 20.0 * std::log10(level) - 20.0;
+    return o;
+}
+
 } // namespace
 
 score palm()
@@ -31,17 +46,19 @@ score field()
     const array a = make_grid("field", 8, 8, 20.0, 20.0);
     std::vector<placed_plan> plans;
     for (int r = 0; r < repeats; ++r) {
-        for (int i = 0; i < 64; ++i) {
-            const point from{20.0 * (i % 7) + 3.0, 20.0 * (i / 8 % 7) + 2.0};
-            const point to{from.x_mm + 12.0, from.y_mm + 9.0};
-            const point ends[] = {from, to};
-            const stroke s{"", trajectory::along(path::polyline(ends), 1.4), {}, 150.0 + 2.0 * i, ""};
-            plans.push_back({make_plan(a, s), 1.5 * r});
-        }
+        for (int i = 0; i < 64; ++i)
+            plans.push_back({field_plan(a, i), 1.5 * r});
     }
-    render_options o;
-    o.level_dbfs = 20.0 * std::log10(level) - 20.0;
-    return {a, plans, o};
+    return {a, plans, field_levels()};
+}
+
+std::vector<score> strokes_64()
+{
+    const array a = make_grid("field", 8, 8, 20.0, 20.0);
+    std::vector<score> all;
+    for (int i = 0; i < 64; ++i)
+        all.emplace_back(a, std::vector<placed_plan>{{field_plan(a, i), {}}}, field_levels());
+    return all;
 }
 
 plain_loop::plain_loop(const score& s) : frames_(s.frames()), channels_(s.channels()), rate_(s.rate())

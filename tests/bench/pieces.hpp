@@ -20,6 +20,9 @@ tactor::score palm();
 /// 64 strokes at once on an 8 x 8 array, each on tactors of its own, over and over.
 tactor::score field();
 
+/// 64 strokes for an 8 x 8 array, each on tactors of its own and with its own carrier.
+std::vector<tactor::score> strokes_64();
+
 /// What one would write first: a call of std::sin for each sounding channel and sample.
 class plain_loop {
 public:

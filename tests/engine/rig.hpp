@@ -71,6 +71,8 @@ struct rig_options {
     unsigned channels = 9;
     unsigned period = 96;
     unsigned periods = 3;
+    unsigned sample_rate = rate;
+    double limit = 1.0; ///< of each channel
     std::size_t ring = 2048;
     std::function<std::unique_ptr<sink>(std::unique_ptr<sink>)> wrap{};
     engine::loop_options loop{};
@@ -83,14 +85,14 @@ public:
         : dac(o.dac),
           out(pcm::adopt(dac.pcm(), {.pcm = "fake",
                                      .channels = o.channels,
-                                     .rate = rate,
+                                     .rate = o.sample_rate,
                                      .format = o.format,
                                      .period_frames = o.period,
                                      .periods = o.periods,
                                      .config_text = {}})),
           link(o.ring),
           feed(link, o.loop.horizon_frames),
-          limits(o.channels, 1.0),
+          limits(o.channels, o.limit),
           loop(wrapped(o), link, limits, o.loop),
           options(o)
     {
@@ -117,7 +119,7 @@ public:
             ::poll(fds.data(), n, 0);
             ready = out->ready(std::span(fds).first(n));
         }
-        now += static_cast<std::int64_t>(1e9 * options.period / rate);
+        now += static_cast<std::int64_t>(1e9 * options.period / options.sample_rate);
         loop.step(ready, now);
     }
 

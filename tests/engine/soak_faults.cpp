@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: MIT
+// A million periods of everything that can go wrong, in any order: what the DAC gets never jumps and never
+// exceeds the limit, and every stroke ends once.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "engine/live_stroke.hpp"
+#include "rig.hpp"
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+constexpr unsigned channels = 4;
+constexpr unsigned period = 16;
+constexpr double limit = 0.5;
+constexpr std::uint64_t seed = 20'260'101;
+constexpr std::uint64_t all_periods = 1'000'000;
+
+array row()
+{
+    array a = make_grid("row", 2, 2, 20.0, 20.0);
+    for (tactor_spec& t : a.tactors)
+        t.max_dbfs = 20.0 * std::log10(limit);
+    return a;
+}
+
+// Most that a stroke of these tests can change from frame to frame: the carrier's slope, and its whole
+// amplitude within the shortest ramp, a live stroke's control step or a fade.
+double slope(const render_options& o)
+{
+    return std::pow(10.0, o.level_dbfs / 20.0) * (2.0 * 3.14159265 * 250.0 / rate + 3.14159265 / 2.0 / 48.0);
+}
+
+// Looks at every sample that the device takes, and is itself a source of trouble.
+class checking_sink : public forwarding_sink {
+public:
+    checking_sink(std::unique_ptr<sink> s, std::mt19937_64& random, const double& allowed)
+        : forwarding_sink(std::move(s)), random_(random), allowed_(allowed)
+    {
+    }
+
+    io_status prepare() noexcept override
+    {
+        empty_ = true;
+        before_.fill(0.0); // a gap that the device made: from zero
+        return forwarding_sink::prepare();
+    }
+
+    io_result write(const std::byte* d, std::size_t n) noexcept override
+    {
+        // An empty buffer always takes something.
+        switch (empty_ ? 63 : random_() % 64) {
+        case 0:
+            return {io_status::again, 0, 0};
+        case 1:
+            return {io_status::ok, 0, 0};
+        case 2:
+            n = 1 + random_() % n; // short
+            break;
+        default:
+            break;
+        }
+        const io_result r = forwarding_sink::write(d, n);
+        empty_ = false;
+        for (std::size_t f = 0; f < r.frames; ++f) {
+            for (unsigned c = 0; c < channels; ++c) {
+                std::int32_t v = 0;
+                std::memcpy(&v, d + (f * channels + c) * 4, 4);
+                const double x = v / 2147483648.0;
+                beyond_limit += std::abs(x) > limit + 1e-9 ? 1U : 0U;
+                jumps += std::abs(x - before_[c]) > allowed_ + 1e-6 ? 1U : 0U;
+                loudest = std::max(loudest, std::abs(x));
+                before_[c] = x;
+            }
+        }
+        return r;
+    }
+
+    std::uint64_t beyond_limit = 0;
+    std::uint64_t jumps = 0;
+    double loudest = 0.0;
+
+private:
+    std::mt19937_64& random_;
+    const double& allowed_;
+    std::array<double, channels> before_{};
+    bool empty_ = true;
+};
+
+score random_stroke(std::mt19937_64& random, const render_options& o)
+{
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    plan p;
+    const auto n = 1 + random() % 4;
+    for (unsigned k = 0; k < n; ++k) {
+        burst b;
+        b.onset_s = 0.05 * k;
+        b.duration_s = 0.008 + 0.06 * uniform(random); // those that overlap are joined
+        for (unsigned t = 0; t < channels; ++t) {
+            if (random() % 2 == 0)
+                b.drives.push_back({.tactor = t, .amplitude = uniform(random)});
+        }
+        p.total_s = std::max(p.total_s, b.onset_s + b.duration_s);
+        p.bursts.push_back(b);
+    }
+    p.stroke_duration_s = p.total_s;
+    return {row(), {{.schedule = p, .start_s = {}}}, o};
+}
+
+struct totals {
+    std::uint64_t periods = 0;
+    std::uint64_t strokes = 0;
+    std::uint64_t rigs = 0;
+    std::uint64_t xruns = 0;
+    std::map<stroke_state, std::uint64_t> states;
+    double loudest = 0.0;
+};
+
+// One device from start to its end, by stop or by loss.
+class life {
+public:
+    life(std::mt19937_64& random, std::uint64_t most_periods)
+        : random_(random), most_periods_(most_periods), r_(make())
+    {
+        levels_.level_dbfs = -20.0;
+        levels_.ramp_s = 0.002; // bursts that overlap and have none are joined with a step
+        r_.dac.reserve_capture(1 << 12);
+    }
+
+    void run(totals& t)
+    {
+        REQUIRE(r_.start().status == io_status::ok);
+        for (std::uint64_t i = 0; i < most_periods_ && !r_.loop.over(); ++i) {
+            producers();
+            trouble();
+            if (random_() % 16 != 0)
+                r_.dac.advance_queued(period);
+            set_allowed();
+            r_.step();
+            if (random_() % 3 != 0)
+                r_.control();
+        }
+        finish();
+        t.periods += r_.link.count.periods;
+        t.strokes += r_.last_id;
+        t.xruns += r_.link.count.xruns;
+        ++t.rigs;
+        t.loudest = std::max(t.loudest, sink_->loudest);
+        CHECK(sink_->jumps == 0);
+        CHECK(sink_->beyond_limit == 0);
+        REQUIRE(r_.ended.size() == r_.last_id);
+        for (const auto& [id, reports] : r_.ended) {
+            REQUIRE(reports.size() == 1);
+            ++t.states[reports[0].state];
+        }
+        for (const auto& l : live_)
+            CHECK_FALSE(l->to({0.0, 0.0}, 1.0));
+    }
+
+private:
+    rig_options make()
+    {
+        rig_options o;
+        o.channels = channels;
+        o.period = period;
+        o.ring = std::size_t{256} << random_() % 4;
+        o.limit = limit;
+        o.loop.fade_frames = 48 + static_cast<std::uint32_t>(random_() % 480);
+        o.wrap = [this](std::unique_ptr<sink> s) {
+            auto c = std::make_unique<checking_sink>(std::move(s), random_, allowed_);
+            sink_ = c.get();
+            return c;
+        };
+        return o;
+    }
+
+    // As many strokes as have not ended may sound at once, each with its own slope.
+    void set_allowed() { allowed_ = static_cast<double>(r_.last_id - r_.ended.size()) * slope(levels_); }
+
+    void producers()
+    {
+        const bool quiet = r_.last_id - r_.ended.size() > 12;
+        if (!quiet && random_() % 60 == 0)
+            r_.submit(random_stroke(random_, levels_), when());
+        if (!quiet && random_() % 400 == 0)
+            begin_live();
+        if (random_() % 300 == 0)
+            r_.feed.fire(r_.now + static_cast<std::int64_t>(random_() % 100'000'000) - 20'000'000);
+        if (random_() % 90 == 0 && r_.last_id > 0)
+            r_.feed.cancel(r_.last_id - static_cast<stroke_id>(random_() % std::min(r_.last_id, 16U)));
+        for (std::size_t i = 0; i < live_.size(); ++i)
+            feed_live(i);
+    }
+
+    start_at when()
+    {
+        switch (random_() % 5) {
+        case 0:
+            return start_at::frame(r_.status().written + random_() % 20'000);
+        case 1:
+            return start_at::time(r_.now + static_cast<std::int64_t>(random_() % 400'000'000) - 50'000'000);
+        case 2:
+            return start_at::trigger();
+        default:
+            return start_at::now();
+        }
+    }
+
+    void begin_live()
+    {
+        live_options o;
+        o.plan.method = random_() % 2 == 0 ? algorithm::continuous : algorithm::park2016;
+        o.render = levels_;
+        o.timeout_s = 0.05;
+        const array a = row();
+        auto s = std::make_shared<live_stroke::impl>(++r_.last_id, a, layout(a), r_.out->setup(), o);
+        r_.feed.submit(r_.last_id, std::shared_ptr<engine::live_voice>(s, &s->voice));
+        live_.push_back(std::move(s));
+    }
+
+    void feed_live(std::size_t i)
+    {
+        live_stroke::impl& l = *live_[i];
+        if (random_() % 8 == 0)
+            l.to({static_cast<double>(random_() % 25) - 2.0, static_cast<double>(random_() % 25) - 2.0},
+                 static_cast<double>(random_() % 3) / 2.0);
+        if (random_() % 3000 == 0)
+            l.voice.ask(engine::live_voice::wish::end);
+        if (random_() % 3000 == 0)
+            l.voice.ask(engine::live_voice::wish::cancel);
+        if (random_() % 64 == 0 && l.voice.closed()) {
+            live_[i] = live_.back();
+            live_.pop_back();
+        }
+    }
+
+    void trouble()
+    {
+        switch (random_() % 8000) {
+        case 0:
+        case 1:
+        case 2:
+            r_.dac.advance(5000); // dry
+            break;
+        case 3:
+            r_.dac.suspend();
+            break;
+        case 4:
+            if (random_() % 6 == 0)
+                r_.dac.disconnect();
+            break;
+        default:
+            break;
+        }
+        if (random_() % 64 == 0)
+            r_.dac.wake(random_() % 2 == 0);
+    }
+
+    void finish()
+    {
+        r_.link.requests.push({.what = engine::request::kind::stop});
+        r_.dac.wake(true);
+        for (int i = 0; i < 4000 && !r_.feed.stream_over(); ++i) {
+            set_allowed();
+            r_.play(period);
+        }
+        r_.control();
+        REQUIRE(r_.feed.stream_over());
+    }
+
+    std::mt19937_64& random_;
+    std::uint64_t most_periods_;
+    render_options levels_{};
+    double allowed_ = 0.0;
+    checking_sink* sink_ = nullptr;
+    rig r_;
+    std::vector<std::shared_ptr<live_stroke::impl>> live_;
+};
+
+} // namespace
+
+TEST_CASE(
+    "a million periods with faults at random: every stroke is accounted for once, no jump, no limit passed")
+{
+    std::mt19937_64 random(seed);
+    totals t;
+    while (t.periods < all_periods) {
+        CAPTURE(t.rigs);
+        life(random, 5000 + random() % 60'000).run(t);
+    }
+    MESSAGE(t.periods << " periods on " << t.rigs << " devices, " << t.xruns << " xruns, " << t.strokes
+                      << " strokes: " << t.states[stroke_state::finished] << " finished, "
+                      << t.states[stroke_state::cancelled] << " cancelled, "
+                      << t.states[stroke_state::interrupted] << " interrupted");
+    CHECK(t.states[stroke_state::finished] > 1000);
+    CHECK(t.states[stroke_state::cancelled] > 100);
+    CHECK(t.states[stroke_state::interrupted] > 100);
+    CHECK(t.loudest > 0.05);
+    CHECK(t.xruns > 50);
+}
