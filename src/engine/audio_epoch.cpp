@@ -30,6 +30,7 @@ reason to_reason(io_status s) noexcept
 
 io_result audio_loop::start(std::int64_t now) noexcept
 {
+    now_ns_ = now;
     const io_result r = begin_epoch();
     if (r.status == io_status::ok) {
         phase_ = phase::running;
@@ -39,7 +40,6 @@ io_result audio_loop::start(std::int64_t now) noexcept
     return r;
 }
 
-// The amplifier stays off until the DAC has moved: it belongs after this, where position() tells.
 io_result audio_loop::begin_epoch() noexcept
 {
     mixer_.reset();
@@ -64,6 +64,10 @@ io_result audio_loop::begin_epoch() noexcept
 
 void audio_loop::broken(io_status s, int code, std::int64_t now) noexcept
 {
+    if (phase_ == phase::closing) {
+        end_runs_ = end_runs_ && (s == io_status::ok || s == io_status::again);
+        return; // nothing sounds any more: it only waits for the amplifier
+    }
     switch (s) {
     case io_status::ok:
     case io_status::again:
@@ -98,7 +102,7 @@ void audio_loop::silence_all(reason why, int code, std::uint64_t played) noexcep
 void audio_loop::try_resume(std::int64_t now) noexcept
 {
     if (stop_asked_)
-        return finish(reason::none, 0);
+        return finish(stop_why_, 0);
     if (sink_.resume() == io_status::again && now - suspended_ns_ < longest_resume)
         return;
     // Resumed or not, a fresh epoch: what the buffer held belongs to strokes that were interrupted.
@@ -108,7 +112,7 @@ void audio_loop::try_resume(std::int64_t now) noexcept
 void audio_loop::restart(std::int64_t now) noexcept
 {
     if (stop_asked_)
-        return finish(reason::none, 0);
+        return finish(stop_why_, 0);
     io_result r = begin_epoch();
     while (r.status == io_status::xrun) {
         if (too_often(now))
@@ -134,27 +138,6 @@ bool audio_loop::too_often(std::int64_t now) noexcept
     oldest = now;
     ++recovered_;
     return false;
-}
-
-void audio_loop::finish_when_silent() noexcept
-{
-    if (!scores_.empty())
-        return;
-    if (stop_frame_ == 0)
-        stop_frame_ = played_ + setup_.period_frames; // beyond the delay of the DAC itself
-    if (played_ >= stop_frame_)
-        finish(reason::none, 0);
-}
-
-void audio_loop::finish(reason why, int code) noexcept
-{
-    if (phase_ == phase::over)
-        return;
-    scores_.interrupt(why, code, played_, false);
-    sink_.drop();
-    link_.clock.store({});
-    phase_ = phase::over;
-    link_.reports.push({.what = report::kind::stream_over, .why = why, .code = code});
 }
 
 } // namespace tactor::engine

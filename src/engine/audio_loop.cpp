@@ -37,22 +37,28 @@ audio_loop::audio_loop(sink& s, link& l, std::span<const double> limits, const l
       link_(l),
       options_(o),
       setup_(s.setup()),
-      mixer_(limits, setup_.format, o.drives + live_reserve(setup_)),
+      mixer_(limits, setup_.format, o.drives + live_reserve(setup_), o.guards),
       scores_(mixer_, l, o.fade_frames, live_reserve(setup_)),
       clock_(setup_.rate, setup_.batch ? setup_.period_frames : 0),
       frame_bytes_(setup_.channels * bytes_of(setup_.format)),
       block_(setup_.period_frames * frame_bytes_)
 {
+    l.amplifier.ready.store(!o.amplifier, std::memory_order_relaxed);
 }
 
 void audio_loop::step(io_status ready, std::int64_t now) noexcept
 {
     ++idle_steps_;
+    now_ns_ = now;
     take_requests();
+    obey_amplifier();
     switch (phase_) {
     case phase::idle:
     case phase::over:
         return;
+    case phase::closing:
+        close_step(ready, now);
+        break;
     case phase::suspended:
         try_resume(now);
         break;
@@ -79,7 +85,8 @@ void audio_loop::step(io_status ready, std::int64_t now) noexcept
 
 bool audio_loop::polls_sink() const noexcept
 {
-    return phase_ == phase::running && idle_steps_ < many_idle_steps;
+    return (phase_ == phase::running || (phase_ == phase::closing && end_runs_)) &&
+           idle_steps_ < many_idle_steps;
 }
 
 std::int64_t audio_loop::timeout_ns() const noexcept
@@ -118,8 +125,12 @@ void audio_loop::take_commands() noexcept
 
 bool audio_loop::take(const command& c) noexcept
 {
+    // Nothing begins before the amplifier is on and settled; the ring waits with it.
+    const bool held = !stop_asked_ && !link_.amplifier.ready.load(std::memory_order_acquire);
     switch (c.what) {
     case command::kind::begin:
+        if (held)
+            return false;
         scores_.begin(c, offset_);
         return true;
     case command::kind::drive:
@@ -128,7 +139,7 @@ bool audio_loop::take(const command& c) noexcept
         scores_.end(c.score);
         return true;
     case command::kind::live:
-        return scores_.begin_live(c);
+        return !held && scores_.begin_live(c);
     }
     return true;
 }
@@ -141,6 +152,8 @@ void audio_loop::mix_period() noexcept
     pending_from_ = 0;
     link_.count.periods.fetch_add(1, std::memory_order_relaxed);
     link_.count.limited.store(mixer_.limited(), std::memory_order_relaxed);
+    link_.count.power_limited.store(mixer_.power_limited(), std::memory_order_relaxed);
+    link_.count.drives_cut.store(mixer_.drives_cut(), std::memory_order_relaxed);
 }
 
 io_result audio_loop::write_pending() noexcept
@@ -205,9 +218,19 @@ void audio_loop::publish() noexcept
 {
     stream_status s{.written = offset_ + mixer_.position(),
                     .played = offset_ + played_,
-                    .running = phase_ == phase::running};
+                    .running = phase_ == phase::running,
+                    .stage = static_cast<stream_stage>(phase_),
+                    .epoch = clock_.line().epoch,
+                    .epoch_played = played_};
     scores_.describe(played_, s);
     link_.status.store(s);
+
+    const bool news = s.stage != told_stage_ || s.epoch != told_epoch_;
+    told_stage_ = s.stage;
+    told_epoch_ = s.epoch;
+    // Until strokes may sound, every frame that is played counts.
+    if (options_.amplifier && (news || !link_.amplifier.ready.load(std::memory_order_relaxed)))
+        link_.amplifier.wake.signal();
 
     const bool hungry = s.written - told_ >= options_.horizon_frames / 8;
     if (hungry)

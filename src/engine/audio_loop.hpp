@@ -24,6 +24,9 @@ struct loop_options {
     std::uint64_t horizon_frames = 24'000; ///< the control side is woken each eighth of it
     std::int64_t stall_ns = 500'000'000;   ///< a device that stands still for so long is lost
     std::size_t drives = 8192;             ///< capacity of the mixer
+    bool amplifier = false;                ///< somebody drives one after link::amplifier
+    std::int64_t off_ns = 250'000'000;     ///< how long the end waits for the amplifier to be off
+    synth::guard_settings guards{};
 };
 
 /// Owns the mixer and everything that happens to the stream. After the constructor no member but the
@@ -48,7 +51,7 @@ public:
     std::int64_t timeout_ns() const noexcept;
 
 private:
-    enum class phase { idle, running, suspended, over };
+    enum class phase { idle, running, suspended, closing, over };
 
     void take_requests() noexcept;
     void take_commands() noexcept;
@@ -66,7 +69,10 @@ private:
     void try_resume(std::int64_t now) noexcept;
     void restart(std::int64_t now) noexcept;
     bool too_often(std::int64_t now) noexcept;
-    void finish(reason why, int code) noexcept;
+    void finish(reason why, int code, bool runs = false) noexcept;
+    void close_step(io_status ready, std::int64_t now) noexcept;
+    void end() noexcept;
+    void obey_amplifier() noexcept;
     void finish_when_silent() noexcept;
     void publish() noexcept;
 
@@ -84,6 +90,15 @@ private:
 
     phase phase_ = phase::idle;
     bool stop_asked_ = false;
+    reason stop_why_ = reason::none;
+    std::uint32_t mutes_ = 0;       ///< link::amplifier's, as far as obeyed
+    bool end_runs_ = false;         ///< closing: the stream is fed with zeros meanwhile
+    reason end_why_ = reason::none; ///< closing
+    int end_code_ = 0;
+    std::int64_t now_ns_ = 0;
+    std::int64_t closing_ns_ = 0;
+    stream_stage told_stage_ = stream_stage::idle;
+    std::uint64_t told_epoch_ = 0;
     std::uint64_t stop_frame_ = 0; ///< 0: not silent yet
     std::uint64_t offset_ = 0;     ///< stream frame at which this epoch began
     std::uint64_t played_ = 0;     ///< of this epoch

@@ -16,6 +16,8 @@
 
 namespace tactor::engine {
 
+enum class stream_stage : std::uint32_t { idle, running, suspended, closing, over };
+
 /// Where the stream is; frames of the stream run on over xruns.
 struct stream_status {
     std::uint64_t written = 0; ///< next frame that will be mixed
@@ -24,6 +26,19 @@ struct stream_status {
     stroke_id stroke = 0;
     bool sounding = false; ///< whether `stroke` says anything
     bool running = false;
+    stream_stage stage = stream_stage::idle;
+    std::uint64_t epoch = 0;        ///< number of the start of the DAC, from 1
+    std::uint64_t epoch_played = 0; ///< frames played since that
+};
+
+/// Between the audio thread and the one that drives the amplifier's line. As it stands here: no amplifier.
+struct amplifier_link {
+    std::atomic<bool> ready{true};       ///< strokes may begin
+    std::atomic<bool> off{true};         ///< the line is off; the DAC may stop
+    std::atomic<bool> failed{false};     ///< the line cannot be switched: the stream has to end
+    std::atomic<std::uint32_t> mutes{0}; ///< each time it went off before its time
+    std::atomic<bool> ending{false};     ///< audio thread: the last sound is out, or the device is gone
+    rt::event_fd wake;                   ///< audio thread: something has changed
 };
 
 /// Counters, each written by the audio thread only.
@@ -34,6 +49,9 @@ struct counters {
     std::atomic<std::uint64_t> limited{0};
     std::atomic<std::uint64_t> low_water{UINT64_MAX};
     std::atomic<std::uint64_t> late_frames{0};
+    std::atomic<std::uint64_t> power_limited{0};
+    std::atomic<std::uint64_t> drives_cut{0};
+    std::atomic<std::uint64_t> stalls{0}; ///< written by the amplifier's thread
     std::atomic<std::uint64_t> minor_faults{0};
     std::atomic<std::uint64_t> major_faults{0};
     /// Length of xrun number n at n modulo the size: the newest are kept.
@@ -63,6 +81,7 @@ struct link {
     /// What the audio thread knows of the DAC's clock; any thread may read it, none waits.
     rt::seqlock<clock_line> clock;
     counters count;
+    amplifier_link amplifier;
 };
 
 } // namespace tactor::engine

@@ -47,7 +47,18 @@ struct request {
 };
 
 /// Why a stroke or the stream ended.
-enum class reason : std::uint32_t { none, xrun, suspended, lost, failed, late, closed, starved };
+enum class reason : std::uint32_t {
+    none,
+    xrun,
+    suspended,
+    lost,
+    failed,
+    late,
+    closed,
+    starved,
+    muted,
+    amplifier
+};
 
 /// Audio to control.
 struct report {

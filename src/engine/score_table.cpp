@@ -119,12 +119,36 @@ void score_table::fade(entry& e) noexcept
 
 void score_table::stop(bool closing) noexcept
 {
+    if (closing)
+        stop(stroke_state::interrupted, reason::closed);
+    else
+        stop(stroke_state::cancelled, reason::none);
+}
+
+void score_table::stop(stroke_state s, reason why) noexcept
+{
     stopping_ = true;
-    stop_state_ = closing ? stroke_state::interrupted : stroke_state::cancelled;
-    stop_reason_ = closing ? reason::closed : reason::none;
+    stop_state_ = s;
+    stop_reason_ = why;
     for (std::uint32_t i = 0; i < top_; ++i) {
         if (entries_[i].used)
             want_fade(entries_[i], stop_state_, stop_reason_);
+    }
+}
+
+void score_table::mute() noexcept
+{
+    for (std::uint32_t i = 0; i < top_; ++i) {
+        entry& e = entries_[i];
+        if (!e.used || e.fading || e.fade_wanted || e.base == never)
+            continue;
+        if (e.base < mixer_.position() || e.live != nullptr || stopping_) {
+            want_fade(e, stroke_state::interrupted, reason::muted);
+        } else if (mixer_.fade_out(e.score, 0)) {
+            link_.reports.push({.what = report::kind::returned, .score = e.score});
+            e.used = false;
+            --used_;
+        }
     }
 }
 

@@ -37,6 +37,10 @@ public:
     void cancel(ticket t) noexcept;
     /// Fades everything out; scores not yet begun end at once, as do those that come later.
     void stop(bool closing) noexcept;
+    /// The same, with a reason.
+    void stop(stroke_state s, reason why) noexcept;
+    /// The amplifier is off: fades what sounds, returns what has not begun.
+    void mute() noexcept;
 
     /// Ends what is over when `played` frames have reached the DAC, and starts fades that had to wait.
     void update(std::uint64_t played) noexcept;

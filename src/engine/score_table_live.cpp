@@ -64,6 +64,8 @@ void score_table::look_at_wishes(entry& e) noexcept
 void score_table::render_live(entry& e, std::uint64_t frames, std::uint64_t offset) noexcept
 {
     if (e.base == never) {
+        if (!link_.amplifier.ready.load(std::memory_order_acquire))
+            return; // not into an amplifier that is off
         if (!e.live->try_begin(e.score, mixer_.position()))
             return;
         e.base = mixer_.position();

@@ -49,6 +49,10 @@ std::string text(reason r, int code)
         return "the computer was too slow to prepare the stroke in time";
     case reason::starved:
         return "no more points came";
+    case reason::muted:
+        return "the amplifier was off";
+    case reason::amplifier:
+        return "the amplifier's line cannot be switched";
     case reason::closed:
         return "the player was closed";
     }

@@ -132,6 +132,8 @@ public:
         for (const stroke_report& e : feed.take_reports())
             ended[e.id].push_back(e);
         feed.pump(status().written, link.clock.load());
+        if (also_control)
+            also_control();
     }
 
     /// The DAC plays so many frames, a period at a time, and both threads do their work.
@@ -201,6 +203,7 @@ public:
     engine::audio_loop loop;
     rig_options options;
     stroke_id last_id = 0;
+    std::function<void()> also_control{}; ///< at the end of control()
     std::map<stroke_id, std::vector<stroke_report>> ended;
 };
 

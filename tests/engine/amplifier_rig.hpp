@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The engine without its threads, and an amplifier behind it: a log of what happened to the PCM and to the
+/// line, in order.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <tactor/gpio.hpp>
+
+#include "engine/amplifier_driver.hpp"
+#include "rig.hpp"
+
+namespace tactor::test {
+
+using event_log = std::vector<std::string>;
+
+/// Logs prepare, start and drop.
+class logging_sink final : public forwarding_sink {
+public:
+    logging_sink(std::unique_ptr<sink> s, event_log& log) : forwarding_sink(std::move(s)), log_(log) {}
+
+    io_status prepare() noexcept override { return note("prepare", forwarding_sink::prepare()); }
+    io_status start() noexcept override { return note("start", forwarding_sink::start()); }
+    void drop() noexcept override
+    {
+        log_.emplace_back("drop");
+        forwarding_sink::drop();
+    }
+
+private:
+    io_status note(const char* what, io_status s) noexcept
+    {
+        log_.emplace_back(s == io_status::ok ? what : std::string(what) + " fails");
+        return s;
+    }
+    event_log& log_;
+};
+
+/// Logs on and off. Can fail, and can go off by itself.
+class logging_line final : public enable_line {
+public:
+    explicit logging_line(event_log& log) : log_(log) {}
+
+    bool set(bool on) noexcept override
+    {
+        log_.emplace_back(on ? "on" : "off");
+        is_on = works && on;
+        return works;
+    }
+    bool beat() noexcept override
+    {
+        ++beats;
+        return is_on;
+    }
+
+    bool works = true;
+    bool is_on = false;
+    unsigned beats = 0;
+
+private:
+    event_log& log_;
+};
+
+inline constexpr std::int64_t ms = 1'000'000;
+
+struct amplifier_rig : rig {
+    explicit amplifier_rig(rig_options o = {}) : amplifier_rig(o, std::make_shared<event_log>()) {}
+
+    /// Until strokes may sound.
+    void warm_up()
+    {
+        for (int i = 0; i < 1000 && !link.amplifier.ready; ++i)
+            play(options.period);
+    }
+    /// Time passes for the amplifier's thread only.
+    void wait(std::int64_t ns)
+    {
+        for (const std::int64_t end = now + ns; now < end;) {
+            now += 10 * ms;
+            driver.update();
+        }
+    }
+    void stop() { link.requests.push({.what = engine::request::kind::stop, .closing = false}); }
+    /// The log since the last call.
+    event_log news() { return std::exchange(*log, {}); }
+
+    std::shared_ptr<event_log> log;
+    logging_line line{*log};
+    engine::amplifier_driver driver;
+
+private:
+    amplifier_rig(rig_options o, const std::shared_ptr<event_log>& l)
+        : rig(prepared(std::move(o), l)),
+          log(l),
+          driver(link, line, {.amplifier = {.proof_frames = 2 * options.period}}, [this] { return now; })
+    {
+        also_control = [this] { driver.update(); };
+    }
+    static rig_options prepared(rig_options o, const std::shared_ptr<event_log>& l)
+    {
+        o.loop.amplifier = true;
+        o.wrap = [l](std::unique_ptr<sink> s) { return std::make_unique<logging_sink>(std::move(s), *l); };
+        return o;
+    }
+};
+
+} // namespace tactor::test
