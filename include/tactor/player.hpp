@@ -93,6 +93,8 @@ struct player_options {
     bool realtime = true;          ///< ask for SCHED_FIFO
     bool require_realtime = false; ///< \throws instead of going on without it
     int priority = 65;
+    /// What the array may be given in all and over time, whatever the scores ask for.
+    drive_limits limits = {};
 };
 
 /// Counters since the player was opened.
@@ -100,7 +102,11 @@ struct player_stats {
     std::uint64_t periods = 0;
     std::uint64_t frames = 0; ///< frames written
     std::uint64_t xruns = 0;
-    std::uint64_t limited_frames = 0; ///< frames that the limiter changed
+    std::uint64_t limited_frames = 0;       ///< samples that a channel's own limit changed
+    std::uint64_t power_limited_frames = 0; ///< frames in which drive_limits::power_dbfs acted
+    std::uint64_t drives_cut = 0; ///< how often a tactor was faded out after drive_limits::max_drive_s
+    /// How often the amplifier was switched off because the audio thread, or the whole process, stood still.
+    std::uint64_t stalls = 0;
     std::uint64_t ring_low_water = 0; ///< fewest drives that waited while a stroke played
     double latest_wakeup_s = 0.0;
     /// Page faults of the audio thread after its first wake-ups: 0 where memory is locked. Counted once a

@@ -22,7 +22,7 @@ std::uint32_t frames_of(double seconds, unsigned rate, const char* name)
     return static_cast<std::uint32_t>(std::lround(seconds * rate));
 }
 
-engine::loop_options loop_options(const player_options& o, const stream_setup& s)
+engine::loop_options loop_options(const player_options& o, const stream_setup& s, bool amplifier)
 {
     engine::loop_options l;
     l.fade_frames = frames_of(o.fade_s, s.rate, "fade");
@@ -31,6 +31,8 @@ engine::loop_options loop_options(const player_options& o, const stream_setup& s
     const std::int64_t periods = 16LL * s.period_frames * 1'000'000'000 / s.rate;
     const auto asked = std::int64_t{frames_of(o.stall_s, 1'000'000, "stall")} * 1000;
     l.stall_ns = std::max(periods, asked);
+    l.amplifier = amplifier;
+    l.guards = synth::guards_of(o.limits, s.rate);
     return l;
 }
 
@@ -40,6 +42,25 @@ rt::thread_options thread_options(const player_options& o)
             .fifo = o.realtime || o.require_realtime,
             .priority = o.priority,
             .audio = true};
+}
+
+engine::driver_options driver_options(const player_lines& l, const stream_setup& s)
+{
+    const std::int64_t four_periods = 4LL * s.period_frames * 1'000'000'000 / s.rate;
+    engine::driver_options d;
+    d.amplifier.settle_ns = std::int64_t{frames_of(l.settle_s, 1'000'000, "settle")} * 1000;
+    d.amplifier.proof_frames = 2ULL * s.period_frames;
+    d.watchdog_ns = std::max(d.watchdog_ns, four_periods);
+    return d;
+}
+
+// Below the audio thread, which it looks after, but not behind everything else: the line's holder waits for
+// 150 ms only.
+rt::thread_options amplifier_thread_options(const player_options& o)
+{
+    return {.name = "tactor-amp",
+            .fifo = o.realtime || o.require_realtime,
+            .priority = std::max(1, o.priority - 5)};
 }
 
 std::unique_ptr<sink> not_null(std::unique_ptr<sink> s)
@@ -56,11 +77,15 @@ player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options
       lines(std::move(l)),
       feed(link, frames_of(o.horizon_s, out->setup().rate, "horizon")),
       tactors(a),
-      loop(*out, link, synth::channel_limits(a, out->setup().channels), loop_options(o, out->setup())),
+      loop(*out, link, synth::channel_limits(a, out->setup().channels),
+           loop_options(o, out->setup(), lines.amplifier != nullptr)),
       audio(loop, *out, link, thread_options(o))
 {
     try {
         check_start(o);
+        if (lines.amplifier != nullptr)
+            amplifier = std::make_unique<engine::amplifier_thread>(
+                link, *lines.amplifier, driver_options(lines, out->setup()), amplifier_thread_options(o));
         control = std::make_unique<engine::control_thread>(link.to_control, [this] { woken(); });
         if (lines.trigger != nullptr)
             control->watch(lines.trigger->descriptor(), [this] { return edges(); });
@@ -68,6 +93,7 @@ player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options
         link.requests.push({.what = engine::request::kind::stop, .closing = true});
         link.to_audio.signal();
         audio.join();
+        amplifier.reset();
         throw;
     }
 }

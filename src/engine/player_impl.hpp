@@ -13,6 +13,7 @@
 #include <tactor/phantom.hpp>
 #include <tactor/player.hpp>
 
+#include "engine/amplifier_thread.hpp"
 #include "engine/audio_loop.hpp"
 #include "engine/audio_thread.hpp"
 #include "engine/control_thread.hpp"
@@ -52,6 +53,7 @@ struct player::impl {
     engine::audio_loop loop;
     engine::audio_thread audio;
     std::unique_ptr<engine::control_thread> control;
+    std::unique_ptr<engine::amplifier_thread> amplifier; ///< only where there is one
 
 private:
     void check_start(const player_options& o);

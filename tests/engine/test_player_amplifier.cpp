@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+// The player's threads and an amplifier: on a paced null PCM, in real time.
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+
+#include <doctest/doctest.h>
+
+#include <tactor/player.hpp>
+
+#include "player_support.hpp"
+#include "scores.hpp"
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+struct line_state {
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::vector<bool> log;
+    bool works = true;
+
+    void await(std::size_t n)
+    {
+        std::unique_lock lock(mutex);
+        changed.wait(lock, [&] { return log.size() >= n; });
+    }
+};
+
+class watched_line final : public enable_line {
+public:
+    explicit watched_line(std::shared_ptr<line_state> s) : state_(std::move(s)) {}
+    bool set(bool on) noexcept override
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->log.push_back(on);
+        state_->changed.notify_all();
+        return state_->works;
+    }
+
+private:
+    std::shared_ptr<line_state> state_;
+};
+
+player_lines with(const std::shared_ptr<line_state>& s)
+{
+    player_lines l;
+    l.amplifier = std::make_unique<watched_line>(s);
+    return l;
+}
+
+} // namespace
+
+TEST_CASE("the player switches its amplifier on once, plays, and off once")
+{
+    const auto state = std::make_shared<line_state>();
+    {
+        player p(open_alsa(nine()), palm(), {}, with(state));
+        const auto report = p.wait(p.submit(tone(0.05)));
+        REQUIRE(report);
+        CHECK(report->state == stroke_state::finished);
+        state->await(1);
+        p.stop();
+        CHECK(state->log == std::vector<bool>{true, false});
+    }
+    CHECK(state->log == std::vector<bool>{true, false});
+}
+
+TEST_CASE("a player that is destroyed at any moment leaves its amplifier off")
+{
+    for (int i = 0; i < 20; ++i) {
+        const auto state = std::make_shared<line_state>();
+        {
+            player p(open_alsa(nine()), palm(), {}, with(state));
+            p.submit(tone(0.01));
+            if (i % 2 == 1)
+                state->await(1);
+        }
+        CHECK((state->log.empty() || !state->log.back()));
+    }
+}
+
+TEST_CASE("an amplifier whose line fails ends the player's stream")
+{
+    const auto state = std::make_shared<line_state>();
+    state->works = false;
+    player p(open_alsa(nine()), palm(), {}, with(state));
+    const auto report = p.wait(p.submit(tone(0.05)));
+    REQUIRE(report);
+    CHECK(report->state == stroke_state::interrupted);
+    CHECK(report->reason == "the amplifier's line cannot be switched");
+    p.stop();
+    CHECK_THROWS_AS(p.submit(tone(0.05)), error);
+}
+
+TEST_CASE("the player's limits are its own and are checked")
+{
+    player_options o;
+    o.limits.max_drive_s = -1.0;
+    CHECK_THROWS_AS(player(open_alsa(nine()), palm(), o), error);
+}
