@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Counts test cases over all suites of a Meson test run and prints the closing line.
+"""Counts test cases over all suites of a Meson test run, and over further lanes, and prints the closing line.
 
-Usage: summary.py testlog.json. Exit status 1 when something failed or nothing ran.
-A suite that says nothing countable counts as one test.
+Usage: summary.py testlog.json [LANE=LOG ...]. Exit status 1 when something failed or nothing ran.
+A suite that says nothing countable counts as one test; a lane without a closing line has failed.
 """
 import json
 import re
@@ -12,9 +12,9 @@ DOCTEST = re.compile(r"\[doctest\] test cases:\s+\d+ \|\s+(\d+) passed \|\s+(\d+
 COUNTED = re.compile(r"^(\d+) passed, (\d+) failed(?:, (\d+) skipped)?$", re.M)
 
 
-def count(entry):
-    match = DOCTEST.search(re.sub(r"\x1b\[[0-9;]*m", "", entry.get("stdout", "")))
-    match = match or COUNTED.search(entry.get("stdout", ""))
+def suite_counts(entry):
+    output = re.sub(r"\x1b\[[0-9;]*m", "", entry.get("stdout", ""))
+    match = DOCTEST.search(output) or COUNTED.search(output)
     passed, failed, skipped = (int(n or 0) for n in match.groups()) if match else (0, 0, 0)
     if entry["result"] not in ("OK", "SKIP", "EXPECTEDFAIL") and failed == 0:
         failed = 1  # crashed, timed out, or failed outside its cases
@@ -25,16 +25,28 @@ def count(entry):
     return passed, failed, skipped
 
 
+def lane_counts(text):
+    lines = COUNTED.findall(text)
+    return tuple(int(n or 0) for n in lines[-1]) if lines else (0, 1, 0)
+
+
+def results(arguments):
+    with open(arguments[0], encoding="utf-8") as log:
+        for entry in map(json.loads, log):
+            yield entry["name"], suite_counts(entry), entry.get("stdout", "")
+    for name, file in (lane.split("=", 1) for lane in arguments[1:]):
+        with open(file, encoding="utf-8", errors="replace") as log:
+            text = log.read()
+        yield "lane " + name, lane_counts(text), text
+
+
 def main():
     totals = [0, 0, 0]
-    with open(sys.argv[1], encoding="utf-8") as log:
-        for line in log:
-            entry = json.loads(line)
-            counts = count(entry)
-            print(f"{entry['name']:<28} {counts[0]:>6} passed {counts[1]:>4} failed {counts[2]:>4} skipped")
-            for text in re.findall(r"^SKIPPED: .*$", entry.get("stdout", ""), re.M):
-                print("  " + text)
-            totals = [a + b for a, b in zip(totals, counts)]
+    for name, counts, text in results(sys.argv[1:]):
+        print(f"{name:<28} {counts[0]:>6} passed {counts[1]:>4} failed {counts[2]:>4} skipped")
+        for line in re.findall(r"^SKIPPED: .*$", text, re.M):
+            print("  " + line)
+        totals = [a + b for a, b in zip(totals, counts)]
     print(f"{totals[0]} passed, {totals[1]} failed, {totals[2]} skipped")
     return 1 if totals[1] or not totals[0] else 0
 
