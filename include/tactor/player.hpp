@@ -107,6 +107,10 @@ struct player_stats {
     std::uint64_t drives_cut = 0; ///< how often a tactor was faded out after drive_limits::max_drive_s
     /// How often the amplifier was switched off because the audio thread, or the whole process, stood still.
     std::uint64_t stalls = 0;
+    std::uint64_t sync_pulses = 0; ///< sent on player_lines::sync_out
+    std::uint64_t sync_missed = 0; ///< not sent, because their time was over or the line failed
+    double sync_mean_late_s = 0.0; ///< line's switching against the DAC clock's time of the frame
+    double sync_worst_late_s = 0.0;
     std::uint64_t ring_low_water = 0; ///< fewest drives that waited while a stroke played
     double latest_wakeup_s = 0.0;
     /// Page faults of the audio thread after its first wake-ups: 0 where memory is locked. Counted once a

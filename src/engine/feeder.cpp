@@ -163,6 +163,8 @@ void feeder::handle(const report& r)
     if (s == nullptr)
         return;
     active& a = *s->use;
+    if (r.what != report::kind::begun && ended_)
+        ended_(a.id);
     switch (r.what) {
     case report::kind::begun:
         return begun(a, r.frame);

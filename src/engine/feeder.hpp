@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -37,6 +38,15 @@ public:
 
     /// False when the stroke has ended, or is not known, or is being cancelled already.
     bool cancel(stroke_id id);
+
+    /// `begins`: called for each stroke that begins, with the frame of the stream; `ended` for each that
+    /// goes no further: it ended, or an xrun came before it had begun.
+    void on_first_frames(std::function<void(stroke_id, std::uint64_t)> begins,
+                         std::function<void(stroke_id)> ended)
+    {
+        begins_ = std::move(begins);
+        ended_ = std::move(ended);
+    }
 
     /// Hands over what belongs within the horizon after stream frame `written`, as far as it fits. What is
     /// to start at a time waits until the clock is known.
@@ -111,6 +121,8 @@ private:
     std::vector<std::uint32_t> in_use_; ///< places, in order of their beginning
     std::vector<command> batch_;        ///< of fixed capacity
     std::vector<stroke_report> reports_;
+    std::function<void(stroke_id, std::uint64_t)> begins_;
+    std::function<void(stroke_id)> ended_;
     bool stream_over_ = false;
     bool closing_ = false;
     std::string stream_reason_;

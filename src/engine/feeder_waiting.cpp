@@ -108,6 +108,12 @@ void feeder::begun(active& a, std::uint64_t frame)
 {
     a.begun = true;
     a.base = frame;
+    if (begins_ && a.music) {
+        for (const std::uint64_t start : a.music->starts())
+            begins_(a.id, frame + start);
+    } else if (begins_) {
+        begins_(a.id, frame);
+    }
     const bool known = clock_.valid() && frame >= clock_.first;
     if (known)
         a.started_ns = clock_.time_of(frame);

@@ -76,6 +76,8 @@ player_stats player::stats() const
     const engine::counters& c = impl_->link.count;
     const auto get = [](const std::atomic<std::uint64_t>& a) { return a.load(std::memory_order_relaxed); };
     const std::uint64_t low = get(c.low_water);
+    const engine::pulse_stats pulses =
+        impl_->pulses != nullptr ? impl_->pulses->stats() : engine::pulse_stats{};
     const std::uint64_t xruns = c.xruns.load(std::memory_order_acquire);
     std::vector<double> lengths;
     for (std::uint64_t n = xruns - std::min<std::uint64_t>(xruns, c.xrun_ns.size()); n < xruns; ++n)
@@ -88,6 +90,10 @@ player_stats player::stats() const
             .power_limited_frames = get(c.power_limited),
             .drives_cut = get(c.drives_cut),
             .stalls = get(c.stalls),
+            .sync_pulses = pulses.sent,
+            .sync_missed = pulses.missed,
+            .sync_mean_late_s = pulses.mean_late_s,
+            .sync_worst_late_s = pulses.worst_late_s,
             .ring_low_water = low == UINT64_MAX ? 0 : low,
             .latest_wakeup_s = static_cast<double>(get(c.late_frames)) / impl_->out->setup().rate,
             .minor_faults = get(c.minor_faults),

@@ -83,9 +83,7 @@ player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options
 {
     try {
         check_start(o);
-        if (lines.amplifier != nullptr)
-            amplifier = std::make_unique<engine::amplifier_thread>(
-                link, *lines.amplifier, driver_options(lines, out->setup()), amplifier_thread_options(o));
+        start_lines(o);
         control = std::make_unique<engine::control_thread>(link.to_control, [this] { woken(); });
         if (lines.trigger != nullptr)
             control->watch(lines.trigger->descriptor(), [this] { return edges(); });
@@ -96,6 +94,24 @@ player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options
         amplifier.reset();
         throw;
     }
+}
+
+void player::impl::start_lines(const player_options& o)
+{
+    if (lines.amplifier != nullptr)
+        amplifier = std::make_unique<engine::amplifier_thread>(
+            link, *lines.amplifier, driver_options(lines, out->setup()), amplifier_thread_options(o));
+    if (lines.sync_out == nullptr)
+        return;
+    // Above the audio thread: it sleeps nearly always, and what it does takes microseconds.
+    const rt::thread_options t{.name = "tactor-sync",
+                               .fifo = o.realtime || o.require_realtime,
+                               .priority = o.priority + 1,
+                               .audio = true};
+    pulses = std::make_unique<engine::trigger_thread>(
+        link.clock, *lines.sync_out, std::int64_t{frames_of(lines.pulse_s, 1'000'000, "pulse")} * 1000, t);
+    feed.on_first_frames([this](stroke_id id, std::uint64_t frame) { pulses->add(id, frame); },
+                         [this](stroke_id id) { pulses->forget(id); });
 }
 
 void player::impl::check_start(const player_options& o)

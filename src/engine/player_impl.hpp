@@ -19,6 +19,7 @@
 #include "engine/control_thread.hpp"
 #include "engine/feeder.hpp"
 #include "engine/link.hpp"
+#include "engine/trigger_thread.hpp"
 
 namespace tactor {
 
@@ -54,8 +55,10 @@ struct player::impl {
     engine::audio_thread audio;
     std::unique_ptr<engine::control_thread> control;
     std::unique_ptr<engine::amplifier_thread> amplifier; ///< only where there is one
+    std::unique_ptr<engine::trigger_thread> pulses;      ///< only where there is a line for them
 
 private:
+    void start_lines(const player_options& o);
     void check_start(const player_options& o);
     void woken();
     void pump();

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include "engine/trigger_thread.hpp"
+
+#include <cerrno>
+#include <ctime>
+
+#include <poll.h>
+
+namespace tactor::engine {
+namespace {
+
+constexpr std::int64_t second = 1'000'000'000;
+constexpr std::int64_t idle_ns = 60 * second;
+// The clock's line gets better as time goes by, and an xrun ends it.
+constexpr std::int64_t longest_wait_ns = 100'000'000;
+constexpr std::int64_t no_clock_ns = 2'000'000;
+
+class system_time final : public pulse_time {
+public:
+    std::int64_t now() noexcept override
+    {
+        timespec t{};
+        clock_gettime(CLOCK_MONOTONIC, &t);
+        return std::int64_t{t.tv_sec} * second + t.tv_nsec;
+    }
+    void sleep_until(std::int64_t time_ns) noexcept override
+    {
+        const timespec t{.tv_sec = static_cast<time_t>(time_ns / second),
+                         .tv_nsec = static_cast<long>(time_ns % second)};
+        while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
+        }
+    }
+};
+
+system_time& real_time() noexcept
+{
+    static system_time t;
+    return t;
+}
+
+} // namespace
+
+trigger_thread::trigger_thread(const rt::seqlock<clock_line>& clock, enable_line& line, std::int64_t pulse_ns,
+                               const rt::thread_options& t)
+    : clock_(clock), line_(line), emitter_(line, pulse_ns, real_time()), thread_(t, [this] { run(); })
+{
+}
+
+trigger_thread::~trigger_thread()
+{
+    over_.store(true, std::memory_order_release);
+    wake_.signal();
+    thread_.join();
+}
+
+void trigger_thread::add(stroke_id id, std::uint64_t frame)
+{
+    const std::uint64_t epoch = clock_.load().epoch;
+    {
+        const std::lock_guard lock(mutex_);
+        plan_.add({epoch, frame, id});
+    }
+    wake_.signal();
+}
+
+void trigger_thread::forget(stroke_id id)
+{
+    const std::lock_guard lock(mutex_);
+    plan_.forget(id);
+}
+
+pulse_stats trigger_thread::stats() const
+{
+    const std::lock_guard lock(mutex_);
+    return stats_;
+}
+
+void trigger_thread::run() noexcept
+{
+    while (!over_.load(std::memory_order_acquire))
+        wait(step());
+    line_.set(false);
+}
+
+// How long nothing is to be done.
+std::int64_t trigger_thread::step() noexcept
+{
+    const clock_line line = clock_.load();
+    std::optional<pulse> p;
+    {
+        const std::lock_guard lock(mutex_);
+        if (line.epoch != 0)
+            p = plan_.next(line);
+    }
+    if (!p)
+        return line.epoch != 0 ? idle_ns : longest_wait_ns;
+    if (!line.valid())
+        return no_clock_ns;
+    const std::int64_t due = line.time_of(p->frame);
+    const std::int64_t left = due - real_time().now() - pulse_lead_ns;
+    if (left > 0)
+        return std::min(left, longest_wait_ns);
+    emitter_.send(due, [&] {
+        const std::lock_guard lock(mutex_);
+        return plan_.has(*p) && clock_.load().epoch == p->epoch;
+    });
+    const std::lock_guard lock(mutex_);
+    plan_.take(*p);
+    stats_ = emitter_.stats();
+    return 0;
+}
+
+void trigger_thread::wait(std::int64_t ns) noexcept
+{
+    const timespec timeout{.tv_sec = static_cast<time_t>(ns / second),
+                           .tv_nsec = static_cast<long>(ns % second)};
+    pollfd fd{.fd = wake_.fd(), .events = POLLIN, .revents = 0};
+    if (::ppoll(&fd, 1, &timeout, nullptr) > 0)
+        wake_.consume();
+}
+
+} // namespace tactor::engine
