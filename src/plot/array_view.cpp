@@ -61,6 +61,11 @@ public:
         const numbering numbers = place_numbers();
         if (numbers == numbering::beside)
             frame_.radius = std::min(frame_.radius, 4.6);
+        for (const stroke& s : scene_.strokes) // before what is lighter: obstacles are limited
+            paths_.push_back(path_on_page(frame_, s.motion));
+        for (const auto& parts : paths_)
+            for (const std::vector<spot>& part : parts)
+                taken_.block_line(part, 2.0, 6.0);
         draw_joins();
         draw_paths();
         draw_tactors(canvas_, frame_, scene_.tactors, plays, numbers, taken_);
@@ -158,12 +163,11 @@ private:
     void draw_paths()
     {
         const group all(canvas_, {.id = "paths"});
-        for (const stroke& s : scene_.strokes)
-            for (std::vector<spot>& part : path_on_page(frame_, s.motion)) {
-                taken_.block_line(part, 2.0, 6.0);
-                canvas_.poly(std::move(part), false, {.stroke = ink, .width = 0.7},
-                             {.kind = "path", .title = s.name});
-            }
+        const double width = paths_.size() <= 20 ? 0.7 : 0.3;
+        for (std::size_t i = 0; i < paths_.size(); ++i)
+            for (std::vector<spot>& part : paths_[i])
+                canvas_.poly(std::move(part), false, {.stroke = ink, .width = width},
+                             {.kind = "path", .title = scene_.strokes[i].name});
     }
 
     void draw_dots()
@@ -207,6 +211,7 @@ private:
     std::size_t stride_;
     fineness fine_;
     box where_;
+    std::vector<std::vector<std::vector<spot>>> paths_ = {}; // by stroke, in parts
 };
 
 } // namespace

@@ -20,10 +20,10 @@ constexpr double strip_height = 5.0;
 constexpr double dimension_pitch = 9.5;
 constexpr double first_dimension = 8.0; // under the strip
 constexpr double heading_height = 9.5;
-constexpr double inset = 9.0;         // of time 0 in the diagram: room for arrows that point from outside
-constexpr double outset = 7.0;        // behind the last sound: room for half a label
-constexpr double starts_height = 7.0; // for the numbers of strokes
-constexpr std::size_t most_starts = 200;
+constexpr double inset = 9.0;           // of time 0 in the diagram: room for arrows that point from outside
+constexpr double outset = 7.0;          // behind the last sound: room for half a label
+constexpr double starts_height = 7.0;   // for the numbers of strokes
+constexpr std::size_t most_starts = 60; // more say nothing
 constexpr double legend_height = 10.0;
 
 class view {
@@ -41,7 +41,7 @@ public:
         frame_.x = {-inset / per_s, t.total_s + outset / per_s, left, where.right()};
         find_first_pair();
         frame_.top = where.y + (colours ? strip_height : 0.0) + dimensions_height() + 3.0 +
-                     (t.starts_s.size() > 1 ? starts_height : 0.0);
+                     (has_starts() ? starts_height : 0.0);
         dense_ = too_dense(t, frame_);
     }
 
@@ -108,14 +108,16 @@ private:
                         {frame_.x(0.0), where_.y, frame_.x(time_.total_s) - frame_.x(0.0), strip_height});
     }
 
+    bool has_starts() const { return time_.starts_s.size() > 1 && time_.starts_s.size() <= most_starts; }
+
     // A line at each start with the numbers of the strokes that start there.
     void draw_stroke_starts(double bottom)
     {
-        if (time_.starts_s.size() < 2)
+        if (!has_starts())
             return;
         const group g(canvas_, {.id = "stroke-starts"});
         std::map<double, std::string> numbers;
-        for (std::size_t i = 0; i < std::min(time_.starts_s.size(), most_starts); ++i) {
+        for (std::size_t i = 0; i < time_.starts_s.size(); ++i) {
             std::string& s = numbers[std::round(frame_.x(time_.starts_s[i]) * 10.0) / 10.0];
             s += (s.empty() ? "" : ", ") + fmt::format("{}", i + 1);
         }

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+"""Reading the tool's pictures: SVG by its groups and their scales, PNG pixel by pixel."""
+import struct
+import xml.etree.ElementTree as ET
+import zlib
+
+from harness import ToolTest
+
+NS = "{http://www.w3.org/2000/svg}"
+BRUSH = ["--algorithm", "tactile-brush", "--snap", "--drop-points"]
+
+
+class Svg:
+    """A picture of ours."""
+
+    def __init__(self, path):
+        self.text = path.read_text(encoding="utf-8")
+        self.root = ET.fromstring(self.text)
+
+    def all(self, kind, inside=None):
+        where = self.root if inside is None else self.id(inside)
+        return [e for e in where.iter() if e.get("class") == kind]
+
+    def id(self, name):
+        found = [e for e in self.root.iter() if e.get("id") == name]
+        assert len(found) == 1, f"{len(found)} elements have the id {name}"
+        return found[0]
+
+    def texts(self):
+        return ["".join(e.itertext()) for e in self.root.iter(NS + "text")]
+
+    def place(self, x_mm, y_mm):
+        """Where a place on the skin is on the page, in pt."""
+        g = self.id("array")
+        s = float(g.get("data-mm-scale"))
+        return float(g.get("data-x0")) + s * x_mm, float(g.get("data-y0")) + s * y_mm
+
+    def time(self, t_s, group="timing"):
+        g = self.id(group)
+        return float(g.get("data-x0")) + float(g.get("data-x-scale")) * t_s
+
+
+def number(e, name):
+    return float(e.get(name))
+
+
+class Png:
+    """A PNG with 8-bit RGB, decoded."""
+
+    def __init__(self, path):
+        data = path.read_bytes()
+        assert data[:8] == b"\x89PNG\r\n\x1a\n"
+        self.chunks, at = {}, 8
+        while at < len(data):
+            size, name = struct.unpack(">I4s", data[at:at + 8])
+            body = data[at + 8:at + 8 + size]
+            assert zlib.crc32(name + body) == struct.unpack(">I", data[at + 8 + size:at + 12 + size])[0], name
+            self.chunks[name] = self.chunks.get(name, b"") + body
+            at += 12 + size
+        self.width, self.height, depth, colour = struct.unpack(">IIBB", self.chunks[b"IHDR"][:10])
+        assert (depth, colour) == (8, 2), (depth, colour)
+        self.rows = self.unfilter(zlib.decompress(self.chunks[b"IDAT"]))
+
+    def unfilter(self, raw):
+        n, rows, before = 3 * self.width, [], bytes(3 * self.width)
+        for y in range(self.height):
+            kind, row = raw[y * (n + 1)], bytearray(raw[y * (n + 1) + 1:(y + 1) * (n + 1)])
+            for i in range(n):
+                a, b, c = (row[i - 3], before[i], before[i - 3]) if i >= 3 else (0, before[i], 0)
+                if kind == 1:
+                    row[i] = (row[i] + a) & 255
+                elif kind == 2:
+                    row[i] = (row[i] + b) & 255
+                elif kind == 3:
+                    row[i] = (row[i] + (a + b) // 2) & 255
+                elif kind == 4:
+                    p = a + b - c
+                    row[i] = (row[i] + min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]) & 255
+            rows.append(bytes(row))
+            before = row
+        return rows
+
+    def pixel(self, x, y):
+        return tuple(self.rows[y][3 * x:3 * x + 3])
+
+    def grey(self):
+        return [(r[i] * 2 + r[i + 1] * 7 + r[i + 2]) / 10 for r in self.rows for i in range(0, len(r), 3)]
+
+
+class PlotTest(ToolTest):
+    def svg(self, *args, **more):
+        self.ok("plot", *args, "-o", "a.svg", **more)
+        return Svg(self.dir / "a.svg")
+
+    def near(self, a, b, tolerance=0.002):
+        self.assertLessEqual(abs(a - b), tolerance, f"{a} is not {b}")
