@@ -27,7 +27,8 @@ PUBLIC = {
     "array": "model", "path": "model", "setup": "model", "stroke": "model",
     "phantom": "plan", "plan": "plan", "percept": "plan",
     "render": "synth", "sample_format": None, "wav": "wav",
-    "gpio": "gpio", "sink": None, "alsa": "alsa", "player": "engine", "live": "engine", "asio": "engine",
+    "gpio": "gpio", "realtime": "rt", "sink": None, "alsa": "alsa", "player": "engine", "live": "engine",
+    "asio": "engine",
 }
 USES_ALL_PUBLIC = {"cli", "plot", "server"}
 # Header prefix: the only places that may include it.

@@ -3,6 +3,8 @@
 /// ALSA playback as a sink.
 #pragma once
 
+#include <chrono>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,5 +31,12 @@ struct alsa_options {
 ///         the whole set asked for (the message prints the set and what the device can do), bad_input
 ///         for numbers that no PCM can have and for configuration text that ALSA cannot read.
 TACTOR_API std::unique_ptr<sink> open_alsa(const alsa_options& o);
+
+/// Opens a PCM that was lost once it is back: tries after 0.1 s, then after twice as long each time, up to
+/// 5 s. `pause` waits for the time that it is given; it returns false to give up, because of a signal or a
+/// deadline. Null when given up.
+/// \throws error: what open_alsa() throws, but for not_available, which means not yet.
+TACTOR_API std::unique_ptr<sink> reopen_alsa(const alsa_options& o,
+                                             const std::function<bool(std::chrono::milliseconds)>& pause);
 
 } // namespace tactor

@@ -197,6 +197,10 @@ public:
     /// at once.
     void stop();
 
+    /// Why the stream has ended: the device was lost, it failed, or stop() was called. Nothing while it goes
+    /// on. A stream that has ended stays so: open the device again (reopen_alsa()) for a new player.
+    std::optional<std::string> ended() const;
+
     player_position position() const noexcept;
     player_stats stats() const;
 

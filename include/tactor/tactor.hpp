@@ -14,6 +14,7 @@
 #include <tactor/phantom.hpp>
 #include <tactor/plan.hpp>
 #include <tactor/player.hpp>
+#include <tactor/realtime.hpp>
 #include <tactor/render.hpp>
 #include <tactor/sample_format.hpp>
 #include <tactor/setup.hpp>

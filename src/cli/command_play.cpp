@@ -1,107 +1,21 @@
 // SPDX-License-Identifier: MIT
-#include <cerrno>
-#include <cstring>
 #include <memory>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <poll.h>
-#include <sys/eventfd.h>
-#include <unistd.h>
 
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
-#include "cli/interrupt.hpp"
-#include "cli/live_picture.hpp"
+#include "cli/play_options.hpp"
+#include "cli/play_report.hpp"
+#include "cli/play_session.hpp"
 
 namespace tactor::cli {
 namespace {
 
-constexpr int frame_ms = 40; // of the picture: 25 a second
-
-alsa_options device(const settings& s, const environment& e, const score& first)
+std::vector<score> make_scores(const std::vector<piece>& pieces, const environment& e,
+                               const render_options& render)
 {
-    alsa_options o;
-    const output_settings& out = e.config.output;
-    if (s.pcm || out.pcm)
-        o.pcm = s.pcm ? *s.pcm : *out.pcm;
-    else
-        fmt::print(stderr,
-                   "tactor: no device is configured: playing to \"null\", which nobody feels (-D PCM plays "
-                   "on hardware)\n");
-    o.channels = first.channels();
-    o.rate = first.rate();
-    o.format = s.format;
-    o.period_frames = out.period_frames.value_or(o.period_frames);
-    o.periods = out.periods.value_or(o.periods);
-    return o;
-}
-
-// Wakes the main thread when a stroke has ended.
-class ended_signal {
-public:
-    ended_signal() : fd_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC))
-    {
-        if (fd_ < 0)
-            throw error(errc::runtime, "eventfd", std::strerror(errno));
-    }
-    ~ended_signal() { close(fd_); }
-    ended_signal(const ended_signal&) = delete;
-    ended_signal& operator=(const ended_signal&) = delete;
-
-    void raise() const { [[maybe_unused]] const int r = eventfd_write(fd_, 1); }
-    int descriptor() const { return fd_; }
-    void clear() const
-    {
-        eventfd_t ignored;
-        [[maybe_unused]] const int r = eventfd_read(fd_, &ignored);
-    }
-
-private:
-    int fd_;
-};
-
-std::vector<double> starts_s(const score& s)
-{
-    std::vector<double> starts;
-    for (std::uint64_t f : s.starts())
-        starts.push_back(static_cast<double>(f) / s.rate());
-    return starts;
-}
-
-// Plays one piece; returns the signal that stopped it, or 0.
-int play_piece(player& device, const piece& p, const score& s, const environment& e, interrupt& stop,
-               const ended_signal& ended)
-{
-    live_picture picture(e.tactors);
-    const auto starts = starts_s(s);
-    const double total = static_cast<double>(s.frames()) / s.rate();
-    const stroke_id id = device.submit(s);
-    for (;;) {
-        if (const auto report = device.wait(id, std::chrono::nanoseconds(0))) {
-            if (report->state == stroke_state::interrupted)
-                throw error(errc::runtime, p.name,
-                            fmt::format("interrupted after {:.3f} s: {}",
-                                        static_cast<double>(report->frames) / s.rate(), report->reason));
-            return 0;
-        }
-        const player_position where = device.position();
-        const double t = where.stroke == id ? static_cast<double>(where.stroke_frame) / s.rate() : 0.0;
-        if (picture.active())
-            picture.draw(at_time(p.plans, starts, e.tactors.tactors.size(), t), t, total);
-        pollfd fds[] = {{stop.descriptor(), POLLIN, 0}, {ended.descriptor(), POLLIN, 0}};
-        ::poll(fds, 2, picture.active() ? frame_ms : -1);
-        ended.clear();
-        if (const int signal = stop.poll())
-            return signal;
-    }
-}
-
-int play(settings& s, option_list& options)
-{
-    const environment e = read_environment(s, options);
-    const auto pieces = plan_pieces(s, e);
-    const render_options render = settle_render(s, e);
     std::vector<score> scores;
     for (const piece& p : pieces) {
         scores.push_back(make_score(p, e, render));
@@ -109,23 +23,102 @@ int play(settings& s, option_list& options)
             for (const std::string& w : q.schedule.warnings)
                 fmt::print(stderr, "tactor: warning: {}\n", w);
     }
-    interrupt stop;
-    const ended_signal ended;
-    player device_player(open_alsa(device(s, e, scores.front())), e.tactors);
-    device_player.on_report([&ended](const stroke_report&) { ended.raise(); });
-    const stream_setup& out = device_player.setup();
-    fmt::print("{}: {} channels, {} Hz, {}, period {} of {} frames\n", out.name, out.channels, out.rate,
-               to_string(out.format), out.period_frames, out.buffer_frames);
+    return scores;
+}
+
+void print_device(const play_options& o, const stream_setup& d)
+{
+    if (!o.json())
+        fmt::print("{}: {} channels, {} Hz, {}, period {} of {} frames, latency {:.1f} ms\n", d.name,
+                   d.channels, d.rate, to_string(d.format), d.period_frames, d.buffer_frames, latency_ms(d));
     std::fflush(stdout);
-    int signal = 0;
-    for (std::size_t i = 0; i < pieces.size() && signal == 0; ++i) {
-        signal = play_piece(device_player, pieces[i], scores[i], e, stop, ended);
-        if (signal == 0)
-            fmt::print("{}: played {:.3f} s\n", pieces[i].name,
-                       static_cast<double>(scores[i].frames()) / scores[i].rate());
+    const std::string warning = latency_warning(o, d);
+    if (!warning.empty())
+        fmt::print(stderr, "tactor: warning: {}\n", warning);
+}
+
+// What ends a run before its strokes are through; a kind of its own, for the report comes before it.
+struct broken_off {
+    std::string stroke;
+    std::string why;
+    std::string hint;
+};
+
+// Plays one piece, once more where its device went before it began.
+std::optional<broken_off> play_piece(play_session& session, const play_options& o, const piece& p,
+                                     const score& s, stroke_outcome& out)
+{
+    for (;;) {
+        const bool playable = !session.lost() || session.reopen();
+        if (session.signal() != 0)
+            return {};
+        if (!playable)
+            return broken_off{p.name, "not played: the device is gone",
+                              o.reopen_s > 0.0 ? "it did not come back in time"
+                                               : "--reopen-s S waits for it to come back"};
+        out.report = session.play(p, s);
+        const bool again = out.report->state == stroke_state::interrupted && out.report->frames == 0 &&
+                           session.lost() && o.reopen_s > 0.0;
+        if (!again)
+            return {};
     }
-    device_player.stop();
-    return signal == 0 ? status_ok : interrupt::status(signal);
+}
+
+std::optional<broken_off> judge(const play_session& session, const play_options& o, const stroke_outcome& out,
+                                bool last)
+{
+    if (!out.report || out.report->state != stroke_state::interrupted || session.signal() != 0)
+        return {};
+    const std::string text = describe(out, session.setup().rate);
+    const std::string why = text.substr(out.name.size() + 2);
+    if (o.void_on_xrun)
+        return broken_off{out.name, why, "the run is void: --void-on-xrun"};
+    if (session.lost() && (last || o.reopen_s <= 0.0))
+        return broken_off{out.name, why, last ? "" : "--reopen-s S waits for it to come back"};
+    fmt::print(stderr, "tactor: warning: {}\n", text);
+    return {};
+}
+
+std::optional<broken_off> play_all(play_session& session, const play_options& o,
+                                   const std::vector<piece>& pieces, const std::vector<score>& scores,
+                                   std::vector<stroke_outcome>& outcomes)
+{
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        std::optional<broken_off> broken = play_piece(session, o, pieces[i], scores[i], outcomes[i]);
+        if (!broken)
+            broken = judge(session, o, outcomes[i], i + 1 == pieces.size());
+        if (!o.json() && outcomes[i].report) {
+            fmt::print("{}\n", describe(outcomes[i], session.setup().rate));
+            std::fflush(stdout);
+        }
+        if (broken || session.signal() != 0)
+            return broken;
+    }
+    return {};
+}
+
+int play(settings& s, option_list& options, const play_options& o)
+{
+    const environment e = read_environment(s, options);
+    const auto pieces = plan_pieces(s, e);
+    const auto scores = make_scores(pieces, e, settle_render(s, e));
+    play_session session(device_options(s, o, e, scores.front()), o, e);
+    print_device(o, session.setup());
+
+    run_report r;
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+        r.strokes.push_back({pieces[i].name, scores[i].frames()});
+    const auto broken = play_all(session, o, pieces, scores, r.strokes);
+    session.finish(r);
+    if (o.json())
+        print_json(stdout, r);
+    else
+        print_table(stdout, r);
+    if (session.signal() != 0)
+        return interrupt::status(session.signal());
+    if (broken)
+        throw error(errc::runtime, broken->stroke, broken->why, broken->hint);
+    return status_ok;
 }
 
 } // namespace
@@ -134,12 +127,14 @@ command add_play(CLI::App& app)
 {
     CLI::App* c = app.add_subcommand("play", "Play on the array");
     auto s = std::make_shared<settings>();
+    auto o = std::make_shared<play_options>();
     auto options = std::make_shared<option_list>(*c, *s);
     options->add_stroke_options();
     options->add_sound_options();
     options->add_device_options();
+    add_play_options(*c, *o);
     c->footer("Example: tactor play park2016-3 -D hw:CARD=Tactor");
-    return [s, options] { return play(*s, *options); };
+    return [s, o, options] { return play(*s, *options, *o); };
 }
 
 } // namespace tactor::cli

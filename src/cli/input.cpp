@@ -218,6 +218,10 @@ render_options settle_render(const settings& s, const environment& e)
     r.rate = s.rate.value_or(e.config.output.rate.value_or(48000));
     const unsigned marker = e.config.sync && e.config.sync->channel ? *e.config.sync->channel + 1 : 0;
     r.channels = e.config.output.channels.value_or(std::max(e.tactors.channels(), marker));
+    if (marker != 0) {
+        r.marker_channel = e.config.sync->channel;
+        r.marker_s = e.config.sync->pulse_ms * 1e-3;
+    }
     return r;
 }
 

@@ -68,8 +68,8 @@ instant at_time(const std::vector<placed_plan>& plans, const std::vector<double>
     return now;
 }
 
-live_picture::live_picture(const array& a)
-    : active_(isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr)
+live_picture::live_picture(const array& a, bool wanted)
+    : active_(wanted && isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr)
 {
     if (!active_)
         return;

@@ -24,7 +24,7 @@ instant at_time(const std::vector<placed_plan>& plans, const std::vector<double>
 /// NO_COLOR is set, it draws nothing.
 class live_picture {
 public:
-    explicit live_picture(const array& a);
+    explicit live_picture(const array& a, bool wanted = true);
     ~live_picture();
     live_picture(const live_picture&) = delete;
     live_picture& operator=(const live_picture&) = delete;

@@ -62,6 +62,15 @@ void player::stop()
     impl_->stop(false);
 }
 
+std::optional<std::string> player::ended() const
+{
+    const std::lock_guard lock(impl_->mutex);
+    if (!impl_->feed.stream_over())
+        return std::nullopt;
+    const std::string& reason = impl_->feed.stream_reason();
+    return reason.empty() ? "it was stopped" : reason;
+}
+
 player_position player::position() const noexcept
 {
     const engine::stream_status s = impl_->link.status.load();

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
+#include <tactor/realtime.hpp>
 
 namespace tactor {
 namespace {
@@ -127,7 +128,7 @@ void player::impl::check_start(const player_options& o)
     if (o.require_realtime && audio.fifo_error() != 0)
         throw error(errc::not_available, "real-time priority",
                     std::error_code(audio.fifo_error(), std::generic_category()).message(),
-                    "allow it with an rtprio limit for the group audio, or do without");
+                    realtime_advice(probe_realtime_rights(), o.priority));
 }
 
 player::impl::~impl()

@@ -12,6 +12,7 @@
 
 #include <sched.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 
 #if defined(__SSE2__)
 #include <xmmintrin.h>
@@ -33,6 +34,15 @@ int become_fifo(int priority) noexcept
     p.sched_priority =
         std::clamp(priority, sched_get_priority_min(SCHED_FIFO), sched_get_priority_max(SCHED_FIFO));
     // glibc's pthread attributes refuse the reset flag, so the thread does it itself.
+    if (sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &p) == 0)
+        return 0;
+    const int code = errno;
+    // A lower priority than was asked for is still far better than none.
+    rlimit most{};
+    if (code != EPERM || getrlimit(RLIMIT_RTPRIO, &most) != 0 || most.rlim_cur == 0 ||
+        most.rlim_cur >= static_cast<rlim_t>(p.sched_priority))
+        return code;
+    p.sched_priority = static_cast<int>(most.rlim_cur);
     return sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &p) == 0 ? 0 : errno;
 }
 

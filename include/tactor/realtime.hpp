@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Whether this process may work in real time, and how it gets the right.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <tactor/api.hpp>
+
+namespace tactor {
+
+/// What limits and capabilities allow.
+struct realtime_rights {
+    int priority = 0; ///< highest SCHED_FIFO priority that may be asked for; 0: none
+    /// Bytes of memory that may be locked; none: no limit.
+    std::optional<std::uint64_t> lockable_bytes = 0;
+};
+
+/// Of this process, now. Does not throw for files that cannot be read: no rights then. Blocks shortly.
+TACTOR_API realtime_rights probe_realtime_rights();
+
+/// What to do where SCHED_FIFO at this priority, or memory of this size, is refused: one sentence for
+/// people. The library asks for priorities itself and never locks the memory of its host.
+TACTOR_API std::string realtime_advice(const realtime_rights& r, int priority);
+
+} // namespace tactor

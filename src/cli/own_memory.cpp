@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include "cli/own_memory.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <malloc.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <tactor/tactor.hpp>
+
+namespace tactor::cli {
+namespace {
+
+// For stacks of threads and what is allocated later: with MCL_FUTURE all of it counts, and beyond the limit
+// allocations fail.
+constexpr std::uint64_t reserve_bytes = 32U << 20;
+
+std::uint64_t mapped_bytes()
+{
+    std::uint64_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+} // namespace
+
+std::string lock_own_memory()
+{
+    if (const auto most = probe_realtime_rights().lockable_bytes) {
+        const std::uint64_t wanted = mapped_bytes() + reserve_bytes;
+        if (wanted > *most)
+            return fmt::format("{} MiB are needed, {} MiB are allowed", (wanted + (1U << 20) - 1) >> 20,
+                               *most >> 20);
+    }
+    // One heap that never shrinks: what was locked once stays, and no arena of 64 MiB is charged.
+    mallopt(M_TRIM_THRESHOLD, -1);
+    mallopt(M_MMAP_MAX, 0);
+    mallopt(M_ARENA_MAX, 1);
+    return mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? "" : std::strerror(errno);
+}
+
+void limit_runaway_threads()
+{
+    constexpr rlim_t soft_us = 200'000; // SIGXCPU
+    constexpr rlim_t hard_us = 1'000'000;
+    rlimit l{};
+    if (getrlimit(RLIMIT_RTTIME, &l) != 0)
+        return;
+    // What is stricter already stays. The amplifier's holder outlives either signal.
+    l.rlim_max = std::min(l.rlim_max, hard_us);
+    l.rlim_cur = std::min({l.rlim_cur, soft_us, l.rlim_max});
+    setrlimit(RLIMIT_RTTIME, &l);
+}
+
+} // namespace tactor::cli

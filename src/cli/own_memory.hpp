@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What the tool, unlike the library, may do with its process to play in real time.
+#pragma once
+
+#include <string>
+
+namespace tactor::cli {
+
+/// Locks all memory of the process, now and to come, where the limits leave room for it. Returns why not;
+/// empty: it is locked. Call it before threads are made and after what forks.
+std::string lock_own_memory();
+
+/// A real-time thread that runs for 0.2 s without a pause is ended, and the process with it: it would hold
+/// a computer with one core for good.
+void limit_runaway_threads();
+
+} // namespace tactor::cli

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "cli/play_options.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace tactor::cli {
+namespace {
+
+unsigned parse_whole(const std::string& option, const std::string& text, double lo, double hi,
+                     const std::string& unit)
+{
+    const double v = parse_number(option, text, lo, hi, unit);
+    if (v != std::floor(v))
+        throw error(errc::bad_input, option, fmt::format("{} is not a whole number", text));
+    return static_cast<unsigned>(v);
+}
+
+void add_latency(CLI::App& c, play_options& o)
+{
+    auto* latency = c.add_option_function<std::string>(
+        "--latency-ms",
+        [&o](const std::string& t) { o.latency_ms = parse_number("--latency-ms", t, 0.1, 10000, "ms"); },
+        "length of the device's buffer: periods x period");
+    latency->type_name("MS");
+    auto* period = c.add_option_function<std::string>(
+        "--period-frames",
+        [&o](const std::string& t) {
+            o.period_frames = parse_whole("--period-frames", t, 1, 1 << 20, "frames");
+        },
+        "instead: frames in a period (default: the configuration's, else 96)");
+    period->type_name("N");
+    latency->excludes(period);
+    c.add_option_function<std::string>(
+         "--periods",
+         [&o](const std::string& t) { o.periods = parse_whole("--periods", t, 2, 1024, "periods"); },
+         "periods in the buffer (default: the configuration's, else 3)")
+        ->type_name("N");
+}
+
+void add_lines(CLI::App& c, play_options& o)
+{
+    c.add_flag("--arm", o.arm, "each stroke waits for an edge on the [sync] in line");
+    c.add_option_function<std::string>(
+         "--sync-delay-ms",
+         [&o](const std::string& t) { o.sync_delay_ms = parse_number("--sync-delay-ms", t, 0, 10000, "ms"); },
+         "from the edge to the stroke's first sample at the DAC (default 50)")
+        ->type_name("MS");
+    c.add_flag("--no-gpio", o.no_gpio, "leave the lines of [amplifier] and [sync] alone");
+}
+
+} // namespace
+
+void add_play_options(CLI::App& c, play_options& o)
+{
+    add_latency(c, o);
+    c.add_flag("--require-realtime", o.require_realtime, "fail without real-time priority and locked memory");
+    c.add_flag("--void-on-xrun", o.void_on_xrun,
+               "an xrun or a lost device in a stroke ends the run with status 1");
+    c.add_option_function<std::string>(
+         "--reopen-s",
+         [&o](const std::string& t) { o.reopen_s = parse_number("--reopen-s", t, 0, 1e9, "s"); },
+         "wait so long for a lost device to come back, then go on with the next stroke (default 0)")
+        ->type_name("S");
+    add_lines(c, o);
+    c.add_option_function<std::string>(
+         "--format",
+         [&o](const std::string& t) {
+             if (t != "text" && t != "json")
+                 throw error(errc::bad_input, "--format", fmt::format("\"{}\" is not known", t),
+                             "one of text, json");
+             o.format = t;
+         },
+         "what is told of the run (default text)")
+        ->type_name("text|json");
+}
+
+alsa_options device_options(const settings& s, const play_options& p, const environment& e,
+                            const score& first)
+{
+    alsa_options o;
+    const output_settings& out = e.config.output;
+    if (s.pcm || out.pcm)
+        o.pcm = s.pcm ? *s.pcm : *out.pcm;
+    else
+        fmt::print(stderr,
+                   "tactor: no device is configured: playing to \"null\", which nobody feels (-D PCM plays "
+                   "on hardware)\n");
+    o.channels = first.channels();
+    o.rate = first.rate();
+    o.format = s.format;
+    o.periods = p.periods.value_or(out.periods.value_or(o.periods));
+    o.period_frames = p.period_frames.value_or(out.period_frames.value_or(o.period_frames));
+    if (p.latency_ms) {
+        const double frames = *p.latency_ms * 1e-3 * o.rate / o.periods;
+        o.period_frames = std::max(1U, static_cast<unsigned>(std::lround(frames)));
+    }
+    return o;
+}
+
+double latency_ms(const stream_setup& s)
+{
+    return 1e3 * s.buffer_frames / s.rate;
+}
+
+std::string latency_warning(const play_options& o, const stream_setup& made)
+{
+    // Rounding to whole frames is no news.
+    constexpr double tolerance = 1.05;
+    if (!o.latency_ms || latency_ms(made) <= *o.latency_ms * tolerance + 1e3 / made.rate)
+        return {};
+    return fmt::format("a latency of {} ms was asked for, the device makes it {:.1f} ms", *o.latency_ms,
+                       latency_ms(made));
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What only `play` is asked for: latency, rights, lines, what to do when the stream breaks.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <tactor/tactor.hpp>
+
+#include "cli/input.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace tactor::cli {
+
+struct play_options {
+    std::optional<double> latency_ms;
+    std::optional<unsigned> period_frames;
+    std::optional<unsigned> periods;
+    bool require_realtime = false;
+    bool void_on_xrun = false;
+    double reopen_s = 0.0; ///< how long a lost device is waited for
+    bool arm = false;
+    double sync_delay_ms = 50.0;
+    bool no_gpio = false;
+    std::string format = "text";
+
+    bool json() const { return format == "json"; }
+};
+
+void add_play_options(CLI::App& command, play_options& into);
+
+/// The PCM as it is to be opened; says so where no device is configured.
+alsa_options device_options(const settings& s, const play_options& o, const environment& e,
+                            const score& first);
+
+/// A sentence where the device makes more latency than was asked for; else empty.
+std::string latency_warning(const play_options& o, const stream_setup& made);
+
+/// Time that the buffer holds.
+double latency_ms(const stream_setup& s);
+
+} // namespace tactor::cli
