@@ -37,6 +37,8 @@ void print_device(const play_options& o, const stream_setup& d)
         fmt::print(stderr, "tactor: warning: {}\n", warning);
 }
 
+constexpr const char* wait_hint = "--reopen-s S waits for the device to come back";
+
 // What ends a run before its strokes are through; a kind of its own, for the report comes before it.
 struct broken_off {
     std::string stroke;
@@ -44,37 +46,31 @@ struct broken_off {
     std::string hint;
 };
 
-// Plays one piece, once more where its device went before it began.
-std::optional<broken_off> play_piece(play_session& session, const play_options& o, const piece& p,
-                                     const score& s, stroke_outcome& out)
+// Plays one piece, once more where its device went before it began. False when there is no device.
+bool play_piece(play_session& session, const piece& p, const score& s, stroke_outcome& out)
 {
-    for (;;) {
-        const bool playable = !session.lost() || session.reopen();
-        if (session.signal() != 0)
-            return {};
-        if (!playable)
-            return broken_off{p.name, "not played: the device is gone",
-                              o.reopen_s > 0.0 ? "it did not come back in time"
-                                               : "--reopen-s S waits for it to come back"};
+    for (bool again = false;; again = true) {
+        if (session.lost() && !session.reopen())
+            return false;
         out.report = session.play(p, s);
-        const bool again = out.report->state == stroke_state::interrupted && out.report->frames == 0 &&
-                           session.lost() && o.reopen_s > 0.0;
-        if (!again)
-            return {};
+        const bool untouched =
+            out.report->state == stroke_state::interrupted && out.report->frames == 0 && session.lost();
+        if (!untouched || again || !session.waits())
+            return true;
     }
 }
 
 std::optional<broken_off> judge(const play_session& session, const play_options& o, const stroke_outcome& out,
                                 bool last)
 {
-    if (!out.report || out.report->state != stroke_state::interrupted || session.signal() != 0)
+    if (out.report->state != stroke_state::interrupted)
         return {};
     const std::string text = describe(out, session.setup().rate);
     const std::string why = text.substr(out.name.size() + 2);
     if (o.void_on_xrun)
         return broken_off{out.name, why, "the run is void: --void-on-xrun"};
-    if (session.lost() && (last || o.reopen_s <= 0.0))
-        return broken_off{out.name, why, last ? "" : "--reopen-s S waits for it to come back"};
+    if (session.lost() && (last || !session.waits()))
+        return broken_off{out.name, why, last ? "" : wait_hint};
     fmt::print(stderr, "tactor: warning: {}\n", text);
     return {};
 }
@@ -84,14 +80,18 @@ std::optional<broken_off> play_all(play_session& session, const play_options& o,
                                    std::vector<stroke_outcome>& outcomes)
 {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-        std::optional<broken_off> broken = play_piece(session, o, pieces[i], scores[i], outcomes[i]);
-        if (!broken)
-            broken = judge(session, o, outcomes[i], i + 1 == pieces.size());
+        const bool there = play_piece(session, pieces[i], scores[i], outcomes[i]);
+        if (!there && session.signal() == 0)
+            return broken_off{pieces[i].name, "not played: the device is gone",
+                              session.waits() ? "it did not come back in time" : wait_hint};
         if (!o.json() && outcomes[i].report) {
             fmt::print("{}\n", describe(outcomes[i], session.setup().rate));
             std::fflush(stdout);
         }
-        if (broken || session.signal() != 0)
+        if (session.signal() != 0)
+            return {};
+        const auto broken = judge(session, o, outcomes[i], i + 1 == pieces.size());
+        if (broken)
             return broken;
     }
     return {};

@@ -16,7 +16,8 @@
 namespace tactor::cli {
 namespace {
 
-constexpr int frame_ms = 40; // of the picture: 25 a second
+constexpr int frame_ms = 40;   // of the picture: 25 a second
+constexpr int settled_ms = 10; // more than one turn of the audio thread takes
 
 std::vector<double> starts_s(const score& s)
 {
@@ -95,14 +96,25 @@ stroke_report play_session::play(const piece& p, const score& s)
     live_picture picture(environment_.tactors, !options_.json());
     const auto starts = starts_s(s);
     const double total = static_cast<double>(s.frames()) / s.rate();
-    const stroke_id id = player_->submit(s, options_.arm ? start_at::trigger() : start_at::now());
+    stroke_id id = 0;
+    try {
+        id = player_->submit(s, options_.arm ? start_at::trigger() : start_at::now());
+    } catch (const error&) {
+        if (!lost())
+            throw;
+        return {.state = stroke_state::interrupted, .reason = *player_->ended()};
+    }
     if (options_.arm && !options_.json()) {
         fmt::print("{}: armed\n", p.name);
         std::fflush(stdout);
     }
     for (;;) {
-        if (const auto report = player_->wait(id, std::chrono::nanoseconds(0)))
+        if (const auto report = player_->wait(id, std::chrono::nanoseconds(0))) {
+            // That the device is gone is told after the strokes that it interrupted.
+            if (report->state == stroke_state::interrupted)
+                sleep(-1, settled_ms);
             return *report;
+        }
         const player_position where = player_->position();
         const double t = where.stroke == id ? static_cast<double>(where.stroke_frame) / s.rate() : 0.0;
         if (picture.active())
@@ -119,10 +131,11 @@ stroke_report play_session::play(const piece& p, const score& s)
 bool play_session::reopen()
 {
     using clock = std::chrono::steady_clock;
-    if (options_.reopen_s <= 0.0)
+    if (!waits())
         return false;
     fmt::print(stderr, "tactor: waiting for \"{}\" to come back (Ctrl-C ends)\n", device_.pcm);
-    add_stats(before_, player_->stats());
+    if (player_ != nullptr)
+        add_stats(before_, player_->stats());
     const auto until = clock::now() + std::chrono::duration<double>(options_.reopen_s);
     const auto pause = [&](std::chrono::milliseconds wait) {
         const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - clock::now());

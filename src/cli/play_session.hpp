@@ -42,8 +42,10 @@ public:
     /// Plays one piece to its end, or until a signal comes, see signal(). \throws error.
     stroke_report play(const piece& p, const score& s);
 
-    /// Whether the device is gone: nothing can be played until reopen().
-    bool lost() const { return player_->ended().has_value(); }
+    /// Whether the device is gone, or failed: nothing can be played until reopen().
+    bool lost() const { return player_ == nullptr || player_->ended().has_value(); }
+    /// Whether a lost device is waited for.
+    bool waits() const noexcept { return options_.reopen_s > 0.0; }
     /// Waits for the device, as long as --reopen-s says. False when it did not come back, or a signal came.
     bool reopen();
 

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
 """tactor play on ALSA's null and file devices, which need no hardware and pace themselves."""
+import json
 import os
 import pty
 import re
+import resource
 import signal
 import subprocess
 
@@ -68,6 +70,130 @@ class Play(ToolTest):
             # A full-scale carrier of 250 Hz moves by at most 2 pi 250 / 48000 of full scale in a frame.
             self.assertLessEqual(max(steps), 32768 * 0.0328)
             (self.dir / "out.raw").unlink()
+
+    def test_latency_is_periods_times_period(self):
+        def sizes(*more):
+            return re.search(r"period (\d+) of (\d+) frames, latency ([0-9.]+) ms", self.ok("play", *self.SHORT, *more).stdout)
+        self.assertEqual(sizes().groups(), ("96", "288", "6.0"))
+        self.assertEqual(sizes("--latency-ms", "3").groups(), ("48", "144", "3.0"))
+        self.assertEqual(sizes("--latency-ms", "10", "--periods", "2").groups(), ("240", "480", "10.0"))
+        self.assertEqual(sizes("--period-frames", "64", "--periods", "4").groups(), ("64", "256", "5.3"))
+        self.write("c.toml", '[output]\npcm = "null"\nperiod_frames = 500\nperiods = 5\n')
+        self.assertEqual(sizes("--config", "c.toml", "--latency-ms", "5").groups(), ("48", "240", "5.0"))
+        self.refused(2, "play", *self.SHORT, "--latency-ms", "3", "--period-frames", "64", says=["--latency-ms"])
+        for option, value in (("--latency-ms", "nan"), ("--latency-ms", "0"), ("--period-frames", "1.5"),
+                              ("--periods", "1"), ("--reopen-s", "-1"), ("--sync-delay-ms", "x"), ("--format", "xml")):
+            self.refused(2, "play", *self.SHORT, option, value, says=[option])
+
+    def test_the_run_as_json(self):
+        r = self.ok("play", "park2016-1", "--duration", "0.3", "--format", "json", "-D", "null")
+        told = json.loads(r.stdout)
+        self.assertEqual(told["schema"], "tactor-play/1")
+        self.assertEqual({k: told["device"][k] for k in ("pcm", "channels", "rate_hz", "period_frames", "buffer_frames")},
+                         {"pcm": "null", "channels": 9, "rate_hz": 48000, "period_frames": 96, "buffer_frames": 288})
+        (stroke,) = told["strokes"]
+        self.assertEqual((stroke["stroke"], stroke["state"], stroke["reason"]), ("park2016-1", "finished", None))
+        self.assertEqual(stroke["frames"], stroke["length_frames"])
+        counters = told["counters"]
+        self.assertEqual((counters["xruns"], counters["xrun_s"], counters["reopened"]), (0, [], 0))
+        self.assertGreaterEqual(counters["frames"], stroke["frames"])
+        if counters["locked_memory"]:
+            self.assertEqual((counters["minor_faults"], counters["major_faults"]), (0, 0))
+
+    def test_counters_as_text(self):
+        out = self.ok("play", *self.SHORT).stdout
+        for name in ("xruns", "latest wake-up", "ring low water", "page faults", "limited", "real time"):
+            self.assertRegex(out, f"(?m)^{name} +\\S")
+
+    def on_failing_device(self, *args):
+        """Plays to a file of s32 that takes 1.7 s: a stroke of 2.2 s does not fit, one of 1.5 s does."""
+        def small_files():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (3_000_000, 3_000_000))
+
+        r = subprocess.run([TOOL, "play", "park2016-3", "park2016-1", "-D", f"raw:{self.dir}/out.raw", "--sample-format", "s32",
+                            *args], preexec_fn=small_files, cwd=self.dir, env=self.env, capture_output=True, text=True,
+                           check=False)
+        told = json.loads(r.stdout) if "json" in args else {"strokes": []}
+        return r, told, [s["state"] for s in told["strokes"]]
+
+    def test_a_stroke_that_the_device_cuts_is_reported_and_ends_the_run(self):
+        r, told, states = self.on_failing_device("--format", "json")
+        self.assertEqual((r.returncode, states), (1, ["interrupted", "not played"]), r.stderr)
+        self.assertGreater(told["strokes"][0]["frames"], 48000)
+        self.assertLess(told["strokes"][0]["frames"], told["strokes"][0]["length_frames"])
+        self.assertRegex(r.stderr, r"tactor: park2016-3: interrupted after 1\.\d+ s: .*--reopen-s")
+
+    def test_an_interrupted_stroke_voids_the_run_where_that_is_asked_for(self):
+        r, _, _ = self.on_failing_device("--void-on-xrun", "--reopen-s", "20")
+        self.assertEqual(r.returncode, 1)
+        self.assertRegex(r.stderr, r"tactor: park2016-3: interrupted after .*void")
+        self.assertIn("park2016-3: interrupted after", r.stdout)
+        self.assertNotIn("park2016-1", r.stdout)
+
+    def test_a_device_that_comes_back_gets_the_next_stroke(self):
+        r, told, states = self.on_failing_device("--format", "json", "--reopen-s", "20")
+        self.assertEqual((r.returncode, states), (0, ["interrupted", "finished"]), r.stderr)
+        self.assertEqual(told["counters"]["reopened"], 1)
+        self.assertRegex(r.stderr, "(?s)warning: park2016-3: interrupted.*waiting for.*is back")
+
+    def test_ctrl_c_still_reports(self):
+        p = subprocess.Popen([TOOL, "play", "park2016-1", "park2016-2", "--duration", "600", "-D",
+                              f"raw:{self.dir}/out.raw", "--format", "json"], cwd=self.dir, env=self.env,
+                             stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        while not (self.dir / "out.raw").exists() or (self.dir / "out.raw").stat().st_size < 200000:
+            self.assertIsNone(p.poll())
+        p.send_signal(signal.SIGINT)
+        out, _ = p.communicate(timeout=30)
+        self.assertEqual(p.returncode, 130)
+        self.assertEqual([s["state"] for s in json.loads(out)["strokes"]], ["cancelled", "not played"])
+
+    def test_without_rights_it_plays_and_says_how_to_get_them(self):
+        def no_rights():
+            for limit in (resource.RLIMIT_RTPRIO, resource.RLIMIT_MEMLOCK):
+                resource.setrlimit(limit, (0, 0))
+            if os.geteuid() == 0:
+                os.setgroups([])
+                os.setgid(65534)
+                os.setuid(65534)
+
+        os.chmod(self.dir, 0o755)
+        try:
+            subprocess.run([TOOL, "--version"], preexec_fn=no_rights, check=True, capture_output=True)
+        except (OSError, subprocess.CalledProcessError):
+            self.skipTest("another user cannot run the tool here")
+
+        def play(*more):
+            return subprocess.run([TOOL, "play", *self.SHORT, "-D", "null", *more], preexec_fn=no_rights, cwd=self.dir,
+                                  env=self.env, capture_output=True, text=True, check=False)
+
+        r = play()
+        self.assertEqual(r.returncode, 0, r.stderr)
+        for text in ("no real-time priority", "memory is not locked", "limits.d", "rtprio", "group audio"):
+            self.assertIn(text, r.stderr)
+        self.assertIn("not locked", r.stdout)
+        self.assertEqual(len(r.stderr.splitlines()), 1)
+        r = play("--require-realtime")
+        self.assertEqual(r.returncode, 3)
+        self.assertIn("limits.d", r.stderr)
+
+    def test_lines_of_the_configuration_must_be_there_unless_left_alone(self):
+        self.write("c.toml", '[amplifier]\nline = { chip = "no-such-chip", offset = 3 }\n')
+        self.refused(3, "play", *self.SHORT, "--config", "c.toml", "-D", "null", says=["no-such-chip"])
+        self.ok("play", *self.SHORT, "--config", "c.toml", "-D", "null", "--no-gpio")
+        self.refused(2, "play", *self.SHORT, "--arm", "-D", "null", says=["--arm", "[sync]"])
+
+    def test_the_marker_channel_of_the_configuration_is_played(self):
+        self.write("c.toml", "[sync]\nchannel = 9\n")
+        self.ok("play", *self.SHORT, "--config", "c.toml", "--sample-format", "s16", "-D", f"raw:{self.dir}/out.raw")
+        raw = memoryview((self.dir / "out.raw").read_bytes()).cast("h")
+        marked = [v for v in raw[9::10] if v]
+        self.assertEqual(len(marked), 240)  # 5 ms
+        self.assertGreaterEqual(min(marked), 32767)
+
+    def test_a_mistyped_device_is_told_the_near_one(self):
+        self.refused(3, "play", *self.SHORT, "-D", "eigth", says=["did you mean eight?"])
+        self.refused(3, "play", *self.SHORT, "-D", "hw:CARD=NoSuchCard", says=["NoSuchCard"])
 
     def test_output_is_plain_when_piped_and_a_picture_on_a_terminal(self):
         self.assertNotIn("\033", self.ok("play", *self.SHORT).stdout)

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // What is said when a PCM cannot be opened, on a system made of files.
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -179,6 +181,30 @@ TEST_CASE("no permission says which group to join, and how")
         has(s.says("hw:0", -EPERM), "root's alone");
     else
         has(s.says("hw:0", -EPERM), "usermod -aG " + (group.empty() ? "audio" : group) + " $USER");
+}
+
+TEST_CASE("a lost PCM is tried again after twice as long each time, up to 5 s, until the wait is given up")
+{
+    alsa_options o{.pcm = "gone", .channels = 1, .config_text = "pcm.other { type null }"};
+    std::vector<long> waits;
+    const auto s = reopen_alsa(o, [&](std::chrono::milliseconds t) {
+        waits.push_back(t.count());
+        return waits.size() < 10;
+    });
+    CHECK(s == nullptr);
+    CHECK(waits == std::vector<long>{100, 200, 400, 800, 1600, 3200, 5000, 5000, 5000, 5000});
+}
+
+TEST_CASE("a PCM that is back is opened after the first wait, and a wrong request is no reason to wait")
+{
+    alsa_options o{.pcm = "back", .channels = 1, .config_text = "pcm.back { type null }"};
+    int waits = 0;
+    const auto pause = [&](std::chrono::milliseconds) { return ++waits < 10; };
+    CHECK(reopen_alsa(o, pause) != nullptr);
+    CHECK(waits == 1);
+    o.channels = 0;
+    CHECK_THROWS_AS(reopen_alsa(o, pause), error);
+    CHECK(waits == 2);
 }
 
 TEST_CASE("the card and the device in an ALSA name")

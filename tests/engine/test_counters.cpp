@@ -62,7 +62,10 @@ TEST_CASE("a device that does not stamp its stop still tells how long an xrun wa
 TEST_CASE("stats of a stream that never ran dry")
 {
     player p(open_alsa(nine()), preset_array("palm-3x3"), {.realtime = false});
+    CHECK_FALSE(p.ended());
     p.stop();
+    REQUIRE(p.ended());
+    CHECK(*p.ended() == "it was stopped");
     const player_stats s = p.stats();
     CHECK(s.xruns == 0);
     CHECK(s.xrun_s.empty());

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: MIT
+"""Which system calls the audio thread makes, as the kernel sees them."""
+import collections
+import re
+import shutil
+import subprocess
+import unittest
+
+from harness import TOOL, ToolTest, main
+
+# Of the stream: waiting, the timer and the eventfds, samples to the file, the clock, and one look at the page faults
+# in a second. The clock is a system call only where the vDSO has none.
+ALLOWED = {"ppoll", "read", "write", "timerfd_settime", "ioctl", "clock_gettime", "getrusage"}
+
+
+def traceable():
+    if shutil.which("strace") is None:
+        return "strace is not here"
+    probe = subprocess.run(["strace", "-f", "-o", "/dev/null", "true"], capture_output=True, text=True, check=False)
+    return "" if probe.returncode == 0 else f"ptrace is not permitted: {probe.stderr.strip().splitlines()[-1:]}"
+
+
+WHY_NOT = traceable()
+
+
+@unittest.skipIf(WHY_NOT, WHY_NOT)
+class AudioThread(ToolTest):
+    def calls(self, pcm):
+        """The audio thread's calls between its start and the end of its stream, in order."""
+        trace = self.dir / "trace"
+        subprocess.run(["strace", "-f", "-o", trace, TOOL, "play", "park2016-1", "--duration", "1.5", "-D", pcm,
+                        "--sample-format", "s32"], cwd=self.dir, env=self.env, check=True, capture_output=True)
+        lines = trace.read_text().splitlines()
+        thread = next(line.split()[0] for line in lines if 'PR_SET_NAME, "tactor-audio"' in line)
+        own = [line.split(None, 1)[1] for line in lines if line.split()[0] == thread]
+        return [m[1] for text in own if (m := re.match(r"(?:<\.\.\. )?(\w+)(?:\(| resumed)", text))
+                and "resumed" not in text.split("(")[0]]
+
+    def check(self, pcm):
+        calls = self.calls(pcm)
+        # The stream runs from the first wait to the last.
+        first = calls.index("ppoll")
+        last = len(calls) - 1 - calls[::-1].index("ppoll")
+        stream = collections.Counter(calls[first:last + 1])
+        print(f"audio thread on {pcm.split(':')[0]}: {dict(stream)}")
+        self.assertGreater(stream["ppoll"], 100)
+        self.assertLessEqual(stream["getrusage"], 5)
+        self.assertEqual(set(stream) - ALLOWED, set())
+        self.assertNotIn("futex", stream)
+
+    def test_on_null(self):
+        self.check("null")
+
+    def test_on_a_file(self):
+        self.check(f"raw:{self.dir}/out.raw")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: MIT
+"""Checks what the system reads: udev rules, systemd units, limits. Usage: system.py SOURCE_ROOT.
+
+udev and systemd check their own files where they are; the grammar below holds everywhere.
+"""
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+MATCH = r"(?:ACTION|KERNEL|KERNELS|SUBSYSTEM|SUBSYSTEMS|ATTR\{[\w/]+\}|ATTRS\{[\w/]+\}|ENV\{\w+\})(?:==|!=)"
+ASSIGN = r"(?:GROUP|MODE|GOTO|LABEL|ATTR\{[\w/]+\}|ENV\{\w+\}|TAG)(?:=|\+=)"
+RULE = re.compile(rf'(?:(?:{MATCH}|{ASSIGN})"[^"]*"(?:, |$))+$')
+LIMIT = re.compile(r"@\w+\s+-\s+(?:rtprio|memlock)\s+\d+$")
+
+
+def bad_rules(file):
+    gotos, labels = set(), set()
+    for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
+        # A commented example must be right once its # is off.
+        rule = line.removeprefix("#") if re.match(r"#[A-Z]+==", line) else line
+        if not rule or rule.startswith("#"):
+            continue
+        if not RULE.match(rule):
+            yield f"{file}:{number}: no udev rule: {rule}"
+        if "RUN" in rule or "PROGRAM" in rule:
+            yield f"{file}:{number}: runs a program"
+        gotos |= set(re.findall(r'GOTO="(\w+)"', rule))
+        labels |= set(re.findall(r'LABEL="(\w+)"', rule))
+    if gotos - labels:
+        yield f"{file}: no label {gotos - labels}"
+
+
+def said_by(*command):
+    r = subprocess.run(command, capture_output=True, text=True, check=False)
+    return [] if r.returncode == 0 else (r.stdout + r.stderr).splitlines() or ["failed"]
+
+
+def can_verify_rules():
+    if shutil.which("udevadm") is None:
+        return False
+    return "verify" in subprocess.run(["udevadm", "--help"], capture_output=True, text=True, check=False).stdout
+
+
+def bad_unit(file):
+    with tempfile.TemporaryDirectory() as folder:
+        copy = pathlib.Path(folder) / file.name
+        # Neither tool nor man pages are installed here.
+        text = re.sub(r"^ExecStart=\S+", "ExecStart=/bin/true", file.read_text(encoding="utf-8"), flags=re.M)
+        copy.write_text(re.sub(r"^Documentation=.*\n", "", text, flags=re.M), encoding="utf-8")
+        yield from (f"{file}: {line}" for line in said_by("systemd-analyze", "verify", str(copy)))
+
+
+def main():
+    root = pathlib.Path(sys.argv[1]).resolve()
+    checks, skipped = [], []
+    for rules in sorted((root / "udev").glob("*.rules")):
+        checks.append(list(bad_rules(rules)))
+        if can_verify_rules():
+            checks.append(said_by("udevadm", "verify", str(rules)))
+        else:
+            skipped.append("udevadm verify: udev 254 or later is not here")
+    limits = (root / "examples/limits.d-tactor.conf").read_text(encoding="utf-8").splitlines()
+    checks.append([f"limits: {line}" for line in limits if not line.startswith("#") and not LIMIT.match(line)])
+    for unit in sorted((root / "examples/systemd").glob("*.service")):
+        if shutil.which("systemd-analyze"):
+            checks.append(list(bad_unit(unit)))
+        else:
+            skipped.append(f"{unit.name}: systemd-analyze is not here")
+    for bad in checks:
+        print(*bad, sep="\n", end="\n" if bad else "")
+    for why in skipped:
+        print(f"SKIPPED: {why}")
+    failed = sum(bool(bad) for bad in checks)
+    print(f"{len(checks) - failed} passed, {failed} failed, {len(skipped)} skipped")
+    return 1 if failed or len(checks) < 3 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
