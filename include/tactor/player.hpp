@@ -87,7 +87,8 @@ struct stroke_report {
 };
 
 struct player_options {
-    double horizon_s = 0.5;        ///< how far ahead drives are handed to the audio thread
+    /// How far ahead drives are handed to the audio thread; two buffers and four periods at least.
+    double horizon_s = 0.5;
     double fade_s = 0.010;         ///< fade on cancel and stop
     double stall_s = 0.5;          ///< a device that stands still for so long (16 periods at least) is lost
     bool realtime = true;          ///< ask for SCHED_FIFO

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "engine/player_impl.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -23,11 +24,18 @@ std::uint32_t frames_of(double seconds, unsigned rate, const char* name)
     return static_cast<std::uint32_t>(std::lround(seconds * rate));
 }
 
+// What is handed over later than this would be late.
+std::uint64_t horizon_frames(const player_options& o, const stream_setup& s)
+{
+    const std::uint64_t least = 2 * std::uint64_t{s.buffer_frames} + 4 * std::uint64_t{s.period_frames};
+    return std::max<std::uint64_t>(frames_of(o.horizon_s, s.rate, "horizon"), least);
+}
+
 engine::loop_options loop_options(const player_options& o, const stream_setup& s, bool amplifier)
 {
     engine::loop_options l;
     l.fade_frames = frames_of(o.fade_s, s.rate, "fade");
-    l.horizon_frames = frames_of(o.horizon_s, s.rate, "horizon");
+    l.horizon_frames = horizon_frames(o, s);
     // Long periods make long pauses.
     const std::int64_t periods = 16LL * s.period_frames * 1'000'000'000 / s.rate;
     const auto asked = std::int64_t{frames_of(o.stall_s, 1'000'000, "stall")} * 1000;
@@ -76,7 +84,7 @@ std::unique_ptr<sink> not_null(std::unique_ptr<sink> s)
 player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines l)
     : out(not_null(std::move(s))),
       lines(std::move(l)),
-      feed(link, frames_of(o.horizon_s, out->setup().rate, "horizon")),
+      feed(link, horizon_frames(o, out->setup())),
       tactors(a),
       loop(*out, link, synth::channel_limits(a, out->setup().channels),
            loop_options(o, out->setup(), lines.amplifier != nullptr)),
@@ -86,6 +94,7 @@ player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options
         check_start(o);
         start_lines(o);
         control = std::make_unique<engine::control_thread>(link.to_control, [this] { woken(); });
+        frames_of(lines.trigger_delay_s, out->setup().rate, "trigger delay"); // throws where it is none
         if (lines.trigger != nullptr)
             control->watch(lines.trigger->descriptor(), [this] { return edges(); });
     } catch (...) {

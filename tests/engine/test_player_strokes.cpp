@@ -112,6 +112,17 @@ TEST_CASE("an edge fires what is armed: at its time and the delay, for all at on
     CHECK_THROWS_AS(p.begin(), error);
 }
 
+TEST_CASE("a delay from the edge that cannot be is an error")
+{
+    for (const double bad : {-0.001, 1e9, std::nan("")}) {
+        fake_dac dac;
+        player_lines lines;
+        lines.trigger = std::make_unique<pipe_edges>();
+        lines.trigger_delay_s = bad;
+        CHECK_THROWS_AS(player(pcm::adopt(dac.pcm(), nine()), palm(), patient(), std::move(lines)), error);
+    }
+}
+
 TEST_CASE("several producers of every kind at once: each stroke ends exactly once")
 {
     fake_dac dac;
