@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "engine/trigger_thread.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <ctime>
 

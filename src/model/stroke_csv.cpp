@@ -2,6 +2,7 @@
 // Timed points as comma-separated values.
 #include <tactor/stroke.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 

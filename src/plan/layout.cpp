@@ -57,7 +57,7 @@ std::vector<unsigned> in_line(const std::vector<point>& points)
 rings segments(const std::vector<unsigned>& order)
 {
     if (order.size() == 1)
-        return {order};
+        return rings(1, order); // not {order}: gcc 14 sees an overflow there that is none
     rings s;
     for (std::size_t i = 1; i < order.size(); ++i)
         s.push_back({std::min(order[i - 1], order[i]), std::max(order[i - 1], order[i])});

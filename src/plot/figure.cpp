@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "plot/figure.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "plot/array_view.hpp"

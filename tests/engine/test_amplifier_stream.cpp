@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The amplifier's line through everything that can happen to the stream: the order of both, what the DAC
 // received, what was reported.
+#include <algorithm>
+
 #include <doctest/doctest.h>
 
 #include "amplifier_rig.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What reaches the DAC is what the renderer makes, bit for bit.
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <random>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The DAC's clock against readings that are off in known ways.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Each stroke ends once, in the state that is true.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <random>

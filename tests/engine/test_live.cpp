@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Strokes that are fed point by point, on the virtual clock.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>

@@ -2,6 +2,7 @@
 // Sync pulses: which, when, and what is counted; on virtual time, and once with the real thread.
 #include "engine/pulses.hpp"
 
+#include <algorithm>
 #include <condition_variable>
 #include <mutex>
 #include <random>

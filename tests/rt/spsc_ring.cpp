@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "rt/spsc_ring.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <limits>

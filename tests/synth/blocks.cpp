@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The same bytes whatever the sizes of the blocks.
+#include <algorithm>
+
 #include <doctest/doctest.h>
 
 #include "pieces.hpp"

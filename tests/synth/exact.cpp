@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Bursts against the formula of section 7, written out in double.
+#include <algorithm>
 #include <cmath>
 
 #include <doctest/doctest.h>

@@ -2,6 +2,7 @@
 // Limits on the power of the array and on the time that a tactor is driven.
 #include "synth/guard.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sync markers on a spare channel.
+#include <algorithm>
+
 #include <doctest/doctest.h>
 
 #include <tactor/error.hpp>

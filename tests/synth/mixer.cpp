@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "synth/mixer.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Bursts that overlap on one tactor: one carrier, joined amplitudes.
+#include <algorithm>
 #include <cmath>
 
 #include <doctest/doctest.h>

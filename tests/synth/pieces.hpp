@@ -3,6 +3,7 @@
 /// Small arrays, plans and renderings for the tests of synth and wav.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <random>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Where plans lie in a score, and the events that come out of it.
+#include <algorithm>
 #include <cmath>
 
 #include <doctest/doctest.h>
