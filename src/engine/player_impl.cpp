@@ -72,6 +72,13 @@ rt::thread_options amplifier_thread_options(const player_options& o)
             .priority = std::max(1, o.priority - 5)};
 }
 
+// Before there are threads that an error would have to stop.
+player_lines checked(player_lines l, unsigned rate)
+{
+    frames_of(l.trigger_delay_s, rate, "trigger delay");
+    return l;
+}
+
 std::unique_ptr<sink> not_null(std::unique_ptr<sink> s)
 {
     if (s == nullptr)
@@ -83,7 +90,7 @@ std::unique_ptr<sink> not_null(std::unique_ptr<sink> s)
 
 player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines l)
     : out(not_null(std::move(s))),
-      lines(std::move(l)),
+      lines(checked(std::move(l), out->setup().rate)),
       feed(link, horizon_frames(o, out->setup())),
       tactors(a),
       loop(*out, link, synth::channel_limits(a, out->setup().channels),
@@ -94,7 +101,6 @@ player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options
         check_start(o);
         start_lines(o);
         control = std::make_unique<engine::control_thread>(link.to_control, [this] { woken(); });
-        frames_of(lines.trigger_delay_s, out->setup().rate, "trigger delay"); // throws where it is none
         if (lines.trigger != nullptr)
             control->watch(lines.trigger->descriptor(), [this] { return edges(); });
     } catch (...) {
