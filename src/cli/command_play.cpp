@@ -110,6 +110,11 @@ int play(settings& s, option_list& options, const play_options& o)
         r.strokes.push_back({pieces[i].name, scores[i].frames()});
     const auto broken = play_all(session, o, pieces, scores, r.strokes);
     session.finish(r);
+    if (r.stats.drives_cut != 0)
+        fmt::print(
+            stderr,
+            "tactor: warning: tactors were driven for longer than {} s in {} s and faded out, {} times\n",
+            drive_limits{}.max_drive_s, drive_limits{}.window_s, r.stats.drives_cut);
     if (o.json())
         print_json(stdout, r);
     else

@@ -58,6 +58,13 @@ json counters(const run_report& r)
             {"minor_faults", s.minor_faults},
             {"major_faults", s.major_faults},
             {"limited_frames", s.limited_frames},
+            {"power_limited_frames", s.power_limited_frames},
+            {"drives_cut", s.drives_cut},
+            {"stalls", s.stalls},
+            {"sync_pulses", s.sync_pulses},
+            {"sync_missed", s.sync_missed},
+            {"sync_mean_late_s", s.sync_mean_late_s},
+            {"sync_worst_late_s", s.sync_worst_late_s},
             {"reopened", r.reopened},
             {"realtime", s.realtime},
             {"locked_memory", r.locked_memory}};
@@ -84,6 +91,17 @@ void add_stats(player_stats& sum, const player_stats& more)
     sum.frames += more.frames;
     sum.xruns += more.xruns;
     sum.limited_frames += more.limited_frames;
+    sum.power_limited_frames += more.power_limited_frames;
+    sum.drives_cut += more.drives_cut;
+    sum.stalls += more.stalls;
+    const auto pulses = static_cast<double>(sum.sync_pulses + more.sync_pulses);
+    if (pulses > 0.0)
+        sum.sync_mean_late_s = (sum.sync_mean_late_s * static_cast<double>(sum.sync_pulses) +
+                                more.sync_mean_late_s * static_cast<double>(more.sync_pulses)) /
+                               pulses;
+    sum.sync_pulses += more.sync_pulses;
+    sum.sync_missed += more.sync_missed;
+    sum.sync_worst_late_s = std::max(sum.sync_worst_late_s, more.sync_worst_late_s);
     sum.minor_faults += more.minor_faults;
     sum.major_faults += more.major_faults;
     sum.latest_wakeup_s = std::max(sum.latest_wakeup_s, more.latest_wakeup_s);
@@ -108,7 +126,13 @@ void print_table(std::FILE* to, const run_report& r)
     fmt::print(to, "latest wake-up  {:.3f} ms\n", s.latest_wakeup_s * 1e3);
     fmt::print(to, "ring low water  {} drives\n", s.ring_low_water);
     fmt::print(to, "page faults     {}, {} from disk\n", s.minor_faults + s.major_faults, s.major_faults);
-    fmt::print(to, "limited         {} of {} frames\n", s.limited_frames, s.frames);
+    fmt::print(to, "limited         {} samples, power in {} frames, {} drives cut\n", s.limited_frames,
+               s.power_limited_frames, s.drives_cut);
+    if (s.stalls != 0)
+        fmt::print(to, "stalls          {}, amplifier off in each\n", s.stalls);
+    if (s.sync_pulses + s.sync_missed != 0)
+        fmt::print(to, "sync pulses     {}, {} missed, late by {:.3f} ms, at worst {:.3f} ms\n",
+                   s.sync_pulses, s.sync_missed, s.sync_mean_late_s * 1e3, s.sync_worst_late_s * 1e3);
     if (r.reopened != 0)
         fmt::print(to, "reopened        {}\n", r.reopened);
     fmt::print(to, "real time       {}, memory {}\n", s.realtime ? "yes" : "no",
