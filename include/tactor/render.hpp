@@ -46,7 +46,7 @@ struct render_options {
     /// A spare channel on which each stroke's first frames are marked, at full scale and to the frame: the
     /// sync signal that no scheduler can delay.
     std::optional<unsigned> marker_channel = {};
-    double marker_s = 0.005; ///< above 0, at most 1 s
+    double marker_s = 0.005; ///< above 0, at most 10 s
 };
 
 /// A plan and when it starts.

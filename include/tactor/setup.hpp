@@ -47,12 +47,20 @@ struct sync_settings {
     std::string edge = "rising"; ///< "rising", "falling" or "both"
 };
 
+/// [limits]: see drive_limits. Anything not said is that one's default.
+struct limit_settings {
+    std::optional<double> power_dbfs = {};
+    std::optional<double> max_drive_s = {};
+    std::optional<double> window_s = {};
+};
+
 /// All that a file may say.
 struct setup {
     std::optional<array> layout = {};
     output_settings output;
     std::optional<amplifier_settings> amplifier = {};
     std::optional<sync_settings> sync = {};
+    std::optional<limit_settings> limits = {};
     /// [defaults]: option name (without dashes) to value as text, e.g. "phantom" -> "barycentric".
     /// Only names that setup_default_names() lists.
     std::map<std::string, std::string> defaults = {};

@@ -62,6 +62,7 @@ void use_array_file(setup& config, const setup& file)
     prefer(config.output.periods, file.output.periods);
     prefer(config.amplifier, file.amplifier);
     prefer(config.sync, file.sync);
+    prefer(config.limits, file.limits);
 }
 
 array find_array(const settings& s, option_list& options, setup& config)
@@ -223,6 +224,17 @@ render_options settle_render(const settings& s, const environment& e)
         r.marker_s = e.config.sync->pulse_ms * 1e-3;
     }
     return r;
+}
+
+drive_limits settle_limits(const environment& e)
+{
+    drive_limits l;
+    if (!e.config.limits)
+        return l;
+    l.power_dbfs = e.config.limits->power_dbfs.value_or(l.power_dbfs);
+    l.max_drive_s = e.config.limits->max_drive_s.value_or(l.max_drive_s);
+    l.window_s = e.config.limits->window_s.value_or(l.window_s);
+    return l;
 }
 
 } // namespace tactor::cli

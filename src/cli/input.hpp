@@ -45,4 +45,7 @@ score make_score(const piece& p, const environment& e, const render_options& ren
 /// Rate and channel count from the options, the configuration, then the defaults.
 render_options settle_render(const settings& s, const environment& e);
 
+/// What play limits the array to: [limits], and the defaults for what that does not say.
+drive_limits settle_limits(const environment& e);
+
 } // namespace tactor::cli

@@ -83,13 +83,14 @@ located_setup read_setup(std::string_view text, const setup_source& source)
     const toml_table root(document, "the file", source.name);
     if (root.has("stroke"))
         root.fail("stroke", "this is a stroke file, not an array or configuration", "name it as the STROKE");
-    root.only({"array", "tactor", "output", "amplifier", "sync", "defaults"});
+    root.only({"array", "tactor", "output", "amplifier", "sync", "limits", "defaults"});
 
     located_setup out;
     read_array(root, source, out);
     read_output(root, out);
     read_amplifier(root, out);
     read_sync(root, out);
+    read_limits(root, out);
     read_defaults(root, out.said);
 
     if (out.said.layout)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [output], [amplifier] and [sync].
+// [output], [amplifier], [sync] and [limits].
 #include <fmt/format.h>
 
 #include "model/setup_parts.hpp"
@@ -80,6 +80,19 @@ void read_sync(const toml_table& root, located_setup& out)
     s.channel = t->whole("channel", 0, max_channels - 1);
     out.sync_channel_at = t->where("channel");
     out.said.sync = s;
+}
+
+void read_limits(const toml_table& root, located_setup& out)
+{
+    const auto t = root.table("limits", "[limits]", "[limits]");
+    if (!t)
+        return;
+    t->only({"power_dbfs", "max_drive_s", "window_s"});
+    limit_settings l;
+    l.power_dbfs = t->number("power_dbfs", {-120.0, 60.0});
+    l.max_drive_s = t->number("max_drive_s", {0.1, 3600.0});
+    l.window_s = t->number("window_s", {0.1, 3600.0});
+    out.said.limits = l;
 }
 
 } // namespace tactor::detail

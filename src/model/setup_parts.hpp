@@ -36,6 +36,7 @@ void read_array(const toml_table& root, const setup_source& source, located_setu
 void read_output(const toml_table& root, located_setup& out);
 void read_amplifier(const toml_table& root, located_setup& out);
 void read_sync(const toml_table& root, located_setup& out);
+void read_limits(const toml_table& root, located_setup& out);
 /// [defaults].
 void read_defaults(const toml_table& root, setup& out);
 

@@ -69,9 +69,9 @@ void check_marker(const array& a, const render_options& o, unsigned channels)
                         "choose a spare channel");
         }
     }
-    if (!(o.marker_s > 0.0 && o.marker_s <= 1.0)) {
+    if (!(o.marker_s > 0.0 && o.marker_s <= 10.0)) {
         throw error(errc::bad_input, "marker", fmt::format("{} s is not its length", o.marker_s),
-                    "use above 0 to 1 s, e.g. 0.005");
+                    "use above 0 to 10 s, e.g. 0.005");
     }
 }
 

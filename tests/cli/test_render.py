@@ -43,6 +43,18 @@ class Samples(ToolTest):
             # Half a step of the format, and what a float can hold.
             self.compare(wav, reference, 0.5000001 / 2 ** (bits - 1) if tag == 1 else 2e-8)
 
+    def test_a_marker_channel_is_high_for_5_ms_from_each_strokes_first_frame(self):
+        self.write("a.toml", '[array]\nname = "pair"\ngrid = { rows = 1, columns = 2, pitch_mm = 10 }\n'
+                             '[sync]\nchannel = 3\n')
+        self.write("two.toml", '[[stroke]]\npath = "M 0 0 L 10 0"\nduration_s = 0.5\n'
+                               '[[stroke]]\npath = "M 10 0 L 0 0"\nduration_s = 0.5\nstart_s = 0.75\n')
+        self.ok("render", "two.toml", "--array", "a.toml", "--sample-format", "s16", "-o", "o.wav")
+        wav = Wav(self.dir / "o.wav")
+        self.assertEqual(wav.channels, 4)
+        high = [n for n, f in enumerate(wav.samples()) if f[3] != 0]
+        self.assertEqual(high, list(range(240)) + list(range(36000, 36240)))
+        self.assertTrue(all(f[3] > 0.9999 and f[2] == 0 for n, f in enumerate(wav.samples()) if n in set(high)))
+
     def test_level_gain_polarity_and_map_reach_their_channel(self):
         self.write("a.toml", '[array]\nname = "pair"\n'
                              '[[tactor]]\nx_mm = 0.0\ny_mm = 0.0\nchannel = 2\ngain_db = -6.0\npolarity = -1\n'

@@ -46,6 +46,10 @@ out = { chip = "pinctrl-rp1", offset = 27, pulse_ms = 4 }
 channel = 15
 in  = { name = "GPIO22", edge = "falling" }
 
+[limits]
+power_dbfs = 3
+max_drive_s = 2.5
+
 [defaults]
 algorithm = "tactile-brush"
 soa = 0.06
@@ -73,6 +77,9 @@ TEST_CASE("a whole configuration")
     CHECK(s.output.rate == 48000u);
     CHECK(s.output.channels == 16u);
     CHECK(s.output.period_frames == 96u);
+    CHECK(s.limits->power_dbfs == 3.0);
+    CHECK(s.limits->max_drive_s == 2.5);
+    CHECK_FALSE(s.limits->window_s);
     CHECK(s.output.periods == 3u);
     REQUIRE(s.amplifier.has_value());
     CHECK(s.amplifier->line.chip == "pinctrl-rp1");
@@ -260,4 +267,13 @@ TEST_CASE("damaged files are refused or read, never worse")
         }
     }
     CHECK(refused > 2000);
+}
+
+TEST_CASE("limits that are none are told")
+{
+    for (const char* said : {"power_dbfs = nan", "power_dbfs = 61", "max_drive_s = 0", "max_drive_s = -1",
+                             "window_s = inf", "window = 10"}) {
+        CAPTURE(said);
+        CHECK(complaint(std::string("[limits]\n") + said).starts_with("t.toml:2:"));
+    }
 }
