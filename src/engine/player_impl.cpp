@@ -76,6 +76,8 @@ rt::thread_options amplifier_thread_options(const player_options& o)
 player_lines checked(player_lines l, unsigned rate)
 {
     frames_of(l.trigger_delay_s, rate, "trigger delay");
+    frames_of(l.settle_s, rate, "settle");
+    frames_of(l.pulse_s, rate, "pulse");
     return l;
 }
 
