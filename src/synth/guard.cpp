@@ -129,6 +129,10 @@ bool drive_guard::apply(std::size_t channel, std::uint64_t clock, unsigned n, do
     if (!c.closed && first >= c.changed_at + fade_) {
         return false;
     }
+    if (c.closed && first >= c.changed_at + fade_) {
+        std::fill_n(x, n, 0.0);
+        return true;
+    }
     for (unsigned j = 0; j < n; ++j) {
         x[j] *= gain(c, first + j);
     }
