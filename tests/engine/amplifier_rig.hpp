@@ -5,9 +5,12 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <doctest/doctest.h>
 
 #include <tactor/gpio.hpp>
 
@@ -18,10 +21,27 @@ namespace tactor::test {
 
 using event_log = std::vector<std::string>;
 
-/// Logs prepare, start and drop.
+/// What the next writes come to; ok with fewer frames than asked for is a short write.
+using write_results = std::deque<io_result>;
+
+/// Logs prepare, start and drop, and spoils writes.
 class logging_sink final : public forwarding_sink {
 public:
-    logging_sink(std::unique_ptr<sink> s, event_log& log) : forwarding_sink(std::move(s)), log_(log) {}
+    logging_sink(std::unique_ptr<sink> s, event_log& log, std::shared_ptr<write_results> spoilt)
+        : forwarding_sink(std::move(s)), log_(log), spoilt_(std::move(spoilt))
+    {
+    }
+
+    io_result write(const std::byte* d, std::size_t n) noexcept override
+    {
+        if (spoilt_->empty())
+            return forwarding_sink::write(d, n);
+        const io_result r = spoilt_->front();
+        spoilt_->pop_front();
+        if (r.status == io_status::ok && r.frames > 0)
+            return forwarding_sink::write(d, std::min(n, r.frames));
+        return r;
+    }
 
     io_status prepare() noexcept override { return note("prepare", forwarding_sink::prepare()); }
     io_status start() noexcept override { return note("start", forwarding_sink::start()); }
@@ -38,6 +58,7 @@ private:
         return s;
     }
     event_log& log_;
+    std::shared_ptr<write_results> spoilt_;
 };
 
 /// Logs on and off. Can fail, and can go off by itself.
@@ -68,7 +89,10 @@ private:
 inline constexpr std::int64_t ms = 1'000'000;
 
 struct amplifier_rig : rig {
-    explicit amplifier_rig(rig_options o = {}) : amplifier_rig(o, std::make_shared<event_log>()) {}
+    explicit amplifier_rig(rig_options o = {})
+        : amplifier_rig(o, std::make_shared<event_log>(), std::make_shared<write_results>())
+    {
+    }
 
     /// Until strokes may sound.
     void warm_up()
@@ -89,23 +113,52 @@ struct amplifier_rig : rig {
     event_log news() { return std::exchange(*log, {}); }
 
     std::shared_ptr<event_log> log;
+    std::shared_ptr<write_results> spoilt;
     logging_line line{*log};
     engine::amplifier_driver driver;
 
 private:
-    amplifier_rig(rig_options o, const std::shared_ptr<event_log>& l)
-        : rig(prepared(std::move(o), l)),
+    amplifier_rig(rig_options o, const std::shared_ptr<event_log>& l, const std::shared_ptr<write_results>& w)
+        : rig(prepared(std::move(o), l, w)),
           log(l),
+          spoilt(w),
           driver(link, line, {.amplifier = {.proof_frames = 2 * options.period}}, [this] { return now; })
     {
         also_control = [this] { driver.update(); };
     }
-    static rig_options prepared(rig_options o, const std::shared_ptr<event_log>& l)
+    static rig_options prepared(rig_options o, const std::shared_ptr<event_log>& l,
+                                const std::shared_ptr<write_results>& w)
     {
         o.loop.amplifier = true;
-        o.wrap = [l](std::unique_ptr<sink> s) { return std::make_unique<logging_sink>(std::move(s), *l); };
+        o.wrap = [l, w](std::unique_ptr<sink> s) {
+            return std::make_unique<logging_sink>(std::move(s), *l, w);
+        };
         return o;
     }
+};
+
+inline std::string reason_of(const amplifier_rig& r, stroke_id id)
+{
+    return r.report(id) ? r.report(id)->reason : "no report";
+}
+
+/// An amplifier that is on, and a stroke that sounds.
+struct playing : amplifier_rig {
+    explicit playing(rig_options o = {}) : amplifier_rig(std::move(o))
+    {
+        REQUIRE(start().status == io_status::ok);
+        warm_up();
+        id = submit(tone(2.0));
+        play(4800);
+        CHECK(news() == event_log{"prepare", "start", "on"});
+    }
+    void xrun()
+    {
+        dac.advance(1000);
+        step();
+        control();
+    }
+    stroke_id id = 0;
 };
 
 } // namespace tactor::test
