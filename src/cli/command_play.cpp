@@ -97,6 +97,14 @@ std::optional<broken_off> play_all(play_session& session, const play_options& o,
     return {};
 }
 
+void warn_of_cuts(const drive_limits& l, std::uint64_t times)
+{
+    fmt::print(stderr,
+               "tactor: warning: tactors were driven for longer than {} s in {} s and faded out, {} times "
+               "([limits] max_drive_s in the array file or configuration)\n",
+               l.max_drive_s, l.window_s, times);
+}
+
 int play(settings& s, option_list& options, const play_options& o)
 {
     const environment e = read_environment(s, options);
@@ -111,10 +119,7 @@ int play(settings& s, option_list& options, const play_options& o)
     const auto broken = play_all(session, o, pieces, scores, r.strokes);
     session.finish(r);
     if (r.stats.drives_cut != 0)
-        fmt::print(
-            stderr,
-            "tactor: warning: tactors were driven for longer than {} s in {} s and faded out, {} times\n",
-            drive_limits{}.max_drive_s, drive_limits{}.window_s, r.stats.drives_cut);
+        warn_of_cuts(settle_limits(e), r.stats.drives_cut);
     if (o.json())
         print_json(stdout, r);
     else

@@ -24,6 +24,11 @@ class Unplug(RigTest):
             (DRIVER / "bind").write_text(DEVICE)
         wait_for(lambda: "Loopback" in pathlib.Path("/proc/asound/cards").read_text(), "the card is back")
 
+    def sounding(self):
+        """A second of the stream has been played: the stroke has begun."""
+        status = pathlib.Path("/proc/asound/Loopback/pcm0p/sub0/status").read_text()
+        return any(int(line.split(":")[1]) > 48000 for line in status.splitlines() if line.startswith("hw_ptr"))
+
     def pull_out(self):
         # Waits in the kernel until the player has closed the card: not in this process.
         return subprocess.Popen(["sh", "-c", f"echo {DEVICE} > {DRIVER}/unbind"])
@@ -31,6 +36,7 @@ class Unplug(RigTest):
     def test_the_stroke_is_interrupted_and_the_amplifier_off(self):
         p = self.start("play", "--path", "M 0 10 L 40 30", "--duration", "60", "--array", self.array, "--format", "json")
         wait_for(lambda: self.gpio.value(LINE) == 1, "the amplifier is on")
+        wait_for(self.sounding, "the stroke has begun")
         pull = self.pull_out()
         wait_for(lambda: self.gpio.value(LINE) == 0, "the amplifier is off", 2)
         out, said = p.communicate(timeout=30)
@@ -44,6 +50,7 @@ class Unplug(RigTest):
         p = self.start("play", "park2016-1", "park2016-2", "--duration", "5", "--array", self.array, "--reopen-s", "60",
                        "--format", "json")
         wait_for(lambda: self.gpio.value(LINE) == 1, "the amplifier is on")
+        wait_for(self.sounding, "the stroke has begun")
         pull = self.pull_out()
         wait_for(lambda: self.gpio.value(LINE) == 0, "the amplifier is off", 2)
         pull.wait(20)
