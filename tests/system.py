@@ -75,7 +75,7 @@ def main():
         print(f"SKIPPED: {why}")
     failed = sum(bool(bad) for bad in checks)
     print(f"{len(checks) - failed} passed, {failed} failed, {len(skipped)} skipped")
-    return 1 if failed or len(checks) < 3 else 0
+    return 1 if failed or not checks else 0
 
 
 if __name__ == "__main__":
