@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Sync pulses and start triggers against what was captured."""
+import json
 import statistics
 import subprocess
 import threading
@@ -63,13 +64,19 @@ class Sync(RigTest):
         self.addCleanup(self.gpio.close)
 
     def test_pulses_come_with_the_first_sample(self):
-        array = self.grid(extra=f'[sync]\nout = {{ chip = "{self.gpio.label}", offset = {OUT_LINE}, pulse_ms = 20 }}\n')
+        array = self.grid(extra=f'[sync]\nout = {{ chip = "{self.gpio.label}", offset = {OUT_LINE}, pulse_ms = 60 }}\n')
         onsets, watch = Onsets(self.dir), Watch(self.gpio, OUT_LINE)
         strokes = 20
-        r = self.tool("play", *["park2016-1"] * strokes, "--duration", "0.21", "--array", array, "--sample-format", "s32")
+        r = self.tool("play", *["park2016-1"] * strokes, "--duration", "0.21", "--array", array, "--sample-format", "s32",
+                      "--format", "json")
         self.assertEqual(r.returncode, 0, r.stderr)
         heard, pulses = onsets.stop(), watch.stop()
-        self.assertEqual(len(pulses), strokes)
+        counters = json.loads(r.stdout)["counters"]
+        print({name: value for name, value in counters.items() if name.startswith("sync")})
+        # A pulse that would come more than 20 ms late is counted instead of sent: a slow host may cost a few.
+        self.assertEqual(counters["sync_pulses"] + counters["sync_missed"], strokes)
+        self.assertLessEqual(counters["sync_missed"], 4)
+        self.assertEqual(len(pulses), counters["sync_pulses"])
         # Strokes that follow each other without a gap of 0.1 s are one sound: compare each onset with the nearest pulse.
         late = [min((p - h for p in pulses), key=abs) / 1e6 for h in heard]
         print(f"sync pulse after onset, ms: n {len(late)}, mean {statistics.mean(late):.2f}, "
