@@ -113,13 +113,11 @@ void print_json(std::FILE* out, const piece& p, const environment& e)
         return;
     }
     fmt::print(out, "{{\"schema\":\"tactor-plans/1\",\"plans\":[\n");
-    double start = 0.0;
+    const auto starts = starts_of(p.plans);
     for (std::size_t i = 0; i < p.plans.size(); ++i) {
-        const plan& q = p.plans[i].schedule;
-        start = p.plans[i].start_s.value_or(start);
-        print_plan(out, members(json{{"start_s", start}}) + ",", p.strokes[i], q, e.tactors);
+        print_plan(out, members(json{{"start_s", starts[i]}}) + ",", p.strokes[i], p.plans[i].schedule,
+                   e.tactors);
         fmt::print(out, "{}\n", i + 1 < p.plans.size() ? "," : "");
-        start += q.total_s;
     }
     fmt::print(out, "]}}\n");
 }

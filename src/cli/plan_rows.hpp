@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include <tactor/plan.hpp>
+#include <tactor/render.hpp>
 
 namespace tactor::cli {
 
@@ -30,6 +32,18 @@ void for_each_row(const plan& p, Row&& row)
         b.duration_s = std::min(continuous_step_s, p.stroke_duration_s - t);
         row(b);
     }
+}
+
+/// Start of each plan of a piece in seconds: its own, or the end of the one before.
+inline std::vector<double> starts_of(const std::vector<placed_plan>& plans)
+{
+    std::vector<double> starts;
+    double next = 0.0;
+    for (const placed_plan& p : plans) {
+        starts.push_back(p.start_s.value_or(next));
+        next = starts.back() + p.schedule.total_s;
+    }
+    return starts;
 }
 
 } // namespace tactor::cli

@@ -55,18 +55,15 @@ void print_text(std::FILE* out, const piece& p, const environment& e)
 void print_csv(std::FILE* out, const piece& p, const environment& e)
 {
     fmt::print(out, "stroke,start_s,onset_s,duration_s,tau_s,x_mm,y_mm,tactor,channel,amplitude\n");
-    double start = 0.0;
+    const auto starts = starts_of(p.plans);
     for (std::size_t i = 0; i < p.plans.size(); ++i) {
-        const plan& q = p.plans[i].schedule;
-        start = p.plans[i].start_s.value_or(start);
-        for_each_row(q, [&](const burst& b) {
+        for_each_row(p.plans[i].schedule, [&](const burst& b) {
             const std::string tau = b.tau_s ? fmt::format("{}", *b.tau_s) : "";
             for (const drive& d : b.drives)
-                fmt::print(out, "{},{},{},{},{},{},{},{},{},{}\n", i, start, b.onset_s, b.duration_s, tau,
+                fmt::print(out, "{},{},{},{},{},{},{},{},{},{}\n", i, starts[i], b.onset_s, b.duration_s, tau,
                            b.position.x_mm, b.position.y_mm, d.tactor, e.tactors.tactors[d.tactor].channel,
                            d.amplitude);
         });
-        start += q.total_s;
     }
 }
 

@@ -167,4 +167,27 @@ inline std::pair<array, std::vector<unsigned>> shuffled(generator& g, const arra
     return {b, now};
 }
 
+inline std::vector<unsigned> tactors_of(const std::vector<drive>& d)
+{
+    std::vector<unsigned> t;
+    for (const drive& x : d)
+        t.push_back(x.tactor);
+    return t;
+}
+
+inline std::vector<drive> weights(const layout& l, phantom_kind k, point p, double a_v = 1.0)
+{
+    std::vector<drive> out;
+    make_phantom(k, l)->weights(p, a_v, out);
+    return out;
+}
+
+inline array rotated(array a, double angle)
+{
+    for (tactor_spec& t : a.tactors)
+        t.position = {t.position.x_mm * std::cos(angle) - t.position.y_mm * std::sin(angle),
+                      t.position.x_mm * std::sin(angle) + t.position.y_mm * std::cos(angle)};
+    return a;
+}
+
 } // namespace tactor::test

@@ -15,16 +15,6 @@ using namespace tactor::test;
 
 namespace {
 
-const array arm = make_grid("arm", 3, 4, 15.0, 15.0);
-const array palm = preset_array("palm-3x3");
-
-plan_options brush()
-{
-    plan_options o;
-    o.method = algorithm::tactile_brush;
-    return o;
-}
-
 stroke circle(double duration_s)
 {
     return stroke_of(trajectory::along(path::arc({20.0, 20.0}, 20.0, -90.0, 360.0), duration_s));

@@ -15,20 +15,6 @@
 using namespace tactor;
 using namespace tactor::test;
 
-namespace {
-
-const array arm = make_grid("arm", 3, 4, 15.0, 15.0);
-const array palm = preset_array("palm-3x3");
-
-plan_options brush()
-{
-    plan_options o;
-    o.method = algorithm::tactile_brush;
-    return o;
-}
-
-} // namespace
-
 TEST_CASE("an impossible timing is refused with the shortest duration that works, exact to a microsecond")
 {
     generator g(32);

@@ -52,14 +52,6 @@ std::vector<std::size_t> sizes(const layout& l)
     return s;
 }
 
-array rotated(array a, double angle)
-{
-    for (tactor_spec& t : a.tactors)
-        t.position = {t.position.x_mm * std::cos(angle) - t.position.y_mm * std::sin(angle),
-                      t.position.x_mm * std::sin(angle) + t.position.y_mm * std::cos(angle)};
-    return a;
-}
-
 } // namespace
 
 TEST_CASE("the cells of a rectangular grid are its faces, however it is turned and whatever its pitch")

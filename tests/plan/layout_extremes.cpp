@@ -13,18 +13,6 @@
 using namespace tactor;
 using namespace tactor::test;
 
-namespace {
-
-array rotated(array a, double angle)
-{
-    for (tactor_spec& t : a.tactors)
-        t.position = {t.position.x_mm * std::cos(angle) - t.position.y_mm * std::sin(angle),
-                      t.position.x_mm * std::sin(angle) + t.position.y_mm * std::cos(angle)};
-    return a;
-}
-
-} // namespace
-
 TEST_CASE("tactors in one line have no faces; the hull is the line")
 {
     generator g(14);

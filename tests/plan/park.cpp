@@ -13,8 +13,6 @@ using namespace tactor::test;
 
 namespace {
 
-const array palm = preset_array("palm-3x3");
-
 stroke across(double duration_s)
 {
     return along("M 0 20 L 40 20", duration_s);

@@ -11,25 +11,6 @@
 using namespace tactor;
 using namespace tactor::test;
 
-namespace {
-
-std::vector<unsigned> tactors_of(const std::vector<drive>& d)
-{
-    std::vector<unsigned> t;
-    for (const drive& x : d)
-        t.push_back(x.tactor);
-    return t;
-}
-
-std::vector<drive> weights(const layout& l, phantom_kind k, point p, double a_v = 1.0)
-{
-    std::vector<drive> out;
-    make_phantom(k, l)->weights(p, a_v, out);
-    return out;
-}
-
-} // namespace
-
 TEST_CASE("the order of the tactors in the file does not matter, for any model")
 {
     generator g(5);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <tactor/array.hpp>
 #include <tactor/error.hpp>
 #include <tactor/plan.hpp>
 
@@ -44,6 +45,16 @@ inline double number_after(const std::string& text, std::string_view word)
 {
     const auto at = text.find(word);
     return at == std::string::npos ? -1.0 : std::stod(text.substr(at + word.size()));
+}
+
+inline const array arm = make_grid("arm", 3, 4, 15.0, 15.0);
+inline const array palm = preset_array("palm-3x3");
+
+inline plan_options brush()
+{
+    plan_options o;
+    o.method = algorithm::tactile_brush;
+    return o;
 }
 
 } // namespace tactor::test
