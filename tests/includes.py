@@ -27,7 +27,7 @@ PUBLIC = {
     "array": "model", "path": "model", "setup": "model", "stroke": "model",
     "phantom": "plan", "plan": "plan", "percept": "plan",
     "render": "synth", "sample_format": None, "wav": "wav",
-    "gpio": "gpio", "realtime": "rt", "sink": None, "alsa": "alsa", "player": "engine", "live": "engine",
+    "gpio": "gpio", "realtime": "rt", "sink": None, "alsa": "alsa", "devices": "alsa", "player": "engine", "live": "engine",
     "asio": "engine",
 }
 USES_ALL_PUBLIC = {"cli", "plot", "server"}

@@ -5,6 +5,7 @@
 
 #include <tactor/alsa.hpp>
 #include <tactor/array.hpp>
+#include <tactor/devices.hpp>
 #include <tactor/error.hpp>
 #include <tactor/geometry.hpp>
 #include <tactor/gpio.hpp>

@@ -16,7 +16,8 @@ using system_root = std::filesystem::path;
 
 struct card {
     unsigned index = 0;
-    std::string id = {}; ///< as in hw:CARD=ID
+    std::string id = {};   ///< as in hw:CARD=ID
+    std::string name = {}; ///< for people
 };
 
 /// By index; none where there is no sound driver.
@@ -24,6 +25,9 @@ std::vector<card> sound_cards(const system_root& root);
 
 /// Numbers of a card's playback devices.
 std::vector<unsigned> playback_devices(const system_root& root, unsigned card_index);
+
+/// What the driver calls a playback device; empty where it says nothing.
+std::string playback_device_name(const system_root& root, unsigned card_index, unsigned device);
 
 /// The card and the device that an ALSA name says, as in "hw:CARD=Tactor,DEV=1" or "plughw:0,1".
 struct device_name {
@@ -40,9 +44,15 @@ struct holder {
     std::string program = {};
 };
 
-/// Processes that have a playback device of this card (without one: of any) open, by number. Of other
-/// users' processes only what the sound driver tells is seen.
-std::vector<holder> playback_holders(const system_root& root, std::optional<unsigned> card_index);
+/// A playback device of a card, or any of its devices, or any of any card.
+struct which_device {
+    std::optional<unsigned> card = {};
+    std::optional<unsigned> device = {};
+};
+
+/// Processes that have such a playback device open, by number. Of other users' processes only what the
+/// sound driver tells is seen.
+std::vector<holder> playback_holders(const system_root& root, const which_device& wanted);
 
 /// The group whose members may open the playback devices; empty where that cannot be told.
 std::string playback_group(const system_root& root);

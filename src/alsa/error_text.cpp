@@ -14,8 +14,9 @@ namespace tactor::pcm {
 namespace {
 
 constexpr std::size_t most_names = 12; // of PCMs in one message
-constexpr const char* no_card_hint = "load the card's driver or overlay, or plug it in; aplay -L lists what "
-                                     "there is; the PCM null needs no card";
+constexpr const char* no_card_hint =
+    "load the card's driver or overlay, or plug it in; tactor devices lists what "
+    "there is; the PCM null needs no card";
 
 std::string thing(const std::string& name)
 {
@@ -42,7 +43,7 @@ error no_card(const std::string& name, const device_name& d, const std::vector<c
     if (cards.empty())
         return {errc::not_available, thing(name), "there is no sound card", no_card_hint};
     return {errc::not_available, thing(name), fmt::format("there is no card {}", d.card),
-            fmt::format("{}cards: {}; aplay -L lists all", near(d.card, ids(cards)),
+            fmt::format("{}cards: {}; tactor devices lists all", near(d.card, ids(cards)),
                         fmt::join(ids(cards), ", "))};
 }
 
@@ -78,7 +79,7 @@ error no_pcm(const std::string& name, const std::string& detail, const surroundi
     if (!cards.empty())
         hint += fmt::format("cards: {}; ", fmt::join(ids(cards), ", "));
     return {errc::not_available, thing(name), with_detail("no such PCM", detail),
-            hint + "aplay -L lists all"};
+            hint + "tactor devices lists all"};
 }
 
 bool is_sound_server(const std::string& program)
@@ -89,11 +90,11 @@ bool is_sound_server(const std::string& program)
 
 error busy(const std::string& name, const surroundings& s)
 {
-    std::optional<unsigned> index;
+    which_device which;
     if (const auto d = named_device(name))
         if (const auto c = find_card(sound_cards(s.root), d->card))
-            index = c->index;
-    const auto holders = playback_holders(s.root, index);
+            which.card = c->index;
+    const auto holders = playback_holders(s.root, which);
     if (holders.empty())
         return {errc::not_available, thing(name), "it is busy: another program plays on it",
                 "stop that program; sudo fuser -v /dev/snd/* names it"};
@@ -141,7 +142,7 @@ error open_error(const std::string& name, int code, const std::string& detail, c
         return forbidden(name, s);
     default:
         return {errc::not_available, thing(name), with_detail(snd_strerror(code), detail),
-                "list the PCMs with aplay -L"};
+                "tactor devices lists the PCMs"};
     }
 }
 

@@ -3,10 +3,10 @@
 
 #include <new>
 #include <string>
-#include <vector>
 
 #include "alsa/error_text.hpp"
 #include "alsa/library_messages.hpp"
+#include "alsa/names.hpp"
 
 namespace tactor::pcm {
 namespace {
@@ -34,33 +34,6 @@ configuration parse(const std::string& text, const library_messages& said)
         throw error(errc::bad_input, "ALSA configuration text", with_detail(snd_strerror(code), said.first()),
                     "see the ALSA documentation of .asoundrc");
     return configuration(c);
-}
-
-// The PCMs that a configuration defines, for those who mistyped one.
-std::vector<std::string> pcm_names(snd_config_t* top)
-{
-    std::vector<std::string> names;
-    snd_config_t* pcms = nullptr;
-    if (top == nullptr || snd_config_search(top, "pcm", &pcms) < 0 ||
-        snd_config_get_type(pcms) != SND_CONFIG_TYPE_COMPOUND)
-        return names;
-    snd_config_iterator_t i = snd_config_iterator_first(pcms);
-    for (; i != snd_config_iterator_end(pcms); i = snd_config_iterator_next(i)) {
-        const char* id = nullptr;
-        if (snd_config_get_id(snd_config_iterator_entry(i), &id) == 0 && id != nullptr)
-            names.emplace_back(id);
-    }
-    return names;
-}
-
-std::vector<std::string> system_pcm_names()
-{
-    snd_config_t* top = nullptr;
-    if (snd_config_update_ref(&top) < 0)
-        return {};
-    std::vector<std::string> names = pcm_names(top);
-    snd_config_unref(top);
-    return names;
 }
 
 } // namespace
@@ -96,12 +69,12 @@ handle open(const alsa_options& o)
     if (o.config_text.empty()) {
         code = snd_pcm_open(&p, o.pcm.c_str(), SND_PCM_STREAM_PLAYBACK, mode);
         if (code < 0)
-            there.pcms = system_pcm_names();
+            there.pcms = defined_pcms();
     } else {
         const configuration c = parse(o.config_text, said);
         code = snd_pcm_open_lconf(&p, o.pcm.c_str(), SND_PCM_STREAM_PLAYBACK, mode, c.get());
         if (code < 0)
-            there.pcms = pcm_names(c.get());
+            there.pcms = defined_pcms(c.get());
     }
     if (code < 0)
         throw open_error(o.pcm, code, said.first(), there);

@@ -34,6 +34,11 @@ std::string asked(const alsa_options& o)
                        formats);
 }
 
+std::span<const sample_format> wanted_formats(const alsa_options& o)
+{
+    return o.format ? std::span<const sample_format>(&*o.format, 1) : std::span(format_preference);
+}
+
 // Whether one setting alone is within what the device can do.
 bool takes_format(snd_pcm_t* p, const hw_params& space, std::span<const sample_format> formats)
 {
@@ -70,18 +75,6 @@ std::optional<hw_params> fix(snd_pcm_t* p, const hw_params& space, const alsa_op
         return std::nullopt;
     if (snd_pcm_hw_params_set_rate(p, h.get(), o.rate, 0) < 0)
         return std::nullopt;
-    return h;
-}
-
-hw_params configuration_space(snd_pcm_t* p, const std::string& name)
-{
-    hw_params h = make_hw_params();
-    if (const int code = snd_pcm_hw_params_any(p, h.get()); code < 0)
-        throw call_error(name, "snd_pcm_hw_params_any", code);
-    // Nothing is resampled silently. Not every plugin knows the setting; open() said so already.
-    snd_pcm_hw_params_set_rate_resample(p, h.get(), 0);
-    if (const int code = snd_pcm_hw_params_set_access(p, h.get(), SND_PCM_ACCESS_RW_INTERLEAVED); code < 0)
-        throw call_error(name, "snd_pcm_hw_params_set_access (interleaved)", code);
     return h;
 }
 
@@ -139,12 +132,31 @@ void check(const alsa_options& o)
     within("periods", o.periods, 2, most_periods);
 }
 
+hw_params configuration_space(snd_pcm_t* p, const std::string& name)
+{
+    hw_params h = make_hw_params();
+    if (const int code = snd_pcm_hw_params_any(p, h.get()); code < 0)
+        throw call_error(name, "snd_pcm_hw_params_any", code);
+    // Nothing is resampled silently. Not every plugin knows the setting; open() said so already.
+    snd_pcm_hw_params_set_rate_resample(p, h.get(), 0);
+    if (const int code = snd_pcm_hw_params_set_access(p, h.get(), SND_PCM_ACCESS_RW_INTERLEAVED); code < 0)
+        throw call_error(name, "snd_pcm_hw_params_set_access (interleaved)", code);
+    return h;
+}
+
+std::string misfit(snd_pcm_t* p, const hw_params& space, const alsa_options& o)
+{
+    const auto formats = wanted_formats(o);
+    for (const sample_format f : formats)
+        if (fix(p, space, o, f))
+            return {};
+    return fmt::format("cannot play {}; {}", asked(o), refused(p, space, o, formats));
+}
+
 stream_setup negotiate(snd_pcm_t* p, const alsa_options& o)
 {
     const hw_params space = configuration_space(p, o.pcm);
-    const std::span<const sample_format> formats =
-        o.format ? std::span<const sample_format>(&*o.format, 1) : std::span(format_preference);
-    for (const sample_format f : formats) {
+    for (const sample_format f : wanted_formats(o)) {
         const std::optional<hw_params> h = fix(p, space, o, f);
         if (!h)
             continue;
@@ -153,8 +165,7 @@ stream_setup negotiate(snd_pcm_t* p, const alsa_options& o)
             throw call_error(o.pcm, "snd_pcm_hw_params", code);
         return read_back(*h, o, f);
     }
-    throw error(errc::not_available, fmt::format("PCM \"{}\"", o.pcm),
-                fmt::format("cannot play {}; {}", asked(o), refused(p, space, o, formats)),
+    throw error(errc::not_available, fmt::format("PCM \"{}\"", o.pcm), misfit(p, space, o),
                 fmt::format("it can do {}", describe(space)));
 }
 

@@ -75,16 +75,7 @@ void add_lists(CLI::App& c, const std::shared_ptr<compare_options>& o)
     phantoms->type_name(names_of(all_phantoms));
     c.get_option("--algorithm")->description("only this one; see --algorithms")->excludes(algorithms);
     c.get_option("--phantom")->excludes(phantoms);
-    c.add_option_function<std::string>(
-         "--format",
-         [o](const std::string& t) {
-             if (t != "text" && t != "json" && t != "csv")
-                 throw error(errc::bad_input, "--format", fmt::format("\"{}\" is not known", t),
-                             "one of text, json, csv");
-             o->format = t;
-         },
-         "how to print it (default text)")
-        ->type_name("text|json|csv");
+    add_format_option(c, o->format, {"text", "json", "csv"}, "how to print it (default text)");
 }
 
 void add_picture_options(CLI::App& c, const std::shared_ptr<compare_options>& o)

@@ -18,16 +18,7 @@ command add_plan(CLI::App& app)
     auto format = std::make_shared<std::string>("text");
     options->add_stroke_options();
     options->add_sound_options();
-    c->add_option_function<std::string>(
-         "--format",
-         [format](const std::string& t) {
-             if (t != "text" && t != "json" && t != "csv")
-                 throw error(errc::bad_input, "--format", fmt::format("\"{}\" is not known", t),
-                             "one of text, json, csv");
-             *format = t;
-         },
-         "how to print it (default text)")
-        ->type_name("text|json|csv");
+    add_format_option(*c, *format, {"text", "json", "csv"}, "how to print it (default text)");
     c->footer("Example: tactor plan park2016-1 --format json");
     return [s, options, format] {
         const environment e = read_environment(*s, *options);

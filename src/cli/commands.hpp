@@ -28,5 +28,6 @@ command add_compare(CLI::App& app);
 command add_render(CLI::App& app);
 command add_play(CLI::App& app);
 command add_plot(CLI::App& app);
+command add_devices(CLI::App& app);
 
 } // namespace tactor::cli

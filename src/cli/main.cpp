@@ -37,7 +37,8 @@ int run(int argc, char** argv)
     app.set_version_flag("--version", std::string("tactor ") + version());
     app.require_subcommand(1);
     app.footer("Example: tactor play park2016-3        tactor COMMAND --help says more.");
-    std::array commands{add_plan(app), add_render(app), add_play(app), add_plot(app), add_compare(app)};
+    std::array commands{add_plan(app), add_render(app),  add_play(app),
+                        add_plot(app), add_compare(app), add_devices(app)};
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& e) {

@@ -66,16 +66,7 @@ void add_play_options(CLI::App& c, play_options& o)
          "wait so long for a lost device to come back, then go on with the next stroke (default 0)")
         ->type_name("S");
     add_lines(c, o);
-    c.add_option_function<std::string>(
-         "--format",
-         [&o](const std::string& t) {
-             if (t != "text" && t != "json")
-                 throw error(errc::bad_input, "--format", fmt::format("\"{}\" is not known", t),
-                             "one of text, json");
-             o.format = t;
-         },
-         "what is told of the run (default text)")
-        ->type_name("text|json");
+    add_format_option(c, o.format, {"text", "json"}, "what is told of the run (default text)");
 }
 
 alsa_options device_options(const settings& s, const play_options& p, const environment& e,

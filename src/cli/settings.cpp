@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "cli/settings.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace tactor::cli {
 namespace {
@@ -82,6 +84,23 @@ double parse_number(const std::string& what, const std::string& text, double lo,
     return v;
 }
 
+void add_format_option(CLI::App& command, std::string& into, const std::vector<std::string>& names,
+                       const std::string& help)
+{
+    into = names.front();
+    command
+        .add_option_function<std::string>(
+            "--format",
+            [&into, names](const std::string& t) {
+                if (std::find(names.begin(), names.end(), t) == names.end())
+                    throw error(errc::bad_input, "--format", fmt::format("\"{}\" is not known", t),
+                                fmt::format("one of {}", fmt::join(names, ", ")));
+                into = t;
+            },
+            help)
+        ->type_name(fmt::format("{}", fmt::join(names, "|")));
+}
+
 option_list::option_list(CLI::App& command, settings& into) : command_(command), settings_(into)
 {
 }
@@ -111,8 +130,7 @@ void option_list::add_stroke_options()
     strokes->expected(0, max_strokes);
     value("--path", "DATA", "SVG path data in mm instead of STROKE",
           [&s](const std::string& t) { s.path_data = t; });
-    value("--array", "NAME|FILE", "palm-3x3 (default), palm-2x4, or an array file",
-          [&s](const std::string& t) { s.array_name = t; });
+    add_array_options();
     value("--algorithm", algorithms.names("|"), "who plays when (default park2016)",
           [&s](const std::string& t) { s.plan.method = algorithms.parse("--algorithm", t); });
     value("--phantom", phantoms.names("|"), "how strongly (default inverse-distance)",
@@ -141,6 +159,13 @@ void option_list::add_stroke_options()
          s.plan.drop_points);
     value("--overlap", overlaps.names("|"), "bursts that overlap on one tactor (default energy)",
           [&s](const std::string& t) { s.plan.join = overlaps.parse("--overlap", t); });
+}
+
+void option_list::add_array_options()
+{
+    settings& s = settings_;
+    value("--array", "NAME|FILE", "palm-3x3 (default), palm-2x4, or an array file",
+          [&s](const std::string& t) { s.array_name = t; });
     value("--config", "FILE", "configuration, see tactor.toml(5)",
           [&s](const std::string& t) { s.config_file = t; });
 }
@@ -163,6 +188,12 @@ void option_list::add_sound_options()
         s.render.sl_db = parse_number("--sl", t, -60, 100, "dB SL");
     });
     level->excludes(sl);
+    add_rate_options();
+}
+
+void option_list::add_rate_options()
+{
+    settings& s = settings_;
     value("--rate", "HZ", "sample rate (default 48000)", [&s](const std::string& t) {
         const double hz = parse_number("--rate", t, 8000, 768000, "Hz");
         if (hz != std::floor(hz))

@@ -41,10 +41,14 @@ class option_list {
 public:
     option_list(CLI::App& command, settings& into);
 
-    /// STROKE, --path and how it is planned.
+    /// STROKE, --path, array and how it is planned.
     void add_stroke_options();
+    /// --array and --config: what commands without a stroke need.
+    void add_array_options();
     /// Carrier, levels and rate.
     void add_sound_options();
+    /// --rate and --sample-format alone.
+    void add_rate_options();
     /// -D.
     void add_device_options();
 
@@ -62,6 +66,10 @@ private:
     settings& settings_;
     std::map<std::string, std::pair<CLI::Option*, setter>> by_name_;
 };
+
+/// --format: one of `names`, of which the first is the default. `into` must live as long as the command.
+void add_format_option(CLI::App& command, std::string& into, const std::vector<std::string>& names,
+                       const std::string& help);
 
 /// A finite number between lo and hi. \throws error (bad_input) naming `what`, the text and the range.
 double parse_number(const std::string& what, const std::string& text, double lo, double hi,

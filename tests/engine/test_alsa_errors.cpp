@@ -15,60 +15,21 @@
 
 #include "alsa/cards.hpp"
 #include "alsa/error_text.hpp"
+#include "fake_system.hpp"
 
 using namespace tactor;
 namespace fs = std::filesystem;
 
 namespace {
 
-// A folder with a /proc and a /dev of its own.
-class fake_system {
-public:
-    fake_system()
-    {
-        std::string name = (fs::temp_directory_path() / "tactor-system-XXXXXX").string();
-        REQUIRE(::mkdtemp(name.data()) != nullptr);
-        root_ = name;
-    }
-    ~fake_system() { fs::remove_all(root_); }
-    fake_system(const fake_system&) = delete;
-    fake_system& operator=(const fake_system&) = delete;
-
-    void write(const fs::path& file, const std::string& text) const
-    {
-        fs::create_directories((root_ / file).parent_path());
-        std::ofstream(root_ / file) << text;
-    }
-    void two_cards() const
-    {
-        write("proc/asound/cards", " 0 [Headphones     ]: bcm2835_headpho - bcm2835 Headphones\n"
-                                   "                      bcm2835 Headphones\n"
-                                   " 2 [DAC8x          ]: HifiberryDac8x - snd_rpi_hifiberry_dac8x\n"
-                                   "                      snd_rpi_hifiberry_dac8x\n");
-        write("proc/asound/pcm", "00-00: bcm2835 Headphones : bcm2835 Headphones : playback 8\n"
-                                 "02-00: HifiBerry DAC8x : : playback 1\n"
-                                 "02-01: HifiBerry DAC8x : : capture 1\n"
-                                 "02-03: more : : playback 1 : capture 1\n");
-    }
-    void process(int pid, const std::string& program, const fs::path& opened) const
-    {
-        const fs::path folder = root_ / "proc" / std::to_string(pid);
-        write(folder / "comm", program + "\n");
-        fs::create_directories(folder / "fd");
-        fs::create_symlink("/dev/null", folder / "fd/0");
-        fs::create_symlink(opened, folder / "fd/7");
-    }
+struct fake_system : test::fake_system {
     std::string says(const std::string& pcm, int code,
                      std::vector<std::string> pcms = {"default", "null"}) const
     {
-        const error e = pcm::open_error(pcm, code, "", {std::move(pcms), root_});
+        const error e = pcm::open_error(pcm, code, "", {std::move(pcms), root()});
         CHECK(e.kind() == errc::not_available);
         return e.what();
     }
-    const fs::path& root() const { return root_; }
-
-private:
-    fs::path root_;
 };
 
 bool has(const std::string& text, const std::string& part)

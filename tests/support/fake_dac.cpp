@@ -148,7 +148,13 @@ void limit(snd_pcm_ioplug_t& io, const fake_dac_options& o)
         formats.push_back(static_cast<unsigned>(f));
     must(snd_pcm_ioplug_set_param_list(&io, SND_PCM_IOPLUG_HW_FORMAT, static_cast<unsigned>(formats.size()),
                                        formats.data()));
-    must(snd_pcm_ioplug_set_param_minmax(&io, SND_PCM_IOPLUG_HW_CHANNELS, o.least_channels, o.most_channels));
+    if (o.channel_counts.empty())
+        must(snd_pcm_ioplug_set_param_minmax(&io, SND_PCM_IOPLUG_HW_CHANNELS, o.least_channels,
+                                             o.most_channels));
+    else
+        must(snd_pcm_ioplug_set_param_list(&io, SND_PCM_IOPLUG_HW_CHANNELS,
+                                           static_cast<unsigned>(o.channel_counts.size()),
+                                           o.channel_counts.data()));
     must(snd_pcm_ioplug_set_param_minmax(&io, SND_PCM_IOPLUG_HW_RATE, o.rate, o.rate));
     const auto most = static_cast<unsigned>(o.most_buffer_bytes);
     const auto least = static_cast<unsigned>(o.least_period_bytes);

@@ -19,6 +19,7 @@ struct fake_dac_options {
                                           SND_PCM_FORMAT_FLOAT_LE};
     unsigned least_channels = 1;
     unsigned most_channels = 64;
+    std::vector<unsigned> channel_counts{}; ///< these only, instead
     unsigned rate = 48000;
     std::size_t least_period_bytes = 32;
     std::size_t most_buffer_bytes = 1 << 20;

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The PCMs that could be played on and what each can do. GPIO chips and lines: list_gpio() in gpio.hpp.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tactor/alsa.hpp>
+#include <tactor/api.hpp>
+#include <tactor/sample_format.hpp>
+
+namespace tactor {
+
+/// Stands for "as many as you like" in count_range::most, as software PCMs say.
+inline constexpr unsigned no_limit = std::numeric_limits<unsigned>::max();
+
+/// Whole numbers from least to most, both included.
+struct count_range {
+    unsigned least = 0;
+    unsigned most = 0;
+};
+
+/// What a PCM takes. Each alone: on some devices not every combination works.
+struct pcm_abilities {
+    /// Channel counts, ascending, as ranges without gaps; one that reaches 1024 may go on.
+    std::vector<count_range> channels = {};
+    count_range rates_hz = {};
+    std::vector<unsigned> usual_rates_hz = {}; ///< of the rates in use from 8 to 768 kHz those it takes
+    std::vector<sample_format> formats = {};   ///< of those that tactor plays, the preferred first
+    count_range period_frames = {};
+    count_range periods = {};
+    count_range buffer_frames = {};
+};
+
+/// A process that has a playback device open.
+struct process_info {
+    int pid = 0;
+    std::string program = {}; ///< empty: not told
+};
+
+/// A PCM for playback, by the name that alsa_options::pcm takes.
+struct pcm_info {
+    std::string name = {};        ///< a card's own device is hw:CARD=ID,DEV=N, whatever its number
+    std::string description = {}; ///< of the card and device, or ALSA's own; one line; may be empty
+    bool hardware = false;        ///< a card's own device, without conversion
+    bool wanted = false;          ///< the one that was asked about
+    bool opened = false;
+    /// Why it was not opened, and what to do. Not tried are PCMs whose opening would start a card, as mixers
+    /// (dmix) do, or a sound server; open_alsa() tries.
+    std::string error = {};
+    bool tried = true;                      ///< false: see error
+    std::vector<process_info> holders = {}; ///< who has a card's own device open
+    std::optional<pcm_abilities> can = {};  ///< none where it was not opened
+    std::string misfit = {}; ///< why it cannot play what is wanted; empty: it can, or not known
+};
+
+/// All PCMs for playback: each device of each card, then what ALSA's configuration names. Those are opened
+/// and looked at, not configured: nothing sounds and no other program is disturbed. `wanted`: also says
+/// which of them take exactly its channels, rate and format, as open_alsa() would ask for; its PCM is listed
+/// even where nothing else lists it.
+/// Blocks for some milliseconds. Any thread, but one at a time.
+/// \throws error: bad_input for numbers in `wanted` that no PCM can have. PCMs that cannot be opened say so
+///         in the list.
+TACTOR_API std::vector<pcm_info> list_pcms(const std::optional<alsa_options>& wanted = {});
+
+} // namespace tactor

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "alsa/devices.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "alsa/abilities.hpp"
+#include "alsa/error_text.hpp"
+#include "alsa/handle.hpp"
+#include "alsa/library_messages.hpp"
+#include "alsa/names.hpp"
+#include "alsa/negotiate.hpp"
+
+namespace tactor::pcm {
+namespace {
+
+std::string joined(const std::string& a, const std::string& b)
+{
+    return a.empty() || b.empty() || a == b ? (a.empty() ? b : a) : fmt::format("{}, {}", a, b);
+}
+
+std::vector<pcm_info> card_devices(const system_root& root)
+{
+    std::vector<pcm_info> all;
+    for (const card& c : sound_cards(root)) {
+        for (const unsigned device : playback_devices(root, c.index)) {
+            pcm_info p;
+            p.name = fmt::format("hw:CARD={},DEV={}", c.id, device);
+            p.description = joined(c.name, playback_device_name(root, c.index, device));
+            p.hardware = true;
+            for (const holder& h : playback_holders(root, {c.index, device}))
+                p.holders.push_back({h.pid, h.program});
+            all.push_back(std::move(p));
+        }
+    }
+    return all;
+}
+
+// The name that a card's own device has in the list, however it is said: hw:1, hw:Tactor, hw:CARD=1,DEV=0.
+std::string listed_name(const system_root& root, const std::string& name)
+{
+    if (const auto d = named_device(name); d && name.rfind("hw:", 0) == 0)
+        if (const auto c = find_card(sound_cards(root), d->card))
+            return fmt::format("hw:CARD={},DEV={}", c->id, d->device);
+    return name;
+}
+
+bool is_listed(const std::vector<pcm_info>& all, const std::string& name)
+{
+    return std::any_of(all.begin(), all.end(), [&](const pcm_info& p) { return p.name == name; });
+}
+
+// The list says the name already.
+std::string without_name(std::string text, const std::string& name)
+{
+    const std::string prefix = fmt::format("PCM \"{}\": ", name);
+    return text.rfind(prefix, 0) == 0 ? text.substr(prefix.size()) : text;
+}
+
+void probe(const std::optional<alsa_options>& wanted, pcm_info& p)
+{
+    const std::string lasting = p.hardware || p.wanted ? "" : lasting_plugin(p.name);
+    if (!lasting.empty()) {
+        p.tried = false;
+        p.error = fmt::format("not tried: opening a PCM of type {} may start a card or a server", lasting);
+        return;
+    }
+    alsa_options o = p.wanted ? *wanted : alsa_options{};
+    if (!p.wanted || p.hardware)
+        o.pcm = p.name;
+    try {
+        const handle h = open(o);
+        look_at(h.get(), wanted, p);
+    } catch (const error& e) {
+        p.error = without_name(e.what(), o.pcm);
+    }
+}
+
+} // namespace
+
+void look_at(snd_pcm_t* pcm, const std::optional<alsa_options>& wanted, pcm_info& into)
+{
+    const library_messages silent;
+    const hw_params space = configuration_space(pcm, into.name);
+    into.can = abilities_of(pcm, space);
+    into.opened = true;
+    if (wanted)
+        into.misfit = misfit(pcm, space, *wanted);
+}
+
+std::vector<pcm_info> list(const system_root& root, const std::optional<alsa_options>& wanted)
+{
+    std::vector<pcm_info> all = card_devices(root);
+    for (const known_name& n : known_names())
+        if (!is_listed(all, listed_name(root, n.name)))
+            all.push_back({.name = n.name, .description = n.description});
+    if (wanted) {
+        const std::string name = listed_name(root, wanted->pcm);
+        if (!is_listed(all, name))
+            all.push_back({.name = name});
+        for (pcm_info& p : all)
+            p.wanted = p.name == name;
+    }
+    for (pcm_info& p : all)
+        probe(wanted, p);
+    return all;
+}
+
+} // namespace tactor::pcm
+
+std::vector<tactor::pcm_info> tactor::list_pcms(const std::optional<alsa_options>& wanted)
+{
+    if (wanted)
+        pcm::check(*wanted);
+    return pcm::list("/", wanted);
+}

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The names of PCMs that ALSA's configuration knows.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <alsa/asoundlib.h>
+
+namespace tactor::pcm {
+
+struct known_name {
+    std::string name = {};
+    std::string description = {}; ///< one line; may be empty
+};
+
+/// Every PCM for playback that the configuration names and that needs no argument: those with a hint as
+/// ALSA lists them, then the others.
+std::vector<known_name> known_names();
+
+/// All that a configuration defines under `pcm`, those that need arguments too; for those who mistyped one.
+std::vector<std::string> defined_pcms(snd_config_t* top);
+std::vector<std::string> defined_pcms();
+
+/// The type of plugin that keeps this PCM from being opened just to look at it: a mixer, which starts its
+/// card, a client of a sound server, or one that is not known to be harmless. Empty: opening does nothing.
+std::string lasting_plugin(const std::string& name);
+
+} // namespace tactor::pcm

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Reading the small text files of /proc. What cannot be read is empty.
+#pragma once
+
+#include <charconv>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+namespace tactor::pcm {
+
+/// The whole text as a number.
+template <typename T>
+std::optional<T> number(std::string_view text)
+{
+    T v{};
+    const auto r = std::from_chars(text.data(), text.data() + text.size(), v);
+    if (r.ec != std::errc() || r.ptr != text.data() + text.size())
+        return {};
+    return v;
+}
+
+/// Without blanks at both ends.
+std::string trimmed(std::string_view s);
+
+std::vector<std::string> lines_of(const std::filesystem::path& file);
+
+/// The value after "key:" in a file of such lines.
+std::string field(const std::filesystem::path& file, std::string_view key);
+
+/// What is in a folder, in no order.
+std::vector<std::filesystem::path> entries(const std::filesystem::path& folder);
+
+} // namespace tactor::pcm

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: MIT
+"""tactor devices on a real kernel: a card, who holds it, a GPIO chip, who holds its lines."""
+import json
+import signal
+
+from rig import PERIOD, GpioSim, RigTest, wait_for
+
+
+class Devices(RigTest):
+    def devices(self, *args):
+        r = self.tool("devices", "--format", "json", *args)
+        self.assertEqual(r.returncode, 0, r.stderr)
+        told = json.loads(r.stdout)
+        return {p["name"]: p for p in told["pcms"]}, {c["label"]: c for c in told["gpio_chips"]}
+
+    def test_a_card_says_what_it_can_do_and_stays_unconfigured(self):
+        pcms, _ = self.devices("--array", self.grid())
+        card = pcms["hw:CARD=Loopback,DEV=0"]
+        print(self.tool("devices").stdout)
+        self.assertEqual((card["hardware"], card["opened"], card["fits"], card["holders"]), (True, True, True, []))
+        self.assertEqual(card["can"]["channels"], [{"min": 1, "max": 32}])
+        self.assertIn(48000, card["can"]["usual_rates_hz"])
+        self.assertIn("s32", card["can"]["formats"])
+        self.assertLessEqual(card["can"]["period_frames"]["min"], PERIOD)
+        self.assertEqual(sum(name.startswith("hw:CARD=Loopback") for name in pcms), 2)
+        # What would start the card is named only.
+        self.assertTrue(all(not p["tried"] for n, p in pcms.items() if n.startswith(("dmix", "sysdefault"))))
+
+    def test_who_plays_and_who_holds_a_line_is_told(self):
+        sim = GpioSim(names=[(3, "AMP")])
+        self.addCleanup(sim.close)
+        array = self.grid(extra=f'[amplifier]\nline = {{ chip = "{sim.label}", offset = 3 }}\n')
+        chip = self.devices()[1][sim.label]
+        self.assertEqual(chip["lines"][3], {"offset": 3, "name": "AMP", "direction": "input", "consumer": None})
+        p = self.start("play", "--path", "M 0 10 L 40 30", "--duration", "600", "--array", array)
+        wait_for(lambda: sim.value(3) == 1, "the amplifier is on")
+        pcms, chips = self.devices()
+        self.assertIn({"pid": p.pid, "program": "tactor"}, pcms["hw:CARD=Loopback,DEV=0"]["holders"])
+        self.assertEqual(pcms["hw:CARD=Loopback,DEV=1"]["holders"], [])
+        self.assertEqual(chips[sim.label]["lines"][3],
+                         {"offset": 3, "name": "AMP", "direction": "output", "consumer": "tactor"})
+        p.send_signal(signal.SIGINT)
+        self.assertEqual(p.wait(timeout=60), 130)
