@@ -55,8 +55,8 @@ std::string sizes_text(const pcm_abilities& a)
 {
     if (a.period_frames.most == no_limit && a.buffer_frames.most == no_limit)
         return "any";
-    return fmt::format("{} frames; {} in a buffer; {} frames in all", text_of(a.period_frames),
-                       text_of(a.periods), text_of(a.buffer_frames));
+    return fmt::format("{} frames, {} periods, buffer {}", text_of(a.period_frames), text_of(a.periods),
+                       text_of(a.buffer_frames));
 }
 
 std::string holders_text(const std::vector<process_info>& holders)

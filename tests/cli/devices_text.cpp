@@ -64,7 +64,7 @@ Sound cards
     channels  2, 4, 8
     rates     44100 48000 96000 192000 Hz
     formats   s32 s16
-    period    32 to 4096 frames; 2 to 32 in a buffer; 64 to 65536 frames in all
+    period    32 to 4096 frames, 2 to 32 periods, buffer 64 to 65536
 
   hw:CARD=Headphones,DEV=0
     held by   pipewire (process 812), a program (process 813)
