@@ -44,7 +44,7 @@ def main():
     totals = [0, 0, 0]
     for name, counts, text in results(sys.argv[1:]):
         print(f"{name:<28} {counts[0]:>6} passed {counts[1]:>4} failed {counts[2]:>4} skipped")
-        for line in re.findall(r"^SKIPPED: .*$", text, re.M):
+        for line in re.findall(r"^\s*((?:SKIPPED|SHORTENED): .*)$", text, re.M):
             print("  " + line)
         totals = [a + b for a, b in zip(totals, counts)]
     print(f"{totals[0]} passed, {totals[1]} failed, {totals[2]} skipped")

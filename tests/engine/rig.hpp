@@ -165,25 +165,20 @@ public:
     /// Frames captured from `from` on, as many as `frames`; zeros beyond the end.
     std::vector<std::byte> captured(std::uint64_t from, std::uint64_t frames) const
     {
-        const std::vector<std::byte> all = dac.captured();
-        const std::size_t size = dac.frame_bytes();
-        std::vector<std::byte> part(frames * size);
-        const std::size_t first = std::min<std::size_t>(from * size, all.size());
-        const std::size_t n = std::min(part.size(), all.size() - first);
-        std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(first), n, part.begin());
+        std::vector<std::byte> part = dac.captured(from);
+        part.resize(frames * dac.frame_bytes());
         return part;
     }
 
     /// First captured frame that is not silent; none if all is.
     std::optional<std::uint64_t> first_sound(std::uint64_t from = 0) const
     {
-        const std::vector<std::byte> all = dac.captured();
-        const auto begin = all.begin() + static_cast<std::ptrdiff_t>(
-                                             std::min<std::size_t>(from * dac.frame_bytes(), all.size()));
-        const auto found = std::find_if(begin, all.end(), [](std::byte b) { return b != std::byte{0}; });
+        const std::vector<std::byte> all = dac.captured(from);
+        const auto found =
+            std::find_if(all.begin(), all.end(), [](std::byte b) { return b != std::byte{0}; });
         if (found == all.end())
             return std::nullopt;
-        return static_cast<std::uint64_t>(found - all.begin()) / dac.frame_bytes();
+        return from + static_cast<std::uint64_t>(found - all.begin()) / dac.frame_bytes();
     }
 
     sink& wrapped(const rig_options& o)

@@ -42,9 +42,9 @@ public:
 
     std::vector<double> channel(unsigned c, std::uint64_t from = 0) const
     {
-        const std::vector<std::byte> all = dac.captured();
+        const std::vector<std::byte> all = dac.captured(from);
         std::vector<double> samples;
-        for (std::size_t f = from; f < all.size() / dac.frame_bytes(); ++f) {
+        for (std::size_t f = 0; f < all.size() / dac.frame_bytes(); ++f) {
             std::int32_t v = 0;
             std::memcpy(&v, &all[f * dac.frame_bytes() + 4 * c], 4);
             samples.push_back(v / 2147483648.0);

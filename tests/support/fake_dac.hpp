@@ -49,8 +49,8 @@ public:
     /// Whatever is polled, it looks ready.
     void cry_ready(bool on);
 
-    /// All bytes that were transferred so far, over all epochs.
-    std::vector<std::byte> captured() const;
+    /// All bytes that were transferred so far, over all epochs, from a frame on.
+    std::vector<std::byte> captured(std::uint64_t from = 0) const;
     std::size_t captured_frames() const;
     std::size_t frame_bytes() const;
     std::uint64_t queued() const;

@@ -2,12 +2,15 @@
 // What a test can see of the fake DAC.
 #include "fake_dac.hpp"
 
+#include <algorithm>
+
 namespace tactor::test {
 
-std::vector<std::byte> fake_dac::captured() const
+std::vector<std::byte> fake_dac::captured(std::uint64_t from) const
 {
     const std::lock_guard lock(mutex_);
-    return captured_;
+    const std::uint64_t first = std::min<std::uint64_t>(from * frame_bytes_, captured_.size());
+    return {captured_.begin() + static_cast<std::ptrdiff_t>(first), captured_.end()};
 }
 
 std::size_t fake_dac::captured_frames() const
