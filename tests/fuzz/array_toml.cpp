@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// Array files.
+#include <tactor/setup.hpp>
+
+#include "holds.hpp"
+
+using namespace tactor;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+    const setup s = fuzz::accepted([&] { return parse_setup(fuzz::text_of(data, size), "fuzz.toml"); });
+    if (s.layout)
+        fuzz::check_array(*s.layout);
+    return 0;
+}

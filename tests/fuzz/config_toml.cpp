@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// Configuration files: what each section says is in its bounds.
+#include <algorithm>
+#include <cmath>
+
+#include <tactor/setup.hpp>
+
+#include "holds.hpp"
+
+using namespace tactor;
+
+namespace {
+
+void check_line(const gpio_line_name& l)
+{
+    HOLDS(l.name.empty() ? !l.chip.empty() && l.offset.has_value() : !l.offset);
+}
+
+void check_setup(const setup& s)
+{
+    HOLDS(!s.output.rate || (*s.output.rate >= 8000 && *s.output.rate <= 768000));
+    HOLDS(!s.output.periods || *s.output.periods >= 2);
+    HOLDS(!s.output.period_frames || *s.output.period_frames >= 1);
+    HOLDS(!s.output.channels || (*s.output.channels >= 1 && *s.output.channels <= 1024));
+    if (s.amplifier) {
+        check_line(s.amplifier->line);
+        HOLDS(s.amplifier->settle_ms >= 0.0 && std::isfinite(s.amplifier->settle_ms));
+    }
+    if (s.sync) {
+        HOLDS(s.sync->pulse_ms > 0.0 && std::isfinite(s.sync->pulse_ms));
+        HOLDS(s.sync->edge == "rising" || s.sync->edge == "falling" || s.sync->edge == "both");
+        for (const auto* l : {&s.sync->out, &s.sync->in}) {
+            if (*l)
+                check_line(**l);
+        }
+    }
+    const std::vector<std::string>& known = setup_default_names();
+    for (const auto& [name, value] : s.defaults)
+        HOLDS(std::find(known.begin(), known.end(), name) != known.end());
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+    check_setup(fuzz::accepted([&] { return parse_setup(fuzz::text_of(data, size), "fuzz.toml"); }));
+    return 0;
+}

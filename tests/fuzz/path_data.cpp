@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+// SVG path data, there and back again.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <tactor/path.hpp>
+
+#include "holds.hpp"
+
+using namespace tactor;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+    const auto p = fuzz::accepted([&] { return std::optional(path::from_svg(fuzz::text_of(data, size))); });
+    if (!p)
+        return 0;
+    fuzz::check_path(*p);
+    const path again = path::from_svg(p->svg());
+    HOLDS(std::abs(again.length_mm() - p->length_mm()) <= 1e-3 + 1e-9 * p->length_mm());
+    return 0;
+}

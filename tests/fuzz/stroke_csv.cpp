@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// Stroke files: CSV.
+#include <tactor/stroke.hpp>
+
+#include "holds.hpp"
+
+using namespace tactor;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+    for (const stroke& s :
+         fuzz::accepted([&] { return parse_strokes_csv(fuzz::text_of(data, size), "fuzz.csv"); }))
+        fuzz::check_stroke(s);
+    return 0;
+}

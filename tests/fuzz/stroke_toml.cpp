@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// Stroke files: TOML.
+#include <tactor/stroke.hpp>
+
+#include "holds.hpp"
+
+using namespace tactor;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+    for (const stroke& s :
+         fuzz::accepted([&] { return parse_strokes_toml(fuzz::text_of(data, size), "fuzz.toml"); }))
+        fuzz::check_stroke(s);
+    return 0;
+}
