@@ -13,25 +13,12 @@ void carrier_block::forget() noexcept
     shaped_place_ = {};
 }
 
-/// The part that ends in one block goes on in the next.
-sine_cosine carrier_block::base_angle(double cycles_per_frame, std::int64_t frame) noexcept
-{
-    if (base_frame_ != frame || base_cycles_ != cycles_per_frame) {
-        base_frame_ = frame;
-        base_cycles_ = cycles_per_frame;
-        base_ = sincos_cycles(static_cast<double>(frame) * cycles_per_frame);
-    }
-    return base_;
-}
-
 const double* carrier_block::get(const voice& v, const fade* f, std::uint64_t at, unsigned n) noexcept
 {
     const place here{at, n, v.cycles_per_frame, v.phase};
     if (!(here == plain_place_)) {
-        const oscillator_table& t = tables_.get(v.cycles_per_frame);
-        for_each_part(static_cast<std::int64_t>(v.phase + at), 0, n, [&](const table_part& p) {
-            sine_block(t, base_angle(v.cycles_per_frame, p.base), p, plain_.data());
-        });
+        sine_block(tables_.get(v.cycles_per_frame), v.cycles_per_frame,
+                   static_cast<std::int64_t>(v.phase + at), n, plain_.data());
         plain_place_ = here;
     }
     const auto first = static_cast<std::int64_t>(v.window_place + at);

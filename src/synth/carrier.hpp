@@ -35,12 +35,7 @@ private:
         std::uint64_t fade_length = 0;
         bool operator==(const shape&) const = default;
     };
-    sine_cosine base_angle(double cycles_per_frame, std::int64_t frame) noexcept;
-
     oscillator_tables tables_;
-    std::int64_t base_frame_ = 0;
-    double base_cycles_ = 0.0;
-    sine_cosine base_;
     place plain_place_;
     place shaped_place_;
     shape shaped_shape_;

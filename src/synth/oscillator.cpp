@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "synth/oscillator.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 
 #include "synth/clones.hpp"
@@ -25,6 +27,42 @@ void fill(oscillator_table& t, double cycles_per_frame) noexcept
         t.sin[j] = v.sin;
         t.cos[j] = v.cos;
     }
+}
+
+/// Sines and cosines of the multiples of table_frames in a block; in whole vectors.
+struct base_angles {
+    static constexpr std::size_t vector = 8;
+    static constexpr std::size_t most = (block_frames / table_frames + vector) / vector * vector;
+    alignas(64) std::array<double, most> sin;
+    alignas(64) std::array<double, most> cos;
+};
+static_assert(base_angles::most >= block_frames / table_frames + 1);
+
+[[gnu::always_inline]] inline base_angles angles(std::int64_t first, unsigned frames,
+                                                 double cycles_per_frame) noexcept
+{
+    base_angles a;
+    const auto at = static_cast<double>(first);
+    const std::size_t count = (frames + table_frames - 1) / table_frames;
+    // Far beyond what a stroke lasts.
+    if (!(std::abs((at + 2.0 * block_frames) * cycles_per_frame) < most_turns)) {
+        for (std::size_t i = 0; i < count; ++i) {
+            const sine_cosine v =
+                sincos_cycles((at + static_cast<double>(i * table_frames)) * cycles_per_frame);
+            a.sin[i] = v.sin;
+            a.cos[i] = v.cos;
+        }
+        return a;
+    }
+    for (std::size_t i = 0; i < count; i += base_angles::vector) {
+        for (std::size_t j = i; j < i + base_angles::vector; ++j) {
+            const sine_cosine v =
+                sincos_turns((at + static_cast<double>(j * table_frames)) * cycles_per_frame);
+            a.sin[j] = v.sin;
+            a.cos[j] = v.cos;
+        }
+    }
+    return a;
 }
 
 } // namespace
@@ -53,15 +91,24 @@ const oscillator_table& oscillator_tables::get(double cycles_per_frame) noexcept
     return t;
 }
 
-TACTOR_CLONES void sine_block(const oscillator_table& t, sine_cosine base, const table_part& p,
-                              double* out) noexcept
+TACTOR_CLONES void sine_block(const oscillator_table& t, double cycles_per_frame, std::int64_t first,
+                              unsigned n, double* out) noexcept
 {
-    const double* __restrict s = t.sin.data() + p.offset;
-    const double* __restrict c = t.cos.data() + p.offset;
-    double* __restrict o = out + p.lo;
-    const unsigned n = p.hi - p.lo;
-    for (unsigned j = 0; j < n; ++j) {
-        o[j] = base.sin * c[j] + base.cos * s[j];
+    auto offset = static_cast<unsigned>(static_cast<std::uint64_t>(first) % table_frames);
+    const base_angles base = angles(first - offset, offset + n, cycles_per_frame);
+    for (std::size_t i = 0; n > 0; ++i) {
+        const double* __restrict s = t.sin.data() + offset;
+        const double* __restrict c = t.cos.data() + offset;
+        double* __restrict o = out;
+        const unsigned length = std::min(n, table_frames - offset);
+        const double base_sin = base.sin[i];
+        const double base_cos = base.cos[i];
+        for (unsigned j = 0; j < length; ++j) {
+            o[j] = base_sin * c[j] + base_cos * s[j];
+        }
+        out += length;
+        n -= length;
+        offset = 0;
     }
 }
 

@@ -14,7 +14,7 @@
 namespace tactor::synth {
 
 /// Most frames that are mixed at once. What a block holds does not depend on where it begins.
-inline constexpr unsigned block_frames = 128;
+inline constexpr unsigned block_frames = 512;
 /// Frames from one exact angle to the next.
 inline constexpr unsigned table_frames = 64;
 
@@ -68,11 +68,13 @@ void for_each_part(std::int64_t first, unsigned lo, unsigned hi, F f) noexcept
     }
 }
 
-/// out[j] = sin(2 pi (a + (offset + j - lo) f)) for the part's j; `base` is a's sine and cosine, `t` f's
-/// table.
-void sine_block(const oscillator_table& t, sine_cosine base, const table_part& p, double* out) noexcept;
+/// out[j] = sin(2 pi f (first + j)) for j < n (at most block_frames), with f = `cycles_per_frame`, whose
+/// table is `t`: an exact angle at each multiple of table_frames, added to those of the table.
+void sine_block(const oscillator_table& t, double cycles_per_frame, std::int64_t first, unsigned n,
+                double* out) noexcept;
 
-/// out[j] *= offset + scale * cos(...) of the same angle: both halves of a raised cosine.
+/// out[j] *= offset + scale * cos(2 pi (a + (offset + j - lo) f)) for the part's j: both halves of a raised
+/// cosine; `base` is a's sine and cosine, `t` f's table.
 void times_cosine(const oscillator_table& t, sine_cosine base, double offset, double scale,
                   const table_part& p, double* out) noexcept;
 

@@ -4,6 +4,7 @@
 /// its version and on the processor that it finds.
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -14,21 +15,25 @@ struct sine_cosine {
     double cos = 1.0;
 };
 
+/// Adding it leaves no room for a fraction: 1.5 * 2^52.
+inline constexpr double rounds = 6755399441055744.0;
+
 /// Rounds to the nearest integer, half to even, in plain arithmetic; |x| < 2^51.
 inline double nearest(double x) noexcept
 {
-    constexpr double magic = 6755399441055744.0; // 1.5 * 2^52: no room for a fraction
-    return (x + magic) - magic;
+    return (x + rounds) - rounds;
 }
 
-/// sin and cos of 2 pi x to about 1e-16. Taylor series on an eighth of a circle either side of the
-/// nearest quarter: the next terms are under 1e-18. Anything finite may come in.
-inline sine_cosine sincos_cycles(double x) noexcept
+/// Turns that sincos_turns() can take: four times as much is below 2^51.
+inline constexpr double most_turns = 5e14;
+
+/// sin and cos of 2 pi x to about 1e-16, for |x| < most_turns. Taylor series on an eighth of a circle either
+/// side of the nearest quarter: the next terms are under 1e-18. No branches: loops over it become vector
+/// code.
+inline sine_cosine sincos_turns(double x) noexcept
 {
-    if (!(std::abs(x) < 1e15)) {
-        x = std::isfinite(x) ? std::fmod(x, 1.0) : 0.0;
-    }
-    const double quarter = nearest(4.0 * x);
+    const double shifted = 4.0 * x + rounds;
+    const double quarter = shifted - rounds;
     const double t = 6.283185307179586477 * (x - 0.25 * quarter);
     const double u = t * t;
     double s = 1.0 / 355687428096000.0;
@@ -48,16 +53,22 @@ inline sine_cosine sincos_cycles(double x) noexcept
     c = c * u - 1.0 / 720.0;
     c = c * u + 1.0 / 24.0;
     c = 1.0 + u * (u * c - 0.5);
-    switch (static_cast<std::int64_t>(quarter) & 3) {
-    case 0:
-        return {s, c};
-    case 1:
-        return {c, -s};
-    case 2:
-        return {-s, -c};
-    default:
-        return {-c, s};
+    // The low bits of the shifted number are those of the count of quarters.
+    const auto quarters = std::bit_cast<std::uint64_t>(shifted);
+    const bool odd = (quarters & 1) != 0;
+    const auto negative = [](double v, std::uint64_t bit) {
+        return std::bit_cast<double>(std::bit_cast<std::uint64_t>(v) ^ (bit << 63));
+    };
+    return {negative(odd ? c : s, quarters >> 1 & 1), negative(odd ? s : c, (quarters + 1) >> 1 & 1)};
+}
+
+/// The same for anything; what is not finite counts as 0.
+inline sine_cosine sincos_cycles(double x) noexcept
+{
+    if (!(std::abs(x) < most_turns)) {
+        x = std::isfinite(x) ? std::fmod(x, 1.0) : 0.0;
     }
+    return sincos_turns(x);
 }
 
 } // namespace tactor::synth
