@@ -9,49 +9,21 @@
 
 #include "engine/audio_loop.hpp"
 #include "engine/feeder.hpp"
+#include "nowhere.hpp"
 #include "pieces.hpp"
 
 using namespace tactor;
 
 namespace {
 
-/// Takes everything at once and keeps nothing.
-class nowhere : public sink {
-public:
-    explicit nowhere(unsigned period)
-    {
-        setup_.name = "nowhere";
-        setup_.channels = 64;
-        setup_.rate = 48000;
-        setup_.format = sample_format::s32;
-        setup_.period_frames = period;
-        setup_.buffer_frames = 3 * period;
-    }
-    const stream_setup& setup() const noexcept override { return setup_; }
-    io_status prepare() noexcept override { return io_status::ok; }
-    io_status start() noexcept override { return io_status::ok; }
-    io_status resume() noexcept override { return io_status::ok; }
-    std::size_t max_descriptors() const noexcept override { return 0; }
-    std::size_t descriptors(std::span<pollfd>) noexcept override { return 0; }
-    io_status ready(std::span<pollfd>) noexcept override { return io_status::ok; }
-    io_result room() noexcept override { return {io_status::ok, setup_.period_frames, 0}; }
-    io_result write(const std::byte* data, std::size_t frames) noexcept override
-    {
-        benchmark::DoNotOptimize(data);
-        written_ += frames;
-        return {io_status::ok, frames, 0};
-    }
-    stream_position position() noexcept override
-    {
-        const auto played = written_ - std::min<std::uint64_t>(written_, 2 * setup_.period_frames);
-        return {written_, played, static_cast<std::int64_t>(played) * 20833, true};
-    }
-    void drop() noexcept override {}
-
-private:
-    stream_setup setup_;
-    std::uint64_t written_ = 0;
-};
+std::vector<score> scores()
+{
+    const array a = bench::square(64);
+    std::vector<score> all;
+    for (const plan& p : bench::strokes(a, 64, algorithm::park2016))
+        all.emplace_back(a, std::vector<placed_plan>{{p, {}}}, bench::levels(64));
+    return all;
+}
 
 void submit(engine::feeder& feed, engine::link& link, stroke_id& id, const std::vector<score>& strokes)
 {
@@ -71,8 +43,8 @@ double cpu_s() noexcept
 void periods(benchmark::State& state)
 {
     const auto period = static_cast<unsigned>(state.range(0));
-    static const std::vector<score> strokes = bench::strokes_64();
-    nowhere out(period);
+    static const std::vector<score> strokes = scores();
+    bench::nowhere out(64, period);
     engine::link link;
     engine::feeder feed(link, 24'000);
     engine::audio_loop loop(out, link, std::vector<double>(64, 1.0), {});
@@ -80,6 +52,7 @@ void periods(benchmark::State& state)
     stroke_id id = 0;
     std::size_t ended = 64;
     double worst = 0.0;
+    double total = 0.0;
     for (auto _ : state) {
         engine::report r;
         while (link.reports.pop(r))
@@ -95,9 +68,12 @@ void periods(benchmark::State& state)
         const double took = cpu_s() - from;
         state.SetIterationTime(took);
         worst = std::max(worst, took);
+        total += took;
     }
+    const double period_s = period / 48000.0;
     state.counters["worst_us"] = worst * 1e6;
-    state.counters["period_us"] = period * 1e6 / 48000;
+    state.counters["worst_%_of_a_core"] = 100.0 * worst / period_s;
+    state.counters["mean_%_of_a_core"] = 100.0 * total / (static_cast<double>(state.iterations()) * period_s);
 }
 BENCHMARK(periods)
     ->Name("engine/64_strokes_on_64_channels")

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 
 namespace bench {
 
@@ -11,70 +12,105 @@ using namespace tactor;
 
 namespace {
 
-constexpr int repeats = 20;
-constexpr double level = 0.05;
+constexpr int repeats = 8;
 constexpr double two_pi = 6.283185307179586477;
 
-plan field_plan(const array& a, int i)
+stroke across_a_face(unsigned i, unsigned faces_a_side)
 {
-    const point from{20.0 * (i % 7) + 3.0, 20.0 * (i / 8 % 7) + 2.0};
-    const point to{from.x_mm + 12.0, from.y_mm + 9.0};
-    const point ends[] = {from, to};
-    return make_plan(a, {"", trajectory::along(path::polyline(ends), 1.4), {}, 150.0 + 2.0 * i, ""});
-}
-
-render_options field_levels()
-{
-    render_options o;
-    o.level_dbfs = 20.0 * std::log10(level) - 20.0;
-    return o;
+    const point from{20.0 * (i % faces_a_side) + 3.0, 20.0 * (i / faces_a_side % faces_a_side) + 2.0};
+    const point ends[] = {from, {from.x_mm + 12.0, from.y_mm + 9.0}};
+    return {"", trajectory::along(path::polyline(ends), 1.4), {}, 150.0 + 2.0 * i, ""};
 }
 
 } // namespace
 
-score palm()
+array square(unsigned channels)
 {
-    const array a = preset_array("palm-3x3");
-    const plan p = make_plan(a, preset_stroke("park2016-1"));
-    render_options o;
-    o.level_dbfs = 20.0 * std::log10(level);
-    return {a, std::vector<placed_plan>(repeats, placed_plan{p, {}}), o};
+    const auto side = static_cast<unsigned>(std::lround(std::sqrt(channels)));
+    return make_grid("square", side, side, 20.0, 20.0);
 }
 
-score field()
+std::vector<plan> strokes(const array& a, unsigned count, algorithm method)
 {
-    const array a = make_grid("field", 8, 8, 20.0, 20.0);
-    std::vector<placed_plan> plans;
-    for (int r = 0; r < repeats; ++r) {
-        for (int i = 0; i < 64; ++i)
-            plans.push_back({field_plan(a, i), 1.5 * r});
+    const layout l(a);
+    const auto side = static_cast<unsigned>(std::lround(std::sqrt(a.tactors.size())));
+    plan_options o;
+    o.method = method;
+    std::vector<plan> all;
+    for (unsigned i = 0; i < count; ++i) {
+        const stroke s = count == 1 ? preset_stroke("park2016-1") : across_a_face(i, side - 1);
+        all.push_back(make_plan(a, l, s, o));
     }
-    return {a, plans, field_levels()};
-}
-
-std::vector<score> strokes_64()
-{
-    const array a = make_grid("field", 8, 8, 20.0, 20.0);
-    std::vector<score> all;
-    for (int i = 0; i < 64; ++i)
-        all.emplace_back(a, std::vector<placed_plan>{{field_plan(a, i), {}}}, field_levels());
     return all;
 }
 
-plain_loop::plain_loop(const score& s) : frames_(s.frames()), channels_(s.channels()), rate_(s.rate())
+render_options levels(unsigned count)
+{
+    render_options o;
+    o.level_dbfs = 20.0 * std::log10(0.2 / count);
+    return o;
+}
+
+score piece(unsigned channels, unsigned count, algorithm method)
+{
+    const array a = square(channels);
+    std::vector<placed_plan> placed;
+    for (int r = 0; r < repeats; ++r) {
+        for (plan& p : strokes(a, count, method))
+            placed.push_back({std::move(p), 1.5 * r});
+    }
+    return {a, std::move(placed), levels(count)};
+}
+
+plain_loop::plain_loop(const score& s, double level)
+    : frames_(s.frames()), channels_(s.channels()), rate_(s.rate())
 {
     for (std::size_t i = 0; i < s.plans().size(); ++i) {
         const plan& p = s.plans()[i].schedule;
-        for (const burst& b : p.bursts) {
-            const auto from = s.starts()[i] + static_cast<std::uint64_t>(std::llround(b.onset_s * rate_));
-            const auto to = from + static_cast<std::uint64_t>(std::llround(b.duration_s * rate_));
-            longest_ = std::max(longest_, to - from);
-            for (const drive& d : b.drives) {
-                tones_.push_back({from, to, d.tactor, level * d.amplitude, p.carrier_hz});
-            }
+        add_bursts(p, s.starts()[i], level);
+        if (p.at) {
+            add_lines(p, s.starts()[i], level);
         }
     }
     std::sort(tones_.begin(), tones_.end(), [](const tone& a, const tone& b) { return a.start < b.start; });
+    for (const tone& t : tones_) {
+        longest_ = std::max(longest_, t.end - t.start);
+    }
+}
+
+void plain_loop::add_bursts(const plan& p, std::uint64_t start, double level)
+{
+    for (const burst& b : p.bursts) {
+        const auto from = start + static_cast<std::uint64_t>(std::llround(b.onset_s * rate_));
+        const auto to = from + static_cast<std::uint64_t>(std::llround(b.duration_s * rate_));
+        for (const drive& d : b.drives) {
+            tones_.push_back({from, to, from, d.tactor, level * d.amplitude, 0.0, p.carrier_hz});
+        }
+    }
+}
+
+void plain_loop::add_lines(const plan& p, std::uint64_t start, double level)
+{
+    const auto step = static_cast<std::uint64_t>(std::lround(continuous_step_s * rate_));
+    const auto steps = static_cast<std::uint64_t>(std::lround(p.stroke_duration_s / continuous_step_s));
+    std::map<unsigned, std::pair<double, double>> line; // amplitude here and at the next step
+    burst here;
+    burst next;
+    p.at(0.0, here);
+    for (std::uint64_t i = 0; i < steps; ++i) {
+        p.at(std::min(static_cast<double>(i + 1) * continuous_step_s, p.stroke_duration_s), next);
+        line.clear();
+        for (const drive& d : here.drives)
+            line[d.tactor].first = level * d.amplitude;
+        for (const drive& d : next.drives)
+            line[d.tactor].second = level * d.amplitude;
+        for (const auto& [channel, ends] : line) {
+            const double slope = (ends.second - ends.first) / static_cast<double>(step);
+            const std::uint64_t from = start + i * step;
+            tones_.push_back({from, from + step, start, channel, ends.first, slope, p.carrier_hz});
+        }
+        std::swap(here, next);
+    }
 }
 
 void plain_loop::process(std::size_t frames, float* out)
@@ -87,8 +123,9 @@ void plain_loop::process(std::size_t frames, float* out)
     for (std::size_t i = first_; i < tones_.size() && tones_[i].start < end; ++i) {
         const tone& t = tones_[i];
         for (std::uint64_t k = std::max(t.start, position_); k < std::min(t.end, end); ++k) {
-            const double angle = two_pi * t.hz * static_cast<double>(k - t.start) / rate_;
-            out[(k - position_) * channels_ + t.channel] += static_cast<float>(t.amplitude * std::sin(angle));
+            const double amplitude = t.from + t.slope * static_cast<double>(k - t.start);
+            const double angle = two_pi * t.hz * static_cast<double>(k - t.phase) / rate_;
+            out[(k - position_) * channels_ + t.channel] += static_cast<float>(amplitude * std::sin(angle));
         }
     }
     position_ = end;

@@ -14,30 +14,40 @@ namespace bench {
 /// Frames that one call renders: 10 ms.
 inline constexpr std::size_t block = 480;
 
-/// park2016-1 on the palm, over and over.
-tactor::score palm();
+/// A square array with `channels` tactors (9, 16, 64, ...), 20 mm apart.
+tactor::array square(unsigned channels);
 
-/// 64 strokes at once on an 8 x 8 array, each on tactors of its own, over and over.
-tactor::score field();
+/// For a square array: one stroke is park2016-1; of several, each has its own place, as far as there is room,
+/// and its own carrier.
+std::vector<tactor::plan> strokes(const tactor::array& a, unsigned count, tactor::algorithm method);
 
-/// 64 strokes for an 8 x 8 array, each on tactors of its own and with its own carrier.
-std::vector<tactor::score> strokes_64();
+/// Options with a level at which so many strokes may sound together.
+tactor::render_options levels(unsigned count);
+
+/// So many strokes at once, over and over.
+tactor::score piece(unsigned channels, unsigned count, tactor::algorithm method);
 
 /// What one would write first: a call of std::sin for each sounding channel and sample.
 class plain_loop {
 public:
-    explicit plain_loop(const tactor::score& s);
+    explicit plain_loop(const tactor::score& s, double level);
     void process(std::size_t frames, float* out);
     bool at_end() const { return position_ >= frames_; }
 
 private:
+    /// Amplitude from + slope * k at frame k.
     struct tone {
         std::uint64_t start;
         std::uint64_t end;
+        std::uint64_t phase;
         unsigned channel;
-        double amplitude;
+        double from;
+        double slope;
         double hz;
     };
+    void add_bursts(const tactor::plan& p, std::uint64_t start, double level);
+    void add_lines(const tactor::plan& p, std::uint64_t start, double level);
+
     std::vector<tone> tones_; ///< by start
     std::size_t first_ = 0;
     std::uint64_t longest_ = 0;

@@ -40,6 +40,6 @@ void locate(benchmark::State& state)
     }
     state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()));
 }
-BENCHMARK(locate)->Name("phantom/tactors_side")->Arg(3)->Arg(32);
+BENCHMARK(locate)->Name("phantom/tactors_side")->Arg(3)->Arg(8)->Arg(32)->Arg(128);
 
 } // namespace

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// One table out of one run. Times are the best of the repetitions, which come in random order: what else
+/// runs on the machine makes a time longer, never shorter.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <tactor/sample_format.hpp>
+
+namespace bench {
+
+std::string name_of(const std::string& what, std::size_t bytes);
+
+/// A line of the table of synthesis.
+struct synth_row {
+    unsigned channels = 0;
+    unsigned strokes = 0; ///< 0: silence
+    bool continuous = false;
+    tactor::sample_format format = tactor::sample_format::float32;
+
+    std::string name() const;
+    std::string plain_name() const;
+};
+
+/// The lines, in order.
+std::vector<synth_row>& table();
+
+/// Registers the benchmarks of synthesis.
+void add_synth();
+
+/// Runs what was registered and prints the tables. Returns the exit status.
+int run(int argc, char** argv);
+
+} // namespace bench
