@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "synth/converter.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -16,63 +17,142 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the formats are little-endian");
 
-/// Bytes of each of n values to places `stride` apart; the first `Bytes` bytes are the low ones.
-template <std::size_t Bytes, class T>
-void scatter(const T* v, unsigned n, std::byte* out, std::size_t stride) noexcept
+/// Samples of one channel, as their bits.
+struct alignas(64) lane : std::array<std::uint32_t, block_frames> {};
+
+TACTOR_CLONES void to_float(const channel_samples& c, unsigned n, std::uint32_t* __restrict v) noexcept
 {
+    const double* __restrict x = c.x;
+    const double gain = c.gain;
     for (unsigned i = 0; i < n; ++i) {
-        std::memcpy(out + i * stride, v + i, Bytes);
+        v[i] = std::bit_cast<std::uint32_t>(static_cast<float>(gain * x[i] + 0.0)); // -0 + 0 = +0
     }
 }
 
-TACTOR_CLONES void to_float(const double* __restrict x, unsigned n, float* __restrict v) noexcept
+TACTOR_CLONES void to_integer(const channel_samples& c, unsigned n, double scale,
+                              std::uint32_t* __restrict v) noexcept
 {
+    const double* __restrict x = c.x;
+    const double gain = c.gain;
     for (unsigned i = 0; i < n; ++i) {
-        v[i] = static_cast<float>(x[i] + 0.0); // -0 + 0 = +0
-    }
-}
-
-TACTOR_CLONES void to_integer(const double* __restrict x, unsigned n, double scale,
-                              std::int32_t* __restrict v) noexcept
-{
-    for (unsigned i = 0; i < n; ++i) {
-        const double r = nearest(x[i] * scale);
+        const double r = nearest(gain * x[i] * scale);
         const double low = r < scale - 1.0 ? r : scale - 1.0;
-        v[i] = static_cast<std::int32_t>(low > -scale ? low : -scale);
+        v[i] = static_cast<std::uint32_t>(static_cast<std::int32_t>(low > -scale ? low : -scale));
     }
 }
 
-template <std::size_t Bytes>
-void integers(const double* x, unsigned n, double scale, std::byte* out, std::size_t stride) noexcept
+void to_bits(sample_format f, const channel_samples& c, unsigned n, lane& v) noexcept
 {
-    std::array<std::int32_t, block_frames> v;
-    to_integer(x, n, scale, v.data());
-    scatter<Bytes>(v.data(), n, out, stride);
+    switch (f) {
+    case sample_format::float32:
+        return to_float(c, n, v.data());
+    case sample_format::s16:
+        return to_integer(c, n, 32768.0, v.data());
+    case sample_format::s24_3:
+    case sample_format::s24:
+        return to_integer(c, n, 8388608.0, v.data());
+    case sample_format::s32:
+        return to_integer(c, n, 2147483648.0, v.data());
+    }
+}
+
+/// The low bytes of each of n values to places `stride` apart.
+template <std::size_t Bytes>
+void scatter(const lane& v, unsigned n, std::byte* out, std::size_t stride) noexcept
+{
+    for (unsigned i = 0; i < n; ++i) {
+        std::memcpy(out + i * stride, &v[i], Bytes);
+    }
+}
+
+void scatter(const lane& v, std::size_t bytes, unsigned n, std::byte* out, std::size_t stride) noexcept
+{
+    switch (bytes) {
+    case 2:
+        return scatter<2>(v, n, out, stride);
+    case 3:
+        return scatter<3>(v, n, out, stride);
+    default:
+        return scatter<4>(v, n, out, stride);
+    }
+}
+
+/// Channels that lie side by side and are written together.
+constexpr std::size_t abreast = 4;
+constexpr lane silent{};
+using quad = std::uint32_t __attribute__((vector_size(16)));
+
+quad load(const lane& v, unsigned i) noexcept
+{
+    quad q;
+    std::memcpy(&q, &v[i], sizeof q);
+    return q;
+}
+
+/// Four values of four bytes at each place: a transposition.
+void scatter_abreast(const std::array<const lane*, abreast>& from, unsigned n, std::byte* out,
+                     std::size_t stride) noexcept
+{
+    unsigned i = 0;
+    for (; i + 4 <= n; i += 4, out += 4 * stride) {
+        const quad a = load(*from[0], i);
+        const quad b = load(*from[1], i);
+        const quad c = load(*from[2], i);
+        const quad d = load(*from[3], i);
+        const quad ab = __builtin_shufflevector(a, b, 0, 4, 1, 5);
+        const quad cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+        const quad ab_next = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+        const quad cd_next = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+        const quad rows[] = {__builtin_shufflevector(ab, cd, 0, 1, 4, 5),
+                             __builtin_shufflevector(ab, cd, 2, 3, 6, 7),
+                             __builtin_shufflevector(ab_next, cd_next, 0, 1, 4, 5),
+                             __builtin_shufflevector(ab_next, cd_next, 2, 3, 6, 7)};
+        for (std::size_t row = 0; row < 4; ++row) {
+            std::memcpy(out + row * stride, &rows[row], sizeof(quad));
+        }
+    }
+    for (; i < n; ++i, out += stride) {
+        const quad row{(*from[0])[i], (*from[1])[i], (*from[2])[i], (*from[3])[i]};
+        std::memcpy(out, &row, sizeof row);
+    }
 }
 
 } // namespace
 
-void convert(sample_format f, const double* x, unsigned n, std::byte* out, std::size_t stride) noexcept
+void interleave(sample_format f, std::span<const channel_samples> sounding, std::size_t channels, unsigned n,
+                std::byte* out) noexcept
 {
-    switch (f) {
-    case sample_format::float32: {
-        std::array<float, block_frames> v;
-        to_float(x, n, v.data());
-        scatter<sizeof(float)>(v.data(), n, out, stride);
-        break;
+    const std::size_t sample = bytes_of(f);
+    const std::size_t stride = channels * sample;
+    if (sounding.size() < channels) {
+        std::memset(out, 0, n * stride);
     }
-    case sample_format::s16:
-        integers<2>(x, n, 32768.0, out, stride);
-        break;
-    case sample_format::s24_3:
-        integers<3>(x, n, 8388608.0, out, stride);
-        break;
-    case sample_format::s24:
-        integers<4>(x, n, 8388608.0, out, stride);
-        break;
-    case sample_format::s32:
-        integers<4>(x, n, 2147483648.0, out, stride);
-        break;
+    std::array<lane, abreast> lanes;
+    std::size_t written = 0; // channels below are done
+    while (!sounding.empty()) {
+        // A face's tactors are often neighbours: their samples go out in one store.
+        const std::size_t next = sounding[0].channel;
+        const std::size_t first = std::min(next, channels - std::min(channels, abreast));
+        const auto end = std::find_if(sounding.begin(), sounding.end(), [first](const channel_samples& c) {
+            return c.channel >= first + abreast;
+        });
+        const auto count = static_cast<std::size_t>(end - sounding.begin());
+        if (sample * abreast != sizeof(quad) || channels < abreast || count < 2 || first < written) {
+            to_bits(f, sounding[0], n, lanes[0]);
+            scatter(lanes[0], sample, n, out + next * sample, stride);
+            sounding = sounding.subspan(1);
+            written = next + 1;
+            continue;
+        }
+        std::array<const lane*, abreast> from{&silent, &silent, &silent, &silent};
+        for (const channel_samples& c : sounding.first(count)) {
+            const std::size_t i = c.channel - first;
+            to_bits(f, c, n, lanes[i]);
+            from[i] = &lanes[i];
+        }
+        scatter_abreast(from, n, out + first * sample, stride);
+        sounding = sounding.subspan(count);
+        written = first + abreast;
     }
 }
 

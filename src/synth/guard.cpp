@@ -121,22 +121,24 @@ double drive_guard::gain(const cell& c, std::int64_t at) const noexcept
     return c.closed ? 0.5 + half : 0.5 - half;
 }
 
-bool drive_guard::apply(std::size_t channel, std::uint64_t clock, unsigned n, double* x) noexcept
+bool drive_guard::acts(std::size_t channel, std::uint64_t clock) noexcept
 {
     cell& c = cells_[channel];
     turn_to(c, clock / slot_);
+    return c.closed || static_cast<std::int64_t>(clock) < c.changed_at + fade_;
+}
+
+void drive_guard::apply(std::size_t channel, std::uint64_t clock, unsigned n, double* x) const noexcept
+{
+    const cell& c = cells_[channel];
     const auto first = static_cast<std::int64_t>(clock);
-    if (!c.closed && first >= c.changed_at + fade_) {
-        return false;
-    }
-    if (c.closed && first >= c.changed_at + fade_) {
+    if (first >= c.changed_at + fade_) {
         std::fill_n(x, n, 0.0);
-        return true;
+        return;
     }
     for (unsigned j = 0; j < n; ++j) {
         x[j] *= gain(c, first + j);
     }
-    return true;
 }
 
 guard_settings guards_of(const drive_limits& l, unsigned rate)

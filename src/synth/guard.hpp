@@ -66,8 +66,10 @@ public:
     /// A channel is driven in frames from ... to - 1, which are in one block. Calls for one channel in
     /// order of `from`.
     void drive(std::size_t channel, std::uint64_t from, std::uint64_t to) noexcept;
-    /// Applies what came of it to a block. Whether it may have changed anything.
-    bool apply(std::size_t channel, std::uint64_t clock, unsigned n, double* x) noexcept;
+    /// Whether a block from `clock` on is not to pass as it is.
+    bool acts(std::size_t channel, std::uint64_t clock) noexcept;
+    /// Applies what came of it to such a block.
+    void apply(std::size_t channel, std::uint64_t clock, unsigned n, double* x) const noexcept;
     /// How often a channel was cut.
     std::uint64_t cuts() const noexcept { return cuts_; }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include <doctest/doctest.h>
 
@@ -9,6 +10,7 @@
 #include "pieces.hpp"
 #include "synth/converter.hpp"
 #include "synth/limiter.hpp"
+#include "synth/oscillator.hpp"
 
 using namespace tactor;
 using namespace pieces;
@@ -20,7 +22,8 @@ std::vector<std::byte> converted(sample_format f, const std::vector<double>& x)
     std::vector<std::byte> out(x.size() * bytes_of(f));
     for (std::size_t i = 0; i < x.size(); i += 64) {
         const auto n = static_cast<unsigned>(std::min<std::size_t>(64, x.size() - i));
-        synth::convert(f, x.data() + i, n, out.data() + i * bytes_of(f), bytes_of(f));
+        const synth::channel_samples one[] = {{0, x.data() + i, 1.0}};
+        synth::interleave(f, one, 1, n, out.data() + i * bytes_of(f));
     }
     return out;
 }
@@ -79,17 +82,36 @@ TEST_CASE("silence has no negative zeros")
     CHECK(sample<std::uint32_t>(bytes, 1) == 0U);
 }
 
-TEST_CASE("samples are written with a stride and nothing between is touched")
+TEST_CASE("whichever channels sound, each sample is in its place and the others are silent")
 {
-    for (const sample_format f : all_formats) {
-        std::vector<std::byte> out(64 * 16, std::byte{0x55});
-        const std::vector<double> x(50, 0.3);
-        synth::convert(f, x.data(), 50, out.data(), 16);
-        for (std::size_t i = 0; i < out.size(); ++i) {
-            if (i % 16 >= bytes_of(f) || i / 16 >= 50) {
-                CHECK(out[i] == std::byte{0x55});
+    std::mt19937_64 random(3);
+    std::vector<double> x(synth::block_frames);
+    for (double& v : x) {
+        v = std::uniform_real_distribution<double>(-1.0, 1.0)(random);
+    }
+    for (int i = 0; i < 3000; ++i) {
+        const sample_format f = all_formats[random() % std::size(all_formats)];
+        const auto channels = 1 + random() % 20;
+        const auto n = static_cast<unsigned>(1 + random() % 70);
+        std::vector<synth::channel_samples> sounding;
+        for (std::uint32_t c = 0; c < channels; ++c) {
+            if (random() % 2 == 0) {
+                sounding.push_back({c, x.data() + c, 0.1 * (c + 1)});
             }
         }
+        std::vector<std::byte> out(n * channels * bytes_of(f) + 16, std::byte{0x55});
+        synth::interleave(f, sounding, channels, n, out.data());
+        std::vector<std::byte> want(out.size(), std::byte{0x55});
+        std::fill(want.begin(), want.end() - 16, std::byte{});
+        for (const synth::channel_samples& c : sounding) {
+            for (std::size_t k = 0; k < n; ++k) {
+                const auto one = converted(f, {c.gain * c.x[k]});
+                std::copy(one.begin(), one.end(),
+                          want.begin() +
+                              static_cast<std::ptrdiff_t>((k * channels + c.channel) * bytes_of(f)));
+            }
+        }
+        REQUIRE(out == want);
     }
 }
 
