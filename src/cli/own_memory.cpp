@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <sstream>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <malloc.h>
@@ -29,6 +31,34 @@ std::uint64_t mapped_bytes()
     return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
+/// What the audio thread runs in. Of the other libraries (pictures, geometry, files) only what is used takes
+/// memory; those pages are locked when they come.
+bool is_needed(std::string_view mapped)
+{
+    if (mapped.empty() || mapped == "[heap]" || mapped == "[stack]")
+        return true;
+    const std::string_view file = mapped.substr(mapped.rfind('/') + 1);
+    constexpr std::string_view names[] = {"libtactor.", "libasound", "ld-linux"};
+    return std::any_of(std::begin(names), std::end(names),
+                       [file](std::string_view name) { return file.starts_with(name); });
+}
+
+/// Brings in what is mapped now, so that the audio thread meets no page fault.
+void populate()
+{
+    std::ifstream maps("/proc/self/maps");
+    for (std::string line; std::getline(maps, line);) {
+        std::istringstream in(line);
+        std::uintptr_t from = 0;
+        std::uintptr_t to = 0;
+        char dash = 0;
+        std::string rights, offset, device, inode, mapped;
+        in >> std::hex >> from >> dash >> to >> rights >> offset >> device >> inode >> mapped;
+        if (rights.starts_with('r') && is_needed(mapped))
+            mlock(reinterpret_cast<void*>(from), to - from);
+    }
+}
+
 } // namespace
 
 std::string lock_own_memory()
@@ -43,7 +73,10 @@ std::string lock_own_memory()
     mallopt(M_TRIM_THRESHOLD, -1);
     mallopt(M_MMAP_MAX, 0);
     mallopt(M_ARENA_MAX, 1);
-    return mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? "" : std::strerror(errno);
+    if (mlockall(MCL_CURRENT | MCL_ONFAULT) != 0 || mlockall(MCL_FUTURE) != 0)
+        return std::strerror(errno);
+    populate();
+    return "";
 }
 
 void limit_runaway_threads()

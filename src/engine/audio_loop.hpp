@@ -23,7 +23,7 @@ struct loop_options {
     std::uint32_t fade_frames = 480;
     std::uint64_t horizon_frames = 24'000; ///< the control side is woken each eighth of it
     std::int64_t stall_ns = 500'000'000;   ///< a device that stands still for so long is lost
-    std::size_t drives = 8192;             ///< capacity of the mixer
+    std::size_t drives = 4096;             ///< capacity of the mixer
     bool amplifier = false;                ///< somebody drives one after link::amplifier
     std::int64_t off_ns = 250'000'000;     ///< how long the end waits for the amplifier to be off
     synth::guard_settings guards{};

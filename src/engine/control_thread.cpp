@@ -12,7 +12,7 @@ control_thread::control_thread(rt::event_fd& e, std::function<void()> woken)
       woken_(std::move(woken)),
       descriptor_(context_, e.fd()),
       // The handlers of the program run here, so the stack is not a small one.
-      thread_({.name = "tactor-control", .stack_bytes = 1024 * 1024}, [this] {
+      thread_({.name = "tactor-control", .stack_bytes = 512 * 1024}, [this] {
           wait();
           context_.run();
       })

@@ -81,6 +81,7 @@ void scatter(const lane& v, std::size_t bytes, unsigned n, std::byte* out, std::
 constexpr std::size_t abreast = 4;
 constexpr lane silent{};
 using quad = std::uint32_t __attribute__((vector_size(16)));
+using short_quad = std::uint16_t __attribute__((vector_size(8)));
 
 quad load(const lane& v, unsigned i) noexcept
 {
@@ -89,7 +90,8 @@ quad load(const lane& v, unsigned i) noexcept
     return q;
 }
 
-/// Four values of four bytes at each place: a transposition.
+/// Four values, each cut to the element of Row, at each place: a transposition.
+template <class Row>
 void scatter_abreast(const std::array<const lane*, abreast>& from, unsigned n, std::byte* out,
                      std::size_t stride) noexcept
 {
@@ -108,12 +110,14 @@ void scatter_abreast(const std::array<const lane*, abreast>& from, unsigned n, s
                              __builtin_shufflevector(ab_next, cd_next, 0, 1, 4, 5),
                              __builtin_shufflevector(ab_next, cd_next, 2, 3, 6, 7)};
         for (std::size_t row = 0; row < 4; ++row) {
-            std::memcpy(out + row * stride, &rows[row], sizeof(quad));
+            const Row cut = __builtin_convertvector(rows[row], Row);
+            std::memcpy(out + row * stride, &cut, sizeof cut);
         }
     }
     for (; i < n; ++i, out += stride) {
         const quad row{(*from[0])[i], (*from[1])[i], (*from[2])[i], (*from[3])[i]};
-        std::memcpy(out, &row, sizeof row);
+        const Row cut = __builtin_convertvector(row, Row);
+        std::memcpy(out, &cut, sizeof cut);
     }
 }
 
@@ -137,7 +141,7 @@ void interleave(sample_format f, std::span<const channel_samples> sounding, std:
             return c.channel >= first + abreast;
         });
         const auto count = static_cast<std::size_t>(end - sounding.begin());
-        if (sample * abreast != sizeof(quad) || channels < abreast || count < 2 || first < written) {
+        if (sample == 3 || channels < abreast || count < 2 || first < written) {
             to_bits(f, sounding[0], n, lanes[0]);
             scatter(lanes[0], sample, n, out + next * sample, stride);
             sounding = sounding.subspan(1);
@@ -150,7 +154,11 @@ void interleave(sample_format f, std::span<const channel_samples> sounding, std:
             to_bits(f, c, n, lanes[i]);
             from[i] = &lanes[i];
         }
-        scatter_abreast(from, n, out + first * sample, stride);
+        if (sample == 2) {
+            scatter_abreast<short_quad>(from, n, out + first * sample, stride);
+        } else {
+            scatter_abreast<quad>(from, n, out + first * sample, stride);
+        }
         sounding = sounding.subspan(count);
         written = first + abreast;
     }

@@ -3,6 +3,7 @@
 
 int main(int argc, char** argv)
 {
+    const auto tool = bench::measure_tool();
     bench::add_synth();
-    return bench::run(argc, argv);
+    return bench::run(argc, argv, tool);
 }

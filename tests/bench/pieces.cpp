@@ -12,7 +12,6 @@ using namespace tactor;
 
 namespace {
 
-constexpr int repeats = 8;
 constexpr double two_pi = 6.283185307179586477;
 
 stroke across_a_face(unsigned i, unsigned faces_a_side)
@@ -55,7 +54,7 @@ score piece(unsigned channels, unsigned count, algorithm method)
 {
     const array a = square(channels);
     std::vector<placed_plan> placed;
-    for (int r = 0; r < repeats; ++r) {
+    for (unsigned r = 0; r < std::max(1U, 8 / count); ++r) {
         for (plan& p : strokes(a, count, method))
             placed.push_back({std::move(p), 1.5 * r});
     }

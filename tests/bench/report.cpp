@@ -42,6 +42,8 @@ namespace {
 /// Remembers the best of each; one line a benchmark while it runs would only be noise.
 class reporter : public benchmark::BenchmarkReporter {
 public:
+    explicit reporter(const std::vector<tool_row>& tool) : tool_(tool) {}
+
     bool ReportContext(const Context& context) override
     {
         PrintBasicContext(&GetErrorStream(), context);
@@ -129,15 +131,20 @@ private:
             }
             std::printf("\n");
         }
+        std::printf("\n%-52s %12s %10s\n", "The tool as a process", "CPU ms", "peak MB");
+        for (const tool_row& row : tool_) {
+            std::printf("%-52s %12.1f %10.1f\n", row.what.c_str(), row.cpu_ms, row.peak_mb);
+        }
     }
 
+    const std::vector<tool_row>& tool_;
     std::map<std::string, result> found_;
     std::vector<std::string> order_;
 };
 
 } // namespace
 
-int run(int argc, char** argv)
+int run(int argc, char** argv, const std::vector<tool_row>& tool)
 {
     std::vector<std::string> given(argv, argv + argc);
     given.insert(given.begin() + 1, "--benchmark_enable_random_interleaving=true");
@@ -149,7 +156,7 @@ int run(int argc, char** argv)
     if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) {
         return 2;
     }
-    reporter r;
+    reporter r(tool);
     benchmark::RunSpecifiedBenchmarks(&r);
     benchmark::Shutdown();
     return 0;

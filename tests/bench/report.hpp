@@ -30,7 +30,18 @@ std::vector<synth_row>& table();
 /// Registers the benchmarks of synthesis.
 void add_synth();
 
+/// What the tool as a process takes.
+struct tool_row {
+    std::string what;
+    double cpu_ms = 0.0;
+    double peak_mb = 0.0;
+};
+
+/// To be called first, while this process is small: the system counts its memory at the start of a child as
+/// the child's.
+std::vector<tool_row> measure_tool();
+
 /// Runs what was registered and prints the tables. Returns the exit status.
-int run(int argc, char** argv);
+int run(int argc, char** argv, const std::vector<tool_row>& tool);
 
 } // namespace bench

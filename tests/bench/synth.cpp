@@ -110,27 +110,50 @@ void add_bounds(unsigned channels, std::size_t sample)
     });
 }
 
-void add_piece(unsigned channels, unsigned count, algorithm method)
+/// Made when it is needed first.
+class prepared {
+public:
+    explicit prepared(const bench::synth_row& r) : row_(r) {}
+    const events& all()
+    {
+        make();
+        return *events_;
+    }
+    const bench::plain_loop& plain()
+    {
+        make();
+        return *plain_;
+    }
+
+private:
+    void make()
+    {
+        if (events_ == nullptr) {
+            const unsigned count = std::max(1U, row_.strokes);
+            const score s = bench::piece(row_.channels, count,
+                                         row_.continuous ? algorithm::continuous : algorithm::park2016);
+            events_ = std::make_unique<events>(s);
+            plain_ = std::make_unique<bench::plain_loop>(s, 0.2 / count);
+            if (row_.strokes == 0) {
+                events_->all.clear();
+            }
+        }
+    }
+    bench::synth_row row_;
+    std::unique_ptr<events> events_;
+    std::unique_ptr<bench::plain_loop> plain_;
+};
+
+void add_piece(bench::synth_row row)
 {
-    const score s = bench::piece(channels, count, method);
-    const auto e = std::make_shared<const events>(s);
-    const bench::plain_loop fresh(s, 0.2 / count);
-    bench::synth_row row{channels, count, method == algorithm::continuous, sample_format::float32};
-    add(row.plain_name(), [=](benchmark::State& state) { plain(state, fresh, channels); });
+    const auto p = std::make_shared<prepared>(row);
+    const unsigned channels = row.channels;
+    add(row.plain_name(), [=](benchmark::State& state) { plain(state, p->plain(), channels); });
     for (const sample_format f : {sample_format::float32, sample_format::s16, sample_format::s32}) {
         row.format = f;
-        add(row.name(), [=](benchmark::State& state) { mix(state, *e, channels, f); });
+        add(row.name(), [=](benchmark::State& state) { mix(state, p->all(), channels, f); });
         bench::table().push_back(row);
     }
-}
-
-void add_silence(unsigned channels)
-{
-    const auto e = std::make_shared<events>(bench::piece(channels, 1, algorithm::park2016));
-    e->all.clear();
-    const bench::synth_row row{channels, 0, false, sample_format::float32};
-    add(row.name(), [=](benchmark::State& state) { mix(state, *e, channels, sample_format::float32); });
-    bench::table().push_back(row);
 }
 
 } // namespace
@@ -140,10 +163,11 @@ void bench::add_synth()
     for (const unsigned channels : {9U, 16U, 64U}) {
         add_bounds(channels, 2);
         add_bounds(channels, 4);
-        add_silence(channels);
+        add_piece({.channels = channels, .strokes = 0});
         for (const unsigned count : {1U, 8U, 64U}) {
-            add_piece(channels, count, algorithm::park2016);
-            add_piece(channels, count, algorithm::continuous);
+            for (const bool continuous : {false, true}) {
+                add_piece({.channels = channels, .strokes = count, .continuous = continuous});
+            }
         }
     }
 }

@@ -7,10 +7,11 @@
 #include <spawn.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
-#include <benchmark/benchmark.h>
+#include "report.hpp"
 
 namespace {
 
@@ -40,36 +41,26 @@ bool run(const std::vector<std::string>& arguments, rusage& used)
            WEXITSTATUS(status) == 0;
 }
 
-void tool(benchmark::State& state, const std::vector<std::string>& arguments)
+/// Least time and greatest memory of so many runs.
+bench::tool_row measure(const std::string& what, const std::vector<std::string>& arguments, int times)
 {
-    double most_mb = 0.0;
-    for (auto _ : state) {
+    bench::tool_row row{what, 1e9, 0.0};
+    for (int i = 0; i < times; ++i) {
         rusage used{};
         if (!run(arguments, used)) {
-            state.SkipWithError("the tool failed");
-            break;
+            return {what + ": the tool failed", 0.0, 0.0};
         }
-        state.SetIterationTime(seconds(used.ru_utime) + seconds(used.ru_stime));
-        most_mb = std::max(most_mb, static_cast<double>(used.ru_maxrss) / 1024.0);
+        row.cpu_ms = std::min(row.cpu_ms, 1e3 * (seconds(used.ru_utime) + seconds(used.ru_stime)));
+        row.peak_mb = std::max(row.peak_mb, static_cast<double>(used.ru_maxrss) / 1024.0);
     }
-    state.counters["peak_MB"] = most_mb;
+    return row;
 }
-
-void add(const char* name, const std::vector<std::string>& arguments, int times)
-{
-    benchmark::RegisterBenchmark(name, [arguments](benchmark::State& s) { tool(s, arguments); })
-        ->Iterations(1)
-        ->Repetitions(times)
-        ->UseManualTime()
-        ->Unit(benchmark::kMillisecond);
-}
-
-const bool added = [] {
-    add("tool/version", {"--version"}, 10);
-    add("tool/plan_park2016-1", {"plan", "park2016-1"}, 10);
-    add("tool/render_park2016-1", {"render", "park2016-1", "-o", "/dev/null"}, 5);
-    add("tool/play_park2016-1_to_null", {"play", "park2016-1", "-D", "null"}, 3);
-    return true;
-}();
 
 } // namespace
+
+std::vector<bench::tool_row> bench::measure_tool()
+{
+    return {measure("--version", {"--version"}, 10), measure("plan park2016-1", {"plan", "park2016-1"}, 10),
+            measure("render park2016-1 -o /dev/null", {"render", "park2016-1", "-o", "/dev/null"}, 5),
+            measure("play park2016-1 -D null", {"play", "park2016-1", "-D", "null"}, 3)};
+}
