@@ -8,18 +8,21 @@
 
 int main(int argc, char** argv)
 try {
+    // Plain values first: where the tactors are, what is drawn, who plays when, and at which level and rate.
     const tactor::array palm = tactor::preset_array("palm-3x3");
     const tactor::stroke stroke = tactor::preset_stroke("park2016-3");
 
-    tactor::placed_plan placed{tactor::make_plan(palm, stroke)};
-    const tactor::score score(palm, {placed}, {});
+    const tactor::plan plan = tactor::make_plan(palm, stroke);
+    const tactor::score score(palm, {{plan}}, {});
 
     tactor::alsa_options device;
     device.pcm = argc > 1 ? argv[1] : "null";
     device.channels = score.channels();
     device.rate = score.rate();
+    // Opens the device and starts the stream, silent. Keep it: strokes then start within milliseconds.
     tactor::player player(tactor::open_alsa(device), palm);
 
+    // submit() returns at once and may be called from any thread; wait() blocks until the stroke has ended.
     const tactor::stroke_id id = player.submit(score);
     const auto report = player.wait(id);
     std::printf("%s after %llu frames\n", std::string(to_string(report->state)).c_str(),

@@ -17,10 +17,10 @@ try {
     const double speed_mm_s = 80.0;
     const tactor::stroke stroke{"curve", tactor::trajectory::along(path, path.length_mm() / speed_mm_s)};
 
-    tactor::plan_options options;
-    options.phantom = tactor::phantom_kind::barycentric;
-    tactor::placed_plan placed{tactor::make_plan(palm, stroke, options)};
-    const tactor::score score(palm, {placed}, {.level_dbfs = -6.0});
+    // Another phantom model than the default, and a peak of -6 instead of -12 dBFS.
+    const tactor::plan plan = tactor::make_plan(palm, stroke, {.phantom = tactor::phantom_kind::barycentric});
+    const tactor::score score(palm, {{plan}}, {.level_dbfs = -6.0});
+    // The same samples that a player would send to a device, without one.
     tactor::write_wav(score, tactor::sample_format::s24_3, argv[1]);
     std::printf("%s: %u channels, %.3f s\n", argv[1], score.channels(),
                 static_cast<double>(score.frames()) / score.rate());

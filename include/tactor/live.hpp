@@ -19,7 +19,7 @@ struct live_options {
     /// What of it counts: `method` (continuous: the carrier runs and the phantom's weights follow the
     /// points; park2016: bursts, each SOA one at the newest position), `phantom` or `custom_phantom`,
     /// `carrier_hz`, `leave`; for bursts `soa_s` and `profile`, which give their duration.
-    plan_options plan{.method = algorithm::continuous, .profile = {}, .leave = outside::clamp};
+    plan_options plan{.method = algorithm::continuous, .leave = outside::clamp};
     /// Levels, phase and the bursts' ramp; rate and channels are the stream's.
     render_options render = {};
     /// A producer that gives no point for so long has failed: the stroke fades out and ends interrupted.

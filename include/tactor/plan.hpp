@@ -41,7 +41,7 @@ struct plan_options {
     phantom_kind phantom = phantom_kind::inverse_distance;
     /// A model of your own instead of `phantom`; it must outlive nothing, the plan shares it.
     std::shared_ptr<const phantom_model> custom_phantom = {};
-    timing_profile profile;
+    timing_profile profile = {};
     double soa_s = 0.07; ///< intercept < soa <= max_soa; for `fit` the longest one
     timing schedule = timing::fixed;
     double min_duration_s = 0.020; ///< shortest burst that `fit` may use

@@ -57,7 +57,7 @@ struct limit_settings {
 /// All that a file may say.
 struct setup {
     std::optional<array> layout = {};
-    output_settings output;
+    output_settings output = {};
     std::optional<amplifier_settings> amplifier = {};
     std::optional<sync_settings> sync = {};
     std::optional<limit_settings> limits = {};

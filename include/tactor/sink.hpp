@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 
@@ -84,6 +85,40 @@ public:
     virtual stream_position position() noexcept = 0;
     /// Stops at once and discards what is queued.
     virtual void drop() noexcept = 0;
+};
+
+/// A sink for what has no clock of its own: a socket, a pipe, a simulation. Frames leave it at the sample
+/// rate by CLOCK_MONOTONIC; where the writer comes too late that clock waits, so that there are no xruns.
+/// Derive from it and say what becomes of the frames.
+class TACTOR_API paced_sink : public sink {
+public:
+    /// Of `s`, name, channels (1 to 16384), rate (8000 to 768000 Hz) and format count; period_frames and
+    /// buffer_frames (two periods at least) may be 0, which means 96 frames and three periods.
+    /// \throws error: bad_input for numbers that cannot be, runtime when there is no timer to be had.
+    explicit paced_sink(stream_setup s);
+    ~paced_sink() override;
+
+    const stream_setup& setup() const noexcept final;
+    io_status prepare() noexcept final;
+    io_status start() noexcept final;
+    io_status resume() noexcept final;
+    std::size_t max_descriptors() const noexcept final;
+    std::size_t descriptors(std::span<pollfd> fds) noexcept final;
+    io_status ready(std::span<pollfd> fds) noexcept final;
+    io_result room() noexcept final;
+    io_result write(const std::byte* data, std::size_t frames) noexcept final;
+    stream_position position() noexcept final;
+    void drop() noexcept final;
+
+protected:
+    /// Takes the next frames of the stream, at most a period of them, interleaved, up to buffer_frames
+    /// before their time; `first` counts from the epoch's start. Called by the audio thread: it must not
+    /// block, lock, allocate or log. `ok`, or `lost` or `failed`, which end the stream.
+    virtual io_status take(std::uint64_t first, const std::byte* data, std::size_t frames) noexcept = 0;
+
+private:
+    struct impl;
+    std::unique_ptr<impl> impl_;
 };
 
 } // namespace tactor

@@ -72,7 +72,7 @@ io_status pcm_sink::resume() noexcept
 // Drivers stamp the stop; plugins leave the stamp of the start, and there the last position tells.
 std::int64_t pcm_sink::xrun_ns() noexcept
 {
-    const std::int64_t now = monotonic_ns();
+    const std::int64_t now = rt::monotonic_ns();
     if (snd_pcm_status(handle_.get(), status_.get()) == 0) {
         snd_htimestamp_t stamp{};
         snd_pcm_status_get_trigger_htstamp(status_.get(), &stamp);
@@ -153,7 +153,7 @@ io_result pcm_sink::write(const std::byte* data, std::size_t frames) noexcept
 
 stream_position pcm_sink::position() noexcept
 {
-    const std::int64_t now = monotonic_ns();
+    const std::int64_t now = rt::monotonic_ns();
     if (paced_) {
         played_ = pacer_.played(now);
         return {written_, played_, now, true};

@@ -8,7 +8,7 @@
 #include <tactor/alsa.hpp>
 
 #include "alsa/handle.hpp"
-#include "alsa/pacer.hpp"
+#include "rt/pacer.hpp"
 
 namespace tactor::pcm {
 
@@ -38,7 +38,7 @@ private:
     handle handle_;
     stream_setup setup_;
     status status_;
-    pacer pacer_;
+    rt::pacer pacer_;
     std::size_t max_descriptors_;
     std::uint64_t written_ = 0;
     std::uint64_t played_ = 0;

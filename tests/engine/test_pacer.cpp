@@ -8,11 +8,11 @@
 
 #include <tactor/alsa.hpp>
 
-#include "alsa/pacer.hpp"
-#include "alsa/virtual_queue.hpp"
+#include "rt/pacer.hpp"
+#include "rt/virtual_queue.hpp"
 
 using namespace tactor;
-using pcm::virtual_queue;
+using rt::virtual_queue;
 
 TEST_CASE("a virtual queue plays at its rate, without drift over a week")
 {
@@ -74,9 +74,9 @@ TEST_CASE("time that runs backwards plays nothing back")
 
 TEST_CASE("the timer becomes readable when a period fits")
 {
-    pcm::pacer p(48000, 288, 96);
+    rt::pacer p(48000, 288, 96);
     p.start(288);
-    const std::int64_t begun = pcm::monotonic_ns();
+    const std::int64_t begun = rt::monotonic_ns();
     p.arm();
     pollfd fd{.fd = p.fd(), .events = POLLIN, .revents = 0};
     while (!p.due()) {
@@ -85,7 +85,7 @@ TEST_CASE("the timer becomes readable when a period fits")
     }
     CHECK(p.room() >= 96);
     // 96 frames are 2 ms, and it started a little before `begun`.
-    CHECK(pcm::monotonic_ns() - begun > 1'000'000);
+    CHECK(rt::monotonic_ns() - begun > 1'000'000);
     CHECK(::poll(&fd, 1, 0) == (p.room() >= 96 ? ::poll(&fd, 1, 0) : 0));
 }
 
@@ -136,11 +136,11 @@ TEST_CASE("null, file, plug and multi of nulls are found to have no clock, and a
         o.channels = 2;
         o.config_text = nulls;
         const auto s = open_alsa(o);
-        const std::int64_t begun = pcm::monotonic_ns();
+        const std::int64_t begun = rt::monotonic_ns();
         const std::uint64_t wakes = write_all(*s, 288 + 20 * 96);
         CHECK(wakes == 20);
         // 20 periods take 40 ms, and the first is not waited for in full.
-        CHECK(pcm::monotonic_ns() - begun > 36'000'000);
+        CHECK(rt::monotonic_ns() - begun > 36'000'000);
         s->drop();
     }
 }

@@ -5,9 +5,9 @@
 
 #include <cstdint>
 
-#include "alsa/virtual_queue.hpp"
+#include "rt/virtual_queue.hpp"
 
-namespace tactor::pcm {
+namespace tactor::rt {
 
 /// CLOCK_MONOTONIC in ns.
 std::int64_t monotonic_ns() noexcept;
@@ -39,4 +39,4 @@ private:
     int fd_;
 };
 
-} // namespace tactor::pcm
+} // namespace tactor::rt

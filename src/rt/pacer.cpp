@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "alsa/pacer.hpp"
+#include "rt/pacer.hpp"
 
 #include <cerrno>
 #include <ctime>
@@ -8,7 +8,7 @@
 #include <sys/timerfd.h>
 #include <unistd.h>
 
-namespace tactor::pcm {
+namespace tactor::rt {
 
 std::int64_t monotonic_ns() noexcept
 {
@@ -53,4 +53,4 @@ bool pacer::due() noexcept
     return queue_.room(monotonic_ns()) >= period_;
 }
 
-} // namespace tactor::pcm
+} // namespace tactor::rt

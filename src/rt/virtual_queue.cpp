@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "alsa/virtual_queue.hpp"
+#include "rt/virtual_queue.hpp"
 
 #include <algorithm>
 
-namespace tactor::pcm {
+namespace tactor::rt {
 namespace {
 
 constexpr std::uint64_t second = 1'000'000'000;
@@ -45,4 +45,4 @@ std::int64_t virtual_queue::time_of_room(std::uint64_t frames) const noexcept
     return origin_ + duration(must_have_left);
 }
 
-} // namespace tactor::pcm
+} // namespace tactor::rt

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: MIT
+"""What --help lists is what tactor(1) describes, command by command, and the other way round.
+
+An option in the section OPTIONS belongs to the commands that its text names in the form ".Cm plot , compare :", or that
+its subsection names in "All of these are of"; where none is named, to every command that takes a STROKE.
+"""
+import re
+
+from harness import ROOT, ToolTest, main
+
+MAN = (ROOT / "man/tactor.1").read_text(encoding="utf-8")
+
+
+def section(title):
+    return re.search(rf'^\.Sh {title}\n(.*?)(?=^\.Sh )', MAN, re.M | re.S)[1]
+
+
+def command_names(text, commands):
+    """The commands in all lines such as ".Cm plan , compare :" of a text."""
+    lists = re.findall(r"^\.Cm ((?:\w+ , )*\w+) :", text, re.M)
+    return {name for names in lists for name in names.split(" , ")} & set(commands)
+
+
+def man_options(commands):
+    """Option name -> the commands that take it; empty: all that take a STROKE."""
+    options = {}
+    for subsection in re.split(r"^\.Ss ", section("OPTIONS"), flags=re.M):
+        intro, *entries = re.split(r"^\.It ", subsection, flags=re.M)
+        of_all = re.search(r"^All of these are of\n\.Cm ((?:\w+ , )*\w+)", intro, re.M)
+        for entry in entries:
+            head, _, body = entry.partition("\n")
+            takers = command_names(body, commands) | (set(of_all[1].split(" , ")) if of_all else set())
+            for name in re.findall(r"(?:Fl|,) (-[\w-]+|[a-zA-Z](?= ))", head):
+                options["-" + name] = takers
+    return options
+
+
+class Manual(ToolTest):
+    def help_of(self, *command):
+        text = self.ok(*command, "--help").stdout
+        return text, {name for names in re.findall(r"^  (-\S+)", text, re.M) for name in names.split(",")}
+
+    def commands(self):
+        text, _ = self.help_of()
+        found = re.findall(r"^  (\w+) ", text.partition("Subcommands:")[2], re.M)
+        self.assertGreaterEqual(len(found), 5)
+        return found
+
+    def test_each_command_has_its_options_in_the_manual_and_no_others(self):
+        commands = self.commands()
+        manual = man_options(commands)
+        self.assertGreater(len(manual), 35)
+        for command in commands:
+            text, helped = self.help_of(command)
+            takes_strokes = re.search(r"^  STROKE", text, re.M) is not None
+            named = {o for o, takers in manual.items() if command in takers}
+            common = {o for o, takers in manual.items() if not takers}
+            self.assertEqual(helped - named - common, set(), f"{command} --help has what the manual does not say")
+            self.assertEqual((named | (common if takes_strokes else set())) - helped - {"--version"}, set(),
+                             f"the manual says of {command} what --help does not")
+
+    def test_the_options_of_all_commands(self):
+        _, helped = self.help_of()
+        self.assertEqual(helped, {"-h", "--help", "--version"})
+
+    def test_each_command_is_in_synopsis_and_description(self):
+        commands = self.commands()
+        self.assertEqual(set(re.findall(r"^\.Nm\n\.Cm (\w+)", section("SYNOPSIS"), re.M)), set(commands))
+        described = re.search(r"^\.Ss Commands\n(.*?)^\.Ss ", MAN, re.M | re.S)[1]
+        self.assertEqual(set(re.findall(r"^\.It Cm (\w+)", described, re.M)), set(commands))
+
+    def test_each_command_ends_its_help_with_an_example_that_parses(self):
+        for command in self.commands():
+            text, _ = self.help_of(command)
+            self.assertRegex(text.rstrip().splitlines()[-1], rf"^Example: tactor {command}", command)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: MIT
+"""The C++ examples do what their first lines say, without hardware."""
+import os
+import pathlib
+import re
+import select
+import signal
+import socket
+import struct
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
+from harness import ToolTest, Wav, main  # noqa: E402
+
+EXAMPLES = pathlib.Path(sys.argv[3]).resolve()
+SYN, KEY, REL, ABS = 0, 1, 2, 3
+BTN_LEFT, BTN_TOUCH = 0x110, 0x14a
+
+
+def events(*steps):
+    """Input events as the kernel writes them: (type, code, value) each, and SYN_REPORT after each step."""
+    return b"".join(struct.pack("@llHHi", 0, 0, *e) for step in steps for e in (*step, (SYN, 0, 0)))
+
+
+def touch(x, y, *more):
+    return (*more, (ABS, 0, x), (ABS, 1, y))
+
+
+class Examples(ToolTest):
+    def start(self, name, *args, **more):
+        p = subprocess.Popen([EXAMPLES / name, *map(str, args)], cwd=self.dir, env=self.env, stdout=subprocess.PIPE,
+                             stderr=subprocess.PIPE, text=True, **more)
+        self.addCleanup(p.stdout.close)
+        self.addCleanup(p.stderr.close)
+        self.addCleanup(p.wait)
+        self.addCleanup(p.kill)
+        return p
+
+    def run_example(self, name, *args, status=0):
+        p = self.start(name, *args)
+        out, err = p.communicate(timeout=60)
+        self.assertEqual(p.returncode, status, err)
+        return out if status == 0 else err
+
+    def test_each_example_is_short_and_tested(self):
+        sources = sorted((pathlib.Path(__file__).resolve().parents[2] / "examples").glob("*.cpp"))
+        tested = pathlib.Path(__file__).read_text(encoding="utf-8")
+        self.assertGreaterEqual(len(sources), 6)
+        for source in sources:
+            text = source.read_text(encoding="utf-8")
+            self.assertLess(text.count("\n"), 80, source)
+            self.assertIn(f'"{source.stem}"', tested)
+            self.assertRegex(text.splitlines()[1], r"^// \w", source)
+
+    def test_play_preset(self):
+        self.assertEqual(self.run_example("play_preset"), "finished after 104160 frames\n")
+        self.assertIn("nowhere", self.run_example("play_preset", "nowhere", status=1))
+
+    def test_render_wav_writes_what_the_tool_writes(self):
+        out = self.run_example("render_wav", "a.wav")
+        self.assertRegex(out, r"a\.wav: 9 channels, \d\.\d{3} s")
+        self.ok("render", "--path", "M 0 10 C 20 -5 20 45 40 30", "--speed", "80", "--phantom", "barycentric",
+                "--level-dbfs", "-6", "--sample-format", "s24", "-o", "b.wav")
+        self.assertEqual((self.dir / "a.wav").read_bytes(), (self.dir / "b.wav").read_bytes())
+        self.assertIn("usage", self.run_example("render_wav", status=2))
+
+    def test_own_phantom(self):
+        def errors(*args):
+            rows = re.findall(r"^(\S+) +RMS error ([\d.]+) mm, CV of speed ([\d.]+)$",
+                              self.run_example("own_phantom", *args), re.M)
+            self.assertEqual([r[0] for r in rows], ["inverse-distance", "barycentric", "inverse-power"])
+            return [float(r[1]) for r in rows]
+
+        squared, paper = errors(), errors(1)
+        self.assertEqual(squared[:2], [2.09, 1.43])  # as `tactor compare park2016-3` has them
+        self.assertEqual(paper[:2], squared[:2])
+        self.assertNotEqual(paper[2], squared[2])
+        self.assertLess(max(paper[2], squared[2]), 10.0)
+
+    def heard(self, file, channel):
+        """Whether a raw file of nine channels of s32 has sound on a channel in its last 0.1 s."""
+        samples = memoryview(file.read_bytes()[-4800 * 36:])
+        samples = samples[:len(samples) // 36 * 36].cast("i")
+        return any(samples[channel::9])
+
+    def test_live_touch_follows_a_finger(self):
+        raw, pipe = self.dir / "out.raw", self.dir / "events"
+        os.mkfifo(pipe)
+        p = self.start("live_touch", pipe, f"raw:{raw}")
+
+        def until(condition):
+            while not condition():
+                self.assertIsNone(p.poll())
+
+        with open(pipe, "wb", buffering=0) as finger:
+            # Down in one corner, where it rests: the stroke must live on without events. Then to the other.
+            finger.write(events(touch(0, 0, (KEY, BTN_TOUCH, 1))))
+            until(lambda: raw.exists() and self.heard(raw, 0))
+            self.assertFalse(self.heard(raw, 8))
+            finger.write(events(touch(4095, 4095)))
+            until(lambda: self.heard(raw, 8) and not self.heard(raw, 0))
+            finger.write(events([(KEY, BTN_TOUCH, 0)]))
+            until(lambda: not self.heard(raw, 8))
+            # A second touch, which the end of the events ends.
+            finger.write(events(touch(4095, 0, (KEY, BTN_TOUCH, 1))))
+            until(lambda: self.heard(raw, 2))
+        self.assertEqual(p.communicate(timeout=30), ("finished\nfinished\n", ""))
+        self.assertEqual(p.returncode, 0)
+
+    def test_live_touch_follows_a_mouse_in_a_recording(self):
+        left = [(KEY, BTN_LEFT, 1)], [(REL, 0, -1000), (REL, 1, 1000)], [(KEY, BTN_LEFT, 0)]
+        self.write("mouse", events([(REL, 0, 30)], *left, *left))
+        self.assertEqual(self.run_example("live_touch", "mouse"), "finished\nfinished\n")
+        self.assertIn("usage", self.run_example("live_touch", "nothing-here", status=2))
+
+    def test_asio_server_answers_when_a_stroke_has_been_felt(self):
+        p = self.start("asio_server", 0)
+        port = int(re.fullmatch(r"listening on port (\d+)\n", p.stdout.readline())[1])
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as s:
+            s.settimeout(30)
+            for request in ("park2016-1", "park2016-2", "park2016-9"):
+                s.sendto(request.encode(), ("127.0.0.1", port))
+            answers = sorted(s.recv(1000).decode() for _ in range(3))
+            self.assertEqual(answers[:2], ["park2016-1: finished", "park2016-2: finished"])
+            self.assertIn("park2016-4", answers[2])  # the presets that there are
+            s.sendto(b"park2016-3", ("127.0.0.1", port))
+        p.send_signal(signal.SIGTERM)
+        self.assertEqual(p.communicate(timeout=30), ("", ""))
+        self.assertEqual(p.returncode, 0)
+
+    def test_udp_sink_sends_what_render_writes(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as s:
+            s.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 22)
+            s.bind(("127.0.0.1", 0))
+            p = self.start("udp_sink", "127.0.0.1", s.getsockname()[1])
+            datagrams = []
+            while p.poll() is None or select.select([s], [], [], 0)[0]:
+                if select.select([s], [], [], 0.01)[0]:
+                    datagrams.append(s.recv(2000))
+        self.assertEqual(p.communicate(timeout=30), ("finished\n", ""))
+        first = [struct.unpack("<Q", d[:8])[0] for d in datagrams]
+        self.assertEqual(first, list(range(0, 48 * len(first), 48)))
+        self.ok("render", "park2016-1", "--sample-format", "s16", "-o", "o.wav")
+        sound = b"".join(d[8:] for d in datagrams).strip(b"\0")
+        self.assertIn(sound, Wav(self.dir / "o.wav").data)
+        self.assertGreater(len(sound), 18 * 48000)
+        self.assertIn("usage", self.run_example("udp_sink", status=2))
+
+
+if __name__ == "__main__":
+    main()

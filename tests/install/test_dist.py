@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: MIT
+"""The tarball that `meson dist` makes builds, installs without DESTDIR, and serves as a subproject.
+
+Usage: test_dist.py TOOL SOURCE_ROOT BUILD_ROOT. Compiles the library twice.
+"""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tarfile
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
+from harness import ROOT, main  # noqa: E402
+
+BUILD = pathlib.Path(sys.argv[3]).resolve()
+CONSUMER = ROOT / "tests/install/consumer"
+
+
+def run(*args, **more):
+    r = subprocess.run([str(a) for a in args], capture_output=True, text=True, check=False, **more)
+    assert r.returncode == 0, f"{args}: {r.stdout[-3000:]}{r.stderr}"
+    return r.stdout
+
+
+class Dist(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        cls.dir = pathlib.Path(cls.folder.name)
+        run("meson", "dist", "-C", BUILD, "--no-tests", "--allow-dirty", "--formats", "gztar")
+        (tarball,) = (BUILD / "meson-dist").glob("tactor-*.tar.gz")
+        with tarfile.open(tarball) as t:
+            t.extractall(cls.dir)
+        (cls.source,) = cls.dir.glob("tactor-*")
+
+    def test_it_builds_and_installs_without_destdir_and_uninstalls(self):
+        build, prefix = self.source / "build", self.dir / "prefix"
+        run("meson", "setup", build, self.source, "--prefix", prefix, "-Dwerror=true")
+        run("ninja", "-C", build)
+        run("meson", "install", "-C", build, "--no-rebuild")
+        (pc,) = prefix.rglob("tactor.pc")
+        env = {k: v for k, v in os.environ.items() if k != "LD_LIBRARY_PATH"} | {"PKG_CONFIG_PATH": str(pc.parent)}
+        self.assertIn("tactor ", run(prefix / "bin/tactor", "--version", env=env))
+        flags = run("pkg-config", "--cflags", "--libs", "tactor", env=env).split()
+        run(*os.environ.get("CXX", "c++").split(), "-std=c++20", CONSUMER / "consumer.cpp", "-o", self.dir / "consumer", *flags)
+        said = run(self.dir / "consumer", env=env | {"LD_LIBRARY_PATH": str(pc.parent.parent)})
+        self.assertIn(": finished\n", said)
+        run("ninja", "-C", build, "uninstall")
+        self.assertFalse(prefix.exists())
+
+    def test_it_is_a_subproject_of_which_only_the_library_is_built(self):
+        project = self.dir / "project"
+        shutil.copytree(CONSUMER, project)
+        shutil.copytree(self.source, project / "subprojects/tactor", ignore=shutil.ignore_patterns("build"))
+        # An installed library would be preferred.
+        run("meson", "setup", project / "build", project, "--wrap-mode=forcefallback")
+        run("ninja", "-C", project / "build")
+        self.assertIn(": finished\n", run(project / "build/consumer"))
+        built = {p.name for p in (project / "build").rglob("*") if p.is_file() and os.access(p, os.X_OK)}
+        self.assertEqual({n for n in built if not n.startswith("libtactor.so")}, {"consumer"})
+
+
+if __name__ == "__main__":
+    main()
