@@ -5,6 +5,7 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -13,6 +14,7 @@
 #include <tactor/version.hpp>
 
 #include "cli/commands.hpp"
+#include "cli/complete.hpp"
 #include "cli/usage.hpp"
 
 namespace tactor::cli {
@@ -39,6 +41,11 @@ int run(int argc, char** argv)
     app.footer("Example: tactor play park2016-3        tactor COMMAND --help says more.");
     std::array commands{add_plan(app), add_render(app),  add_play(app),
                         add_plot(app), add_compare(app), add_devices(app)};
+    if (argc > 1 && std::string_view(argv[1]) == complete_command) {
+        for (const std::string& line : complete(app, {argv + 2, argv + argc}))
+            fmt::print("{}\n", line);
+        return status_ok;
+    }
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& e) {

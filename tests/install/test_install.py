@@ -60,7 +60,9 @@ class Install(unittest.TestCase):
         for page in (ROOT / "man").glob("*.[1-8]"):
             section = page.suffix[1:]
             self.assertTrue({f"share/man/man{section}/{page.name}", f"share/man/man{section}/{page.name}.gz"} & there, page)
-        for name in ("bin/tactor", "lib/udev/rules.d/70-tactor.rules", "lib/sysusers.d/tactor.conf"):
+        for name in ("bin/tactor", "lib/udev/rules.d/70-tactor.rules", "lib/sysusers.d/tactor.conf",
+                     "share/bash-completion/completions/tactor", "share/zsh/site-functions/_tactor",
+                     "share/fish/vendor_completions.d/tactor.fish"):
             self.assertIn(name, there)
 
     def test_the_tool_runs_from_where_it_was_moved_to(self):

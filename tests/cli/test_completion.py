@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: MIT
+"""Completion: what the tool offers, and bash, zsh and fish as people type in them."""
+import os
+import pty
+import re
+import select
+import shutil
+import subprocess
+
+from harness import ROOT, TOOL, ToolTest, main
+
+SCRIPTS = ROOT / "src/cli/completion"
+# Prints each word so that the line as it was typed, which the terminal shows too, does not look the same.
+SHOW = r"printf '\74%s\76' "
+
+
+class Terminal:
+    """An interactive shell on a terminal of its own."""
+
+    def __init__(self, command, env, folder):
+        self.pid, self.fd = pty.fork()
+        if self.pid == 0:
+            os.chdir(folder)
+            os.execvpe(command[0], command, env)
+
+    def send(self, text):
+        os.write(self.fd, text.encode())
+
+    def until(self, pattern):
+        seen = ""
+        while not re.search(pattern, seen):
+            if not select.select([self.fd], [], [], 30)[0]:
+                raise AssertionError(f"no {pattern} in {seen!r}")
+            seen += os.read(self.fd, 65536).decode(errors="replace")
+        return seen
+
+    def close(self):
+        os.close(self.fd)
+        os.waitpid(self.pid, 0)
+
+
+class Completion(ToolTest):
+    def setUp(self):
+        super().setUp()
+        (self.dir / "bin").mkdir()
+        (self.dir / "bin/tactor").symlink_to(TOOL)
+        for name in ("forearm.toml", "formant.wav", "trace.csv", "trace.wav", "folder/x.toml"):
+            self.write(name, "")
+        self.env |= {"PATH": f"{self.dir}/bin:{os.environ['PATH']}", "HOME": str(self.dir), "TERM": "dumb", "PS1": "READY> ",
+                     "INPUTRC": "/dev/null", "XDG_DATA_HOME": str(self.dir / "data"), "ZDOTDIR": str(self.dir)}
+
+    def offered(self, *words):
+        lines = self.ok("__complete", *words).stdout.splitlines()
+        return [line.split("\t")[0] for line in lines]
+
+    def needs(self, shell):
+        if shutil.which(shell) is None:
+            self.skipTest(f"{shell} is not here")
+
+    # What the tool says.
+
+    def test_commands_and_options_are_those_of_help(self):
+        def of_help(*command):
+            text = self.ok(*command, "--help").stdout
+            options = {n for names in re.findall(r"^  (-\S+)", text, re.M) for n in names.split(",")}
+            return options, set(re.findall(r"^  (\w+) ", text.partition("Subcommands:")[2], re.M))
+
+        options, commands = of_help()
+        self.assertEqual(set(self.offered("")), commands)
+        self.assertEqual(set(self.offered("-")), options)
+        self.assertGreaterEqual(len(commands), 5)
+        for command in commands:
+            self.assertEqual(set(self.offered(command, "-")), of_help(command)[0], command)
+
+    def test_each_value_that_is_offered_is_taken(self):
+        for option in ("--phantom", "--algorithm", "--overlap", "--timing", "--outside", "--array", "--phase",
+                       "--sample-format", "--format"):
+            values = [v for v in self.offered("plan", option, "") if not v.startswith(":")]
+            self.assertGreaterEqual(len(values), 2, option)
+            for value in values:
+                self.ok("plan", "--path", "M 0 0 L 20 0", option, value)
+                self.assertEqual(self.offered("plan", f"{option}={value[:-1]}").count(f"{option}={value}"), 1)
+
+    def test_strokes_files_devices_and_lists(self):
+        self.assertEqual(self.offered("play", "park2016-3"), ["park2016-3", ":files .toml .csv .svg"])
+        self.assertEqual(self.offered("plan", "--array", "x"), [":files .toml"])
+        self.assertEqual(self.offered("plan", "--config="), [":files .toml"])
+        self.assertEqual(self.offered("render", "-o", ""), [":files .wav"])
+        self.assertEqual(self.offered("plot", "--output", ""), [":files .svg .png .pdf"])
+        self.assertIn("null", self.offered("play", "-D", ""))
+        self.assertEqual(self.offered("compare", "--phantoms", "linear,log,l"), [])
+        self.assertEqual(self.offered("compare", "--phantoms", "linear,l"), ["linear,log"])
+        self.assertEqual(self.offered("plan", "--soa", ""), [])
+        self.assertEqual(self.offered("nonsense", ""), [])
+        self.assertEqual(self.ok("__complete").stdout, "")
+
+    # What shells make of it: what is typed, and the words that the line has after Tab.
+
+    TYPED = [
+        ("tactor comp", ["tactor", "compare"]),
+        ("tactor play park2016-3 --phantom ba", ["tactor", "play", "park2016-3", "--phantom", "barycentric"]),
+        ("tactor plan --array=palm-3", ["tactor", "plan", "--array=palm-3x3"]),
+        ("tactor plan --array fo", ["tactor", "plan", "--array", "folder/"]),
+        ("tactor plan --array forea", ["tactor", "plan", "--array", "forearm.toml"]),
+        ("tactor plan --array=forea", ["tactor", "plan", "--array=forearm.toml"]),
+        ("tactor plan tr", ["tactor", "plan", "trace.csv"]),
+        ("tactor render --path 'M 0 0 L 40 0' --level", ["tactor", "render", "--path", "M 0 0 L 40 0", "--level-dbfs"]),
+        ("tactor compare --phantoms linear,gau", ["tactor", "compare", "--phantoms", "linear,gaussian"]),
+        ("fake play -D hw:CARD=T", ["fake", "play", "-D", "hw:CARD=Tactor"]),
+        ("fake play -D hw:", ["fake", "play", "-D", "hw:CARD="]),
+        ("fake play --device=hw:CARD=T", ["fake", "play", "--device=hw:CARD=Tactor"]),
+    ]
+
+    def type_into(self, *command, setup):
+        fake = self.write("bin/fake", '#!/bin/sh\nfor last; do :; done\n'
+                                      'case $last in --*=*) o=${last%%=*}=;; esac\n'
+                                      'for n in Tactor Other; do\n'
+                                      'case ${o}hw:CARD=$n in "$last"*) echo "${o}hw:CARD=$n" ;; esac; done\n')
+        fake.chmod(0o755)
+        t = Terminal(command, self.env, self.dir)
+        try:
+            t.until("READY> ")
+            t.send(f"{setup}; echo DO''NE\n")
+            t.until("DONE")
+            for typed, words in self.TYPED:
+                if words[-1] == "folder/":
+                    continue  # ambiguous: nothing is taken
+                # Tab; a last word at the end of the line; and what shows the words at its beginning.
+                t.send(f"{typed}\t\005 END\001{SHOW}\n")
+                seen = t.until("<END>")
+                self.assertEqual(re.findall("<(.*?)>", seen)[:-1], words, typed)
+        finally:
+            t.close()
+
+    def test_bash(self):
+        self.needs("bash")
+        self.type_into("bash", "--norc", "--noprofile", "-i",
+                       setup=f"bind 'set bell-style none'; source {SCRIPTS}/tactor.bash; complete -F _tactor fake")
+
+    def test_zsh(self):
+        self.needs("zsh")
+        self.type_into("zsh", "-f", "-i", setup=f"fpath=({SCRIPTS} $fpath); setopt nobeep; bindkey -e; PROMPT='READY> '; "
+                       "autoload -U compinit; compinit -u; compdef _tactor fake; unsetopt automenu")
+
+    def test_fish(self):
+        self.needs("fish")
+        for typed, words in self.TYPED:
+            if words[0] == "fake":
+                continue
+            r = subprocess.run(["fish", "--no-config", "-c", f"source {SCRIPTS}/tactor.fish; complete -C \"{typed}\""],
+                               env=self.env, cwd=self.dir, capture_output=True, text=True, check=False)
+            self.assertEqual(r.stderr, "")
+            self.assertEqual(r.stdout.split("\n")[0].split("\t")[0], words[-1], typed)
+
+    def test_fish_says_what_commands_do(self):
+        self.needs("fish")
+        r = subprocess.run(["fish", "--no-config", "-c", f"source {SCRIPTS}/tactor.fish; complete -C 'tactor pl'"],
+                           env=self.env, cwd=self.dir, capture_output=True, text=True, check=False)
+        self.assertEqual([line.split("\t")[0] for line in r.stdout.splitlines()], ["plan", "play", "plot"])
+        self.assertIn("plan\tPrint the schedule", r.stdout)
+
+
+if __name__ == "__main__":
+    main()
