@@ -91,6 +91,7 @@ std::size_t pcm_sink::descriptors(std::span<pollfd> fds) noexcept
         return 1;
     }
     const int n = snd_pcm_poll_descriptors(handle_.get(), fds.data(), static_cast<unsigned>(fds.size()));
+    poll_error_ = n < 0 ? n : 0; // dmix has nothing to poll while it stands in an xrun
     return n < 0 ? 0 : static_cast<std::size_t>(n);
 }
 
@@ -98,6 +99,8 @@ io_status pcm_sink::ready(std::span<pollfd> fds) noexcept
 {
     if (paced_)
         return pacer_.due() ? io_status::ok : io_status::again;
+    if (fds.empty())
+        return poll_error_ < 0 ? of_error(poll_error_, state()) : of_state(state());
     unsigned short events = 0;
     const int code = snd_pcm_poll_descriptors_revents(handle_.get(), fds.data(),
                                                       static_cast<unsigned>(fds.size()), &events);

@@ -45,6 +45,7 @@ private:
     std::int64_t seen_ns_ = 0; ///< when the stream was last seen running
     std::int64_t dry_ns_ = 0;  ///< when it runs dry, as seen then
     bool paced_ = false;
+    int poll_error_ = 0; ///< of the latest descriptors()
 };
 
 } // namespace tactor::pcm
