@@ -115,10 +115,21 @@ struct fake_dac::callbacks {
         return d.resume_code_;
     }
 
-    static int poll_revents(snd_pcm_ioplug_t* io, pollfd*, unsigned, unsigned short* revents)
+    static int poll_descriptors(snd_pcm_ioplug_t* io, pollfd* fds, unsigned)
     {
         fake_dac& d = self(io);
         const std::lock_guard lock(d.mutex_);
+        if (d.hides_descriptors_ && d.starved_)
+            return -EPIPE;
+        *fds = {.fd = d.event_, .events = POLLIN, .revents = 0};
+        return 1;
+    }
+
+    static int poll_revents(snd_pcm_ioplug_t* io, pollfd*, unsigned count, unsigned short* revents)
+    {
+        fake_dac& d = self(io);
+        const std::lock_guard lock(d.mutex_);
+        d.asked_in_vain_ += count == 1 ? 0 : 1;
         apply_faults(d);
         *revents = 0;
         if (d.disconnected_)
@@ -174,6 +185,7 @@ const snd_pcm_ioplug_callback_t fake_dac::table = [] {
     t.close = callbacks::close;
     t.prepare = callbacks::prepare;
     t.resume = callbacks::resume;
+    t.poll_descriptors = callbacks::poll_descriptors;
     t.poll_revents = callbacks::poll_revents;
     return t;
 }();

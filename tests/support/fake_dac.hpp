@@ -48,6 +48,10 @@ public:
     void fail_start(int code) { fail_start_ = code; }
     /// Whatever is polled, it looks ready.
     void cry_ready(bool on);
+    /// As dmix: nothing to poll in an xrun.
+    void hide_descriptors_in_xrun();
+    /// How often what had no descriptors was asked about them; dmix ends the process then.
+    unsigned asked_in_vain() const;
 
     /// All bytes that were transferred so far, over all epochs, from a frame on.
     std::vector<std::byte> captured(std::uint64_t from = 0) const;
@@ -109,6 +113,8 @@ private:
     unsigned starts_ = 0;
     unsigned prepares_ = 0;
     unsigned drops_ = 0;
+    bool hides_descriptors_ = false;
+    unsigned asked_in_vain_ = 0;
 };
 
 } // namespace tactor::test

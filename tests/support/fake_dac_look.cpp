@@ -49,6 +49,18 @@ unsigned fake_dac::drops() const
     return drops_;
 }
 
+unsigned fake_dac::asked_in_vain() const
+{
+    const std::lock_guard lock(mutex_);
+    return asked_in_vain_;
+}
+
+void fake_dac::hide_descriptors_in_xrun()
+{
+    const std::lock_guard lock(mutex_);
+    hides_descriptors_ = true;
+}
+
 bool fake_dac::closed() const
 {
     const std::lock_guard lock(mutex_);
