@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// What the sink makes of the descriptors that a device gives, or does not give.
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <poll.h>
+
+#include <doctest/doctest.h>
+
+#include "alsa/adopt.hpp"
+#include "fake_dac.hpp"
+#include "player_support.hpp"
+
+using namespace tactor;
+using namespace tactor::test;
+
+TEST_CASE("a device without descriptors in an xrun, such as dmix, is not asked about them")
+{
+    fake_dac dac;
+    dac.hide_descriptors_in_xrun();
+    const auto s = pcm::adopt(dac.pcm(), nine());
+    std::vector<std::byte> silence(288 * 9 * bytes_of(s->setup().format));
+    REQUIRE(s->prepare() == io_status::ok);
+    REQUIRE(s->write(silence.data(), 288).frames == 288);
+    REQUIRE(s->start() == io_status::ok);
+    std::vector<pollfd> fds(s->max_descriptors());
+    CHECK(s->descriptors(fds) == 1);
+    CHECK(s->ready(std::span(fds).first(1)) == io_status::again);
+    dac.advance(10'000);
+    CHECK(s->room().status == io_status::xrun);
+    const std::size_t n = s->descriptors(fds);
+    CHECK(n == 0);
+    CHECK(s->ready(std::span(fds).first(n)) == io_status::xrun);
+    CHECK(dac.asked_in_vain() == 0);
+}
