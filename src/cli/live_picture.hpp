@@ -3,25 +3,18 @@
 /// The array on a terminal while it plays.
 #pragma once
 
-#include <string>
-#include <vector>
+#include <optional>
 
 #include <tactor/tactor.hpp>
 
+#include "cli/instant.hpp"
+#include "cli/terminal.hpp"
+
 namespace tactor::cli {
 
-/// What the plans of a piece do at one time.
-struct instant {
-    std::vector<double> levels;  ///< per tactor, linear, 1 is the intensity asked for
-    std::optional<point> target; ///< where the phantom is
-};
-
-/// Looks a time of a piece up in its plans. `starts_s`: start of each plan.
-instant at_time(const std::vector<placed_plan>& plans, const std::vector<double>& starts_s,
-                std::size_t tactors, double t_s);
-
-/// Draws over itself. Restores the cursor when destroyed. Where standard output is no terminal, or
-/// NO_COLOR is set, it draws nothing.
+/// Draws over itself, and takes itself away when destroyed. It changes no mode of the terminal (the cursor
+/// stays visible), so that there is nothing to restore whatever ends the program. Where standard output is no
+/// terminal, or NO_COLOR is set, it draws nothing.
 class live_picture {
 public:
     explicit live_picture(const array& a, bool wanted = true);
@@ -29,24 +22,15 @@ public:
     live_picture(const live_picture&) = delete;
     live_picture& operator=(const live_picture&) = delete;
 
-    bool active() const noexcept { return active_; }
+    bool active() const noexcept { return terminal_.has_value(); }
+    /// Skipped while the terminal has not taken what was drawn before.
     void draw(const instant& now, double t_s, double total_s);
 
 private:
-    struct cell {
-        unsigned row = 0;
-        unsigned column = 0;
-    };
-    cell cell_of(point p) const;
-    void clear();
-
-    bool active_;
-    point origin_;
-    double mm_per_column_ = 1.0;
-    unsigned rows_ = 1;
-    unsigned columns_ = 1;
-    std::vector<cell> tactors_;
-    unsigned drawn_lines_ = 0;
+    const array& array_;
+    std::optional<terminal> terminal_ = {};
+    bool unicode_;
+    std::size_t drawn_lines_ = 0;
 };
 
 } // namespace tactor::cli

@@ -36,7 +36,7 @@ int status_of(errc kind)
 int run(int argc, char** argv)
 {
     CLI::App app("Draws on skin: moving tactile strokes over sparse arrays of tactors.", "tactor");
-    app.set_version_flag("--version", std::string("tactor ") + version());
+    app.set_version_flag("--version", [] { return fmt::format("tactor {}\n{}", version(), build_facts()); });
     app.require_subcommand(1);
     app.footer("Example: tactor play park2016-3        tactor COMMAND --help says more.");
     std::array commands{add_plan(app), add_render(app),  add_play(app),

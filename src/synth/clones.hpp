@@ -9,6 +9,7 @@
 // Sanitizers are not ready yet when the loader chooses.
 #if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) &&    \
     !defined(__SANITIZE_THREAD__)
+#define TACTOR_HAS_CLONES
 #define TACTOR_CLONES __attribute__((target_clones("default", "avx2", "arch=x86-64-v4")))
 #else
 #define TACTOR_CLONES

@@ -12,7 +12,12 @@ class CommandLine(ToolTest):
             self.assertIn("Example: tactor ", self.ok(*command, "--help").stdout)
 
     def test_version(self):
-        self.assertRegex(self.ok("--version").stdout, r"^tactor \d+\.\d+\.\d+")
+        lines = self.ok("--version").stdout.splitlines()
+        self.assertRegex(lines[0], r"^tactor \d+\.\d+\.\d+$")
+        for name, says in (("build", r"\w+, optimization \w+"), ("compiler", r"(gcc|clang) \d+\.\d+"),
+                           ("processor", rf"{os.uname().machine}, (baseline|avx2|avx-512) loops"),
+                           ("libraries", r"alsa-lib \d+\.\d+\.\d+.*, libgpiod [12]\.\d+.*, Boost 1\.\d+.*")):
+            self.assertRegex("\n".join(lines), rf"(?m)^{name} +{says}")
 
     def test_wrong_usage(self):
         self.refused(2, says=["--help"])

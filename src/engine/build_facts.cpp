@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#include <tactor/version.hpp>
+
+#include <fmt/format.h>
+
+#include "build_facts_config.hpp"
+#include "synth/vector_path.hpp"
+
+namespace tactor {
+
+std::string build_facts()
+{
+    return fmt::format("build      {}\n"
+                       "compiler   {}\n"
+                       "processor  {}, {} loops\n"
+                       "libraries  {}",
+                       TACTOR_BUILD_TYPE, TACTOR_COMPILER, TACTOR_PROCESSOR, synth::vector_path(),
+                       TACTOR_LIBRARIES);
+}
+
+} // namespace tactor

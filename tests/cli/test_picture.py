@@ -1,0 +1,240 @@
+# SPDX-License-Identifier: MIT
+"""The live picture of play, on a terminal that is emulated: what is seen, and what is left behind."""
+import fcntl
+import os
+import re
+import select
+import signal
+import struct
+import subprocess
+import sys
+import termios
+import time
+
+try:
+    import pyte
+except ImportError:
+    # Debian's package is for Debian's python, and python3 may be another one.
+    if sys.executable != "/usr/bin/python3" and os.path.exists("/usr/lib/python3/dist-packages/pyte"):
+        os.execv("/usr/bin/python3", ["/usr/bin/python3", *sys.argv])
+    print("SKIPPED: the live picture: python3-pyte is not here\n0 passed, 0 failed, 1 skipped")
+    sys.exit(0)
+
+from harness import TOOL, ToolTest, main  # noqa: E402
+
+LONG = ("play", "--path", "M 0 10 L 40 30", "--duration", "3600", "-D", "null")
+SHORT = ("play", "--path", "M 0 10 L 40 30", "--duration", "0.5", "-D", "null")
+TIME = r"\d / 3600\.\d\d s"
+SHADES = set("·░▒▓█")
+
+
+class Window:
+    """The tool on a terminal of some size."""
+
+    def __init__(self, test, args, columns, rows, **env):
+        self.primary, secondary = os.openpty()
+        self.screen = pyte.Screen(columns, rows)
+        self.stream = pyte.ByteStream(self.screen)
+        self.raw = b""
+        self.set_size(columns, rows)
+        self.process = subprocess.Popen([TOOL, *args], cwd=test.dir, stdin=secondary, stdout=secondary, stderr=subprocess.PIPE,
+                                        env=test.env | {"TERM": "xterm", "LC_ALL": "C.UTF-8"} | env, start_new_session=True)
+        os.close(secondary)
+        test.addCleanup(self.close)
+
+    def close(self):
+        self.process.kill()
+        self.process.wait()
+        self.process.stderr.close()
+        if self.primary >= 0:
+            os.close(self.primary)
+
+    def set_size(self, columns, rows):
+        fcntl.ioctl(self.primary, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+
+    def resize(self, columns, rows):
+        self.screen.resize(rows, columns)
+        self.set_size(columns, rows)
+
+    def read(self, timeout=30):
+        """Takes what has been written; false when the other end is closed."""
+        if not select.select([self.primary], [], [], timeout)[0]:
+            raise AssertionError(f"nothing comes:\n{self.text()}")
+        try:
+            data = os.read(self.primary, 65536)
+        except OSError:
+            return False
+        self.raw += data
+        self.stream.feed(data)
+        return bool(data)
+
+    def until(self, condition):
+        deadline = time.monotonic() + 30
+        while not condition(self):
+            assert time.monotonic() < deadline, f"never:\n{self.text()}"
+            assert self.read(), f"it ended early:\n{self.text()}"
+
+    def to_the_end(self):
+        deadline = time.monotonic() + 30
+        while self.read():
+            assert time.monotonic() < deadline, f"it goes on:\n{self.text()}"
+        self.process.wait()
+        return self.process.returncode
+
+    def lines(self):
+        return [line.rstrip() for line in self.screen.display]
+
+    def text(self):
+        return "\n".join(self.lines()).rstrip()
+
+    def shades(self):
+        return sum(c in SHADES for c in self.text())
+
+
+def has_picture(w):
+    return w.shades() >= 27 and re.search(TIME, w.text())
+
+
+class Picture(ToolTest):
+    def test_array_levels_place_time_and_progress(self):
+        w = Window(self, LONG, 80, 24)
+        w.until(has_picture)
+        w.until(lambda w: "▓" in w.text() or "▒" in w.text() or "█" in w.text())
+        text = w.text()
+        self.assertEqual(w.shades(), 27, text)  # nine tactors of three characters; the touch is between two of them
+        self.assertEqual(sum(line.strip() == "o" for line in w.lines()), 1, text)
+        self.assertRegex(text, r"\[ {30}\] \d+\.\d\d / 3600\.\d\d s   at 0\.\d, 10\.\d mm")
+        self.assertIn("9 channels", w.lines()[0])
+
+    def test_the_touch_is_where_the_stroke_is(self):
+        w = Window(self, ("play", "--path", "M 0 0 L 40 40", "--duration", "1", "-D", "null"), 80, 24)
+        seen = []
+
+        def look(w):
+            rows = [(y, line.index("o")) for y, line in enumerate(w.lines()) if re.match(r"[ ·░▒▓█]*o[ ·░▒▓█]*$", line)]
+            if rows and (not seen or seen[-1] != rows[0]):
+                seen.append(rows[0])
+            return "counters" in w.text() or "xruns" in w.text()
+
+        w.until(look)
+        self.assertGreater(len(seen), 3)
+        self.assertEqual(seen, sorted(seen))
+        self.assertGreater(seen[-1][0] - seen[0][0], 8)
+        self.assertGreater(seen[-1][1] - seen[0][1], 16)
+
+    def test_it_takes_itself_away(self):
+        plain = self.ok(*SHORT).stdout.splitlines()
+        for columns, rows in ((80, 24), (80, 40), (200, 60), (80, 12), (79, 11)):
+            w = Window(self, SHORT, columns, rows)
+            self.assertEqual(w.to_the_end(), 0)
+            self.assertIn(b"/ 0.56 s", w.raw)
+            self.assertFalse(w.screen.cursor.hidden)
+            self.assertFalse(SHADES & set(w.text()), w.text())
+            # The first line may have been scrolled away when a high picture came.
+            self.assertEqual([line[:8] for line in w.lines() if line][-7:], [line[:8] for line in plain][-7:], (columns, rows))
+
+    def test_small_terminals_neither_wrap_nor_scroll(self):
+        self.write("big.toml", '[array]\nname = "big"\ngrid = { rows = 30, columns = 30, pitch_mm = 10.0 }\n')
+        sizes = ((80, 24), (40, 10), (20, 6), (20, 4), (12, 3), (8, 2), (5, 5), (2, 2), (1, 1))
+        for array in ("palm-3x3", "big.toml"):
+            windows = [Window(self, (*SHORT, "--array", array), *size) for size in sizes]
+            for (columns, rows), w in zip(sizes, windows):
+                self.assertEqual(w.to_the_end(), 0)
+                # Each frame is between "up" and "clear the rest".
+                frames = re.findall(r"\r(?:\033\[\d+A)?((?:(?!\033\[\d*A)[^\r])*?)\033\[J", w.raw.decode().replace("\r\n", "\n"))
+                self.assertGreater(len(frames), 2)
+                for frame in frames:
+                    lines = re.sub(r"\033\[[\d;]*[mK]", "", frame).split("\n")
+                    self.assertLessEqual(len(lines), rows, (columns, rows, frame))
+                    self.assertLess(max(map(len, lines)), max(columns, 2), (columns, rows, frame))
+                if columns >= 8 and rows >= 2:
+                    self.assertTrue(any(" s" in f for f in frames), (columns, rows))
+                self.assertEqual(any(SHADES & set(f) for f in frames), columns >= 12 and rows >= 4, (array, columns, rows))
+
+    def test_it_follows_the_size_of_the_window(self):
+        w = Window(self, LONG, 100, 40)
+        w.until(has_picture)
+        for columns, rows in ((60, 15), (30, 8), (120, 50), (80, 24)):
+            w.resize(columns, rows)
+            before = len(w.raw)
+            w.until(lambda w, before=before: len(w.raw) > before + 3000 and has_picture(w))
+            # One picture, and its last line is above the cursor.
+            self.assertEqual(len(re.findall(TIME, w.text())), 1, w.text())
+            self.assertRegex(w.lines()[w.screen.cursor.y - 1], TIME)
+            self.assertEqual(w.screen.cursor.x, 0)
+        self.process_ends(w, signal.SIGINT, 130)
+
+    def process_ends(self, w, number, status):
+        w.process.send_signal(number)
+        self.assertEqual(w.to_the_end(), status)
+        self.assertFalse(SHADES & set(w.text()), w.text())
+        self.assertFalse(w.screen.cursor.hidden)
+        self.assertIn("cancelled after", w.text())
+
+    def test_signals_leave_a_clean_terminal(self):
+        for number, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)):
+            w = Window(self, LONG, 80, 24)
+            w.until(has_picture)
+            self.process_ends(w, number, status)
+
+    def test_whatever_kills_it_the_terminal_works_on(self):
+        w = Window(self, LONG, 80, 24)
+        w.until(has_picture)
+        mode = termios.tcgetattr(w.primary)
+        w.process.send_signal(signal.SIGKILL)
+        w.to_the_end()
+        self.assertFalse(w.screen.cursor.hidden)
+        self.assertNotIn(b"\033[?", w.raw)  # no mode was set that somebody would have to reset
+        self.assertEqual(mode, termios.tcgetattr(w.primary))
+
+    def test_a_terminal_that_takes_nothing_does_not_hold_it_up(self):
+        w = Window(self, LONG, 200, 60)
+        w.until(has_picture)
+        # Nobody reads; when the terminal's buffer is full it cannot be written to.
+        out = os.open(f"/proc/{w.process.pid}/fd/1", os.O_WRONLY | os.O_NONBLOCK | os.O_NOCTTY)
+        try:
+            while True:
+                os.write(out, b"x" * 1000)
+        except BlockingIOError:
+            pass
+        finally:
+            os.close(out)
+        w.process.send_signal(signal.SIGTERM)
+        try:
+            # The report at the end must be written, and waits for somebody who reads; the sound has ended before.
+            self.assertEqual(w.to_the_end(), 143)
+        finally:
+            w.process.kill()
+
+    def test_a_terminal_that_is_closed_ends_it(self):
+        w = Window(self, LONG, 80, 24)
+        w.until(has_picture)
+        os.close(w.primary)
+        w.primary = -1
+        w.process.send_signal(signal.SIGHUP)
+        w.process.wait(timeout=30)
+        self.assertIn(w.process.returncode, (1, 129))
+
+    def test_plain_where_that_is_asked_for(self):
+        for env in ({"NO_COLOR": "1"}, {"TERM": "dumb"}, {"TERM": ""}):
+            w = Window(self, SHORT, 80, 24, **env)
+            self.assertEqual(w.to_the_end(), 0)
+            self.assertNotIn(b"\033", w.raw)
+        w = Window(self, (*SHORT, "--format", "json"), 80, 24)
+        self.assertEqual(w.to_the_end(), 0)
+        self.assertNotIn(b"\033", w.raw)
+
+    def test_letters_where_the_locale_has_no_shades(self):
+        w = Window(self, LONG, 80, 24, LC_ALL="C")
+        w.until(lambda w: re.search(r"\.\.\.", w.text()) and re.search("[:+x#]{2}", w.text()))
+        self.assertTrue(w.text().isascii())
+
+    def test_an_error_in_the_middle_leaves_a_clean_terminal(self):
+        w = Window(self, ("play", "--path", "M 0 10 L 40 30", "--duration", "3600", "-D", "raw:/dev/full"), 80, 24)
+        self.assertEqual(w.to_the_end(), 1)
+        self.assertFalse(SHADES & set(w.text()), w.text())
+        self.assertIn("interrupted after", w.text())
+
+
+if __name__ == "__main__":
+    main()
