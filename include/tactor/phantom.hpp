@@ -25,7 +25,8 @@ struct drive {
 /// face. Immutable; any thread may call.
 class TACTOR_API layout {
 public:
-    /// O(n log n). \throws error (bad_input) as validate() does.
+    /// O(n log n). \throws error (bad_input) as validate() does, and where two tactors are too near to each
+    /// other for faces between places that are so far apart (nearer than some 1e-9 of the array's extent).
     explicit layout(const array& a);
 
     /// Tactor places by index.

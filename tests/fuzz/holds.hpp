@@ -45,7 +45,8 @@ inline std::string_view text_of(const std::uint8_t* data, std::size_t size)
     return {reinterpret_cast<const char*>(data), size}; // NOLINT(*-reinterpret-cast): libFuzzer gives bytes
 }
 
-/// An array that a reader accepted is valid, and a layout can be made of it.
+/// An array that a reader accepted is valid, and its layout, where one can be made, serves every phantom
+/// model.
 void check_array(const array& a);
 
 /// Everything that can be asked of a path or a movement is finite and in its bounds.
