@@ -2,7 +2,7 @@
 #include "cli/interrupt.hpp"
 
 #include <cerrno>
-#include <cstring>
+#include <system_error>
 
 #include <sys/signalfd.h>
 #include <unistd.h>
@@ -17,21 +17,21 @@ interrupt::interrupt()
     sigemptyset(&set);
     for (int s : {SIGINT, SIGTERM, SIGHUP})
         sigaddset(&set, s);
-    sigprocmask(SIG_BLOCK, &set, &before_);
+    pthread_sigmask(SIG_BLOCK, &set, &before_);
     fd_ = signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
     if (fd_ < 0)
-        throw error(errc::runtime, "signals", std::strerror(errno));
+        throw error(errc::runtime, "signals", std::generic_category().message(errno));
 }
 
 interrupt::~interrupt()
 {
     close(fd_);
-    sigprocmask(SIG_SETMASK, &before_, nullptr);
+    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }
 
 int interrupt::poll() noexcept
 {
-    signalfd_siginfo info;
+    signalfd_siginfo info{};
     if (read(fd_, &info, sizeof info) != sizeof info)
         return 0;
     return static_cast<int>(info.ssi_signo);

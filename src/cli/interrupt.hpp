@@ -25,7 +25,7 @@ public:
 
 private:
     int fd_;
-    sigset_t before_;
+    sigset_t before_{};
 };
 
 } // namespace tactor::cli

@@ -8,9 +8,13 @@ namespace tactor::engine {
 
 amplifier_driver::amplifier_driver(link& l, enable_line& line, const driver_options& o,
                                    std::function<std::int64_t()> clock)
-    : link_(l), line_(line), options_(o), clock_(std::move(clock)), amplifier_(o.amplifier)
+    : link_(l),
+      line_(line),
+      options_(o),
+      clock_(std::move(clock)),
+      amplifier_(o.amplifier),
+      updated_ns_(clock_())
 {
-    updated_ns_ = clock_();
 }
 
 void amplifier_driver::update() noexcept

@@ -12,7 +12,7 @@ control_thread::control_thread(rt::event_fd& e, std::function<void()> woken)
       woken_(std::move(woken)),
       descriptor_(context_, e.fd()),
       // The handlers of the program run here, so the stack is not a small one.
-      thread_({.name = "tactor-control", .stack_bytes = 512 * 1024}, [this] {
+      thread_({.name = "tactor-control", .stack_bytes = std::size_t{512} * 1024}, [this] {
           wait();
           context_.run();
       })
@@ -23,11 +23,12 @@ control_thread::~control_thread()
 {
     context_.stop();
     thread_.join();
+    boost::system::error_code ignored;
     // The descriptor would close what belongs to the eventfd.
-    descriptor_.cancel();
+    descriptor_.cancel(ignored);
     descriptor_.release();
     for (watched& w : watched_) {
-        w.descriptor.cancel();
+        w.descriptor.cancel(ignored);
         w.descriptor.release();
     }
 }

@@ -70,9 +70,9 @@ struct link {
 
     rt::spsc_ring<command> commands;
     // Each ticket is cancelled at most once and stop comes twice at most: never full.
-    rt::spsc_ring<request> requests{2 * voices};
+    rt::spsc_ring<request> requests{std::size_t{2} * voices};
     // At most two reports a ticket, and a ticket is free again when its last one was read: never full.
-    rt::spsc_ring<report> reports{4 * voices};
+    rt::spsc_ring<report> reports{std::size_t{4} * voices};
     rt::event_fd to_audio;
     rt::event_fd to_control;
     /// Set by the feeder when the command ring is full; the audio thread then says when it no longer is.

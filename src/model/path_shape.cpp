@@ -48,7 +48,6 @@ std::vector<double> turns_of(const cubic& c, axis a)
 }
 
 // Where the angle is `first` and every `period` from there.
-// Where the angle is `first` and every `period` from there.
 std::vector<double> at_angles(const elliptic& c, double first, double period)
 {
     const double low = std::min(c.from, c.from + c.sweep);

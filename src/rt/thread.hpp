@@ -12,10 +12,10 @@
 namespace tactor::rt {
 
 struct thread_options {
-    std::string name;                     ///< at most 15 characters are shown
-    std::size_t stack_bytes = 256 * 1024; ///< small: mlockall(MCL_FUTURE) charges all of it
-    bool fifo = false;                    ///< ask for SCHED_FIFO, reset in children
-    int priority = 65;                    ///< of SCHED_FIFO; less where RLIMIT_RTPRIO allows no more
+    std::string name;                                  ///< at most 15 characters are shown
+    std::size_t stack_bytes = std::size_t{256} * 1024; ///< small: mlockall(MCL_FUTURE) charges all of it
+    bool fifo = false;                                 ///< ask for SCHED_FIFO, reset in children
+    int priority = 65; ///< of SCHED_FIFO; less where RLIMIT_RTPRIO allows no more
     /// Denormals to zero and the finest timer slack.
     bool audio = false;
 };
