@@ -25,8 +25,7 @@ public:
             if (curve == p.curves.end() || curve->segment != i)
                 continue;
             for (const double t : detail::turns(curve->form, a))
-                nodes_.push_back({i, t, distance(detail::position(curve->form, t)),
-                                  p.s[i] + curve->measure.at(curve->form, t)});
+                nodes_.push_back({i, t, distance(detail::position(curve->form, t)), along(*curve, t)});
             ++curve;
         }
     }
@@ -44,7 +43,7 @@ public:
         if (c == nullptr)
             return a.s + (b.s - a.s) * (a.off / (a.off - b.off));
         const double t = parameter_on_line(c->form, a.t, b.segment == a.segment ? b.t : 1.0);
-        return path_.s[a.segment] + c->measure.at(c->form, t);
+        return along(*c, t);
     }
 
 private:
@@ -54,6 +53,12 @@ private:
         double off;
         double s;
     };
+
+    // The sum may end a rounding error beyond the curve.
+    double along(const path::impl::measured_curve& c, double t) const
+    {
+        return std::min(path_.s[c.segment] + c.measure.at(c.form, t), path_.s[c.segment + 1]);
+    }
 
     double distance(point p) const { return detail::coordinate(p, axis_) - line_; }
 
