@@ -45,6 +45,8 @@ struct sync_settings {
     std::optional<unsigned> channel = {}; ///< marker on a spare PCM channel
     std::optional<gpio_line_name> in = {};
     std::string edge = "rising"; ///< "rising", "falling" or "both"
+    double debounce_ms = 1.0;    ///< edges that follow another within this are dropped
+    std::string pull = "as-is";  ///< "up", "down", "none" or "as-is"
 };
 
 /// [limits]: see drive_limits. Anything not said is that one's default.

@@ -101,7 +101,7 @@ void warn_of_cuts(const drive_limits& l, std::uint64_t times)
 {
     fmt::print(stderr,
                "tactor: warning: tactors were driven for longer than {} s in {} s and faded out, {} times "
-               "([limits] max_drive_s in the array file or configuration)\n",
+               "(--max-drive-s, or [limits] in the array file or configuration)\n",
                l.max_drive_s, l.window_s, times);
 }
 
@@ -119,7 +119,7 @@ int play(settings& s, option_list& options, const play_options& o)
     const auto broken = play_all(session, o, pieces, scores, r.strokes);
     session.finish(r);
     if (r.stats.drives_cut != 0)
-        warn_of_cuts(settle_limits(e), r.stats.drives_cut);
+        warn_of_cuts(limits_of(o, e), r.stats.drives_cut);
     if (o.json())
         print_json(stdout, r);
     else

@@ -47,7 +47,7 @@ play_lines::play_lines(const setup& config, bool arm, double trigger_delay_s)
     if (!config.sync || !config.sync->in)
         throw error(errc::bad_input, "--arm", "there is no line to wait for",
                     "say it as in = { ... } under [sync], see tactor.toml(5)");
-    trigger_ = open_edges(*config.sync->in, config.sync->edge);
+    trigger_ = open_edges(*config.sync->in, config.sync->edge, config.sync->debounce_ms, config.sync->pull);
 }
 
 player_lines play_lines::lend() const

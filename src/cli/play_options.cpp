@@ -52,6 +52,25 @@ void add_lines(CLI::App& c, play_options& o)
     c.add_flag("--no-gpio", o.no_gpio, "leave the lines of [amplifier] and [sync] alone");
 }
 
+void add_limits(CLI::App& c, play_options& o)
+{
+    const auto add = [&c](const std::string& name, std::optional<double>& into, double lo, double hi,
+                          const std::string& unit, const std::string& help) {
+        c.add_option_function<std::string>(
+             name,
+             [&into, name, lo, hi, unit](const std::string& t) {
+                 into = parse_number(name, t, lo, hi, unit);
+             },
+             help)
+            ->type_name(unit == "s" ? "S" : "DB");
+    };
+    add("--power-dbfs", o.power_dbfs, -120, 60, "dB",
+        "greatest power of all tactors together, above one channel's full scale (default 4.77)");
+    add("--max-drive-s", o.max_drive_s, 0.1, 3600, "s",
+        "longest time that one tactor is driven within the window (default 5)");
+    add("--drive-window-s", o.drive_window_s, 0.1, 3600, "s", "the window of --max-drive-s (default 10)");
+}
+
 } // namespace
 
 void add_play_options(CLI::App& c, play_options& o)
@@ -66,6 +85,7 @@ void add_play_options(CLI::App& c, play_options& o)
          "wait so long for a lost device to come back, then go on with the next stroke (default 0)")
         ->type_name("S");
     add_lines(c, o);
+    add_limits(c, o);
     add_format_option(c, o.format, {"text", "json"}, "what is told of the run (default text)");
 }
 
@@ -90,6 +110,15 @@ alsa_options device_options(const settings& s, const play_options& p, const envi
         o.period_frames = std::max(1U, static_cast<unsigned>(std::lround(frames)));
     }
     return o;
+}
+
+drive_limits limits_of(const play_options& o, const environment& e)
+{
+    drive_limits l = settle_limits(e);
+    l.power_dbfs = o.power_dbfs.value_or(l.power_dbfs);
+    l.max_drive_s = o.max_drive_s.value_or(l.max_drive_s);
+    l.window_s = o.drive_window_s.value_or(l.window_s);
+    return l;
 }
 
 double latency_ms(const stream_setup& s)

@@ -26,6 +26,9 @@ struct play_options {
     bool arm = false;
     double sync_delay_ms = 50.0;
     bool no_gpio = false;
+    std::optional<double> power_dbfs;
+    std::optional<double> max_drive_s;
+    std::optional<double> drive_window_s;
     std::string format = "text";
 
     bool json() const { return format == "json"; }
@@ -36,6 +39,9 @@ void add_play_options(CLI::App& command, play_options& into);
 /// The PCM as it is to be opened; says so where no device is configured.
 alsa_options device_options(const settings& s, const play_options& o, const environment& e,
                             const score& first);
+
+/// What holds: the options, else [limits], else the defaults. \throws error for a drive time that is none.
+drive_limits limits_of(const play_options& o, const environment& e);
 
 /// A sentence where the device makes more latency than was asked for; else empty.
 std::string latency_warning(const play_options& o, const stream_setup& made);

@@ -76,7 +76,7 @@ play_session::play_session(const alsa_options& device, const play_options& o, co
 void play_session::start(std::unique_ptr<sink> s)
 {
     player_options o;
-    o.limits = settle_limits(environment_);
+    o.limits = limits_of(options_, environment_);
     o.require_realtime = options_.require_realtime;
     player_ = std::make_unique<player>(std::move(s), environment_.tactors, o, lines_.lend());
     player_->on_report([this](const stroke_report&) { ended_.raise(); });

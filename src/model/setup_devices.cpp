@@ -73,9 +73,11 @@ void read_sync(const toml_table& root, located_setup& out)
         s.pulse_ms = pulse->number("pulse_ms", {0.0, 10000.0, true}).value_or(s.pulse_ms);
     }
     if (const auto edge = t->table("in", "in", "in = { chip, offset, edge }")) {
-        edge->only({"chip", "offset", "name", "edge"});
+        edge->only({"chip", "offset", "name", "edge", "debounce_ms", "pull"});
         s.in = read_line(*edge);
         s.edge = edge->choice("edge", {"rising", "falling", "both"}).value_or(s.edge);
+        s.debounce_ms = edge->number("debounce_ms", {0.0, 10000.0}).value_or(s.debounce_ms);
+        s.pull = edge->choice("pull", {"up", "down", "none", "as-is"}).value_or(s.pull);
     }
     s.channel = t->whole("channel", 0, max_channels - 1);
     out.sync_channel_at = t->where("channel");

@@ -50,6 +50,17 @@ class Play(ToolTest):
         self.refused(3, "play", "park2016-1", "-D", "eight", says=["9", "8", "channels"])
         self.ok("play", "--path", "M 0 0 L 60 0", "--duration", "0.2", "--array", "palm-2x4", "-D", "eight")
 
+    def test_limits_of_the_drive_are_options_too(self):
+        long = ("play", "--path", "M 0 10 L 1 10", "--duration", "1", "-D", "null", "--format", "json")
+        for options, cuts in (((), 0), (("--max-drive-s", "0.3", "--drive-window-s", "1"), 1),
+                              (("--max-drive-s", "0.3", "--drive-window-s", "0.3"), 0)):
+            counters = json.loads(self.ok(*long, *options).stdout)["counters"]
+            self.assertEqual(counters["drives_cut"] > 0, cuts > 0, (options, counters))
+        counters = json.loads(self.ok(*long, "--power-dbfs", "-40").stdout)["counters"]
+        self.assertGreater(counters["power_limited_frames"], 1000)
+        self.refused(2, *long, "--max-drive-s", "0", says=["--max-drive-s"])
+        self.refused(2, *long, "--power-dbfs", "loud", says=["--power-dbfs", "loud"])
+
     def test_ctrl_c_fades_out_and_exits_130(self):
         for number, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
             p = subprocess.Popen([TOOL, "play", "--path", "M 0 10 L 40 30", "--duration", "3600", "-D",

@@ -44,7 +44,7 @@ settle_ms = 12.5
 [sync]
 out = { chip = "pinctrl-rp1", offset = 27, pulse_ms = 4 }
 channel = 15
-in  = { name = "GPIO22", edge = "falling" }
+in  = { name = "GPIO22", edge = "falling", debounce_ms = 2.5, pull = "up" }
 
 [limits]
 power_dbfs = 3
@@ -94,6 +94,8 @@ TEST_CASE("a whole configuration")
     CHECK(s.sync->in->name == "GPIO22");
     CHECK_FALSE(s.sync->in->offset.has_value());
     CHECK(s.sync->edge == "falling");
+    CHECK(s.sync->debounce_ms == 2.5);
+    CHECK(s.sync->pull == "up");
     CHECK(s.defaults == std::map<std::string, std::string>{{"algorithm", "tactile-brush"},
                                                            {"soa", "0.06"},
                                                            {"speed", "80"},
@@ -118,6 +120,8 @@ TEST_CASE("what a file leaves out is left to the program")
     CHECK(s.amplifier->settle_ms == 10.0);
     CHECK(s.sync->pulse_ms == 5.0);
     CHECK(s.sync->edge == "rising");
+    CHECK(s.sync->debounce_ms == 1.0);
+    CHECK(s.sync->pull == "as-is");
     CHECK_FALSE(s.sync->out.has_value());
 }
 

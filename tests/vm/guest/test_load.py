@@ -5,7 +5,10 @@ import os
 import subprocess
 import sys
 
-from rig import PERIOD, PERIODS, RigTest
+from rig import RigTest
+
+# What an emulated processor on a shared host can hold: it may be without the host's for a tenth of a second.
+PERIOD, PERIODS = 480, 32
 
 
 class Load(RigTest):
@@ -15,7 +18,7 @@ class Load(RigTest):
         busy = subprocess.Popen([sys.executable, "-c", "while True: sum(i * i for i in range(10000))"])
         try:
             r = self.tool("play", "--path", "M 0 10 L 40 30 L 0 30 Z", "--duration", str(minutes * 60), "--array", array,
-                          "--format", "json", timeout=minutes * 60 + 300)
+                          "--period-frames", str(PERIOD), "--periods", str(PERIODS), "--format", "json", timeout=minutes * 60 + 300)
         finally:
             busy.kill()
             busy.wait()
