@@ -107,6 +107,7 @@ class Completion(ToolTest):
         ("tactor render --path 'M 0 0 L 40 0' --level", ["tactor", "render", "--path", "M 0 0 L 40 0", "--level-dbfs"]),
         ("tactor compare --phantoms linear,gau", ["tactor", "compare", "--phantoms", "linear,gaussian"]),
         ("fake play -D hw:CARD=T", ["fake", "play", "-D", "hw:CARD=Tactor"]),
+        ("fake play -D ", ["fake", "play", "-D", "hw:CARD="]),
         ("fake play -D hw:", ["fake", "play", "-D", "hw:CARD="]),
         ("fake play --device=hw:CARD=T", ["fake", "play", "--device=hw:CARD=Tactor"]),
     ]

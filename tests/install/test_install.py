@@ -3,8 +3,10 @@
 
 Usage: test_install.py TOOL SOURCE_ROOT BUILD_ROOT PREFIX
 """
+import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -73,6 +75,9 @@ class Install(unittest.TestCase):
         self.assertIn(str(self.libdir.resolve()), linked.replace(str(self.prefix / "bin/.."), str(self.prefix)))
 
     def test_nothing_remembers_where_it_was_built_or_installed(self):
+        options = {o["name"]: o["value"] for o in json.loads(run("meson", "introspect", BUILD, "--buildoptions"))}
+        if options["b_coverage"]:
+            self.skipTest("a build for coverage remembers where its counts go")
         for name in files_below(self.prefix):
             data = (self.prefix / name).read_bytes()
             # The man pages name the usual prefix, and a package's own is all over the system's libraries.
@@ -80,12 +85,27 @@ class Install(unittest.TestCase):
             for place in (BUILD, ROOT, self.dir, *[PREFIX] * binary):
                 self.assertNotIn(str(place).encode() + b"/", data, f"{name} holds {place}")
 
+    def compile(self, source, *args):
+        run(*os.environ.get("CXX", "c++").split(), "-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Werror", source, *args,
+            *self.flags("--cflags", "--libs"), env=self.env)
+
+    def test_what_manual_and_readme_show_compiles(self):
+        page = (ROOT / "man/libtactor.3").read_text(encoding="utf-8")
+        example = re.search(r"^\.Bd -literal.*?\n(.*?)^\.Ed", page, re.M | re.S)[1].replace("\\e", "\\")
+        (self.dir / "manual.cpp").write_text(example, encoding="utf-8")
+        self.compile(self.dir / "manual.cpp", "-o", self.dir / "manual")
+        self.assertEqual(run(self.dir / "manual", env=self.env | {"LD_LIBRARY_PATH": str(self.libdir)}), "finished\n")
+
+        readme = (ROOT / "README.md").read_text(encoding="utf-8").partition("## From C++")[2]
+        include, body = re.match(r"\s*    (#include <.*>)\n((?:    .*\n|\n)*)", readme).groups()
+        (self.dir / "readme.cpp").write_text(f"{include}\nint main()\n{{\n{body}}}\n", encoding="utf-8")
+        self.compile(self.dir / "readme.cpp", "-fsyntax-only")
+
     def test_another_program_compiles_with_pkg_config_and_runs(self):
         program = self.dir / "consumer"
         self.assertIn(f"-I{self.prefix}", " ".join(os.path.normpath(f) if f[0] == "/" else "-I" + os.path.normpath(f[2:])
                                                    for f in self.flags("--cflags")))
-        run(*os.environ.get("CXX", "c++").split(), "-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Werror",
-            CONSUMER / "consumer.cpp", "-o", program, *self.flags("--cflags", "--libs"), env=self.env)
+        self.compile(CONSUMER / "consumer.cpp", "-o", program)
         said = run(program, env=self.env | {"LD_LIBRARY_PATH": str(self.libdir)})
         self.assertEqual(said, f"tactor {self.flags('--modversion')[0]}: finished\n")
 
