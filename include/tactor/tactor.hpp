@@ -10,6 +10,7 @@
 #include <tactor/geometry.hpp>
 #include <tactor/gpio.hpp>
 #include <tactor/live.hpp>
+#include <tactor/output_file.hpp>
 #include <tactor/path.hpp>
 #include <tactor/percept.hpp>
 #include <tactor/phantom.hpp>

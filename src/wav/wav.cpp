@@ -13,8 +13,7 @@
 #include <sndfile.h>
 
 #include <tactor/error.hpp>
-
-#include "wav/temporary_file.hpp"
+#include <tactor/output_file.hpp>
 
 namespace tactor {
 
@@ -44,9 +43,9 @@ int subtype_of(sample_format f)
                 "use float, s16, s24 or s32");
 }
 
-temporary_file& file_of(void* user)
+output_file& file_of(void* user)
 {
-    return *static_cast<temporary_file*>(user);
+    return *static_cast<output_file*>(user);
 }
 
 SF_VIRTUAL_IO file_calls()
@@ -69,7 +68,7 @@ struct closer {
 };
 using sound_file = std::unique_ptr<SNDFILE, closer>;
 
-sound_file open(const score& s, sample_format f, container c, temporary_file& to)
+sound_file open(const score& s, sample_format f, container c, output_file& to)
 {
     SF_INFO info{};
     info.samplerate = static_cast<int>(s.rate());
@@ -90,7 +89,7 @@ sound_file open(const score& s, sample_format f, container c, temporary_file& to
 
 /// libsndfile 1.2 writes the PEAK chunk into an RF64 file whether it is wanted or not. Its place is kept as a
 /// chunk of junk, which readers skip.
-void blank_peak(temporary_file& f)
+void blank_peak(output_file& f)
 {
     constexpr std::uint32_t first_chunk = 12;
     std::array<char, 8> head{};
@@ -122,7 +121,7 @@ bool write(const score& s, sample_format f, const std::filesystem::path& file, c
            const wav_progress& progress)
 {
     subtype_of(f);
-    temporary_file to(file);
+    output_file to(file);
     sound_file out = open(s, f, c, to);
     const std::size_t frame_bytes = s.channels() * bytes_of(f);
     const std::uint64_t at_once = std::clamp<std::uint64_t>(block_bytes / frame_bytes, 1, most_block_frames);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "wav/temporary_file.hpp"
+#include <tactor/output_file.hpp>
 
 #include <cerrno>
 #include <random>
@@ -14,7 +14,7 @@
 
 #include <tactor/error.hpp>
 
-namespace tactor::wav {
+namespace tactor {
 
 namespace fs = std::filesystem;
 
@@ -47,10 +47,10 @@ fs::path folder_of(const fs::path& p)
 
 } // namespace
 
-temporary_file::temporary_file(const fs::path& file) : asked_(file), target_(follow_links(file))
+output_file::output_file(const fs::path& file) : asked_(file), target_(follow_links(file))
 {
     if (file.empty()) {
-        throw error(errc::bad_input, "WAV file", "its name is empty", "name a file, e.g. stroke.wav");
+        throw error(errc::bad_input, "file", "its name is empty", "name a file");
     }
     std::error_code failed;
     const fs::file_status there = fs::status(target_, failed);
@@ -59,6 +59,9 @@ temporary_file::temporary_file(const fs::path& file) : asked_(file), target_(fol
     }
     if (fs::exists(there) && !fs::is_regular_file(there)) {
         fd_ = ::open(target_.c_str(), O_RDWR | O_CLOEXEC | O_NOCTTY);
+        if (fd_ < 0 && errno == EACCES) {
+            fd_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
+        }
         if (fd_ < 0) {
             fail(errno);
         }
@@ -75,7 +78,7 @@ temporary_file::temporary_file(const fs::path& file) : asked_(file), target_(fol
     open_beside();
 }
 
-void temporary_file::open_beside()
+void output_file::open_beside()
 {
     const std::string stem = target_.filename().string().substr(0, longest_stem);
     std::random_device seed;
@@ -94,7 +97,7 @@ void temporary_file::open_beside()
     fail(code);
 }
 
-temporary_file::~temporary_file()
+output_file::~output_file()
 {
     if (fd_ >= 0) {
         ::close(fd_);
@@ -104,7 +107,7 @@ temporary_file::~temporary_file()
     }
 }
 
-void temporary_file::fail(int code) const
+void output_file::fail(int code) const
 {
     const std::string why = std::error_code(code, std::generic_category()).message();
     std::string_view hint = "check the folder's rights and space";
@@ -118,7 +121,7 @@ void temporary_file::fail(int code) const
     throw error(errc::runtime, asked_.string(), fmt::format("cannot be written: {}", why), hint);
 }
 
-std::int64_t temporary_file::write(const void* data, std::int64_t bytes) noexcept
+std::int64_t output_file::write(const void* data, std::int64_t bytes) noexcept
 {
     const auto* from = static_cast<const char*>(data);
     std::int64_t done = 0;
@@ -136,12 +139,12 @@ std::int64_t temporary_file::write(const void* data, std::int64_t bytes) noexcep
     return done;
 }
 
-std::int64_t temporary_file::read(void* data, std::int64_t bytes) noexcept
+std::int64_t output_file::read(void* data, std::int64_t bytes) noexcept
 {
     return ::read(fd_, data, static_cast<std::size_t>(bytes));
 }
 
-std::int64_t temporary_file::seek(std::int64_t offset, int whence) noexcept
+std::int64_t output_file::seek(std::int64_t offset, int whence) noexcept
 {
     const off_t at = ::lseek(fd_, offset, whence);
     if (at < 0 && failure_ == 0) {
@@ -150,14 +153,17 @@ std::int64_t temporary_file::seek(std::int64_t offset, int whence) noexcept
     return at;
 }
 
-std::int64_t temporary_file::size() const noexcept
+std::int64_t output_file::size() const noexcept
 {
     struct stat s {};
     return ::fstat(fd_, &s) == 0 ? s.st_size : 0;
 }
 
-void temporary_file::commit()
+void output_file::commit()
 {
+    if (failure_ != 0) {
+        fail(failure_);
+    }
     // A network file system may tell of a full disk only now.
     const int closed = ::close(fd_);
     fd_ = -1;
@@ -170,4 +176,4 @@ void temporary_file::commit()
     temporary_.clear();
 }
 
-} // namespace tactor::wav
+} // namespace tactor
