@@ -26,7 +26,7 @@ PUBLIC = {
     "api": None, "error": None, "version": None, "geometry": None, "tactor": "engine",
     "array": "model", "path": "model", "setup": "model", "stroke": "model",
     "phantom": "plan", "plan": "plan", "percept": "plan",
-    "render": "synth", "sample_format": None, "wav": "wav",
+    "render": "synth", "sample_format": None, "wav": "wav", "output_file": "wav",
     "gpio": "gpio", "realtime": "rt", "sink": None, "alsa": "alsa", "devices": "alsa", "player": "engine", "live": "engine",
     "asio": "engine",
 }
@@ -68,7 +68,11 @@ def complaints(root, file):
         if room in PURE and header in IMPURE:
             yield f"{where}: {room} is pure and includes {header}"
         if header.startswith("tactor/"):
-            owner = PUBLIC[header[len("tactor/"):-len(".hpp")]]
+            name = header[len("tactor/"):-len(".hpp")]
+            if name not in PUBLIC:
+                yield f"{where}: {header} belongs to no room (PUBLIC in tests/includes.py)"
+                continue
+            owner = PUBLIC[name]
             if owner and room not in USES_ALL_PUBLIC and owner != room and owner not in MAY_INCLUDE[room]:
                 yield f"{where}: {room} may not know {owner} ({header})"
         elif header.split("/")[0] in MAY_INCLUDE and "/" in header:
