@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <map>
 #include <memory>
 #include <random>
@@ -12,6 +11,7 @@
 
 #include <doctest/doctest.h>
 
+#include "checking_sink.hpp"
 #include "engine/live_stroke.hpp"
 #include "rig.hpp"
 #include "soak.hpp"
@@ -21,7 +21,7 @@ using namespace tactor::test;
 
 namespace {
 
-constexpr unsigned channels = 4;
+constexpr unsigned channels = checking_sink::channels;
 constexpr unsigned period = 16;
 constexpr double limit = 0.5;
 constexpr std::uint64_t seed = 20'260'101;
@@ -40,62 +40,6 @@ double slope(const render_options& o)
 {
     return std::pow(10.0, o.level_dbfs / 20.0) * (2.0 * 3.14159265 * 250.0 / rate + 3.14159265 / 2.0 / 48.0);
 }
-
-// Looks at every sample that the device takes, and is itself a source of trouble.
-class checking_sink : public forwarding_sink {
-public:
-    checking_sink(std::unique_ptr<sink> s, std::mt19937_64& random, const double& allowed)
-        : forwarding_sink(std::move(s)), random_(random), allowed_(allowed)
-    {
-    }
-
-    io_status prepare() noexcept override
-    {
-        empty_ = true;
-        before_.fill(0.0); // a gap that the device made: from zero
-        return forwarding_sink::prepare();
-    }
-
-    io_result write(const std::byte* d, std::size_t n) noexcept override
-    {
-        // An empty buffer always takes something.
-        switch (empty_ ? 63 : random_() % 64) {
-        case 0:
-            return {io_status::again, 0, 0};
-        case 1:
-            return {io_status::ok, 0, 0};
-        case 2:
-            n = 1 + random_() % n; // short
-            break;
-        default:
-            break;
-        }
-        const io_result r = forwarding_sink::write(d, n);
-        empty_ = false;
-        for (std::size_t f = 0; f < r.frames; ++f) {
-            for (unsigned c = 0; c < channels; ++c) {
-                std::int32_t v = 0;
-                std::memcpy(&v, d + (f * channels + c) * 4, 4);
-                const double x = v / 2147483648.0;
-                beyond_limit += std::abs(x) > limit + 1e-9 ? 1U : 0U;
-                jumps += std::abs(x - before_[c]) > allowed_ + 1e-6 ? 1U : 0U;
-                loudest = std::max(loudest, std::abs(x));
-                before_[c] = x;
-            }
-        }
-        return r;
-    }
-
-    std::uint64_t beyond_limit = 0;
-    std::uint64_t jumps = 0;
-    double loudest = 0.0;
-
-private:
-    std::mt19937_64& random_;
-    const double& allowed_;
-    std::array<double, channels> before_{};
-    bool empty_ = true;
-};
 
 score random_stroke(std::mt19937_64& random, const render_options& o)
 {
@@ -177,7 +121,7 @@ private:
         o.limit = limit;
         o.loop.fade_frames = 48 + static_cast<std::uint32_t>(random_() % 480);
         o.wrap = [this](std::unique_ptr<sink> s) {
-            auto c = std::make_unique<checking_sink>(std::move(s), random_, allowed_);
+            auto c = std::make_unique<checking_sink>(std::move(s), random_, limit, allowed_);
             sink_ = c.get();
             return c;
         };

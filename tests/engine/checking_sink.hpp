@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <random>
+#include <utility>
+
+#include "rig.hpp"
+
+namespace tactor::test {
+
+/// Looks at every sample that the device takes, and is itself a source of trouble.
+class checking_sink : public forwarding_sink {
+public:
+    static constexpr unsigned channels = 4;
+
+    /// `limit`: greatest magnitude; `allowed`: greatest change from frame to frame, looked at anew each time.
+    checking_sink(std::unique_ptr<sink> s, std::mt19937_64& random, double limit, const double& allowed)
+        : forwarding_sink(std::move(s)), random_(random), limit_(limit), allowed_(allowed)
+    {
+    }
+
+    io_status prepare() noexcept override
+    {
+        empty_ = true;
+        before_.fill(0.0); // a gap that the device made: from zero
+        return forwarding_sink::prepare();
+    }
+
+    io_result write(const std::byte* d, std::size_t n) noexcept override
+    {
+        // An empty buffer always takes something.
+        switch (empty_ ? 63 : random_() % 64) {
+        case 0:
+            return {io_status::again, 0, 0};
+        case 1:
+            return {io_status::ok, 0, 0};
+        case 2:
+            n = 1 + random_() % n; // short
+            break;
+        default:
+            break;
+        }
+        const io_result r = forwarding_sink::write(d, n);
+        empty_ = false;
+        for (std::size_t f = 0; f < r.frames; ++f) {
+            for (unsigned c = 0; c < channels; ++c) {
+                std::int32_t v = 0;
+                std::memcpy(&v, d + (f * channels + c) * 4, 4);
+                const double x = v / 2147483648.0;
+                beyond_limit += std::abs(x) > limit_ + 1e-9 ? 1U : 0U;
+                jumps += std::abs(x - before_[c]) > allowed_ + 1e-6 ? 1U : 0U;
+                loudest = std::max(loudest, std::abs(x));
+                before_[c] = x;
+            }
+        }
+        return r;
+    }
+
+    std::uint64_t beyond_limit = 0;
+    std::uint64_t jumps = 0;
+    double loudest = 0.0;
+
+private:
+    std::mt19937_64& random_;
+    double limit_;
+    const double& allowed_;
+    std::array<double, channels> before_{};
+    bool empty_ = true;
+};
+
+} // namespace tactor::test

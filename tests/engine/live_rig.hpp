@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// For the tests of live strokes.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "engine/live_stroke.hpp"
+#include "rig.hpp"
+
+namespace tactor::test {
+
+inline const double live_level = std::pow(10.0, -12.0 / 20.0);
+
+/// A rig with one live stroke.
+class live_rig : public rig {
+public:
+    explicit live_rig(const live_options& o = {}, const rig_options& r = {}) : rig(r)
+    {
+        REQUIRE(start().status == io_status::ok);
+        live = add(o);
+    }
+
+    std::shared_ptr<live_stroke::impl> add(const live_options& o = {})
+    {
+        const array a = palm();
+        auto s = std::make_shared<live_stroke::impl>(++last_id, a, layout(a), out->setup(), o);
+        feed.submit(last_id, std::shared_ptr<engine::live_voice>(s, &s->voice));
+        feed.pump(status().written, link.clock.load());
+        return s;
+    }
+
+    std::vector<double> channel(unsigned c, std::uint64_t from = 0) const
+    {
+        const std::vector<std::byte> all = dac.captured(from);
+        std::vector<double> samples;
+        for (std::size_t f = 0; f < all.size() / dac.frame_bytes(); ++f) {
+            std::int32_t v = 0;
+            std::memcpy(&v, &all[f * dac.frame_bytes() + 4 * c], 4);
+            samples.push_back(v / 2147483648.0);
+        }
+        return samples;
+    }
+
+    std::shared_ptr<live_stroke::impl> live;
+};
+
+inline double peak(const std::vector<double>& s, std::size_t from, std::size_t to)
+{
+    double most = 0.0;
+    for (std::size_t i = from; i < std::min(to, s.size()); ++i)
+        most = std::max(most, std::abs(s[i]));
+    return most;
+}
+
+inline live_options bursts()
+{
+    live_options o;
+    o.plan.method = algorithm::park2016;
+    return o;
+}
+
+inline double largest_step(const std::vector<double>& s)
+{
+    double most = 0.0;
+    for (std::size_t i = 1; i < s.size(); ++i)
+        most = std::max(most, std::abs(s[i] - s[i - 1]));
+    return most;
+}
+
+} // namespace tactor::test
