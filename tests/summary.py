@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Counts test cases over all suites of a Meson test run, and over further lanes, and prints the closing line.
 
-Usage: summary.py testlog.json [LANE=LOG ...]. Exit status 1 when something failed or nothing ran.
+Usage: summary.py testlog.json [LANE.log ...]. Exit status 1 when something failed or nothing ran.
 A suite that says nothing countable counts as one test; a lane without a closing line has failed.
 """
 import json
+import pathlib
 import re
 import sys
 
@@ -34,10 +35,9 @@ def results(arguments):
     with open(arguments[0], encoding="utf-8") as log:
         for entry in map(json.loads, log):
             yield entry["name"], suite_counts(entry), entry.get("stdout", "")
-    for name, file in (lane.split("=", 1) for lane in arguments[1:]):
-        with open(file, encoding="utf-8", errors="replace") as log:
-            text = log.read()
-        yield "lane " + name, lane_counts(text), text
+    for file in map(pathlib.Path, arguments[1:]):
+        text = file.read_text(encoding="utf-8", errors="replace")
+        yield "lane " + file.stem, lane_counts(text), text
 
 
 def main():
