@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Counts test cases over all suites of a Meson test run, and over further lanes, and prints the closing line.
 
-Usage: summary.py testlog.json [LANE.log ...]. Exit status 1 when something failed or nothing ran.
+Usage: summary.py testlog.json [[NAME=]LOG ...]; without a name a log is a lane, named as the file. Exit status 1 when something failed or nothing ran.
 A suite that says nothing countable counts as one test; a lane without a closing line has failed.
 """
 import json
@@ -35,9 +35,10 @@ def results(arguments):
     with open(arguments[0], encoding="utf-8") as log:
         for entry in map(json.loads, log):
             yield entry["name"], suite_counts(entry), entry.get("stdout", "")
-    for file in map(pathlib.Path, arguments[1:]):
-        text = file.read_text(encoding="utf-8", errors="replace")
-        yield "lane " + file.stem, lane_counts(text), text
+    for argument in arguments[1:]:
+        name, _, file = argument.rpartition("=")
+        text = pathlib.Path(file).read_text(encoding="utf-8", errors="replace")
+        yield name or f"lane {pathlib.Path(file).stem}", lane_counts(text), text
 
 
 def main():
