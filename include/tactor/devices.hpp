@@ -66,4 +66,19 @@ struct pcm_info {
 ///         in the list.
 TACTOR_API std::vector<pcm_info> list_pcms(const std::optional<alsa_options>& wanted = {});
 
+/// A sound card.
+struct card_info {
+    unsigned index = 0;
+    std::string id = {};   ///< as in hw:CARD=ID
+    std::string name = {}; ///< for people
+};
+
+/// The card that the name of a PCM says, as in "hw:CARD=Tactor" or "plughw:1,0", where there is such a card.
+/// Blocks shortly (/proc). Any thread.
+TACTOR_API std::optional<card_info> card_of(const std::string& pcm);
+
+/// Who has a playback device of this card open; of other users' processes only what the driver tells.
+/// Blocks shortly (/proc). Any thread.
+TACTOR_API std::vector<process_info> card_holders(unsigned card_index);
+
 } // namespace tactor

@@ -3,6 +3,7 @@
 /// The one exception type that set-up code throws.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -42,9 +43,15 @@ public:
     /// The kind of failure.
     errc kind() const noexcept;
     const char* what() const noexcept override;
+    /// The parts of what(), for programs that set them apart; valid while the error lives.
+    std::string_view subject() const noexcept; ///< WHAT
+    std::string_view why() const noexcept;     ///< WHY
+    std::string_view hint() const noexcept;    ///< HINT; may be empty
 
 private:
     std::string text_;
+    std::size_t why_at_;
+    std::size_t hint_at_; ///< size of the text where there is none
 };
 
 /// The one of `known` that `name` is a slip of, e.g. "chanel" of "channel" or "pitch" of "pitch_mm",

@@ -83,4 +83,16 @@ struct gpio_chip_info {
 /// All GPIO chips, by path. Does not throw for chips that cannot be opened. Blocks shortly.
 TACTOR_API std::vector<gpio_chip_info> list_gpio();
 
+/// A line that there is.
+struct gpio_line_place {
+    std::string path = {};  ///< of its chip
+    std::string label = {}; ///< of its chip
+    gpio_line_info line = {};
+};
+
+/// Looks a line up as open_output() would, without requesting it: nothing is driven. Blocks shortly.
+/// \throws error: not_available when there is no such chip or line (which there are), or the chip may not be
+///         opened (which group to join); bad_input for a name that says neither.
+TACTOR_API gpio_line_place find_gpio_line(const gpio_line_name& line);
+
 } // namespace tactor

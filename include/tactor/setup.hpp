@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -78,5 +79,12 @@ TACTOR_API setup load_setup(const std::filesystem::path& file);
 /// The same from text; `name` stands for the file in messages, relative names in it are resolved
 /// against the current directory.
 TACTOR_API setup parse_setup(std::string_view toml, const std::string& name);
+
+/// The text of an array or configuration file with other channels, one for each tactor in order; all else in
+/// it stays as it is, comments too. May block on the file system.
+/// \throws error (bad_input): what load_setup() throws; no array in the file; a wrong number of channels;
+///         channels that the file cannot have (two alike, more than [output] says). The text itself is
+///         checked: what it says is what was asked for.
+TACTOR_API std::string with_channels(const std::filesystem::path& file, std::span<const unsigned> channels);
 
 } // namespace tactor

@@ -29,8 +29,7 @@ std::vector<pcm_info> card_devices(const system_root& root)
             p.name = fmt::format("hw:CARD={},DEV={}", c.id, device);
             p.description = joined(c.name, playback_device_name(root, c.index, device));
             p.hardware = true;
-            for (const holder& h : playback_holders(root, {c.index, device}))
-                p.holders.push_back({h.pid, h.program});
+            p.holders = processes(playback_holders(root, {c.index, device}));
             all.push_back(std::move(p));
         }
     }
@@ -79,6 +78,14 @@ void probe(const std::optional<alsa_options>& wanted, pcm_info& p)
 
 } // namespace
 
+std::vector<process_info> processes(const std::vector<holder>& holders)
+{
+    std::vector<process_info> all;
+    for (const holder& h : holders)
+        all.push_back({h.pid, h.program});
+    return all;
+}
+
 void look_at(snd_pcm_t* pcm, const std::optional<alsa_options>& wanted, pcm_info& into)
 {
     const library_messages silent;
@@ -114,4 +121,16 @@ std::vector<tactor::pcm_info> tactor::list_pcms(const std::optional<alsa_options
     if (wanted)
         pcm::check(*wanted);
     return pcm::list("/", wanted);
+}
+
+std::optional<tactor::card_info> tactor::card_of(const std::string& pcm)
+{
+    const auto d = pcm::named_device(pcm);
+    const auto c = d ? pcm::find_card(pcm::sound_cards("/"), d->card) : std::nullopt;
+    return c ? std::optional(card_info{c->index, c->id, c->name}) : std::nullopt;
+}
+
+std::vector<tactor::process_info> tactor::card_holders(unsigned card_index)
+{
+    return pcm::processes(pcm::playback_holders("/", {card_index, {}}));
 }

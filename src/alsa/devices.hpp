@@ -14,6 +14,8 @@ namespace tactor::pcm {
 /// list_pcms(), whose cards are those of `root`.
 std::vector<pcm_info> list(const system_root& root, const std::optional<alsa_options>& wanted);
 
+std::vector<process_info> processes(const std::vector<holder>& holders);
+
 /// Fills in what an open PCM can do and whether that fits.
 void look_at(snd_pcm_t* p, const std::optional<alsa_options>& wanted, pcm_info& into);
 

@@ -7,6 +7,7 @@
 #include "cli/commands.hpp"
 #include "cli/devices_output.hpp"
 #include "cli/input.hpp"
+#include "cli/play_options.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -15,14 +16,10 @@ int list_devices(settings& s, option_list& options, bool as_json)
 {
     const environment e = read_environment(s, options);
     const render_options render = settle_render(s, e);
-    const output_settings& out = e.config.output;
     device_list d;
     d.array_name = e.tactors.name;
-    d.pcm_is_configured = s.pcm || out.pcm;
-    d.wanted.pcm = s.pcm ? *s.pcm : out.pcm.value_or(d.wanted.pcm);
-    d.wanted.channels = render.channels;
-    d.wanted.rate = render.rate;
-    d.wanted.format = s.format;
+    d.pcm_is_configured = names_device(s, e);
+    d.wanted = device_options(s, {}, e, render.channels, render.rate);
     d.pcms = list_pcms(d.wanted);
     d.chips = list_gpio();
     fmt::print("{}", as_json ? devices_json(d) : devices_text(d));

@@ -26,17 +26,6 @@ std::vector<score> make_scores(const std::vector<piece>& pieces, const environme
     return scores;
 }
 
-void print_device(const play_options& o, const stream_setup& d)
-{
-    if (!o.json())
-        fmt::print("{}: {} channels, {} Hz, {}, period {} of {} frames, latency {:.1f} ms\n", d.name,
-                   d.channels, d.rate, to_string(d.format), d.period_frames, d.buffer_frames, latency_ms(d));
-    std::fflush(stdout);
-    const std::string warning = latency_warning(o, d);
-    if (!warning.empty())
-        fmt::print(stderr, "tactor: warning: {}\n", warning);
-}
-
 constexpr const char* wait_hint = "--reopen-s S waits for the device to come back";
 
 // What ends a run before its strokes are through; a kind of its own, for the report comes before it.
@@ -97,29 +86,29 @@ std::optional<broken_off> play_all(play_session& session, const play_options& o,
     return {};
 }
 
-void warn_of_cuts(const drive_limits& l, std::uint64_t times)
-{
-    fmt::print(stderr,
-               "tactor: warning: tactors were driven for longer than {} s in {} s and faded out, {} times "
-               "(--max-drive-s, or [limits] in the array file or configuration)\n",
-               l.max_drive_s, l.window_s, times);
-}
-
 int play(settings& s, option_list& options, const play_options& o)
 {
     const environment e = read_environment(s, options);
     const auto pieces = plan_pieces(s, e);
     const auto scores = make_scores(pieces, e, settle_render(s, e));
-    play_session session(device_options(s, o, e, scores.front()), o, e);
-    print_device(o, session.setup());
+    if (!names_device(s, e))
+        fmt::print(stderr,
+                   "tactor: no device is configured: playing to \"null\", which nobody feels (-D PCM plays "
+                   "on hardware)\n");
+    play_session session(device_options(s, o, e, scores.front().channels(), scores.front().rate()), o, e);
+    if (!o.json())
+        fmt::print("{}\n", describe(session.setup()));
+    std::fflush(stdout);
+    const std::string warning = latency_warning(o, session.setup());
+    if (!warning.empty())
+        fmt::print(stderr, "tactor: warning: {}\n", warning);
 
     run_report r;
     for (std::size_t i = 0; i < pieces.size(); ++i)
         r.strokes.push_back({pieces[i].name, scores[i].frames()});
     const auto broken = play_all(session, o, pieces, scores, r.strokes);
     session.finish(r);
-    if (r.stats.drives_cut != 0)
-        warn_of_cuts(limits_of(o, e), r.stats.drives_cut);
+    warn_of_cuts(limits_of(o, e), r.stats);
     if (o.json())
         print_json(stdout, r);
     else

@@ -29,5 +29,6 @@ command add_render(CLI::App& app);
 command add_play(CLI::App& app);
 command add_plot(CLI::App& app);
 command add_devices(CLI::App& app);
+command add_check(CLI::App& app);
 
 } // namespace tactor::cli

@@ -65,10 +65,13 @@ void use_array_file(setup& config, const setup& file)
     prefer(config.limits, file.limits);
 }
 
-array find_array(const settings& s, option_list& options, setup& config)
+array find_array(const settings& s, option_list& options, environment& e)
 {
-    if (!s.array_name)
+    setup& config = e.config;
+    if (!s.array_name) {
+        e.array_file = config.layout ? e.config_name : "";
         return config.layout ? *config.layout : preset_array("palm-3x3");
+    }
     if (is_preset(array_presets(), *s.array_name)) {
         config.output.channels.reset();
         return preset_array(*s.array_name);
@@ -80,6 +83,7 @@ array find_array(const settings& s, option_list& options, setup& config)
         throw error(errc::bad_input, *s.array_name, "says no [array]", "see tactor.toml(5)");
     options.apply_defaults(file.defaults, *s.array_name);
     use_array_file(config, file);
+    e.array_file = *s.array_name;
     return *file.layout;
 }
 
@@ -177,7 +181,7 @@ environment read_environment(settings& s, option_list& options)
         e.config = load_setup(e.config_name);
         options.apply_defaults(e.config.defaults, e.config_name);
     }
-    e.tactors = find_array(s, options, e.config);
+    e.tactors = find_array(s, options, e);
     check_sync_channel(e);
     if (s.slope || s.intercept_s) {
         timing_profile& p = s.plan.profile;

@@ -17,6 +17,7 @@ struct environment {
     setup config;
     std::string config_name; ///< file it came from; empty: none
     array tactors;
+    std::string array_file; ///< that the array came from; empty: it is a preset of its name
 };
 
 /// Reads the configuration (--config, $TACTOR_CONFIG, the user's, the system's: the first that exists),

@@ -61,10 +61,15 @@ void populate()
 
 } // namespace
 
+std::uint64_t memory_to_lock()
+{
+    return mapped_bytes() + reserve_bytes;
+}
+
 std::string lock_own_memory()
 {
     if (const auto most = probe_realtime_rights().lockable_bytes) {
-        const std::uint64_t wanted = mapped_bytes() + reserve_bytes;
+        const std::uint64_t wanted = memory_to_lock();
         if (wanted > *most)
             return fmt::format("{} MiB are needed, {} MiB are allowed", (wanted + (1U << 20) - 1) >> 20,
                                *most >> 20);

@@ -3,6 +3,7 @@
 /// What the tool, unlike the library, may do with its process to play in real time.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace tactor::cli {
@@ -10,6 +11,9 @@ namespace tactor::cli {
 /// Locks all memory of the process, now and to come, where the limits leave room for it. Returns why not;
 /// empty: it is locked. Call it before threads are made and after what forks.
 std::string lock_own_memory();
+
+/// How much lock_own_memory() would lock now, with what threads will need.
+std::uint64_t memory_to_lock();
 
 /// A real-time thread that runs for 0.2 s without a pause is ended, and the process with it: it would hold
 /// a computer with one core for good.

@@ -49,7 +49,6 @@ void add_lines(CLI::App& c, play_options& o)
          [&o](const std::string& t) { o.sync_delay_ms = parse_number("--sync-delay-ms", t, 0, 10000, "ms"); },
          "from the edge to the stroke's first sample at the DAC (default 50)")
         ->type_name("MS");
-    c.add_flag("--no-gpio", o.no_gpio, "leave the lines of [amplifier] and [sync] alone");
 }
 
 void add_limits(CLI::App& c, play_options& o)
@@ -73,10 +72,16 @@ void add_limits(CLI::App& c, play_options& o)
 
 } // namespace
 
-void add_play_options(CLI::App& c, play_options& o)
+void add_stream_options(CLI::App& c, play_options& o)
 {
     add_latency(c, o);
     c.add_flag("--require-realtime", o.require_realtime, "fail without real-time priority and locked memory");
+    c.add_flag("--no-gpio", o.no_gpio, "leave the lines of [amplifier] and [sync] alone");
+}
+
+void add_play_options(CLI::App& c, play_options& o)
+{
+    add_stream_options(c, o);
     c.add_flag("--void-on-xrun", o.void_on_xrun,
                "an xrun or a lost device in a stroke ends the run with status 1");
     c.add_option_function<std::string>(
@@ -89,19 +94,19 @@ void add_play_options(CLI::App& c, play_options& o)
     add_format_option(c, o.format, {"text", "json"}, "what is told of the run (default text)");
 }
 
-alsa_options device_options(const settings& s, const play_options& p, const environment& e,
-                            const score& first)
+bool names_device(const settings& s, const environment& e)
+{
+    return s.pcm || e.config.output.pcm;
+}
+
+alsa_options device_options(const settings& s, const play_options& p, const environment& e, unsigned channels,
+                            unsigned rate)
 {
     alsa_options o;
     const output_settings& out = e.config.output;
-    if (s.pcm || out.pcm)
-        o.pcm = s.pcm ? *s.pcm : *out.pcm;
-    else
-        fmt::print(stderr,
-                   "tactor: no device is configured: playing to \"null\", which nobody feels (-D PCM plays "
-                   "on hardware)\n");
-    o.channels = first.channels();
-    o.rate = first.rate();
+    o.pcm = s.pcm ? *s.pcm : out.pcm.value_or(o.pcm);
+    o.channels = channels;
+    o.rate = rate;
     o.format = s.format;
     o.periods = p.periods.value_or(out.periods.value_or(o.periods));
     o.period_frames = p.period_frames.value_or(out.period_frames.value_or(o.period_frames));

@@ -35,10 +35,15 @@ struct play_options {
 };
 
 void add_play_options(CLI::App& command, play_options& into);
+/// Those of them that say how the stream is opened: latency, rights, lines.
+void add_stream_options(CLI::App& command, play_options& into);
 
-/// The PCM as it is to be opened; says so where no device is configured.
-alsa_options device_options(const settings& s, const play_options& o, const environment& e,
-                            const score& first);
+/// Whether anything says which PCM to play on.
+bool names_device(const settings& s, const environment& e);
+
+/// The PCM as it is to be opened for so many channels at that rate, Hz; "null" where nothing names one.
+alsa_options device_options(const settings& s, const play_options& p, const environment& e, unsigned channels,
+                            unsigned rate);
 
 /// What holds: the options, else [limits], else the defaults. \throws error for a drive time that is none.
 drive_limits limits_of(const play_options& o, const environment& e);

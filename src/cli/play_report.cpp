@@ -119,6 +119,23 @@ std::string describe(const stroke_outcome& s, unsigned rate)
                        s.report->reason.empty() ? "" : ": ", s.report->reason);
 }
 
+std::string describe(const stream_setup& d)
+{
+    return fmt::format("{}: {} channels, {} Hz, {}, period {} of {} frames, latency {:.1f} ms", d.name,
+                       d.channels, d.rate, to_string(d.format), d.period_frames, d.buffer_frames,
+                       latency_ms(d));
+}
+
+void warn_of_cuts(const drive_limits& l, const player_stats& s)
+{
+    if (s.drives_cut != 0)
+        fmt::print(
+            stderr,
+            "tactor: warning: tactors were driven for longer than {} s in {} s and faded out, {} times "
+            "([limits] max_drive_s in the array file or configuration)\n",
+            l.max_drive_s, l.window_s, s.drives_cut);
+}
+
 void print_table(std::FILE* to, const run_report& r)
 {
     const player_stats& s = r.stats;

@@ -34,6 +34,12 @@ void add_stats(player_stats& sum, const player_stats& more);
 /// "name: played 1.4 s", "name: interrupted after 0.2 s: reason".
 std::string describe(const stroke_outcome& s, unsigned rate);
 
+/// "hw:Tactor: 9 channels, 48000 Hz, s32, period 96 of 288 frames, latency 6.0 ms"
+std::string describe(const stream_setup& d);
+
+/// On standard error, where tactors were driven for too long.
+void warn_of_cuts(const drive_limits& l, const player_stats& s);
+
 /// A short table of the counters.
 void print_table(std::FILE* to, const run_report& r);
 

@@ -49,6 +49,9 @@ public:
     /// Waits for the device, as long as --reopen-s says. False when it did not come back, or a signal came.
     bool reopen();
 
+    /// Waits until a descriptor can be read. False when a signal has come.
+    bool wait_for(int descriptor) { return sleep(descriptor, -1); }
+
     /// The signal that asked to end, or 0.
     int signal() const noexcept { return signal_; }
 

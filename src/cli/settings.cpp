@@ -131,8 +131,7 @@ void option_list::add_stroke_options()
     value("--path", "DATA", "SVG path data in mm instead of STROKE",
           [&s](const std::string& t) { s.path_data = t; });
     add_array_options();
-    value("--algorithm", algorithms.names("|"), "who plays when (default park2016)",
-          [&s](const std::string& t) { s.plan.method = algorithms.parse("--algorithm", t); });
+    add_timing_options();
     value("--phantom", phantoms.names("|"), "how strongly (default inverse-distance)",
           [&s](const std::string& t) { s.plan.phantom = phantoms.parse("--phantom", t); });
     auto* duration = value(
@@ -142,14 +141,8 @@ void option_list::add_stroke_options()
         "--speed", "MM_PER_S", "speed instead of a time (default 60 where nothing says one)",
         [&s](const std::string& t) { s.speed_mm_s = parse_number("--speed", t, 0.001, 100000, "mm/s"); });
     duration->excludes(speed);
-    value("--soa", "S", "onset to onset of two bursts (default 0.07)",
-          [&s](const std::string& t) { s.plan.soa_s = parse_number("--soa", t, -1e9, 1e9, "s"); });
     value("--timing", timings.names("|"), "SOA as given, or fitted to end with the path (default fixed)",
           [&s](const std::string& t) { s.plan.schedule = timings.parse("--timing", t); });
-    value("--slope", "A", "slope of the timing law SOA = A duration + S (default 0.32)",
-          [&s](const std::string& t) { s.slope = parse_number("--slope", t, 0.01, 0.99, ""); });
-    value("--intercept", "S", "intercept of the timing law (default 0.0473)",
-          [&s](const std::string& t) { s.intercept_s = parse_number("--intercept", t, 0.001, 10, "s"); });
     value("--outside", outsides.names("|"),
           "paths that leave the array: refuse, or move to its edge "
           "(default error)",
@@ -168,6 +161,19 @@ void option_list::add_array_options()
           [&s](const std::string& t) { s.array_name = t; });
     value("--config", "FILE", "configuration, see tactor.toml(5)",
           [&s](const std::string& t) { s.config_file = t; });
+}
+
+void option_list::add_timing_options()
+{
+    settings& s = settings_;
+    value("--algorithm", algorithms.names("|"), "who plays when (default park2016)",
+          [&s](const std::string& t) { s.plan.method = algorithms.parse("--algorithm", t); });
+    value("--soa", "S", "onset to onset of two bursts (default 0.07)",
+          [&s](const std::string& t) { s.plan.soa_s = parse_number("--soa", t, -1e9, 1e9, "s"); });
+    value("--slope", "A", "slope of the timing law SOA = A duration + S (default 0.32)",
+          [&s](const std::string& t) { s.slope = parse_number("--slope", t, 0.01, 0.99, ""); });
+    value("--intercept", "S", "intercept of the timing law (default 0.0473)",
+          [&s](const std::string& t) { s.intercept_s = parse_number("--intercept", t, 0.001, 10, "s"); });
 }
 
 void option_list::add_sound_options()

@@ -45,6 +45,8 @@ public:
     void add_stroke_options();
     /// --array and --config: what commands without a stroke need.
     void add_array_options();
+    /// --algorithm, --soa, --slope and --intercept.
+    void add_timing_options();
     /// Carrier, levels and rate.
     void add_sound_options();
     /// --rate and --sample-format alone.

@@ -80,7 +80,7 @@ std::vector<chip> read_chips()
     return chips;
 }
 
-located_line locate(const gpio_line_name& wanted)
+gpio_line_place look_up(const gpio_line_name& wanted)
 {
     std::vector<chip> chips = read_chips();
     gpio_line_name by = wanted;
@@ -92,7 +92,14 @@ located_line locate(const gpio_line_name& wanted)
             chips.push_back(read_with_group(by.chip));
     }
     const line_place p = find_line(chips, by);
-    return {chips[p.chip].info.path, p.offset};
+    const gpio_chip_info& c = chips[p.chip].info;
+    return {c.path, c.label, c.lines[p.offset]};
+}
+
+located_line locate(const gpio_line_name& wanted)
+{
+    const gpio_line_place p = look_up(wanted);
+    return {p.path, p.line.offset};
 }
 
 std::string holder_of(const located_line& l)
@@ -112,4 +119,9 @@ std::vector<tactor::gpio_chip_info> tactor::list_gpio()
         out.push_back(std::move(c.info));
     }
     return out;
+}
+
+tactor::gpio_line_place tactor::find_gpio_line(const gpio_line_name& line)
+{
+    return gpio::look_up(line);
 }

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <tactor/setup.hpp>
+#include <tactor/gpio.hpp>
 
 #include "gpio/find.hpp"
 
@@ -20,13 +20,16 @@ std::vector<std::string> chip_paths(const std::filesystem::path& folder = "/dev"
 /// Name of the group that owns a file, "gpio" where that cannot be found out.
 std::string group_of(const std::string& path);
 
+/// Looks the line up among the chips that there are now. Throws as find_line() does.
+gpio_line_place look_up(const gpio_line_name& wanted);
+
 /// What is to be opened.
 struct located_line {
     std::string path;
     unsigned offset = 0;
 };
 
-/// Looks the line up among the chips that there are now. Throws as find_line() does.
+/// The same, but only where it is.
 located_line locate(const gpio_line_name& wanted);
 
 /// Opens every chip.

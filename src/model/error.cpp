@@ -51,7 +51,9 @@ std::string source_place::text() const
 
 error::error(errc kind, std::string_view what, std::string_view why, std::string_view hint)
     : std::system_error(make_error_code(kind)),
-      text_(hint.empty() ? fmt::format("{}: {}", what, why) : fmt::format("{}: {} ({})", what, why, hint))
+      text_(hint.empty() ? fmt::format("{}: {}", what, why) : fmt::format("{}: {} ({})", what, why, hint)),
+      why_at_(what.size() + 2),
+      hint_at_(hint.empty() ? text_.size() : why_at_ + why.size() + 2)
 {
 }
 
@@ -63,6 +65,23 @@ errc error::kind() const noexcept
 const char* error::what() const noexcept
 {
     return text_.c_str();
+}
+
+std::string_view error::subject() const noexcept
+{
+    return std::string_view(text_).substr(0, why_at_ - 2);
+}
+
+std::string_view error::why() const noexcept
+{
+    const std::size_t end = hint_at_ == text_.size() ? hint_at_ : hint_at_ - 2;
+    return std::string_view(text_).substr(why_at_, end - why_at_);
+}
+
+std::string_view error::hint() const noexcept
+{
+    const std::string_view rest = std::string_view(text_).substr(hint_at_);
+    return rest.substr(0, rest.empty() ? 0 : rest.size() - 1);
 }
 
 const char* version() noexcept

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#include "cli/check_device.hpp"
+
+#include "cli/play_report.hpp"
+
+namespace tactor::cli {
+
+finding check_device(const alsa_options& device, const play_options& o, bool named)
+{
+    try {
+        const stream_setup made = open_alsa(device)->setup();
+        const std::string found = describe(made);
+        if (!named)
+            return warning("device", "none is named, so play goes to " + found,
+                           "-D PCM, or pcm under [output]; tactor devices lists them");
+        const std::string late = latency_warning(o, made);
+        if (!late.empty())
+            return warning("device", found + "; " + late, "a device with shorter periods, or more latency");
+        return fine("device", found);
+    } catch (const error& e) {
+        return failure("device", e);
+    }
+}
+
+} // namespace tactor::cli

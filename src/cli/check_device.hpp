@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Whether the PCM opens as it would for playing.
+#pragma once
+
+#include "cli/finding.hpp"
+#include "cli/play_options.hpp"
+
+namespace tactor::cli {
+
+/// Opens and closes it; nothing sounds. `named`: whether anything names it, else it is the default.
+finding check_device(const alsa_options& device, const play_options& o, bool named);
+
+} // namespace tactor::cli

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: MIT
+"""tactor check on ALSA's null and file devices."""
+import json
+
+from harness import ToolTest, main
+
+GRID = """# the array on my desk
+[array]
+name = "desk"   # oak
+grid = { rows = 1, columns = 2, pitch_mm = 20.0 }
+actuator = "piezo"
+[[tactor]]
+tactor = 1      # repaired in May
+channel = 1
+gain_db = -3.0
+[output]
+pcm = "null"
+"""
+
+
+class Check(ToolTest):
+    def check(self, *args, status=0, **more):
+        r = self.run_tool("check", "--format", "json", *args, **more)
+        self.assertEqual(r.returncode, status, r.stdout + r.stderr)
+        told = json.loads(r.stdout)
+        self.assertEqual(told["schema"], "tactor-check/1")
+        return told, {f["check"]: f for f in told["findings"]}
+    def test_the_null_device_passes_anywhere(self):
+        told, found = self.check("-D", "null")
+        self.assertEqual(told["errors"], 0)
+        self.assertEqual(found["device"]["level"], "ok")
+        self.assertIn("9 channels, 48000 Hz", found["device"]["found"])
+        for name in ("array", "channels", "levels", "actuators", "bursts", "limits", "sound rights", "sound servers",
+                     "amplifier", "GPIO rights", "real time", "memory", "kernel", "CPU clock"):
+            self.assertIn(name, found)
+        for f in told["findings"]:
+            self.assertEqual(set(f), {"check", "level", "found", "cure"})
+            if f["level"] != "ok":
+                self.assertTrue(f["cure"], f)
+
+    def test_text_is_plain_and_fits_80_columns(self):
+        out = self.ok("check", "-D", "null").stdout
+        self.assertNotIn("\033", out)
+        self.assertLessEqual(max(map(len, out.splitlines())), 79)
+        self.assertRegex(out, r"(?m)^ok       array +palm-3x3: 9 tactors, 3 x 3, 40 x 40 mm")
+        self.assertRegex(out, r"\n\n0 errors, \d+ warnings?, \d+ ok\n$")
+
+    def test_without_a_device_there_is_a_warning(self):
+        _, found = self.check()
+        self.assertEqual(found["device"]["level"], "warning")
+        self.assertIn("tactor devices", found["device"]["cure"])
+
+    def test_the_stream_is_opened_as_play_would_and_nothing_sounds(self):
+        _, found = self.check("-D", "null", "--rate", "96000", "--latency-ms", "3")
+        self.assertIn("96000 Hz, s32, period 96 of 288 frames, latency 3.0 ms", found["device"]["found"])
+        self.check("-D", f"raw:{self.dir}/out.raw")
+        self.assertFalse((self.dir / "out.raw").exists() and (self.dir / "out.raw").stat().st_size)
+
+    def test_a_device_that_cannot_be_had_is_status_3(self):
+        r = self.refused(3, "check", "-D", "nowhere", says=["device: PCM \"nowhere\""])
+        self.assertRegex(r.stdout, r"(?m)^error    device +PCM \"nowhere\"")
+        _, found = self.check("-D", "eight", status=3)
+        self.assertIn("9 channels", found["device"]["found"])
+        self.assertIn("channels 8", found["device"]["cure"])
+
+    def test_a_bad_file_is_status_2_and_hides_nothing_of_the_machine(self):
+        self.write("bad.toml", "[array]\ngrid = { rows = 2, columns = 2, pitch = 20.0 }\n")
+        _, found = self.check("--array", "bad.toml", status=2)
+        self.assertIn("bad.toml:2", found["array"]["found"])
+        self.assertIn("pitch_mm", found["array"]["cure"])
+        self.assertIn("real time", found)
+        self.refused(2, "check", "--array", "palm-9x9", says=["palm-9x9"])
+
+    def test_levels_that_cannot_be_are_status_2(self):
+        self.write("a.toml", GRID.replace("-3.0", "30.0"))
+        _, found = self.check("--array", "a.toml", status=2)
+        self.assertIn("tactor 1", found["levels"]["found"])
+        self.check("-D", "null", "--carrier", "30000", status=2)
+
+    def test_actuators_against_bursts(self):
+        self.write("a.toml", GRID.replace("piezo", "erm"))
+        _, found = self.check("--array", "a.toml")
+        self.assertEqual(found["actuators"]["level"], "warning")
+        self.write("a.toml", GRID)
+        _, found = self.check("--array", "a.toml", "--carrier", "60")
+        self.assertEqual((found["actuators"]["found"], found["bursts"]["level"]), ("piezo", "warning"))
+
+    def test_lines_that_are_not_there_are_status_3(self):
+        self.write("a.toml", GRID + '[amplifier]\nline = { chip = "no-such-chip", offset = 17 }\n')
+        _, found = self.check("--array", "a.toml", status=3)
+        self.assertEqual(found["amplifier"]["level"], "error")
+        self.assertIn("GPIO line 17 of no-such-chip", found["amplifier"]["found"])
+        self.assertNotIn("amplifier", self.check("--array", "a.toml", "--no-gpio")[1])
+
+    def test_wrong_usage(self):
+        self.write("there.toml", "")
+        for args, says in ((["--auto"], "--walk"), (["-o", "x.toml"], "--walk"), (["--walk", "--auto", "-o", "x.toml"], "--auto"),
+                           (["--walk", "-o", "there.toml"], "already"), (["--walk", "-o", "no/x.toml"], "no folder no"),
+                           (["--format", "csv"], "text, json"), (["park2016-1"], "park2016-1")):
+            self.refused(2, "check", *args, says=[says])
+        self.assertEqual((self.dir / "there.toml").read_text(), "")
+
+
+if __name__ == "__main__":
+    main()
