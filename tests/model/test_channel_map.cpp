@@ -111,7 +111,8 @@ TEST_CASE("every example array can be turned round")
     for (const auto& entry : fs::directory_iterator(fs::path(TACTOR_SOURCE_ROOT) / "examples/arrays")) {
         CAPTURE(entry.path().string());
         std::vector<unsigned> channels;
-        for (const tactor_spec& t : load_setup(entry.path()).layout->tactors)
+        const setup before = load_setup(entry.path());
+        for (const tactor_spec& t : before.layout->tactors)
             channels.insert(channels.begin(), t.channel);
         const setup after = parse_setup(with_channels(entry.path(), channels), "after");
         for (std::size_t i = 0; i < channels.size(); ++i)

@@ -32,7 +32,8 @@ class Devices(RigTest):
         array = self.grid(extra=f'[amplifier]\nline = {{ chip = "{sim.label}", offset = 3 }}\n')
         chip = self.devices()[1][sim.label]
         self.assertEqual(chip["lines"][3], {"offset": 3, "name": "AMP", "direction": "input", "consumer": None})
-        p = self.start("play", "--path", "M 0 10 L 40 30", "--duration", "600", "--array", array)
+        # An xrun of the emulated machine ends one stroke, not the run.
+        p = self.start("play", *["park2016-1"] * 50, "--duration", "60", "--array", array)
         wait_for(lambda: sim.value(3) == 1, "the amplifier is on")
         pcms, chips = self.devices()
         self.assertIn({"pid": p.pid, "program": "tactor"}, pcms["hw:CARD=Loopback,DEV=0"]["holders"])
