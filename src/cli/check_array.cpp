@@ -165,14 +165,14 @@ std::string limit_text(const drive_limits& l)
 
 } // namespace
 
-std::vector<finding> check_array(const settings& s, const environment& e)
+std::vector<finding> check_array(const settings& s, const environment& e, const drive_limits& l)
 {
     const render_options r = settle_render(s, e);
     std::vector<finding> all{check_places(e.tactors), check_channels(r, e.tactors),
                              check_levels(r, e.tactors, s.plan)};
     for (finding& f : check_bursts(s.plan, e.tactors, r.rate))
         all.push_back(std::move(f));
-    all.push_back(fine("limits", limit_text(settle_limits(e))));
+    all.push_back(fine("limits", limit_text(l)));
     return all;
 }
 

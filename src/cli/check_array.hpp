@@ -11,7 +11,7 @@
 namespace tactor::cli {
 
 /// Places, channels, levels, actuators, bursts, limits. Looks at values only.
-std::vector<finding> check_array(const settings& s, const environment& e);
+std::vector<finding> check_array(const settings& s, const environment& e, const drive_limits& l);
 
 /// Actuators against burst length and carrier: the part of check_array() that knows actuators. `rate`: Hz.
 std::vector<finding> check_bursts(const plan_options& p, const array& a, unsigned rate);

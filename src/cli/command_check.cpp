@@ -52,7 +52,7 @@ alsa_options device_for(const settings& s, const check_options& o, const environ
 
 std::vector<finding> check_all(const settings& s, const check_options& o, const environment& e)
 {
-    std::vector<finding> all = check_array(s, e);
+    std::vector<finding> all = check_array(s, e, limits_of(o.play, e));
     const alsa_options device = device_for(s, o, e);
     all.push_back(check_device(device, o.play, names_device(s, e)));
     if (!o.play.no_gpio)

@@ -77,6 +77,7 @@ void add_stream_options(CLI::App& c, play_options& o)
     add_latency(c, o);
     c.add_flag("--require-realtime", o.require_realtime, "fail without real-time priority and locked memory");
     c.add_flag("--no-gpio", o.no_gpio, "leave the lines of [amplifier] and [sync] alone");
+    add_limits(c, o);
 }
 
 void add_play_options(CLI::App& c, play_options& o)
@@ -90,7 +91,6 @@ void add_play_options(CLI::App& c, play_options& o)
          "wait so long for a lost device to come back, then go on with the next stroke (default 0)")
         ->type_name("S");
     add_lines(c, o);
-    add_limits(c, o);
     add_format_option(c, o.format, {"text", "json"}, "what is told of the run (default text)");
 }
 

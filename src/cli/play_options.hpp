@@ -35,7 +35,7 @@ struct play_options {
 };
 
 void add_play_options(CLI::App& command, play_options& into);
-/// Those of them that say how the stream is opened: latency, rights, lines.
+/// Those of them that say how the array is driven: latency, rights, lines, limits.
 void add_stream_options(CLI::App& command, play_options& into);
 
 /// Whether anything says which PCM to play on.

@@ -159,7 +159,7 @@ walk_result walk(const alsa_options& device, const environment& e, const render_
     }
     run_report r;
     session.finish(r);
-    warn_of_cuts(settle_limits(e), r.stats);
+    warn_of_cuts(limits_of(o.play, e), r.stats);
     return result;
 }
 

@@ -22,7 +22,7 @@ finding array_finding(const array& a, const std::string& check, const settings& 
 {
     environment e;
     e.tactors = a;
-    return named(check_array(s, e), check);
+    return named(check_array(s, e, settle_limits(e)), check);
 }
 
 array with_actuator(const std::string& kind)
@@ -82,12 +82,13 @@ TEST_CASE("channels and the marker are told")
 {
     environment e;
     e.tactors = preset_array("palm-3x3");
-    CHECK(named(check_array({}, e), "channels").found == "9 of 9 channels drive tactors: 0 to 8");
+    CHECK(named(check_array({}, e, settle_limits(e)), "channels").found ==
+          "9 of 9 channels drive tactors: 0 to 8");
     e.tactors.tactors[8].channel = 12;
     e.config.output.channels = 16;
     e.config.sync.emplace();
     e.config.sync->channel = 15;
-    CHECK(named(check_array({}, e), "channels").found ==
+    CHECK(named(check_array({}, e, settle_limits(e)), "channels").found ==
           "9 of 16 channels drive tactors: 0, 1, 2, 3, 4, 5, 6, 7, 12; 15 marks strokes");
 }
 
@@ -130,7 +131,7 @@ TEST_CASE("limits are told as they hold")
     environment e;
     e.tactors = preset_array("palm-3x3");
     e.config.limits = limit_settings{.power_dbfs = 0.0, .max_drive_s = 20.0};
-    CHECK(named(check_array({}, e), "limits").found ==
+    CHECK(named(check_array({}, e, settle_limits(e)), "limits").found ==
           "all together at most +0 dB of one at full scale; no limit on time");
 }
 

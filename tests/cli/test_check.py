@@ -85,6 +85,10 @@ class Check(ToolTest):
         _, found = self.check("--array", "a.toml", "--carrier", "60")
         self.assertEqual((found["actuators"]["found"], found["bursts"]["level"]), ("piezo", "warning"))
 
+    def test_limits_are_those_of_the_options(self):
+        _, found = self.check("-D", "null", "--max-drive-s", "2", "--power-dbfs", "0")
+        self.assertEqual(found["limits"]["found"], "all together at most +0 dB of one at full scale; each at most 2 s in 10 s")
+
     def test_lines_that_are_not_there_are_status_3(self):
         self.write("a.toml", GRID + '[amplifier]\nline = { chip = "no-such-chip", offset = 17 }\n')
         _, found = self.check("--array", "a.toml", status=3)
