@@ -45,6 +45,7 @@ std::string overlay(const std::string& name, const environment& e, const std::ve
     return s;
 }
 
+// Not output_file, which replaces what is there.
 void write_new(const std::string& name, const std::string& text)
 {
     const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
