@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // An array file's channels changed in its own text, so that what a person wrote there stays.
 #include <algorithm>
+#include <cstdint>
 
 #include <fmt/format.h>
 
