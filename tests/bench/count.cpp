@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// So many blocks of one stroke on nine channels, and nothing else: for tests/bench/instructions, which counts
+// what they take where no clock means anything.
+//   tactor-count mixer|std_sin BLOCKS
+#include <cstdlib>
+#include <string>
+
+#include "pieces.hpp"
+
+int main(int argc, char** argv)
+{
+    if (argc != 3)
+        return 2;
+    const int blocks = std::atoi(argv[2]);
+    const tactor::score s = bench::piece(9, 1, tactor::algorithm::park2016);
+    std::vector<float> out(bench::block * s.channels());
+    if (std::string(argv[1]) == "std_sin") {
+        bench::plain_loop plain(s, 0.2);
+        for (int i = 0; i < blocks; ++i)
+            plain.process(bench::block, out.data());
+    } else {
+        tactor::renderer mixer(s, tactor::sample_format::float32);
+        for (int i = 0; i < blocks; ++i)
+            mixer.process(bench::block, reinterpret_cast<std::byte*>(out.data()));
+    }
+    return 0;
+}
