@@ -47,7 +47,7 @@ void ended_signal::raise() const noexcept
 
 void ended_signal::clear() const noexcept
 {
-    eventfd_t ignored;
+    eventfd_t ignored = 0;
     [[maybe_unused]] const int r = eventfd_read(fd_, &ignored);
 }
 

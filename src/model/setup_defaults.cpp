@@ -81,7 +81,7 @@ std::string value_of(const toml_table& t, const option& o, const toml::node& n)
     for (const std::string_view w : o.words)
         if (!w.empty())
             words.push_back(w);
-    const std::string said = n.is_string() ? n.as_string()->get() : std::string();
+    std::string said = n.is_string() ? n.as_string()->get() : std::string();
     for (const std::string_view w : words)
         if (w == said)
             return said;

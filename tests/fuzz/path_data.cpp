@@ -16,7 +16,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!p)
         return 0;
     fuzz::check_path(*p);
-    const path again = path::from_svg(p->svg());
-    HOLDS(std::abs(again.length_mm() - p->length_mm()) <= 1e-3 + 1e-9 * p->length_mm());
+    try {
+        const path again = path::from_svg(p->svg());
+        HOLDS(std::abs(again.length_mm() - p->length_mm()) <= 1e-3 + 1e-9 * p->length_mm());
+    } catch (const error& e) {
+        // A flat arc within the limit may have radii beyond it.
+        HOLDS(std::string_view(e.what()).find("is beyond 1e+06") != std::string_view::npos);
+    }
     return 0;
 }
