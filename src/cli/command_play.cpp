@@ -79,7 +79,7 @@ std::optional<broken_off> play_all(play_session& session, const play_options& o,
         }
         if (session.signal() != 0)
             return {};
-        const auto broken = judge(session, o, outcomes[i], i + 1 == pieces.size());
+        auto broken = judge(session, o, outcomes[i], i + 1 == pieces.size());
         if (broken)
             return broken;
     }

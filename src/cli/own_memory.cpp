@@ -55,6 +55,7 @@ void populate()
         std::string rights, offset, device, inode, mapped;
         in >> std::hex >> from >> dash >> to >> rights >> offset >> device >> inode >> mapped;
         if (rights.starts_with('r') && is_needed(mapped))
+            // NOLINTNEXTLINE(performance-no-int-to-ptr): the kernel writes addresses as numbers
             mlock(reinterpret_cast<void*>(from), to - from);
     }
 }

@@ -80,7 +80,9 @@ array make_grid(std::string name, unsigned rows, unsigned columns, double pitch_
     a.name = std::move(name);
     a.tactors.resize(count);
     for (unsigned i = 0; i < count; ++i) {
-        a.tactors[i].position = {(i % columns) * pitch_x_mm, (i / columns) * pitch_y_mm};
+        const unsigned row = i / columns;
+        const unsigned column = i % columns;
+        a.tactors[i].position = {column * pitch_x_mm, row * pitch_y_mm};
         a.tactors[i].channel = i;
     }
     return a;

@@ -22,7 +22,7 @@ constexpr double line_pitch = 8.0;
 template <class Get>
 std::string common(const scene& s, Get&& get)
 {
-    const std::string first = get(s.plans.front().schedule);
+    std::string first = get(s.plans.front().schedule);
     for (const placed_plan& p : s.plans)
         if (get(p.schedule) != first)
             return {};

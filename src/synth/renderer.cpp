@@ -53,7 +53,7 @@ renderer& renderer::operator=(renderer&&) noexcept = default;
 void renderer::process(std::size_t frames, std::byte* out) noexcept
 {
     // Whole blocks of the mixer, several at once: little to keep waiting, little to do between.
-    constexpr std::uint64_t stride = 8 * synth::block_frames;
+    constexpr std::uint64_t stride = std::uint64_t{8} * synth::block_frames;
     while (frames > 0) {
         const std::uint64_t at = impl_->mix.position();
         const std::uint64_t until = std::min(at + frames, at / stride * stride + stride);
