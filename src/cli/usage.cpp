@@ -37,7 +37,7 @@ error unknown(const CLI::App& app, const CLI::App& command)
     const std::string given = left.empty() ? "" : left.front();
     const std::string help =
         "tactor " + (&command == &app ? "" : command.get_name() + " ") + "--help lists them";
-    if (given.rfind("-", 0) == 0) {
+    if (given.starts_with('-')) {
         const std::string name = given.substr(0, given.find('='));
         const std::string like = nearest(name, option_names(command));
         return {errc::bad_input, name, "no such option",

@@ -183,7 +183,7 @@ std::optional<std::string> toml_table::text(std::string_view key) const
 std::optional<std::string> toml_table::choice(std::string_view key,
                                               std::initializer_list<std::string_view> of) const
 {
-    const std::optional<std::string> s = text(key);
+    std::optional<std::string> s = text(key);
     if (!s)
         return std::nullopt;
     for (const std::string_view c : of)
