@@ -2,6 +2,7 @@
 #include "cli/live_picture.hpp"
 
 #include <cstdio>
+#include <new>
 #include <string>
 #include <utility>
 
@@ -28,8 +29,11 @@ live_picture::~live_picture()
 {
     if (!terminal_ || drawn_lines_ == 0)
         return;
-    terminal_->write(to_its_beginning(drawn_lines_) + "\033[J");
-    terminal_->finish();
+    try {
+        terminal_->write(to_its_beginning(drawn_lines_) + "\033[J");
+        terminal_->finish();
+    } catch (const std::bad_alloc&) { // then it stays
+    }
 }
 
 void live_picture::draw(const instant& now, double t_s, double total_s)
