@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Checks what the system reads: udev rules, systemd units, limits. Usage: system.py SOURCE_ROOT.
+"""Checks what the system reads: udev rules, systemd units, limits, packages. Usage: system.py SOURCE_ROOT.
 
 udev and systemd check their own files where they are; the grammar below holds everywhere.
 """
@@ -53,6 +53,24 @@ def bad_unit(file):
         yield from (f"{file}: {line}" for line in said_by("systemd-analyze", "verify", str(copy)))
 
 
+def bad_packages(root):
+    """The Debian packages are built with what tests/packages lists for library and tool, but for what all have."""
+    lists = dict(line.split(": ", 1) for line in (root / "tests/packages").read_text(encoding="utf-8").splitlines()
+                 if not line.startswith("#"))
+    wanted = set((lists["library"] + " " + lists["tool"]).split()) - {"g++", "ninja-build", "pkg-config"}
+    control = (root / "examples/debian/control").read_text(encoding="utf-8")
+    depends = re.search(r"^Build-Depends:\n((?: .*\n)+)", control, re.M)[1]
+    named = {line.strip().split(" ")[0] for line in depends.replace(",", "").splitlines()}
+    if named - {"debhelper-compat", "dh-sequence-installsysusers", "pkgconf"} != wanted:
+        yield f"examples/debian/control: Build-Depends differ from tests/packages: {sorted(named ^ wanted)}"
+    version = re.search(r"^  version: '(.*)'", (root / "meson.build").read_text(encoding="utf-8"), re.M)[1]
+    if not (root / "examples/debian/changelog").read_text(encoding="utf-8").startswith(f"tactor ({version}) "):
+        yield f"examples/debian/changelog: not {version}, the version in meson.build"
+    soname = re.search(r"soversion: '(\d+)'", (root / "src/meson.build").read_text(encoding="utf-8"))[1]
+    if f"Package: libtactor{soname}\n" not in control:
+        yield f"examples/debian/control: no package libtactor{soname}, the name of the library"
+
+
 def main():
     root = pathlib.Path(sys.argv[1]).resolve()
     checks, skipped = [], []
@@ -69,6 +87,7 @@ def main():
             checks.append(list(bad_unit(unit)))
         else:
             skipped.append(f"{unit.name}: systemd-analyze is not here")
+    checks.append(list(bad_packages(root)))
     for bad in checks:
         print(*bad, sep="\n", end="\n" if bad else "")
     for why in skipped:
