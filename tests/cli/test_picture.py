@@ -92,7 +92,8 @@ class Window:
 
 
 def has_picture(w):
-    return w.shades() >= 27 and re.search(TIME, w.text())
+    """A whole one: what was read may end in the middle of a frame."""
+    return w.raw.endswith(b"\033[J") and w.shades() >= 27 and re.search(TIME, w.text())
 
 
 class Picture(ToolTest):
