@@ -15,7 +15,7 @@ using namespace tactor;
 
 namespace {
 
-const pcm_info& named(const std::vector<pcm_info>& all, const std::string& name)
+pcm_info named(const std::vector<pcm_info>& all, const std::string& name)
 {
     const auto same = [&](const pcm_info& p) { return p.name == name; };
     REQUIRE_MESSAGE(std::count_if(all.begin(), all.end(), same) == 1, name);
