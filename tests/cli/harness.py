@@ -42,6 +42,20 @@ pcm.eight {
 }
 """
 
+# An array file as someone keeps it: with comments, a setting of its own and a device that is always there.
+GRID = """# the array on my desk
+[array]
+name = "desk"   # oak
+grid = { rows = 1, columns = 2, pitch_mm = 20.0 }
+actuator = "piezo"
+[[tactor]]
+tactor = 1      # repaired in May
+channel = 1
+gain_db = -3.0
+[output]
+pcm = "null"
+"""
+
 
 class ToolTest(unittest.TestCase):
     """A test with a folder of its own, in which the tool runs."""

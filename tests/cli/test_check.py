@@ -2,20 +2,7 @@
 """tactor check on ALSA's null and file devices."""
 import json
 
-from harness import ToolTest, main
-
-GRID = """# the array on my desk
-[array]
-name = "desk"   # oak
-grid = { rows = 1, columns = 2, pitch_mm = 20.0 }
-actuator = "piezo"
-[[tactor]]
-tactor = 1      # repaired in May
-channel = 1
-gain_db = -3.0
-[output]
-pcm = "null"
-"""
+from harness import GRID, ToolTest, main
 
 
 class Check(ToolTest):
@@ -25,6 +12,7 @@ class Check(ToolTest):
         told = json.loads(r.stdout)
         self.assertEqual(told["schema"], "tactor-check/1")
         return told, {f["check"]: f for f in told["findings"]}
+
     def test_the_null_device_passes_anywhere(self):
         told, found = self.check("-D", "null")
         self.assertEqual(told["errors"], 0)

@@ -9,20 +9,7 @@ import struct
 import subprocess
 import termios
 
-from harness import TOOL, ToolTest, main
-
-GRID = """# the array on my desk
-[array]
-name = "desk"   # oak
-grid = { rows = 1, columns = 2, pitch_mm = 20.0 }
-actuator = "piezo"
-[[tactor]]
-tactor = 1      # repaired in May
-channel = 1
-gain_db = -3.0
-[output]
-pcm = "null"
-"""
+from harness import GRID, TOOL, ToolTest, main
 
 
 class Walk(ToolTest):
