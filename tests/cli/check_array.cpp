@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+#include "has.hpp"
+
 using namespace tactor;
 using namespace tactor::cli;
 
@@ -40,14 +42,6 @@ finding bursts(const std::string& kind, const std::string& check, double carrier
     p.carrier_hz = carrier_hz;
     p.method = method;
     return named(check_bursts(p, with_actuator(kind), 48000), check);
-}
-
-bool has(const std::string& text, const std::string& part)
-{
-    INFO(text);
-    const bool found = text.find(part) != std::string::npos;
-    CHECK_MESSAGE(found, part);
-    return found;
 }
 
 } // namespace

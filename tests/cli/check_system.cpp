@@ -3,10 +3,11 @@
 #include "cli/check_system.hpp"
 
 #include <algorithm>
-#include <cstdlib>
-#include <fstream>
 
 #include <doctest/doctest.h>
+
+#include "folder.hpp"
+#include "has.hpp"
 
 using namespace tactor;
 using namespace tactor::cli;
@@ -16,30 +17,19 @@ namespace {
 
 class fake_root {
 public:
-    fake_root()
-    {
-        std::string name = (fs::temp_directory_path() / "tactor-root-XXXXXX").string();
-        REQUIRE(::mkdtemp(name.data()) != nullptr);
-        path_ = name;
-    }
-    ~fake_root() { fs::remove_all(path_); }
-    fake_root(const fake_root&) = delete;
-    fake_root& operator=(const fake_root&) = delete;
-
     const fake_root& write(const std::string& file, const std::string& text = "") const
     {
-        fs::create_directories((path_ / file).parent_path());
-        std::ofstream(path_ / file, std::ios::binary) << text;
+        files_.write(file, text);
         return *this;
     }
     system_facts read(const std::string& kernel = "#1 SMP") const
     {
-        return read_system({.user = "ann", .kernel = kernel}, path_);
+        return read_system({.user = "ann", .kernel = kernel}, files_.path());
     }
-    const fs::path& path() const { return path_; }
+    const fs::path& path() const { return files_.path(); }
 
 private:
-    fs::path path_;
+    folder files_;
 };
 
 // A user with all rights on a machine that has nothing against it.
@@ -69,14 +59,6 @@ finding judged(const system_facts& f, const system_needs& n, const std::string& 
     const auto x = std::find_if(all.begin(), all.end(), [&](const finding& y) { return y.check == check; });
     REQUIRE_MESSAGE(x != all.end(), check);
     return *x;
-}
-
-bool has(const std::string& text, const std::string& part)
-{
-    INFO(text);
-    const bool found = text.find(part) != std::string::npos;
-    CHECK_MESSAGE(found, part);
-    return found;
 }
 
 } // namespace

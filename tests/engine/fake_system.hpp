@@ -3,33 +3,17 @@
 /// A machine with sound cards, made of files.
 #pragma once
 
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
-#include <doctest/doctest.h>
+#include "folder.hpp"
 
 namespace tactor::test {
 
 /// A folder with a /proc and a /dev of its own.
 class fake_system {
 public:
-    fake_system()
-    {
-        std::string name = (std::filesystem::temp_directory_path() / "tactor-system-XXXXXX").string();
-        REQUIRE(::mkdtemp(name.data()) != nullptr);
-        root_ = name;
-    }
-    ~fake_system() { std::filesystem::remove_all(root_); }
-    fake_system(const fake_system&) = delete;
-    fake_system& operator=(const fake_system&) = delete;
-
-    void write(const std::filesystem::path& file, const std::string& text) const
-    {
-        std::filesystem::create_directories((root_ / file).parent_path());
-        std::ofstream(root_ / file) << text;
-    }
+    void write(const std::filesystem::path& file, const std::string& text) const { files_.write(file, text); }
     void two_cards() const
     {
         write("proc/asound/cards", " 0 [Headphones     ]: bcm2835_headpho - bcm2835 Headphones\n"
@@ -43,16 +27,16 @@ public:
     }
     void process(int pid, const std::string& program, const std::filesystem::path& opened) const
     {
-        const std::filesystem::path folder = root_ / "proc" / std::to_string(pid);
-        write(folder / "comm", program + "\n");
-        std::filesystem::create_directories(folder / "fd");
-        std::filesystem::create_symlink("/dev/null", folder / "fd/0");
-        std::filesystem::create_symlink(opened, folder / "fd/7");
+        const std::filesystem::path dir = root() / "proc" / std::to_string(pid);
+        write(dir / "comm", program + "\n");
+        std::filesystem::create_directories(dir / "fd");
+        std::filesystem::create_symlink("/dev/null", dir / "fd/0");
+        std::filesystem::create_symlink(opened, dir / "fd/7");
     }
-    const std::filesystem::path& root() const { return root_; }
+    const std::filesystem::path& root() const { return files_.path(); }
 
 private:
-    std::filesystem::path root_;
+    folder files_;
 };
 
 } // namespace tactor::test

@@ -16,6 +16,7 @@
 #include "alsa/cards.hpp"
 #include "alsa/error_text.hpp"
 #include "fake_system.hpp"
+#include "has.hpp"
 
 using namespace tactor;
 namespace fs = std::filesystem;
@@ -31,15 +32,6 @@ struct fake_system : test::fake_system {
         return e.what();
     }
 };
-
-bool has(const std::string& text, const std::string& part)
-{
-    INFO(text);
-    INFO(part);
-    const bool found = text.find(part) != std::string::npos;
-    CHECK(found);
-    return found;
-}
 
 } // namespace
 

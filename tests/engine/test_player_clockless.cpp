@@ -2,7 +2,6 @@
 // The player on null and file PCMs, which it paces itself.
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -15,6 +14,7 @@
 #include <tactor/error.hpp>
 #include <tactor/player.hpp>
 
+#include "folder.hpp"
 #include "player_support.hpp"
 #include "scores.hpp"
 
@@ -47,27 +47,14 @@ std::size_t first_sound(const std::vector<std::byte>& all)
         std::find_if(all.begin(), all.end(), [](std::byte b) { return b != std::byte{0}; }) - all.begin());
 }
 
-class temporary_folder {
-public:
-    temporary_folder()
-    {
-        std::string name = (std::filesystem::temp_directory_path() / "tactor-XXXXXX").string();
-        REQUIRE(::mkdtemp(name.data()) != nullptr);
-        path = name;
-    }
-    ~temporary_folder() { std::filesystem::remove_all(path); }
-
-    std::filesystem::path path;
-};
-
 } // namespace
 
 TEST_CASE("what a file PCM receives is silence, the renderer's bytes without a gap, silence")
 {
     for (const sample_format f : {sample_format::s32, sample_format::s16}) {
         CAPTURE(to_string(f));
-        const temporary_folder folder;
-        const std::filesystem::path file = folder.path / "out.raw";
+        const folder dir;
+        const std::filesystem::path file = dir / "out.raw";
         const alsa_options o = configured(
             fmt::format("pcm.n {{ type null }} pcm.t {{ type file slave.pcm n file \"{}\" format raw }}",
                         file.string()),

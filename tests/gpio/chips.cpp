@@ -2,43 +2,28 @@
 // The chips of a machine that has none, and folders that look like /dev.
 #include "gpio/chips.hpp"
 
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include <doctest/doctest.h>
 
 #include <tactor/error.hpp>
 
+#include "folder.hpp"
+
 namespace fs = std::filesystem;
-
-namespace {
-
-struct folder {
-    fs::path path;
-    folder()
-    {
-        std::string name = (fs::temp_directory_path() / "tactor-gpio-XXXXXX").string();
-        path = ::mkdtemp(name.data());
-    }
-    ~folder() { fs::remove_all(path); }
-    void file(const std::string& name) const { std::ofstream(path / name) << "x"; }
-};
-
-} // namespace
 
 TEST_CASE("chips are listed by number, each once")
 {
     const folder f;
     for (const char* name :
          {"gpiochip10", "gpiochip2", "gpiochip0", "gpiochip", "gpiochip1x", "gpiomem", "mygpiochip1"})
-        f.file(name);
-    fs::create_symlink("gpiochip0", f.path / "gpiochip4");
-    const auto at = [&](const char* name) { return (f.path / name).string(); };
-    CHECK(tactor::gpio::chip_paths(f.path) ==
+        f.write(name);
+    fs::create_symlink("gpiochip0", f / "gpiochip4");
+    const auto at = [&](const char* name) { return (f / name).string(); };
+    CHECK(tactor::gpio::chip_paths(f.path()) ==
           std::vector{at("gpiochip0"), at("gpiochip2"), at("gpiochip10")});
-    CHECK(tactor::gpio::chip_paths(f.path / "nowhere").empty());
+    CHECK(tactor::gpio::chip_paths(f / "nowhere").empty());
 }
 
 TEST_CASE("a file's group has a name, a missing file's is the usual one")
@@ -50,9 +35,9 @@ TEST_CASE("a file's group has a name, a missing file's is the usual one")
 TEST_CASE("what is no GPIO chip is not opened as one")
 {
     const folder f;
-    f.file("gpiochip0");
+    f.write("gpiochip0");
     for (const std::string& path :
-         {(f.path / "gpiochip0").string(), std::string("/dev/null"), f.path.string()}) {
+         {(f / "gpiochip0").string(), std::string("/dev/null"), f.path().string()}) {
         const tactor::gpio::chip c = tactor::gpio::read_chip(path);
         CHECK(c.code != 0);
         CHECK(c.info.path == path);

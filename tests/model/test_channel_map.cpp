@@ -2,42 +2,19 @@
 // Other channels in an array file's own text.
 #include <doctest/doctest.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include <tactor/setup.hpp>
 
+#include "folder.hpp"
 #include "message_of.hpp"
 
 using namespace tactor;
 namespace fs = std::filesystem;
 
 namespace {
-
-class folder {
-public:
-    folder()
-    {
-        std::string name = (fs::temp_directory_path() / "tactor-channels-XXXXXX").string();
-        REQUIRE(::mkdtemp(name.data()) != nullptr);
-        path_ = name;
-    }
-    ~folder() { fs::remove_all(path_); }
-    folder(const folder&) = delete;
-    folder& operator=(const folder&) = delete;
-
-    fs::path write(const std::string& name, const std::string& text) const
-    {
-        std::ofstream(path_ / name, std::ios::binary) << text;
-        return path_ / name;
-    }
-
-private:
-    fs::path path_;
-};
 
 std::string changed(const std::string& text, const std::vector<unsigned>& channels)
 {

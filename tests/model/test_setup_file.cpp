@@ -3,50 +3,19 @@
 #include <doctest/doctest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <string>
-
-#include <unistd.h>
 
 #include <fmt/format.h>
 
 #include <tactor/setup.hpp>
 
+#include "folder.hpp"
 #include "message_of.hpp"
 
 using namespace tactor;
 namespace fs = std::filesystem;
 
 namespace {
-
-// A folder of its own that goes away with the test.
-class folder {
-public:
-    folder()
-    {
-        static int count = 0;
-        path_ = fs::temp_directory_path() / fmt::format("tactor-setup-{}-{}", getpid(), count++);
-        fs::create_directories(path_);
-    }
-    ~folder()
-    {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    folder(const folder&) = delete;
-    folder& operator=(const folder&) = delete;
-
-    fs::path write(const std::string& name, const std::string& text) const
-    {
-        fs::create_directories((path_ / name).parent_path());
-        std::ofstream(path_ / name, std::ios::binary) << text;
-        return path_ / name;
-    }
-    fs::path operator/(const std::string& name) const { return path_ / name; }
-
-private:
-    fs::path path_;
-};
 
 std::string complaint(const fs::path& file)
 {

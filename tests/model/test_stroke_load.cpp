@@ -2,46 +2,16 @@
 #include <doctest/doctest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <random>
 #include <string>
-
-#include <unistd.h>
-
-#include <fmt/format.h>
 
 #include <tactor/error.hpp>
 #include <tactor/stroke.hpp>
 
+#include "folder.hpp"
 #include "message_of.hpp"
 
 namespace {
-
-// A folder of its own, gone at the end.
-class folder {
-public:
-    folder() : at_(std::filesystem::temp_directory_path() / fmt::format("tactor-test-{}", ::getpid()))
-    {
-        std::filesystem::create_directories(at_);
-    }
-    ~folder()
-    {
-        std::error_code ignored;
-        std::filesystem::remove_all(at_, ignored);
-    }
-    folder(const folder&) = delete;
-    folder& operator=(const folder&) = delete;
-
-    std::filesystem::path write(const std::string& name, const std::string& text) const
-    {
-        std::ofstream(at_ / name, std::ios::binary) << text;
-        return at_ / name;
-    }
-    const std::filesystem::path& at() const { return at_; }
-
-private:
-    std::filesystem::path at_;
-};
 
 const std::string csv = "t_s,x_mm,y_mm\n0,0,0\n1,6,0\n";
 const std::string svg = "<svg><line x2='6'/></svg>";
@@ -94,9 +64,9 @@ TEST_CASE("the kind of stroke text is guessed from its first line")
 TEST_CASE("files that cannot be read are named")
 {
     const folder f;
-    CHECK(refusal(f.at() / "none.csv").find("none.csv: No such file or directory (check the name)") !=
+    CHECK(refusal(f.path() / "none.csv").find("none.csv: No such file or directory (check the name)") !=
           std::string::npos);
-    CHECK(refusal(f.at()).find(f.at().string() + ": is a directory") == 0);
+    CHECK(refusal(f.path()).find(f.path().string() + ": is a directory") == 0);
     if (::geteuid() != 0) {
         const auto secret = f.write("secret.csv", csv);
         std::filesystem::permissions(secret, std::filesystem::perms::none);

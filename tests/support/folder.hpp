@@ -30,7 +30,16 @@ public:
     folder(const folder&) = delete;
     folder& operator=(const folder&) = delete;
 
+    const std::filesystem::path& path() const { return path_; }
     std::filesystem::path operator/(const std::filesystem::path& name) const { return path_ / name; }
+
+    /// Makes the folders on the way, too. Returns the file's path.
+    std::filesystem::path write(const std::filesystem::path& name, const std::string& text = "") const
+    {
+        std::filesystem::create_directories((path_ / name).parent_path());
+        std::ofstream(path_ / name, std::ios::binary) << text;
+        return path_ / name;
+    }
 
     /// What is in it, in order.
     std::vector<std::string> names() const
