@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "synth/abreast.hpp"
 #include "synth/clones.hpp"
 #include "synth/oscillator.hpp"
 #include "synth/sincos.hpp"
@@ -16,9 +17,6 @@ namespace tactor::synth {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "the formats are little-endian");
-
-/// Samples of one channel, as their bits.
-struct alignas(64) lane : std::array<std::uint32_t, block_frames> {};
 
 TACTOR_CLONES void to_float(const channel_samples& c, unsigned n, std::uint32_t* __restrict v) noexcept
 {
@@ -77,49 +75,7 @@ void scatter(const lane& v, std::size_t bytes, unsigned n, std::byte* out, std::
     }
 }
 
-/// Channels that lie side by side and are written together.
-constexpr std::size_t abreast = 4;
 constexpr lane silent{};
-using quad = std::uint32_t __attribute__((vector_size(16)));
-using short_quad = std::uint16_t __attribute__((vector_size(8)));
-
-quad load(const lane& v, unsigned i) noexcept
-{
-    quad q;
-    std::memcpy(&q, &v[i], sizeof q);
-    return q;
-}
-
-/// Four values, each cut to the element of Row, at each place: a transposition.
-template <class Row>
-void scatter_abreast(const std::array<const lane*, abreast>& from, unsigned n, std::byte* out,
-                     std::size_t stride) noexcept
-{
-    unsigned i = 0;
-    for (; i + 4 <= n; i += 4, out += 4 * stride) {
-        const quad a = load(*from[0], i);
-        const quad b = load(*from[1], i);
-        const quad c = load(*from[2], i);
-        const quad d = load(*from[3], i);
-        const quad ab = __builtin_shufflevector(a, b, 0, 4, 1, 5);
-        const quad cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
-        const quad ab_next = __builtin_shufflevector(a, b, 2, 6, 3, 7);
-        const quad cd_next = __builtin_shufflevector(c, d, 2, 6, 3, 7);
-        const quad rows[] = {__builtin_shufflevector(ab, cd, 0, 1, 4, 5),
-                             __builtin_shufflevector(ab, cd, 2, 3, 6, 7),
-                             __builtin_shufflevector(ab_next, cd_next, 0, 1, 4, 5),
-                             __builtin_shufflevector(ab_next, cd_next, 2, 3, 6, 7)};
-        for (std::size_t row = 0; row < 4; ++row) {
-            const Row cut = __builtin_convertvector(rows[row], Row);
-            std::memcpy(out + row * stride, &cut, sizeof cut);
-        }
-    }
-    for (; i < n; ++i, out += stride) {
-        const quad row{(*from[0])[i], (*from[1])[i], (*from[2])[i], (*from[3])[i]};
-        const Row cut = __builtin_convertvector(row, Row);
-        std::memcpy(out, &cut, sizeof cut);
-    }
-}
 
 } // namespace
 
@@ -154,11 +110,7 @@ void interleave(sample_format f, std::span<const channel_samples> sounding, std:
             to_bits(f, c, n, lanes[i]);
             from[i] = &lanes[i];
         }
-        if (sample == 2) {
-            scatter_abreast<short_quad>(from, n, out + first * sample, stride);
-        } else {
-            scatter_abreast<quad>(from, n, out + first * sample, stride);
-        }
+        write_abreast(from, sample, n, out + first * sample, stride);
         sounding = sounding.subspan(count);
         written = first + abreast;
     }
