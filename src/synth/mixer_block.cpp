@@ -58,7 +58,9 @@ void mixer::impl::mix(const voice& v, bool last, unsigned n) noexcept
         }
         if (!t.sounding) {
             t.sounding = true;
-            t.peak = d.peak;
+            t.peak = 0.0;
+            t.until = 0;
+            t.reach(from, to, d.peak);
             sounding.push_back(d.channel);
             if (d.slope == 0.0 && to - from == n) {
                 t.lone = s;
@@ -70,7 +72,7 @@ void mixer::impl::mix(const voice& v, bool last, unsigned n) noexcept
             }
             std::fill_n(t.sum.begin(), n, 0.0);
         } else {
-            t.peak += d.peak;
+            t.reach(from, to, d.peak);
         }
         double* sum = summed(t, n);
         if (d.slope == 0.0) {

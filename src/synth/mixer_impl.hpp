@@ -24,9 +24,19 @@ struct strip {
     const double* lone = nullptr; ///< only one voice so far, with `gain`: its carrier in place of the sum
     double gain = 1.0;
     double limit = 0.0;
-    double peak = 0.0;  ///< what the voices could reach together
+    double peak = 0.0;     ///< what the voices could reach together
+    double together = 0.0; ///< what those could that last until `until`, a frame of the block
+    unsigned until = 0;
     bool spare = false; ///< no tactor: for markers
     bool sounding = false;
+
+    /// A voice of that amplitude from one frame of the block to another. They come in order of their start.
+    void reach(unsigned from, unsigned to, double amplitude) noexcept
+    {
+        together = from < until ? together + amplitude : amplitude;
+        until = std::max(until, to);
+        peak = std::max(peak, together);
+    }
 };
 
 struct mixer::impl {
