@@ -15,6 +15,9 @@ import unittest
 TOOL = pathlib.Path(sys.argv[1]).resolve()
 ROOT = pathlib.Path(sys.argv[2]).resolve()
 
+# With a sanitizer the tool is twenty times slower.
+PATIENCE_S = 600 if "ASAN_OPTIONS" in os.environ else 60
+
 # Only what the tests define: neither the user's nor the system's configuration of ALSA or tactor.
 ALSA_CONFIG = """
 pcm.!default { type null }
@@ -75,7 +78,7 @@ class ToolTest(unittest.TestCase):
         path.write_bytes(text if isinstance(text, bytes) else text.encode())
         return path
 
-    def run_tool(self, *args, stdin="", env=None, timeout=60):
+    def run_tool(self, *args, stdin="", env=None, timeout=PATIENCE_S):
         return subprocess.run([TOOL, *map(str, args)], input=stdin, capture_output=True, text=True, timeout=timeout,
                               cwd=self.dir, env=self.env | (env or {}), check=False)
 
