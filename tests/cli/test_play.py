@@ -8,7 +8,7 @@ import signal
 import subprocess
 import unittest
 
-from harness import TOOL, ToolTest, Wav, main
+from harness import SANITIZED, TOOL, ToolTest, Wav, main
 
 
 class Play(ToolTest):
@@ -109,7 +109,7 @@ class Play(ToolTest):
         self.assertEqual((counters["xruns"], counters["xrun_s"], counters["reopened"]), (0, [], 0))
         self.assertGreaterEqual(counters["frames"], stroke["frames"])
 
-    @unittest.skipIf("ASAN_OPTIONS" in os.environ, "a sanitizer's own memory is not locked")
+    @unittest.skipIf(SANITIZED, "a sanitizer's own memory is not locked")
     def test_with_locked_memory_the_audio_thread_meets_no_page_fault(self):
         counters = json.loads(self.ok("play", *self.SHORT, "--format", "json").stdout)["counters"]
         if not counters["locked_memory"]:
