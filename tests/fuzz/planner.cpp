@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Any array, stroke and options: a plan whose numbers hold and, as the input says, which is the same twice, whose
-// samples are within full scale, or whose percept is finite. Not all three each time: they take longer than the plan.
+// Any array, stroke and options: a plan whose numbers hold and, as the input says, which is the same twice,
+// whose samples are within full scale, or whose percept is finite. Not all three each time: they take longer
+// than the plan.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
