@@ -20,8 +20,8 @@ bool inside(const std::vector<point>& hull, point p)
         std::partition_point(first, last, [&](point v) { return turn(hull.front(), v, p) >= 0.0; });
     if (after == first)
         return false;
-    return turn(*(after - 1), *after, p) >= 0.0 && turn(hull.front(), *(after - 1), p) >= 0.0 &&
-           turn(*after, hull.front(), p) >= 0.0;
+    // Only edges of the hull count: with rounding a point may lie on neither side of a line between wedges.
+    return turn(*(after - 1), *after, p) >= 0.0 && (after != last || turn(*last, hull.front(), p) >= 0.0);
 }
 
 } // namespace

@@ -175,3 +175,22 @@ TEST_CASE("the hull holds its edge within a nanometre, and nearest() lies on it"
             REQUIRE((t.x_mm - q.x_mm) * (p.x_mm - q.x_mm) + (t.y_mm - q.y_mm) * (p.y_mm - q.y_mm) <= 1e-6);
     }
 }
+
+TEST_CASE("every place of a grid is inside, on the diagonals of the hull, too")
+{
+    generator g(29);
+    for (unsigned round = 0; round < 2000; ++round) {
+        const double x_mm = between(g, 0.1, 50.0);
+        const double y_mm = between(g, 0.1, 50.0);
+        const unsigned n = 3 + round % 3;
+        CAPTURE(x_mm);
+        CAPTURE(y_mm);
+        const layout l(make_grid("grid", n, n, x_mm, y_mm));
+        for (const point p : l.places()) {
+            CHECK(l.contains(p));
+            CHECK(distance_mm(l.nearest(p), p) <= same_place_mm);
+        }
+    }
+    const layout found(make_grid("grid", 4, 4, 49.547345412160652, 0.14901599888563485));
+    CHECK(found.contains(found.places()[5]));
+}
