@@ -11,15 +11,16 @@ import sys
 
 DOCTEST = re.compile(r"\[doctest\] test cases:\s+\d+ \|\s+(\d+) passed \|\s+(\d+) failed \|\s+(\d+) skipped")
 COUNTED = re.compile(r"^(\d+) passed, (\d+) failed(?:, (\d+) skipped)?$", re.M)
+# What doctest and unittest print above each case that failed, and what this prints of a lane's suites.
+FAILED = re.compile(r"^(?:TEST CASE|FAIL|ERROR|\s*FAILED): +(.*)$", re.M)
 
 
-def suite_counts(entry):
-    output = re.sub(r"\x1b\[[0-9;]*m", "", entry.get("stdout", ""))
+def suite_counts(result, output):
     match = DOCTEST.search(output) or COUNTED.search(output)
     passed, failed, skipped = (int(n or 0) for n in match.groups()) if match else (0, 0, 0)
-    if entry["result"] not in ("OK", "SKIP", "EXPECTEDFAIL") and failed == 0:
+    if result not in ("OK", "SKIP", "EXPECTEDFAIL") and failed == 0:
         failed = 1  # crashed, timed out, or failed outside its cases
-    if entry["result"] == "SKIP":
+    if result == "SKIP":
         skipped = max(skipped, 1)
     if passed + failed + skipped == 0:
         passed = 1
@@ -34,7 +35,8 @@ def lane_counts(text):
 def results(arguments):
     with open(arguments[0], encoding="utf-8") as log:
         for entry in map(json.loads, log):
-            yield entry["name"], suite_counts(entry), entry.get("stdout", "")
+            text = re.sub(r"\x1b\[[0-9;]*m", "", entry.get("stdout", ""))
+            yield entry["name"], suite_counts(entry["result"], text), text
     for argument in arguments[1:]:
         name, _, file = argument.rpartition("=")
         text = pathlib.Path(file).read_text(encoding="utf-8", errors="replace")
@@ -45,6 +47,9 @@ def main():
     totals = [0, 0, 0]
     for name, counts, text in results(sys.argv[1:]):
         print(f"{name:<28} {counts[0]:>6} passed {counts[1]:>4} failed {counts[2]:>4} skipped")
+        if counts[1]:
+            for case in dict.fromkeys(FAILED.findall(text)) or [f"{name}: crashed, ran out of time or named no case"]:
+                print("  FAILED: " + case)
         for line in re.findall(r"^\s*((?:SKIPPED|SHORTENED): .*)$", text, re.M):
             print("  " + line)
         totals = [a + b for a, b in zip(totals, counts)]
