@@ -101,7 +101,7 @@ finding check_kernel(const system_facts& f)
     case preemption::unknown:
         break;
     }
-    return fine("kernel", "PREEMPT_DYNAMIC; how preemptible, only root can read",
+    return fine("kernel", "PREEMPT_DYNAMIC; how preemptible, only debugfs tells, and only root",
                 "where there are xruns: preempt=full on the kernel's command line");
 }
 

@@ -6,31 +6,15 @@ Usage: test_dist.py TOOL SOURCE_ROOT BUILD_ROOT. Compiles the library twice.
 import os
 import pathlib
 import shutil
-import subprocess
-import sys
 import tarfile
-import tempfile
-import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
-from harness import ROOT, main  # noqa: E402
-
-BUILD = pathlib.Path(sys.argv[3]).resolve()
-CONSUMER = ROOT / "tests/install/consumer"
+from building import BUILD, CONSUMER, FolderTest, main, run
 
 
-def run(*args, **more):
-    r = subprocess.run([str(a) for a in args], capture_output=True, text=True, check=False, **more)
-    assert r.returncode == 0, f"{args}: {r.stdout[-3000:]}{r.stderr}"
-    return r.stdout
-
-
-class Dist(unittest.TestCase):
+class Dist(FolderTest):
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.folder.cleanup)
-        cls.dir = pathlib.Path(cls.folder.name)
+        super().setUpClass()
         run("meson", "dist", "-C", BUILD, "--no-tests", "--allow-dirty", "--formats", "gztar")
         (tarball,) = (BUILD / "meson-dist").glob("tactor-*.tar.gz")
         with tarfile.open(tarball) as t:

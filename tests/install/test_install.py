@@ -8,35 +8,21 @@ import os
 import pathlib
 import re
 import shutil
-import subprocess
 import sys
-import tempfile
-import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
-from harness import ROOT, main  # noqa: E402
+from building import BUILD, CONSUMER, ROOT, FolderTest, main, run
 
-BUILD = pathlib.Path(sys.argv[3]).resolve()
 PREFIX = pathlib.Path(sys.argv[4])
-CONSUMER = ROOT / "tests/install/consumer"
-
-
-def run(*args, **more):
-    r = subprocess.run([str(a) for a in args], capture_output=True, text=True, check=False, **more)
-    assert r.returncode == 0, f"{args}: {r.stdout}{r.stderr}"
-    return r.stdout
 
 
 def files_below(folder):
     return {p.relative_to(folder).as_posix() for p in folder.rglob("*") if not p.is_dir()}
 
 
-class Install(unittest.TestCase):
+class Install(FolderTest):
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.folder.cleanup)
-        cls.dir = pathlib.Path(cls.folder.name)
+        super().setUpClass()
         # `ninja uninstall` goes by this log, which is that of the user's own installation otherwise.
         log = BUILD / "meson-logs/install-log.txt"
         kept = log.read_bytes() if log.exists() else None
