@@ -147,6 +147,9 @@ bool audio_loop::take(const command& c) noexcept
 void audio_loop::mix_period() noexcept
 {
     scores_.render_live(setup_.period_frames, offset_);
+    // Drives that wait for room in the mixer are there in time.
+    if (link_.commands.size() == 0)
+        scores_.fade_what_runs_out(setup_.period_frames);
     mixer_.process(setup_.period_frames, block_.data());
     pending_ = setup_.period_frames;
     pending_from_ = 0;

@@ -32,6 +32,7 @@ void score_table::begin(const command& c, std::uint64_t offset) noexcept
          .base = base,
          .length = c.length,
          .finish = base + c.length,
+         .fade = fade_,
          .used = true};
     ++used_;
     top_ = std::max(top_, place_of(c.score) + 1);
@@ -60,7 +61,40 @@ bool score_table::add(const command& c) noexcept
         want_fade(*e, stroke_state::interrupted, reason::late);
         return true;
     }
-    return mixer_.room() > reserve_ && mixer_.add(d);
+    if (mixer_.room() <= reserve_ || !mixer_.add(d))
+        return false;
+    cover(*e, d);
+    return true;
+}
+
+// What ends before its window does is continued by another drive, unless it has come down to zero.
+void score_table::cover(entry& e, const synth::drive_event& d) noexcept
+{
+    const std::uint64_t end = d.start + d.length;
+    if (end < e.covered)
+        return;
+    const bool open = d.ramp_position + d.length < d.window &&
+                      std::any_of(d.drive.begin(), d.drive.begin() + d.drives,
+                                  [](const synth::channel_drive& c) { return c.to != 0.0; });
+    e.open = open || (e.open && end == e.covered);
+    e.covered = end;
+}
+
+void score_table::fade_what_runs_out(std::uint64_t period) noexcept
+{
+    const std::uint64_t next = mixer_.position();
+    for (std::uint32_t i = 0; i < top_; ++i) {
+        entry& e = entries_[i];
+        if (!e.used || !e.open || e.fed || e.fading || e.fade_wanted)
+            continue;
+        if (e.covered >= next + 2 * period) {
+            e.ahead = true;
+        } else if (e.ahead && e.base < next) {
+            // The rest is known: between one and two periods, as the last look found two.
+            e.fade = static_cast<std::uint32_t>(std::min<std::uint64_t>(fade_, e.covered - next));
+            want_fade(e, stroke_state::interrupted, reason::late);
+        }
+    }
 }
 
 void score_table::end(ticket t) noexcept
@@ -108,13 +142,13 @@ void score_table::fade(entry& e) noexcept
     // What follows its points has no drives beyond this period that the mixer could fade.
     const bool follows = e.live != nullptr && !e.live->is_bursts();
     if (follows)
-        e.live->fade(mixer_, fade_);
-    else if (!mixer_.fade_out(e.score, fade_))
+        e.live->fade(mixer_, e.fade);
+    else if (!mixer_.fade_out(e.score, e.fade))
         return; // too many fades at once: again in the next period
     close_live(e);
     e.fading = true;
     e.fade_wanted = false;
-    e.finish = mixer_.position() + fade_;
+    e.finish = mixer_.position() + e.fade;
 }
 
 void score_table::stop(bool closing) noexcept

@@ -33,6 +33,8 @@ public:
     bool begin_live(const command& c) noexcept;
     /// Adds the live strokes' drives of the next frames; before each mix. `offset` as in begin().
     void render_live(std::uint64_t frames, std::uint64_t offset) noexcept;
+    /// Fades out what would break off for want of drives within two periods; before each mix.
+    void fade_what_runs_out(std::uint64_t period) noexcept;
     /// Also for a score whose begin() is still to come.
     void cancel(ticket t) noexcept;
     /// Fades everything out; scores not yet begun end at once, as do those that come later.
@@ -64,7 +66,11 @@ private:
         stroke_id id = 0;
         std::uint64_t base = 0;
         std::uint64_t length = 0;
-        std::uint64_t finish = 0; ///< over when this frame has been played
+        std::uint64_t finish = 0;  ///< over when this frame has been played
+        std::uint64_t covered = 0; ///< end of its drives so far
+        std::uint32_t fade = 0;    ///< frames that its end takes
+        bool open = false;         ///< it would still sound at `covered`: another drive is to follow
+        bool ahead = false;        ///< drives have been there in time
         bool used = false;
         bool fed = false;
         bool fade_wanted = false;
@@ -79,6 +85,7 @@ private:
     void look_at_wishes(entry& e) noexcept;
     void render_live(entry& e, std::uint64_t frames, std::uint64_t offset) noexcept;
     void close_live(entry& e) noexcept;
+    static void cover(entry& e, const synth::drive_event& d) noexcept;
     void want_fade(entry& e, stroke_state s, reason why) noexcept;
     void fade(entry& e) noexcept;
     void over(entry& e, stroke_state s, reason why, int code, std::uint64_t frames) noexcept;

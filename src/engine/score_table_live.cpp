@@ -17,6 +17,7 @@ bool score_table::begin_live(const command& c) noexcept
          .base = never,
          .length = never,
          .finish = 2 * never,
+         .fade = fade_,
          .used = true,
          .fed = true,
          .live = c.voice};

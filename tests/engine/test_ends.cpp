@@ -216,6 +216,42 @@ TEST_CASE("drives that come too late end the stroke instead of starting in mid-b
     CHECK_FALSE(r.first_sound(from + 2400 + 4800 + 480));
 }
 
+TEST_CASE("a continuous stroke whose drives stop coming fades out before the last of them")
+{
+    stroke around = preset_stroke("park2016-3");
+    around.carrier_hz = 230.0;
+    plan_options o;
+    o.method = algorithm::continuous;
+    const score s(palm(), {{make_plan(palm(), around, o)}}, {});
+    for (const std::uint32_t fade : {48U, 480U, 4800U}) {
+        rig r({.loop = {.fade_frames = fade, .horizon_frames = 2400}});
+        REQUIRE(r.start().status == io_status::ok);
+        const std::uint64_t from = r.status().written;
+        const stroke_id id = r.submit(s);
+        r.play(9600);
+        REQUIRE_FALSE(r.report(id));
+        // From here on the control thread sleeps.
+        for (int i = 0; i < 100; ++i) {
+            r.dac.advance_queued(96);
+            r.step();
+        }
+        r.play_out();
+        REQUIRE(r.report(id));
+        CHECK(r.report(id)->state == stroke_state::interrupted);
+        CHECK(r.report(id)->reason.find("too slow") != std::string::npos);
+        const std::uint64_t end = r.report(id)->frames;
+        CHECK(end > 9600);
+        CHECK_FALSE(r.first_sound(from + end));
+        const std::vector<std::byte> got = r.captured(from, end);
+        const std::vector<std::byte> all = rendered(s, sample_format::s32);
+        const std::size_t whole = (end - 192) * s.channels() * 4;
+        CHECK(std::equal(got.begin(), got.begin() + static_cast<std::ptrdiff_t>(whole), all.begin()));
+        // Its last frames are all but silent.
+        for (std::size_t i = got.size() / 4 - 6 * s.channels(); i < got.size() / 4; ++i)
+            CHECK(std::abs(sample(got, i)) < 0.05 * 0.25 * 2147483648.0);
+    }
+}
+
 TEST_CASE("the display sees the newest stroke that sounds")
 {
     rig r;
