@@ -46,7 +46,7 @@ audio_loop::audio_loop(sink& s, link& l, std::span<const double> limits, const l
     l.amplifier.ready.store(!o.amplifier, std::memory_order_relaxed);
 }
 
-void audio_loop::step(io_status ready, std::int64_t now) noexcept
+void audio_loop::step(io_status ready, std::int64_t now) noexcept TACTOR_NONBLOCKING
 {
     ++idle_steps_;
     now_ns_ = now;

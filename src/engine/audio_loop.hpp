@@ -13,8 +13,10 @@
 #include <tactor/sink.hpp>
 
 #include "engine/dac_clock.hpp"
+#include "engine/device.hpp"
 #include "engine/link.hpp"
 #include "engine/score_table.hpp"
+#include "rt/nonblocking.hpp"
 #include "synth/mixer.hpp"
 
 namespace tactor::engine {
@@ -39,7 +41,7 @@ public:
     io_result start(std::int64_t now) noexcept;
 
     /// One wake-up; `ready` is what the sink made of the descriptors, `again` when it was not asked.
-    void step(io_status ready, std::int64_t now) noexcept;
+    void step(io_status ready, std::int64_t now) noexcept TACTOR_NONBLOCKING;
 
     /// Whether the stream has ended; the last report is in the ring then.
     bool over() const noexcept { return phase_ == phase::over; }
@@ -76,7 +78,7 @@ private:
     void finish_when_silent() noexcept;
     void publish() noexcept;
 
-    sink& sink_;
+    device sink_;
     link& link_;
     loop_options options_;
     stream_setup setup_;

@@ -69,7 +69,7 @@ audio_thread::audio_thread(audio_loop& loop, sink& s, link& l, const rt::thread_
     begun.wait();
 }
 
-void audio_thread::run() noexcept
+void audio_thread::run() noexcept TACTOR_NONBLOCKING
 {
     fault_watch faults(link_.count);
     while (!loop_.over()) {
@@ -84,6 +84,7 @@ void audio_thread::run() noexcept
 
 io_status audio_thread::wait() noexcept
 {
+    const rt::permitted_call here{};
     const bool asks_sink = loop_.polls_sink();
     const std::size_t n =
         asks_sink ? sink_.descriptors(std::span(fds_).first(fds_.size() - 1)) : std::size_t{0};

@@ -9,6 +9,7 @@
 #include <poll.h>
 
 #include "engine/audio_loop.hpp"
+#include "rt/nonblocking.hpp"
 #include "rt/thread.hpp"
 
 namespace tactor::engine {
@@ -25,7 +26,7 @@ public:
     void join() noexcept { thread_->join(); }
 
 private:
-    void run() noexcept;
+    void run() noexcept TACTOR_NONBLOCKING;
     io_status wait() noexcept;
 
     audio_loop& loop_;

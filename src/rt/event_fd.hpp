@@ -10,6 +10,8 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+#include "rt/nonblocking.hpp"
+
 namespace tactor::rt {
 
 class event_fd {
@@ -29,6 +31,7 @@ public:
     /// Makes the descriptor readable. Any thread; does not block.
     void signal() noexcept
     {
+        const permitted_call here{};
         const std::uint64_t one = 1;
         // EAGAIN means 2^64 - 2 signals wait: readable anyway.
         while (::write(fd_, &one, sizeof one) < 0 && errno == EINTR) {

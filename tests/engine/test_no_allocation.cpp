@@ -10,10 +10,8 @@
 using namespace tactor;
 using namespace tactor::test;
 
-TEST_CASE("the audio loop calls the heap in none of 100 000 periods, xruns and cancels included")
+COUNTING_TEST_CASE("the audio loop calls the heap in none of 100 000 periods, xruns and cancels included")
 {
-    if (!counts_allocations())
-        return;
     rig r;
     r.dac.reserve_capture(1 << 16);
     REQUIRE(r.start().status == io_status::ok);
@@ -40,10 +38,8 @@ TEST_CASE("the audio loop calls the heap in none of 100 000 periods, xruns and c
     CHECK(r.ended.size() > 100);
 }
 
-TEST_CASE("the counter counts")
+COUNTING_TEST_CASE("the counter counts")
 {
-    if (!counts_allocations())
-        return;
     std::uint64_t calls = 0;
     std::int64_t held = 0;
     std::int64_t left = 0;
@@ -60,10 +56,8 @@ TEST_CASE("the counter counts")
     CHECK(left == 0);
 }
 
-TEST_CASE("an hour of strokes needs no more memory in the feeder than a second")
+COUNTING_TEST_CASE("an hour of strokes needs no more memory in the feeder than a second")
 {
-    if (!counts_allocations())
-        return;
     const score hour = random_score(3, 51'000);
     REQUIRE(hour.frames() > std::uint64_t{3500} * rate);
     rig r;

@@ -3,11 +3,12 @@
 
 #include <cerrno>
 #include <cstddef>
+#include <cstdio>
 
 #include <malloc.h>
 
 #if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(realtime_sanitizer)
 #define TACTOR_SANITIZED 1
 #endif
 #endif
@@ -110,6 +111,13 @@ bool counts_allocations() noexcept
 #else
     return true;
 #endif
+}
+
+bool can_count(const char* test_case) noexcept
+{
+    if (!counts_allocations())
+        std::printf("SKIPPED: %s: a sanitizer has an allocator of its own\n", test_case);
+    return counts_allocations();
 }
 
 count_allocations::count_allocations() noexcept

@@ -5,10 +5,18 @@
 
 #include <cstdint>
 
+#include <doctest/doctest.h>
+
+/// A test case that counts. Where that cannot be, it is skipped, and said to be.
+#define COUNTING_TEST_CASE(name) TEST_CASE(name* doctest::skip(!tactor::test::can_count(name)))
+
 namespace tactor::test {
 
 /// Whether this program counts (it does not under sanitizers).
 bool counts_allocations() noexcept;
+
+/// The same; says "SKIPPED" for the test case where it does not.
+bool can_count(const char* test_case) noexcept;
 
 /// Counts malloc, calloc, realloc, free and the like of the calling thread while it lives.
 class count_allocations {

@@ -1,56 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Counts what this thread takes from the heap. Not under a sanitizer, which has an allocator of its own.
-#include <atomic>
-#include <cstdlib>
-
-#include <doctest/doctest.h>
-
+#include "count_allocations.hpp"
 #include "pieces.hpp"
 #include "synth/event_source.hpp"
 #include "synth/mixer.hpp"
 
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define COUNTS_ALLOCATIONS 1
-
-namespace {
-thread_local std::size_t taken = 0;
-}
-
-extern "C" {
-void* __libc_malloc(std::size_t);
-void* __libc_calloc(std::size_t, std::size_t);
-void* __libc_realloc(void*, std::size_t);
-void* __libc_memalign(std::size_t, std::size_t);
-
-void* malloc(std::size_t n)
-{
-    ++taken;
-    return __libc_malloc(n);
-}
-
-void* calloc(std::size_t n, std::size_t size)
-{
-    ++taken;
-    return __libc_calloc(n, size);
-}
-
-void* realloc(void* p, std::size_t n)
-{
-    ++taken;
-    return __libc_realloc(p, n);
-}
-
-void* aligned_alloc(std::size_t alignment, std::size_t n)
-{
-    ++taken;
-    return __libc_memalign(alignment, n);
-}
-}
-#endif
-
-#ifdef COUNTS_ALLOCATIONS
-
 using namespace tactor;
+using namespace tactor::test;
 using namespace pieces;
 
 namespace {
@@ -69,47 +24,40 @@ score busy_score()
 
 } // namespace
 
-TEST_CASE("the counter counts")
-{
-    const std::size_t before = taken;
-    std::vector<int> v(100 + before % 2);
-    CHECK(taken == before + 1);
-}
-
-TEST_CASE("rendering allocates nothing")
+COUNTING_TEST_CASE("rendering allocates nothing")
 {
     const score s = busy_score();
     for (const sample_format f : all_formats) {
         renderer r(s, f);
         std::vector<std::byte> out(500 * s.channels() * 4);
-        const std::size_t before = taken;
+        const count_allocations count;
         for (std::size_t n = 1; r.position() < s.frames() + 1000; n = n % 500 + 1) {
             r.process(n, out.data());
         }
-        CHECK(taken == before);
+        CHECK(count.calls() == 0);
     }
 }
 
-TEST_CASE("walking through a score allocates nothing")
+COUNTING_TEST_CASE("walking through a score allocates nothing")
 {
     const score s = busy_score();
     synth::event_source source(s);
     std::size_t events = 0;
-    const std::size_t before = taken;
+    const count_allocations count;
     for (; source.peek() != nullptr; source.pop()) {
         ++events;
     }
-    CHECK(taken == before);
+    CHECK(count.calls() == 0);
     CHECK(events > 1000);
 }
 
-TEST_CASE("a mixer allocates nothing after its construction")
+COUNTING_TEST_CASE("a mixer allocates nothing after its construction")
 {
     const score s = busy_score();
     synth::event_source source(s);
     synth::mixer m(std::vector<double>(9, 1.0), sample_format::s32, 512);
     std::vector<std::byte> out(96 * 9 * 4);
-    const std::size_t before = taken;
+    const count_allocations count;
     for (std::uint32_t round = 0; round < 400; ++round) {
         while (source.peek() != nullptr && m.room() > 0) {
             synth::drive_event e = *source.peek();
@@ -123,7 +71,5 @@ TEST_CASE("a mixer allocates nothing after its construction")
         }
     }
     m.reset();
-    CHECK(taken == before);
+    CHECK(count.calls() == 0);
 }
-
-#endif
