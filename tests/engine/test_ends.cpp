@@ -33,6 +33,15 @@ double largest_step(const std::vector<std::byte>& bytes, unsigned channels)
     return worst / 2147483648.0;
 }
 
+// Only the DAC and the audio thread go on.
+void sleep_of_control(rig& r, int periods)
+{
+    for (int i = 0; i < periods; ++i) {
+        r.dac.advance_queued(r.options.period);
+        r.step();
+    }
+}
+
 } // namespace
 
 TEST_CASE("a stroke is not finished before its last frame has reached the DAC")
@@ -199,11 +208,7 @@ TEST_CASE("drives that come too late end the stroke instead of starting in mid-b
     const std::uint64_t from = r.status().written;
     const score s = random_score(31, 20);
     const stroke_id id = r.submit(s);
-    // The control thread sleeps for much longer than its horizon.
-    for (int i = 0; i < 200; ++i) {
-        r.dac.advance_queued(96);
-        r.step();
-    }
+    sleep_of_control(r, 200); // much longer than its horizon
     r.play_out();
     REQUIRE(r.report(id));
     CHECK(r.report(id)->state == stroke_state::interrupted);
@@ -230,11 +235,7 @@ TEST_CASE("a continuous stroke whose drives stop coming fades out before the las
         const stroke_id id = r.submit(s);
         r.play(9600);
         REQUIRE_FALSE(r.report(id));
-        // From here on the control thread sleeps.
-        for (int i = 0; i < 100; ++i) {
-            r.dac.advance_queued(96);
-            r.step();
-        }
+        sleep_of_control(r, 100);
         r.play_out();
         REQUIRE(r.report(id));
         CHECK(r.report(id)->state == stroke_state::interrupted);
