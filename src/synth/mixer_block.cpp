@@ -48,19 +48,20 @@ void mixer::impl::mix(const voice& v, bool last, unsigned n) noexcept
     const auto k = static_cast<double>(static_cast<std::int64_t>(position - v.start));
     for (std::uint32_t i = 0; i < v.drives; ++i) {
         const voice_drive& d = v.drive[i];
+        const double peak = d.peak(v.end - v.start);
         strip& t = strips[d.channel];
         if (t.spare && v.cycles_per_frame != 0.0) {
             limited += to - from; // there is no tactor that it could be meant for
             continue;
         }
-        if (duty.on() && d.peak >= least_counted_drive && !t.spare) {
+        if (duty.on() && peak >= least_counted_drive && !t.spare) {
             duty.drive(d.channel, clock + from, clock + to);
         }
         if (!t.sounding) {
             t.sounding = true;
             t.peak = 0.0;
             t.until = 0;
-            t.reach(from, to, d.peak);
+            t.reach(from, to, peak);
             sounding.push_back(d.channel);
             if (d.slope == 0.0 && to - from == n) {
                 t.lone = s;
@@ -72,7 +73,7 @@ void mixer::impl::mix(const voice& v, bool last, unsigned n) noexcept
             }
             std::fill_n(t.sum.begin(), n, 0.0);
         } else {
-            t.reach(from, to, d.peak);
+            t.reach(from, to, peak);
         }
         double* sum = summed(t, n);
         if (d.slope == 0.0) {

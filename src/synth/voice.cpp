@@ -25,7 +25,7 @@ voice make_voice(const drive_event& e, std::size_t channels) noexcept
         const double slope = (d.to - d.from) / e.length;
         const bool silent = d.from == 0.0 && d.to == 0.0;
         if (d.channel < channels && std::isfinite(d.from) && std::isfinite(slope) && !silent) {
-            v.drive[v.drives++] = {d.from, slope, std::max(std::abs(d.from), std::abs(d.to)), d.channel};
+            v.drive[v.drives++] = {d.from, slope, d.channel};
         }
     }
     return v;

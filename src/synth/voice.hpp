@@ -3,7 +3,9 @@
 /// A drive_event as the mixer keeps it, and the order in which voices wait and sound.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -17,8 +19,13 @@ namespace tactor::synth {
 struct voice_drive {
     double from = 0.0;
     double slope = 0.0;
-    double peak = 0.0;
     std::uint32_t channel = 0;
+
+    /// Largest in `length` frames.
+    double peak(std::uint64_t length) const noexcept
+    {
+        return std::max(std::abs(from), std::abs(from + slope * static_cast<double>(length)));
+    }
 };
 
 /// Frames are the stream's; `phase` and `window_place` are those of frame 0 of the stream, modulo 2^64, so
