@@ -90,7 +90,7 @@ void score_table::fade_what_runs_out(std::uint64_t period) noexcept
         if (e.covered >= next + 2 * period) {
             e.ahead = true;
         } else if (e.ahead && e.base < next) {
-            // The rest is known: between one and two periods, as the last look found two.
+            // Between one and two periods are left, as the last look found two; or none, and it is silent.
             e.fade = static_cast<std::uint32_t>(std::min<std::uint64_t>(fade_, e.covered - next));
             want_fade(e, stroke_state::interrupted, reason::late);
         }
