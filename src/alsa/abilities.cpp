@@ -8,8 +8,6 @@
 namespace tactor::pcm {
 namespace {
 
-constexpr unsigned most_channels = 1024;
-
 constexpr unsigned usual_rates[] = {8000,  11025, 12000, 16000,  22050,  24000,  32000,  44100,  48000,
                                     64000, 88200, 96000, 176400, 192000, 352800, 384000, 705600, 768000};
 

@@ -12,6 +12,9 @@
 
 namespace tactor::pcm {
 
+/// More than any PCM has.
+inline constexpr unsigned most_channels = 1024;
+
 template <auto Free>
 struct deleter {
     template <typename T>

@@ -14,7 +14,7 @@ namespace tactor::pcm {
 namespace {
 
 using hints = std::unique_ptr<void*, deleter<snd_device_name_free_hint>>;
-using text = std::unique_ptr<char, deleter<std::free>>;
+using c_text = std::unique_ptr<char, deleter<std::free>>;
 
 std::string one_line(const char* lines)
 {
@@ -32,9 +32,9 @@ std::vector<known_name> hinted()
         return names;
     const hints all(first);
     for (void** h = first; *h != nullptr; ++h) {
-        const text name(snd_device_name_get_hint(*h, "NAME"));
-        const text description(snd_device_name_get_hint(*h, "DESC"));
-        const text direction(snd_device_name_get_hint(*h, "IOID")); // none: both
+        const c_text name(snd_device_name_get_hint(*h, "NAME"));
+        const c_text description(snd_device_name_get_hint(*h, "DESC"));
+        const c_text direction(snd_device_name_get_hint(*h, "IOID")); // none: both
         if (name != nullptr && (direction == nullptr || std::string_view(direction.get()) != "Input"))
             names.push_back({name.get(), description == nullptr ? "" : one_line(description.get())});
     }

@@ -16,7 +16,6 @@ namespace tactor::pcm {
 namespace {
 
 // What a device can have at most without a mistake in the request: alsa-lib's own arithmetic is 32 bit.
-constexpr unsigned most_channels = 1024;
 constexpr unsigned most_rate = 768'000;
 constexpr unsigned most_period_frames = 1U << 20;
 constexpr unsigned most_periods = 1024;

@@ -6,16 +6,9 @@
 #include <utility>
 
 #include "alsa/classify.hpp"
+#include "rt/clock.hpp"
 
 namespace tactor::pcm {
-namespace {
-
-std::int64_t nanoseconds(const snd_htimestamp_t& t) noexcept
-{
-    return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
-}
-
-} // namespace
 
 pcm_sink::pcm_sink(handle h, stream_setup s)
     : handle_(std::move(h)),
@@ -76,7 +69,7 @@ std::int64_t pcm_sink::xrun_ns() noexcept
     if (snd_pcm_status(handle_.get(), status_.get()) == 0) {
         snd_htimestamp_t stamp{};
         snd_pcm_status_get_trigger_htstamp(status_.get(), &stamp);
-        const std::int64_t stopped = nanoseconds(stamp);
+        const std::int64_t stopped = rt::to_ns(stamp);
         if (stopped > seen_ns_ && stopped <= now)
             return now - stopped;
     }
@@ -171,7 +164,7 @@ stream_position pcm_sink::position() noexcept
         played_ = std::max(played_, written_ - queued);
     snd_htimestamp_t stamp{};
     snd_pcm_status_get_htstamp(status_.get(), &stamp);
-    const std::int64_t at = nanoseconds(stamp);
+    const std::int64_t at = rt::to_ns(stamp);
     // Plugins may leave the stamp empty or in another clock.
     const bool sane = at <= now && now - at < 1'000'000'000;
     seen_ns_ = sane ? at : now;

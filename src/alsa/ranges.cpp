@@ -40,10 +40,10 @@ std::string formats(const hw_params& p)
 
 std::string describe(const hw_params& p)
 {
-    unsigned least_channels = 0;
-    unsigned most_channels = 0;
-    snd_pcm_hw_params_get_channels_min(p.get(), &least_channels);
-    snd_pcm_hw_params_get_channels_max(p.get(), &most_channels);
+    unsigned first_channels = 0;
+    unsigned last_channels = 0;
+    snd_pcm_hw_params_get_channels_min(p.get(), &first_channels);
+    snd_pcm_hw_params_get_channels_max(p.get(), &last_channels);
     unsigned least_rate = 0;
     unsigned most_rate = 0;
     int direction = 0;
@@ -51,7 +51,7 @@ std::string describe(const hw_params& p)
     snd_pcm_hw_params_get_rate_max(p.get(), &most_rate, &direction);
     if (direction < 0)
         --most_rate; // the bound itself is not in the range
-    return fmt::format("channels {}, rates {} Hz, formats{}", range(least_channels, most_channels, 10000),
+    return fmt::format("channels {}, rates {} Hz, formats{}", range(first_channels, last_channels, 10000),
                        range(least_rate, most_rate, 10'000'000), formats(p));
 }
 

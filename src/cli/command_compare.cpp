@@ -156,10 +156,14 @@ int run(settings& s, option_list& options, const compare_options& asked, bool on
     const auto playable = std::count_if(all.begin(), all.end(), [](const auto& c) { return c.playable(); });
     if (playable == 0)
         throw why_refused(all);
-    const auto print = asked.format == "json" ? print_json : asked.format == "csv" ? print_csv : print_text;
     if (!asked.picture.empty())
         draw(asked, all[0], e.tactors);
-    print(stdout, all, e.tactors);
+    if (asked.format == "json")
+        print_json(stdout, all, e.tactors);
+    else if (asked.format == "csv")
+        print_csv(stdout, all, e.tactors);
+    else
+        print_text(stdout, all, e.tactors);
     if (static_cast<std::size_t>(playable) < all.size())
         throw why_refused(all);
     return status_ok;

@@ -24,8 +24,12 @@ command add_plan(CLI::App& app)
         const environment e = read_environment(*s, *options);
         const piece p = plan_one_piece(*s, e);
         make_score(p, e, settle_render(*s, e)); // levels and carrier are checked when planned
-        const auto print = *format == "json" ? print_json : *format == "csv" ? print_csv : print_text;
-        print(stdout, p, e);
+        if (*format == "json")
+            print_json(stdout, p, e);
+        else if (*format == "csv")
+            print_csv(stdout, p, e);
+        else
+            print_text(stdout, p, e);
         return status_ok;
     };
 }

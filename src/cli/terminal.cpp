@@ -17,7 +17,7 @@ namespace {
 
 constexpr int patience_ms = 200;
 
-std::string_view from_environment(const char* name)
+std::string environment_or_empty(const char* name)
 {
     const char* v = std::getenv(name);
     return v == nullptr ? "" : v;
@@ -27,7 +27,7 @@ std::string_view from_environment(const char* name)
 
 bool can_draw()
 {
-    const std::string_view kind = from_environment("TERM");
+    const std::string kind = environment_or_empty("TERM");
     return isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr && !kind.empty() &&
            kind != "dumb";
 }
@@ -36,7 +36,7 @@ bool can_draw()
 bool speaks_utf8()
 {
     for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
-        std::string value(from_environment(name));
+        std::string value = environment_or_empty(name);
         if (value.empty())
             continue;
         std::transform(value.begin(), value.end(), value.begin(),

@@ -4,13 +4,13 @@
 #include <cerrno>
 
 #include "engine/audio_loop.hpp"
+#include "rt/clock.hpp"
 
 namespace tactor::engine {
 namespace {
 
-constexpr std::int64_t second = 1'000'000'000;
 // snd_pcm_resume() may say "not yet" for ever; a device needs some seconds at most.
-constexpr std::int64_t longest_resume = 10 * second;
+constexpr std::int64_t longest_resume = 10 * rt::ns_per_s;
 
 reason to_reason(io_status s) noexcept
 {
@@ -133,7 +133,7 @@ void audio_loop::restart(std::int64_t now) noexcept
 bool audio_loop::too_often(std::int64_t now) noexcept
 {
     std::int64_t& oldest = recoveries_[recovered_ % recoveries_.size()];
-    if (recovered_ >= recoveries_.size() && now - oldest < second)
+    if (recovered_ >= recoveries_.size() && now - oldest < rt::ns_per_s)
         return true;
     oldest = now;
     ++recovered_;

@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "engine/audio_thread.hpp"
 
-#include <ctime>
 #include <latch>
 
 #include <sys/resource.h>
 
+#include "rt/clock.hpp"
+
 namespace tactor::engine {
 namespace {
-
-std::int64_t now_ns() noexcept
-{
-    timespec t{};
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
-}
 
 // Page faults of this thread once its first wake-ups have touched what it needs; one look a second.
 class fault_watch {
@@ -27,7 +21,7 @@ public:
         if (steps_ < warm_up) {
             if (++steps_ == warm_up && getrusage(RUSAGE_THREAD, &before_) == 0)
                 looked_ns_ = now;
-        } else if (now - looked_ns_ >= 1'000'000'000) {
+        } else if (now - looked_ns_ >= rt::ns_per_s) {
             look();
             looked_ns_ = now;
         }
@@ -61,7 +55,7 @@ audio_thread::audio_thread(audio_loop& loop, sink& s, link& l, const rt::thread_
     // The thread itself starts the stream: ALSA's handle belongs to one thread, and between the start
     // and the first period nothing may come in between.
     thread_ = std::make_unique<rt::thread>(o, [this, &begun] {
-        started_ = loop_.start(now_ns());
+        started_ = loop_.start(rt::monotonic_ns());
         begun.count_down();
         if (started_.status == io_status::ok)
             run();
@@ -74,7 +68,7 @@ void audio_thread::run() noexcept TACTOR_NONBLOCKING
     fault_watch faults(link_.count);
     while (!loop_.over()) {
         const io_status ready = wait();
-        const std::int64_t now = now_ns();
+        const std::int64_t now = rt::monotonic_ns();
         loop_.step(ready, now);
         faults.step(now);
     }
@@ -90,9 +84,7 @@ io_status audio_thread::wait() noexcept
         asks_sink ? sink_.descriptors(std::span(fds_).first(fds_.size() - 1)) : std::size_t{0};
     fds_[n] = {.fd = link_.to_audio.fd(), .events = POLLIN, .revents = 0};
 
-    const std::int64_t t = loop_.timeout_ns();
-    const timespec timeout{.tv_sec = static_cast<time_t>(t / 1'000'000'000),
-                           .tv_nsec = static_cast<long>(t % 1'000'000'000)};
+    const timespec timeout = rt::to_timespec(loop_.timeout_ns());
     if (::ppoll(fds_.data(), n + 1, &timeout, nullptr) < 0)
         return io_status::again;
     if (fds_[n].revents != 0)

@@ -7,27 +7,22 @@
 
 #include <poll.h>
 
+#include "rt/clock.hpp"
+
 namespace tactor::engine {
 namespace {
 
-constexpr std::int64_t second = 1'000'000'000;
-constexpr std::int64_t idle_ns = 60 * second;
+constexpr std::int64_t idle_ns = 60 * rt::ns_per_s;
 // The clock's line gets better as time goes by, and an xrun ends it.
 constexpr std::int64_t longest_wait_ns = 100'000'000;
 constexpr std::int64_t no_clock_ns = 2'000'000;
 
 class system_time final : public pulse_time {
 public:
-    std::int64_t now() noexcept override
-    {
-        timespec t{};
-        clock_gettime(CLOCK_MONOTONIC, &t);
-        return std::int64_t{t.tv_sec} * second + t.tv_nsec;
-    }
+    std::int64_t now() noexcept override { return rt::monotonic_ns(); }
     void sleep_until(std::int64_t time_ns) noexcept override
     {
-        const timespec t{.tv_sec = static_cast<time_t>(time_ns / second),
-                         .tv_nsec = static_cast<long>(time_ns % second)};
+        const timespec t = rt::to_timespec(time_ns);
         while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
         }
     }
@@ -113,8 +108,7 @@ std::int64_t trigger_thread::step() noexcept
 
 void trigger_thread::wait(std::int64_t ns) noexcept
 {
-    const timespec timeout{.tv_sec = static_cast<time_t>(ns / second),
-                           .tv_nsec = static_cast<long>(ns % second)};
+    const timespec timeout = rt::to_timespec(ns);
     pollfd fd{.fd = wake_.fd(), .events = POLLIN, .revents = 0};
     if (::ppoll(&fd, 1, &timeout, nullptr) > 0)
         wake_.consume();

@@ -17,7 +17,7 @@
 
 #include <tactor/error.hpp>
 
-#include "gpio/clock.hpp"
+#include "rt/clock.hpp"
 
 namespace tactor::gpio {
 namespace {
@@ -41,10 +41,10 @@ void close_if_open(int fd) noexcept
 /// Whether one of the events came within the time.
 bool wait_for(int fd, short events, int timeout_ms) noexcept
 {
-    const std::int64_t until = now_ms() + timeout_ms;
+    const std::int64_t until = rt::monotonic_ms() + timeout_ms;
     for (;;) {
         pollfd p{fd, events, 0};
-        const std::int64_t left = std::max<std::int64_t>(until - now_ms(), 0);
+        const std::int64_t left = std::max<std::int64_t>(until - rt::monotonic_ms(), 0);
         const int n = ::poll(&p, 1, static_cast<int>(left));
         if (n >= 0 || errno != EINTR)
             return n > 0;
@@ -172,7 +172,7 @@ bool holder_link::send(message_kind kind) noexcept
 
 bool holder_link::await_answer(message_kind kind) noexcept
 {
-    const std::int64_t until = now_ms() + answer_ms;
+    const std::int64_t until = rt::monotonic_ms() + answer_ms;
     while (!gone_) {
         while (const auto m = receive()) {
             if (m->kind != kind || m->number != number_)
@@ -180,7 +180,7 @@ bool holder_link::await_answer(message_kind kind) noexcept
             lapsed_ = lapsed_ && !m->done;
             return m->done;
         }
-        const std::int64_t left = until - now_ms();
+        const std::int64_t left = until - rt::monotonic_ms();
         if (!gone_ && (left <= 0 || !wait_for(socket_, POLLIN, static_cast<int>(left))))
             give_up();
     }

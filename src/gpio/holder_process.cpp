@@ -12,7 +12,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include "gpio/clock.hpp"
+#include "rt/clock.hpp"
 
 namespace tactor::gpio {
 namespace {
@@ -109,7 +109,7 @@ private:
         pollfd fds[2] = {{job_.socket, POLLIN, 0}, {job_.player, POLLIN, 0}};
         std::int64_t timeout = -1;
         if (on_) {
-            timeout = heard_ms_ + silence_ms - now_ms();
+            timeout = heard_ms_ + silence_ms - rt::monotonic_ms();
             timeout = timeout < 0 ? 0 : timeout;
         }
         const int n = ::poll(fds, 2, static_cast<int>(timeout));
@@ -133,7 +133,7 @@ private:
 
     void obey(message m) noexcept
     {
-        heard_ms_ = now_ms();
+        heard_ms_ = rt::monotonic_ms();
         if (m.kind == message_kind::on || m.kind == message_kind::off) {
             const bool on = m.kind == message_kind::on;
             m.done = job_.set(job_.line, on);
@@ -144,10 +144,10 @@ private:
 
     void check_silence() noexcept
     {
-        if (!on_ || now_ms() - heard_ms_ < silence_ms)
+        if (!on_ || rt::monotonic_ms() - heard_ms_ < silence_ms)
             return;
         on_ = !job_.set(job_.line, false);
-        heard_ms_ = now_ms(); // when it failed: again after the same time
+        heard_ms_ = rt::monotonic_ms(); // when it failed: again after the same time
         send({message_kind::lapsed, 0, !on_, 0});
     }
 

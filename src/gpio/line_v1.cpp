@@ -11,6 +11,8 @@
 #include <fcntl.h>
 #include <gpiod.h>
 
+#include "rt/clock.hpp"
+
 namespace tactor::gpio {
 namespace {
 
@@ -80,8 +82,7 @@ public:
         gpiod_line_event e{};
         if (gpiod_line_event_read_fd(fd_, &e) != 0)
             return std::nullopt;
-        return gpio_edge{std::int64_t{e.ts.tv_sec} * 1'000'000'000 + e.ts.tv_nsec,
-                         e.event_type == GPIOD_LINE_EVENT_RISING_EDGE};
+        return gpio_edge{rt::to_ns(e.ts), e.event_type == GPIOD_LINE_EVENT_RISING_EDGE};
     }
 
 private:

@@ -39,7 +39,7 @@ void fail_at(const source_place& at, std::string_view why, std::string_view hint
 std::string shown(const toml::node& n)
 {
     if (const auto* s = n.as_string())
-        return quoted(s->get());
+        return detail::quoted(s->get());
     if (const auto* i = n.as_integer())
         return fmt::format("{}", i->get());
     if (const auto* f = n.as_floating_point())
@@ -69,7 +69,8 @@ void toml_table::only(std::span<const std::string_view> known) const
     if (first == nullptr)
         return;
     const auto& at = first->source().begin;
-    fail_at({*file_, at.line, at.column}, fmt::format("unknown key {} in {}", quoted(first->str()), title_),
+    fail_at({*file_, at.line, at.column},
+            fmt::format("unknown key {} in {}", detail::quoted(first->str()), title_),
             suggestion(first->str(), known, "keys"));
 }
 
@@ -189,7 +190,8 @@ std::optional<std::string> toml_table::choice(std::string_view key,
     for (const std::string_view c : of)
         if (c == *s)
             return s;
-    fail(key, fmt::format("{} is {}", key, quoted(*s)), suggestion(*s, {of.begin(), of.size()}, "values"));
+    fail(key, fmt::format("{} is {}", key, detail::quoted(*s)),
+         suggestion(*s, {of.begin(), of.size()}, "values"));
 }
 
 std::optional<toml_table> toml_table::table(std::string_view key, std::string title,

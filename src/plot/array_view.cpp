@@ -35,9 +35,9 @@ fineness fineness_for(std::size_t shown) noexcept
     return {1.6, 0.8, 0.4};
 }
 
-class view {
+class array_drawing {
 public:
-    view(canvas& c, const scene& s, const timeline& t, box at_most)
+    array_drawing(canvas& c, const scene& s, const timeline& t, box at_most)
         : canvas_(c),
           scene_(s),
           time_(t),
@@ -223,7 +223,7 @@ colour time_colour(const timeline& t, double at_s) noexcept
 
 double draw_array_view(canvas& c, const scene& s, const timeline& t, box at_most)
 {
-    return view(c, s, t, at_most).draw();
+    return array_drawing(c, s, t, at_most).draw();
 }
 
 void draw_time_strip(canvas& c, const timeline&, box where)

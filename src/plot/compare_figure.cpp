@@ -16,9 +16,6 @@
 namespace tactor::plot {
 namespace {
 
-constexpr double margin = 5.0; // pt
-constexpr double title_size = 8.0;
-constexpr double line_pitch = 8.0;
 constexpr double chart_height = 105.0;
 
 // Of algorithms, in order: they differ in hue, lightness and dash.

@@ -12,7 +12,6 @@
 namespace tactor::plot {
 namespace {
 
-constexpr double line_pitch = 8.0;
 constexpr std::size_t most_dots = 400;
 constexpr std::size_t most_points = 20000;
 

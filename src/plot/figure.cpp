@@ -14,10 +14,6 @@
 namespace tactor::plot {
 namespace {
 
-constexpr double margin = 5.0; // pt
-constexpr double title_size = 8.0;
-constexpr double line_pitch = 8.0;
-
 // What is the same in all plans, e.g. the algorithm; empty where they differ.
 template <class Get>
 std::string common(const scene& s, Get&& get)

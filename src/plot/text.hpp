@@ -13,6 +13,11 @@ namespace tactor::plot {
 /// depend on the fonts of one machine.
 double text_width(std::string_view utf8, double size, bool bold = false) noexcept;
 
+/// Of every figure, pt.
+inline constexpr double margin = 5.0;
+inline constexpr double title_size = 8.0;
+inline constexpr double line_pitch = 8.0;
+
 /// Height of digits and capitals, pt.
 constexpr double cap_height(double size) noexcept
 {

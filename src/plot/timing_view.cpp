@@ -24,11 +24,11 @@ constexpr double inset = 9.0;           // of time 0 in the diagram: room for ar
 constexpr double outset = 7.0;          // behind the last sound: room for half a label
 constexpr double starts_height = 7.0;   // for the numbers of strokes
 constexpr std::size_t most_starts = 60; // more say nothing
-constexpr double legend_height = 10.0;
+constexpr double timing_legend_height = 10.0;
 
-class view {
+class timing_drawing {
 public:
-    view(canvas& c, const scene& s, const timeline& t, box where, bool colours)
+    timing_drawing(canvas& c, const scene& s, const timeline& t, box where, bool colours)
         : canvas_(c),
           scene_(s),
           time_(t),
@@ -64,9 +64,9 @@ public:
         draw_sound();
         conflicts_ = draw_conflicts(canvas_, scene_, time_, frame_);
         draw_dimensions();
-        const double legend_y = bottom + 1.5 + axis_height + legend_height / 2.0;
+        const double legend_y = bottom + 1.5 + axis_height + timing_legend_height / 2.0;
         draw_legend(legend_y);
-        return legend_y + legend_height / 2.0 - where_.y;
+        return legend_y + timing_legend_height / 2.0 - where_.y;
     }
 
 private:
@@ -222,7 +222,7 @@ private:
 
 double draw_timing_view(canvas& c, const scene& s, const timeline& t, box where, bool colours)
 {
-    return view(c, s, t, where, colours).draw();
+    return timing_drawing(c, s, t, where, colours).draw();
 }
 
 } // namespace tactor::plot

@@ -20,17 +20,17 @@ constexpr double row_factor = 1.6;   // rows are higher than in the timing diagr
 constexpr double peak_column = 26.0; // for the levels on the right, pt
 constexpr double least_cycle = 1.5;  // pt: shorter cycles are shown by their envelope
 constexpr double points_per_cycle = 14.0;
-constexpr double heading_height = 12.0;
-constexpr double legend_height = 10.0;
+constexpr double wave_heading_height = 12.0;
+constexpr double wave_legend_height = 10.0;
 
 double dbfs(double linear)
 {
     return 20.0 * std::log10(linear);
 }
 
-class view {
+class wave_drawing {
 public:
-    view(canvas& c, const scene& s, const timeline& t, box where)
+    wave_drawing(canvas& c, const scene& s, const timeline& t, box where)
         : canvas_(c), scene_(s), where_(where), lanes_(make_lanes(s.tactors, t.playing))
     {
         if (lanes_.rows.size() <= most_high_rows)
@@ -38,7 +38,7 @@ public:
         const double total = std::max(static_cast<double>(s.sound->frames()) / s.sound->rate(), 1e-9);
         const double left = where.x + lanes_.label_width + 4.0;
         x_ = {0.0, total, left, where.right() - peak_column};
-        top_ = where.y + heading_height;
+        top_ = where.y + wave_heading_height;
         double highest = 0.0;
         double lowest = std::numeric_limits<double>::infinity();
         for (const placed_plan& p : s.plans) {
@@ -67,12 +67,12 @@ public:
         draw_headings();
         for (std::size_t i = 0; i < lanes_.rows.size(); ++i)
             draw_row(i);
-        const double y = bottom + 1.5 + axis_height + legend_height / 2.0;
+        const double y = bottom + 1.5 + axis_height + wave_legend_height / 2.0;
         if (peak_ > 0.0)
             canvas_.text({where_.x, y + cap_height(small_text) / 2.0},
                          fmt::format("height of a row: \xC2\xB1 {} of full scale", number(peak_, 3)),
                          {.size = small_text});
-        return y + legend_height / 2.0 - where_.y;
+        return y + wave_legend_height / 2.0 - where_.y;
     }
 
 private:
@@ -175,7 +175,7 @@ private:
 
 double draw_wave_view(canvas& c, const scene& s, const timeline& t, box where)
 {
-    return view(c, s, t, where).draw();
+    return wave_drawing(c, s, t, where).draw();
 }
 
 } // namespace tactor::plot

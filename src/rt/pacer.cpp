@@ -2,20 +2,12 @@
 #include "rt/pacer.hpp"
 
 #include <cerrno>
-#include <ctime>
 #include <system_error>
 
 #include <sys/timerfd.h>
 #include <unistd.h>
 
 namespace tactor::rt {
-
-std::int64_t monotonic_ns() noexcept
-{
-    timespec t{};
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
-}
 
 pacer::pacer(unsigned rate, unsigned buffer_frames, unsigned period_frames)
     : queue_(rate, buffer_frames),
@@ -40,8 +32,7 @@ void pacer::arm() noexcept
 {
     const std::int64_t t = queue_.time_of_room(period_);
     itimerspec when{};
-    when.it_value.tv_sec = static_cast<time_t>(t / 1'000'000'000);
-    when.it_value.tv_nsec = static_cast<long>(t % 1'000'000'000);
+    when.it_value = to_timespec(t);
     ::timerfd_settime(fd_, TFD_TIMER_ABSTIME, &when, nullptr);
 }
 

@@ -5,12 +5,10 @@
 
 #include <cstdint>
 
+#include "rt/clock.hpp"
 #include "rt/virtual_queue.hpp"
 
 namespace tactor::rt {
-
-/// CLOCK_MONOTONIC in ns.
-std::int64_t monotonic_ns() noexcept;
 
 /// A virtual queue and a timerfd that is readable when a period fits into it.
 class pacer {

@@ -8,6 +8,8 @@
 
 #include "has.hpp"
 
+namespace check_array_test {
+
 using namespace tactor;
 using namespace tactor::cli;
 
@@ -185,3 +187,5 @@ TEST_CASE("an SOA or an algorithm that cannot be is an error")
     a.tactors[0].position.x_mm -= 3.0;
     CHECK(has(named(check_bursts(p, a, 48000), "bursts").found, "grid"));
 }
+
+} // namespace check_array_test

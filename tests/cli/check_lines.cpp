@@ -6,6 +6,8 @@
 
 #include "cli/check_output.hpp"
 
+namespace check_lines_test {
+
 using namespace tactor;
 using namespace tactor::cli;
 
@@ -87,3 +89,5 @@ TEST_CASE("findings read like this")
     CHECK(check_text(all, true).find("palm-3x3") == std::string::npos);
     CHECK(check_text({fine("a", "b")}, true) == "0 errors, 0 warnings, 1 ok\n");
 }
+
+} // namespace check_lines_test

@@ -9,6 +9,8 @@
 #include "folder.hpp"
 #include "has.hpp"
 
+namespace check_system_test {
+
 using namespace tactor;
 using namespace tactor::cli;
 namespace fs = std::filesystem;
@@ -238,3 +240,5 @@ TEST_CASE("lines that keep their level are a warning where an amplifier hangs on
     silent.write("proc/device-tree/model", "Raspberry Pi 4");
     CHECK(judged(silent.read(), card_and_amplifier(), "GPIO release").how == level::warning);
 }
+
+} // namespace check_system_test

@@ -5,6 +5,8 @@
 #include "cli/devices_output.hpp"
 #include "cli/wrapped.hpp"
 
+namespace devices_text_test {
+
 using namespace tactor;
 using namespace tactor::cli;
 
@@ -120,3 +122,5 @@ TEST_CASE("lines break at blanks, by characters")
     const std::string lines = wrapped("", words);
     CHECK(lines.find('\n') == 13 * 11 - 1); // 13 words of 5 characters, 10 bytes, and the blanks between
 }
+
+} // namespace devices_text_test

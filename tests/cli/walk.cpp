@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace walk_test {
+
 using namespace tactor;
 using namespace tactor::cli;
 
@@ -72,3 +74,5 @@ TEST_CASE("the map shows each number at its place")
     CHECK(line.size() <= 80);
     CHECK(line.find("30") != std::string::npos);
 }
+
+} // namespace walk_test

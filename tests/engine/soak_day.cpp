@@ -15,6 +15,8 @@
 #include "rig.hpp"
 #include "soak.hpp"
 
+namespace soak_day_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -185,3 +187,5 @@ TEST_CASE("a day: the last hour costs what the second did, and nothing is left b
     CHECK(static_cast<double>(last.heap_calls) <= 1.02 * static_cast<double>(second.heap_calls));
     CHECK(std::abs(last.held) < 4096);
 }
+
+} // namespace soak_day_test

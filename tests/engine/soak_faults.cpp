@@ -16,6 +16,8 @@
 #include "rig.hpp"
 #include "soak.hpp"
 
+namespace soak_faults_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -253,3 +255,5 @@ TEST_CASE(
     CHECK(t.loudest > 0.05);
     CHECK(t.xruns > all_periods / 20'000);
 }
+
+} // namespace soak_faults_test

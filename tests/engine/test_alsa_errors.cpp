@@ -18,6 +18,8 @@
 #include "fake_system.hpp"
 #include "has.hpp"
 
+namespace alsa_errors_test {
+
 using namespace tactor;
 namespace fs = std::filesystem;
 
@@ -177,3 +179,5 @@ TEST_CASE("the card and the device in an ALSA name")
     for (const char* name : {"null", "default", "raw:/tmp/x", "", ":", "file:hw"})
         CHECK_FALSE(pcm::named_device(name));
 }
+
+} // namespace alsa_errors_test

@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+namespace amplifier_test {
+
 using tactor::engine::amplifier;
 using tactor::engine::amplifier_options;
 using event = tactor::engine::amplifier_event;
@@ -190,3 +192,5 @@ TEST_CASE("amplifier: whatever happens, ready is on, on is after two periods, an
         }
     }
 }
+
+} // namespace amplifier_test

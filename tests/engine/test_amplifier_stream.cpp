@@ -11,6 +11,8 @@
 
 #include "amplifier_rig.hpp"
 
+namespace amplifier_stream_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -222,3 +224,5 @@ TEST_CASE("a write that fails for good: off, then drop, and the reason is told")
         CHECK(reason_of(r, r.id) == why);
     }
 }
+
+} // namespace amplifier_stream_test

@@ -7,6 +7,8 @@
 
 #include "amplifier_rig.hpp"
 
+namespace amplifier_watch_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -147,3 +149,5 @@ TEST_CASE("whatever happens, nothing begins to sound while the amplifier is off 
         CHECK(r.news().back() == "drop");
     }
 }
+
+} // namespace amplifier_watch_test

@@ -9,6 +9,8 @@
 
 #include "rig.hpp"
 
+namespace bytes_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -224,3 +226,5 @@ TEST_CASE("short writes and writes of nothing lose no frame")
     REQUIRE(r.first_sound());
     CHECK(r.captured(*r.first_sound() - 1, s.frames()) == rendered(s, sample_format::s32));
 }
+
+} // namespace bytes_test

@@ -6,6 +6,8 @@
 
 #include "rig.hpp"
 
+namespace chance_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -58,3 +60,5 @@ TEST_CASE("faults at random: every stroke ends once, nothing is heard twice")
             REQUIRE(reports.size() == 1);
     }
 }
+
+} // namespace chance_test

@@ -12,6 +12,8 @@
 #include "rig.hpp"
 #include "scores.hpp"
 
+namespace counters_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -72,3 +74,5 @@ TEST_CASE("stats of a stream that never ran dry")
     CHECK_FALSE(s.realtime);
     CHECK(s.frames > 0);
 }
+
+} // namespace counters_test

@@ -10,6 +10,8 @@
 
 #include "engine/dac_clock.hpp"
 
+namespace dac_clock_test {
+
 using tactor::engine::clock_line;
 using tactor::engine::dac_clock;
 
@@ -184,3 +186,5 @@ TEST_CASE("times and frames beyond all measure stay numbers")
     CHECK(clock.rejected() == 2);
     CHECK(l.frame_at(l.time_of(123'456)) == 123'456);
 }
+
+} // namespace dac_clock_test

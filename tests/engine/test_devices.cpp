@@ -11,6 +11,8 @@
 #include "fake_dac.hpp"
 #include "fake_system.hpp"
 
+namespace devices_test {
+
 using namespace tactor;
 
 namespace {
@@ -134,3 +136,5 @@ TEST_CASE("channel counts with gaps stay apart")
     CHECK(p.misfit.find("refused: channels") != std::string::npos);
     snd_pcm_close(dac.pcm());
 }
+
+} // namespace devices_test

@@ -9,6 +9,8 @@
 
 #include "rig.hpp"
 
+namespace ends_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -274,3 +276,5 @@ TEST_CASE("the display sees the newest stroke that sounds")
     r.play(48'000);
     CHECK_FALSE(r.status().sounding);
 }
+
+} // namespace ends_test

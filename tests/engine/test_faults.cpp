@@ -4,6 +4,8 @@
 
 #include "rig.hpp"
 
+namespace faults_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -232,3 +234,5 @@ TEST_CASE("a device that does not start at first says so")
     CHECK(r.start().status == io_status::failed);
     CHECK_FALSE(r.status().running);
 }
+
+} // namespace faults_test

@@ -9,6 +9,8 @@
 #include "engine/feeder.hpp"
 #include "scores.hpp"
 
+namespace feeder_test {
+
 using namespace tactor;
 using namespace tactor::test;
 using engine::command;
@@ -120,3 +122,5 @@ TEST_CASE("a full ring asks to be told, and the feeder goes on where it was")
     CHECK(n >= 32);
     CHECK(ends == 1);
 }
+
+} // namespace feeder_test

@@ -8,6 +8,8 @@
 
 #include "rig.hpp"
 
+namespace latency_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -78,3 +80,5 @@ TEST_CASE("48 frames x 3 at 48 kHz: in the device's buffer within a period, at t
     CHECK(found.ring.rbegin()->first <= period);
     CHECK(found.dac.rbegin()->first <= 4 * period);
 }
+
+} // namespace latency_test

@@ -11,6 +11,8 @@
 
 #include "live_rig.hpp"
 
+namespace live_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -161,3 +163,5 @@ TEST_CASE("options that cannot be are errors")
         o.plan.soa_s = 0.001;
     });
 }
+
+} // namespace live_test

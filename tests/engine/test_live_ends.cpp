@@ -9,6 +9,8 @@
 #include "count_allocations.hpp"
 #include "live_rig.hpp"
 
+namespace live_ends_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -184,3 +186,5 @@ COUNTING_TEST_CASE("an hour of a live stroke: no heap in the audio thread, nothi
     CHECK(r.report(1)->state == stroke_state::finished);
     CHECK(r.report(1)->frames > 3600ULL * rate);
 }
+
+} // namespace live_ends_test

@@ -16,6 +16,8 @@
 #include "alsa/error_text.hpp"
 #include "fake_dac.hpp"
 
+namespace negotiate_test {
+
 using namespace tactor;
 
 namespace {
@@ -290,3 +292,5 @@ TEST_CASE("a full device that has not been started takes nothing and says so")
     s->drop();
     CHECK_FALSE(dac.running());
 }
+
+} // namespace negotiate_test

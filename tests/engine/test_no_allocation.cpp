@@ -7,6 +7,8 @@
 #include "count_allocations.hpp"
 #include "rig.hpp"
 
+namespace no_allocation_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -87,3 +89,5 @@ COUNTING_TEST_CASE("an hour of strokes needs no more memory in the feeder than a
     CHECK(r.report(1)->state == stroke_state::finished);
     CHECK(r.report(1)->frames == hour.frames());
 }
+
+} // namespace no_allocation_test

@@ -12,6 +12,8 @@
 #include "player_support.hpp"
 #include "scores.hpp"
 
+namespace paced_sink_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -105,3 +107,5 @@ TEST_CASE("a sink of one's own cannot have numbers that cannot be")
     with([](stream_setup& s) { s.period_frames = 4'000'000'000; });
     with([](stream_setup& s) { s.period_frames = 100, s.buffer_frames = 199; });
 }
+
+} // namespace paced_sink_test

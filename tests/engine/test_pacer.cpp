@@ -11,6 +11,8 @@
 #include "rt/pacer.hpp"
 #include "rt/virtual_queue.hpp"
 
+namespace pacer_test {
+
 using namespace tactor;
 using rt::virtual_queue;
 
@@ -153,3 +155,5 @@ TEST_CASE("plug:null of the system's configuration is paced as well")
     const auto s = open_alsa(o);
     write_all(*s, 288 + 96 * 3);
 }
+
+} // namespace pacer_test

@@ -21,6 +21,8 @@
 #include "player_support.hpp"
 #include "scores.hpp"
 
+namespace player_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -253,3 +255,5 @@ TEST_CASE("real-time priority that is required and refused is an error; otherwis
     const player p(pcm::adopt(other.pcm(), nine()), palm(), patient());
     CHECK(p.stats().realtime == realtime);
 }
+
+} // namespace player_test

@@ -11,6 +11,8 @@
 #include "player_support.hpp"
 #include "scores.hpp"
 
+namespace player_amplifier_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -114,3 +116,5 @@ TEST_CASE("the player's limits are its own and are checked")
     o.limits.max_drive_s = -1.0;
     CHECK_THROWS_AS(player(open_alsa(nine()), palm(), o), error);
 }
+
+} // namespace player_amplifier_test

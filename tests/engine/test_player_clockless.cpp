@@ -18,6 +18,8 @@
 #include "player_support.hpp"
 #include "scores.hpp"
 
+namespace player_clockless_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -125,3 +127,5 @@ TEST_CASE("null paces a stroke in real time, multi of nulls too")
         CHECK(p.stats().xruns == 0);
     }
 }
+
+} // namespace player_clockless_test

@@ -30,6 +30,8 @@
 #include "player_support.hpp"
 #include "scores.hpp"
 
+namespace player_strokes_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -263,3 +265,5 @@ TEST_CASE("Asio: futures, and a stroke that is not known")
     p.stop();
     CHECK(c.get().state == stroke_state::cancelled);
 }
+
+} // namespace player_strokes_test

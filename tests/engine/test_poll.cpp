@@ -12,6 +12,8 @@
 #include "fake_dac.hpp"
 #include "player_support.hpp"
 
+namespace poll_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -34,3 +36,5 @@ TEST_CASE("a device without descriptors in an xrun, such as dmix, is not asked a
     CHECK(s->ready(std::span(fds).first(n)) == io_status::xrun);
     CHECK(dac.asked_in_vain() == 0);
 }
+
+} // namespace poll_test

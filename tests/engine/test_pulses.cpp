@@ -14,6 +14,8 @@
 #include "player_support.hpp"
 #include "scores.hpp"
 
+namespace pulses_test {
+
 using namespace tactor;
 using namespace tactor::test;
 using engine::clock_line;
@@ -176,3 +178,5 @@ TEST_CASE("the player sends or misses one pulse for each stroke")
         CHECK(log->log[i].first == (i % 2 == 0));
     CHECK((log->log.empty() || !log->log.back().first));
 }
+
+} // namespace pulses_test

@@ -7,6 +7,8 @@
 
 #include "rig.hpp"
 
+namespace start_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -200,3 +202,5 @@ TEST_CASE("an xrun between the shot and the start: the time is kept, in the new 
     CHECK(r.link.clock.load().epoch == 2);
     CHECK(std::abs(*r.report(id)->started_ns - due) < 2'000'000'000 / rate);
 }
+
+} // namespace start_test

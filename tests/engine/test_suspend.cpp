@@ -7,6 +7,8 @@
 
 #include "rig.hpp"
 
+namespace suspend_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -110,3 +112,5 @@ TEST_CASE("stop ends a suspended stream at once")
     CHECK(r.feed.stream_over());
     CHECK(r.feed.stream_reason().empty());
 }
+
+} // namespace suspend_test

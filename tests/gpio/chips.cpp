@@ -11,6 +11,8 @@
 
 #include "folder.hpp"
 
+namespace chips_test {
+
 namespace fs = std::filesystem;
 
 TEST_CASE("chips are listed by number, each once")
@@ -59,3 +61,5 @@ TEST_CASE("a path that is no GPIO chip is an error that says so")
     CHECK(text.starts_with("GPIO line 3 of /dev/null: /dev/null is not a GPIO chip"));
     CHECK(text.ends_with("(tactor devices lists the chips)"));
 }
+
+} // namespace chips_test

@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+namespace debounce_test {
+
 using tactor::gpio::debounce;
 
 namespace {
@@ -57,3 +59,5 @@ TEST_CASE("what passes is what no other edge came before within the window")
             CHECK(passed[i] == (i == 0 || times[i] - times[i - 1] >= window));
     }
 }
+
+} // namespace debounce_test

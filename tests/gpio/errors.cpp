@@ -12,6 +12,8 @@
 
 #include "gpio/line.hpp"
 
+namespace errors_test {
+
 using namespace tactor;
 
 namespace {
@@ -82,3 +84,5 @@ TEST_CASE("unknown words and times are refused before any device is touched")
         CHECK(complaint([&] { open_edges(l, "rising", ms); }).find("a debounce time of") !=
               std::string::npos);
 }
+
+} // namespace errors_test

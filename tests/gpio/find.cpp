@@ -10,6 +10,8 @@
 
 #include <tactor/error.hpp>
 
+namespace find_test {
+
 using tactor::gpio_line_name;
 using tactor::gpio::chip;
 using tactor::gpio::find_line;
@@ -188,3 +190,5 @@ TEST_CASE("a long list is cut")
     const std::string text = complaint({make_chip(0, "c", names)}, by_name("amplifier"));
     CHECK(text.find("PIN11 and 42 more)") != std::string::npos);
 }
+
+} // namespace find_test

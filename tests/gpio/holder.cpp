@@ -22,6 +22,8 @@
 
 #include "fake_line.hpp"
 
+namespace holder_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -243,3 +245,5 @@ TEST_CASE("without descriptors there is an error instead of a holder")
     ::waitpid(child, &status, 0);
     CHECK(WEXITSTATUS(status) == 7);
 }
+
+} // namespace holder_test

@@ -13,6 +13,8 @@
 
 #include "fake_line.hpp"
 
+namespace holder_ends_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -153,3 +155,5 @@ TEST_CASE("another process that keeps the player's descriptors open does not kee
     CHECK(!s->on);
     CHECK((s->time_ns - t) / 1'000'000 < limit);
 }
+
+} // namespace holder_ends_test

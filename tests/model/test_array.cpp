@@ -12,6 +12,8 @@
 
 #include "message_of.hpp"
 
+namespace array_test {
+
 using namespace tactor;
 
 namespace {
@@ -215,3 +217,5 @@ TEST_CASE("two tactors on one place are found wherever they are")
         REQUIRE(message_of([&] { validate(at_places(places)); }).empty());
     }
 }
+
+} // namespace array_test

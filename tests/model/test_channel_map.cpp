@@ -11,6 +11,8 @@
 #include "folder.hpp"
 #include "message_of.hpp"
 
+namespace channel_map_test {
+
 using namespace tactor;
 namespace fs = std::filesystem;
 
@@ -113,3 +115,5 @@ TEST_CASE("an error tells its parts apart")
     CHECK(none.subject().empty());
     CHECK(none.why().empty());
 }
+
+} // namespace channel_map_test

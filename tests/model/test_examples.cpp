@@ -11,6 +11,8 @@
 #include "message_of.hpp"
 #include "model/text_file.hpp"
 
+namespace examples_test {
+
 using namespace tactor;
 namespace fs = std::filesystem;
 
@@ -98,3 +100,5 @@ TEST_CASE("the manual page names every option that [defaults] takes")
         CHECK(page.find("\n" + name + "\t") != std::string::npos);
     }
 }
+
+} // namespace examples_test

@@ -13,6 +13,8 @@
 #include "message_of.hpp"
 #include "path_samples.hpp"
 
+namespace path_test {
+
 using tactor::path;
 using tactor::point;
 
@@ -240,3 +242,5 @@ TEST_CASE("polylines and arcs that make no sense are refused")
     CHECK(arc({}, 1.0, 0.0, 0.0).find("sweep") != std::string::npos);
     CHECK(arc({}, 1.0, 0.0, nan).find("sweep") != std::string::npos);
 }
+
+} // namespace path_test

@@ -12,6 +12,8 @@
 #include <tactor/error.hpp>
 #include <tactor/path.hpp>
 
+namespace path_length_test {
+
 using tactor::path;
 using tactor::point;
 
@@ -95,3 +97,5 @@ TEST_CASE("flat ellipses turn sharply and keep their length")
         CHECK(tactor::distance_mm(p.at(0.5 * p.length_mm()), {-100.0, 0.0}) < 1e-6);
     }
 }
+
+} // namespace path_length_test

@@ -11,6 +11,8 @@
 
 #include "path_samples.hpp"
 
+namespace path_meets_test {
+
 using tactor::path;
 using tactor::point;
 
@@ -194,3 +196,5 @@ TEST_CASE("no meeting lies beyond the end of the path, not by a rounding error e
     CHECK(all.back() <= p.length_mm());
     CHECK(all.back() == doctest::Approx(p.length_mm()));
 }
+
+} // namespace path_meets_test

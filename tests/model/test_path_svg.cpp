@@ -14,6 +14,8 @@
 #include "message_of.hpp"
 #include "path_samples.hpp"
 
+namespace path_svg_test {
+
 using tactor::path;
 
 namespace {
@@ -170,3 +172,5 @@ TEST_CASE("numbers are read and written alike in a locale with a decimal comma")
     CHECK(drawn.at(0).motion.position(0.0).x_mm == doctest::Approx(1.0));
     CHECK(drawn.at(0).motion.position(0.0).y_mm == doctest::Approx(2.0));
 }
+
+} // namespace path_svg_test

@@ -10,6 +10,8 @@
 
 #include "message_of.hpp"
 
+namespace presets_test {
+
 using tactor::point;
 
 TEST_CASE("the four motions of the paper, y down")
@@ -54,3 +56,5 @@ TEST_CASE("a preset that is not there is refused with the list")
     const std::string m = message_of([] { tactor::preset_stroke("park2016-5"); });
     CHECK(m == "stroke: no preset 'park2016-5' (presets: park2016-1, park2016-2, park2016-3, park2016-4)");
 }
+
+} // namespace presets_test

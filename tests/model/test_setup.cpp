@@ -10,6 +10,8 @@
 
 #include "message_of.hpp"
 
+namespace setup_test {
+
 using namespace tactor;
 
 namespace {
@@ -281,3 +283,5 @@ TEST_CASE("limits that are none are told")
         CHECK(complaint(std::string("[limits]\n") + said).starts_with("t.toml:2:"));
     }
 }
+
+} // namespace setup_test

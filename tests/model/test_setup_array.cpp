@@ -10,6 +10,8 @@
 
 #include "message_of.hpp"
 
+namespace setup_array_test {
+
 using namespace tactor;
 
 namespace {
@@ -233,3 +235,5 @@ TEST_CASE("16384 tactors in a list are read, one more is not")
     CHECK(complaint(text + "[[tactor]]\nx_mm = -1\ny_mm = 0\n") ==
           "palm.toml:49153:1: more than 16384 tactors");
 }
+
+} // namespace setup_array_test

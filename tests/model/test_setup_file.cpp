@@ -12,6 +12,8 @@
 #include "folder.hpp"
 #include "message_of.hpp"
 
+namespace setup_file_test {
+
 using namespace tactor;
 namespace fs = std::filesystem;
 
@@ -124,3 +126,5 @@ TEST_CASE("a chain of files ends somewhere")
           (f / "15.toml").string() + ":2:8: a chain of too many files (at most 16)");
     CHECK(complaint(f / "85.toml").empty());
 }
+
+} // namespace setup_file_test

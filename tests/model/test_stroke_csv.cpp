@@ -10,6 +10,8 @@
 
 #include "message_of.hpp"
 
+namespace stroke_csv_test {
+
 using tactor::point;
 using tactor::stroke;
 
@@ -145,3 +147,5 @@ TEST_CASE("changed CSV gives a stroke or an error, nothing else")
     }
     CHECK(read > 500);
 }
+
+} // namespace stroke_csv_test

@@ -11,6 +11,8 @@
 #include "folder.hpp"
 #include "message_of.hpp"
 
+namespace stroke_load_test {
+
 namespace {
 
 const std::string csv = "t_s,x_mm,y_mm\n0,0,0\n1,6,0\n";
@@ -96,3 +98,5 @@ TEST_CASE("random bytes are refused by every reader")
         CHECK_FALSE(message_of([&] { tactor::path::from_svg(text); }).empty());
     }
 }
+
+} // namespace stroke_load_test

@@ -12,6 +12,8 @@
 
 #include "message_of.hpp"
 
+namespace stroke_svg_test {
+
 using tactor::point;
 using tactor::stroke;
 
@@ -248,3 +250,5 @@ TEST_CASE("shapes that SVG does not draw are left out if there are others")
     }
     CHECK(one("<path d='M 0 0 h 7 M 3 3'/>").motion.length_mm() == 7.0);
 }
+
+} // namespace stroke_svg_test

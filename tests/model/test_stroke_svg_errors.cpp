@@ -11,6 +11,8 @@
 
 #include "message_of.hpp"
 
+namespace stroke_svg_errors_test {
+
 namespace {
 
 std::string refusal(const std::string& svg)
@@ -152,3 +154,5 @@ TEST_CASE("changed SVG gives strokes or an error, nothing else")
     }
     CHECK(drawn > 500);
 }
+
+} // namespace stroke_svg_errors_test

@@ -9,6 +9,8 @@
 
 #include "message_of.hpp"
 
+namespace stroke_toml_test {
+
 using namespace tactor;
 
 namespace {
@@ -221,3 +223,5 @@ TEST_CASE("two hundred thousand timed points are read")
     CHECK(s.motion.duration_s() == doctest::Approx(199.999));
     check_near(s.motion.position(0.007), 7.0, 5.0);
 }
+
+} // namespace stroke_toml_test

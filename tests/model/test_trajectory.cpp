@@ -11,6 +11,8 @@
 
 #include "message_of.hpp"
 
+namespace trajectory_test {
+
 using tactor::path;
 using tactor::point;
 using tactor::timed_point;
@@ -180,3 +182,5 @@ TEST_CASE("a timed walk meets each line where the walk is on it")
         CHECK(good);
     }
 }
+
+} // namespace trajectory_test

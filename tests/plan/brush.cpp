@@ -10,6 +10,8 @@
 #include "plan/job.hpp"
 #include "strokes.hpp"
 
+namespace brush_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -247,3 +249,5 @@ TEST_CASE("a way out between two crossings is refused; clamped it stays at the e
         corner += b.position == point{40.0, 0.0} ? 1 : 0;
     CHECK(corner == 1);
 }
+
+} // namespace brush_test

@@ -12,6 +12,8 @@
 #include "plan/brush_timing.hpp"
 #include "strokes.hpp"
 
+namespace brush_refusals_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -117,3 +119,5 @@ TEST_CASE("dropping takes no quadratic time")
         tau.push_back(tau.back() + (i % 3 == 0 ? 0.01 : 0.03));
     CHECK(detail::thin_out({}, tau).size() < tau.size());
 }
+
+} // namespace brush_refusals_test

@@ -13,6 +13,8 @@
 #include "plan/delaunay.hpp"
 #include "plan/layout_impl.hpp"
 
+namespace layout_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -194,3 +196,5 @@ TEST_CASE("every place of a grid is inside, on the diagonals of the hull, too")
     const layout found(make_grid("grid", 4, 4, 49.547345412160652, 0.14901599888563485));
     CHECK(found.contains(found.places()[5]));
 }
+
+} // namespace layout_test

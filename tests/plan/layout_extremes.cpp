@@ -10,6 +10,8 @@
 #include "oracle.hpp"
 #include "plan/layout_impl.hpp"
 
+namespace layout_extremes_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -133,3 +135,5 @@ TEST_CASE("a ring of 2000 tactors, one face, is played by the rules")
                 in_triangle(l.places()[d[0].tactor], l.places()[d[1].tactor], l.places()[d[2].tactor], p));
     }
 }
+
+} // namespace layout_extremes_test

@@ -8,6 +8,8 @@
 #include "arrays.hpp"
 #include "strokes.hpp"
 
+namespace make_plan_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -140,3 +142,5 @@ TEST_CASE("continuous: a short way out between two bursts is found")
     o.method = algorithm::continuous;
     CHECK(refusal(palm, s, o).find("(40.000, 20.000) mm after 0.015 s") != std::string::npos);
 }
+
+} // namespace make_plan_test

@@ -8,6 +8,8 @@
 #include "arrays.hpp"
 #include "strokes.hpp"
 
+namespace park_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -175,3 +177,5 @@ TEST_CASE("intensity over time sets A_v; none gives a burst without drives")
     CHECK(p.bursts[5].intensity == doctest::Approx(0.5));
     CHECK(energy(p.bursts[5].drives) == doctest::Approx(0.25));
 }
+
+} // namespace park_test

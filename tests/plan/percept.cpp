@@ -10,6 +10,8 @@
 #include "arrays.hpp"
 #include "strokes.hpp"
 
+namespace percept_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -274,3 +276,5 @@ TEST_CASE("hours, and plans of another array, are refused")
         CHECK_THROWS_AS(predict_percept(pair, s, make_plan(preset_array("palm-3x3"), s, o)), error);
     }
 }
+
+} // namespace percept_test

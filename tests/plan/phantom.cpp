@@ -11,6 +11,8 @@
 #include "arrays.hpp"
 #include "oracle.hpp"
 
+namespace phantom_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -174,3 +176,5 @@ TEST_CASE("ties in distance go to the lowest tactor by row and column, within a 
         CHECK(at(30.0, 30.0) == std::vector<unsigned>{4, 8});
     }
 }
+
+} // namespace phantom_test

@@ -8,6 +8,8 @@
 
 #include "arrays.hpp"
 
+namespace phantom_models_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -166,3 +168,5 @@ TEST_CASE("phantom models by name")
     }
     CHECK_THROWS_WITH_AS(phantom_from_string("cubic"), doctest::Contains("barycentric"), error);
 }
+
+} // namespace phantom_models_test

@@ -11,6 +11,8 @@
 #include "plot/axes.hpp"
 #include "plot/text.hpp"
 
+namespace axes_test {
+
 using namespace tactor::plot;
 
 namespace {
@@ -137,3 +139,5 @@ TEST_CASE("a chart keeps its lines inside, its extremes, and breaks lines where 
     CHECK(inside.bottom() < ch.where.bottom());
     CHECK(inside.x > ch.where.x);
 }
+
+} // namespace axes_test

@@ -6,6 +6,8 @@
 
 #include "plot/colours.hpp"
 
+namespace colours_test {
+
 using namespace tactor::plot;
 
 TEST_CASE("the colours of time get lighter all the way, so that they are in order in grey too")
@@ -48,3 +50,5 @@ TEST_CASE("colours of lines differ in lightness")
     CHECK(std::abs(luminance(orange) - luminance(vermilion)) > 0.15);
     CHECK(std::abs(luminance(blue) - luminance(vermilion)) > 0.05);
 }
+
+} // namespace colours_test

@@ -7,6 +7,8 @@
 #include "plot/label_placer.hpp"
 #include "plot/text.hpp"
 
+namespace labels_test {
+
 using namespace tactor::plot;
 
 namespace {
@@ -56,3 +58,5 @@ TEST_CASE("labels avoid a line")
     const box b = box_of(p.place("end", 6.0, {50.0, 48.0}, 3.0), "end", 6.0);
     CHECK_FALSE(overlap(b, {0.0, 55.0, 100.0, 2.0}));
 }
+
+} // namespace labels_test

@@ -8,6 +8,8 @@
 
 #include "plot/axes.hpp"
 
+namespace lines_test {
+
 using namespace tactor::plot;
 
 namespace {
@@ -92,3 +94,5 @@ TEST_CASE("a simplified line stays within the tolerance, between the same ends")
         straight.push_back({i * 0.1, i * 0.2});
     CHECK(simplify(straight, 0.01).size() == 2);
 }
+
+} // namespace lines_test

@@ -8,6 +8,8 @@
 
 #include "plot/output.hpp"
 
+namespace output_test {
+
 using namespace tactor;
 using namespace tactor::plot;
 
@@ -71,3 +73,5 @@ TEST_CASE("the format is in the name, in upper or lower case")
     for (const char* name : {"a", "a.jpg", "svg", ".svg", "a.svg/", "a.svg.gz", ""})
         CHECK_THROWS_AS(format_of(name), error);
 }
+
+} // namespace output_test

@@ -7,6 +7,8 @@
 
 #include "plot/output.hpp"
 
+namespace svg_test {
+
 using namespace tactor::plot;
 
 namespace {
@@ -75,3 +77,5 @@ TEST_CASE("numbers are numbers in every locale, and never nan")
     }
     std::setlocale(LC_ALL, before.c_str());
 }
+
+} // namespace svg_test

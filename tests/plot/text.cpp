@@ -6,6 +6,8 @@
 
 #include "plot/text.hpp"
 
+namespace text_test {
+
 using namespace tactor::plot;
 
 TEST_CASE("text is as wide as the sum of its letters, and scales with its size")
@@ -78,3 +80,5 @@ TEST_CASE("numbers have no noise")
     CHECK(number(75.398223686) == "75.4");
     CHECK(number(3600.0, 6) == "3600");
 }
+
+} // namespace text_test

@@ -8,6 +8,8 @@
 
 #include <doctest/doctest.h>
 
+namespace event_fd_test {
+
 TEST_CASE("an eventfd is readable after a signal and not after it was consumed")
 {
     tactor::rt::event_fd e;
@@ -41,3 +43,5 @@ TEST_CASE("a signal wakes another thread")
     t.join();
     CHECK(seen == 1);
 }
+
+} // namespace event_fd_test

@@ -12,6 +12,8 @@
 
 #include "rt/thread.hpp"
 
+namespace realtime_test {
+
 using namespace tactor;
 
 TEST_CASE("rights that are said to be there are granted, and the other way round")
@@ -54,3 +56,5 @@ TEST_CASE("where all limits allow it, the advice is another")
     CHECK(text.find("rtprio") == std::string::npos);
     CHECK(text.find("sched_rt_runtime_us") != std::string::npos);
 }
+
+} // namespace realtime_test

@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+namespace seqlock_test {
+
 namespace {
 
 struct value {
@@ -51,3 +53,5 @@ TEST_CASE("a reader never gets half of a value, and never an older one than befo
     writer.join();
     CHECK(wrong == 0);
 }
+
+} // namespace seqlock_test

@@ -11,6 +11,8 @@
 
 #include <doctest/doctest.h>
 
+namespace spsc_ring_test {
+
 using tactor::rt::spsc_ring;
 
 TEST_CASE("capacity is the next power of two")
@@ -137,3 +139,5 @@ TEST_CASE("two threads lose, double and tear nothing")
     stress(64, 500'000);
     stress(1024, 1'000'000);
 }
+
+} // namespace spsc_ring_test

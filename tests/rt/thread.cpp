@@ -14,6 +14,8 @@
 
 #include <doctest/doctest.h>
 
+namespace thread_test {
+
 using tactor::rt::thread;
 
 TEST_CASE("a thread has its name, its stack and no signals")
@@ -100,3 +102,5 @@ TEST_CASE("a thread knows itself")
     CHECK(inside);
     CHECK_FALSE(outside);
 }
+
+} // namespace thread_test

@@ -8,6 +8,8 @@
 
 #include <doctest/doctest.h>
 
+namespace triple_buffer_test {
+
 using tactor::rt::triple_buffer;
 
 TEST_CASE("the reader gets the newest value, once as news")
@@ -57,3 +59,5 @@ TEST_CASE("the reader never gets half a value, never an older one, and at last t
     writer.join();
     CHECK(wrong == 0);
 }
+
+} // namespace triple_buffer_test

@@ -4,6 +4,8 @@
 #include "synth/event_source.hpp"
 #include "synth/mixer.hpp"
 
+namespace allocations_test {
+
 using namespace tactor;
 using namespace tactor::test;
 using namespace pieces;
@@ -73,3 +75,5 @@ COUNTING_TEST_CASE("a mixer allocates nothing after its construction")
     m.reset();
     CHECK(count.calls() == 0);
 }
+
+} // namespace allocations_test

@@ -6,6 +6,8 @@
 
 #include "pieces.hpp"
 
+namespace blocks_test {
+
 using namespace tactor;
 using namespace pieces;
 
@@ -104,3 +106,5 @@ TEST_CASE("a stroke has the same bytes wherever it starts")
         }
     }
 }
+
+} // namespace blocks_test

@@ -7,6 +7,8 @@
 
 #include "pieces.hpp"
 
+namespace exact_test {
+
 using namespace tactor;
 using namespace pieces;
 
@@ -170,3 +172,5 @@ TEST_CASE("bursts that touch after rounding share no frame")
         CHECK(x[n0 + 1] == doctest::Approx(std::sin(2.0 * pi * 250.0 / 22050.0)));
     }
 }
+
+} // namespace exact_test

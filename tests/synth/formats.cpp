@@ -12,6 +12,8 @@
 #include "synth/limiter.hpp"
 #include "synth/oscillator.hpp"
 
+namespace formats_test {
+
 using namespace tactor;
 using namespace pieces;
 
@@ -139,3 +141,5 @@ TEST_CASE("sample formats have names and sizes")
     CHECK_THROWS_AS(sample_format_from_string("s25"), error);
     CHECK_THROWS_AS(sample_format_from_string(""), error);
 }
+
+} // namespace formats_test

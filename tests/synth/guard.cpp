@@ -13,6 +13,8 @@
 #include "pieces.hpp"
 #include "synth/mixer.hpp"
 
+namespace guard_test {
+
 using namespace tactor;
 using namespace pieces;
 
@@ -248,3 +250,5 @@ TEST_CASE("what is not a number reaches no format")
         }
     }
 }
+
+} // namespace guard_test

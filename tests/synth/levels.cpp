@@ -10,6 +10,8 @@
 
 #include "pieces.hpp"
 
+namespace levels_test {
+
 using namespace tactor;
 using namespace pieces;
 
@@ -197,3 +199,5 @@ TEST_CASE("options that cannot be rendered are refused")
     CHECK(holds(with([](auto&, auto& p, auto&) { p.bursts[0].drives[1].amplitude = std::nan(""); }), "nan"));
     CHECK(holds(with([](auto&, auto& p, auto&) { p.bursts[0].drives[1].tactor = 2; }), "tactor 2"));
 }
+
+} // namespace levels_test

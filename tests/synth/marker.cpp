@@ -9,6 +9,8 @@
 #include "pieces.hpp"
 #include "synth/mixer.hpp"
 
+namespace marker_test {
+
 using namespace tactor;
 using namespace pieces;
 
@@ -101,3 +103,5 @@ TEST_CASE("a constant never reaches a tactor")
     m.process(100, reinterpret_cast<std::byte*>(x.data()));
     CHECK(std::all_of(x.begin(), x.end(), [](float v) { return v == 0.0F; }));
 }
+
+} // namespace marker_test

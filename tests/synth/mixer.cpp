@@ -9,6 +9,8 @@
 
 #include "pieces.hpp"
 
+namespace mixer_test {
+
 using namespace tactor;
 using namespace pieces;
 using synth::drive_event;
@@ -298,3 +300,5 @@ TEST_CASE("the limits of an array's channels")
     CHECK(l[5] == 1.0);
     CHECK(l[6] == 0.0);
 }
+
+} // namespace mixer_test

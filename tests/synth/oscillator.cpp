@@ -9,6 +9,8 @@
 #include "synth/oscillator.hpp"
 #include "synth/window.hpp"
 
+namespace oscillator_test {
+
 using namespace tactor;
 using namespace pieces;
 
@@ -124,3 +126,5 @@ TEST_CASE("the window of any place is the formula")
         }
     }
 }
+
+} // namespace oscillator_test

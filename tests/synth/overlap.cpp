@@ -7,6 +7,8 @@
 
 #include "pieces.hpp"
 
+namespace overlap_test {
+
 using namespace tactor;
 using namespace pieces;
 
@@ -138,3 +140,5 @@ TEST_CASE("several plans in one score add, each with its own carrier")
                 1e-6);
     }
 }
+
+} // namespace overlap_test

@@ -8,6 +8,8 @@
 #include "pieces.hpp"
 #include "synth/event_source.hpp"
 
+namespace placing_test {
+
 using namespace tactor;
 using namespace pieces;
 
@@ -190,3 +192,5 @@ TEST_CASE("a continuous stroke may be silent in part or throughout")
     synth::event_source source(nothing);
     CHECK(source.peek() == nullptr);
 }
+
+} // namespace placing_test

@@ -15,6 +15,8 @@
 #include "../synth/pieces.hpp"
 #include "folder.hpp"
 
+namespace golden_test {
+
 using namespace tactor;
 
 namespace {
@@ -107,3 +109,5 @@ TEST_CASE("park2016-1 is 70560 frames of 9 channels")
     const folder dir;
     CHECK(file_of(dir, algorithm::park2016, sample_format::s16).size() == 44 + 70560 * 9 * 2);
 }
+
+} // namespace golden_test

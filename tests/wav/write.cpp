@@ -19,6 +19,8 @@
 #include "../synth/pieces.hpp"
 #include "folder.hpp"
 
+namespace write_test {
+
 using namespace tactor;
 using namespace pieces;
 namespace fs = std::filesystem;
@@ -268,3 +270,5 @@ TEST_CASE("a link stays a link, and the longest name is no obstacle")
     CHECK(write_wav(make_score(), sample_format::s16, dir / longest));
     CHECK(fs::is_regular_file(dir / longest));
 }
+
+} // namespace write_test

@@ -17,6 +17,8 @@
 #include "../fake_line.hpp"
 #include "sim.hpp"
 
+namespace hw_amplifier_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -159,3 +161,5 @@ TEST_CASE("a holder that was killed leaves the line to the player, which switche
     CHECK(chip().value(line) == 0);
     CHECK(amp->set(false));
 }
+
+} // namespace hw_amplifier_test

@@ -19,6 +19,8 @@
 #include "gpio/line.hpp"
 #include "sim.hpp"
 
+namespace hw_lines_test {
+
 using namespace tactor;
 using namespace tactor::test;
 
@@ -251,3 +253,5 @@ TEST_CASE("pull resistors are set on request")
     const auto in = open_edges(at(5), "both", 1.0, "down");
     CHECK(chip().value(5) == 0);
 }
+
+} // namespace hw_lines_test

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// CLOCK_MONOTONIC, the one clock that is used here. Async-signal-safe.
+#pragma once
+
+#include <cstdint>
+#include <ctime>
+
+namespace tactor::rt {
+
+inline constexpr std::int64_t ns_per_s = 1'000'000'000;
+
+inline std::int64_t to_ns(const timespec& t) noexcept
+{
+    return std::int64_t{t.tv_sec} * ns_per_s + t.tv_nsec;
+}
+
+inline std::int64_t monotonic_ns() noexcept
+{
+    timespec t{};
+    ::clock_gettime(CLOCK_MONOTONIC, &t);
+    return to_ns(t);
+}
+
+inline std::int64_t monotonic_ms() noexcept
+{
+    return monotonic_ns() / 1'000'000;
+}
+
+inline timespec to_timespec(std::int64_t ns) noexcept
+{
+    return {.tv_sec = static_cast<time_t>(ns / ns_per_s), .tv_nsec = static_cast<long>(ns % ns_per_s)};
+}
+
+} // namespace tactor::rt
