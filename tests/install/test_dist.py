@@ -10,6 +10,9 @@ import tarfile
 
 from building import BUILD, CONSUMER, FolderTest, main, run
 
+# A third of the time: see tests/lanes/say.
+TOGETHER = ["-Dunity=on", "-Dunity_size=40"]
+
 
 class Dist(FolderTest):
     @classmethod
@@ -23,7 +26,7 @@ class Dist(FolderTest):
 
     def test_it_builds_and_installs_without_destdir_and_uninstalls(self):
         build, prefix = self.source / "build", self.dir / "prefix"
-        run("meson", "setup", build, self.source, "--prefix", prefix, "-Dwerror=true")
+        run("meson", "setup", build, self.source, "--prefix", prefix, "-Dwerror=true", *TOGETHER)
         run("ninja", "-C", build)
         run("meson", "install", "-C", build, "--no-rebuild")
         (pc,) = prefix.rglob("tactor.pc")
@@ -41,7 +44,7 @@ class Dist(FolderTest):
         shutil.copytree(CONSUMER, project)
         shutil.copytree(self.source, project / "subprojects/tactor", ignore=shutil.ignore_patterns("build"))
         # An installed library would be preferred.
-        run("meson", "setup", project / "build", project, "--wrap-mode=forcefallback", "-Dbuildtype=plain")
+        run("meson", "setup", project / "build", project, "--wrap-mode=forcefallback", "-Dbuildtype=plain", *TOGETHER)
         run("ninja", "-C", project / "build")
         self.assertIn(": finished\n", run(project / "build/consumer"))
         built = {p.name for p in (project / "build").rglob("*")
