@@ -97,7 +97,7 @@ TACTOR_API std::vector<stroke> load_strokes(const std::filesystem::path& file);
 /// Stroke file text in TOML; `name` stands for the file in messages.
 TACTOR_API std::vector<stroke> parse_strokes_toml(std::string_view text, const std::string& name);
 /// CSV with a header line naming t_s, x_mm, y_mm and optionally intensity, in any order.
-/// A first time that is not 0 becomes start_s.
+/// The time of the first line is the stroke's zero, whatever it is (-1e10 to 1e10 s).
 TACTOR_API std::vector<stroke> parse_strokes_csv(std::string_view text, const std::string& name);
 /// SVG document: each shape's subpaths are strokes, one after the other in document order.
 /// One user unit is one millimetre, unless the document's width or height has a physical unit.

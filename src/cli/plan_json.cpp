@@ -49,12 +49,13 @@ json array_json(const array& a)
 }
 
 // One object without its rows: they are streamed between head and tail.
-json head_json(const stroke& s, const plan& p, const array& a)
+json head_json(const stroke& s, const plan& p, double start_s, const array& a)
 {
     json j;
     j["schema"] = "tactor-plan/1";
     j["algorithm"] = p.algorithm;
     j["phantom"] = p.phantom;
+    j["start_s"] = start_s;
     j["stroke"] = {{"name", s.name},
                    {"duration_s", p.stroke_duration_s},
                    {"length_mm", p.stroke_length_mm},
@@ -87,9 +88,9 @@ std::string members(const json& j)
     return text.substr(1, text.size() - 2);
 }
 
-void print_plan(std::FILE* out, const std::string& extra, const stroke& s, const plan& p, const array& a)
+void print_plan(std::FILE* out, const stroke& s, const plan& p, double start_s, const array& a)
 {
-    fmt::print(out, "{{{}{},\n", extra, members(head_json(s, p, a)));
+    fmt::print(out, "{{{},\n", members(head_json(s, p, start_s, a)));
     const bool sampled = static_cast<bool>(p.at);
     if (sampled)
         fmt::print(out, "\"bursts\":[],\n\"continuous\":{{\"step_s\":{},\"points\":[", continuous_step_s);
@@ -107,16 +108,15 @@ void print_plan(std::FILE* out, const std::string& extra, const stroke& s, const
 
 void print_json(std::FILE* out, const piece& p, const environment& e)
 {
+    const auto starts = starts_of(p.plans);
     if (p.plans.size() == 1) {
-        print_plan(out, "", p.strokes[0], p.plans[0].schedule, e.tactors);
+        print_plan(out, p.strokes[0], p.plans[0].schedule, starts[0], e.tactors);
         fmt::print(out, "\n");
         return;
     }
     fmt::print(out, "{{\"schema\":\"tactor-plans/1\",\"plans\":[\n");
-    const auto starts = starts_of(p.plans);
     for (std::size_t i = 0; i < p.plans.size(); ++i) {
-        print_plan(out, members(json{{"start_s", starts[i]}}) + ",", p.strokes[i], p.plans[i].schedule,
-                   e.tactors);
+        print_plan(out, p.strokes[i], p.plans[i].schedule, starts[i], e.tactors);
         fmt::print(out, "{}\n", i + 1 < p.plans.size() ? "," : "");
     }
     fmt::print(out, "]}}\n");

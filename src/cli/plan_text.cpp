@@ -7,19 +7,19 @@
 namespace tactor::cli {
 namespace {
 
-std::string heading(const stroke& s, const plan& p, const array& a)
+std::string heading(const stroke& s, const plan& p, double start_s, const array& a)
 {
     const std::string soa = p.soa_s ? fmt::format(", SOA {:.6g} s", *p.soa_s) : "";
     const std::string bursts = p.at ? "continuous" : fmt::format("{} bursts", p.bursts.size());
-    return fmt::format(
-        "{} on {}: {} with {}, {}{}\n{:.6g} mm in {:.6g} s, {:.6g} s of sound, carrier {:.6g} Hz\n", s.name,
-        a.name, p.algorithm, p.phantom, bursts, soa, p.stroke_length_mm, p.stroke_duration_s, p.total_s,
-        p.carrier_hz);
+    return fmt::format("{} on {}: {} with {}, {}{}\nstarts at {:.9g} s, {:.6g} mm in {:.6g} s, {:.6g} s of "
+                       "sound, carrier {:.6g} Hz\n",
+                       s.name, a.name, p.algorithm, p.phantom, bursts, soa, start_s, p.stroke_length_mm,
+                       p.stroke_duration_s, p.total_s, p.carrier_hz);
 }
 
-void print_one(std::FILE* out, const stroke& s, const plan& p, const array& a)
+void print_one(std::FILE* out, const stroke& s, const plan& p, double start_s, const array& a)
 {
-    fmt::print(out, "{}", heading(s, p, a));
+    fmt::print(out, "{}", heading(s, p, start_s, a));
     if (!s.note.empty())
         fmt::print(out, "note: {}\n", s.note);
     fmt::print(out, "\n{:>10} {:>10} {:>9} {:>9}  {}\n", p.at ? "t_s" : "onset_s", "duration_s", "x_mm",
@@ -45,10 +45,11 @@ void print_one(std::FILE* out, const stroke& s, const plan& p, const array& a)
 
 void print_text(std::FILE* out, const piece& p, const environment& e)
 {
+    const auto starts = starts_of(p.plans);
     for (std::size_t i = 0; i < p.plans.size(); ++i) {
         if (i != 0)
             fmt::print(out, "\n");
-        print_one(out, p.strokes[i], p.plans[i].schedule, e.tactors);
+        print_one(out, p.strokes[i], p.plans[i].schedule, starts[i], e.tactors);
     }
 }
 

@@ -40,24 +40,17 @@ public:
         if (!next_line())
             fail({}, "is empty", header_hint);
         header();
-        double start = 0.0;
-        while (next_line()) {
-            timed_point p = row();
-            if (points_.empty())
-                start = p.t_s;
-            p.t_s -= start;
-            points_.push_back(p);
-        }
+        while (next_line())
+            points_.push_back(row());
         if (points_.size() < 2)
             fail({}, fmt::format("{} of at least 2 points", points_.size()),
                  "give where the stroke starts and where it ends");
-        std::optional<double> start_s;
-        if (start > 0.0)
-            start_s = start;
-        return {{detail::stem(name_), trajectory::timed(std::move(points_)), start_s, {}, {}}};
+        return {{detail::stem(name_), trajectory::timed(std::move(points_)), {}, {}, {}}};
     }
 
 private:
+    /// Seconds since 1970 are 1.8e9; farther from zero a time does not hold microseconds.
+    static constexpr double farthest_time_s = 1e10;
     static constexpr std::string_view header_hint =
         "the first line names the columns: t_s,x_mm,y_mm,intensity";
 
@@ -144,23 +137,32 @@ private:
                  "numbers have a decimal point, and a comma stands only between them");
         timed_point p;
         for (std::size_t i = 0; i < order_.size(); ++i) {
-            const double v = value(fields_[i], order_[i]);
+            double v = value(fields_[i], order_[i]);
+            if (order_[i] == t_s)
+                v = since_first(fields_[i], v);
             (order_[i] == t_s    ? p.t_s
              : order_[i] == x_mm ? p.position.x_mm
              : order_[i] == y_mm ? p.position.y_mm
                                  : p.intensity) = v;
-            if (order_[i] == t_s)
-                check_order(fields_[i], v);
         }
         return p;
     }
 
-    void check_order(const field& f, double time)
+    // Recorders count from any moment, so the first line is the stroke's zero. Order is that of the
+    // differences: two times far from zero may have the same.
+    double since_first(const field& f, double time)
     {
-        if (time <= last_time_)
+        if (points_.empty())
+            first_time_ = time;
+        const double t = time - first_time_;
+        if (!points_.empty() && t <= points_.back().t_s)
             fail(f.column, fmt::format("time {} s is not after {} s of the line before", time, last_time_),
                  "times ascend");
+        if (t > detail::longest_stroke_s)
+            fail(f.column, fmt::format("time {} s is {} s after the first line", time, t),
+                 fmt::format("a stroke lasts at most {:g} s", detail::longest_stroke_s));
         last_time_ = time;
+        return t;
     }
 
     double value(const field& f, column c) const
@@ -173,10 +175,8 @@ private:
             fail(f.column, fmt::format("{} is not a number: {}", names[c], detail::quoted(f.text)),
                  "e.g. 12.5");
         const bool place = c == x_mm || c == y_mm;
-        const double low = place ? -detail::max_mm : 0.0;
-        const double high = place      ? detail::max_mm
-                            : c == t_s ? detail::longest_stroke_s
-                                       : detail::max_intensity;
+        const double high = place ? detail::max_mm : c == t_s ? farthest_time_s : detail::max_intensity;
+        const double low = c == intensity ? 0.0 : -high;
         if (!(*v >= low && *v <= high))
             fail(f.column,
                  fmt::format("{} {}", names[c], f.text.size() > 40 ? detail::quoted(f.text) : f.text),
@@ -198,7 +198,8 @@ private:
     std::array<bool, columns> seen_{};
     std::vector<column> order_;
     std::vector<timed_point> points_;
-    double last_time_ = -1.0;
+    double first_time_ = 0.0;
+    double last_time_ = 0.0;
 };
 
 } // namespace

@@ -196,6 +196,27 @@ class StrokeFiles(ToolTest):
         energy = sum(d["amplitude"] ** 2 for d in p["bursts"][10]["drives"])
         self.assertAlmostEqual(math.sqrt(energy), 0.5, 6)
 
+    def test_the_first_line_of_a_csv_file_is_the_zero_of_the_stroke(self):
+        self.write("late.csv", "t_s,x_mm,y_mm\n1000,0,10\n1001,40,30\n")
+        self.write("zero.csv", "t_s,x_mm,y_mm\n0,0,10\n1,40,30\n")
+        late, zero = (self.plan(f) for f in ("late.csv", "zero.csv"))
+        self.assertEqual(late["start_s"], 0.0)
+        self.assertEqual(late | {"stroke": zero["stroke"]}, zero)
+        self.assertIn("starts at 0 s, 44.7214 mm in 1 s, 1.05 s of sound", self.ok("plan", "late.csv").stdout)
+        self.assertIn("50400 frames (1.050 s)", self.ok("render", "late.csv", "-o", "late.wav").stdout)
+
+    def test_text_json_and_csv_say_when_each_stroke_starts(self):
+        stroke = '[[stroke]]\npath = "M 0 0 L 40 0"\nduration_s = 0.7\n'
+        self.write("one.toml", stroke + "start_s = 1000.0625\n")
+        self.write("two.toml", stroke + "start_s = 3.5\n" + stroke)
+        self.assertIn("\nstarts at 1000.0625 s, ", self.ok("plan", "one.toml").stdout)
+        self.assertEqual(self.plan("one.toml")["start_s"], 1000.0625)
+        self.assertEqual([p["start_s"] for p in self.plan("two.toml")["plans"]], [3.5, 4.27])
+        text = self.ok("plan", "two.toml").stdout
+        self.assertTrue("\nstarts at 3.5 s, " in text and "\nstarts at 4.27 s, " in text, text)
+        rows = csv.DictReader(io.StringIO(self.ok("plan", "two.toml", "--format", "csv").stdout))
+        self.assertEqual({(r["stroke"], r["start_s"]) for r in rows}, {("0", "3.5"), ("1", "4.27")})
+
     def test_standard_input_holds_a_stroke_file(self):
         p = self.plan("-", stdin='[stroke]\npath = "M 0 10 L 40 30"\nduration_s = 1.0\n')
         self.assertEqual(len(p["bursts"]), 15)

@@ -58,12 +58,18 @@ TEST_CASE("byte order mark, CRLF, blanks, quotes, comments and empty lines are t
     CHECK(one("t_s,x_mm,y_mm\n0,0,0\n1,1,1").motion.duration_s() == 1.0);
 }
 
-TEST_CASE("the first time is the start of the stroke")
+TEST_CASE("the time of the first line is the stroke's zero, whatever a recorder counted from")
 {
-    const stroke s = one("t_s,x_mm,y_mm\n2.5,0,0\n3,5,0\n4.5,5,5\n");
-    CHECK(s.start_s == 2.5);
-    CHECK(s.motion.duration_s() == 2.0);
-    CHECK(s.motion.position(0.5) == point{5.0, 0.0});
+    for (const char* csv :
+         {"t_s,x_mm,y_mm\n2.5,0,0\n3,5,0\n4.5,5,5\n", "t_s,x_mm,y_mm\n-2.5,0,0\n-2,5,0\n-0.5,5,5\n",
+          "t_s,x_mm,y_mm\n1700000000.5,0,0\n1700000001,5,0\n1700000002.5,5,5\n",
+          "y_mm,x_mm,t_s\n0,0,-0.5\n0,5,0\n5,5,1.5\n"}) {
+        CAPTURE(csv);
+        const stroke s = one(csv);
+        CHECK_FALSE(s.start_s.has_value());
+        CHECK(s.motion.duration_s() == 2.0);
+        CHECK(s.motion.position(0.5) == point{5.0, 0.0});
+    }
 }
 
 TEST_CASE("what is wrong in a CSV file is named by line and column")
@@ -91,8 +97,14 @@ TEST_CASE("what is wrong in a CSV file is named by line and column")
         {"t_s,x_mm,y_mm\n0,0,0\n1,1,inf\n", "f.csv:3:5: y_mm is not a number: 'inf'"},
         {"t_s,x_mm,y_mm\n0,0,0\n1,1,-1e999\n", "f.csv:3:5: y_mm -1e999"},
         {"t_s,x_mm,y_mm\n0,0,0\n1,1000001,0\n", "f.csv:3:3: x_mm 1000001 (it is between -1e+06 and 1e+06)"},
-        {"t_s,x_mm,y_mm\n0,0,0\n86401,1,0\n", "f.csv:3:1: t_s 86401"},
-        {"t_s,x_mm,y_mm\n-1,0,0\n1,1,0\n", "f.csv:2:1: t_s -1"},
+        {"t_s,x_mm,y_mm\n0,0,0\n86401,1,0\n",
+         "f.csv:3:1: time 86401 s is 86401 s after the first line (a stroke lasts at most 86400 s)"},
+        {"t_s,x_mm,y_mm\n1000000,0,0\n1086400.5,1,0\n",
+         "f.csv:3:1: time 1086400.5 s is 86400.5 s after the first line"},
+        {"t_s,x_mm,y_mm\n0,0,0\n1e11,1,0\n", "f.csv:3:1: t_s 1e11 (it is between -1e+10 and 1e+10)"},
+        {"t_s,x_mm,y_mm\n-1,0,0\n-2,1,0\n", "f.csv:3:1: time -2 s is not after -1 s"},
+        {"t_s,x_mm,y_mm\n1e10,0,0\n10000000000.0000001,1,0\n",
+         "f.csv:3:1: time 10000000000 s is not after 10000000000 s"},
         {"t_s,x_mm,y_mm\n0,0,0\n1,1,0\n# x\n1,2,0\n",
          "f.csv:5:1: time 1 s is not after 1 s of the line before (times ascend)"},
         {"x_mm,t_s,y_mm\n0,0,0\n1,2,0\n2,1.5,0\n", "f.csv:4:3: time 1.5 s is not after 2 s"},
