@@ -40,7 +40,7 @@ ONLY_IN = {
     "toml++/": ["src/model/"],
     "boost/polygon": ["src/plan/"],
     "boost/asio": ["src/engine/", "src/server/", "include/tactor/asio.hpp"],
-    "sndfile": ["src/wav/"],
+    "sndfile": [],
     "CLI/": ["src/cli/"],
     "cairo": ["src/plot/"],
     "nlohmann/": ["src/cli/", "src/server/"],

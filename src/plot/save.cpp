@@ -33,10 +33,10 @@ file_format format_of(const fs::path& file)
 void save(const canvas& c, const fs::path& file, unsigned dpi)
 {
     const file_format format = format_of(file);
-    output_file to(file);
     const std::string bytes = format == file_format::svg   ? to_svg(c)
                               : format == file_format::png ? to_png(c, dpi)
                                                            : to_pdf(c);
+    output_file to(file);
     to.write(bytes.data(), static_cast<std::int64_t>(bytes.size()));
     to.commit();
 }

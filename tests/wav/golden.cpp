@@ -28,15 +28,15 @@ struct golden {
 };
 
 const golden all_golden[] = {
-    {algorithm::park2016, sample_format::float32, 0x58a9be0e257a444eU},
+    {algorithm::park2016, sample_format::float32, 0xc946580a297d916aU},
     {algorithm::park2016, sample_format::s16, 0x8af13b4bca8b7500U},
     {algorithm::park2016, sample_format::s24_3, 0x2103b24f6d27edcbU},
     {algorithm::park2016, sample_format::s32, 0xf95615bd3d77b174U},
-    {algorithm::tactile_brush, sample_format::float32, 0xa821930382c0ba5aU},
+    {algorithm::tactile_brush, sample_format::float32, 0xcaa84436c5e4fe25U},
     {algorithm::tactile_brush, sample_format::s16, 0x77551240e3a72c21U},
     {algorithm::tactile_brush, sample_format::s24_3, 0xa10a3bd23ecf835bU},
     {algorithm::tactile_brush, sample_format::s32, 0xe5959743f9673606U},
-    {algorithm::continuous, sample_format::float32, 0xc537706c6ab283f8U},
+    {algorithm::continuous, sample_format::float32, 0xa1b19d0e79f0cbcbU},
     {algorithm::continuous, sample_format::s16, 0x8fb1701e87184617U},
     {algorithm::continuous, sample_format::s24_3, 0x9c0b3468dd63677bU},
     {algorithm::continuous, sample_format::s32, 0xf980c8980dc59b09U},
