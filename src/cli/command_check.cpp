@@ -14,6 +14,7 @@
 #include "cli/check_system.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/say.hpp"
 #include "cli/walk_session.hpp"
 
 namespace tactor::cli {
@@ -76,13 +77,14 @@ void conclude(const check_options& o, const environment& e, const walk_verdict& 
         write_channel_file(o.output, e, v.channels);
     if (o.play.json())
         return;
-    fmt::print("{}\n", v.changed ? fmt::format("The map is wrong: tactors 0 to {} are on channels {}.",
-                                               v.channels.size() - 1, fmt::join(v.channels, ", "))
-                                 : "The map is right.");
+    say(stdout, "{}\n",
+        v.changed ? fmt::format("The map is wrong: tactors 0 to {} are on channels {}.",
+                                v.channels.size() - 1, fmt::join(v.channels, ", "))
+                  : "The map is right.");
     if (!o.output.empty())
-        fmt::print("Written: {}\n", o.output);
+        say(stdout, "Written: {}\n", o.output);
     else if (v.changed)
-        fmt::print("-o FILE writes it as an array file.\n");
+        say(stdout, "-o FILE writes it as an array file.\n");
 }
 
 int run_walk(const settings& s, const check_options& o, const environment& e, const std::vector<finding>& all)
@@ -107,8 +109,8 @@ int complain(const std::vector<finding>& all)
 {
     const auto first =
         std::find_if(all.begin(), all.end(), [](const auto& f) { return f.how == level::error; });
-    fmt::print(stderr, "tactor: {}: {}{}\n", first->check, first->found,
-               first->cure.empty() ? "" : fmt::format(" ({})", first->cure));
+    say(stderr, "tactor: {}: {}{}\n", first->check, first->found,
+        first->cure.empty() ? "" : fmt::format(" ({})", first->cure));
     return status_of(all);
 }
 
@@ -138,7 +140,7 @@ int check(settings& s, option_list& options, const check_options& o)
     }
     const bool walks = o.walk && status_of(all) == status_ok;
     if (!o.play.json())
-        fmt::print("{}", check_text(all, o.walk));
+        say(stdout, "{}", check_text(all, o.walk));
     else if (!walks)
         fmt::print("{}", check_json(all, {}));
     std::fflush(stdout);

@@ -10,6 +10,7 @@
 #include "cli/commands.hpp"
 #include "cli/compare_rows.hpp"
 #include "cli/input.hpp"
+#include "cli/say.hpp"
 #include "plot/compare_figure.hpp"
 #include "plot/figure.hpp"
 #include "plot/output.hpp"
@@ -130,7 +131,7 @@ error why_refused(const std::vector<comparison>& all)
                 if (seen.insert(r.refused->what()).second)
                     reasons.push_back(*r.refused);
     for (std::size_t i = 0; i + 1 < reasons.size(); ++i)
-        fmt::print(stderr, "tactor: {}\n", reasons[i].what());
+        say(stderr, "tactor: {}\n", reasons[i].what());
     return reasons.back();
 }
 

@@ -8,6 +8,7 @@
 #include "cli/devices_output.hpp"
 #include "cli/input.hpp"
 #include "cli/play_options.hpp"
+#include "cli/say.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -22,7 +23,10 @@ int list_devices(settings& s, option_list& options, bool as_json)
     d.wanted = device_options(s, {}, e, render.channels, render.rate);
     d.pcms = list_pcms(d.wanted);
     d.chips = list_gpio();
-    fmt::print("{}", as_json ? devices_json(d) : devices_text(d));
+    if (as_json)
+        fmt::print("{}", devices_json(d));
+    else
+        say_text(stdout, devices_text(d));
     return status_ok;
 }
 

@@ -9,6 +9,7 @@
 #include "cli/play_options.hpp"
 #include "cli/play_report.hpp"
 #include "cli/play_session.hpp"
+#include "cli/say.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -21,7 +22,7 @@ std::vector<score> make_scores(const std::vector<piece>& pieces, const environme
         scores.push_back(make_score(p, e, render));
         for (const placed_plan& q : p.plans)
             for (const std::string& w : q.schedule.warnings)
-                fmt::print(stderr, "tactor: warning: {}\n", w);
+                say(stderr, "tactor: warning: {}\n", w);
     }
     return scores;
 }
@@ -60,7 +61,7 @@ std::optional<broken_off> judge(const play_session& session, const play_options&
         return broken_off{out.name, why, "the run is void: --void-on-xrun"};
     if (session.lost() && (last || !session.waits()))
         return broken_off{out.name, why, last ? "" : wait_hint};
-    fmt::print(stderr, "tactor: warning: {}\n", text);
+    say(stderr, "tactor: warning: {}\n", text);
     return {};
 }
 
@@ -74,7 +75,7 @@ std::optional<broken_off> play_all(play_session& session, const play_options& o,
             return broken_off{pieces[i].name, "not played: the device is gone",
                               session.waits() ? "it did not come back in time" : wait_hint};
         if (!o.json() && outcomes[i].report) {
-            fmt::print("{}\n", describe(outcomes[i], session.setup().rate));
+            say(stdout, "{}\n", describe(outcomes[i], session.setup().rate));
             std::fflush(stdout);
         }
         if (session.signal() != 0)
@@ -92,16 +93,15 @@ int play(settings& s, option_list& options, const play_options& o)
     const auto pieces = plan_pieces(s, e);
     const auto scores = make_scores(pieces, e, settle_render(s, e));
     if (!names_device(s, e))
-        fmt::print(stderr,
-                   "tactor: no device is configured: playing to \"null\", which nobody feels (-D PCM plays "
-                   "on hardware)\n");
+        say(stderr, "tactor: no device is configured: playing to \"null\", which nobody feels (-D PCM plays "
+                    "on hardware)\n");
     play_session session(device_options(s, o, e, scores.front().channels(), scores.front().rate()), o, e);
     if (!o.json())
-        fmt::print("{}\n", describe(session.setup()));
+        say(stdout, "{}\n", describe(session.setup()));
     std::fflush(stdout);
     const std::string warning = latency_warning(o, session.setup());
     if (!warning.empty())
-        fmt::print(stderr, "tactor: warning: {}\n", warning);
+        say(stderr, "tactor: warning: {}\n", warning);
 
     run_report r;
     for (std::size_t i = 0; i < pieces.size(); ++i)

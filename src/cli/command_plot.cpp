@@ -8,6 +8,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
+#include "cli/say.hpp"
 #include "plot/figure.hpp"
 #include "plot/output.hpp"
 
@@ -81,9 +82,9 @@ int draw(settings& s, option_list& options, const plot_settings& p)
     plot::save(picture, p.file, p.dpi);
     for (const placed_plan& k : q.plans)
         for (const std::string& w : k.schedule.warnings)
-            fmt::print(stderr, "tactor: warning: {}\n", w);
-    fmt::print("{}: {:.4g} x {:.4g} mm\n", p.file, picture.width / plot::pt_per_mm,
-               picture.height / plot::pt_per_mm);
+            say(stderr, "tactor: warning: {}\n", w);
+    say(stdout, "{}: {:.4g} x {:.4g} mm\n", p.file, picture.width / plot::pt_per_mm,
+        picture.height / plot::pt_per_mm);
     return status_ok;
 }
 

@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <memory>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -9,21 +16,25 @@
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/say.hpp"
 
 namespace tactor::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 // A line that counts up on a terminal, from the second half second of work on.
 class progress_line {
 public:
-    explicit progress_line(std::string name) : name_(std::move(name)), terminal_(isatty(STDERR_FILENO) != 0)
+    explicit progress_line(const std::string& name)
+        : name_(shown(name)), terminal_(isatty(STDERR_FILENO) != 0)
     {
     }
 
     ~progress_line()
     {
         if (shown_)
-            fmt::print(stderr, "\r\033[K");
+            std::fputs("\r\033[K", stderr);
     }
 
     void update(std::uint64_t done, std::uint64_t all)
@@ -33,8 +44,8 @@ public:
             return;
         last_ = now;
         shown_ = true;
-        fmt::print(stderr, "\r\033[K{}: {:.1f} %", name_,
-                   100.0 * static_cast<double>(done) / static_cast<double>(all));
+        const double percent = 100.0 * static_cast<double>(done) / static_cast<double>(all);
+        std::fputs(fmt::format("\r\033[K{}: {:.1f} %", name_, percent).c_str(), stderr);
         std::fflush(stderr);
     }
 
@@ -45,19 +56,62 @@ private:
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-int render(settings& s, option_list& options, const std::string& file)
+bool ends_in_wav(const fs::path& file)
 {
+    std::string e = file.extension().string();
+    std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return std::tolower(c); });
+    return e == ".wav";
+}
+
+// Whether a file begins as one that may be replaced does: with nothing, or as a WAV file.
+bool holds_wav(const fs::path& file)
+{
+    std::array<char, 12> head{};
+    std::ifstream in(file, std::ios::binary);
+    in.read(head.data(), head.size());
+    const std::string_view begin(head.data(), static_cast<std::size_t>(in.gcount()));
+    return begin.empty() ||
+           ((begin.starts_with("RIFF") || begin.starts_with("RF64")) && begin.ends_with("WAVE"));
+}
+
+// "-" is standard output. A slip of the keyboard must not replace somebody's thesis.
+fs::path checked_output(const std::string& name)
+{
+    constexpr const char* standard_output = "/dev/stdout";
+    const fs::path file = name == "-" ? standard_output : name;
+    if (file == standard_output) {
+        if (isatty(STDOUT_FILENO) != 0)
+            throw error(errc::bad_input, "-o", "standard output is a terminal, which samples would garble",
+                        "name a file, or pipe it into another program");
+        return file;
+    }
+    std::error_code none;
+    const fs::file_status there = fs::status(file, none);
+    if (name.empty() || fs::is_directory(there) || (fs::exists(there) && !fs::is_regular_file(there)))
+        return file;
+    if (!ends_in_wav(file))
+        throw error(errc::bad_input, name, "the name of a WAV file ends in .wav",
+                    "name it so, or write -o - > FILE");
+    if (fs::exists(there) && !holds_wav(file))
+        throw error(errc::bad_input, name, "there is such a file, which is not a WAV file",
+                    "choose another name, or remove it first");
+    return file;
+}
+
+int render(settings& s, option_list& options, const std::string& name)
+{
+    const fs::path file = checked_output(name); // before the work
     const environment e = read_environment(s, options);
     const piece p = plan_one_piece(s, e);
     const score sc = make_score(p, e, settle_render(s, e));
     const sample_format format = s.format.value_or(sample_format::float32);
     for (const placed_plan& q : p.plans)
         for (const std::string& w : q.schedule.warnings)
-            fmt::print(stderr, "tactor: warning: {}\n", w);
+            say(stderr, "tactor: warning: {}\n", w);
     interrupt stop;
     int signal = 0;
     {
-        progress_line line(file);
+        progress_line line(name);
         write_wav(sc, format, file, [&](std::uint64_t done, std::uint64_t all) {
             line.update(done, all);
             signal = stop.poll();
@@ -66,8 +120,9 @@ int render(settings& s, option_list& options, const std::string& file)
     }
     if (signal != 0)
         return interrupt::status(signal);
-    fmt::print("{}: {} channels, {} Hz, {}, {} frames ({:.3f} s)\n", file, sc.channels(), sc.rate(),
-               to_string(format), sc.frames(), static_cast<double>(sc.frames()) / sc.rate());
+    say(file == "/dev/stdout" ? stderr : stdout, "{}: {} channels, {} Hz, {}, {} frames ({:.3f} s)\n", name,
+        sc.channels(), sc.rate(), to_string(format), sc.frames(),
+        static_cast<double>(sc.frames()) / sc.rate());
     return status_ok;
 }
 
@@ -81,7 +136,9 @@ command add_render(CLI::App& app)
     auto file = std::make_shared<std::string>();
     options->add_stroke_options();
     options->add_sound_options();
-    c->add_option("-o,--output", *file, "the file to write")->type_name("FILE.wav")->required();
+    c->add_option("-o,--output", *file, "the file to write; - is standard output")
+        ->type_name("FILE.wav")
+        ->required();
     c->footer("Example: tactor render --path \"M 0 10 L 40 30\" --speed 80 -o stroke.wav");
     return [s, options, file] { return render(*s, *options, *file); };
 }

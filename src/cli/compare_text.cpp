@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "cli/compare_rows.hpp"
+#include "cli/say.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -22,7 +23,7 @@ std::string names(const comparison_row& r)
 void print_row(std::FILE* out, const comparison_row& r)
 {
     if (r.refused) {
-        fmt::print(out, "{} refused: {}\n", names(r), r.refused->what());
+        say(out, "{} refused: {}\n", names(r), r.refused->what());
         return;
     }
     const std::string bursts = r.schedule->at ? "-" : fmt::format("{}", r.schedule->bursts.size());
@@ -40,17 +41,16 @@ void print_warnings(std::FILE* out, const comparison& c)
             for (const std::string& w : r.schedule->warnings) {
                 const std::string text = fmt::format("warning: {}: {}\n", to_string(r.method), w);
                 if (said.insert(text).second)
-                    fmt::print(out, "{}", text);
+                    say_text(out, text);
             }
 }
 
 void print_one(std::FILE* out, const comparison& c, const array& a)
 {
     const trajectory& m = c.target.motion;
-    fmt::print(out, "{} on {}: {:.6g} mm in {:.6g} s\n", c.target.name, a.name, m.length_mm(),
-               m.duration_s());
+    say(out, "{} on {}: {:.6g} mm in {:.6g} s\n", c.target.name, a.name, m.length_mm(), m.duration_s());
     if (!c.target.note.empty())
-        fmt::print(out, "note: {}\n", c.target.note);
+        say(out, "note: {}\n", c.target.note);
     fmt::print(out, "\n{:<13} {:<16} {:>6} {:>13} {:>14} {:>13}\n", "", "", "", "error mm   ", "CV      ",
                "% of time ");
     fmt::print(out, "{:<13} {:<16} {:>6} {:>6} {:>6} {:>6} {:>7} {:>6} {:>6}\n", "algorithm", "phantom",

@@ -7,8 +7,8 @@
 
 namespace tactor::cli {
 
-/// Blocks SIGINT, SIGTERM and SIGHUP in this thread, and so in those that it starts, and receives them
-/// through a descriptor. Make it before any thread.
+/// Blocks SIGINT, SIGTERM, SIGHUP and SIGQUIT in this thread, and so in those that it starts, and receives
+/// them through a descriptor. Make it before any thread.
 class interrupt {
 public:
     interrupt();

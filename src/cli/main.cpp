@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
 #include <new>
 #include <string_view>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -15,6 +17,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/complete.hpp"
+#include "cli/say.hpp"
 #include "cli/usage.hpp"
 
 namespace tactor::cli {
@@ -60,12 +63,18 @@ int run(int argc, char** argv)
     return status_usage;
 }
 
+// As if SIGPIPE had ended it, and as quietly: who reads only the first lines (| head) wants no more.
+constexpr int status_unread = 128 + SIGPIPE;
+
 // What was printed must have arrived: a full disk is a failure, not a shorter plan.
 int flushed(int status)
 {
+    errno = 0;
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
         return status;
-    fmt::print(stderr, "tactor: standard output: {}\n", std::strerror(errno));
+    if (errno == EPIPE)
+        return status_unread;
+    say(stderr, "tactor: standard output: {}\n", std::strerror(errno));
     return status_failed;
 }
 
@@ -75,15 +84,23 @@ int flushed(int status)
 int main(int argc, char** argv)
 {
     using namespace tactor::cli;
+    // A file that grows beyond `ulimit -f`, and a pipe whose reader is gone, are errors that say what to do
+    // and leave nothing half done, not ends of the program.
+    std::signal(SIGXFSZ, SIG_IGN);
+    std::signal(SIGPIPE, SIG_IGN);
     try {
         return flushed(run(argc, argv));
     } catch (const tactor::error& e) {
-        fmt::print(stderr, "tactor: {}\n", e.what());
+        say(stderr, "tactor: {}\n", e.what());
         return status_of(e.kind());
+    } catch (const std::system_error& e) { // of fmt::print
+        if (e.code() == std::errc::broken_pipe)
+            return status_unread;
+        say(stderr, "tactor: failed: {}\n", e.what());
     } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "tactor: memory: not enough for this input\n");
+        say(stderr, "tactor: memory: not enough for this input\n");
     } catch (const std::exception& e) {
-        fmt::print(stderr, "tactor: failed: {}\n", e.what());
+        say(stderr, "tactor: failed: {}\n", e.what());
     }
     return status_failed;
 }

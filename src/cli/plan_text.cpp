@@ -3,6 +3,7 @@
 
 #include "cli/plan_output.hpp"
 #include "cli/plan_rows.hpp"
+#include "cli/say.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -19,9 +20,9 @@ std::string heading(const stroke& s, const plan& p, double start_s, const array&
 
 void print_one(std::FILE* out, const stroke& s, const plan& p, double start_s, const array& a)
 {
-    fmt::print(out, "{}", heading(s, p, start_s, a));
+    say(out, "{}", heading(s, p, start_s, a));
     if (!s.note.empty())
-        fmt::print(out, "note: {}\n", s.note);
+        say(out, "note: {}\n", s.note);
     fmt::print(out, "\n{:>10} {:>10} {:>9} {:>9}  {}\n", p.at ? "t_s" : "onset_s", "duration_s", "x_mm",
                "y_mm", "tactor:amplitude");
     for_each_row(p, [&](const burst& b) {
@@ -38,7 +39,7 @@ void print_one(std::FILE* out, const stroke& s, const plan& p, double start_s, c
         fmt::print(out, "dropped: the crossing at ({:.3f}, {:.3f}) mm, {:.6f} s\n", m.position.x_mm,
                    m.position.y_mm, m.t_s);
     for (const std::string& w : p.warnings)
-        fmt::print(out, "warning: {}\n", w);
+        say(out, "warning: {}\n", w);
 }
 
 } // namespace

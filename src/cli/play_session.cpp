@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "cli/own_memory.hpp"
+#include "cli/say.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -68,9 +69,9 @@ play_session::play_session(const alsa_options& device, const play_options& o, co
     start(std::move(s));
     const bool realtime = player_->stats().realtime;
     if (!realtime || !locked_)
-        fmt::print(stderr, "tactor: warning: {}{}{}: xruns are likelier ({})\n",
-                   realtime ? "" : "no real-time priority", realtime || locked_ ? "" : ", ",
-                   locked_ ? "" : fmt::format("memory is not locked ({})", refused), advice());
+        say(stderr, "tactor: warning: {}{}{}: xruns are likelier ({})\n",
+            realtime ? "" : "no real-time priority", realtime || locked_ ? "" : ", ",
+            locked_ ? "" : fmt::format("memory is not locked ({})", refused), advice());
 }
 
 void play_session::start(std::unique_ptr<sink> s)
@@ -106,7 +107,7 @@ stroke_report play_session::play(const piece& p, const score& s)
         return {.state = stroke_state::interrupted, .reason = *player_->ended()};
     }
     if (options_.arm && !options_.json()) {
-        fmt::print("{}: armed\n", p.name);
+        say(stdout, "{}: armed\n", p.name);
         std::fflush(stdout);
     }
     for (;;) {
@@ -134,7 +135,7 @@ bool play_session::reopen()
     using clock = std::chrono::steady_clock;
     if (!waits())
         return false;
-    fmt::print(stderr, "tactor: waiting for \"{}\" to come back (Ctrl-C ends)\n", device_.pcm);
+    say(stderr, "tactor: waiting for \"{}\" to come back (Ctrl-C ends)\n", device_.pcm);
     if (player_ != nullptr)
         add_stats(before_, player_->stats());
     const auto until = clock::now() + std::chrono::duration<double>(options_.reopen_s);
@@ -156,7 +157,7 @@ bool play_session::reopen()
         }
     }
     ++reopened_;
-    fmt::print(stderr, "tactor: \"{}\" is back\n", device_.pcm);
+    say(stderr, "tactor: \"{}\" is back\n", device_.pcm);
     return true;
 }
 

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "cli/play_session.hpp"
+#include "cli/say.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -86,7 +87,7 @@ private:
 
     void say(const std::string& text) const
     {
-        fmt::print(to_, "{}", text);
+        say_text(to_, text);
         std::fflush(to_);
     }
 

@@ -118,7 +118,7 @@ TEST_CASE("a pipe that is full is waited for until the user has enough, and noth
     output_file f(dir / "pipe", [&] { return !enough; });
     const std::string some(4096, 'x');
     CHECK(f.write(some.data(), 4096) == 4096);
-    std::string got(some.size() + 1, '\0');
+    std::string got(1 << 20, '\0');
     CHECK(::read(reader, got.data(), got.size()) == 4096);
     enough = true;
     const std::string more(1 << 20, 'y');

@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: MIT
+"""Where `render` writes: pipes, standard output, files of others; and what people read of names that strangers chose."""
+import os
+import pty
+import resource
+import select
+import signal
+import stat
+import subprocess
+
+from harness import PATIENCE_S, TOOL, ToolTest, Wav, main
+
+ESCAPE = "\x1b[31m"
+
+
+class Output(ToolTest):
+    def start(self, *args, **more):
+        return subprocess.Popen([TOOL, *args], cwd=self.dir, env=self.env, stderr=subprocess.PIPE,
+                                **({"stdout": subprocess.PIPE} | more))
+
+    def await_blocked_signals(self, process):
+        """Until the tool takes signals itself: SIGINT stands among those that it blocks."""
+        while True:
+            with open(f"/proc/{process.pid}/status", encoding="ascii") as f:
+                blocked = next(line for line in f if line.startswith("SigBlk:"))
+            if int(blocked.split()[1], 16) & 1 << (signal.SIGINT - 1):
+                return
+            self.assertIsNone(process.poll())
+
+    def leftovers(self):
+        return sorted(p.name for p in self.dir.iterdir() if p.name != "alsa.conf")
+
+
+class Pipes(Output):
+    def setUp(self):
+        super().setUp()
+        self.ok("render", "park2016-1", "-o", "file.wav")
+        self.expected = (self.dir / "file.wav").read_bytes()
+        os.mkfifo(self.dir / "pipe")
+
+    def test_standard_output_gets_the_files_bytes_and_nothing_else(self):
+        for name in ("-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"):
+            process = self.start("render", "park2016-1", "-o", name)
+            out, said = process.communicate(timeout=PATIENCE_S)
+            self.assertEqual(process.returncode, 0, said)
+            if name in ("-", "/dev/stdout"):
+                self.assertEqual(out, self.expected)
+                self.assertIn(b"70560 frames", said)
+            else:
+                self.assertTrue(out.startswith(self.expected))
+
+    def test_a_redirected_file_is_written_from_where_it_stands(self):
+        with open(self.dir / "all", "wb", buffering=0) as f:
+            f.write(b"before")
+            self.assertEqual(self.start("render", "park2016-1", "-o", "-", stdout=f).wait(timeout=PATIENCE_S), 0)
+        self.assertEqual((self.dir / "all").read_bytes(), b"before" + self.expected)
+
+    def test_a_pipe_gets_the_files_bytes(self):
+        process = self.start("render", "park2016-1", "-o", "pipe")
+        self.assertEqual((self.dir / "pipe").read_bytes(), self.expected)
+        process.communicate(timeout=PATIENCE_S)
+        self.assertEqual(process.returncode, 0)
+        self.assertTrue(stat.S_ISFIFO((self.dir / "pipe").stat().st_mode))
+
+    def test_a_pipe_that_nobody_reads_can_be_interrupted(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
+            process = self.start("render", "park2016-1", "-o", "pipe")
+            self.await_blocked_signals(process)
+            process.send_signal(number)
+            process.communicate(timeout=PATIENCE_S)
+            self.assertEqual(process.returncode, 128 + number)
+
+    def test_a_reader_that_waits_keeps_nobody(self):
+        process = self.start("render", "park2016-1", "-o", "pipe")
+        with open(self.dir / "pipe", "rb", buffering=0) as reader:
+            reader.read(4096)
+            process.send_signal(signal.SIGINT)
+            process.communicate(timeout=PATIENCE_S)
+        self.assertEqual(process.returncode, 130)
+
+    def test_a_reader_that_leaves_is_an_error_with_a_hint(self):
+        process = self.start("render", "park2016-1", "-o", "pipe")
+        with open(self.dir / "pipe", "rb", buffering=0) as reader:
+            reader.read(4096)
+        _, said = process.communicate(timeout=PATIENCE_S)
+        self.assertEqual(process.returncode, 1)
+        self.assertIn(b"pipe: cannot be written", said)
+        self.assertIn(b"ended before", said)
+
+    def test_samples_do_not_go_to_a_terminal(self):
+        terminal, side = pty.openpty()
+        self.addCleanup(os.close, terminal)
+        process = self.start("render", "park2016-1", "-o", "-", stdout=side)
+        os.close(side)
+        _, said = process.communicate(timeout=PATIENCE_S)
+        self.assertEqual(process.returncode, 2)
+        self.assertIn(b"terminal", said)
+
+
+class Files(Output):
+    def test_a_slip_of_the_keyboard_replaces_nothing(self):
+        self.write("thesis.tex", "years of work")
+        self.write("notes.wav", "not a sound")
+        self.refused(2, "render", "park2016-1", "-o", "thesis.tex", says=["thesis.tex", ".wav", "-o - >"])
+        self.refused(2, "render", "park2016-1", "-o", "notes.wav", says=["notes.wav", "not a WAV file"])
+        self.assertEqual((self.dir / "thesis.tex").read_text(), "years of work")
+        self.assertEqual((self.dir / "notes.wav").read_text(), "not a sound")
+        self.write("empty.wav", "")
+        for name in ("empty.wav", "empty.wav", "NEW.WAV"):
+            self.ok("render", "park2016-1", "-o", name)
+        self.assertEqual(Wav(self.dir / "NEW.WAV").frames, 70560)
+
+    def test_an_output_keeps_the_rights_of_the_file_that_it_replaces(self):
+        for command, name in (("render", "o.wav"), ("plot", "o.svg")):
+            self.ok(command, "park2016-1", "-o", name)
+            (self.dir / name).chmod(0o640)
+            self.ok(command, "park2016-1", "-o", name)
+            self.assertEqual((self.dir / name).stat().st_mode & 0o7777, 0o640)
+
+    def test_no_link_of_others_is_followed(self):
+        (self.dir / "shared").mkdir()
+        (self.dir / "shared").chmod(0o1777)
+        self.write("victim.wav", "")
+        (self.dir / "shared/o.wav").symlink_to(self.dir / "victim.wav")
+        self.refused(2, "render", "park2016-1", "-o", "shared/o.wav", says=["link", "name the file"])
+        self.assertEqual((self.dir / "victim.wav").read_bytes(), b"")
+
+    def test_beyond_the_greatest_size_there_is_a_hint_and_no_part(self):
+        small = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 20, 1 << 20))  # noqa: E731
+        process = self.start("render", "park2016-1", "-o", "o.wav", preexec_fn=small)
+        _, said = process.communicate(timeout=PATIENCE_S)
+        self.assertEqual(process.returncode, 1, said)
+        self.assertIn(b"ulimit -f", said)
+        self.assertEqual(self.leftovers(), [])
+
+    def test_quit_leaves_nothing(self):
+        process = self.start("render", "--path", "M 0 10 L 40 30", "--duration", "7200", "-o", "long.wav")
+        while not self.leftovers():
+            self.assertIsNone(process.poll())
+        process.send_signal(signal.SIGQUIT)
+        process.communicate(timeout=PATIENCE_S)
+        self.assertEqual(process.returncode, 128 + signal.SIGQUIT)
+        self.assertEqual(self.leftovers(), [])
+
+
+class People(Output):
+    def test_who_reads_only_the_beginning_gets_no_error(self):
+        process = self.start("plan", "--path", "M 0 10 L 40 30", "--duration", "3600")
+        process.stdout.readline()
+        process.stdout.close()
+        said = process.stderr.read()
+        self.assertEqual((process.wait(timeout=PATIENCE_S), said), (128 + signal.SIGPIPE, b""))
+        process.stderr.close()
+
+    def test_standard_error_that_is_gone_changes_no_status(self):
+        closed = lambda: os.close(2)  # noqa: E731
+        with open("/dev/full", "wb", buffering=0) as full:
+            for status, args in ((2, ("plan", "no-such-preset")), (0, ("play", "park2016-1")),
+                                 (2, ("plan", "--nonsense")), (0, ("render", "park2016-1", "-o", "-"))):
+                for more in ({"stderr": full}, {"preexec_fn": closed}):
+                    r = subprocess.run([TOOL, *args], cwd=self.dir, env=self.env, stdout=subprocess.DEVNULL, check=False,
+                                       timeout=PATIENCE_S, **more)
+                    self.assertEqual(r.returncode, status, f"{args} {more}")
+
+    def test_names_cannot_steer_the_terminal(self):
+        self.write("s.toml", '[stroke]\nname = "a\\u001b[31mred\\u009b2J\\u007f"\npath = "M 0 0 L 40 0"\n')
+        self.write(f"b{ESCAPE}.toml", '[array]\nname = "x"\n')
+        self.write("a.toml", '[array]\nname = "r\\u001b[31m"\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n')
+        for args in (("plan", "s.toml"), ("compare", "s.toml"), ("play", "s.toml"), ("plan", f"b{ESCAPE}.toml"),
+                     ("plan", f"no{ESCAPE}"), ("plot", "s.toml", "-o", f"p{ESCAPE}.svg"), (f"no{ESCAPE}",),
+                     ("render", "s.toml", "-o", f"w{ESCAPE}.wav"), ("plan", "s.toml", "--array", "a.toml"),
+                     ("check", "--array", "a.toml"), ("check", "--array", f"no{ESCAPE}.toml"),
+                     ("devices", "--array", f"no{ESCAPE}.toml"), ("plan", "s.toml", f"--carrier={ESCAPE}")):
+            r = self.run_tool(*args)
+            for text in (r.stdout, r.stderr):
+                self.assertFalse([c for c in text if (ord(c) < 32 and c != "\n") or 127 <= ord(c) < 160], f"{args}: {text!r}")
+        self.assertIn("\\x1b[31m", self.ok("plan", "s.toml").stdout)
+        self.assertEqual(self.plan("s.toml")["stroke"]["name"], "a\x1b[31mred\x9b2J\x7f")
+
+    def test_the_progress_line_shows_names_too(self):
+        terminal, side = pty.openpty()
+        self.addCleanup(os.close, terminal)
+        process = subprocess.Popen([TOOL, "render", "--path", "M 0 10 L 40 30", "--duration", "7200", "-o", f"l{ESCAPE}.wav"],
+                                   cwd=self.dir, env=self.env, stdout=subprocess.DEVNULL, stderr=side)
+        os.close(side)
+        said = b""
+        while b"%" not in said:
+            select.select([terminal], [], [])
+            said += os.read(terminal, 4096)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=PATIENCE_S), 130)
+        self.assertIn(b"l\\x1b[31m.wav: ", said)
+
+
+if __name__ == "__main__":
+    main()
