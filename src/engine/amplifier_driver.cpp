@@ -20,7 +20,7 @@ amplifier_driver::amplifier_driver(link& l, enable_line& line, const driver_opti
 void amplifier_driver::update() noexcept
 {
     const std::int64_t now = clock_();
-    const stream_status s = link_.status.load();
+    const stream_status s = link_.amplifier.status.load();
     hear(s, now);
     watch(s, now);
     beat(now);

@@ -51,7 +51,7 @@ void audio_loop::close_step(io_status ready, std::int64_t now) noexcept
 void audio_loop::end() noexcept
 {
     sink_.drop();
-    link_.clock.store({});
+    tell_clock({});
     phase_ = phase::over;
     link_.reports.push({.what = report::kind::stream_over, .why = end_why_, .code = end_code_});
 }

@@ -46,7 +46,7 @@ io_result audio_loop::begin_epoch() noexcept
     pending_ = 0;
     played_ = 0;
     clock_.begin_epoch(offset_);
-    link_.clock.store(clock_.line());
+    tell_clock(clock_.line());
     if (const io_status s = sink_.prepare(); s != io_status::ok)
         return {s, 0, 0};
     std::size_t filled = 0;
@@ -93,7 +93,7 @@ void audio_loop::silence_all(reason why, int code, std::uint64_t played) noexcep
 {
     scores_.interrupt(why, code, played, !stop_asked_);
     offset_ += mixer_.position();
-    link_.clock.store({});
+    tell_clock({});
     mixer_.reset();
     pending_ = 0;
     played_ = 0;

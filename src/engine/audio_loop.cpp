@@ -207,7 +207,7 @@ void audio_loop::look_at_position(std::int64_t now) noexcept
         return;
     played_ = p.played;
     clock_.add(p.time_ns, offset_ + p.played);
-    link_.clock.store(clock_.line());
+    tell_clock(clock_.line());
     moved(now);
 }
 
@@ -215,6 +215,13 @@ void audio_loop::moved(std::int64_t now) noexcept
 {
     moved_ns_ = now;
     idle_steps_ = 0;
+}
+
+// In this order: a pulse that the control side plans by the one is known to the sync thread by the other.
+void audio_loop::tell_clock(const clock_line& line) noexcept
+{
+    link_.sync_clock.store(line);
+    link_.clock.store(line);
 }
 
 void audio_loop::publish() noexcept
@@ -227,6 +234,7 @@ void audio_loop::publish() noexcept
                     .epoch_played = played_};
     scores_.describe(played_, s);
     link_.status.store(s);
+    link_.amplifier.status.store(s);
 
     const bool news = s.stage != told_stage_ || s.epoch != told_epoch_;
     told_stage_ = s.stage;

@@ -76,6 +76,7 @@ private:
     void end() noexcept;
     void obey_amplifier() noexcept;
     void finish_when_silent() noexcept;
+    void tell_clock(const clock_line& line) noexcept;
     void publish() noexcept;
 
     device sink_;

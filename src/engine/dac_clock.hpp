@@ -7,7 +7,7 @@
 
 namespace tactor::engine {
 
-/// Frames of the stream against time; trivially copyable, for a seqlock. Holds for its epoch only.
+/// Frames of the stream against time. Holds for its epoch only.
 struct clock_line {
     std::uint64_t epoch = 0;   ///< number of the start of the DAC, from 1
     std::uint64_t first = 0;   ///< stream frame at which the epoch began

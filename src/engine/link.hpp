@@ -11,8 +11,8 @@
 #include "engine/dac_clock.hpp"
 #include "engine/messages.hpp"
 #include "rt/event_fd.hpp"
-#include "rt/seqlock.hpp"
 #include "rt/spsc_ring.hpp"
+#include "rt/triple_buffer.hpp"
 
 namespace tactor::engine {
 
@@ -33,12 +33,13 @@ struct stream_status {
 
 /// Between the audio thread and the one that drives the amplifier's line. As it stands here: no amplifier.
 struct amplifier_link {
-    std::atomic<bool> ready{true};       ///< strokes may begin
-    std::atomic<bool> off{true};         ///< the line is off; the DAC may stop
-    std::atomic<bool> failed{false};     ///< the line cannot be switched: the stream has to end
-    std::atomic<std::uint32_t> mutes{0}; ///< each time it went off before its time
-    std::atomic<bool> ending{false};     ///< audio thread: the last sound is out, or the device is gone
-    rt::event_fd wake;                   ///< audio thread: something has changed
+    std::atomic<bool> ready{true};             ///< strokes may begin
+    std::atomic<bool> off{true};               ///< the line is off; the DAC may stop
+    std::atomic<bool> failed{false};           ///< the line cannot be switched: the stream has to end
+    std::atomic<std::uint32_t> mutes{0};       ///< each time it went off before its time
+    std::atomic<bool> ending{false};           ///< audio thread: the last sound is out, or the device is gone
+    rt::event_fd wake;                         ///< audio thread: something has changed
+    rt::triple_buffer<stream_status> status{}; ///< for the thread that drives the line
 };
 
 /// Counters, each written by the audio thread only.
@@ -77,9 +78,11 @@ struct link {
     rt::event_fd to_control;
     /// Set by the feeder when the command ring is full; the audio thread then says when it no longer is.
     std::atomic<bool> feeder_waits{false};
-    rt::seqlock<stream_status> status;
-    /// What the audio thread knows of the DAC's clock; any thread may read it, none waits.
-    rt::seqlock<clock_line> clock;
+    /// For the control side: who reads has the player's mutex. No reader shares a buffer with another, so
+    /// that none ever waits for the audio thread, whatever their priorities are.
+    rt::triple_buffer<stream_status> status;
+    rt::triple_buffer<clock_line> clock;      ///< what is known of the DAC's clock; for the control side
+    rt::triple_buffer<clock_line> sync_clock; ///< the same for the thread that sends sync pulses
     counters count;
     amplifier_link amplifier;
 };

@@ -2,6 +2,7 @@
 #include <tactor/player.hpp>
 
 #include <algorithm>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -73,6 +74,7 @@ std::optional<std::string> player::ended() const
 
 player_position player::position() const noexcept
 {
+    const std::lock_guard lock(impl_->mutex);
     const engine::stream_status s = impl_->link.status.load();
     player_position p{.running = s.running, .played = s.played, .stroke = {}, .stroke_frame = s.stroke_frame};
     if (s.sounding)
@@ -85,8 +87,11 @@ player_stats player::stats() const
     const engine::counters& c = impl_->link.count;
     const auto get = [](const std::atomic<std::uint64_t>& a) { return a.load(std::memory_order_relaxed); };
     const std::uint64_t low = get(c.low_water);
-    const engine::pulse_stats pulses =
-        impl_->pulses != nullptr ? impl_->pulses->stats() : engine::pulse_stats{};
+    engine::pulse_stats pulses;
+    if (impl_->pulses != nullptr) {
+        const std::lock_guard lock(impl_->mutex);
+        pulses = impl_->pulses->stats();
+    }
     const std::uint64_t xruns = c.xruns.load(std::memory_order_acquire);
     std::vector<double> lengths;
     for (std::uint64_t n = xruns - std::min<std::uint64_t>(xruns, c.xrun_ns.size()); n < xruns; ++n)

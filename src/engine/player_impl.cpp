@@ -127,9 +127,10 @@ void player::impl::start_lines(const player_options& o)
                                .priority = o.priority + 1,
                                .audio = true};
     pulses = std::make_unique<engine::trigger_thread>(
-        link.clock, *lines.sync_out, std::int64_t{frames_of(lines.pulse_s, 1'000'000, "pulse")} * 1000, t);
-    feed.on_first_frames([this](stroke_id id, std::uint64_t frame) { pulses->add(id, frame); },
-                         [this](stroke_id id) { pulses->forget(id); });
+        link, *lines.sync_out, std::int64_t{frames_of(lines.pulse_s, 1'000'000, "pulse")} * 1000, t);
+    feed.on_first_frames(
+        [this](stroke_id id, std::uint64_t frame) { pulses->add(id, frame, link.clock.load()); },
+        [this](stroke_id id) { pulses->forget(id); });
 }
 
 void player::impl::check_start(const player_options& o)
@@ -193,6 +194,8 @@ bool player::impl::cancel(stroke_id id)
 void player::impl::pump()
 {
     feed.pump(link.status.load().written, link.clock.load());
+    if (pulses)
+        pulses->hand_over();
     link.to_audio.signal();
 }
 

@@ -2,32 +2,56 @@
 #include "engine/pulses.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace tactor::engine {
 
 void pulse_plan::forget(stroke_id id)
 {
     std::erase_if(waiting_, [id](const pulse& p) { return p.id == id; });
+    board_.forget(id);
+    hand_over();
 }
 
-std::optional<pulse> pulse_plan::next(const clock_line& line)
+bool pulse_plan::add(stroke_id id, std::uint64_t frame, const clock_line& line)
 {
-    std::erase_if(waiting_,
-                  [&line](const pulse& p) { return p.epoch != line.epoch || p.frame < line.first; });
-    if (waiting_.empty())
-        return std::nullopt;
-    return *waiting_.begin();
+    board_.forget_other_epochs(line.epoch);
+    std::erase_if(waiting_, [&line](const pulse& p) { return p.epoch != line.epoch; });
+    if (line.epoch == 0 || frame < line.first)
+        return false;
+    waiting_.insert({.epoch = line.epoch, .frame = frame, .id = id});
+    hand_over();
+    return true;
 }
 
-void pulse_emitter::send(std::int64_t due_ns, const std::function<bool()>& still) noexcept
+bool pulse_plan::hand_over()
+{
+    bool any = false;
+    while (!waiting_.empty()) {
+        const pulse first = *waiting_.begin();
+        const std::optional<pulse> left = board_.offer(first);
+        if (left == first)
+            break;
+        any = true;
+        waiting_.erase(waiting_.begin());
+        if (left)
+            waiting_.insert(*left);
+    }
+    return any;
+}
+
+bool pulse_emitter::await(std::int64_t due_ns) noexcept
 {
     if (time_.now() - due_ns > latest_pulse_ns) {
         ++stats_.missed;
-        return;
+        return false;
     }
     time_.sleep_until(due_ns - cost_ns_);
-    if (!still())
-        return;
+    return true;
+}
+
+void pulse_emitter::send(std::int64_t due_ns) noexcept
+{
     const std::int64_t before = time_.now();
     if (!line_.set(true)) {
         ++stats_.missed;

@@ -5,25 +5,14 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <optional>
 #include <set>
-#include <tuple>
 
 #include <tactor/gpio.hpp>
-#include <tactor/player.hpp>
 
 #include "engine/dac_clock.hpp"
+#include "engine/pulse_board.hpp"
 
 namespace tactor::engine {
-
-/// A pulse that is to come: a stream frame of one epoch. After an xrun the frame is never heard.
-struct pulse {
-    std::uint64_t epoch = 0;
-    std::uint64_t frame = 0;
-    stroke_id id = 0;
-    auto operator<=>(const pulse&) const = default;
-};
 
 /// Counted since the beginning.
 struct pulse_stats {
@@ -33,19 +22,23 @@ struct pulse_stats {
     double worst_late_s = 0.0;
 };
 
-/// The pulses that wait, by time.
+/// All pulses that wait, a score of many strokes may have thousands: the first ones stand on the board. One
+/// caller at a time.
 class pulse_plan {
 public:
-    void add(const pulse& p) { waiting_.insert(p); }
+    explicit pulse_plan(pulse_board& b) noexcept : board_(b) {}
+
+    /// A stroke's first sample at a frame of the epoch that runs, which `line` tells; what belongs to others
+    /// is forgotten. False where that frame is not to come in it.
+    bool add(stroke_id id, std::uint64_t frame, const clock_line& line);
     /// The stroke has ended: what it has not come to does not happen.
     void forget(stroke_id id);
-    /// Forgets what belongs to another epoch than the clock's; the first of the others.
-    std::optional<pulse> next(const clock_line& line);
-    void take(const pulse& p) { waiting_.erase(p); }
-    bool has(const pulse& p) const { return waiting_.contains(p); }
+    /// Hands over what has a place by now. False where there was nothing to hand over.
+    bool hand_over();
 
 private:
-    std::set<pulse> waiting_;
+    pulse_board& board_;
+    std::set<pulse> waiting_; ///< for a place
 };
 
 /// What the emitter needs of time.
@@ -69,9 +62,11 @@ public:
     {
     }
 
-    /// Sends `p`, which is due at `due_ns`, unless `still` says at the last moment that it is not to be.
-    /// Blocks until the pulse is over.
-    void send(std::int64_t due_ns, const std::function<bool()>& still) noexcept;
+    /// Sleeps until the line is to be switched for a pulse at `due_ns`. False when that was too long ago:
+    /// missed.
+    bool await(std::int64_t due_ns) noexcept;
+    /// Sends what was awaited. Blocks until the pulse is over.
+    void send(std::int64_t due_ns) noexcept;
     const pulse_stats& stats() const noexcept { return stats_; }
 
 private:

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <ctime>
+#include <optional>
 
 #include <poll.h>
 
@@ -36,9 +37,8 @@ system_time& real_time() noexcept
 
 } // namespace
 
-trigger_thread::trigger_thread(const rt::seqlock<clock_line>& clock, enable_line& line, std::int64_t pulse_ns,
-                               const rt::thread_options& t)
-    : clock_(clock), line_(line), emitter_(line, pulse_ns, real_time()), thread_(t, [this] { run(); })
+trigger_thread::trigger_thread(link& l, enable_line& line, std::int64_t pulse_ns, const rt::thread_options& t)
+    : link_(l), line_(line), emitter_(line, pulse_ns, real_time()), thread_(t, [this] { run(); })
 {
 }
 
@@ -49,26 +49,16 @@ trigger_thread::~trigger_thread()
     thread_.join();
 }
 
-void trigger_thread::add(stroke_id id, std::uint64_t frame)
+void trigger_thread::add(stroke_id id, std::uint64_t frame, const clock_line& clock)
 {
-    const std::uint64_t epoch = clock_.load().epoch;
-    {
-        const std::lock_guard lock(mutex_);
-        plan_.add({epoch, frame, id});
-    }
-    wake_.signal();
+    if (plan_.add(id, frame, clock))
+        wake_.signal();
 }
 
-void trigger_thread::forget(stroke_id id)
+void trigger_thread::hand_over()
 {
-    const std::lock_guard lock(mutex_);
-    plan_.forget(id);
-}
-
-pulse_stats trigger_thread::stats() const
-{
-    const std::lock_guard lock(mutex_);
-    return stats_;
+    if (plan_.hand_over())
+        wake_.signal();
 }
 
 void trigger_thread::run() noexcept
@@ -81,28 +71,22 @@ void trigger_thread::run() noexcept
 // How long nothing is to be done.
 std::int64_t trigger_thread::step() noexcept
 {
-    const clock_line line = clock_.load();
-    std::optional<pulse> p;
-    {
-        const std::lock_guard lock(mutex_);
-        if (line.epoch != 0)
-            p = plan_.next(line);
-    }
+    const clock_line line = link_.sync_clock.load();
+    const std::optional<pulse_board::seen> p = line.epoch != 0 ? board_.next(line) : std::nullopt;
     if (!p)
         return line.epoch != 0 ? idle_ns : longest_wait_ns;
     if (!line.valid())
         return no_clock_ns;
-    const std::int64_t due = line.time_of(p->frame);
+    const std::int64_t due = line.time_of(p->what.frame);
     const std::int64_t left = due - real_time().now() - pulse_lead_ns;
     if (left > 0)
         return std::min(left, longest_wait_ns);
-    emitter_.send(due, [&] {
-        const std::lock_guard lock(mutex_);
-        return plan_.has(*p) && clock_.load().epoch == p->epoch;
-    });
-    const std::lock_guard lock(mutex_);
-    plan_.take(*p);
-    stats_ = emitter_.stats();
+    // It may have been called off meanwhile, and an xrun may have ended its epoch.
+    if (emitter_.await(due) && board_.waits(*p) && link_.sync_clock.load().epoch == p->what.epoch)
+        emitter_.send(due);
+    board_.take(*p);
+    stats_.store(emitter_.stats());
+    link_.to_control.signal();
     return 0;
 }
 

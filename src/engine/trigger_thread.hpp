@@ -4,42 +4,46 @@
 #pragma once
 
 #include <atomic>
-#include <mutex>
+#include <cstdint>
 
 #include "engine/link.hpp"
+#include "engine/pulse_board.hpp"
 #include "engine/pulses.hpp"
 #include "rt/event_fd.hpp"
 #include "rt/thread.hpp"
+#include "rt/triple_buffer.hpp"
 
 namespace tactor::engine {
 
-/// Not the audio thread, whose periods would be the pulse's jitter. add() and forget() may be called from
-/// any thread but that one.
+/// Not the audio thread, whose periods would be the pulse's jitter, but one above it, which therefore may not
+/// wait for anybody: it has neither mutex nor heap in common with another thread. The members are the control
+/// side's, one caller at a time.
 class trigger_thread {
 public:
-    /// `clock` is read for the due times. \throws std::system_error when there is no thread to be had.
-    trigger_thread(const rt::seqlock<clock_line>& clock, enable_line& line, std::int64_t pulse_ns,
-                   const rt::thread_options& t);
+    /// Reads link::sync_clock for the due times. \throws std::system_error when there is no thread to be had.
+    trigger_thread(link& l, enable_line& line, std::int64_t pulse_ns, const rt::thread_options& t);
     /// The line is off after it.
     ~trigger_thread();
     trigger_thread(const trigger_thread&) = delete;
     trigger_thread& operator=(const trigger_thread&) = delete;
 
-    /// A pulse when this frame of the stream is at the DAC, in the epoch that runs now.
-    void add(stroke_id id, std::uint64_t frame);
-    void forget(stroke_id id);
-    pulse_stats stats() const;
+    /// A pulse when this frame of the stream is at the DAC, in the epoch that runs now as `clock` says.
+    void add(stroke_id id, std::uint64_t frame, const clock_line& clock);
+    void forget(stroke_id id) { plan_.forget(id); }
+    /// link::to_control has been signalled: there may be places for pulses that had none.
+    void hand_over();
+    const pulse_stats& stats() noexcept { return stats_.load(); }
 
 private:
     void run() noexcept;
     std::int64_t step() noexcept;
     void wait(std::int64_t ns) noexcept;
 
-    const rt::seqlock<clock_line>& clock_;
+    link& link_;
     enable_line& line_;
-    mutable std::mutex mutex_; ///< guards the plan and the copy of the numbers; held for moments only
-    pulse_plan plan_;
-    pulse_stats stats_;
+    pulse_board board_;
+    pulse_plan plan_{board_}; ///< the control side's
+    rt::triple_buffer<pulse_stats> stats_;
     pulse_emitter emitter_;
     rt::event_fd wake_;
     std::atomic<bool> over_{false};

@@ -107,7 +107,7 @@ public:
         return last_id;
     }
 
-    engine::stream_status status() const { return link.status.load(); }
+    engine::stream_status status() { return link.status.load(); }
 
     /// One wake-up of the audio thread: poll, step.
     void step()

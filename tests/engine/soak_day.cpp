@@ -83,7 +83,7 @@ public:
         return w;
     }
 
-    const rig& engine() const { return r_; }
+    rig& engine() { return r_; }
 
 private:
     static rig_options options()

@@ -5,13 +5,18 @@
 #include <algorithm>
 #include <condition_variable>
 #include <mutex>
-#include <random>
+#include <optional>
+#include <vector>
 
 #include <doctest/doctest.h>
+#include <poll.h>
 
 #include <tactor/player.hpp>
 
+#include "count_allocations.hpp"
+#include "engine/trigger_thread.hpp"
 #include "player_support.hpp"
+#include "rt/clock.hpp"
 #include "scores.hpp"
 
 namespace pulses_test {
@@ -19,7 +24,6 @@ namespace pulses_test {
 using namespace tactor;
 using namespace tactor::test;
 using engine::clock_line;
-using engine::pulse;
 
 namespace {
 
@@ -47,29 +51,13 @@ struct fake_output final : enable_line {
     std::vector<std::pair<bool, std::int64_t>> log;
 };
 
-clock_line line_of(std::uint64_t epoch, std::uint64_t first)
+void send(engine::pulse_emitter& e, std::int64_t due_ns)
 {
-    return {.epoch = epoch, .first = first, .frame = first, .time_ns = 0, .ns_per_frame = 1e9 / 48000};
+    if (e.await(due_ns))
+        e.send(due_ns);
 }
 
 } // namespace
-
-TEST_CASE("pulses come in order of their frames, those of other epochs and ended strokes not at all")
-{
-    engine::pulse_plan p;
-    p.add({1, 500, 1});
-    p.add({1, 300, 2});
-    p.add({1, 700, 3});
-    CHECK(p.next(line_of(1, 0)) == pulse{1, 300, 2});
-    p.forget(2);
-    CHECK(p.next(line_of(1, 0)) == pulse{1, 500, 1});
-    p.take({1, 500, 1});
-    CHECK(p.has({1, 700, 3}));
-    p.add({2, 900, 4});
-    CHECK(p.next(line_of(2, 800)) == pulse{2, 900, 4});
-    CHECK_FALSE(p.has({1, 700, 3}));
-    CHECK_FALSE(p.next(line_of(3, 1000)));
-}
 
 TEST_CASE("a pulse is switched on at its time, less what the call costs, and off after its length")
 {
@@ -77,7 +65,7 @@ TEST_CASE("a pulse is switched on at its time, less what the call costs, and off
     fake_output line(t);
     engine::pulse_emitter e(line, 5'000 * us, t);
     for (int i = 1; i <= 10; ++i)
-        e.send(i * 100'000 * us, [] { return true; });
+        send(e, i * 100'000 * us);
     REQUIRE(line.log.size() == 20);
     for (int i = 1; i <= 10; ++i) {
         const auto& [on, on_at] = line.log[2 * i - 2];
@@ -99,10 +87,10 @@ TEST_CASE("lateness is counted, a pulse that is far too late is not sent")
     line.cost = 0;
     engine::pulse_emitter e(line, 5'000 * us, t);
     t.late = 700 * us;
-    e.send(10'000 * us, [] { return true; });
+    send(e, 10'000 * us);
     CHECK(e.stats().worst_late_s == doctest::Approx(700e-6));
     t.t = 1'000'000 * us;
-    e.send(900'000 * us, [] { return true; });
+    send(e, 900'000 * us);
     CHECK(e.stats().sent == 1);
     CHECK(e.stats().missed == 1);
     CHECK(line.log.size() == 2);
@@ -113,11 +101,11 @@ TEST_CASE("a pulse that is called off while it waits is not sent; a line that fa
     fake_time t;
     fake_output line(t);
     engine::pulse_emitter e(line, 5'000 * us, t);
-    e.send(10'000 * us, [] { return false; });
+    CHECK(e.await(10'000 * us)); // and no more
     CHECK(line.log.empty());
     CHECK(e.stats().sent + e.stats().missed == 0);
     line.works = false;
-    e.send(20'000 * us, [] { return true; });
+    send(e, 20'000 * us);
     CHECK(e.stats().missed == 1);
     CHECK_FALSE(line.log.back().first);
 }
@@ -177,6 +165,59 @@ TEST_CASE("the player sends or misses one pulse for each stroke")
     for (std::size_t i = 0; i < 2 * sent; ++i)
         CHECK(log->log[i].first == (i % 2 == 0));
     CHECK((log->log.empty() || !log->log.back().first));
+}
+
+namespace {
+
+/// Counts the heap calls of the thread that switches it, from the first time on.
+class counting_output final : public enable_line {
+public:
+    bool set(bool) noexcept override
+    {
+        if (!count_)
+            count_.emplace();
+        calls = count_->calls();
+        return true;
+    }
+    std::uint64_t calls = 0;
+
+private:
+    std::optional<count_allocations> count_;
+};
+
+// Plans pulses 5 ms from now on, more than there are places, and waits until all were sent or missed.
+void send_many(enable_line& line)
+{
+    constexpr stroke_id pulses = engine::pulse_board::places + 100;
+    engine::link link;
+    const clock_line clock{
+        .epoch = 1, .first = 0, .frame = 0, .time_ns = rt::monotonic_ns(), .ns_per_frame = 1e9 / 48000};
+    link.sync_clock.store(clock);
+    engine::trigger_thread t(link, line, 10 * us, {.name = "test-sync"});
+    for (stroke_id id = 1; id <= pulses; ++id)
+        t.add(id, 240 + 5 * std::uint64_t{id}, clock);
+    for (engine::pulse_stats s; s.sent + s.missed < pulses; s = t.stats()) {
+        pollfd fd{.fd = link.to_control.fd(), .events = POLLIN, .revents = 0};
+        REQUIRE(::poll(&fd, 1, -1) == 1);
+        link.to_control.consume();
+        t.hand_over();
+    }
+    CHECK(t.stats().sent + t.stats().missed == pulses);
+}
+
+} // namespace
+
+TEST_CASE("the thread sends or misses each of more pulses than there are places")
+{
+    counting_output line;
+    send_many(line);
+}
+
+COUNTING_TEST_CASE("the thread that sends pulses calls no heap")
+{
+    counting_output line;
+    send_many(line);
+    CHECK(line.calls == 0);
 }
 
 } // namespace pulses_test

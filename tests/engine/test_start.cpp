@@ -34,7 +34,7 @@ public:
             run(1);
     }
     /// When the DAC really has a frame of the first epoch.
-    double true_time(std::uint64_t frame) const
+    double true_time(std::uint64_t frame)
     {
         const auto ahead = static_cast<double>(static_cast<std::int64_t>(frame - status().played));
         return static_cast<double>(now) + ahead * (2e6 + 80.0) / 96.0;

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <latch>
 #include <thread>
 #include <vector>
 
@@ -58,6 +59,57 @@ TEST_CASE("the reader never gets half a value, never an older one, and at last t
     }
     writer.join();
     CHECK(wrong == 0);
+}
+
+namespace {
+
+/// Its writer is stopped half-way through a copy, as one is that loses its processor there.
+struct slow_value {
+    slow_value() = default;
+    explicit slow_value(int n) : a(n), b(n) {}
+    slow_value(const slow_value&) = default;
+    slow_value& operator=(const slow_value& v)
+    {
+        a = v.a;
+        if (stopped != nullptr) {
+            stopped->count_down();
+            go_on->wait();
+        }
+        b = v.b;
+        return *this;
+    }
+    ~slow_value() = default;
+
+    int a = 0;
+    int b = 0;
+    static inline thread_local std::latch* stopped = nullptr;
+    static inline std::latch* go_on = nullptr;
+};
+
+} // namespace
+
+TEST_CASE("a writer that is stopped in the middle keeps no reader waiting: it gets the value before, whole")
+{
+    triple_buffer<slow_value> b;
+    std::latch stopped(1);
+    std::latch go_on(1);
+    slow_value::go_on = &go_on;
+    b.store(slow_value(1));
+    std::thread writer([&] {
+        b.store(slow_value(2));
+        slow_value::stopped = &stopped;
+        b.store(slow_value(3));
+    });
+    stopped.wait();
+    for (int i = 0; i < 3; ++i) {
+        const slow_value& v = b.load();
+        CHECK(v.a == 2);
+        CHECK(v.b == 2);
+    }
+    CHECK_FALSE(b.has_news());
+    go_on.count_down();
+    writer.join();
+    CHECK(b.load().b == 3);
 }
 
 } // namespace triple_buffer_test

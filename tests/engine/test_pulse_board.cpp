@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+// Which pulses stand where the sync thread takes them, and in which order.
+#include "engine/pulse_board.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <numeric>
+#include <optional>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "engine/pulses.hpp"
+
+namespace pulse_board_test {
+
+using namespace tactor;
+using engine::clock_line;
+using engine::pulse;
+
+namespace {
+
+clock_line line_of(std::uint64_t epoch, std::uint64_t first)
+{
+    return {.epoch = epoch, .first = first, .frame = first, .time_ns = 0, .ns_per_frame = 1e9 / 48000};
+}
+
+std::optional<pulse> next(const engine::pulse_board& b, std::uint64_t epoch)
+{
+    const auto seen = b.next(line_of(epoch, 0));
+    return seen ? std::optional(seen->what) : std::nullopt;
+}
+
+// Of the strokes that a test calls off some have been sent before.
+bool may_be_forgotten(stroke_id id)
+{
+    for (stroke_id by = id; by < id + 5; ++by) {
+        if (by % 3 == 0 && by - by % 5 == id)
+            return true;
+    }
+    return false;
+}
+
+} // namespace
+
+TEST_CASE("pulses come in order of their frames, those of other epochs and ended strokes not at all")
+{
+    engine::pulse_board board;
+    engine::pulse_plan p(board);
+    CHECK(p.add(1, 500, line_of(1, 0)));
+    CHECK(p.add(2, 300, line_of(1, 0)));
+    CHECK(p.add(3, 700, line_of(1, 0)));
+    CHECK(next(board, 1) == pulse{1, 300, 2});
+    p.forget(2);
+    CHECK(next(board, 1) == pulse{1, 500, 1});
+    board.take(*board.next(line_of(1, 0)));
+    CHECK(next(board, 1) == pulse{1, 700, 3});
+    CHECK_FALSE(next(board, 2));
+    CHECK(p.add(4, 900, line_of(2, 800)));
+    CHECK(next(board, 2) == pulse{2, 900, 4});
+    CHECK_FALSE(next(board, 1));
+    CHECK_FALSE(p.add(5, 790, line_of(2, 800))); // from before the xrun
+    CHECK_FALSE(p.add(6, 990, line_of(0, 0)));   // between two epochs
+    CHECK_FALSE(next(board, 2));
+}
+
+TEST_CASE("what was seen waiting and has been called off since does not wait any more")
+{
+    engine::pulse_board board;
+    engine::pulse_plan p(board);
+    p.add(1, 500, line_of(1, 0));
+    const auto seen = board.next(line_of(1, 0));
+    REQUIRE(seen);
+    CHECK(board.waits(*seen));
+    p.forget(1);
+    CHECK_FALSE(board.waits(*seen));
+    p.add(2, 600, line_of(1, 0)); // in the same place
+    CHECK_FALSE(board.waits(*seen));
+    board.take(*seen);
+    CHECK(next(board, 1) == pulse{1, 600, 2});
+}
+
+TEST_CASE("more pulses than places, in any order of planning, come all and in order")
+{
+    engine::pulse_board board;
+    engine::pulse_plan p(board);
+    std::vector<std::uint64_t> frames(5 * engine::pulse_board::places);
+    std::iota(frames.begin(), frames.end(), 1);
+    std::shuffle(frames.begin(), frames.end(), std::mt19937(3)); // NOLINT(cert-msc51-cpp)
+    for (const std::uint64_t f : frames)
+        p.add(static_cast<stroke_id>(f), f, line_of(1, 0));
+    p.forget(7);
+    p.forget(900); // not on the board yet
+    for (std::uint64_t f = 1; f <= frames.size(); ++f) {
+        if (f == 7 || f == 900)
+            continue;
+        const auto seen = board.next(line_of(1, 0));
+        REQUIRE(seen);
+        REQUIRE(seen->what == pulse{1, f, static_cast<stroke_id>(f)});
+        board.take(*seen);
+        if (f % 100 == 0)
+            p.hand_over();
+    }
+    CHECK_FALSE(next(board, 1));
+    CHECK_FALSE(p.hand_over());
+}
+
+TEST_CASE("planned by one thread and sent by another: each pulse once at most, none in halves")
+{
+    constexpr stroke_id last = 20'000;
+    engine::pulse_board board;
+    std::vector<int> sent(last + 1, 0);
+    std::atomic<bool> over{false};
+    std::uint64_t wrong = 0;
+    std::thread sender([&] {
+        for (bool ends = false; !ends;) {
+            ends = over;
+            while (const auto s = board.next(line_of(1, 0))) {
+                wrong += static_cast<std::uint64_t>(s->what.frame != 3 * std::uint64_t{s->what.id});
+                if (board.waits(*s))
+                    ++sent[s->what.id];
+                board.take(*s);
+            }
+        }
+    });
+    engine::pulse_plan p(board);
+    for (stroke_id id = 1; id <= last; ++id) {
+        p.add(id, 3 * std::uint64_t{id}, line_of(1, 0));
+        if (id % 3 == 0)
+            p.forget(id - id % 5);
+    }
+    while (p.hand_over())
+        std::this_thread::yield();
+    for (bool waits = true; waits;) {
+        waits = next(board, 1).has_value();
+        p.hand_over();
+        std::this_thread::yield();
+    }
+    over = true;
+    sender.join();
+    CHECK(wrong == 0);
+    std::size_t strangers = 0;
+    for (stroke_id id = 1; id <= last; ++id)
+        strangers += static_cast<std::size_t>(sent[id] > 1 || (sent[id] == 0 && !may_be_forgotten(id)));
+    CHECK(strangers == 0);
+}
+
+} // namespace pulse_board_test
