@@ -85,15 +85,11 @@ std::optional<pulse_board::seen> pulse_board::next(const clock_line& line) const
         if (!is_taken(turn))
             continue;
         const seen here{.what = read(places_[n]), .place = n, .turn = turn};
-        if (here.what.epoch == line.epoch && (!first || here.what < first->what) && waits(here))
+        if (here.what.epoch == line.epoch && (!first || here.what < first->what) &&
+            places_[n].turn.load(std::memory_order_acquire) == turn)
             first = here;
     }
     return first;
-}
-
-bool pulse_board::waits(const seen& s) const noexcept
-{
-    return places_[s.place].turn.load(std::memory_order_acquire) == s.turn;
 }
 
 } // namespace tactor::engine

@@ -50,8 +50,8 @@ public:
 
     /// The first that waits, of the clock's epoch.
     std::optional<seen> next(const clock_line& line) const noexcept;
-    bool waits(const seen& s) const noexcept;
-    void take(const seen& s) noexcept { end_turn(s.place, s.turn); }
+    /// Takes it, to be sent at once; false where it has been called off, or made way, since it was seen.
+    bool take(const seen& s) noexcept { return end_turn(s.place, s.turn); }
 
 private:
     struct place {

@@ -82,9 +82,9 @@ std::int64_t trigger_thread::step() noexcept
     if (left > 0)
         return std::min(left, longest_wait_ns);
     // It may have been called off meanwhile, and an xrun may have ended its epoch.
-    if (emitter_.await(due) && board_.waits(*p) && link_.sync_clock.load().epoch == p->what.epoch)
+    const bool in_time = emitter_.await(due);
+    if (board_.take(*p) && in_time && link_.sync_clock.load().epoch == p->what.epoch)
         emitter_.send(due);
-    board_.take(*p);
     stats_.store(emitter_.stats());
     link_.to_control.signal();
     return 0;
