@@ -19,8 +19,9 @@ namespace tactor {
 class TACTOR_API enable_line {
 public:
     virtual ~enable_line();
-    /// Switches. False when that failed; the player then stops the stream. One ioctl or write of a few
-    /// microseconds, no allocation. Not the audio thread.
+    /// Switches. False when that failed. An "on" that failed stops the player's stream; an "off" is called
+    /// again every 10 ms for a second, and once more when the player closes, see player_stats::left_on. One
+    /// ioctl or write of a few microseconds, no allocation. Not the audio thread.
     virtual bool set(bool on) noexcept = 0;
     /// Says that the player lives; called every 50 ms while the line is on, by the thread that calls set().
     /// False when the line is no longer on: it went off by itself because the player was silent for too long

@@ -108,6 +108,10 @@ struct player_stats {
     std::uint64_t drives_cut = 0; ///< how often a tactor was faded out after drive_limits::max_drive_s
     /// How often the amplifier was switched off because the audio thread, or the whole process, stood still.
     std::uint64_t stalls = 0;
+    /// How often the amplifier's line refused to be switched off. It is tried again for a second.
+    std::uint64_t off_failures = 0;
+    /// That was in vain: the amplifier may be on. player::ended() says so too.
+    bool left_on = false;
     std::uint64_t sync_pulses = 0; ///< sent on player_lines::sync_out
     std::uint64_t sync_missed = 0; ///< not sent, because their time was over or the line failed
     double sync_mean_late_s = 0.0; ///< line's switching against the DAC clock's time of the frame

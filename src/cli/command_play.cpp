@@ -113,6 +113,8 @@ int play(settings& s, option_list& options, const play_options& o)
         print_json(stdout, r);
     else
         print_table(stdout, r);
+    if (const auto on = left_on(r.stats))
+        throw error(*on);
     if (session.signal() != 0)
         return interrupt::status(session.signal());
     if (broken)

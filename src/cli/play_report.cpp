@@ -61,6 +61,8 @@ json counters(const run_report& r)
             {"power_limited_frames", s.power_limited_frames},
             {"drives_cut", s.drives_cut},
             {"stalls", s.stalls},
+            {"off_failures", s.off_failures},
+            {"left_on", s.left_on},
             {"sync_pulses", s.sync_pulses},
             {"sync_missed", s.sync_missed},
             {"sync_mean_late_s", s.sync_mean_late_s},
@@ -94,6 +96,8 @@ void add_stats(player_stats& sum, const player_stats& more)
     sum.power_limited_frames += more.power_limited_frames;
     sum.drives_cut += more.drives_cut;
     sum.stalls += more.stalls;
+    sum.off_failures += more.off_failures;
+    sum.left_on = more.left_on; // a later player may have switched it off
     const auto pulses = static_cast<double>(sum.sync_pulses + more.sync_pulses);
     if (pulses > 0.0)
         sum.sync_mean_late_s = (sum.sync_mean_late_s * static_cast<double>(sum.sync_pulses) +
@@ -136,6 +140,16 @@ void warn_of_cuts(const drive_limits& l, const player_stats& s)
             l.max_drive_s, l.window_s, s.drives_cut);
 }
 
+std::optional<error> left_on(const player_stats& s)
+{
+    if (!s.left_on)
+        return std::nullopt;
+    return error(
+        errc::not_available, "amplifier",
+        fmt::format("its line cannot be switched off, {} tries failed: it may be on", s.off_failures),
+        "cut the amplifier's supply; then see whether \"tactor off\" works, and what dmesg says");
+}
+
 void print_table(std::FILE* to, const run_report& r)
 {
     const player_stats& s = r.stats;
@@ -147,6 +161,9 @@ void print_table(std::FILE* to, const run_report& r)
                s.power_limited_frames, s.drives_cut);
     if (s.stalls != 0)
         fmt::print(to, "stalls          {}, amplifier off in each\n", s.stalls);
+    if (s.off_failures != 0)
+        fmt::print(to, "off refused     {} times by the amplifier's line{}\n", s.off_failures,
+                   s.left_on ? "" : ", off in the end");
     if (s.sync_pulses + s.sync_missed != 0)
         fmt::print(to, "sync pulses     {}, {} missed, late by {:.3f} ms, at worst {:.3f} ms\n",
                    s.sync_pulses, s.sync_missed, s.sync_mean_late_s * 1e3, s.sync_worst_late_s * 1e3);

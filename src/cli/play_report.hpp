@@ -40,6 +40,9 @@ std::string describe(const stream_setup& d);
 /// On standard error, where tactors were driven for too long.
 void warn_of_cuts(const drive_limits& l, const player_stats& s);
 
+/// What there is to say, before all else, of an amplifier that may be on.
+std::optional<error> left_on(const player_stats& s);
+
 /// A short table of the counters.
 void print_table(std::FILE* to, const run_report& r);
 

@@ -133,7 +133,8 @@ stroke_report play_session::play(const piece& p, const score& s)
 bool play_session::reopen()
 {
     using clock = std::chrono::steady_clock;
-    if (!waits())
+    // With an amplifier that may be on there is nothing to wait for: the run ends, and says so.
+    if (!waits() || (player_ != nullptr && player_->stats().left_on))
         return false;
     say(stderr, "tactor: waiting for \"{}\" to come back (Ctrl-C ends)\n", device_.pcm);
     if (player_ != nullptr)

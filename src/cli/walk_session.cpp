@@ -152,15 +152,23 @@ walk_result walk(const alsa_options& device, const environment& e, const render_
                  const walk_options& o)
 {
     play_session session(device, o.play, e);
+    const auto finish = [&] {
+        run_report r;
+        session.finish(r);
+        warn_of_cuts(limits_of(o.play, e), r.stats);
+        if (const auto on = left_on(r.stats))
+            throw error(*on);
+    };
     walk_result result;
     try {
         result.felt = walker(session, e, render, o).all();
     } catch (const interrupted&) {
         result.signal = session.signal();
+    } catch (const error&) {
+        finish();
+        throw;
     }
-    run_report r;
-    session.finish(r);
-    warn_of_cuts(limits_of(o.play, e), r.stats);
+    finish();
     return result;
 }
 

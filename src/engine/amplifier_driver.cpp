@@ -70,16 +70,13 @@ void amplifier_driver::watch(const stream_status& s, std::int64_t now) noexcept
 
 void amplifier_driver::beat(std::int64_t now) noexcept
 {
-    if (!on_ || now - beaten_ns_ < options_.beat_ns)
+    if (line_state_ != line_state::on || now - beaten_ns_ < options_.beat_ns)
         return;
     beaten_ns_ = now;
     if (line_.beat())
         return;
-    on_ = false;
+    // It went off by itself, or was lost: then nobody has switched it off. apply() does, whichever it was.
     link_.count.stalls.fetch_add(1, std::memory_order_relaxed);
-    link_.amplifier.off.store(true, std::memory_order_seq_cst);
-    link_.amplifier.mutes.fetch_add(1, std::memory_order_release);
-    link_.to_audio.signal();
     amplifier_.handle(amplifier_event::lapsed, now);
 }
 
@@ -88,9 +85,12 @@ void amplifier_driver::apply() noexcept
     const bool ready_before = link_.amplifier.ready.load(std::memory_order_relaxed);
     if (!amplifier_.ready())
         link_.amplifier.ready.store(false, std::memory_order_release);
-    if (amplifier_.line() && !on_)
+    if (trying()) {
+        if (clock_() - tried_ns_ >= options_.retry_ns)
+            try_off();
+    } else if (amplifier_.line() && line_state_ == line_state::off)
         switch_on();
-    else if (!amplifier_.line() && on_)
+    else if (!amplifier_.line() && line_state_ == line_state::on)
         switch_off();
     link_.amplifier.ready.store(amplifier_.ready(), std::memory_order_release);
     if (amplifier_.ready() != ready_before)
@@ -107,9 +107,11 @@ void amplifier_driver::switch_on() noexcept
         amplifier_.handle(amplifier_event::silent, clock_());
         return;
     }
-    if (!line_.set(true))
-        return fail();
-    on_ = true;
+    line_state_ = line_state::on;
+    if (!line_.set(true)) {
+        fail();
+        return try_off(); // what refuses may have switched all the same
+    }
     const std::int64_t now = clock_();
     beaten_ns_ = now;
     amplifier_.handle(amplifier_event::switched, now);
@@ -117,19 +119,36 @@ void amplifier_driver::switch_on() noexcept
 
 void amplifier_driver::switch_off() noexcept
 {
-    on_ = false;
-    if (!line_.set(false))
-        fail();
     if (!link_.amplifier.ending.load(std::memory_order_relaxed))
         // What sounds now would not be felt.
         link_.amplifier.mutes.fetch_add(1, std::memory_order_release);
-    link_.amplifier.off.store(true, std::memory_order_seq_cst);
-    link_.to_audio.signal();
+    try_off();
+}
+
+// A line behind a bus (an I2C expander) may refuse once and obey the next time.
+void amplifier_driver::try_off() noexcept
+{
+    const bool off = line_.set(false);
+    tried_ns_ = clock_();
+    if (off) {
+        line_state_ = line_state::off;
+        link_.amplifier.off.store(true, std::memory_order_seq_cst);
+        link_.to_audio.signal();
+        return;
+    }
+    link_.count.off_failures.fetch_add(1, std::memory_order_relaxed);
+    if (line_state_ != line_state::refused)
+        refused_ns_ = tried_ns_;
+    line_state_ = line_state::refused;
+    if (!stuck_ && tried_ns_ - refused_ns_ >= options_.persist_ns) {
+        stuck_ = true;
+        link_.amplifier.stuck.store(true, std::memory_order_seq_cst);
+        fail();
+    }
 }
 
 void amplifier_driver::fail() noexcept
 {
-    link_.amplifier.off.store(true, std::memory_order_seq_cst); // nothing more can be done about it
     link_.amplifier.failed.store(true, std::memory_order_release);
     link_.to_audio.signal();
     amplifier_.handle(amplifier_event::failed, clock_());
@@ -139,12 +158,16 @@ void amplifier_driver::close() noexcept
 {
     amplifier_.handle(amplifier_event::silent, clock_());
     apply();
+    if (stuck_)
+        try_off(); // a last time
 }
 
 std::int64_t amplifier_driver::next_ns() const noexcept
 {
     const auto due = amplifier_.deadline();
     const std::int64_t now = clock_();
+    if (trying())
+        return std::clamp<std::int64_t>(tried_ns_ + options_.retry_ns - now, 0, options_.retry_ns);
     return due ? std::clamp<std::int64_t>(*due - now, 0, options_.beat_ns) : options_.beat_ns;
 }
 

@@ -15,8 +15,10 @@ namespace tactor::engine {
 
 struct driver_options {
     amplifier_options amplifier{};
-    std::int64_t beat_ns = 40'000'000;      ///< the holder waits for 150 ms
-    std::int64_t watchdog_ns = 100'000'000; ///< an audio thread that writes nothing for so long is stalled
+    std::int64_t beat_ns = 40'000'000;       ///< the holder waits for 150 ms
+    std::int64_t watchdog_ns = 100'000'000;  ///< an audio thread that writes nothing for so long is stalled
+    std::int64_t retry_ns = 10'000'000;      ///< between two tries to switch off
+    std::int64_t persist_ns = 1'000'000'000; ///< an "off" that is refused is tried again for so long
 };
 
 /// One thread at a time, without one of its own. It may block in the line's set(), so this is neither the
@@ -30,8 +32,10 @@ public:
     /// After each wake-up, and next_ns() after the last one at the latest.
     void update() noexcept;
     std::int64_t next_ns() const noexcept;
-    /// Off at once, for good.
+    /// Off at once, for good. What was refused is tried again by update(), while trying() is true.
     void close() noexcept;
+    /// Whether an "off" was refused and is being tried again.
+    bool trying() const noexcept { return line_state_ == line_state::refused && !stuck_; }
 
 private:
     void hear(const stream_status& s, std::int64_t now) noexcept;
@@ -40,6 +44,7 @@ private:
     void apply() noexcept;
     void switch_on() noexcept;
     void switch_off() noexcept;
+    void try_off() noexcept;
     void fail() noexcept;
 
     link& link_;
@@ -47,7 +52,11 @@ private:
     driver_options options_;
     std::function<std::int64_t()> clock_;
     amplifier amplifier_;
-    bool on_ = false;
+    enum class line_state { off, on, refused }; // refused: it was to go off, and may be on
+    line_state line_state_ = line_state::off;
+    bool stuck_ = false;          ///< refused for persist_ns
+    std::int64_t refused_ns_ = 0; ///< the first time
+    std::int64_t tried_ns_ = 0;   ///< the last time
     stream_stage stage_ = stream_stage::idle;
     std::uint64_t epoch_ = 0;
     std::uint64_t xruns_ = 0;

@@ -24,12 +24,21 @@ void amplifier_thread::run() noexcept
 {
     while (!over_.load(std::memory_order_acquire)) {
         driver_.update();
-        const timespec timeout = rt::to_timespec(driver_.next_ns());
-        pollfd fd{.fd = link_.amplifier.wake.fd(), .events = POLLIN, .revents = 0};
-        if (::ppoll(&fd, 1, &timeout, nullptr) > 0)
-            link_.amplifier.wake.consume();
+        sleep();
     }
     driver_.close();
+    while (driver_.trying()) {
+        sleep();
+        driver_.update();
+    }
+}
+
+void amplifier_thread::sleep() noexcept
+{
+    const timespec timeout = rt::to_timespec(driver_.next_ns());
+    pollfd fd{.fd = link_.amplifier.wake.fd(), .events = POLLIN, .revents = 0};
+    if (::ppoll(&fd, 1, &timeout, nullptr) > 0)
+        link_.amplifier.wake.consume();
 }
 
 } // namespace tactor::engine

@@ -38,7 +38,8 @@ void audio_loop::finish(reason why, int code, bool runs) noexcept
 
 void audio_loop::close_step(io_status ready, std::int64_t now) noexcept
 {
-    if (link_.amplifier.off.load(std::memory_order_seq_cst) || now - closing_ns_ >= options_.off_ns)
+    if (link_.amplifier.off.load(std::memory_order_seq_cst) ||
+        link_.amplifier.stuck.load(std::memory_order_seq_cst) || now - closing_ns_ >= options_.off_ns)
         return end();
     if (!end_runs_)
         return;
@@ -53,6 +54,11 @@ void audio_loop::end() noexcept
     sink_.drop();
     tell_clock({});
     phase_ = phase::over;
+    // Whatever else it was: this is what somebody has to do something about.
+    if (!link_.amplifier.off.load(std::memory_order_seq_cst)) {
+        link_.amplifier.stuck.store(true, std::memory_order_seq_cst);
+        end_why_ = reason::left_on;
+    }
     link_.reports.push({.what = report::kind::stream_over, .why = end_why_, .code = end_code_});
 }
 

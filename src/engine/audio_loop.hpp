@@ -27,7 +27,9 @@ struct loop_options {
     std::int64_t stall_ns = 500'000'000;   ///< a device that stands still for so long is lost
     std::size_t drives = 4096;             ///< capacity of the mixer
     bool amplifier = false;                ///< somebody drives one after link::amplifier
-    std::int64_t off_ns = 250'000'000;     ///< how long the end waits for the amplifier to be off
+    /// How long the end waits for the amplifier to be off: a holder that hangs takes a second, and a line
+    /// that refuses is tried again for another.
+    std::int64_t off_ns = 2'000'000'000;
     synth::guard_settings guards{};
 };
 

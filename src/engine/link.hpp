@@ -35,6 +35,7 @@ struct stream_status {
 struct amplifier_link {
     std::atomic<bool> ready{true};             ///< strokes may begin
     std::atomic<bool> off{true};               ///< the line is off; the DAC may stop
+    std::atomic<bool> stuck{false};            ///< it is given up: it cannot be told whether it is off
     std::atomic<bool> failed{false};           ///< the line cannot be switched: the stream has to end
     std::atomic<std::uint32_t> mutes{0};       ///< each time it went off before its time
     std::atomic<bool> ending{false};           ///< audio thread: the last sound is out, or the device is gone
@@ -52,7 +53,8 @@ struct counters {
     std::atomic<std::uint64_t> late_frames{0};
     std::atomic<std::uint64_t> power_limited{0};
     std::atomic<std::uint64_t> drives_cut{0};
-    std::atomic<std::uint64_t> stalls{0}; ///< written by the amplifier's thread
+    std::atomic<std::uint64_t> stalls{0};       ///< written by the amplifier's thread
+    std::atomic<std::uint64_t> off_failures{0}; ///< written by the amplifier's thread
     std::atomic<std::uint64_t> minor_faults{0};
     std::atomic<std::uint64_t> major_faults{0};
     /// Length of xrun number n at n modulo the size: the newest are kept.

@@ -57,7 +57,8 @@ enum class reason : std::uint32_t {
     closed,
     starved,
     muted,
-    amplifier
+    amplifier,
+    left_on
 };
 
 /// Audio to control.

@@ -104,6 +104,9 @@ player_stats player::stats() const
             .power_limited_frames = get(c.power_limited),
             .drives_cut = get(c.drives_cut),
             .stalls = get(c.stalls),
+            .off_failures = get(c.off_failures),
+            .left_on = impl_->link.amplifier.stuck.load(std::memory_order_relaxed) &&
+                       !impl_->link.amplifier.off.load(std::memory_order_relaxed),
             .sync_pulses = pulses.sent,
             .sync_missed = pulses.missed,
             .sync_mean_late_s = pulses.mean_late_s,

@@ -53,6 +53,8 @@ std::string text(reason r, int code)
         return "the amplifier was off";
     case reason::amplifier:
         return "the amplifier's line cannot be switched";
+    case reason::left_on:
+        return "the amplifier's line cannot be switched off: it may be on";
     case reason::closed:
         return "the player was closed";
     }

@@ -20,6 +20,10 @@ namespace {
 // Above the audio threads (65) and the kernel's interrupt threads (50): it sleeps but for its few ioctls.
 constexpr int priority = 80;
 
+// A line that refuses to go off at the end is tried again for a second.
+constexpr int last_tries = 100;
+constexpr int last_pause_ms = 10;
+
 // Its own session: neither the terminal's signals nor those to the player's process group reach it. What
 // is sent to it alone waits forever, for fork() left every signal blocked.
 void leave_the_player() noexcept
@@ -96,7 +100,9 @@ public:
         send(hello);
         while (!wait() && take_messages())
             check_silence();
-        job_.set(job_.line, false);
+        // Nobody is left who could try again.
+        for (int tries = 0; !job_.set(job_.line, false) && tries < last_tries; ++tries)
+            ::poll(nullptr, 0, last_pause_ms);
     }
 
 private:

@@ -69,8 +69,12 @@ public:
     bool set(bool on) noexcept override
     {
         log_.emplace_back(on ? "on" : "off");
-        is_on = works && on;
-        return works;
+        if (!on && refusals > 0) {
+            --refusals;
+            return false;
+        }
+        is_on = on && works;
+        return works || !on;
     }
     bool beat() noexcept override
     {
@@ -78,7 +82,8 @@ public:
         return is_on;
     }
 
-    bool works = true;
+    bool works = true;     ///< on
+    unsigned refusals = 0; ///< so many times it stays on
     bool is_on = false;
     unsigned beats = 0;
 

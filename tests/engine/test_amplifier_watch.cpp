@@ -58,7 +58,7 @@ TEST_CASE("the holder hears a beat every 50 ms, and a line that went off by itse
     r.line.is_on = false;
     r.play(9600);
     CHECK(r.line.is_on);
-    CHECK(r.news() == event_log{"on"});
+    CHECK(r.news() == event_log{"off", "on"}); // whether it is off, only switching tells
     CHECK(r.link.count.stalls == 1);
     CHECK(reason_of(r, r.id) == "the amplifier was off");
 }
@@ -76,7 +76,7 @@ TEST_CASE("a line that cannot be switched ends the stream and says so")
     CHECK(reason_of(r, id) == "the amplifier's line cannot be switched");
     CHECK(r.feed.stream_reason() == "the amplifier's line cannot be switched");
     CHECK_FALSE(r.first_sound());
-    CHECK(r.news() == event_log{"prepare", "start", "on", "drop"});
+    CHECK(r.news() == event_log{"prepare", "start", "on", "off", "drop"});
 }
 
 TEST_CASE("a stroke that waits for the amplifier can be cancelled, and ends with the stream")

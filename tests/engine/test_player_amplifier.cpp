@@ -108,6 +108,10 @@ TEST_CASE("an amplifier whose line fails ends the player's stream")
     CHECK(why.find("the amplifier's line cannot be switched") != std::string::npos);
     p.stop();
     CHECK_THROWS_AS(p.submit(tone(0.05)), error);
+    // It refuses to go off as well.
+    CHECK(p.ended() == "the amplifier's line cannot be switched off: it may be on");
+    CHECK(p.stats().left_on);
+    CHECK(p.stats().off_failures == state->log.size() - 1);
 }
 
 TEST_CASE("the player's limits are its own and are checked")

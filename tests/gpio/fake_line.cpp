@@ -62,9 +62,13 @@ gpio::held_line fake_line::held()
 
 bool fake_line::set(void* line, bool on) noexcept
 {
-    const state& s = *static_cast<state*>(line);
+    state& s = *static_cast<state*>(line);
     if (on && s.broken)
         return false;
+    if (!on && s.refusals > 0) {
+        --s.refusals;
+        return false;
+    }
     const switched record{on, now_ns()};
     return ::write(s.fd, &record, sizeof record) == static_cast<ssize_t>(sizeof record);
 }

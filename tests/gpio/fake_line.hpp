@@ -35,12 +35,15 @@ public:
     std::optional<switched> next(int timeout_ms = 5000) const;
     /// From now on the line cannot be switched on. Before the holder starts.
     void break_it() { state_.broken = true; }
+    /// The holder's first so many tries to switch off fail. Before it starts.
+    void refuse_off(int times) { state_.refusals = times; }
     int descriptor() const { return state_.fd; }
 
 private:
     struct state {
         int fd = -1;
         bool broken = false;
+        int refusals = 0;
     };
     static bool set(void* line, bool on) noexcept;
 

@@ -101,6 +101,22 @@ TEST_CASE("a line that cannot be switched is reported")
     CHECK(next_of(line) == "off");
 }
 
+TEST_CASE("an off that is refused is answered as such, and at its end the holder tries again by itself")
+{
+    fake_line line;
+    line.refuse_off(4);
+    auto h = start(line);
+    CHECK(h->set(true));
+    CHECK(next_of(line) == "on");
+    CHECK(!h->set(false));
+    CHECK(!h->set(false));
+    const int holder = open_pidfd(h->pid());
+    h.reset();
+    CHECK(next_of(line) == "off");
+    CHECK(ends(holder));
+    ::close(holder);
+}
+
 TEST_CASE("the holder keeps nothing of the player but the line")
 {
     std::ofstream other("/dev/null");
