@@ -155,19 +155,29 @@ finding check_servers(const system_facts& f, const system_needs& n)
         fmt::format("{}: may take card {} at any time, and beep on it", names(desktop), n.card->id), rules);
 }
 
-// Raspberry Pi kernels may leave an output as it was when its program has ended.
+// Raspberry Pi kernels may leave an output as it was when its program has ended. That matters where nobody is
+// left to switch it off: the holder, killed together with the player.
 std::vector<finding> check_release(const system_facts& f, const system_needs& n)
 {
     if (!n.amplifier)
         return {};
-    constexpr const char* cure = "dtparam=strict_gpiod in /boot/firmware/config.txt, then reboot; and a "
-                                 "pull-down resistor at the amplifier's enable input";
-    if (f.keeps_outputs)
-        return {warning(
-            "GPIO release",
-            fmt::format("{} is Y: a line keeps its level when its program ends, an amplifier stays on",
-                        *f.keeps_outputs),
-            cure)};
+    constexpr const char* cure =
+        "dtparam=strict_gpiod in /boot/firmware/config.txt, then reboot, and a pull-down resistor at the "
+        "amplifier's enable input; where tactor is a service, ExecStopPost=tactor off";
+    if (f.keeps_outputs) {
+        const std::string found =
+            fmt::format("{} is Y: a line keeps its level when its program ends", *f.keeps_outputs);
+        if (!f.off_units.empty())
+            return {fine("GPIO release",
+                         fmt::format("{}; {} switches the amplifier off after its service, nothing does "
+                                     "where player and holder are killed together outside of it",
+                                     found, fmt::join(f.off_units, ", ")),
+                         "after such an end: tactor off")};
+        return {warning("GPIO release",
+                        found + ": nothing switches the amplifier off when player and holder are killed "
+                                "together",
+                        cure)};
+    }
     if (f.releases_outputs)
         return {fine("GPIO release", "lines become inputs when their program ends")};
     if (f.raspberry_pi)
@@ -175,7 +185,12 @@ std::vector<finding> check_release(const system_facts& f, const system_needs& n)
                         "this kernel does not say whether lines keep their level when their program "
                         "ends",
                         cure)};
-    return {};
+    return {fine("GPIO release",
+                 "what becomes of a line whose program was killed is up to its chip: it may stay on when "
+                 "player and holder are killed together",
+                 f.off_units.empty() ? "a pull-down resistor at the amplifier's enable input; after such an "
+                                       "end: tactor off"
+                                     : "")};
 }
 
 } // namespace

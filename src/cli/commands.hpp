@@ -30,5 +30,6 @@ command add_play(CLI::App& app);
 command add_plot(CLI::App& app);
 command add_devices(CLI::App& app);
 command add_check(CLI::App& app);
+command add_off(CLI::App& app);
 
 } // namespace tactor::cli

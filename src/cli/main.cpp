@@ -42,8 +42,8 @@ int run(int argc, char** argv)
     app.set_version_flag("--version", [] { return fmt::format("tactor {}\n{}", version(), build_facts()); });
     app.require_subcommand(1);
     app.footer("Example: tactor play park2016-3        tactor COMMAND --help says more.");
-    std::array commands{add_plan(app),    add_render(app),  add_play(app), add_plot(app),
-                        add_compare(app), add_devices(app), add_check(app)};
+    std::array commands{add_plan(app),    add_render(app),  add_play(app),  add_plot(app),
+                        add_compare(app), add_devices(app), add_check(app), add_off(app)};
     if (argc > 1 && std::string_view(argv[1]) == complete_command) {
         for (const std::string& line : complete(app, {argv + 2, argv + argc}))
             fmt::print("{}\n", line);

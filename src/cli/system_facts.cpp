@@ -119,6 +119,34 @@ std::vector<process_info> sound_servers(const fs::path& root)
     return all;
 }
 
+bool switches_off(const fs::path& unit)
+{
+    std::ifstream in(unit);
+    for (std::string line; std::getline(in, line);)
+        if (line.starts_with("ExecStopPost=") && has(line, "tactor off"))
+            return true;
+    return false;
+}
+
+// Those of the system and their drop-ins ("tactor-play@.service.d/off.conf"), by the unit's name, each once.
+std::vector<std::string> units_that_switch_off(const fs::path& root)
+{
+    std::set<std::string> all;
+    for (const char* folder : {"etc/systemd/system", "run/systemd/system", "usr/local/lib/systemd/system",
+                               "usr/lib/systemd/system"})
+        for (const fs::path& f : entries(root / folder)) {
+            const std::string name = f.filename().string();
+            if (name.ends_with(".service") && switches_off(f))
+                all.insert(name);
+            if (!name.ends_with(".service.d"))
+                continue;
+            const std::vector<fs::path> parts = entries(f);
+            if (std::any_of(parts.begin(), parts.end(), switches_off))
+                all.insert(name.substr(0, name.size() - 2));
+        }
+    return {all.begin(), all.end()};
+}
+
 bool is_playback(const std::string& name)
 {
     return name.starts_with("pcmC") && name.ends_with('p');
@@ -171,6 +199,7 @@ system_facts read_system(own_facts own, const fs::path& root)
         else if (!says.empty())
             f.releases_outputs = true;
     }
+    f.off_units = units_that_switch_off(root);
     f.raspberry_pi = has(text_of(root / "proc/device-tree/model"), "Raspberry Pi");
     f.own = std::move(own);
     return f;

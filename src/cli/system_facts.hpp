@@ -45,6 +45,7 @@ struct system_facts {
         {};                        ///< file that says that lines keep their level when released
     bool releases_outputs = false; ///< a file says that they do not
     bool raspberry_pi = false;
+    std::vector<std::string> off_units = {}; ///< systemd's, that run "tactor off" when they have stopped
 };
 
 own_facts read_own();

@@ -46,6 +46,7 @@ system_facts good()
     f.gpio = {{"/dev/gpiochip0", "gpio", true}};
     f.preempts = preemption::realtime;
     f.governors = {"performance"};
+    f.releases_outputs = true;
     return f;
 }
 
@@ -229,7 +230,9 @@ TEST_CASE("lines that keep their level are a warning where an amplifier hangs on
     REQUIRE(f.keeps_outputs.has_value());
     const finding x = judged(f, card_and_amplifier(), "GPIO release");
     CHECK(x.how == level::warning);
+    CHECK(has(x.found, "nothing switches the amplifier off when player and holder are killed together"));
     CHECK(has(x.cure, "strict_gpiod"));
+    CHECK(has(x.cure, "ExecStopPost=tactor off"));
     const auto without = check_system(f, {.pcm = "null"});
     CHECK(std::none_of(without.begin(), without.end(),
                        [](const finding& y) { return y.check == "GPIO release"; }));
@@ -239,6 +242,28 @@ TEST_CASE("lines that keep their level are a warning where an amplifier hangs on
     const fake_root silent;
     silent.write("proc/device-tree/model", "Raspberry Pi 4");
     CHECK(judged(silent.read(), card_and_amplifier(), "GPIO release").how == level::warning);
+    const fake_root other;
+    const finding unknown = judged(other.read(), card_and_amplifier(), "GPIO release");
+    CHECK(unknown.how == level::ok);
+    CHECK(has(unknown.cure, "tactor off"));
+}
+
+TEST_CASE("a service that switches off after its end is found, and what it does not cover is said")
+{
+    const fake_root r;
+    r.write("sys/module/pinctrl_rp1/parameters/persist_gpio_outputs", "Y\n");
+    r.write("etc/systemd/system/other.service",
+            "[Service]\nExecStart=/usr/bin/tactor off\n#ExecStopPost=tactor off\n");
+    CHECK(r.read().off_units.empty());
+    CHECK(judged(r.read(), card_and_amplifier(), "GPIO release").how == level::warning);
+    r.write("etc/systemd/system/tactor-play@.service", "[Service]\nExecStopPost=/usr/local/bin/tactor off\n");
+    r.write("run/systemd/system/touch.service.d/off.conf",
+            "[Service]\nExecStopPost=-/usr/bin/tactor off --config a.toml\n");
+    CHECK(r.read().off_units == std::vector<std::string>{"tactor-play@.service", "touch.service"});
+    const finding x = judged(r.read(), card_and_amplifier(), "GPIO release");
+    CHECK(x.how == level::ok);
+    CHECK(has(x.found, "tactor-play@.service, touch.service switches the amplifier off"));
+    CHECK(has(x.found, "killed together outside of it"));
 }
 
 } // namespace check_system_test

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// Switches the amplifier off where no player and no holder is left to do it.
+#include <chrono>
+#include <memory>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "cli/commands.hpp"
+#include "cli/input.hpp"
+
+namespace tactor::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+// The holder of a player that was just killed has the line for 0.2 s more, at most a second where it may not
+// run in real time.
+constexpr auto longest_wait = 2s;
+
+gpio_line_place wait_until_free(const gpio_line_name& line)
+{
+    const auto until = std::chrono::steady_clock::now() + longest_wait;
+    gpio_line_place p = find_gpio_line(line);
+    while (!p.line.consumer.empty() && std::chrono::steady_clock::now() < until) {
+        std::this_thread::sleep_for(10ms);
+        p = find_gpio_line(line);
+    }
+    return p;
+}
+
+int switch_off(settings& s, option_list& options)
+{
+    const environment e = read_environment(s, options);
+    if (!e.config.amplifier)
+        throw error(errc::bad_input, "amplifier",
+                    fmt::format("no [amplifier] in {}", e.config_name.empty()
+                                                            ? "the array, and there is no configuration"
+                                                            : e.config_name),
+                    "say its line there, see tactor.toml(5), or name the array with --array");
+    const amplifier_settings& a = *e.config.amplifier;
+    const gpio_line_place p = wait_until_free(a.line);
+    // Requested as off, so it goes there at once; asked once more for what the driver says.
+    if (!open_output(a.line, a.active_low)->set(false))
+        throw error(errc::not_available, "amplifier",
+                    fmt::format("line {} of {} cannot be switched off: it may be on", p.line.offset, p.label),
+                    "cut the amplifier's supply; then see what dmesg says");
+    fmt::print("amplifier: line {} of {} ({}) is off\n", p.line.offset, p.label, p.path);
+    return status_ok;
+}
+
+} // namespace
+
+command add_off(CLI::App& app)
+{
+    CLI::App* c = app.add_subcommand("off", "Switch the amplifier of [amplifier] off");
+    auto s = std::make_shared<settings>();
+    auto options = std::make_shared<option_list>(*c, *s);
+    options->add_array_options();
+    c->footer("Example: tactor off --array palm.toml");
+    return [s, options] { return switch_off(*s, *options); };
+}
+
+} // namespace tactor::cli
