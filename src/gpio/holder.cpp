@@ -131,6 +131,9 @@ holder_link::holder_link(int socket, std::int32_t pid, std::function<bool()> res
 
 holder_link::~holder_link()
 {
+    // By its answer: a holder that is killed now ends as one that has switched off does.
+    if (on_)
+        set(false);
     if (!gone_) {
         ::shutdown(socket_, SHUT_WR);
         if (!wait_for(socket_, 0, answer_ms)) // the end of the holder's side
@@ -143,10 +146,14 @@ holder_link::~holder_link()
 bool holder_link::set(bool on) noexcept
 {
     const message_kind kind = on ? message_kind::on : message_kind::off;
-    if (!gone_ && send(kind) && await_answer(kind))
+    on_ = true; // perhaps, until it is known to be off
+    if (!gone_ && send(kind) && await_answer(kind)) {
+        on_ = on;
         return true;
+    }
     if (gone_ && !on && !rescued_)
         rescued_ = switch_off_here();
+    on_ = !(gone_ && rescued_);
     return gone_ && !on && rescued_;
 }
 

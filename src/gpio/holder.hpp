@@ -51,6 +51,7 @@ private:
     std::uint8_t number_ = 0;
     unsigned unanswered_ = 0;
     bool lapsed_ = false;
+    bool on_ = false; ///< or may be
     bool gone_ = false;
     bool rescued_ = false;
 };

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+#include "traced.hpp"
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <stdexcept>
+
+#include <fcntl.h>
+#include <sys/ptrace.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "fake_line.hpp"
+
+namespace tactor::test {
+namespace {
+
+constexpr long options = PTRACE_O_TRACESYSGOOD | PTRACE_O_TRACEFORK | PTRACE_O_TRACEVFORK |
+                         PTRACE_O_TRACECLONE | PTRACE_O_EXITKILL;
+
+long trace(__ptrace_request what, pid_t pid, long data = 0)
+{
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): that is how ptrace() takes numbers
+    return ::ptrace(what, pid, nullptr, reinterpret_cast<void*>(data));
+}
+
+// The signal that a stop delivers; 0 for stops of ptrace's own.
+int delivered(int status)
+{
+    const bool own =
+        (status >> 16) != 0 || WSTOPSIG(status) == (SIGTRAP | 0x80) || WSTOPSIG(status) == SIGTRAP;
+    return own ? 0 : WSTOPSIG(status);
+}
+
+int wait_any(pid_t pid, int& status)
+{
+    for (;;) {
+        const pid_t found = ::waitpid(pid, &status, __WALL);
+        if (found >= 0 || errno != EINTR)
+            return found;
+    }
+}
+
+// Stopped in a read() of the descriptor until it is told to go.
+pid_t start(const std::function<void()>& session, int& go)
+{
+    std::array<int, 2> ends{};
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0)
+        throw std::runtime_error("pipe");
+    const pid_t pid = ::fork();
+    if (pid == 0)
+        [&]() noexcept {
+            die_quietly();
+            ::close(ends[1]);
+            char c = 0;
+            const bool told = ::read(ends[0], &c, 1) == 1;
+            ::close(ends[0]);
+            if (told)
+                session();
+            ::_exit(0);
+        }();
+    ::close(ends[0]);
+    go = ends[1];
+    return pid;
+}
+
+bool seize(pid_t pid)
+{
+    int status = 0;
+    return trace(PTRACE_SEIZE, pid, options) == 0 && trace(PTRACE_INTERRUPT, pid) == 0 &&
+           wait_any(pid, status) == pid && WIFSTOPPED(status);
+}
+
+} // namespace
+
+bool can_trace()
+{
+    int go = -1;
+    const pid_t pid = start([] {}, go);
+    bool can = seize(pid);
+    if (can) {
+        can = trace(PTRACE_SYSCALL, pid) == 0;
+        ::close(go);
+        int status = 0;
+        __ptrace_syscall_info info{};
+        can = can && wait_any(pid, status) == pid && WIFSTOPPED(status) &&
+              ::ptrace(PTRACE_GET_SYSCALL_INFO, pid, sizeof info, &info) > 0;
+    } else
+        ::close(go);
+    ::kill(pid, SIGKILL);
+    int status = 0;
+    while (wait_any(pid, status) == pid && WIFSTOPPED(status)) {
+    }
+    return can;
+}
+
+traced_session::traced_session(const std::function<void()>& session)
+{
+    player_ = start(session, go_);
+    if (!seize(player_))
+        throw std::runtime_error("the player cannot be traced");
+    traced_.insert(player_);
+    if (::write(go_, "g", 1) != 1 || trace(PTRACE_SYSCALL, player_) != 0)
+        throw std::runtime_error("the player does not go");
+}
+
+traced_session::~traced_session()
+{
+    ::close(go_);
+    if (holder_fd_ >= 0)
+        ::close(holder_fd_);
+}
+
+bool traced_session::stopped_at_entry(pid_t pid, int status) const
+{
+    __ptrace_syscall_info info{};
+    return WSTOPSIG(status) == (SIGTRAP | 0x80) &&
+           ::ptrace(PTRACE_GET_SYSCALL_INFO, pid, sizeof info, &info) > 0 &&
+           info.op == PTRACE_SYSCALL_INFO_ENTRY;
+}
+
+// The first child of the player forks the holder.
+void traced_session::note_child(pid_t parent)
+{
+    unsigned long child = 0;
+    if (::ptrace(PTRACE_GETEVENTMSG, parent, nullptr, &child) != 0)
+        return;
+    const auto pid = static_cast<pid_t>(child);
+    traced_.insert(pid);
+    if (parent == player_ && between_ < 0)
+        between_ = pid;
+    else if (parent == between_ && holder_ < 0) {
+        holder_ = pid;
+        holder_fd_ = open_pidfd(pid);
+    }
+}
+
+killed traced_session::kill_at(party counted, unsigned nth, party victim)
+{
+    killed k;
+    unsigned calls = 0;
+    while (!traced_.empty()) {
+        int status = 0;
+        const pid_t pid = wait_any(-1, status);
+        if (pid < 0)
+            break;
+        if (!WIFSTOPPED(status)) {
+            traced_.erase(pid);
+            continue;
+        }
+        if (const int event = status >> 16;
+            event == PTRACE_EVENT_FORK || event == PTRACE_EVENT_VFORK || event == PTRACE_EVENT_CLONE)
+            note_child(pid);
+        const bool one = pid == (counted == party::player ? player_ : holder_);
+        if (one && stopped_at_entry(pid, status) && calls++ == nth) {
+            k.reached = true;
+            strike(victim, k);
+            let_go(pid);
+            break;
+        }
+        trace(PTRACE_SYSCALL, pid, delivered(status));
+    }
+    wait_for_all();
+    return k;
+}
+
+void traced_session::strike(party victim, killed& k)
+{
+    k.time_ns = now_ns();
+    if (victim != party::holder && traced_.contains(player_))
+        k.anybody = ::kill(player_, SIGKILL) == 0;
+    if (victim != party::player && traced_.contains(holder_))
+        k.anybody = ::kill(holder_, SIGKILL) == 0;
+}
+
+// Whoever lives goes on as it would without us. (Who was killed does not stop any more.)
+void traced_session::let_go(pid_t stopped)
+{
+    if (trace(PTRACE_DETACH, stopped) == 0)
+        traced_.erase(stopped);
+    for (const pid_t p : traced_)
+        trace(PTRACE_INTERRUPT, p);
+    bool waits = traced_.contains(player_);
+    while (!traced_.empty()) {
+        int status = 0;
+        const pid_t pid = wait_any(-1, status);
+        if (pid < 0)
+            break;
+        if (WIFSTOPPED(status)) {
+            if ((status >> 16) == PTRACE_EVENT_FORK || (status >> 16) == PTRACE_EVENT_CLONE)
+                note_child(pid);
+            if (trace(PTRACE_DETACH, pid, delivered(status)) != 0)
+                continue; // killed meanwhile
+            traced_.erase(pid);
+            continue;
+        }
+        traced_.erase(pid);
+        waits = waits && pid != player_;
+    }
+}
+
+// The player is our child; the holder is nobody's.
+void traced_session::wait_for_all()
+{
+    int status = 0;
+    while (wait_any(player_, status) == player_ && WIFSTOPPED(status)) {
+    }
+    if (holder_fd_ >= 0 && !ends(holder_fd_))
+        throw std::runtime_error("the holder does not end");
+}
+
+} // namespace tactor::test

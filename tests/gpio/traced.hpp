@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// A player and its holder, run under ptrace up to one system call of one of them, where somebody is killed.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <set>
+
+#include <sys/types.h>
+
+namespace tactor::test {
+
+enum class party { player, holder, both };
+
+/// What came of it.
+struct killed {
+    bool reached = false;     ///< the session was long enough to have that system call
+    bool anybody = false;     ///< who was to be killed lived
+    std::int64_t time_ns = 0; ///< CLOCK_MONOTONIC
+};
+
+/// Whether processes can be traced here, as they cannot where the kernel forbids it or qemu translates.
+bool can_trace();
+
+/// One run. `session` is what the player does; it forks its holder, which is found by its being a grandchild.
+class traced_session {
+public:
+    explicit traced_session(const std::function<void()>& session);
+    ~traced_session();
+    traced_session(const traced_session&) = delete;
+    traced_session& operator=(const traced_session&) = delete;
+
+    /// Stops `counted` at the entry of its system call number `nth`, from 0, kills `victim`, lets the others
+    /// go untraced, and returns when all have ended.
+    killed kill_at(party counted, unsigned nth, party victim);
+
+private:
+    bool stopped_at_entry(pid_t pid, int status) const;
+    void note_child(pid_t parent);
+    void strike(party victim, killed& k);
+    void let_go(pid_t stopped);
+    void wait_for_all();
+
+    pid_t player_ = -1;
+    pid_t between_ = -1; ///< the process that forks the holder and ends
+    pid_t holder_ = -1;
+    int holder_fd_ = -1;
+    int go_ = -1;
+    std::set<pid_t> traced_;
+};
+
+} // namespace tactor::test
