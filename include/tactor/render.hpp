@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include <tactor/api.hpp>
@@ -16,8 +17,15 @@
 
 namespace tactor {
 
-/// Where the carrier's phase starts: with each burst, or with the piece.
-enum class phase_mode { burst, continuous };
+/// Where the carrier's phase starts. With `stroke` one carrier runs from the stroke's first frame on, and
+/// bursts open and close it: a tactor that plays several in a row goes on without a break. With `burst` it
+/// starts again with each (or with the first of those that overlap on a tactor), so that 17.5 cycles, as 70
+/// ms at 250 Hz are, flip at each boundary: the line at 250 Hz splits into 242.9 and 257.1 Hz, with a mean
+/// above 0.
+enum class phase_mode { stroke, burst };
+
+/// "stroke" or "burst".
+TACTOR_API std::string_view to_string(phase_mode p) noexcept;
 
 /// What the array may be given at run time, over and above each channel's own max_dbfs. Plans within these
 /// limits are not touched in a single bit. The defaults are safe guesses: know your actuators.
@@ -34,9 +42,9 @@ struct drive_limits {
 
 struct render_options {
     unsigned rate = 48000; ///< Hz, 8000 to 768000
-    phase_mode phase = phase_mode::burst;
-    /// Raised-cosine ramp inside each burst. Default: 0 where the burst is a whole number of half
-    /// cycles (within 1 % of one), else 2 ms.
+    phase_mode phase = phase_mode::stroke;
+    /// Raised-cosine ramp inside each burst, s, from 0. Default: 0 where the carrier crosses zero at the
+    /// burst's begin and at its end (both within 1 % of a half cycle), else 2 ms; burst by burst.
     std::optional<double> ramp_s = {};
     double level_dbfs = -12.0;        ///< peak for amplitude 1, <= 0; a tactor's gain_db is added
     std::optional<double> sl_db = {}; ///< instead: dB above each tactor's threshold_dbfs

@@ -43,16 +43,7 @@ const choice<phantom_kind> phantoms{{phantom_kind::inverse_distance, phantom_kin
 const choice<timing> timings{{timing::fixed, timing::fit}};
 const choice<outside> outsides{{outside::error, outside::clamp}};
 const choice<overlap> overlaps{{overlap::energy, overlap::max, overlap::sum}};
-
-phase_mode parse_phase(const std::string& text)
-{
-    if (text == "burst")
-        return phase_mode::burst;
-    if (text == "continuous")
-        return phase_mode::continuous;
-    throw error(errc::bad_input, "--phase", fmt::format("\"{}\" is not known", text),
-                "one of burst, continuous");
-}
+const choice<phase_mode> phases{{phase_mode::stroke, phase_mode::burst}};
 
 bool parse_flag(const std::string& what, const std::string& text)
 {
@@ -181,10 +172,10 @@ void option_list::add_sound_options()
     settings& s = settings_;
     value("--carrier", "HZ", "frequency of the vibration (default 250)",
           [&s](const std::string& t) { s.plan.carrier_hz = parse_number("--carrier", t, 1, 384000, "Hz"); });
-    value("--phase", "burst|continuous", "carrier phase starts with each burst or runs on (default burst)",
-          [&s](const std::string& t) { s.render.phase = parse_phase(t); });
+    value("--phase", phases.names("|"), "carrier starts with the stroke (default) or again with each burst",
+          [&s](const std::string& t) { s.render.phase = phases.parse("--phase", t); });
     value("--ramp", "S",
-          "raised-cosine ramp inside each burst (default: 0 for whole half cycles, else 0.002)",
+          "raised-cosine ramp inside each burst (default: 0 between zero crossings, else 0.002)",
           [&s](const std::string& t) { s.render.ramp_s = parse_number("--ramp", t, 0, 10, "s"); });
     auto* level = value("--level-dbfs", "DB", "peak of the carrier for intensity 1 (default -12)",
                         [&s](const std::string& t) {

@@ -54,8 +54,13 @@ engine::live_setup live_setup(const stream_setup& s, const live_options& o)
                     fmt::format("{} s or more", least_live_soa_s));
     l.soa = synth::frame_at(o.plan.soa_s, s.rate);
     l.duration = std::min(synth::frame_at(duration_s, s.rate), l.soa);
-    l.ramp = synth::ramp_frames(o.render.ramp_s, duration_s, o.plan.carrier_hz, s.rate, l.duration);
-    l.phase_runs_on = o.render.phase == phase_mode::continuous;
+    l.restart = o.render.phase == phase_mode::burst;
+    const auto ramp = [&](std::optional<double> ramp_s) {
+        return synth::ramp_frames(ramp_s, 0.0, duration_s, o.plan.carrier_hz, s.rate, l.duration);
+    };
+    // With a restart all bursts are alike; else each has its place on the carrier.
+    l.ramp = ramp(l.restart ? o.render.ramp_s : o.render.ramp_s.value_or(0.0));
+    l.cut_ramp = l.restart ? l.ramp : ramp(o.render.ramp_s.value_or(synth::default_ramp_s));
     return l;
 }
 

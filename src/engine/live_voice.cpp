@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "synth/frames.hpp"
+
 namespace tactor::engine {
 
 std::size_t live_drives(std::size_t channels, unsigned period_frames, unsigned rate) noexcept
@@ -95,9 +97,13 @@ bool live_voice::burst(synth::mixer& m, std::uint64_t at) noexcept
         idle_ = 0;
     synth::drive_event e;
     e.start = at;
-    e.phase_frame = setup_.phase_runs_on ? at - base_ : 0;
+    e.phase_frame = setup_.restart ? 0 : at - base_;
     e.window = setup_.duration;
-    e.ramp = setup_.ramp;
+    const double half_cycles = 2.0 * setup_.cycles_per_frame;
+    e.ramp = synth::between_zeros(half_cycles * static_cast<double>(e.phase_frame),
+                                  half_cycles * static_cast<double>(e.phase_frame + setup_.duration))
+                 ? setup_.ramp
+                 : setup_.cut_ramp;
     e.length = static_cast<std::uint32_t>(setup_.duration);
     end_ = at + setup_.duration;
     const std::vector<double>& a = points_.value();

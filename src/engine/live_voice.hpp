@@ -25,8 +25,9 @@ struct live_setup {
     bool bursts = false;
     std::uint64_t soa = 0;
     std::uint64_t duration = 0;
-    std::uint32_t ramp = 0;
-    bool phase_runs_on = false; ///< bursts: the carrier's phase is the stroke's, not the burst's
+    std::uint32_t ramp = 0;     ///< frames, of bursts at whose begin and end the carrier crosses zero
+    std::uint32_t cut_ramp = 0; ///< of the others
+    bool restart = false;       ///< bursts: each has a carrier of its own, instead of the stroke's
 };
 
 /// Shortest SOA of live bursts.

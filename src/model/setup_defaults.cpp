@@ -36,7 +36,7 @@ constexpr std::array options{
     option{"drop-points", kind::flag},
     option{"overlap", kind::word, {}, {"energy", "max", "sum"}},
     option{"carrier", kind::number, {1.0, max_hz}},
-    option{"phase", kind::word, {}, {"burst", "continuous"}},
+    option{"phase", kind::word, {}, {"stroke", "burst"}},
     option{"ramp", kind::number, {0.0, 10.0}},
     option{"level-dbfs", kind::number, {min_db, 0.0}},
     option{"sl", kind::number, {min_db, -min_db}},

@@ -50,7 +50,8 @@ void expander::stretch(std::uint64_t start, std::uint64_t length) noexcept
     const plan& p = score_->plans[item_->plan].schedule;
     event_.start = start;
     event_.length = static_cast<std::uint32_t>(length);
-    event_.phase_frame = score_->phase == phase_mode::burst ? start - item_->start : start;
+    const bool restart = score_->phase == phase_mode::burst;
+    event_.phase_frame = start - (restart ? item_->start : score_->starts[item_->plan]);
     event_.cycles_per_frame = p.carrier_hz / score_->rate;
     event_.ramp_position = start - item_->start;
     event_.window = item_->length;

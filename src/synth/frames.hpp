@@ -10,9 +10,9 @@
 
 namespace tactor::synth {
 
-/// Ramp of bursts that do not end on a zero crossing.
+/// Ramp of bursts that do not begin and end on a zero crossing.
 inline constexpr double default_ramp_s = 0.002;
-/// How far from a whole number of half cycles still counts as one.
+/// How far from a zero crossing, in half cycles, still counts as one.
 inline constexpr double half_cycle_tolerance = 0.01;
 /// Longest drive in one event; longer ones are cut without a seam.
 inline constexpr std::uint64_t longest_event = std::uint64_t{1} << 30;
@@ -24,15 +24,22 @@ inline std::uint64_t frame_at(double seconds, double rate) noexcept
     return static_cast<std::uint64_t>(std::floor(seconds * rate + 0.5 + 1e-6));
 }
 
-/// Frames of the raised cosine at each end of a burst of `length` frames: at most half of it.
-inline std::uint32_t ramp_frames(std::optional<double> ramp_s, double duration_s, double carrier_hz,
-                                 double rate, std::uint64_t length) noexcept
+/// Whether a carrier crosses zero at both ends of a burst, which are at so many of its half cycles.
+inline bool between_zeros(double from, double to) noexcept
+{
+    const auto on_zero = [](double at) { return std::abs(at - std::round(at)) <= half_cycle_tolerance; };
+    return on_zero(from) && on_zero(to) && to - from >= 1.0 - half_cycle_tolerance;
+}
+
+/// Frames of the raised cosine at each end of a burst of `length` frames: at most half of it. The carrier has
+/// run for `carrier_s` when the burst begins; whole frames, to which both are rounded, do not count.
+inline std::uint32_t ramp_frames(std::optional<double> ramp_s, double carrier_s, double duration_s,
+                                 double carrier_hz, double rate, std::uint64_t length) noexcept
 {
     if (!ramp_s) {
-        const double half_cycles = 2.0 * duration_s * carrier_hz;
-        const double whole = std::round(half_cycles);
-        const bool ends_on_zero = whole >= 1.0 && std::abs(half_cycles - whole) <= half_cycle_tolerance;
-        ramp_s = ends_on_zero ? 0.0 : default_ramp_s;
+        const bool smooth =
+            between_zeros(2.0 * carrier_s * carrier_hz, 2.0 * (carrier_s + duration_s) * carrier_hz);
+        ramp_s = smooth ? 0.0 : default_ramp_s;
     }
     const std::uint64_t frames = frame_at(*ramp_s, rate);
     return static_cast<std::uint32_t>(std::min({frames, length / 2, longest_event}));

@@ -49,17 +49,18 @@ void check(const burst& b, std::size_t number, std::size_t tactors)
 }
 
 /// All drives by tactor, then by start.
-std::vector<use> uses_of(const plan& p, std::uint64_t start, std::size_t tactors, unsigned rate,
-                         std::optional<double> ramp_s)
+std::vector<use> uses_of(const plan& p, std::uint64_t start, std::size_t tactors, const render_options& o)
 {
     std::vector<use> uses;
     for (std::size_t i = 0; i < p.bursts.size(); ++i) {
         const burst& b = p.bursts[i];
         check(b, i, tactors);
         const double end_s = b.onset_s + b.duration_s;
-        const std::uint64_t from = frame_at(b.onset_s, rate);
-        const std::uint64_t length = frame_at(end_s, rate) - from;
-        const std::uint32_t ramp = ramp_frames(ramp_s, b.duration_s, p.carrier_hz, rate, length);
+        const std::uint64_t from = frame_at(b.onset_s, o.rate);
+        const std::uint64_t length = frame_at(end_s, o.rate) - from;
+        const double carrier_s = o.phase == phase_mode::stroke ? b.onset_s : 0.0;
+        const std::uint32_t ramp =
+            ramp_frames(o.ramp_s, carrier_s, b.duration_s, p.carrier_hz, o.rate, length);
         for (const drive& d : b.drives) {
             if (length > 0) {
                 uses.push_back(
@@ -130,9 +131,9 @@ void append_bursts(std::vector<use>& single, std::uint32_t plan, item_list& out)
 }
 
 std::uint64_t place_bursts(const plan& p, std::uint32_t plan, std::uint64_t start, std::size_t tactors,
-                           unsigned rate, std::optional<double> ramp_s, item_list& out)
+                           const render_options& o, item_list& out)
 {
-    const std::vector<use> uses = uses_of(p, start, tactors, rate, ramp_s);
+    const std::vector<use> uses = uses_of(p, start, tactors, o);
     std::vector<use> single;
     std::uint64_t end = start;
     for (std::size_t i = 0; i < uses.size();) {
@@ -153,7 +154,7 @@ std::uint64_t place_bursts(const plan& p, std::uint32_t plan, std::uint64_t star
 } // namespace
 
 std::uint64_t place_plan(const plan& p, std::uint32_t plan, std::uint64_t start, std::size_t tactors,
-                         unsigned rate, std::optional<double> ramp_s, item_list& out)
+                         const render_options& o, item_list& out)
 {
     for (const double s : {p.total_s, p.stroke_duration_s}) {
         if (!(s >= 0.0 && s <= longest_plan_s)) {
@@ -161,15 +162,15 @@ std::uint64_t place_plan(const plan& p, std::uint32_t plan, std::uint64_t start,
                         fmt::format("between 0 and {} s can be rendered", longest_plan_s));
         }
     }
-    const std::uint64_t total = start + frame_at(p.total_s, rate);
+    const std::uint64_t total = start + frame_at(p.total_s, o.rate);
     if (!p.at) {
-        return std::max(total, place_bursts(p, plan, start, tactors, rate, ramp_s, out));
+        return std::max(total, place_bursts(p, plan, start, tactors, o, out));
     }
     item it;
     it.kind = item_kind::continuous;
     it.start = start;
-    it.length = frame_at(p.stroke_duration_s, rate);
-    it.ramp = ramp_frames(ramp_s, p.stroke_duration_s, p.carrier_hz, rate, it.length);
+    it.length = frame_at(p.stroke_duration_s, o.rate);
+    it.ramp = ramp_frames(o.ramp_s, 0.0, p.stroke_duration_s, p.carrier_hz, o.rate, it.length);
     it.plan = plan;
     if (it.length > 0) {
         out.items.push_back(it);

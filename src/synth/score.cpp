@@ -186,7 +186,7 @@ std::shared_ptr<const score::impl> make_score(const array& a, std::vector<placed
         check_carrier(p.schedule.carrier_hz, o.rate);
         const std::uint64_t start = start_frame(p, o.rate, end);
         end = synth::place_plan(p.schedule, static_cast<std::uint32_t>(s->starts.size()), start,
-                                a.tactors.size(), o.rate, o.ramp_s, s->list);
+                                a.tactors.size(), o, s->list);
         s->starts.push_back(start);
         s->ends.push_back(end);
         s->frames = std::max(s->frames, end);
@@ -203,6 +203,11 @@ std::shared_ptr<const score::impl> make_score(const array& a, std::vector<placed
 }
 
 } // namespace
+
+std::string_view to_string(phase_mode p) noexcept
+{
+    return p == phase_mode::stroke ? "stroke" : "burst";
+}
 
 score::score(const array& a, std::vector<placed_plan> plans, const render_options& o)
     : impl_(make_score(a, std::move(plans), o))

@@ -73,7 +73,7 @@ struct score::impl {
     std::uint64_t frames = 0;
     unsigned channels = 0;
     unsigned rate = 0;
-    phase_mode phase = phase_mode::burst;
+    phase_mode phase = phase_mode::stroke;
     std::optional<drive_limits> guards;
     std::size_t open_items = 0;      ///< most items that have started and not ended at once
     std::size_t open_continuous = 0; ///< of these, continuous ones

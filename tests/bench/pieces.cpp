@@ -83,7 +83,7 @@ void plain_loop::add_bursts(const plan& p, std::uint64_t start, double level)
         const auto from = start + static_cast<std::uint64_t>(std::llround(b.onset_s * rate_));
         const auto to = from + static_cast<std::uint64_t>(std::llround(b.duration_s * rate_));
         for (const drive& d : b.drives) {
-            tones_.push_back({from, to, from, d.tactor, level * d.amplitude, 0.0, p.carrier_hz});
+            tones_.push_back({from, to, start, d.tactor, level * d.amplitude, 0.0, p.carrier_hz});
         }
     }
 }

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """tactor render: the WAV file against the signal computed here from the plan, and what becomes of the file."""
+import cmath
 import math
 import os
 import pathlib
@@ -14,7 +15,7 @@ LEVEL = 10 ** (-12 / 20)
 FORMATS = {"float": (3, 32), "s16": (1, 16), "s24": (1, 24), "s32": (1, 32)}
 
 
-def expected(plan, channels, rate=48000, carrier=250.0, level=LEVEL):
+def expected(plan, channels, rate=48000, carrier=250.0, level=LEVEL, restart=False):
     """Section by section as the method says: bursts that do not overlap, no ramp."""
     frames = round(plan["total_s"] * rate)
     out = [[0.0] * channels for _ in range(frames)]
@@ -22,7 +23,7 @@ def expected(plan, channels, rate=48000, carrier=250.0, level=LEVEL):
         first = math.floor(b["onset_s"] * rate + 0.5)
         last = math.floor((b["onset_s"] + b["duration_s"]) * rate + 0.5)
         for k in range(last - first):
-            s = level * math.sin(2 * math.pi * carrier * k / rate)
+            s = level * math.sin(2 * math.pi * carrier * (k if restart else first + k) / rate)
             for d in b["drives"]:
                 out[first + k][d["channel"]] += d["amplitude"] * s
     return out
@@ -85,12 +86,29 @@ class Samples(ToolTest):
         for k in (24, 120, 216):
             w = 0.5 * (1 - math.cos(math.pi * k / 240))
             self.assertAlmostEqual(got[k][1], plain[k][1] * w, 6)
-        self.ok("render", "park2016-1", "--carrier", "255", "--phase", "continuous", "--ramp", "0", "-o", "o.wav")
-        got = Wav(self.dir / "o.wav").samples()
-        amplitude = self.plan("park2016-1")["bursts"][10]["drives"][0]
-        for n in (10 * 3360 + 100, 10 * 3360 + 3000):
-            s = LEVEL * amplitude["amplitude"] * math.sin(2 * math.pi * 255 * n / 48000)
-            self.assertAlmostEqual(got[n][amplitude["channel"]], s, 6)
+        for phase in ("stroke", "burst"):
+            self.ok("render", "park2016-1", "--carrier", "255", "--phase", phase, "--ramp", "0", "-o", "o.wav")
+            self.compare(Wav(self.dir / "o.wav"), expected(self.plan("park2016-1"), 9, carrier=255.0,
+                                                           restart=phase == "burst"), 2e-8)
+
+    def test_a_tactor_in_several_bursts_in_a_row_vibrates_at_the_carrier_only(self):
+        self.write("s.csv", "t_s,x_mm,y_mm\n0,20,20\n2.73,20,20\n")
+        def lines(phase):
+            self.ok("render", "s.csv", "--rate", "8000", *phase, "-o", "o.wav")
+            x = [f[4] / LEVEL for f in Wav(self.dir / "o.wav").samples()]
+            self.assertEqual(len(x), 22400)
+            at = [2 * abs(sum(v * cmath.exp(-2j * math.pi * hz * k / 8000) for k, v in enumerate(x))) / len(x)
+                  for hz in (250.0, 250.0 - 1 / 0.14, 250.0 + 1 / 0.14)]
+            return at, sum(x) / len(x)
+        (carrier, *sides), mean = lines([])
+        self.assertAlmostEqual(carrier, 1.0, 5)
+        self.assertLess(max(sides), 1e-4)
+        self.assertLess(abs(mean), 1e-8)
+        (carrier, *sides), mean = lines(["--phase", "burst"])
+        self.assertLess(carrier, 0.03)
+        self.assertGreater(min(sides), 0.6)
+        self.assertGreater(mean, 0.01)
+        self.refused(2, "render", "s.csv", "--phase", "continuous", "-o", "o.wav", says=["stroke, burst"])
 
     def test_overlapping_bursts_on_one_tactor_stay_within_the_level(self):
         self.ok("render", "park2016-3", "--algorithm", "tactile-brush", "-o", "o.wav")

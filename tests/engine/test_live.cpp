@@ -113,6 +113,39 @@ TEST_CASE("bursts: each SOA one, at the newest position, as long as the law says
     CHECK(r.report(1)->frames % 2880 == duration);
 }
 
+TEST_CASE(
+    "bursts: those in a row on one tactor are one sine of the stroke; or each begins anew, if asked for")
+{
+    for (const phase_mode phase : {phase_mode::stroke, phase_mode::burst}) {
+        // At 255 Hz a burst is 17.85 cycles, which end anywhere: 2 ms of ramp.
+        for (const double hz : {250.0, 255.0}) {
+            live_options o = bursts();
+            o.plan.carrier_hz = hz;
+            o.render.phase = phase;
+            live_rig r(o);
+            r.live->to({0.0, 0.0}, 1.0);
+            const std::uint64_t base = r.status().written;
+            r.play(6 * 3360);
+            const auto s = r.channel(0, base);
+            REQUIRE(s.size() >= 6 * 3360);
+            for (std::size_t k = 0; k < 6 * 3360; ++k) {
+                const std::size_t place = k % 3360;
+                if (hz != 250.0 && (place < 96 || place >= 3360 - 96))
+                    continue;
+                const auto at = static_cast<double>(phase == phase_mode::burst ? place : k);
+                const double exact = live_level * std::sin(2 * 3.14159265358979 * hz * at / rate);
+                REQUIRE(s[k] == doctest::Approx(exact).epsilon(1e-6).scale(0.1));
+            }
+            // Half way up and down the ramps.
+            for (const std::size_t k : {std::size_t{48}, std::size_t{3360 - 48}, std::size_t{3360 + 48}}) {
+                const double at = static_cast<double>(phase == phase_mode::burst ? k % 3360 : k);
+                const double sine = live_level * std::sin(2 * 3.14159265358979 * hz * at / rate);
+                CHECK(s[k] == doctest::Approx(hz == 250.0 ? sine : 0.5 * sine).epsilon(1e-4).scale(0.1));
+            }
+        }
+    }
+}
+
 TEST_CASE("outside the array the nearest point plays, and is counted; or it is an error")
 {
     live_rig r;

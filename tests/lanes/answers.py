@@ -30,8 +30,9 @@ def questions():
                     yield ["plan", *stroke, *method, "--phantom", phantom, "--format", "json"]
         for form in FORMATS:
             yield ["render", "park2016-3", *method, "--phantom", "gaussian", "--sample-format", form]
-    for phase in ("burst", "continuous"):
+    for phase in ("stroke", "burst"):
         yield ["render", *CURVE, "--phase", phase, "--carrier", "173.3", "--ramp", "0.003"]
+        yield ["render", *CURVE, "--phase", phase, "--rate", "22050"]
 
 
 def said(*command):

@@ -17,7 +17,7 @@ std::vector<score> various()
 {
     std::mt19937_64 random(11);
     std::vector<score> all;
-    for (const phase_mode phase : {phase_mode::burst, phase_mode::continuous}) {
+    for (const phase_mode phase : {phase_mode::burst, phase_mode::stroke}) {
         for (const overlap join : {overlap::energy, overlap::max, overlap::sum}) {
             for (const unsigned rate : {8000U, 44100U, 48000U}) {
                 render_options o;

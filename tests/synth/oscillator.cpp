@@ -69,7 +69,7 @@ TEST_CASE("an hour of carrier stays within 1e-4 of the exact sine")
 TEST_CASE("a carrier that starts after an hour has the phase of the hour")
 {
     render_options o;
-    o.phase = phase_mode::continuous;
+    o.phase = phase_mode::stroke;
     o.level_dbfs = 0.0;
     const double hz = 251.3;
     const score s(row(1), {{make_plan({make_burst(3600.0, 0.01, {{0, 1.0}})}, hz), {}}}, o);

@@ -58,7 +58,7 @@ TEST_CASE("events come in order of start and cover exactly what sounds")
     for (int i = 0; i < 50; ++i) {
         render_options o;
         o.level_dbfs = -30.0;
-        o.phase = i % 2 == 0 ? phase_mode::burst : phase_mode::continuous;
+        o.phase = i % 2 == 0 ? phase_mode::burst : phase_mode::stroke;
         const score s(row(9),
                       {{make_random(random, 9, 40, 0.5), {}},
                        {make_continuous(9, 0.2), 0.3},
