@@ -81,6 +81,8 @@ struct stroke {
     std::optional<double> carrier_hz = {}; ///< instead of the common carrier
     /// "reconstructed" for presets that are not in print; otherwise empty.
     std::string note = {};
+    /// What was odd about the input and taken nevertheless; make_plan() hands it on to plan::warnings.
+    std::vector<std::string> warnings = {};
 };
 
 /// Names of the built-in strokes, "park2016-1" ... "park2016-4".
@@ -97,7 +99,8 @@ TACTOR_API std::vector<stroke> load_strokes(const std::filesystem::path& file);
 /// Stroke file text in TOML; `name` stands for the file in messages.
 TACTOR_API std::vector<stroke> parse_strokes_toml(std::string_view text, const std::string& name);
 /// CSV with a header line naming t_s, x_mm, y_mm and optionally intensity, in any order.
-/// The time of the first line is the stroke's zero, whatever it is (-1e10 to 1e10 s).
+/// The time of the first line is the stroke's zero, whatever it is (-1e10 to 1e10 s). Of lines with
+/// equal times the last counts, with a warning.
 TACTOR_API std::vector<stroke> parse_strokes_csv(std::string_view text, const std::string& name);
 /// SVG document: each shape's subpaths are strokes, one after the other in document order.
 /// One user unit is one millimetre, unless the document's width or height has a physical unit.

@@ -26,9 +26,12 @@ command add_plan(CLI::App& app)
         make_score(p, e, settle_render(*s, e)); // levels and carrier are checked when planned
         if (*format == "json")
             print_json(stdout, p, e);
-        else if (*format == "csv")
+        else if (*format == "csv") {
+            for (const placed_plan& q : p.plans)
+                for (const std::string& w : q.schedule.warnings)
+                    fmt::print(stderr, "tactor: warning: {}\n", w); // there is no place for them in a table
             print_csv(stdout, p, e);
-        else
+        } else
             print_text(stdout, p, e);
         return status_ok;
     };

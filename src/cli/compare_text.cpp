@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <set>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -33,13 +34,13 @@ void print_row(std::FILE* out, const comparison_row& r)
 }
 
 // What a plan warns of is mostly the same for all phantom models.
-void print_warnings(std::FILE* out, const comparison& c)
+void print_warnings(std::FILE* out, std::string_view before, const comparison& c)
 {
     std::set<std::string> said;
     for (const comparison_row& r : c.rows)
         if (r.schedule)
             for (const std::string& w : r.schedule->warnings) {
-                const std::string text = fmt::format("warning: {}: {}\n", to_string(r.method), w);
+                const std::string text = fmt::format("{}warning: {}: {}\n", before, to_string(r.method), w);
                 if (said.insert(text).second)
                     say_text(out, text);
             }
@@ -57,7 +58,7 @@ void print_one(std::FILE* out, const comparison& c, const array& a)
                "bursts", "RMS", "max", "speed", "intens.", "silent", "shared");
     for (const comparison_row& r : c.rows)
         print_row(out, r);
-    print_warnings(out, c);
+    print_warnings(out, "", c);
 }
 
 // A field of CSV: quoted where it must be (RFC 4180).
@@ -107,6 +108,8 @@ void print_csv(std::FILE* out, const std::vector<comparison>& all, const array&)
                            field(r.felt.rms_error_mm), field(r.felt.largest_error_mm), field(r.felt.speed_cv),
                            field(r.felt.intensity_cv), r.felt.silent_share, r.felt.shared_share);
         }
+    for (const comparison& c : all)
+        print_warnings(stderr, "tactor: ", c); // there is no place for them in a table
 }
 
 } // namespace tactor::cli

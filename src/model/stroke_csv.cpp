@@ -41,11 +41,13 @@ public:
             fail({}, "is empty", header_hint);
         header();
         while (next_line())
-            points_.push_back(row());
+            add(row());
         if (points_.size() < 2)
-            fail({}, fmt::format("{} of at least 2 points", points_.size()),
+            fail({},
+                 fmt::format("{} of at least 2 points{}", points_.size(),
+                             repeated_ != 0 ? " with times of their own" : ""),
                  "give where the stroke starts and where it ends");
-        return {{detail::stem(name_), trajectory::timed(std::move(points_)), {}, {}, {}}};
+        return {{detail::stem(name_), trajectory::timed(std::move(points_)), {}, {}, {}, warnings()}};
     }
 
 private:
@@ -128,6 +130,31 @@ private:
         }
     }
 
+    // Touch screens give several places the time of one report: the last is where the finger is.
+    void add(const timed_point& p)
+    {
+        if (points_.empty() || p.t_s != points_.back().t_s) {
+            points_.push_back(p);
+            return;
+        }
+        points_.back() = p;
+        if (repeated_++ == 0)
+            first_repeated_ = line_number_;
+    }
+
+    std::vector<std::string> warnings() const
+    {
+        if (repeated_ == 0)
+            return {};
+        const source_place first{name_, first_repeated_, 0};
+        if (repeated_ == 1)
+            return {
+                fmt::format("{}: repeats the time of the line before, which does not count", first.text())};
+        return {fmt::format("{}: repeats the time of the line before, as {} lines do in all; the last of "
+                            "equal times counts",
+                            first.text(), repeated_)};
+    }
+
     timed_point row()
     {
         split();
@@ -155,8 +182,8 @@ private:
         if (points_.empty())
             first_time_ = time;
         const double t = time - first_time_;
-        if (!points_.empty() && t <= points_.back().t_s)
-            fail(f.column, fmt::format("time {} s is not after {} s of the line before", time, last_time_),
+        if (!points_.empty() && t < points_.back().t_s)
+            fail(f.column, fmt::format("time {} s is before {} s of the line before", time, last_time_),
                  "times ascend");
         if (t > detail::longest_stroke_s)
             fail(f.column, fmt::format("time {} s is {} s after the first line", time, t),
@@ -200,6 +227,8 @@ private:
     std::vector<timed_point> points_;
     double first_time_ = 0.0;
     double last_time_ = 0.0;
+    std::size_t repeated_ = 0; ///< lines that replaced the one before
+    unsigned first_repeated_ = 0;
 };
 
 } // namespace

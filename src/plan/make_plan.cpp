@@ -44,6 +44,7 @@ plan make_plan(const array& a, const layout& l, const stroke& s, const plan_opti
                     "build the layout from the same array");
     const detail::job j{a, l, s, o, model_of(l, o)};
     plan p;
+    p.warnings = s.warnings;
     p.algorithm = to_string(o.method);
     p.phantom = j.model->name();
     p.stroke_duration_s = s.motion.duration_s();

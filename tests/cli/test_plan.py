@@ -217,6 +217,21 @@ class StrokeFiles(ToolTest):
         rows = csv.DictReader(io.StringIO(self.ok("plan", "two.toml", "--format", "csv").stdout))
         self.assertEqual({(r["stroke"], r["start_s"]) for r in rows}, {("0", "3.5"), ("1", "4.27")})
 
+    def test_repeated_times_are_warned_about_by_every_command(self):
+        self.write("s.csv", "t_s,x_mm,y_mm\n0,0,10\n0.7,9,9\n0.7,20,10\n1.4,40,10\n")
+        p = self.plan("s.csv")
+        self.assertAlmostEqual(p["bursts"][10]["x_mm"], 20, 6)
+        self.assertEqual(len(p["warnings"]), 1)
+        warning = "warning: s.csv:4: repeats the time of the line before"
+        self.assertIn(warning, self.ok("plan", "s.csv").stdout)
+        for command in (("plan", "--format", "csv"), ("render", "-o", "s.wav"), ("plot", "-o", "s.svg"),
+                        ("play", "-D", "null")):
+            with self.subTest(command=command):
+                self.assertIn("tactor: " + warning, self.ok(command[0], "s.csv", *command[1:]).stderr)
+        warning = "warning: park2016: s.csv:4: repeats the time"
+        self.assertEqual(self.ok("compare", "s.csv").stdout.count(warning), 1)
+        self.assertIn("tactor: " + warning, self.ok("compare", "s.csv", "--format", "csv").stderr)
+
     def test_standard_input_holds_a_stroke_file(self):
         p = self.plan("-", stdin='[stroke]\npath = "M 0 10 L 40 30"\nduration_s = 1.0\n')
         self.assertEqual(len(p["bursts"]), 15)

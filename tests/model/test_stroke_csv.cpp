@@ -72,6 +72,27 @@ TEST_CASE("the time of the first line is the stroke's zero, whatever a recorder 
     }
 }
 
+TEST_CASE("of lines with equal times the last counts, and the stroke says so")
+{
+    const std::string head = "t_s,x_mm,y_mm,intensity\n";
+    const stroke s = one(head + "2,9,9,1\n2,0,0,0.5\n# same report\n3,9,9,1\n3,8,8,1\n3,4,2,0\n4,8,8,1\n");
+    CHECK(s.motion.duration_s() == 2.0);
+    CHECK(s.motion.position(0.0) == point{0.0, 0.0});
+    CHECK(s.motion.intensity(0.0) == 0.5);
+    CHECK(s.motion.position(0.5) == point{2.0, 1.0});
+    CHECK(s.motion.intensity(1.0) == 0.0);
+    REQUIRE(s.warnings.size() == 1);
+    CHECK(s.warnings[0] == "dir/finger.csv:3: repeats the time of the line before, as 3 lines do in all; the "
+                           "last of equal times counts");
+
+    const stroke last = one(head + "0,0,0,1\n1,4,4,1\n1,8,0,1\n");
+    CHECK(last.motion.position(1.0) == point{8.0, 0.0});
+    REQUIRE(last.warnings.size() == 1);
+    CHECK(last.warnings[0] == "dir/finger.csv:4: repeats the time of the line before, which does not count");
+
+    CHECK(one(head + "0,0,0,1\n1,1,1,1\n").warnings.empty());
+}
+
 TEST_CASE("what is wrong in a CSV file is named by line and column")
 {
     struct sample {
@@ -102,12 +123,13 @@ TEST_CASE("what is wrong in a CSV file is named by line and column")
         {"t_s,x_mm,y_mm\n1000000,0,0\n1086400.5,1,0\n",
          "f.csv:3:1: time 1086400.5 s is 86400.5 s after the first line"},
         {"t_s,x_mm,y_mm\n0,0,0\n1e11,1,0\n", "f.csv:3:1: t_s 1e11 (it is between -1e+10 and 1e+10)"},
-        {"t_s,x_mm,y_mm\n-1,0,0\n-2,1,0\n", "f.csv:3:1: time -2 s is not after -1 s"},
+        {"t_s,x_mm,y_mm\n-1,0,0\n-2,1,0\n", "f.csv:3:1: time -2 s is before -1 s"},
         {"t_s,x_mm,y_mm\n1e10,0,0\n10000000000.0000001,1,0\n",
-         "f.csv:3:1: time 10000000000 s is not after 10000000000 s"},
-        {"t_s,x_mm,y_mm\n0,0,0\n1,1,0\n# x\n1,2,0\n",
-         "f.csv:5:1: time 1 s is not after 1 s of the line before (times ascend)"},
-        {"x_mm,t_s,y_mm\n0,0,0\n1,2,0\n2,1.5,0\n", "f.csv:4:3: time 1.5 s is not after 2 s"},
+         "f.csv:3: 1 of at least 2 points with times of their own"},
+        {"t_s,x_mm,y_mm\n0,0,0\n1,1,0\n# x\n0.5,2,0\n",
+         "f.csv:5:1: time 0.5 s is before 1 s of the line before (times ascend)"},
+        {"x_mm,t_s,y_mm\n0,0,0\n1,2,0\n2,2,0\n2,1.5,0\n", "f.csv:5:3: time 1.5 s is before 2 s"},
+        {"t_s,x_mm,y_mm\n7,0,0\n7,1,0\n7,2,0\n", "f.csv:4: 1 of at least 2 points with times of their own"},
         {"t_s,x_mm,y_mm,intensity\n0,0,0,1\n1,1,0,-0.5\n",
          "f.csv:3:7: intensity -0.5 (it is between 0 and 1000)"},
         {"t_s,x_mm,y_mm\n0,\"0,0\n", "f.csv:2:3: a quote that does not end"},
