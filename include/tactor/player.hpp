@@ -81,8 +81,8 @@ struct stroke_report {
     std::string reason = {};  ///< why it was interrupted
     /// How much later than asked for its first sample came; 0 when in time, and for start_at::now().
     double late_s = 0.0;
-    /// CLOCK_MONOTONIC of its first sample at the DAC; none when it never sounded or the DAC's clock was
-    /// not known yet.
+    /// CLOCK_MONOTONIC of its first sample at the DAC, as the DAC's clock had it when that sample passed;
+    /// none when it never sounded (`frames` is 0).
     std::optional<std::int64_t> started_ns = {};
 };
 

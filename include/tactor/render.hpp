@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -96,11 +97,15 @@ public:
     renderer& operator=(renderer&&) noexcept;
 
     /// Writes `frames` interleaved frames to out (frames * channels * bytes_of(format) bytes) and
-    /// goes on; silence after the end. Allocates nothing.
+    /// goes on; silence after the end, and after a failure(). Allocates nothing.
     void process(std::size_t frames, std::byte* out) noexcept;
 
     /// Next frame to be rendered.
     std::uint64_t position() const noexcept;
+
+    /// Why the rest is silence: a plan's `at` threw, or gave what is no amplitude of a tactor, in mid-stroke.
+    /// Empty while all is well.
+    const std::string& failure() const noexcept;
 
 private:
     struct impl;

@@ -59,6 +59,7 @@ io_result audio_loop::begin_epoch() noexcept
     }
     if (filled == 0)
         return {io_status::failed, 0, -EIO};
+    epoch_ns_ = now_ns_;
     return {sink_.start(), filled, 0};
 }
 
@@ -91,6 +92,7 @@ void audio_loop::broken(io_status s, int code, std::int64_t now) noexcept
 // Nothing resumes in mid-burst: what had begun ends here, what had not is handed over again later.
 void audio_loop::silence_all(reason why, int code, std::uint64_t played) noexcept
 {
+    note_starts(played);
     scores_.interrupt(why, code, played, !stop_asked_);
     offset_ += mixer_.position();
     tell_clock({});

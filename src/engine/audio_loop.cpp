@@ -138,6 +138,9 @@ bool audio_loop::take(const command& c) noexcept
     case command::kind::end:
         scores_.end(c.score);
         return true;
+    case command::kind::fail:
+        scores_.fail(c.score, c.at);
+        return true;
     case command::kind::live:
         return !held && scores_.begin_live(c);
     }
@@ -147,6 +150,7 @@ bool audio_loop::take(const command& c) noexcept
 void audio_loop::mix_period() noexcept
 {
     scores_.render_live(setup_.period_frames, offset_);
+    scores_.fade_what_failed(setup_.period_frames);
     // Drives that wait for room in the mixer are there in time.
     if (link_.commands.size() == 0)
         scores_.fade_what_runs_out(setup_.period_frames);
@@ -208,7 +212,20 @@ void audio_loop::look_at_position(std::int64_t now) noexcept
     played_ = p.played;
     clock_.add(p.time_ns, offset_ + p.played);
     tell_clock(clock_.line());
+    note_starts(played_);
     moved(now);
+}
+
+void audio_loop::note_starts(std::uint64_t played) noexcept
+{
+    clock_line line = clock_.line();
+    if (!line.valid()) {
+        // An xrun before the first look: all that is known is when the DAC was started.
+        line.frame = offset_;
+        line.time_ns = epoch_ns_;
+        line.ns_per_frame = 1e9 / std::max(setup_.rate, 1U);
+    }
+    scores_.note_starts(played, offset_, line);
 }
 
 void audio_loop::moved(std::int64_t now) noexcept

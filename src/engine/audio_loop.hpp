@@ -66,6 +66,7 @@ private:
     void write_periods(std::int64_t now) noexcept;
     void mix_period() noexcept;
     void look_at_position(std::int64_t now) noexcept;
+    void note_starts(std::uint64_t played) noexcept;
     void moved(std::int64_t now) noexcept;
 
     void broken(io_status s, int code, std::int64_t now) noexcept;
@@ -108,6 +109,7 @@ private:
     std::uint64_t offset_ = 0;     ///< stream frame at which this epoch began
     std::uint64_t played_ = 0;     ///< of this epoch
     std::uint64_t told_ = 0;       ///< stream frame at which the control side was last woken
+    std::int64_t epoch_ns_ = 0;    ///< when the DAC was started
     std::int64_t moved_ns_ = 0;    ///< when the stream last got on
     unsigned idle_steps_ = 0;      ///< wake-ups since then
     std::int64_t suspended_ns_ = 0;

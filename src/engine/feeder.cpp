@@ -86,11 +86,15 @@ void feeder::hand_over_beginning(active& a, ticket t)
 }
 
 // Takes the next drive from the source, or its end.
-command feeder::next_command(active& a, ticket t) noexcept
+command feeder::next_command(active& a, ticket t)
 {
     const synth::drive_event* e = a.source->peek();
     if (e == nullptr) {
         a.fed = true;
+        if (!a.source->failure().empty()) {
+            a.failure = a.source->failure();
+            return {.what = command::kind::fail, .score = t, .at = a.source->failed_at()};
+        }
         return {.what = command::kind::end, .score = t};
     }
     command c{.what = command::kind::drive, .score = t, .drive = *e};
@@ -169,12 +173,7 @@ void feeder::handle(const report& r)
     case report::kind::begun:
         return begun(a, r.frame);
     case report::kind::over:
-        tell({.id = a.id,
-              .state = r.state,
-              .frames = r.frame,
-              .reason = text(r.why, r.code),
-              .late_s = a.late_s,
-              .started_ns = a.started_ns});
+        over(a, r);
         break;
     case report::kind::returned:
         if (a.cancelled)

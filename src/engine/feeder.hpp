@@ -79,10 +79,10 @@ private:
         std::shared_ptr<live_voice> voice{};
         std::optional<std::int64_t> due_ns{};
         std::uint64_t at = 0;
-        std::uint64_t base = 0; ///< stream frame of its start, once begun
-        double late_s = 0.0;
-        std::optional<std::int64_t> started_ns{};
+        std::uint64_t base = 0;         ///< stream frame of its start, once begun
+        std::optional<double> late_s{}; ///< none: the clock was not known when it began
         std::optional<synth::event_source> source{};
+        std::string failure{}; ///< why its plan could not be followed to its end
         bool begun = false;
         bool fed = false;
         bool cancelled = false;
@@ -100,11 +100,12 @@ private:
     bool cancel_waiting(stroke_id id);
     bool waits(stroke_id id) const;
     void begun(active& a, std::uint64_t frame);
+    void over(const active& a, const report& r);
     void tell(stroke_report r);
     bool feed_next(std::uint64_t written, std::uint64_t horizon);
     bool has_room(std::size_t n);
     void hand_over_beginning(active& a, ticket t);
-    static command next_command(active& a, ticket t) noexcept;
+    static command next_command(active& a, ticket t);
     slot* slot_of(ticket t) noexcept;
     void release(slot& s) noexcept;
     void end_all(const report& r);

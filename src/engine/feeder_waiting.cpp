@@ -25,6 +25,13 @@ bool erase_task(Tasks& tasks, stroke_id id)
     return true;
 }
 
+// Seconds; within a frame is as good as it gets.
+double late(std::int64_t started_ns, std::int64_t due_ns, double ns_per_frame)
+{
+    const auto ns = static_cast<double>(started_ns - due_ns);
+    return ns > ns_per_frame ? ns * 1e-9 : 0.0;
+}
+
 } // namespace
 
 void feeder::submit(stroke_id id, const score& s, start_at start)
@@ -114,16 +121,27 @@ void feeder::begun(active& a, std::uint64_t frame)
     } else if (begins_) {
         begins_(a.id, frame);
     }
-    const bool known = clock_.valid() && frame >= clock_.first;
-    if (known)
-        a.started_ns = clock_.time_of(frame);
-    if (a.due_ns && known) {
-        // Within a frame is as good as it gets.
-        const auto late = static_cast<double>(*a.started_ns - *a.due_ns);
-        a.late_s = late > clock_.ns_per_frame ? late * 1e-9 : 0.0;
-    } else if (!a.due_ns && a.at != 0 && frame > a.at && a.music) {
+    if (a.due_ns && clock_.valid() && frame >= clock_.first)
+        a.late_s = late(clock_.time_of(frame), *a.due_ns, clock_.ns_per_frame);
+    else if (!a.due_ns && a.at != 0 && frame > a.at && a.music)
         a.late_s = static_cast<double>(frame - a.at) / a.music->rate();
-    }
+    else if (!a.due_ns)
+        a.late_s = 0.0;
+}
+
+void feeder::over(const active& a, const report& r)
+{
+    stroke_report told{.id = a.id,
+                       .state = r.state,
+                       .frames = r.frame,
+                       .reason = r.why == reason::plan ? a.failure : text(r.why, r.code),
+                       .late_s = a.late_s.value_or(0.0),
+                       .started_ns = {}};
+    if (r.started)
+        told.started_ns = r.started_ns;
+    if (r.started && a.due_ns && !a.late_s) // the clock was not known when it began
+        told.late_s = late(r.started_ns, *a.due_ns, 1e9 / a.music->rate());
+    tell(std::move(told));
 }
 
 void feeder::tell(stroke_report r)

@@ -28,11 +28,12 @@ constexpr std::uint32_t place_of(ticket t) noexcept
 
 /// Control to audio, in order.
 struct command {
-    enum class kind : std::uint32_t { begin, drive, end, live };
+    enum class kind : std::uint32_t { begin, drive, end, fail, live };
     kind what = kind::begin;
     ticket score = 0;
-    stroke_id id = 0;            ///< begin
-    std::uint64_t at = 0;        ///< begin: frame of the stream; one that is over means now
+    stroke_id id = 0; ///< begin
+    /// begin: frame of the stream; one that is over means now. fail: frame of the score where its drives end
+    std::uint64_t at = 0;
     std::uint64_t length = 0;    ///< begin: frames
     live_voice* voice = nullptr; ///< live: outlives the ticket
     synth::drive_event drive{};  ///< drive: frames from the start of the score, `score` is the ticket
@@ -58,7 +59,8 @@ enum class reason : std::uint32_t {
     starved,
     muted,
     amplifier,
-    left_on
+    left_on,
+    plan ///< the control side knows more
 };
 
 /// Audio to control.
@@ -75,6 +77,8 @@ struct report {
     reason why = reason::none;
     int code = 0; ///< negative errno of the device
     std::uint64_t frame = 0;
+    bool started = false;        ///< over: its first sample has been at the DAC ...
+    std::int64_t started_ns = 0; ///< ... at this CLOCK_MONOTONIC
 };
 
 } // namespace tactor::engine

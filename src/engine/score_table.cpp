@@ -85,7 +85,7 @@ void score_table::fade_what_runs_out(std::uint64_t period) noexcept
     const std::uint64_t next = mixer_.position();
     for (std::uint32_t i = 0; i < top_; ++i) {
         entry& e = entries_[i];
-        if (!e.used || !e.open || e.fed || e.fading || e.fade_wanted)
+        if (!e.used || !e.open || e.fed || e.fading || e.fade_wanted || e.broken != never)
             continue;
         if (e.covered >= next + 2 * period) {
             e.ahead = true;
@@ -101,6 +101,24 @@ void score_table::end(ticket t) noexcept
 {
     if (entry* e = find(t))
         e->fed = true;
+}
+
+void score_table::fail(ticket t, std::uint64_t at) noexcept
+{
+    if (entry* e = find(t))
+        e->broken = e->base + at;
+}
+
+void score_table::fade_what_failed(std::uint64_t period) noexcept
+{
+    const std::uint64_t next = mixer_.position();
+    for (std::uint32_t i = 0; i < top_; ++i) {
+        entry& e = entries_[i];
+        if (!e.used || e.fading || e.fade_wanted || e.broken >= next + period + fade_)
+            continue;
+        e.fade = static_cast<std::uint32_t>(std::min<std::uint64_t>(fade_, std::max(e.broken, next) - next));
+        want_fade(e, stroke_state::interrupted, reason::plan);
+    }
 }
 
 void score_table::cancel(ticket t) noexcept
@@ -129,7 +147,7 @@ void score_table::want_fade(entry& e, stroke_state s, reason why) noexcept
         over(e, s, why, 0, 0); // nothing of it has been mixed yet
         return;
     }
-    if (e.finish <= next && why != reason::late)
+    if (e.finish <= next && why != reason::late && why != reason::plan)
         return; // all of it is on its way to the DAC: it finishes
     e.state = s;
     e.why = why;
@@ -186,6 +204,19 @@ void score_table::mute() noexcept
     }
 }
 
+// The clock knows a frame best while it passes: before, it may not be known at all, and later the line may
+// be another one.
+void score_table::note_starts(std::uint64_t played, std::uint64_t offset, const clock_line& clock) noexcept
+{
+    for (std::uint32_t i = 0; i < top_ && used_ != 0; ++i) {
+        entry& e = entries_[i];
+        if (!e.used || e.started || e.base >= played)
+            continue;
+        e.started = true;
+        e.started_ns = clock.time_of(offset + e.base);
+    }
+}
+
 void score_table::update(std::uint64_t played) noexcept
 {
     for (std::uint32_t i = 0; i < top_ && used_ != 0; ++i) {
@@ -235,7 +266,9 @@ void score_table::over(entry& e, stroke_state s, reason why, int code, std::uint
                         .state = s,
                         .why = why,
                         .code = code,
-                        .frame = frames});
+                        .frame = frames,
+                        .started = e.started && frames != 0,
+                        .started_ns = e.started_ns});
     e.used = false;
     --used_;
 }
@@ -258,8 +291,9 @@ void score_table::describe(std::uint64_t played, stream_status& s) const noexcep
 bool score_table::being_fed() const noexcept
 {
     const std::uint64_t next = mixer_.position();
-    return std::any_of(entries_.begin(), entries_.begin() + top_,
-                       [next](const entry& e) { return e.used && !e.fed && !e.fading && e.base <= next; });
+    return std::any_of(entries_.begin(), entries_.begin() + top_, [next](const entry& e) {
+        return e.used && !e.fed && !e.fading && e.broken == never && e.base <= next;
+    });
 }
 
 } // namespace tactor::engine

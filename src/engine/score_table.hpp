@@ -28,6 +28,8 @@ public:
     /// False when the mixer has no room now; the command must be given again.
     bool add(const command& c) noexcept;
     void end(ticket t) noexcept;
+    /// There will be no more drives from frame `at` of the score on, for its plan failed.
+    void fail(ticket t, std::uint64_t at) noexcept;
     /// A live stroke; silent until its first point comes. False when there are too many: the command must
     /// be given again.
     bool begin_live(const command& c) noexcept;
@@ -35,6 +37,8 @@ public:
     void render_live(std::uint64_t frames, std::uint64_t offset) noexcept;
     /// Fades out what would break off for want of drives within two periods; before each mix.
     void fade_what_runs_out(std::uint64_t period) noexcept;
+    /// Fades out what failed, so that it is silent where its drives end; before each mix.
+    void fade_what_failed(std::uint64_t period) noexcept;
     /// Also for a score whose begin() is still to come.
     void cancel(ticket t) noexcept;
     /// Fades everything out; scores not yet begun end at once, as do those that come later.
@@ -44,6 +48,9 @@ public:
     /// The amplifier is off: fades what sounds, returns what has not begun.
     void mute() noexcept;
 
+    /// Notes when the first sample of each was at the DAC, once `played` frames have reached it. `clock` must
+    /// be valid, for the epoch that began at stream frame `offset`. Before update() and interrupt().
+    void note_starts(std::uint64_t played, std::uint64_t offset, const clock_line& clock) noexcept;
     /// Ends what is over when `played` frames have reached the DAC, and starts fades that had to wait.
     void update(std::uint64_t played) noexcept;
 
@@ -66,15 +73,18 @@ private:
         stroke_id id = 0;
         std::uint64_t base = 0;
         std::uint64_t length = 0;
-        std::uint64_t finish = 0;  ///< over when this frame has been played
-        std::uint64_t covered = 0; ///< end of its drives so far
-        std::uint32_t fade = 0;    ///< frames that its end takes
-        bool open = false;         ///< it would still sound at `covered`: another drive is to follow
-        bool ahead = false;        ///< drives have been there in time
+        std::uint64_t finish = 0;     ///< over when this frame has been played
+        std::uint64_t covered = 0;    ///< end of its drives so far
+        std::uint64_t broken = never; ///< where its drives end for ever, after fail()
+        std::uint32_t fade = 0;       ///< frames that its end takes
+        bool open = false;            ///< it would still sound at `covered`: another drive is to follow
+        bool ahead = false;           ///< drives have been there in time
         bool used = false;
         bool fed = false;
         bool fade_wanted = false;
         bool fading = false;
+        bool started = false; ///< its first sample has been at the DAC ...
+        std::int64_t started_ns = 0;
         live_voice* live = nullptr; ///< while it is fed
         stroke_state state = stroke_state::finished;
         reason why = reason::none;

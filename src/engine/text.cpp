@@ -55,6 +55,8 @@ std::string text(reason r, int code)
         return "the amplifier's line cannot be switched";
     case reason::left_on:
         return "the amplifier's line cannot be switched off: it may be on";
+    case reason::plan:
+        return "the plan failed";
     case reason::closed:
         return "the player was closed";
     }

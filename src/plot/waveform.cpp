@@ -40,6 +40,8 @@ waveform look_at(const score& s, const std::vector<unsigned>& channels, std::siz
         const auto n = static_cast<std::size_t>(
             std::min({static_cast<std::uint64_t>(block), frames - at, length - at % length}));
         r.process(n, std::as_writable_bytes(std::span(buffer)).data());
+        if (!r.failure().empty())
+            throw error(errc::bad_input, "stroke", r.failure());
         for (std::size_t c = 0; c < channels.size(); ++c) {
             sample_range& range = w.by_channel[c][at / length];
             if (at % length == 0)

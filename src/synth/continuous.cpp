@@ -1,10 +1,50 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cmath>
+#include <exception>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
 
 #include "synth/expander.hpp"
 #include "synth/frames.hpp"
 
 namespace tactor::synth {
+
+namespace {
+
+/// Empty where all can be played.
+std::string unplayable(const burst& b, std::size_t tactors)
+{
+    for (const drive& d : b.drives) {
+        if (d.tactor >= tactors || !std::isfinite(d.amplitude)) {
+            return fmt::format("tactor {} at amplitude {} cannot be rendered", d.tactor, d.amplitude);
+        }
+    }
+    return {};
+}
+
+/// Called where nothing may be thrown, not even for want of memory for the reason.
+void tell(std::string& failure, double t_s, std::string_view why) noexcept
+{
+    try {
+        failure = fmt::format("the plan failed at {:.6g} s of the stroke: {}", t_s, why);
+    } catch (...) {
+        failure = "no memory";
+    }
+}
+
+} // namespace
+
+void check_drives(const burst& b, double t_s, std::size_t tactors)
+{
+    const std::string why = unplayable(b, tactors);
+    if (!why.empty()) {
+        throw error(errc::bad_input, fmt::format("stroke at {} s", t_s), why);
+    }
+}
 
 void control_points::reserve(std::size_t tactors)
 {
@@ -18,21 +58,30 @@ std::uint64_t control_frame(std::uint64_t k, unsigned rate, std::uint64_t length
     return std::min(length, frame_at(static_cast<double>(k) * continuous_step_s, rate));
 }
 
-void drives_at(const plan& p, double t_s, std::size_t tactors, burst& out) noexcept
+bool drives_at(const plan& p, double t_s, std::size_t tactors, burst& out, std::string& failure) noexcept
 {
-    // Called where nothing may be thrown; the score's constructor has tried it and told of failures.
+    const double t = std::min(t_s, p.stroke_duration_s);
     try {
-        p.at(std::min(t_s, p.stroke_duration_s), out);
+        p.at(t, out);
+        const std::string why = unplayable(out, tactors);
+        if (!why.empty()) {
+            tell(failure, t, why);
+            return false;
+        }
+    } catch (const std::exception& e) {
+        tell(failure, t, e.what());
+        return false;
     } catch (...) {
-        out.drives.clear();
+        tell(failure, t, "an exception that is no std::exception");
+        return false;
     }
-    std::erase_if(out.drives, [tactors](const drive& d) { return d.tactor >= tactors; });
     const auto by_tactor = [](const drive& a, const drive& b) { return a.tactor < b.tactor; };
     if (!std::is_sorted(out.drives.begin(), out.drives.end(), by_tactor)) {
         std::sort(out.drives.begin(), out.drives.end(), by_tactor);
     }
     const auto same = [](const drive& a, const drive& b) { return a.tactor == b.tactor; };
     out.drives.erase(std::unique(out.drives.begin(), out.drives.end(), same), out.drives.end());
+    return true;
 }
 
 /// Moves on to the next two control points; tactors that are in one of them only come from or go to 0.
@@ -47,8 +96,11 @@ bool expander::next_points() noexcept
     }
     control_points& c = *points_;
     std::swap(c.before, c.now.drives);
-    drives_at(score_->plans[item_->plan].schedule, static_cast<double>(step_) * continuous_step_s,
-              score_->tactors.size(), c.now);
+    if (!drives_at(score_->plans[item_->plan].schedule, static_cast<double>(step_) * continuous_step_s,
+                   score_->tactors.size(), c.now, c.failure)) {
+        failed_ = true;
+        return false;
+    }
     c.changes.clear();
     next_ = 0;
     auto a = c.before.cbegin();

@@ -2,6 +2,7 @@
 #include "synth/event_source.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "synth/expander.hpp"
@@ -44,6 +45,8 @@ struct event_source::impl {
     std::vector<control_points*> free_points;
     std::vector<expander*> heap;
     std::size_t next_item = 0;
+    std::string failure;
+    std::uint64_t failed_at = 0;
 };
 
 /// Lets every item begin that may have the next event.
@@ -83,8 +86,15 @@ void event_source::impl::pop() noexcept
     std::push_heap(heap.begin(), heap.end(), later);
 }
 
+/// Takes an expander back that is done. Where one fails, the whole score ends.
 void event_source::impl::release(expander* e) noexcept
 {
+    if (e->failed()) {
+        failure = std::move(e->points()->failure);
+        failed_at = e->position();
+        heap.clear();
+        next_item = piece->list.items.size();
+    }
     free_expanders.push_back(e);
     if (e->points() != nullptr) {
         free_points.push_back(e->points());
@@ -102,6 +112,16 @@ event_source& event_source::operator=(event_source&&) noexcept = default;
 const drive_event* event_source::peek() noexcept
 {
     return impl_->heap.empty() ? nullptr : &impl_->heap.front()->event();
+}
+
+const std::string& event_source::failure() const noexcept
+{
+    return impl_->failure;
+}
+
+std::uint64_t event_source::failed_at() const noexcept
+{
+    return impl_->failed_at;
 }
 
 void event_source::pop() noexcept

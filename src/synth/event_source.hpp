@@ -3,7 +3,9 @@
 /// The drives of a score, one after the other.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <string>
 
 #include <tactor/render.hpp>
 
@@ -24,6 +26,12 @@ public:
     const drive_event* peek() noexcept;
     /// Moves on.
     void pop() noexcept;
+
+    /// Why there is no next event although the score is not through: a plan threw, or gave what cannot be
+    /// rendered. Empty while all is well.
+    const std::string& failure() const noexcept;
+    /// Frame of the score up to which the plan that failed could be followed.
+    std::uint64_t failed_at() const noexcept;
 
 private:
     struct impl;

@@ -18,10 +18,16 @@ void expander::begin(const score::impl& s, std::size_t item_number, control_poin
     step_ = 0;
     next_ = 0;
     done_ = false;
+    failed_ = false;
     if (item_->kind == item_kind::continuous) {
         points_->before.clear();
         points_->changes.clear();
-        drives_at(s.plans[item_->plan].schedule, 0.0, s.tactors.size(), points_->now);
+        failed_ =
+            !drives_at(s.plans[item_->plan].schedule, 0.0, s.tactors.size(), points_->now, points_->failure);
+    }
+    if (failed_) {
+        done_ = true;
+        return;
     }
     advance();
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "synth/event.hpp"
@@ -23,6 +24,7 @@ struct control_points {
     std::vector<drive> before;
     std::vector<change> changes;
     burst now;
+    std::string failure; ///< why the plan could not be followed further; empty: it could
 };
 
 /// Gives the events of one item in order of start. Allocates nothing.
@@ -36,6 +38,10 @@ public:
     std::size_t item_number() const noexcept { return number_; }
     control_points* points() const noexcept { return points_; }
     void advance() noexcept;
+    /// Done before its end, for its plan failed: points()->failure says why.
+    bool failed() const noexcept { return failed_; }
+    /// Frame of the score up to which there were events.
+    std::uint64_t position() const noexcept { return position_; }
 
 private:
     void stretch(std::uint64_t start, std::uint64_t length) noexcept;
@@ -55,6 +61,7 @@ private:
     std::uint64_t step_ = 0;     ///< continuous: number of the later control point
     std::size_t next_ = 0;       ///< drive, member or change that is next
     bool done_ = true;
+    bool failed_ = false;
     drive_event event_;
 };
 
@@ -73,8 +80,11 @@ joined_stretch join_members(const item_member* members, std::size_t count, std::
 /// Frame of control point k of a stroke of `length` frames, from its start. Points beyond the end are at it.
 std::uint64_t control_frame(std::uint64_t k, unsigned rate, std::uint64_t length) noexcept;
 
-/// The drives of a continuous plan at a time, in order of tactor; what is not in the array is left out. A
-/// plan that throws has none.
-void drives_at(const plan& p, double t_s, std::size_t tactors, burst& out) noexcept;
+/// \throws error (bad_input) where a continuous plan drives what is no tactor, or with what is no amplitude.
+void check_drives(const burst& b, double t_s, std::size_t tactors);
+
+/// The drives of a continuous plan at a time, in order of tactor. False, and why, where the plan throws or
+/// drives what is no tactor or with what is no amplitude. Allocates only then.
+bool drives_at(const plan& p, double t_s, std::size_t tactors, burst& out, std::string& failure) noexcept;
 
 } // namespace tactor::synth

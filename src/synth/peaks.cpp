@@ -57,12 +57,8 @@ void note_continuous(const score::impl& s, const item& it, std::vector<change>& 
     for (std::uint64_t k = 0; k < points + stride - 1; k += stride) {
         const double t = std::min(static_cast<double>(k) * continuous_step_s, p.stroke_duration_s);
         p.at(t, b);
+        check_drives(b, t, peaks.size());
         for (const drive& d : b.drives) {
-            if (d.tactor >= peaks.size() || !std::isfinite(d.amplitude)) {
-                throw error(
-                    errc::bad_input, fmt::format("stroke at {} s", t),
-                    fmt::format("tactor {} at amplitude {} cannot be rendered", d.tactor, d.amplitude));
-            }
             peaks[d.tactor] = std::max(peaks[d.tactor], std::abs(d.amplitude * s.tactors[d.tactor].gain));
         }
     }

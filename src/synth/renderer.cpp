@@ -70,4 +70,9 @@ std::uint64_t renderer::position() const noexcept
     return impl_->mix.position();
 }
 
+const std::string& renderer::failure() const noexcept
+{
+    return impl_->source.failure();
+}
+
 } // namespace tactor

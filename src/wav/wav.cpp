@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include <tactor/error.hpp>
 #include <tactor/output_file.hpp>
 
 #include "wav/header.hpp"
@@ -38,6 +39,9 @@ bool write(const score& s, sample_format f, const std::filesystem::path& file, c
         }
         const std::uint64_t n = std::min(at_once, s.frames() - done);
         r.process(n, block.data());
+        if (!r.failure().empty()) {
+            throw error(errc::bad_input, "stroke", r.failure());
+        }
         to.write(block.data(), static_cast<std::int64_t>(n * frame_bytes));
         done += n;
     }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
+#include <string>
 
 #include <sndfile.h>
 #include <sys/resource.h>
@@ -269,6 +271,41 @@ TEST_CASE("a link stays a link, and the longest name is no obstacle")
     const std::string longest(255, 'x');
     CHECK(write_wav(make_score(), sample_format::s16, dir / longest));
     CHECK(fs::is_regular_file(dir / longest));
+}
+
+TEST_CASE("a plan that fails in mid-stroke leaves no file, and silence that says why in the renderer")
+{
+    bool broken = false;
+    plan p = make_continuous(4, 0.5);
+    p.at = [&broken, good = p.at](double t, burst& out) {
+        good(t, out);
+        if (broken && t >= 0.25) {
+            out.drives[0].amplitude = std::numeric_limits<double>::quiet_NaN();
+        }
+    };
+    const score s(row(4), {{p, {}}}, {});
+    const auto whole = render(s, sample_format::float32);
+    renderer r(s, sample_format::float32);
+    broken = true;
+    const folder dir;
+    const fs::path file = dir / "broken.wav";
+    std::string said;
+    try {
+        write_wav(s, sample_format::float32, file);
+    } catch (const error& e) {
+        CHECK(e.kind() == errc::bad_input);
+        said = e.what();
+    }
+    CHECK(said.find("stroke: the plan failed at 0.25 s of the stroke: tactor ") == 0);
+    CHECK(fs::is_empty(dir.path()));
+
+    std::vector<std::byte> half(whole.size(), std::byte{1});
+    CHECK(r.failure().empty());
+    r.process(s.frames(), half.data());
+    CHECK(r.failure().find("amplitude nan cannot be rendered") != std::string::npos);
+    const auto at = static_cast<std::ptrdiff_t>(11952 * s.channels() * sizeof(float)); // 0.249 s
+    CHECK(std::equal(whole.begin(), whole.begin() + at, half.begin()));
+    CHECK(std::all_of(half.begin() + at, half.end(), [](std::byte b) { return b == std::byte{0}; }));
 }
 
 } // namespace write_test

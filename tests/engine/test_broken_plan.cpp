@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+// Plans that turn out to be broken in mid-stroke: a stroke that ends early never counts as finished.
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include "rig.hpp"
+
+namespace broken_plan_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+enum class fault { none, nan, infinite, no_such_tactor, throws, throws_a_number };
+
+// One second on tactor 4 that is in order while the score is made, and breaks at a time when `broken` is set.
+score made(const std::shared_ptr<fault>& broken, double from_s)
+{
+    plan p;
+    p.total_s = p.stroke_duration_s = 1.0;
+    p.at = [broken, from_s](double t, burst& out) {
+        out.drives = {{4, 0.5}};
+        if (t < from_s)
+            return;
+        switch (*broken) {
+        case fault::none:
+            return;
+        case fault::nan:
+            out.drives[0].amplitude = std::numeric_limits<double>::quiet_NaN();
+            return;
+        case fault::infinite:
+            out.drives[0].amplitude = std::numeric_limits<double>::infinity();
+            return;
+        case fault::no_such_tactor:
+            out.drives[0].tactor = 9;
+            return;
+        case fault::throws:
+            throw std::runtime_error("the model has no idea");
+        case fault::throws_a_number:
+            throw 7;
+        }
+    };
+    render_options o;
+    o.rate = rate;
+    return {palm(), {{.schedule = p, .start_s = {}}}, o};
+}
+
+struct sample {
+    fault kind;
+    const char* why;
+};
+
+constexpr sample samples[] = {
+    {fault::nan, "tactor 4 at amplitude nan cannot be rendered"},
+    {fault::infinite, "tactor 4 at amplitude inf cannot be rendered"},
+    {fault::no_such_tactor, "tactor 9 at amplitude 0.5 cannot be rendered"},
+    {fault::throws, "the model has no idea"},
+    {fault::throws_a_number, "an exception that is no std::exception"},
+};
+
+} // namespace
+
+TEST_CASE("a plan that fails in mid-stroke interrupts the stroke with the reason, faded out where it failed")
+{
+    for (const unsigned period : {32U, 96U, 1024U}) {
+        for (const sample& s : samples) {
+            CAPTURE(period);
+            CAPTURE(s.why);
+            const auto broken = std::make_shared<fault>(fault::none);
+            const score music = made(broken, 0.3);
+            const std::vector<std::byte> whole = rendered(music, sample_format::s32);
+            *broken = s.kind;
+            rig_options o;
+            o.period = period;
+            rig r(o);
+            REQUIRE(r.start().status == io_status::ok);
+            const std::uint64_t base = r.status().written;
+            const stroke_id id = r.submit(music);
+            r.play_out();
+            REQUIRE(r.report(id));
+            const stroke_report report = *r.report(id);
+            CHECK(report.state == stroke_state::interrupted);
+            CHECK(report.reason.find("the plan failed at 0.3") == 0);
+            CHECK(report.reason.find(s.why) != std::string::npos);
+            CHECK(report.started_ns.has_value());
+            // Control points up to 0.299 s are in order; it is silent there, and a fade before that.
+            const std::uint64_t good = rate * 299 / 1000;
+            CHECK(report.frames <= good);
+            CHECK(report.frames + period + o.loop.fade_frames >= good);
+            const std::uint64_t same = good - period - 2 * o.loop.fade_frames;
+            CHECK(r.captured(base, same) ==
+                  std::vector<std::byte>(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(
+                                                                            same * r.dac.frame_bytes())));
+            r.play(4800);
+            CHECK_FALSE(r.first_sound(base + report.frames));
+        }
+    }
+}
+
+TEST_CASE("a plan that fails at its first point is interrupted before it sounds")
+{
+    const auto broken = std::make_shared<fault>(fault::none);
+    const score music = made(broken, 0.0);
+    *broken = fault::throws;
+    rig r;
+    REQUIRE(r.start().status == io_status::ok);
+    const stroke_id now = r.submit(music);
+    const stroke_id later = r.submit(music, r.status().written + 9600);
+    r.play_out();
+    for (const stroke_id id : {now, later}) {
+        REQUIRE(r.report(id));
+        CHECK(r.report(id)->state == stroke_state::interrupted);
+        CHECK(r.report(id)->reason == "the plan failed at 0 s of the stroke: the model has no idea");
+        CHECK(r.report(id)->frames == 0);
+    }
+    CHECK_FALSE(r.first_sound());
+}
+
+TEST_CASE("what fails takes nothing else along")
+{
+    const auto broken = std::make_shared<fault>(fault::none);
+    const score music = made(broken, 0.2);
+    *broken = fault::nan;
+    rig r;
+    REQUIRE(r.start().status == io_status::ok);
+    const stroke_id before = r.submit(tone(0.5));
+    const stroke_id fails = r.submit(music);
+    const stroke_id after = r.submit(tone(0.1), r.status().written + rate);
+    r.play_out();
+    CHECK(r.report(before)->state == stroke_state::finished);
+    CHECK(r.report(fails)->state == stroke_state::interrupted);
+    CHECK(r.report(after)->state == stroke_state::finished);
+    // A cancel before it fails is a cancel, and a score that fails keeps no place.
+    const stroke_id cancelled = r.submit(music);
+    r.play(960);
+    r.feed.cancel(cancelled);
+    r.play_out();
+    CHECK(r.report(cancelled)->state == stroke_state::cancelled);
+    CHECK(r.report(cancelled)->reason.empty());
+    for (int n = 0; n < 600; ++n)
+        r.submit(music);
+    r.play_out();
+    CHECK(r.ended.size() == r.last_id);
+    CHECK(r.report(r.last_id)->state == stroke_state::interrupted);
+}
+
+} // namespace broken_plan_test
