@@ -47,6 +47,7 @@ public:
     std::string svg() const;
 
     struct impl;
+    const impl& data() const noexcept; ///< for the library
     explicit path(std::shared_ptr<const impl> p) noexcept;
 
 private:

@@ -56,8 +56,9 @@ public:
     virtual ~phantom_model();
     /// Name for plans and logs.
     virtual std::string_view name() const noexcept = 0;
-    /// Replaces `out` by the drives for a phantom of intensity `a_v` at p, in order of tactor, each
-    /// amplitude finite and > 0. p is inside the hull. Called from the planning thread.
+    /// Replaces `out` by the drives for a phantom of intensity `a_v` at p, in order of tactor, each amplitude
+    /// finite and > 0. p is inside the hull. Called where plans and scores are made; for `continuous` also
+    /// while it is rendered and, in the player's control thread, played: what fails then ends the stroke.
     virtual void weights(point p, double a_v, std::vector<drive>& out) const = 0;
 };
 

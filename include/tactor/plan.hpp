@@ -85,13 +85,12 @@ struct plan {
     std::vector<std::string> warnings = {};
 
     /// `continuous` only: position, intensity and drives at a time in 0 ... stroke_duration_s, as a
-    /// burst without duration. Replaces `out`. Empty for plans of bursts.
+    /// burst without duration. Replaces `out`. Where it throws, or gives an amplitude that is not finite,
+    /// the stroke ends as interrupted. Empty for plans of bursts.
     std::function<void(double t_s, burst& out)> at = {};
 };
 
 /// Interval at which `continuous` evaluates the phantom; linear between.
-/// Also the interval at which its planning looks for where the path leaves the array, wider for strokes
-/// of more than 1000 s (a million looks at most); what slips through is clamped.
 inline constexpr double continuous_step_s = 0.001;
 
 /// Plans one stroke on an array. `l` must be the layout of `a`.

@@ -63,6 +63,7 @@ public:
     std::vector<double> meets_y(double y_mm) const;
 
     struct impl;
+    const impl& data() const noexcept; ///< for the library
     explicit trajectory(std::shared_ptr<const impl> p) noexcept;
 
 private:

@@ -119,6 +119,11 @@ const path::impl::measured_curve* path::impl::curve_of(std::size_t segment) cons
     return c != curves.end() && c->segment == segment ? &*c : nullptr;
 }
 
+const path::impl& path::data() const noexcept
+{
+    return *impl_;
+}
+
 double path::length_mm() const noexcept
 {
     return impl_->s.back();

@@ -12,25 +12,15 @@
 
 #include "model/path_meets.hpp"
 #include "model/path_outline.hpp"
+#include "model/trajectory_impl.hpp"
 #include "model/trajectory_limits.hpp"
 
 namespace tactor {
 namespace {
 
 using detail::axis;
-
-struct constant_speed {
-    path way;
-    double intensity;
-};
-
-// Shared by all that with_duration() makes of it.
-struct timed_points {
-    std::shared_ptr<const std::vector<timed_point>> points;
-    double length_mm;
-
-    double duration_s() const noexcept { return points->back().t_s; }
-};
+using detail::constant_speed;
+using detail::timed_points;
 
 void check_duration(double duration_s)
 {
@@ -97,61 +87,41 @@ private:
 
 } // namespace
 
-struct trajectory::impl {
-    std::variant<constant_speed, timed_points> law;
-    double duration_s = 0.0;
-    double gain = 1.0;
+trajectory::impl::bracket trajectory::impl::find(const detail::timed_points& l, double t_s) const noexcept
+{
+    const std::vector<timed_point>& p = *l.points;
+    const double t = own_time(l, t_s);
+    if (!(t > 0.0))
+        return {&p.front(), &p.front(), 0.0};
+    if (t >= p.back().t_s || t_s >= duration_s)
+        return {&p.back(), &p.back(), 0.0};
+    const auto after = std::upper_bound(p.begin(), p.end(), t,
+                                        [](double v, const timed_point& q) noexcept { return v < q.t_s; });
+    const timed_point& a = *(after - 1);
+    return {&a, &*after, (t - a.t_s) / (after->t_s - a.t_s)};
+}
 
-    /// Time of a timed law at time t of this trajectory.
-    double own_time(const timed_points& l, double t_s) const noexcept
-    {
-        const double own = l.duration_s();
-        return own == duration_s ? t_s : t_s / duration_s * own;
-    }
-
-    /// The points before and after a time, and how far it is from one to the other (0 to 1).
-    struct bracket {
-        const timed_point* before;
-        const timed_point* after;
-        double part;
-    };
-
-    bracket find(const timed_points& l, double t_s) const noexcept
-    {
-        const std::vector<timed_point>& p = *l.points;
-        const double t = own_time(l, t_s);
-        if (!(t > 0.0))
-            return {&p.front(), &p.front(), 0.0};
-        if (t >= p.back().t_s || t_s >= duration_s)
-            return {&p.back(), &p.back(), 0.0};
-        const auto after = std::upper_bound(
-            p.begin(), p.end(), t, [](double v, const timed_point& q) noexcept { return v < q.t_s; });
-        const timed_point& a = *(after - 1);
-        return {&a, &*after, (t - a.t_s) / (after->t_s - a.t_s)};
-    }
-
-    std::vector<double> meets(axis a, double line) const
-    {
-        std::vector<double> times;
-        if (!std::isfinite(line))
-            return times;
-        double scale = 1.0;
-        if (const auto* c = std::get_if<constant_speed>(&law)) {
-            times = a == axis::x ? c->way.meets_x(line) : c->way.meets_y(line);
-            scale = c->way.length_mm();
-        } else {
-            const auto& l = std::get<timed_points>(law);
-            const timed_nodes nodes(*l.points, a, line);
-            times = detail::line_meetings(nodes).find();
-            if (l.duration_s() == duration_s)
-                return times;
-            scale = l.duration_s();
-        }
-        for (double& t : times)
-            t = t / scale * duration_s;
+std::vector<double> trajectory::impl::meets(axis a, double line) const
+{
+    std::vector<double> times;
+    if (!std::isfinite(line))
         return times;
+    double scale = 1.0;
+    if (const auto* c = std::get_if<constant_speed>(&law)) {
+        times = a == axis::x ? c->way.meets_x(line) : c->way.meets_y(line);
+        scale = c->way.length_mm();
+    } else {
+        const auto& l = std::get<timed_points>(law);
+        const timed_nodes nodes(*l.points, a, line);
+        times = detail::line_meetings(nodes).find();
+        if (l.duration_s() == duration_s)
+            return times;
+        scale = l.duration_s();
     }
-};
+    for (double& t : times)
+        t = t / scale * duration_s;
+    return times;
+}
 
 trajectory::trajectory(std::shared_ptr<const impl> p) noexcept : impl_(std::move(p))
 {
@@ -190,6 +160,11 @@ trajectory trajectory::with_intensity(double factor) const
 {
     check_intensity("stroke", factor);
     return trajectory(std::make_shared<impl>(impl{impl_->law, impl_->duration_s, impl_->gain * factor}));
+}
+
+const trajectory::impl& trajectory::data() const noexcept
+{
+    return *impl_;
 }
 
 double trajectory::duration_s() const noexcept

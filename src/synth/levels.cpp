@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "synth/levels.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -46,6 +47,11 @@ void refuse_tactor(const array& a, std::size_t i, std::string_view why, std::str
         throw error(errc::bad_input, name, why, hint);
     }
     throw error(errc::bad_input, line, fmt::format("{} {}", name, why), hint);
+}
+
+double tactor_limit(const array& a, std::size_t i)
+{
+    return std::pow(10.0, std::min(0.0, a.tactors[i].max_dbfs) / 20.0) * (1.0 + 1e-9);
 }
 
 std::vector<tactor_level> tactor_levels(const array& a, const render_options& o)

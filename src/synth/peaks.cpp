@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <tuple>
 
@@ -8,15 +9,13 @@
 
 #include <tactor/error.hpp>
 
+#include "synth/continuous_items.hpp"
 #include "synth/expander.hpp"
-#include "synth/frames.hpp"
 #include "synth/levels.hpp"
 
 namespace tactor::synth {
 
 namespace {
-
-constexpr std::uint64_t most_points = std::uint64_t{1} << 20;
 
 /// At a frame, a tactor's possible amplitude changes.
 struct change {
@@ -24,6 +23,9 @@ struct change {
     std::uint64_t frame;
     double by;
 };
+
+/// What a continuous item asks of each tactor.
+using continuous_peaks_of = std::function<const std::vector<double>&(std::size_t number)>;
 
 /// The last frame does not count: of two bursts that touch, rounding may put the end of one into the first
 /// frame of the other.
@@ -47,27 +49,7 @@ void note_joined(const score::impl& s, std::size_t number, std::vector<change>& 
     note(changes, it.tactor, it, peak);
 }
 
-void note_continuous(const score::impl& s, const item& it, std::vector<change>& changes)
-{
-    const plan& p = s.plans[it.plan].schedule;
-    const auto points = static_cast<std::uint64_t>(std::ceil(p.stroke_duration_s / continuous_step_s)) + 1;
-    const std::uint64_t stride = points / most_points + 1;
-    std::vector<double> peaks(s.tactors.size(), 0.0);
-    burst b;
-    for (std::uint64_t k = 0; k < points + stride - 1; k += stride) {
-        const double t = std::min(static_cast<double>(k) * continuous_step_s, p.stroke_duration_s);
-        p.at(t, b);
-        check_drives(b, t, peaks.size());
-        for (const drive& d : b.drives) {
-            peaks[d.tactor] = std::max(peaks[d.tactor], std::abs(d.amplitude * s.tactors[d.tactor].gain));
-        }
-    }
-    for (std::size_t i = 0; i < peaks.size(); ++i) {
-        note(changes, i, it, peaks[i]);
-    }
-}
-
-std::vector<change> changes_of(const score::impl& s)
+std::vector<change> changes_of(const score::impl& s, const continuous_peaks_of& continuous)
 {
     std::vector<change> changes;
     for (std::size_t i = 0; i < s.list.items.size(); ++i) {
@@ -76,9 +58,13 @@ std::vector<change> changes_of(const score::impl& s)
         case item_kind::joined:
             note_joined(s, i, changes);
             break;
-        case item_kind::continuous:
-            note_continuous(s, it, changes);
+        case item_kind::continuous: {
+            const std::vector<double>& peaks = continuous(i);
+            for (std::size_t k = 0; k < peaks.size(); ++k) {
+                note(changes, k, it, peaks[k]);
+            }
             break;
+        }
         case item_kind::marker:
             break;
         case item_kind::burst:
@@ -92,6 +78,28 @@ std::vector<change> changes_of(const score::impl& s)
     return changes;
 }
 
+/// Calls found(tactor, greatest sum) for each tactor that plays, until it gives false.
+template <class Found>
+bool sum_up(std::vector<change> changes, Found found)
+{
+    std::sort(changes.begin(), changes.end(), [](const change& x, const change& y) {
+        return std::tie(x.tactor, x.frame, x.by) < std::tie(y.tactor, y.frame, y.by);
+    });
+    for (std::size_t i = 0; i < changes.size();) {
+        const std::size_t tactor = changes[i].tactor;
+        double sum = 0.0;
+        double peak = 0.0;
+        for (; i < changes.size() && changes[i].tactor == tactor; ++i) {
+            sum += changes[i].by;
+            peak = std::max(peak, sum);
+        }
+        if (!found(tactor, peak)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 double in_db(double amplitude)
 {
     return 20.0 * std::log10(amplitude);
@@ -100,7 +108,7 @@ double in_db(double amplitude)
 void check(const array& a, std::size_t i, double peak, const render_options& o)
 {
     const double limit_db = std::min(0.0, a.tactors[i].max_dbfs);
-    if (peak <= std::pow(10.0, limit_db / 20.0) * (1.0 + 1e-9)) {
+    if (peak <= tactor_limit(a, i)) {
         return;
     }
     const double excess_db = std::max(0.01, std::ceil((in_db(peak) - limit_db) * 100.0) / 100.0);
@@ -117,20 +125,20 @@ void check(const array& a, std::size_t i, double peak, const render_options& o)
 
 void check_peaks(const score::impl& s, const array& a, const render_options& o)
 {
-    std::vector<change> changes = changes_of(s);
-    std::sort(changes.begin(), changes.end(), [](const change& x, const change& y) {
-        return std::tie(x.tactor, x.frame, x.by) < std::tie(y.tactor, y.frame, y.by);
-    });
-    for (std::size_t i = 0; i < changes.size();) {
-        const std::size_t tactor = changes[i].tactor;
-        double sum = 0.0;
-        double peak = 0.0;
-        for (; i < changes.size() && changes[i].tactor == tactor; ++i) {
-            sum += changes[i].by;
-            peak = std::max(peak, sum);
-        }
-        check(a, tactor, peak, o);
+    continuous_items continuous(s, a);
+    // Nearly always the intensities say that all is well, and hours need not be looked through.
+    if (continuous.have_bounds() &&
+        sum_up(changes_of(
+                   s, [&](std::size_t i) -> const auto& { return continuous.bounds(i); }),
+               [&](std::size_t tactor, double peak) { return peak <= tactor_limit(a, tactor); })) {
+        return;
     }
+    sum_up(changes_of(
+               s, [&](std::size_t i) -> const auto& { return continuous.peaks(i); }),
+           [&](std::size_t tactor, double peak) {
+               check(a, tactor, peak, o);
+               return true;
+           });
 }
 
 } // namespace tactor::synth
