@@ -6,6 +6,7 @@ import re
 import resource
 import signal
 import subprocess
+import time
 import unittest
 
 from harness import SANITIZED, TOOL, ToolTest, Wav, main
@@ -97,7 +98,9 @@ class Play(ToolTest):
             self.refused(2, "play", *self.SHORT, option, value, says=[option])
 
     def test_the_run_as_json(self):
+        before_ns = time.monotonic_ns()
         r = self.ok("play", "park2016-1", "--duration", "0.3", "--format", "json", "-D", "null")
+        after_ns = time.monotonic_ns()
         told = json.loads(r.stdout)
         self.assertEqual(told["schema"], "tactor-play/1")
         self.assertEqual({k: told["device"][k] for k in ("pcm", "channels", "rate_hz", "period_frames", "buffer_frames")},
@@ -105,6 +108,7 @@ class Play(ToolTest):
         (stroke,) = told["strokes"]
         self.assertEqual((stroke["stroke"], stroke["state"], stroke["reason"]), ("park2016-1", "finished", None))
         self.assertEqual(stroke["frames"], stroke["length_frames"])
+        self.assertTrue(before_ns < stroke["started_ns"] < after_ns, stroke["started_ns"])
         counters = told["counters"]
         self.assertEqual((counters["xruns"], counters["xrun_s"], counters["reopened"]), (0, [], 0))
         self.assertGreaterEqual(counters["frames"], stroke["frames"])
@@ -131,6 +135,8 @@ class Play(ToolTest):
                             *args], preexec_fn=small_files, cwd=self.dir, env=self.env, capture_output=True, text=True,
                            check=False)
         told = json.loads(r.stdout) if "json" in args else {"strokes": []}
+        for s in told["strokes"]:
+            self.assertEqual(s["started_ns"] is None, s["frames"] == 0)
         return r, told, [s["state"] for s in told["strokes"]]
 
     def test_a_stroke_that_the_device_cuts_is_reported_and_ends_the_run(self):
