@@ -58,6 +58,11 @@ struct render_options {
     double marker_s = 0.005; ///< above 0, at most 10 s
 };
 
+/// Ramp of a burst (or of a continuous stroke, whose onset is 0) in seconds: o.ramp_s, or the default. Both
+/// ends of a burst that is shorter than two of them have half of it.
+TACTOR_API double burst_ramp_s(double onset_s, double duration_s, double carrier_hz,
+                               const render_options& o) noexcept;
+
 /// A plan and when it starts.
 struct placed_plan {
     plan schedule = {};

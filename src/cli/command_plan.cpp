@@ -7,6 +7,7 @@
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
 #include "cli/plan_output.hpp"
+#include "cli/say.hpp"
 
 namespace tactor::cli {
 
@@ -23,13 +24,14 @@ command add_plan(CLI::App& app)
     return [s, options, format] {
         const environment e = read_environment(*s, *options);
         const piece p = plan_one_piece(*s, e);
-        make_score(p, e, settle_render(*s, e)); // levels and carrier are checked when planned
+        const render_options sound = settle_render(*s, e);
+        const score samples = make_score(p, e, sound); // levels and carrier are checked when planned
         if (*format == "json")
-            print_json(stdout, p, e);
+            print_json(stdout, p, e, samples, sound);
         else if (*format == "csv") {
             for (const placed_plan& q : p.plans)
                 for (const std::string& w : q.schedule.warnings)
-                    fmt::print(stderr, "tactor: warning: {}\n", w); // there is no place for them in a table
+                    say(stderr, "tactor: warning: {}\n", w); // there is no place for them in a table
             print_csv(stdout, p, e);
         } else
             print_text(stdout, p, e);

@@ -64,13 +64,16 @@ json comparison_json(const comparison& c, const array& a)
 void print_json(std::FILE* out, const std::vector<comparison>& all, const array& a)
 {
     if (all.size() == 1) {
-        fmt::print(out, "{}\n", comparison_json(all[0], a).dump(2));
+        fmt::print(out, "{}\n",
+                   comparison_json(all[0], a).dump(2, ' ', false, json::error_handler_t::replace));
         return;
     }
     json list = json::array();
     for (const comparison& c : all)
         list.push_back(comparison_json(c, a));
-    fmt::print(out, "{}\n", json{{"schema", "tactor-compares/1"}, {"comparisons", list}}.dump(2));
+    fmt::print(out, "{}\n",
+               json{{"schema", "tactor-compares/1"}, {"comparisons", list}}.dump(
+                   2, ' ', false, json::error_handler_t::replace));
 }
 
 } // namespace tactor::cli

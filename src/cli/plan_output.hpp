@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A plan as text, JSON (schema tactor-plan/1) and CSV.
+/// A plan as text, JSON (schemas tactor-plan/1 and tactor-plans/1) and CSV.
 #pragma once
 
 #include <cstdio>
@@ -11,7 +11,9 @@ namespace tactor::cli {
 
 /// All write to `out` as they go: a plan of an hour needs no document in memory.
 void print_text(std::FILE* out, const piece& p, const environment& e);
-void print_json(std::FILE* out, const piece& p, const environment& e);
+/// `samples` is made of the piece with `options`: with them the JSON is a record of every sample.
+void print_json(std::FILE* out, const piece& p, const environment& e, const score& samples,
+                const render_options& options);
 void print_csv(std::FILE* out, const piece& p, const environment& e);
 
 } // namespace tactor::cli

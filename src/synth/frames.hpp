@@ -31,18 +31,29 @@ inline bool between_zeros(double from, double to) noexcept
     return on_zero(from) && on_zero(to) && to - from >= 1.0 - half_cycle_tolerance;
 }
 
-/// Frames of the raised cosine at each end of a burst of `length` frames: at most half of it. The carrier has
-/// run for `carrier_s` when the burst begins; whole frames, to which both are rounded, do not count.
+/// Ramp that was asked for, or the default one of a burst. The carrier has run for `carrier_s` when it
+/// begins; whole frames, to which both are rounded, do not count.
+inline double ramp_seconds(std::optional<double> ramp_s, double carrier_s, double duration_s,
+                           double carrier_hz) noexcept
+{
+    if (ramp_s) {
+        return *ramp_s;
+    }
+    const bool smooth =
+        between_zeros(2.0 * carrier_s * carrier_hz, 2.0 * (carrier_s + duration_s) * carrier_hz);
+    return smooth ? 0.0 : default_ramp_s;
+}
+
+/// Frames of the raised cosine at each end of a burst of `length` frames: at most half of it.
+inline std::uint32_t ramp_frames(double ramp_s, double rate, std::uint64_t length) noexcept
+{
+    return static_cast<std::uint32_t>(std::min({frame_at(ramp_s, rate), length / 2, longest_event}));
+}
+
 inline std::uint32_t ramp_frames(std::optional<double> ramp_s, double carrier_s, double duration_s,
                                  double carrier_hz, double rate, std::uint64_t length) noexcept
 {
-    if (!ramp_s) {
-        const bool smooth =
-            between_zeros(2.0 * carrier_s * carrier_hz, 2.0 * (carrier_s + duration_s) * carrier_hz);
-        ramp_s = smooth ? 0.0 : default_ramp_s;
-    }
-    const std::uint64_t frames = frame_at(*ramp_s, rate);
-    return static_cast<std::uint32_t>(std::min({frames, length / 2, longest_event}));
+    return ramp_frames(ramp_seconds(ramp_s, carrier_s, duration_s, carrier_hz), rate, length);
 }
 
 } // namespace tactor::synth

@@ -58,9 +58,8 @@ std::vector<use> uses_of(const plan& p, std::uint64_t start, std::size_t tactors
         const double end_s = b.onset_s + b.duration_s;
         const std::uint64_t from = frame_at(b.onset_s, o.rate);
         const std::uint64_t length = frame_at(end_s, o.rate) - from;
-        const double carrier_s = o.phase == phase_mode::stroke ? b.onset_s : 0.0;
         const std::uint32_t ramp =
-            ramp_frames(o.ramp_s, carrier_s, b.duration_s, p.carrier_hz, o.rate, length);
+            ramp_frames(burst_ramp_s(b.onset_s, b.duration_s, p.carrier_hz, o), o.rate, length);
         for (const drive& d : b.drives) {
             if (length > 0) {
                 uses.push_back(
@@ -179,3 +178,13 @@ std::uint64_t place_plan(const plan& p, std::uint32_t plan, std::uint64_t start,
 }
 
 } // namespace tactor::synth
+
+namespace tactor {
+
+double burst_ramp_s(double onset_s, double duration_s, double carrier_hz, const render_options& o) noexcept
+{
+    const double carrier_s = o.phase == phase_mode::stroke ? onset_s : 0.0;
+    return synth::ramp_seconds(o.ramp_s, carrier_s, duration_s, carrier_hz);
+}
+
+} // namespace tactor

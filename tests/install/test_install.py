@@ -52,6 +52,9 @@ class Install(FolderTest):
                      "share/bash-completion/completions/tactor", "share/zsh/site-functions/_tactor",
                      "share/fish/vendor_completions.d/tactor.fish"):
             self.assertIn(name, there)
+        schemas = {name for name in there if name.startswith("share/tactor/")}
+        self.assertEqual(schemas, {f"share/tactor/tactor-{kind}-1.schema.json" for kind in (
+            "plan", "plans", "compare", "compares", "play", "devices", "check")})
 
     def test_the_tool_runs_from_where_it_was_moved_to(self):
         tool = self.prefix / "bin/tactor"

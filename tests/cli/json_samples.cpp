@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// Prints, as one JSON array, what the tool would print on machines with cards, chips and trouble, for
+// test_json.py.
+#include <cstdio>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "cli/check_output.hpp"
+#include "cli/devices_output.hpp"
+#include "cli/play_report.hpp"
+
+namespace {
+
+using namespace tactor;
+using namespace tactor::cli;
+
+device_list studio()
+{
+    device_list d;
+    d.array_name = "palm-2x4";
+    d.wanted = {.pcm = "hw:DAC8x", .channels = 8};
+    d.wanted.format = sample_format::s16;
+    d.pcm_is_configured = true;
+    d.pcms = {{.name = "hw:CARD=DAC8x,DEV=0",
+               .description = "snd_rpi_hifiberry_dac8x",
+               .hardware = true,
+               .wanted = true,
+               .opened = true,
+               .can = pcm_abilities{.channels = {{2, 2}, {8, 8}},
+                                    .rates_hz = {44100, 192000},
+                                    .usual_rates_hz = {44100, 48000},
+                                    .formats = {sample_format::s32, sample_format::s16},
+                                    .period_frames = {32, 4096},
+                                    .periods = {2, 32},
+                                    .buffer_frames = {64, 65536}}},
+              {.name = "hw:CARD=Busy,DEV=0",
+               .hardware = true,
+               .error = "it is busy",
+               .holders = {{812, "pipewire"}, {813, ""}}},
+              {.name = "default", .error = "not tried", .tried = false}};
+    gpio_chip_info chip{.path = "/dev/gpiochip0", .name = "gpiochip0", .label = "pinctrl-rp1"};
+    chip.lines = {{.offset = 17, .name = "GPIO17", .consumer = "tactor", .output = true}, {.offset = 18}};
+    d.chips = {chip, {.path = "/dev/gpiochip4", .error = "no permission"}};
+    return d;
+}
+
+run_report troubled_run()
+{
+    run_report r;
+    r.device = {.name = "hw:CARD=Tactor", .channels = 9, .rate = 48000, .period_frames = 96};
+    r.device.buffer_frames = 288;
+    const stroke_report cut{.id = 1,
+                            .state = stroke_state::interrupted,
+                            .frames = 480,
+                            .reason = "an xrun",
+                            .late_s = 0.001,
+                            .started_ns = 123456789};
+    r.strokes = {{"a.toml", 70560, cut}, {"b.toml", 70560, std::nullopt}};
+    r.stats.xruns = 1;
+    r.stats.xrun_s = {0.0125};
+    r.reopened = 1;
+    return r;
+}
+
+std::string walked()
+{
+    const array pair = make_grid("pair", 1, 2, 20.0, 20.0);
+    const walk_answers felt{1U, std::nullopt};
+    const walk_verdict verdict = judge(pair, felt);
+    return check_json({warning("kernel", "not preemptible", "boot another")}, walk_told{pair, felt, verdict});
+}
+
+} // namespace
+
+int main()
+{
+    fmt::print("[{},\n{},\n", devices_json(studio()), walked());
+    print_json(stdout, troubled_run());
+    fmt::print("]\n");
+}

@@ -1,0 +1,262 @@
+# SPDX-License-Identifier: MIT
+"""JSON of every command against its schema and its page of the manual, each way: neither may know what the others do not;
+and that of plan as the record of every sample.
+
+Run as: python3 test_json.py TOOL SOURCE_ROOT FOLDER_OF_SCHEMAS JSON_SAMPLES
+"""
+import copy
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+import jsonschema
+import record
+from harness import ROOT, TOOL, ToolTest, Wav, main
+
+FOLDER = pathlib.Path(sys.argv[3]).resolve()
+SCHEMAS = {schema["properties"]["schema"]["const"]: schema
+           for schema in (json.loads(p.read_text()) for p in FOLDER.glob("tactor-*.schema.json"))}
+SAMPLES = pathlib.Path(sys.argv[4]).resolve()
+PAGE = (ROOT / "man/tactor-json.5").read_text(encoding="utf-8")
+
+# What an object may have or not have. All else is always there, null where there is nothing to say.
+OPTIONAL = {"tactor-plan/1": {"stroke.note", "continuous", "bursts[].tau_s"},
+            "tactor-compare/1": {"stroke.note"},
+            "tactor-check/1": {"walk"}}
+
+PAIR = ('[array]\nname = "pair"\n'
+        '[[tactor]]\nx_mm = 0.0\ny_mm = 0.0\nchannel = 2\ngain_db = -6.0\npolarity = -1\nthreshold_dbfs = -41.5\n'
+        '[[tactor]]\nx_mm = 10.0\ny_mm = 0.0\nchannel = 0\nthreshold_dbfs = -30\n'
+        '[sync]\nchannel = 3\n')
+STROKES = ('[[stroke]]\npath = "M 0 0 L 10 0"\nduration_s = 0.5\nstart_s = 0.1\n'
+           '[[stroke]]\npath = "M 10 0 L 0 0"\nduration_s = 0.33337\ncarrier_hz = 181.3\n'
+           '[[stroke]]\npath = "M 10 0 L 0 0"\nduration_s = 0.5\nstart_s = 0.3\n')
+GRID = '[array]\nname = "a"\ngrid = { rows = 3, columns = 4, pitch_mm = 15.0 }\n'
+BRUSH = ("--array", "grid.toml", "--algorithm", "tactile-brush", "--path", "M 10 30 L 45 10")
+
+
+def paths_of(value, at=""):
+    """The places of all that a value holds: "a", "a.b", "a[].b"; "at" is its own."""
+    if isinstance(value, dict):
+        for key, v in value.items():
+            place = f"{at}.{key}" if at else key
+            yield place
+            yield from paths_of(v, place)
+    elif isinstance(value, list):
+        for v in value:
+            yield from paths_of(v, at + "[]")
+
+
+def paths_in(schema, at=""):
+    """The same of what a schema knows."""
+    for key, v in schema.get("properties", {}).items():
+        place = f"{at}.{key}" if at else key
+        yield place
+        yield from paths_in(v, place)
+    if "items" in schema:
+        yield from paths_in(schema["items"], at + "[]")
+
+
+def objects_in(value, at=()):
+    """Keys to each object in a value."""
+    if isinstance(value, dict):
+        yield at
+    for key, v in value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ():
+        yield from objects_in(v, at + (key,))
+
+
+def shortened(value):
+    """The same with at most three members in each list."""
+    if isinstance(value, dict):
+        return {key: shortened(v) for key, v in value.items()}
+    return [shortened(v) for v in value[:3]] if isinstance(value, list) else value
+
+
+def place_of(keys):
+    return "".join("[]" if isinstance(k, int) else f".{k}" for k in keys).lstrip(".")
+
+
+def paths_on_page(name):
+    """What the page's part on a schema lists."""
+    part = re.search(rf"^\.Ss {re.escape(name)}\n(.*?)(?=^\.S[sh] )", PAGE, re.M | re.S)[1]
+    return [path for line in re.findall(r"^\.It Cm (.*)", part, re.M) for path in line.split(" , ")]
+
+
+def own(paths):
+    """Of a list of plans, or comparisons, only the list: its members have a schema of their own."""
+    return {p for p in paths if not p.startswith(("plans[]", "comparisons[]"))}
+
+
+class Schemas(ToolTest):
+    told = {}
+
+    def setUp(self):
+        super().setUp()
+        self.write("pair.toml", PAIR)
+        self.write("strokes.toml", STROKES)
+        self.write("grid.toml", GRID)
+
+    def outputs(self):
+        """Name of a schema -> what the tool prints of it; once for all tests here."""
+        if self.told:
+            return self.told
+        walk = self.run_tool("check", "--walk", "--array", "pair.toml", "-D", "null", "--format", "json", stdin="1\n0\n")
+        self.write("o.toml", PAIR.partition("[sync]")[0])
+        texts = [self.ok(*args, "--format", "json").stdout for args in (
+            ("plan", "park2016-3"), ("plan", "park2016-1", "--algorithm", "continuous", "--ramp", "0.01"),
+            ("plan", *BRUSH, "--duration", "1"), ("plan", *BRUSH, "--duration", "0.15", "--drop-points"),
+            ("plan", "strokes.toml", "--array", "pair.toml", "--sl", "7"), ("plan", "--path", "M 1 1 L 9 9", "--phase", "burst"),
+            ("plan", "--path", "M 0 0 L 10 0", "--array", "pair.toml", "--sl", "7"),
+            ("compare", "park2016-1"), ("compare", "--path", "M 1 1 L 9 9"), ("compare", "strokes.toml", "--array", "o.toml"),
+            ("devices",), ("devices", "--sample-format", "s16", "-D", "nowhere"), ("check", "-D", "null"),
+            ("play", "--path", "M 0 0 L 1 0", "--duration", "0.1", "-D", "null"))]
+        more = json.loads(subprocess.run([SAMPLES], capture_output=True, text=True, check=True).stdout)
+        for one in [*map(json.loads, texts), json.loads(walk.stdout), *more]:
+            self.told.setdefault(one["schema"], []).append(one)
+        return self.told
+
+    def test_there_is_a_schema_for_each_kind_of_output_and_none_without(self):
+        self.assertEqual(set(self.outputs()), set(SCHEMAS))
+        self.assertEqual(len(SCHEMAS), 7)
+        for schema in SCHEMAS.values():
+            jsonschema.Draft202012Validator.check_schema(schema)
+            self.assertEqual(schema["$schema"], "https://json-schema.org/draft/2020-12/schema")
+
+    def test_what_the_tool_prints_is_valid(self):
+        for name, all_told in self.outputs().items():
+            for told in all_told:
+                errors = [f"{place_of(e.absolute_path)}: {e.message[:200]}"
+                          for e in jsonschema.Draft202012Validator(SCHEMAS[name]).iter_errors(told)]
+                self.assertEqual(errors, [], name)
+
+    def test_a_schema_refuses_what_is_unknown_missing_or_of_another_type(self):
+        for name, all_told in self.outputs().items():
+            valid = jsonschema.Draft202012Validator(SCHEMAS[name]).is_valid
+            seen = set()
+            for told in map(shortened, all_told):
+                for keys in objects_in(told):
+                    place = place_of(keys)
+                    changed = copy.deepcopy(told)
+                    inner = changed
+                    for key in keys:
+                        inner = inner[key]
+                    if (place, *sorted(inner)) in seen:
+                        continue
+                    seen.add((place, *sorted(inner)))
+                    inner["unheard_of"] = 1
+                    self.assertFalse(valid(changed), f"{name}: {place} may hold what is unknown")
+                    del inner["unheard_of"]
+                    for key in list(inner):
+                        inside = re.sub(r"^(plans|comparisons)\[\]\.?", "", f"{place}.{key}".lstrip("."))
+                        kept = inner.pop(key)
+                        optional = inside in OPTIONAL.get(name.replace("s/", "/"), ())
+                        self.assertEqual(valid(changed), optional, f"{name}: {place} without {key}")
+                        inner[key] = {"another": "type"}
+                        self.assertFalse(valid(changed), f"{name}: {place}.{key} of another type")
+                        inner[key] = kept
+                    self.assertTrue(valid(changed))
+
+    def test_a_schema_knows_nothing_that_is_never_printed(self):
+        for name, all_told in self.outputs().items():
+            printed = {path for told in all_told for path in paths_of(told)}
+            self.assertEqual(own(paths_in(SCHEMAS[name])), own(printed), name)
+
+    def test_members_of_a_list_are_the_same_objects_as_those_printed_alone(self):
+        for several, key, one in (("plans", "plans", "plan"), ("compares", "comparisons", "compare")):
+            alone = {k: v for k, v in SCHEMAS[f"tactor-{one}/1"].items() if k != "$schema"}
+            self.assertEqual(SCHEMAS[f"tactor-{several}/1"]["properties"][key]["items"], alone)
+
+    def test_the_page_describes_each_field_once(self):
+        for name, schema in SCHEMAS.items():
+            listed = paths_on_page(name)
+            self.assertEqual(len(listed), len(set(listed)), name)
+            self.assertEqual(set(listed), own(paths_in(schema)), name)
+
+    def test_the_examples_of_the_page_run_as_written(self):
+        section = PAGE.partition(".Sh EXAMPLES\n")[2].partition("\n.Sh ")[0]
+        lines = "\n".join(re.findall(r"^\.Dl (.*)", section, re.M)).replace("\\(aq", "'").replace("\\(dq", '"')
+        for name, program in (("tactor", TOOL), ("python3", sys.executable)):
+            self.write(f"bin/{name}", f'#!/bin/sh\nexec "{program}" "$@"\n').chmod(0o755)
+        said = subprocess.run(["sh", "-ec", lines.replace("/usr/local/share/tactor", str(FOLDER))], cwd=self.dir,
+                              env=self.env | {"PATH": f"{self.dir}/bin:/usr/bin:/bin"}, capture_output=True, text=True,
+                              check=False)
+        # A newer python3-jsonschema warns that its command line will go.
+        self.assertEqual((said.returncode, said.stdout), (0, f"{[-12.0] * 9}\n"), said.stderr)
+
+    def test_names_that_are_no_utf_8_do_not_break_it(self):
+        name = self.dir / "K\udcfcnstler.csv"
+        name.write_text("t_s,x_mm,y_mm\n0,0,10\n1,40,30\n")
+        for command in ("plan", "compare"):
+            told = json.loads(self.ok(command, name, "--format", "json").stdout)
+            self.assertEqual(told["stroke"]["name"], "K\ufffdnstler")
+
+
+class Record(ToolTest):
+    """The JSON alone gives the samples that render writes, to half a step of a float at full scale."""
+
+    CASES = {
+        "the default": ("park2016-1",),
+        "phase of the burst": ("park2016-3", "--phase", "burst", "--rate", "8000"),
+        "ramps where the carrier is cut": ("park2016-1", "--carrier", "255.3", "--rate", "11025"),
+        "a ramp of one's own": ("park2016-1", "--ramp", "0.0051", "--level-dbfs", "-3.25", "--rate", "8000"),
+        "another SOA, overlap not asked for": ("park2016-2", "--soa", "0.0613", "--phase", "burst", "--rate", "22050"),
+        "overlap by energy": (*BRUSH, "--duration", "1", "--rate", "16000"),
+        "overlap by energy, phase of the burst": (*BRUSH, "--duration", "1", "--phase", "burst", "--rate", "8000"),
+        "the larger": (*BRUSH, "--duration", "1.1", "--overlap", "max", "--carrier", "243", "--rate", "8000"),
+        "the sum": (*BRUSH, "--duration", "1", "--overlap", "sum", "--rate", "8000"),
+        "continuous": ("park2016-3", "--algorithm", "continuous", "--rate", "11025"),
+        "continuous with ramps": ("park2016-1", "--algorithm", "continuous", "--carrier", "251", "--phantom", "gaussian",
+                                  "--rate", "8000"),
+        "strokes of a file, gain, polarity, map, marker": ("strokes.toml", "--array", "pair.toml", "--level-dbfs", "-20",
+                                                           "--rate", "8000"),
+        "over thresholds, other carriers": ("strokes.toml", "--array", "pair.toml", "--sl", "7", "--phase", "burst",
+                                            "--rate", "11025"),
+        "intensity over time": ("touch.csv", "--rate", "8000"),
+    }
+
+    def setUp(self):
+        super().setUp()
+        self.write("pair.toml", PAIR)
+        self.write("strokes.toml", STROKES)
+        self.write("grid.toml", GRID)
+        self.write("touch.csv", "t_s,x_mm,y_mm,intensity\n12.5,0,10,1\n13,20,10,0.25\n13.5,40,30,1.5\n")
+
+    def test_samples(self):
+        for what, args in self.CASES.items():
+            with self.subTest(what):
+                self.ok("render", *args, "-o", "o.wav")
+                wav = Wav(self.dir / "o.wav")
+                told = json.loads(self.ok("plan", *args, "--format", "json").stdout)
+                render = told.get("plans", [told])[0]["render"]
+                self.assertEqual((render["rate"], render["channels"], render["frames"]), (wav.rate, wav.channels, wav.frames))
+                mine, theirs = record.samples(told), list(zip(*wav.samples()))
+                self.assertGreater(max(map(max, mine)), 0.01)
+                worst = max(abs(a - b) for x, y in zip(mine, theirs) for a, b in zip(x, y))
+                self.assertLess(worst, 4e-8)
+
+    def test_what_was_asked_for_is_told(self):
+        render = self.plan("park2016-1", "--rate", "44100", "--ramp", "0.003", "--level-dbfs", "-9.5", "--phase", "burst",
+                           "--overlap", "max")["render"]
+        self.assertEqual(render, {"rate": 44100, "channels": 9, "frames": 64827, "phase": "burst", "ramp_s": 0.003,
+                                  "level_dbfs": -9.5, "overlap": "max", "peak_dbfs": [-9.5] * 9, "marker": None})
+        first, second, third = self.plan("strokes.toml", "--array", "pair.toml", "--sl", "7")["plans"]
+        self.assertEqual(first["render"]["peak_dbfs"], [-34.5, -23.0])
+        self.assertEqual((first["render"]["sl_db"], first["render"]["ramp_s"]), (7.0, None))
+        self.assertNotIn("level_dbfs", first["render"])
+        self.assertEqual(first["render"]["marker"], {"channel": 3, "duration_s": 0.005})
+        self.assertEqual([t["polarity"] for t in first["array"]["tactors"]], [-1, 1])
+        self.assertEqual([p["start_frame"] for p in (first, second, third)], [4800, 4800 + 26880, 14400])
+        self.assertEqual(first["render"], third["render"])
+
+    def test_each_burst_tells_its_ramp(self):
+        ramps = {b["ramp_s"] for b in self.plan("park2016-1")["bursts"]}
+        self.assertEqual(ramps, {0.0})
+        ramps = [b["ramp_s"] for b in self.plan("park2016-1", "--carrier", "255")["bursts"]]
+        self.assertIn(0.002, ramps)
+        self.assertEqual({b["ramp_s"] for b in self.plan("park2016-1", "--ramp", "0.004")["bursts"]}, {0.004})
+
+
+if __name__ == "__main__":
+    main()
