@@ -22,7 +22,9 @@ struct live_options {
     plan_options plan{.method = algorithm::continuous, .leave = outside::clamp};
     /// Levels, phase and the bursts' ramp; rate and channels are the stream's.
     render_options render = {};
-    /// A producer that gives no point for so long has failed: the stroke fades out and ends interrupted.
+    /// A producer that gives no point for so long, s, 0.001 to 86400, has failed: the stroke fades out and
+    /// ends interrupted. Counted from player::begin() on, before the first point too; in frames of the
+    /// stream, so not while the system sleeps.
     double timeout_s = 0.5;
 };
 
@@ -34,7 +36,8 @@ struct live_counts {
 };
 
 /// The producer's end of a live stroke. Cheap to copy; all copies feed the same stroke. May outlive the
-/// player. Without end() or cancel() the stroke ends when points no longer come (live_options::timeout_s).
+/// player. Without end() or cancel(), or when no copy is left, the stroke ends when points no longer come
+/// (live_options::timeout_s).
 /// Any thread may call all members; none waits for the audio thread or the player, only (for a
 /// microsecond) for another call of to() on the same stroke.
 class TACTOR_API live_stroke {

@@ -173,13 +173,16 @@ public:
     /// does the same with its own time and player_lines::trigger_delay_s. Does not block.
     std::size_t fire(std::int64_t monotonic_ns);
 
-    /// Begins a stroke that is fed point by point; silent until the first. It ends in a report like all
-    /// strokes. At most 16 at a time sound; further ones wait.
-    /// \throws error: bad_input for options that cannot be (levels, carrier, SOA, Tactile Brush), runtime
+    /// Begins a stroke that is fed point by point; silent until the first, which must come within
+    /// live_options::timeout_s. It ends in a report like all strokes. At most 16 at a time sound; further
+    /// ones wait until one of them ends, and begin with their newest point. Those that have no point yet take
+    /// no place. \throws error: bad_input for options that cannot be (levels, carrier, SOA, Tactile Brush),
+    /// runtime
     ///         when the stream has ended.
     live_stroke begin(const live_options& o = {});
 
-    /// Fades a stroke out. One that waits or is armed ends at once. False when it has ended or is not known.
+    /// Fades a stroke out. One that waits (for its time, a trigger, the amplifier, a point) ends at once,
+    /// while the system sleeps too. False when it has ended or is not known.
     bool cancel(stroke_id id);
 
     /// Blocks until the stroke has ended and returns how; nothing on time-out, for a stroke that is not

@@ -105,6 +105,7 @@ void audio_loop::try_resume(std::int64_t now) noexcept
 {
     if (stop_asked_)
         return finish(stop_why_, 0);
+    scores_.look_at_wishes(); // no mix does
     if (sink_.resume() == io_status::again && now - suspended_ns_ < longest_resume)
         return;
     // Resumed or not, a fresh epoch: what the buffer held belongs to strokes that were interrupted.

@@ -100,11 +100,18 @@ void audio_loop::take_requests() noexcept
 {
     request r;
     while (link_.requests.pop(r)) {
-        if (r.what == request::kind::cancel) {
+        switch (r.what) {
+        case request::kind::cancel:
             scores_.cancel(r.score);
-        } else if (!stop_asked_) {
+            break;
+        case request::kind::live:
+            scores_.begin_live(r);
+            break;
+        case request::kind::stop:
+            if (!stop_asked_)
+                scores_.stop(r.closing);
             stop_asked_ = true;
-            scores_.stop(r.closing);
+            break;
         }
     }
 }
@@ -129,6 +136,8 @@ bool audio_loop::take(const command& c) noexcept
     const bool held = !stop_asked_ && !link_.amplifier.ready.load(std::memory_order_acquire);
     switch (c.what) {
     case command::kind::begin:
+        if (scores_.called_off(c.score))
+            return true;
         if (held)
             return false;
         scores_.begin(c, offset_);
@@ -141,8 +150,6 @@ bool audio_loop::take(const command& c) noexcept
     case command::kind::fail:
         scores_.fail(c.score, c.at);
         return true;
-    case command::kind::live:
-        return !held && scores_.begin_live(c);
     }
     return true;
 }

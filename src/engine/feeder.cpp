@@ -35,6 +35,7 @@ void feeder::pump(std::uint64_t written, const clock_line& clock)
     if (stream_over_)
         return;
     find_due(written);
+    look_at_waiting_live(written);
     admit_live();
     // While a score waits for room, the others may not use up what becomes free.
     const std::uint64_t horizon = admit(written) ? horizon_ : horizon_ / 2;

@@ -30,7 +30,7 @@ public:
     feeder(link& l, std::uint64_t horizon_frames);
 
     void submit(stroke_id id, const score& s, start_at start);
-    /// A live stroke, to begin as soon as possible. `voice` is kept until it has ended.
+    /// A live stroke, to begin with its first point. `voice` is kept until it has ended.
     void submit(stroke_id id, std::shared_ptr<live_voice> voice);
 
     /// Lets the armed ones start at a CLOCK_MONOTONIC time, ns; returns how many.
@@ -58,6 +58,8 @@ public:
     /// Reports since the last call, in order of their ends.
     std::vector<stroke_report> take_reports();
 
+    /// Whether take_reports() would give any.
+    bool has_reports() const noexcept { return !reports_.empty(); }
     /// Whether the stroke has not ended, or take_reports() has still to give its end.
     bool knows(stroke_id id) const;
     /// Whether the stream has ended; every stroke has been reported then.
@@ -94,6 +96,7 @@ private:
 
     void find_due(std::uint64_t written);
     bool admit(std::uint64_t written);
+    void look_at_waiting_live(std::uint64_t written);
     void admit_live();
     std::uint32_t take_slot(active a);
     ticket ticket_of(std::uint32_t place) const noexcept { return place + voices * slots_[place].generation; }
@@ -117,6 +120,7 @@ private:
     std::map<stroke_id, task> armed_;
     std::map<stroke_id, std::shared_ptr<live_voice>> waiting_live_;
     std::size_t live_in_use_ = 0;
+    std::uint64_t seen_written_ = 0; ///< at the last look at waiting_live_
     clock_line clock_;
     std::array<slot, voices> slots_;
     std::vector<std::uint32_t> in_use_; ///< places, in order of their beginning

@@ -78,16 +78,39 @@ void feeder::find_due(std::uint64_t written)
     }
 }
 
+// As the audio thread does for those that it has.
+void feeder::look_at_waiting_live(std::uint64_t written)
+{
+    const std::uint64_t frames = written - std::exchange(seen_written_, written);
+    for (auto next = waiting_live_.begin(); next != waiting_live_.end();) {
+        live_voice& v = *next->second;
+        v.wait(frames);
+        const live_voice::wish asked = v.asked();
+        if (asked == live_voice::wish::cancel)
+            tell({.id = next->first, .state = stroke_state::cancelled});
+        else if (asked == live_voice::wish::end && !v.has_point())
+            tell({.id = next->first, .state = stroke_state::finished});
+        else if (v.starved())
+            tell({.id = next->first, .state = stroke_state::interrupted, .reason = text(reason::starved, 0)});
+        else {
+            ++next;
+            continue;
+        }
+        v.close();
+        next = waiting_live_.erase(next);
+    }
+}
+
 void feeder::admit_live()
 {
-    while (!waiting_live_.empty() && live_in_use_ < live_voices && in_use_.size() < voices && has_room(1)) {
+    while (!waiting_live_.empty() && live_in_use_ < live_places && in_use_.size() < voices) {
         const auto next = waiting_live_.begin();
         live_voice* const voice = next->second.get();
         const std::uint32_t place =
             take_slot({.id = next->first, .voice = std::move(next->second), .fed = true});
         ++live_in_use_;
-        link_.commands.push(
-            {.what = command::kind::live, .score = ticket_of(place), .id = next->first, .voice = voice});
+        link_.requests.push(
+            {.what = request::kind::live, .score = ticket_of(place), .id = next->first, .voice = voice});
         waiting_live_.erase(next);
     }
 }

@@ -72,8 +72,9 @@ struct link {
     explicit link(std::size_t commands_in_ring = 2048) : commands(commands_in_ring) {}
 
     rt::spsc_ring<command> commands;
-    // Each ticket is cancelled at most once and stop comes twice at most: never full.
-    rt::spsc_ring<request> requests{std::size_t{2} * voices};
+    // Between two looks of the audio thread a place sees the cancel of one ticket, the beginning and the
+    // cancel of the next, and stop comes twice at most: never full.
+    rt::spsc_ring<request> requests{std::size_t{4} * voices};
     // At most two reports a ticket, and a ticket is free again when its last one was read: never full.
     rt::spsc_ring<report> reports{std::size_t{4} * voices};
     rt::event_fd to_audio;

@@ -30,9 +30,20 @@ void live_voice::ask(wish w) noexcept
     }
 }
 
+void live_voice::wait(std::uint64_t frames) noexcept
+{
+    if (points_.fetch()) {
+        has_point_ = true;
+        idle_ = 0;
+    } else if (asked() == wish::go_on) {
+        idle_ += frames; // a producer that has ended it owes no more points
+    }
+}
+
 bool live_voice::try_begin(ticket t, std::uint64_t next) noexcept
 {
-    if (!points_.fetch())
+    has_point_ = points_.fetch() || has_point_;
+    if (!has_point_)
         return false;
     ticket_ = t;
     base_ = next;

@@ -16,6 +16,8 @@ namespace tactor::engine {
 
 /// Live strokes that the audio thread renders at once.
 inline constexpr std::size_t live_voices = 16;
+/// Those, and what waits for its first point or for one of them to end. More wait on the control side.
+inline constexpr std::size_t live_places = voices / 2;
 
 struct live_setup {
     std::size_t channels = 0;
@@ -59,7 +61,11 @@ public:
     bool is_bursts() const noexcept { return setup_.bursts; }
     /// Whether a point waits.
     bool has_news() const noexcept { return points_.has_news(); }
-    /// Takes the first point, if it has come; the stroke begins with the mixer's next frame.
+    /// Before it begins: so many frames more have gone by. Then in the hands of the one who keeps it waiting.
+    void wait(std::uint64_t frames) noexcept;
+    /// Whether wait() has seen a point.
+    bool has_point() const noexcept { return has_point_; }
+    /// Takes the newest point, if one has come; the stroke begins with the mixer's next frame.
     bool try_begin(ticket t, std::uint64_t next) noexcept;
     /// Adds the drives of the next frames. False when the mixer had no room for them.
     bool render(synth::mixer& m, std::uint64_t frames) noexcept;
@@ -85,7 +91,8 @@ private:
     std::uint64_t base_ = 0;
     std::uint64_t end_ = 0;
     std::uint64_t next_burst_ = 0;
-    std::uint64_t idle_ = 0;   ///< frames since a point came
+    bool has_point_ = false;
+    std::uint64_t idle_ = 0;   ///< frames since a point came, or since the beginning of the wait
     std::uint64_t length_ = 1; ///< of the line between two sets of amplitudes
     std::uint64_t place_ = 1;  ///< on it
     std::vector<double> from_; ///< by channel

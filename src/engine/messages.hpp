@@ -28,23 +28,24 @@ constexpr std::uint32_t place_of(ticket t) noexcept
 
 /// Control to audio, in order.
 struct command {
-    enum class kind : std::uint32_t { begin, drive, end, fail, live };
+    enum class kind : std::uint32_t { begin, drive, end, fail };
     kind what = kind::begin;
     ticket score = 0;
     stroke_id id = 0; ///< begin
     /// begin: frame of the stream; one that is over means now. fail: frame of the score where its drives end
     std::uint64_t at = 0;
-    std::uint64_t length = 0;    ///< begin: frames
-    live_voice* voice = nullptr; ///< live: outlives the ticket
-    synth::drive_event drive{};  ///< drive: frames from the start of the score, `score` is the ticket
+    std::uint64_t length = 0;   ///< begin: frames
+    synth::drive_event drive{}; ///< drive: frames from the start of the score, `score` is the ticket
 };
 
 /// Control to audio, past the commands that wait.
 struct request {
-    enum class kind : std::uint32_t { cancel, stop };
+    enum class kind : std::uint32_t { cancel, stop, live };
     kind what = kind::cancel;
     ticket score = 0;
-    bool closing = false; ///< stop: the player is being closed; its strokes count as interrupted
+    stroke_id id = 0;            ///< live
+    live_voice* voice = nullptr; ///< live: outlives the ticket
+    bool closing = false;        ///< stop: the player is being closed; its strokes count as interrupted
 };
 
 /// Why a stroke or the stream ended.

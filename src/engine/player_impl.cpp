@@ -196,6 +196,8 @@ void player::impl::pump()
     feed.pump(link.status.load().written, link.clock.load());
     if (pulses)
         pulses->hand_over();
+    if (feed.has_reports())
+        link.to_control.signal();
     link.to_audio.signal();
 }
 

@@ -21,10 +21,18 @@ score_table::entry* score_table::find(ticket t) noexcept
     return e.used && e.score == t ? &e : nullptr;
 }
 
+bool score_table::called_off(ticket t) noexcept
+{
+    std::uint32_t& waiting = called_off_[place_of(t)];
+    if (waiting == 0)
+        return false;
+    --waiting;
+    return true;
+}
+
 void score_table::begin(const command& c, std::uint64_t offset) noexcept
 {
     entry& e = entries_[place_of(c.score)];
-    const bool cancelled = e.cancelled_early == c.score;
     const std::uint64_t next = mixer_.position();
     const std::uint64_t base = c.at > offset ? std::max(c.at - offset, next) : next;
     e = {.score = c.score,
@@ -37,16 +45,8 @@ void score_table::begin(const command& c, std::uint64_t offset) noexcept
     ++used_;
     top_ = std::max(top_, place_of(c.score) + 1);
     link_.reports.push({.what = report::kind::begun, .score = c.score, .frame = offset + base});
-    settle(e, cancelled);
-}
-
-// Ends at once what is not to begin any more.
-void score_table::settle(entry& e, bool cancelled_early) noexcept
-{
     if (stopping_)
-        over(e, stop_state_, stop_reason_, 0, 0);
-    else if (cancelled_early)
-        over(e, stroke_state::cancelled, reason::none, 0, 0);
+        over(e, stop_state_, stop_reason_, 0, 0); // nothing is to begin any more
 }
 
 bool score_table::add(const command& c) noexcept
@@ -125,10 +125,14 @@ void score_table::cancel(ticket t) noexcept
 {
     entry* e = find(t);
     if (e == nullptr) {
-        // Over already, or still in the command ring: its place tells, for no ticket is used twice.
+        // Over already, or still in the command ring: its place tells, for no ticket is used twice. The ring
+        // may stand still for seconds, so what is in it is reported here and dropped when it comes.
         entry& place = entries_[place_of(t)];
-        if (place.score != t)
-            place.cancelled_early = t;
+        if (place.score == t)
+            return;
+        place.score = t;
+        ++called_off_[place_of(t)];
+        link_.reports.push({.what = report::kind::over, .score = t, .state = stroke_state::cancelled});
         return;
     }
     want_fade(*e, stroke_state::cancelled, reason::none);
@@ -261,6 +265,9 @@ void score_table::interrupt(reason why, int code, std::uint64_t played, bool giv
 void score_table::over(entry& e, stroke_state s, reason why, int code, std::uint64_t frames) noexcept
 {
     close_live(e);
+    if (e.sounds)
+        --live_sounding_;
+    e.sounds = false;
     link_.reports.push({.what = report::kind::over,
                         .score = e.score,
                         .state = s,

@@ -23,6 +23,8 @@ public:
     {
     }
 
+    /// Whether this beginning has been cancelled (and reported) before it came; asked once.
+    bool called_off(ticket t) noexcept;
     /// `offset`: stream frame at which the epoch began.
     void begin(const command& c, std::uint64_t offset) noexcept;
     /// False when the mixer has no room now; the command must be given again.
@@ -30,9 +32,11 @@ public:
     void end(ticket t) noexcept;
     /// There will be no more drives from frame `at` of the score on, for its plan failed.
     void fail(ticket t, std::uint64_t at) noexcept;
-    /// A live stroke; silent until its first point comes. False when there are too many: the command must
-    /// be given again.
-    bool begin_live(const command& c) noexcept;
+    /// A live stroke; silent until its first point comes and fewer than live_voices sound. There must be a
+    /// place.
+    void begin_live(const request& r) noexcept;
+    /// Ends live strokes whose producer wants it, or is silent for too long.
+    void look_at_wishes() noexcept;
     /// Adds the live strokes' drives of the next frames; before each mix. `offset` as in begin().
     void render_live(std::uint64_t frames, std::uint64_t offset) noexcept;
     /// Fades out what would break off for want of drives within two periods; before each mix.
@@ -69,7 +73,6 @@ private:
 
     struct entry {
         ticket score = 0;
-        ticket cancelled_early = 0;
         stroke_id id = 0;
         std::uint64_t base = 0;
         std::uint64_t length = 0;
@@ -85,13 +88,13 @@ private:
         bool fading = false;
         bool started = false; ///< its first sample has been at the DAC ...
         std::int64_t started_ns = 0;
+        bool sounds = false;        ///< one of live_voices
         live_voice* live = nullptr; ///< while it is fed
         stroke_state state = stroke_state::finished;
         reason why = reason::none;
     };
 
     entry* find(ticket t) noexcept;
-    void settle(entry& e, bool cancelled_early) noexcept;
     void look_at_wishes(entry& e) noexcept;
     void render_live(entry& e, std::uint64_t frames, std::uint64_t offset) noexcept;
     void close_live(entry& e) noexcept;
@@ -107,8 +110,12 @@ private:
     std::array<entry, voices> entries_{};
     std::uint32_t used_ = 0;
     std::uint32_t top_ = 0; ///< entries from here on were never used
-    std::array<entry*, live_voices> live_{};
+    /// By place: beginnings in the command ring that have been cancelled and reported. Those come first, as a
+    /// place is given again only when its ticket has ended.
+    std::array<std::uint32_t, voices> called_off_{};
+    std::array<entry*, live_places> live_{}; ///< in order of their beginning
     std::size_t live_count_ = 0;
+    std::size_t live_sounding_ = 0; ///< until they are over
     bool stopping_ = false;
     stroke_state stop_state_ = stroke_state::cancelled;
     reason stop_reason_ = reason::none;

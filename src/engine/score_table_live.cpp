@@ -6,36 +6,42 @@
 
 namespace tactor::engine {
 
-bool score_table::begin_live(const command& c) noexcept
+void score_table::begin_live(const request& r) noexcept
 {
-    if (live_count_ == live_.size())
-        return false;
-    entry& e = entries_[place_of(c.score)];
-    const bool cancelled = e.cancelled_early == c.score;
-    e = {.score = c.score,
-         .id = c.id,
+    entry& e = entries_[place_of(r.score)];
+    e = {.score = r.score,
+         .id = r.id,
          .base = never,
          .length = never,
          .finish = 2 * never,
          .fade = fade_,
          .used = true,
          .fed = true,
-         .live = c.voice};
+         .live = r.voice};
     ++used_;
-    top_ = std::max(top_, place_of(c.score) + 1);
+    top_ = std::max(top_, place_of(r.score) + 1);
     live_[live_count_++] = &e;
-    settle(e, cancelled);
-    return true;
+    if (stopping_)
+        over(e, stop_state_, stop_reason_, 0, 0);
+}
+
+void score_table::look_at_wishes() noexcept
+{
+    // From the end, as those behind one that closes move up.
+    for (std::size_t i = live_count_; i-- > 0;)
+        look_at_wishes(*live_[i]);
 }
 
 void score_table::render_live(std::uint64_t frames, std::uint64_t offset) noexcept
 {
-    // From the end, as an entry that closes is replaced by the last.
-    for (std::size_t i = live_count_; i-- > 0;) {
+    look_at_wishes();
+    // In order, so that who began first sounds first; one that closes now makes way for the next.
+    for (std::size_t i = 0; i < live_count_;) {
         entry& e = *live_[i];
-        look_at_wishes(e);
-        if (e.live != nullptr && !e.fade_wanted)
+        if (!e.fade_wanted)
             render_live(e, frames, offset);
+        if (e.live != nullptr)
+            ++i;
     }
 }
 
@@ -45,11 +51,11 @@ void score_table::look_at_wishes(entry& e) noexcept
     case live_voice::wish::cancel:
         return want_fade(e, stroke_state::cancelled, reason::none);
     case live_voice::wish::end:
-        if (e.live->has_news())
+        if (e.live->has_news() || (e.base == never && e.live->has_point()))
             return; // the last point before the end counts too
         break;
     case live_voice::wish::go_on:
-        if (e.base != never && e.live->starved())
+        if (e.live->starved())
             want_fade(e, stroke_state::interrupted, reason::starved);
         return;
     }
@@ -65,10 +71,13 @@ void score_table::look_at_wishes(entry& e) noexcept
 void score_table::render_live(entry& e, std::uint64_t frames, std::uint64_t offset) noexcept
 {
     if (e.base == never) {
+        e.live->wait(frames);
         if (!link_.amplifier.ready.load(std::memory_order_acquire))
             return; // not into an amplifier that is off
-        if (!e.live->try_begin(e.score, mixer_.position()))
+        if (live_sounding_ == live_voices || !e.live->try_begin(e.score, mixer_.position()))
             return;
+        e.sounds = true;
+        ++live_sounding_;
         e.base = mixer_.position();
         link_.reports.push({.what = report::kind::begun, .score = e.score, .frame = offset + e.base});
     }
@@ -82,8 +91,10 @@ void score_table::close_live(entry& e) noexcept
         return;
     e.live->close();
     e.live = nullptr;
-    const auto found = std::find(live_.begin(), live_.begin() + live_count_, &e);
-    *found = live_[--live_count_];
+    const auto end = live_.begin() + live_count_;
+    const auto found = std::find(live_.begin(), end, &e);
+    std::move(found + 1, end, found);
+    --live_count_;
 }
 
 } // namespace tactor::engine

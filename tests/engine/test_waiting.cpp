@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+// Strokes that wait, for the amplifier, for a point, for others: cancel and stop reach them at once.
+#include <memory>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "live_rig.hpp"
+
+namespace waiting_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+/// Nobody drives the amplifier: what begins waits until the test says that it is ready.
+rig_options held()
+{
+    rig_options o;
+    o.loop.amplifier = true;
+    return o;
+}
+
+live_options with_timeout(double s)
+{
+    live_options o;
+    o.timeout_s = s;
+    return o;
+}
+
+stroke_state state_of(const rig& r, stroke_id id)
+{
+    REQUIRE(r.report(id));
+    CHECK(r.report(id)->frames == 0);
+    return r.report(id)->state;
+}
+
+} // namespace
+
+TEST_CASE(
+    "while the amplifier settles: a cancel is reported with the next wake-up, what is not cancelled plays")
+{
+    rig r(held());
+    REQUIRE(r.start().status == io_status::ok);
+    const score kept = random_score(3, 5);
+    const stroke_id first = r.submit(tone(1.0));
+    const stroke_id second = r.submit(kept);
+    const stroke_id third = r.submit(tone(1.0));
+    r.play(960);
+    CHECK(r.ended.empty());
+    CHECK(r.feed.cancel(first));
+    CHECK(r.feed.cancel(third));
+    CHECK_FALSE(r.feed.cancel(first));
+    r.step(); // the DAC stands still
+    r.control();
+    CHECK(state_of(r, first) == stroke_state::cancelled);
+    CHECK(state_of(r, third) == stroke_state::cancelled);
+    CHECK_FALSE(r.report(second));
+
+    const std::uint64_t from = r.status().written;
+    r.link.amplifier.ready = true;
+    r.play_out();
+    REQUIRE(r.report(second));
+    CHECK(r.report(second)->state == stroke_state::finished);
+    CHECK(r.captured(from, kept.frames()) == rendered(kept, sample_format::s32));
+    CHECK(r.ended.size() == 3);
+}
+
+TEST_CASE("thousands that are submitted and cancelled while they wait end once each, and none is heard")
+{
+    rig r(held());
+    REQUIRE(r.start().status == io_status::ok);
+    constexpr stroke_id rounds = 2000;
+    for (stroke_id id = 1; id <= rounds; ++id) {
+        r.submit(tone(0.01, id % 9));
+        if (id % 7 == 0)
+            r.play(96);
+        CHECK(r.feed.cancel(id));
+        if (id % 5 == 0)
+            r.play(96);
+    }
+    r.play(960);
+    CHECK(r.ended.size() == rounds);
+    for (stroke_id id = 1; id <= rounds; ++id)
+        CHECK(state_of(r, id) == stroke_state::cancelled);
+    r.link.amplifier.ready = true;
+    r.play(9600);
+    CHECK_FALSE(r.first_sound());
+    CHECK(r.ended.size() == rounds);
+    const stroke_id next = r.submit(tone(0.01));
+    r.play_out();
+    REQUIRE(r.report(next));
+    CHECK(r.report(next)->state == stroke_state::finished);
+    CHECK(r.first_sound());
+}
+
+TEST_CASE("stop reaches what waits for the amplifier")
+{
+    rig r(held());
+    REQUIRE(r.start().status == io_status::ok);
+    const stroke_id cancelled = r.submit(tone(1.0));
+    const stroke_id stopped = r.submit(tone(1.0));
+    CHECK(r.feed.cancel(cancelled));
+    r.link.requests.push({.what = engine::request::kind::stop});
+    r.step();
+    r.control();
+    CHECK(state_of(r, cancelled) == stroke_state::cancelled);
+    CHECK(state_of(r, stopped) == stroke_state::cancelled);
+    r.play(4 * 96 + 288);
+    CHECK(r.loop.over());
+}
+
+TEST_CASE(
+    "live strokes behind a stroke that waits: ended, cancelled and timed out as if nothing stood before them")
+{
+    rig_options o = held();
+    live_rig r(with_timeout(0.2), o);
+    const stroke_id before = r.submit(tone(0.1));
+    const auto ended = r.add(with_timeout(0.2));
+    const auto cancelled = r.add(with_timeout(0.2));
+    const auto fed = r.add(with_timeout(0.2));
+    r.play(960);
+    ended->voice.ask(engine::live_voice::wish::end);
+    cancelled->voice.ask(engine::live_voice::wish::cancel);
+    r.play(192);
+    CHECK(state_of(r, ended->id) == stroke_state::finished);
+    CHECK(state_of(r, cancelled->id) == stroke_state::cancelled);
+    for (int i = 0; i < 110; ++i) {
+        fed->to({0.0, 0.0}, 1.0);
+        r.play(96);
+    }
+    CHECK(state_of(r, r.live->id) == stroke_state::interrupted);
+    CHECK(r.report(r.live->id)->reason == "no more points came");
+    CHECK_FALSE(r.report(before));
+    CHECK_FALSE(r.report(fed->id));
+    CHECK_FALSE(r.first_sound());
+    r.link.amplifier.ready = true;
+    r.play(960);
+    CHECK(r.first_sound());
+    fed->voice.ask(engine::live_voice::wish::end);
+    r.play_out();
+    CHECK(r.report(fed->id)->state == stroke_state::finished);
+    CHECK(r.report(before)->state == stroke_state::finished);
+}
+
+TEST_CASE("while the system sleeps a live stroke that waits can be cancelled by its handle")
+{
+    live_rig r;
+    r.play(960);
+    r.dac.suspend();
+    r.step();
+    r.control();
+    REQUIRE(r.status().stage == engine::stream_stage::suspended);
+    const stroke_id score = r.submit(tone(0.1));
+    r.live->voice.ask(engine::live_voice::wish::cancel);
+    CHECK(r.feed.cancel(score));
+    r.step();
+    r.control();
+    CHECK(state_of(r, r.live->id) == stroke_state::cancelled);
+    CHECK(state_of(r, score) == stroke_state::cancelled);
+}
+
+} // namespace waiting_test

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+// Live strokes without points, without handles and without a place: none waits for ever or keeps others from
+// it.
+#include <memory>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "live_rig.hpp"
+
+namespace waiting_live_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+constexpr std::uint64_t timeout_frames = 9600;
+
+live_options short_timeout()
+{
+    live_options o;
+    o.timeout_s = 0.2;
+    return o;
+}
+
+bool starved(const rig& r, stroke_id id)
+{
+    return r.report(id) && r.report(id)->state == stroke_state::interrupted &&
+           r.report(id)->reason == "no more points came";
+}
+
+} // namespace
+
+TEST_CASE("strokes that never get a point take no place from those that do")
+{
+    live_rig r;
+    std::vector<std::shared_ptr<live_stroke::impl>> unfed;
+    for (int i = 0; i < 60; ++i)
+        unfed.push_back(r.add());
+    const auto fed = r.add();
+    fed->to({0.0, 0.0}, 1.0);
+    const std::uint64_t next = r.status().written;
+    r.play(960);
+    const auto sound = r.first_sound();
+    REQUIRE(sound);
+    CHECK(*sound <= next + 2);
+}
+
+TEST_CASE("the time-out holds before the first point, with and without a handle")
+{
+    live_rig r(short_timeout());
+    const stroke_id dropped = r.add(short_timeout())->id;
+    const auto patient = r.add(); // 0.5 s
+    r.play(timeout_frames - 192);
+    CHECK(r.ended.empty());
+    r.play(480);
+    CHECK(starved(r, r.live->id));
+    CHECK(starved(r, dropped));
+    CHECK(r.report(dropped)->frames == 0);
+    CHECK_FALSE(r.live->to({0.0, 0.0}, 1.0));
+    CHECK_FALSE(r.report(patient->id));
+    CHECK(patient->to({0.0, 0.0}, 1.0));
+    r.play(960);
+    CHECK(r.first_sound());
+}
+
+TEST_CASE("more than can sound: they wait in order, with their newest point, and time out where none comes")
+{
+    live_rig r;
+    std::vector<std::shared_ptr<live_stroke::impl>> all{r.live};
+    const auto most = static_cast<std::size_t>(engine::live_voices);
+    while (all.size() < most)
+        all.push_back(r.add());
+    const auto feed = [&](std::uint64_t frames) {
+        for (std::uint64_t f = 0; f < frames; f += 480) {
+            for (std::size_t i = 0; i < most; ++i)
+                all[i]->to({40.0, 40.0}, 0.01);
+            r.play(480);
+        }
+    };
+    feed(480);
+    const auto silent = r.add(short_timeout());
+    silent->to({0.0, 0.0}, 1.0); // its only point
+    const auto ended = r.add(short_timeout());
+    ended->to({0.0, 0.0}, 1.0);
+    ended->to({20.0, 0.0}, 1.0);
+    ended->voice.ask(engine::live_voice::wish::end); // no more points are owed
+    const auto last = r.add();
+    feed(timeout_frames + 960);
+    CHECK(starved(r, silent->id));
+    CHECK_FALSE(r.report(ended->id));
+    CHECK(peak(r.channel(0), 0, SIZE_MAX) == 0.0);
+    CHECK(peak(r.channel(1), 0, SIZE_MAX) == 0.0);
+
+    last->to({0.0, 40.0}, 1.0);
+    all[3]->voice.ask(engine::live_voice::wish::end); // one place, for the first that waits
+    feed(3360);
+    REQUIRE(r.report(ended->id));
+    CHECK(r.report(ended->id)->state == stroke_state::finished);
+    CHECK(r.report(ended->id)->frames > 0);
+    CHECK(peak(r.channel(1), 0, SIZE_MAX) > 0.5 * live_level);
+    feed(960);
+    CHECK(peak(r.channel(6), 0, SIZE_MAX) > 0.5 * live_level);
+}
+
+TEST_CASE("hundreds at once: each is cancelled by its handle, ended or timed out, wherever it waits")
+{
+    live_rig r(short_timeout());
+    std::vector<std::shared_ptr<live_stroke::impl>> all{r.live};
+    while (all.size() < 3 * engine::live_places)
+        all.push_back(r.add(short_timeout()));
+    r.play(960);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (i % 3 == 1)
+            all[i]->voice.ask(engine::live_voice::wish::end);
+        else if (i % 3 == 2)
+            all[i]->voice.ask(engine::live_voice::wish::cancel);
+    }
+    r.play(288);
+    CHECK(r.ended.size() == 2 * engine::live_places);
+    r.play(timeout_frames);
+    CHECK(r.ended.size() == all.size());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const auto report = r.report(all[i]->id);
+        REQUIRE(report);
+        CHECK(report->frames == 0);
+        CHECK(report->state == (i % 3 == 0   ? stroke_state::interrupted
+                                : i % 3 == 1 ? stroke_state::finished
+                                             : stroke_state::cancelled));
+        CHECK(all[i]->voice.closed());
+    }
+    const auto fresh = r.add();
+    fresh->to({0.0, 0.0}, 1.0);
+    r.play(960);
+    CHECK(r.first_sound());
+}
+
+} // namespace waiting_live_test
