@@ -42,7 +42,10 @@ struct plan_options {
     /// A model of your own instead of `phantom`; it must outlive nothing, the plan shares it.
     std::shared_ptr<const phantom_model> custom_phantom = {};
     timing_profile profile = {};
-    double soa_s = 0.07; ///< intercept < soa <= max_soa; for `fit` the longest one
+    double soa_s = 0.07; ///< intercept < soa <= max_soa (with burst_s up to 10); for `fit` the longest one
+    /// Duration of each burst of park2016 instead of the law's, 0.0001 to soa_s. The plan warns where the two
+    /// leave the law. The other algorithms warn that they do not use it.
+    std::optional<double> burst_s = {};
     timing schedule = timing::fixed;
     double min_duration_s = 0.020; ///< shortest burst that `fit` may use
     outside leave = outside::error;
@@ -105,5 +108,9 @@ TACTOR_API plan make_plan(const array& a, const stroke& s, const plan_options& o
 /// Burst duration for an SOA: min((SOA - intercept) / slope, SOA). \throws error (bad_input) unless
 /// intercept < soa <= max_soa; the message names both bounds.
 TACTOR_API double burst_duration_s(const timing_profile& p, double soa_s);
+
+/// Duration of the bursts of park2016: burst_s if it is given, else the law's. \throws error (bad_input) as
+/// above, or for a burst that is longer than the SOA or shorter than 0.1 ms.
+TACTOR_API double burst_duration_s(const plan_options& o);
 
 } // namespace tactor

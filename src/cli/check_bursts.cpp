@@ -96,7 +96,7 @@ finding check_carrier(double carrier_hz, double burst_s, bool has_bursts, unsign
                                    lowest_hz, highest_hz));
     if (has_bursts && cycles < fewest_cycles)
         return warning("bursts", fmt::format("{}: too few to be felt as vibration", found),
-                       "raise --carrier or --soa");
+                       "raise --carrier, --burst or --soa");
     return fine("bursts", found);
 }
 
@@ -112,7 +112,7 @@ std::vector<finding> check_bursts(const plan_options& p, const array& a, unsigne
             throw error(errc::bad_input, "tactile-brush", "it needs a rectangular grid of tactors",
                         "choose another --algorithm for this array");
         if (has_bursts)
-            burst_s = burst_duration_s(p.profile, p.soa_s);
+            burst_s = burst_duration_s(p);
     } catch (const error& e) {
         return {failure("bursts", e)};
     }

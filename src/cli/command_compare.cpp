@@ -145,7 +145,7 @@ int run(settings& s, option_list& options, const compare_options& asked, bool on
         choice.phantoms = {s.plan.phantom};
 
     // A row says what an algorithm cannot do; what nobody may ask for is wrong usage.
-    burst_duration_s(s.plan.profile, s.plan.soa_s);
+    burst_duration_s(s.plan);
     const layout faces(e.tactors);
     const std::vector<stroke> strokes = read_one_piece(s).strokes;
     if (!asked.picture.empty() && strokes.size() > 1)

@@ -161,6 +161,8 @@ void option_list::add_timing_options()
           [&s](const std::string& t) { s.plan.method = algorithms.parse("--algorithm", t); });
     value("--soa", "S", "onset to onset of two bursts (default 0.07)",
           [&s](const std::string& t) { s.plan.soa_s = parse_number("--soa", t, -1e9, 1e9, "s"); });
+    value("--burst", "S", "duration of each burst (default: what the timing law gives for the SOA)",
+          [&s](const std::string& t) { s.plan.burst_s = parse_number("--burst", t, 0.0001, 10, "s"); });
     value("--slope", "A", "slope of the timing law SOA = A duration + S (default 0.32)",
           [&s](const std::string& t) { s.slope = parse_number("--slope", t, 0.01, 0.99, ""); });
     value("--intercept", "S", "intercept of the timing law (default 0.0473)",

@@ -48,7 +48,7 @@ engine::live_setup live_setup(const stream_setup& s, const live_options& o)
     l.bursts = o.plan.method == algorithm::park2016;
     if (!l.bursts)
         return l;
-    const double duration_s = burst_duration_s(o.plan.profile, o.plan.soa_s);
+    const double duration_s = burst_duration_s(o.plan);
     if (o.plan.soa_s < least_live_soa_s)
         throw error(errc::bad_input, "live stroke", fmt::format("an SOA of {} s", o.plan.soa_s),
                     fmt::format("{} s or more", least_live_soa_s));

@@ -30,6 +30,7 @@ constexpr std::array options{
     option{"phantom", kind::word, {}, {"inverse-distance", "barycentric", "linear", "log", "gaussian"}},
     option{"speed", kind::number, {0.0, max_mm, true}},
     option{"soa", kind::number, {0.0, 10.0, true}},
+    option{"burst", kind::number, {0.0001, 10.0}},
     option{"timing", kind::word, {}, {"fixed", "fit"}},
     option{"outside", kind::word, {}, {"error", "clamp"}},
     option{"snap", kind::flag},

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "plan/job.hpp"
+#include "plan/numbers.hpp"
 #include "plan/options.hpp"
 
 namespace tactor {
@@ -12,6 +13,8 @@ namespace {
 
 // Durations beyond this are outside the data from which Eq. (1) was fitted (Israr and Poupyrev 2011).
 constexpr double longest_fitted_s = 0.160;
+// Durations are said to the millisecond: nearer than half of one is the law's.
+constexpr double law_tolerance_s = 0.0005;
 
 void warn_of_long_bursts(plan& p)
 {
@@ -26,6 +29,44 @@ void warn_of_long_bursts(plan& p)
             fmt::format("{} of {} bursts last longer than {:.3f} s (up to {:.3f} s), beyond the range "
                         "for which the timing law was fitted",
                         count, p.bursts.size(), longest_fitted_s, longest));
+}
+
+void warn_of_short_bursts(plan& p)
+{
+    std::size_t count = 0;
+    double shortest = 0.0;
+    for (const burst& b : p.bursts) {
+        if (b.duration_s * p.carrier_hz < 1.0 - 1e-9) {
+            shortest = count == 0 ? b.duration_s : std::min(shortest, b.duration_s);
+            ++count;
+        }
+    }
+    if (count != 0)
+        p.warnings.push_back(fmt::format(
+            "{} of {} bursts are shorter than one cycle of the carrier, {:.4g} ms at {:.6g} Hz (down "
+            "to {:.4g} ms): too short to be felt as vibration",
+            count, p.bursts.size(), 1e3 / p.carrier_hz, p.carrier_hz, shortest * 1e3));
+}
+
+/// Where the duration that was asked for is not the one that belongs to the SOA, or is not used.
+void warn_of_own_duration(const plan_options& o, plan& p)
+{
+    if (!o.burst_s)
+        return;
+    if (!p.soa_s) {
+        p.warnings.push_back(fmt::format(
+            "the duration asked for each burst, {} s, is not used: {}", *o.burst_s,
+            p.at ? "continuous has no bursts" : "tactile-brush takes durations from path and timing law"));
+        return;
+    }
+    const timing_profile& law = o.profile;
+    const bool in_bounds = *p.soa_s > law.intercept_s && *p.soa_s <= law.max_soa_s + detail::same_time_s;
+    const double d = p.bursts.front().duration_s;
+    if (!in_bounds || std::abs(d - detail::law_duration_s(law, *p.soa_s)) > law_tolerance_s)
+        p.warnings.push_back(fmt::format(
+            "bursts of {:.6g} s each {:.6g} s leave the timing law, SOA = {:.6g} duration + {:.6g} s, "
+            "by which their SOA is {:.4g} s: they may not be felt as one motion",
+            d, *p.soa_s, law.slope, law.intercept_s, law.slope * d + law.intercept_s));
 }
 
 std::shared_ptr<const phantom_model> model_of(const layout& l, const plan_options& o)
@@ -64,6 +105,8 @@ plan make_plan(const array& a, const layout& l, const stroke& s, const plan_opti
     }
     p.conflicts = detail::find_conflicts(p.bursts);
     warn_of_long_bursts(p);
+    warn_of_short_bursts(p);
+    warn_of_own_duration(o, p);
     return p;
 }
 

@@ -10,6 +10,13 @@
 
 namespace tactor {
 
+namespace {
+
+constexpr double shortest_burst_s = 0.0001; // under a frame at 8 kHz there would be nothing to hear
+constexpr double longest_free_soa_s = 10.0;
+
+} // namespace
+
 std::string_view to_string(algorithm a) noexcept
 {
     switch (a) {
@@ -74,8 +81,8 @@ void check_options(const plan_options& o)
     check_profile(o.profile);
     if (o.method != algorithm::park2016)
         return;
-    burst_duration_s(o.profile, o.soa_s);
-    if (o.schedule != timing::fit)
+    burst_duration_s(o);
+    if (o.schedule != timing::fit || o.burst_s)
         return;
     const double longest = law_duration_s(o.profile, o.soa_s);
     if (!(o.min_duration_s > 0.0 && o.min_duration_s <= longest))
@@ -104,6 +111,30 @@ double burst_duration_s(const timing_profile& p, double soa_s)
                                 p.intercept_s, p.max_soa_s),
                     fmt::format("use {}", p.max_soa_s));
     return detail::law_duration_s(p, soa_s);
+}
+
+double burst_duration_s(const plan_options& o)
+{
+    if (!o.burst_s)
+        return burst_duration_s(o.profile, o.soa_s);
+    detail::check_profile(o.profile);
+    if (!(o.soa_s >= shortest_burst_s && o.soa_s <= longest_free_soa_s))
+        throw error(
+            errc::bad_input, "--soa",
+            fmt::format("{} s is out of bounds: with a duration of its own for the burst an SOA is {} to "
+                        "{} s",
+                        o.soa_s, shortest_burst_s, longest_free_soa_s),
+            fmt::format("use {}", o.profile.max_soa_s));
+    if (!(*o.burst_s >= shortest_burst_s && std::isfinite(*o.burst_s)))
+        throw error(errc::bad_input, "duration of a burst",
+                    fmt::format("{} s is not one, {} s is the shortest", *o.burst_s, shortest_burst_s),
+                    fmt::format("use {} to {} s", shortest_burst_s, o.soa_s));
+    if (*o.burst_s > o.soa_s)
+        throw error(errc::bad_input, "duration of a burst",
+                    fmt::format("{} s is longer than the SOA of {} s, and bursts must not overlap",
+                                *o.burst_s, o.soa_s),
+                    fmt::format("use at most {} s, or a longer SOA", o.soa_s));
+    return *o.burst_s;
 }
 
 } // namespace tactor

@@ -17,14 +17,18 @@ double fitted_soa(const job& j, double duration_s)
     const plan_options& o = j.options;
     const double n = std::ceil((duration_s - same_time_s) / o.soa_s);
     const double soa = duration_s / n;
-    const double shortest =
+    const double by_law =
         std::max(o.profile.slope * o.min_duration_s + o.profile.intercept_s, o.min_duration_s);
+    const double shortest = o.burst_s.value_or(by_law);
     if (soa >= shortest - same_time_s)
         return soa;
+    const std::string needs =
+        o.burst_s ? fmt::format("leaves {:.3f} s for each, shorter than the bursts of {} s", soa, *o.burst_s)
+                  : fmt::format("needs bursts of {:.3f} s, shorter than {} s", law_duration_s(o.profile, soa),
+                                o.min_duration_s);
     throw error(
         errc::bad_input, "--timing fit",
-        fmt::format("{} of {} s in {:.0f} equal intervals needs bursts of {:.3f} s, shorter than {} s",
-                    j.name(), seconds_down(duration_s), n, law_duration_s(o.profile, soa), o.min_duration_s),
+        fmt::format("{} of {} s in {:.0f} equal intervals {}", j.name(), seconds_down(duration_s), n, needs),
         fmt::format("the nearest durations that work are {} s and {} s", seconds_down((n - 1.0) * o.soa_s),
                     seconds_up(n * shortest)));
 }
@@ -40,7 +44,9 @@ void plan_park(const job& j, plan& out)
     const double count = one_burst ? 1.0 : std::floor((end + same_time_s) / soa) + 1.0;
     check_burst_count(j, count);
 
-    const double duration = law_duration_s(j.options.profile, soa);
+    // A fitted SOA may be a rounding error shorter than the burst.
+    const double duration =
+        j.options.burst_s ? std::min(*j.options.burst_s, soa) : law_duration_s(j.options.profile, soa);
     follower target(j);
     out.bursts.reserve(static_cast<std::size_t>(count));
     for (double k = 0.0; k < count; ++k) {

@@ -35,11 +35,33 @@ class CommandLine(ToolTest):
         self.refused(2, "plan", "park2016-1", "--format", "xml", says=["xml", "json"])
 
     def test_absurd_numbers(self):
-        for option in ("--duration", "--speed", "--soa", "--carrier", "--rate", "--level-dbfs", "--ramp", "--sl"):
+        for option in ("--duration", "--speed", "--soa", "--burst", "--carrier", "--rate", "--level-dbfs", "--ramp", "--sl"):
             for value in ("nan", "inf", "-inf", "-1e300", "1e300", "abc", "", "1,5", "0x10", "1e999"):
                 r = self.run_tool("plan", "park2016-1", f"{option}={value}")
                 self.assertEqual(r.returncode, 2, f"{option}={value}: {r.stdout[:200]}{r.stderr}")
                 self.assertTrue(r.stderr.startswith("tactor: "), r.stderr)
+
+    def test_a_burst_of_its_own_duration_has_bounds_and_every_command_warns(self):
+        for burst in ("0", "-1", "1e-5", "11", "1e99", "nan", "x"):
+            self.refused(2, "plan", "park2016-1", "--burst", burst, says=["--burst", "0.0001 to 10 s"])
+        self.refused(2, "plan", "park2016-1", "--burst", "0.08", says=["0.08", "SOA of 0.07 s", "at most 0.07 s"])
+        self.refused(2, "compare", "park2016-1", "--burst", "0.08", says=["SOA of 0.07 s"])
+        self.ok("plan", "park2016-1", "--burst", "0.08", "--soa", "0.2")
+        short = ("--path", "M 0 0 L 20 0", "--duration", "0.14", "--burst", "0.003")
+        for command in (("plan",), ("render", "-o", "o.wav"), ("play", "-D", "null"), ("plot", "-o", "o.svg"),
+                        ("compare",)):
+            r = self.ok(command[0], *short, *command[1:])
+            said = " ".join((r.stdout + r.stderr).split())
+            self.assertIn("leave the timing law", said, command)
+            self.assertIn("shorter than one cycle of the carrier", said, command)
+        plan = self.plan(*short)
+        self.assertEqual([b["duration_s"] for b in plan["bursts"]], [0.003] * 3)
+        self.assertEqual(plan["soa_s"], 0.07)
+        self.assertEqual(len(plan["warnings"]), 2)
+        self.write("tactor.toml", "[defaults]\nburst = 0.05\n")
+        self.assertEqual(self.plan("park2016-1", "--config", "tactor.toml")["bursts"][0]["duration_s"], 0.05)
+        self.refused(2, "plan", "park2016-1", "--config", self.write("bad.toml", "[defaults]\nburst = 0\n"),
+                     says=["bad.toml:2:9", "burst"])
 
     def test_soa_out_of_bounds_names_both(self):
         for soa in ("0.0473", "0.04", "0.0701", "1", "0", "-1"):

@@ -49,6 +49,112 @@ TEST_CASE("the four target motions give 21, 21, 31 and 31 bursts that never over
     }
 }
 
+TEST_CASE("a burst of its own duration keeps the SOA, up to the SOA, and warns where the law is left")
+{
+    struct example {
+        double soa_s;
+        double burst_s;
+        bool law;
+    };
+    const example all[] = {{0.07, 0.07, true},  {0.06, 0.0397, true}, {0.07, 0.05, false},
+                           {0.06, 0.06, false}, {0.5, 0.1, false},    {0.03, 0.01, false},
+                           {10.0, 0.1, false},  {0.05, 0.0084, true}, {0.07, 1e-4, false}};
+    for (const example& e : all) {
+        plan_options o;
+        o.soa_s = e.soa_s;
+        o.burst_s = e.burst_s;
+        o.carrier_hz = 10000.0;
+        const plan p = make_plan(palm, across(1.0), o);
+        CAPTURE(e.soa_s);
+        CAPTURE(e.burst_s);
+        CHECK(burst_duration_s(o) == e.burst_s);
+        CHECK(p.soa_s == e.soa_s);
+        REQUIRE_FALSE(p.bursts.empty());
+        CHECK(p.bursts.size() == static_cast<std::size_t>(1.0 / e.soa_s + 1e-9) + 1);
+        CHECK(p.bursts.back().duration_s == e.burst_s);
+        CHECK(p.total_s == p.bursts.back().onset_s + e.burst_s);
+        CHECK(p.conflicts.empty());
+        REQUIRE(p.warnings.size() == (e.law ? 0 : 1));
+        if (!e.law) {
+            CHECK(p.warnings[0].find("leave the timing law, SOA = 0.32 duration + 0.0473 s") !=
+                  std::string::npos);
+        }
+    }
+}
+
+TEST_CASE("a burst that cannot be is refused, with what can")
+{
+    plan_options o;
+    for (const double s : {0.0701, 1.0, 1e300}) {
+        o.burst_s = s;
+        CHECK(refusal(palm, across(1.0), o).find("longer than the SOA of 0.07 s") != std::string::npos);
+    }
+    for (const double s : {0.0, -0.01, 1e-5, not_a_number, infinite, -infinite}) {
+        o.burst_s = s;
+        CHECK(refusal(palm, across(1.0), o).starts_with("duration of a burst"));
+    }
+    o.burst_s = 0.05;
+    for (const double s : {0.0, -1.0, 10.1, not_a_number, infinite}) {
+        o.soa_s = s;
+        CHECK(refusal(palm, across(1.0), o).starts_with("--soa"));
+    }
+    o.burst_s.reset();
+    CHECK(burst_duration_s(o = {}) == 0.07);
+}
+
+TEST_CASE("fit with a duration of its own: the SOA does not fall under it")
+{
+    plan_options o;
+    o.schedule = timing::fit;
+    o.burst_s = 0.05;
+    const plan p = make_plan(palm, across(0.2), o);
+    CHECK(*p.soa_s == doctest::Approx(0.2 / 3.0));
+    CHECK(p.bursts.size() == 4);
+    CHECK(p.bursts[0].duration_s == 0.05);
+    o.burst_s = 0.07;
+    CHECK(make_plan(palm, across(0.21), o).bursts[1].duration_s == doctest::Approx(0.07));
+    const std::string why = refusal(palm, across(0.2), o);
+    CAPTURE(why);
+    CHECK(why.find("shorter than the bursts of 0.07 s") != std::string::npos);
+    CHECK(why.find("0.14 s and 0.21 s") != std::string::npos);
+}
+
+TEST_CASE("the other algorithms say that they do not use a burst's duration")
+{
+    plan_options o;
+    o.burst_s = 0.05;
+    for (const auto method : {algorithm::tactile_brush, algorithm::continuous}) {
+        o.method = method;
+        const plan with = make_plan(palm, across(1.0), o);
+        CHECK(std::count_if(with.warnings.begin(), with.warnings.end(), [](const std::string& w) {
+                  return w.find("0.05 s, is not used") != std::string::npos;
+              }) == 1);
+    }
+}
+
+TEST_CASE("bursts of less than one cycle of the carrier are warned about, whatever made them so")
+{
+    plan_options o;
+    o.soa_s = 0.0483; // 3.125 ms by the law, a cycle at 320 Hz
+    o.carrier_hz = 321.0;
+    CHECK(make_plan(palm, across(1.0), o).warnings.empty());
+    o.carrier_hz = 319.0;
+    const plan p = make_plan(palm, across(1.0), o);
+    REQUIRE(p.warnings.size() == 1);
+    CHECK(
+        p.warnings[0].find("21 of 21 bursts are shorter than one cycle of the carrier, 3.135 ms at 319 Hz") !=
+        std::string::npos);
+    o = {};
+    o.burst_s = 0.004; // one cycle at 250 Hz is enough
+    CHECK(make_plan(palm, across(1.0), o).warnings.size() == 1);
+    o.burst_s = 0.0039;
+    CHECK(make_plan(palm, across(1.0), o).warnings.size() == 2);
+    o = {};
+    o.method = algorithm::tactile_brush;
+    o.carrier_hz = 1.0;
+    CHECK(make_plan(palm, across(1.0), o).warnings.size() >= 1);
+}
+
 TEST_CASE("fixed: onsets at multiples of the SOA up to the end, one burst below one SOA")
 {
     CHECK(make_plan(palm, across(0.0699)).bursts.size() == 1);
