@@ -49,7 +49,8 @@ struct pcm_info {
     bool wanted = false;          ///< the one that was asked about
     bool opened = false;
     /// Why it was not opened, and what to do. Not tried are PCMs whose opening would start a card, as mixers
-    /// (dmix) do, or a sound server; open_alsa() tries.
+    /// (dmix) do, or a sound server, but for the one that is wanted; and none that would empty a file or
+    /// start a command. open_alsa() tries.
     std::string error = {};
     bool tried = true;                      ///< false: see error
     std::vector<process_info> holders = {}; ///< who has a card's own device open
@@ -65,6 +66,26 @@ struct pcm_info {
 /// \throws error: bad_input for numbers in `wanted` that no PCM can have. PCMs that cannot be opened say so
 ///         in the list.
 TACTOR_API std::vector<pcm_info> list_pcms(const std::optional<alsa_options>& wanted = {});
+
+/// What playing on a PCM goes through, as ALSA's configuration says.
+struct pcm_route {
+    std::vector<std::string> types =
+        {};                  ///< of its plugins, as they are defined: "plug", "hw"; none: not defined
+    std::string server = {}; ///< the sound server in between: "PipeWire", "PulseAudio", "JACK"; empty: none
+    bool writes = false;     ///< opening it empties a file or starts a command (type file)
+};
+
+/// Looks the name of a PCM up. Nothing is opened, and nothing thrown for names that nobody defines. Blocks
+/// for some milliseconds (ALSA reads its configuration). Any thread, but one at a time.
+TACTOR_API pcm_route route_of(const std::string& pcm);
+
+/// For names that others have chosen, as in an array file that they made: open_alsa() takes any ALSA name,
+/// and one such as "file:'|COMMAND',raw" runs the command. Passes letters, digits, "_", "-", and ":", "," and
+/// "=" where ALSA's own names have them ("hw:CARD=Tactor,DEV=0", "plug:'hw:0,1'"), if ALSA's configuration
+/// defines the name as a device: through conversions, mixers and sound servers, but no file, and nothing that
+/// it does not know. Names that nobody defines pass, and cannot be opened. Blocks as route_of() does. \throws
+/// error: bad_input that says what is wrong with the name.
+TACTOR_API void require_device_name(const std::string& pcm);
 
 /// A sound card.
 struct card_info {

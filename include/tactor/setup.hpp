@@ -17,7 +17,9 @@ namespace tactor {
 
 /// [output]: the PCM. Anything not said is chosen by the program.
 struct output_settings {
-    std::optional<std::string> pcm = {};        ///< ALSA name
+    std::optional<std::string> pcm = {};        ///< ALSA name; another's file: see require_device_name()
+    source_place pcm_at = {};                   ///< where the file says it
+    bool pcm_included = false;                  ///< by a file that the one read names under [array]
     std::optional<unsigned> rate = {};          ///< Hz, 8000 to 768000
     std::optional<unsigned> channels = {};      ///< exact channel count
     std::optional<unsigned> period_frames = {}; ///< frames in a period

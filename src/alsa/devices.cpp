@@ -11,6 +11,9 @@
 #include "alsa/library_messages.hpp"
 #include "alsa/names.hpp"
 #include "alsa/negotiate.hpp"
+#include "alsa/plain_name.hpp"
+#include "alsa/route.hpp"
+#include "model/suggest.hpp"
 
 namespace tactor::pcm {
 namespace {
@@ -57,14 +60,25 @@ std::string without_name(std::string text, const std::string& name)
     return text.rfind(prefix, 0) == 0 ? text.substr(prefix.size()) : text;
 }
 
+// Empty: it can be opened just to look at it. One that was asked for may start what it needs.
+std::string why_not_tried(const std::vector<std::string>& route, bool wanted)
+{
+    if (writes(route))
+        return "not tried: opening a PCM of type file empties its file or starts its command";
+    if (std::find(route.begin(), route.end(), endless) != route.end())
+        return "not tried: its definition leads to itself, or to too many others";
+    const std::string lasting = wanted ? "" : lasting_type(route);
+    return lasting.empty()
+               ? ""
+               : fmt::format("not tried: opening a PCM of type {} may start a card or a server", lasting);
+}
+
 void probe(const std::optional<alsa_options>& wanted, pcm_info& p)
 {
-    const std::string lasting = p.hardware || p.wanted ? "" : lasting_plugin(p.name);
-    if (!lasting.empty()) {
-        p.tried = false;
-        p.error = fmt::format("not tried: opening a PCM of type {} may start a card or a server", lasting);
+    p.error = p.hardware ? "" : why_not_tried(find_route(p.name), p.wanted);
+    p.tried = p.error.empty();
+    if (!p.tried)
         return;
-    }
     alsa_options o = p.wanted ? *wanted : alsa_options{};
     if (!p.wanted || p.hardware)
         o.pcm = p.name;
@@ -121,6 +135,30 @@ std::vector<tactor::pcm_info> tactor::list_pcms(const std::optional<alsa_options
     if (wanted)
         pcm::check(*wanted);
     return pcm::list("/", wanted);
+}
+
+tactor::pcm_route tactor::route_of(const std::string& pcm)
+{
+    pcm_route r;
+    r.types = pcm::find_route(pcm);
+    r.writes = pcm::writes(r.types);
+    r.server = pcm::server_of(r.types);
+    return r;
+}
+
+void tactor::require_device_name(const std::string& pcm)
+{
+    constexpr const char* hint = "give the name of a device, such as hw:CARD=Tactor";
+    const auto thing = [&pcm] { return fmt::format("PCM {}", detail::quoted(pcm)); };
+    if (const std::string why = pcm::not_plain(pcm); !why.empty())
+        throw error(errc::bad_input, thing(), fmt::format("more than the name of a device: {}", why), hint);
+    const std::vector<std::string> route = pcm::find_route(pcm);
+    if (pcm::writes(route))
+        throw error(errc::bad_input, thing(), "it writes a file or starts a command", hint);
+    if (const std::string type = pcm::unsafe_type(route); !type.empty())
+        throw error(errc::bad_input, thing(),
+                    fmt::format("ALSA's configuration defines it as more than a device: type {}", type),
+                    hint);
 }
 
 std::optional<tactor::card_info> tactor::card_of(const std::string& pcm)

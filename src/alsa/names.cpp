@@ -2,13 +2,13 @@
 #include "alsa/names.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <memory>
 #include <string_view>
 
 #include "alsa/handle.hpp"
 #include "alsa/library_messages.hpp"
+#include "alsa/route.hpp"
 
 namespace tactor::pcm {
 namespace {
@@ -41,95 +41,14 @@ std::vector<known_name> hinted()
     return names;
 }
 
-// The system's configuration, kept from being reread meanwhile.
-class system_configuration {
-public:
-    system_configuration() { snd_config_update_ref(&top_); }
-    ~system_configuration()
-    {
-        if (top_ != nullptr)
-            snd_config_unref(top_);
-    }
-    system_configuration(const system_configuration&) = delete;
-    system_configuration& operator=(const system_configuration&) = delete;
-    snd_config_t* get() const noexcept { return top_; }
-
-private:
-    snd_config_t* top_ = nullptr;
-};
-
-bool is_compound(snd_config_t* c)
-{
-    return snd_config_get_type(c) == SND_CONFIG_TYPE_COMPOUND;
-}
-
-template <typename Visit>
-void each_member(snd_config_t* compound, Visit visit)
-{
-    snd_config_iterator_t i = snd_config_iterator_first(compound);
-    for (; i != snd_config_iterator_end(compound); i = snd_config_iterator_next(i)) {
-        snd_config_t* member = snd_config_iterator_entry(i);
-        const char* id = nullptr;
-        if (snd_config_get_id(member, &id) == 0 && id != nullptr)
-            visit(std::string(id), member);
-    }
-}
-
 // Stock names such as front or dmix are strings that lead to a card's functions: the hints have them.
 bool stands_alone(snd_config_t* definition)
 {
     snd_config_t* found = nullptr;
-    return is_compound(definition) && snd_config_search(definition, "type", &found) == 0 &&
+    return snd_config_get_type(definition) == SND_CONFIG_TYPE_COMPOUND &&
+           snd_config_search(definition, "type", &found) == 0 &&
            snd_config_search(definition, "@args", &found) < 0;
 }
-
-// These touch nothing beyond what they open.
-bool is_harmless(std::string_view type)
-{
-    constexpr std::array types{"hw",   "null",  "file",  "plug", "linear", "lfloat", "copy",  "route",
-                               "rate", "multi", "empty", "asym", "mulaw",  "alaw",   "adpcm", "iec958"};
-    return std::find(types.begin(), types.end(), type) != types.end();
-}
-
-constexpr int deepest = 8; // of plugins on plugins; a definition may name itself
-
-class plugin_search {
-public:
-    explicit plugin_search(snd_config_t* top) : top_(top) {}
-
-    std::string of_name(const char* base, const std::string& name, int depth) const
-    {
-        snd_config_t* definition = nullptr;
-        if (depth > deepest || snd_config_search_definition(top_, base, name.c_str(), &definition) < 0)
-            return {};
-        const std::unique_ptr<snd_config_t, deleter<snd_config_delete>> owned(definition);
-        return is_compound(definition) ? of_definition(definition, depth + 1) : "";
-    }
-
-private:
-    std::string of_definition(snd_config_t* definition, int depth) const
-    {
-        std::string found;
-        each_member(definition, [&](const std::string& id, snd_config_t* member) {
-            const char* said = nullptr;
-            if (!found.empty() || id == "capture" || id == "hint")
-                return;
-            if (is_compound(member))
-                found = of_definition(member, depth);
-            else if (snd_config_get_string(member, &said) < 0 || said == nullptr)
-                return;
-            else if (id == "type")
-                found = is_harmless(said) ? "" : said;
-            else if (id == "pcm")
-                found = of_name("pcm", said, depth);
-            else if (id == "slave")
-                found = of_name("pcm_slave", said, depth);
-        });
-        return found;
-    }
-
-    snd_config_t* top_;
-};
 
 } // namespace
 
@@ -137,7 +56,7 @@ std::vector<std::string> defined_pcms(snd_config_t* top)
 {
     std::vector<std::string> names;
     snd_config_t* pcms = nullptr;
-    if (top != nullptr && snd_config_search(top, "pcm", &pcms) == 0 && is_compound(pcms))
+    if (top != nullptr && snd_config_search(top, "pcm", &pcms) == 0)
         each_member(pcms, [&](const std::string& id, snd_config_t*) { names.push_back(id); });
     return names;
 }
@@ -153,7 +72,7 @@ std::vector<known_name> known_names()
     std::vector<known_name> names = hinted();
     const system_configuration system;
     snd_config_t* pcms = nullptr;
-    if (system.get() == nullptr || snd_config_search(system.get(), "pcm", &pcms) < 0 || !is_compound(pcms))
+    if (system.get() == nullptr || snd_config_search(system.get(), "pcm", &pcms) < 0)
         return names;
     each_member(pcms, [&](const std::string& id, snd_config_t* definition) {
         const auto same = [&](const known_name& n) { return n.name == id; };
@@ -161,13 +80,6 @@ std::vector<known_name> known_names()
             names.push_back({id, ""});
     });
     return names;
-}
-
-std::string lasting_plugin(const std::string& name)
-{
-    const library_messages silent;
-    const system_configuration system;
-    return system.get() == nullptr ? "" : plugin_search(system.get()).of_name("pcm", name, 0);
 }
 
 } // namespace tactor::pcm

@@ -23,8 +23,4 @@ std::vector<known_name> known_names();
 std::vector<std::string> defined_pcms(snd_config_t* top);
 std::vector<std::string> defined_pcms();
 
-/// The type of plugin that keeps this PCM from being opened just to look at it: a mixer, which starts its
-/// card, a client of a sound server, or one that is not known to be harmless. Empty: opening does nothing.
-std::string lasting_plugin(const std::string& name);
-
 } // namespace tactor::pcm

@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "cli/check_device.hpp"
 
+#include <fmt/format.h>
+
 #include "cli/play_report.hpp"
 
 namespace tactor::cli {
 
 finding check_device(const alsa_options& device, const play_options& o, bool named)
 {
+    if (route_of(device.pcm).writes)
+        return warning(
+            "device",
+            fmt::format("{}: not opened, for that would empty its file or start its command", device.pcm),
+            "play opens it: is it meant?");
     try {
         const stream_setup made = open_alsa(device)->setup();
         const std::string found = describe(made);

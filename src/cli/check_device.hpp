@@ -8,7 +8,8 @@
 
 namespace tactor::cli {
 
-/// Opens and closes it; nothing sounds. `named`: whether anything names it, else it is the default.
+/// Opens and closes it, but for one that writes a file; nothing sounds. `named`: whether anything names it,
+/// else it is the default.
 finding check_device(const alsa_options& device, const play_options& o, bool named);
 
 } // namespace tactor::cli

@@ -54,8 +54,13 @@ alsa_options device_for(const settings& s, const check_options& o, const environ
 std::vector<finding> check_all(const settings& s, const check_options& o, const environment& e)
 {
     std::vector<finding> all = check_array(s, e, limits_of(o.play, e));
-    const alsa_options device = device_for(s, o, e);
-    all.push_back(check_device(device, o.play, names_device(s, e)));
+    alsa_options device;
+    try {
+        device = device_for(s, o, e);
+        all.push_back(check_device(device, o.play, names_device(s, e)));
+    } catch (const error& x) {
+        all.push_back(failure("device", x));
+    }
     if (!o.play.no_gpio)
         for (finding& f : check_lines(e.config, find_gpio_line))
             all.push_back(std::move(f));

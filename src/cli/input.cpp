@@ -54,7 +54,11 @@ void use_array_file(setup& config, const setup& file)
         if (theirs)
             ours = theirs;
     };
-    prefer(config.output.pcm, file.output.pcm);
+    if (file.output.pcm) {
+        config.output.pcm = file.output.pcm;
+        config.output.pcm_at = file.output.pcm_at;
+        config.output.pcm_included = true;
+    }
     prefer(config.output.rate, file.output.rate);
     // The channel count belongs to the map: one array's count says nothing of another's.
     config.output.channels = file.output.channels;

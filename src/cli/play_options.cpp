@@ -70,6 +70,24 @@ void add_limits(CLI::App& c, play_options& o)
     add("--drive-window-s", o.drive_window_s, 0.1, 3600, "s", "the window of --max-drive-s (default 10)");
 }
 
+// What others wrote into a file must not do more than say which device.
+std::string pcm_name(const settings& s, const output_settings& out)
+{
+    if (s.pcm || !out.pcm)
+        return s.pcm.value_or("null");
+    if (out.pcm_included) {
+        try {
+            require_device_name(*out.pcm);
+        } catch (const error& x) {
+            throw error(
+                x.kind(), out.pcm_at.text(), fmt::format("{}: {}", x.subject(), x.why()),
+                "an array file can only name a device, such as hw:CARD=Tactor; more is taken from -D PCM "
+                "and from your own configuration: tactor.toml(5), SECURITY CONSIDERATIONS");
+        }
+    }
+    return *out.pcm;
+}
+
 } // namespace
 
 void add_stream_options(CLI::App& c, play_options& o)
@@ -104,7 +122,7 @@ alsa_options device_options(const settings& s, const play_options& p, const envi
 {
     alsa_options o;
     const output_settings& out = e.config.output;
-    o.pcm = s.pcm ? *s.pcm : out.pcm.value_or(o.pcm);
+    o.pcm = pcm_name(s, out);
     o.channels = channels;
     o.rate = rate;
     o.format = s.format;

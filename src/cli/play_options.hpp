@@ -42,6 +42,7 @@ void add_stream_options(CLI::App& command, play_options& into);
 bool names_device(const settings& s, const environment& e);
 
 /// The PCM as it is to be opened for so many channels at that rate, Hz; "null" where nothing names one.
+/// \throws error (bad_input) where an array file says more than the name of a device.
 alsa_options device_options(const settings& s, const play_options& p, const environment& e, unsigned channels,
                             unsigned rate);
 

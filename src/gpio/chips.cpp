@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
 #include <grp.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
 
 #include "gpio/errors.hpp"
 
@@ -26,9 +29,19 @@ std::optional<unsigned> chip_number(const std::string& name)
     return ec == std::errc{} && p == end ? std::optional(number) : std::nullopt;
 }
 
+chip unread(const std::string& path, int code)
+{
+    chip c;
+    c.info.path = path;
+    c.info.name = std::filesystem::path(path).filename().string();
+    c.code = code;
+    return c;
+}
+
 chip read_with_group(const std::string& path)
 {
-    chip c = read_chip(path);
+    const int other = not_a_chip(path);
+    chip c = other == 0 ? read_chip(path) : unread(path, other);
     if (c.code != 0)
         c.group = group_of(path);
     return c;
@@ -58,6 +71,21 @@ std::vector<std::string> chip_paths(const std::filesystem::path& folder)
     for (auto& [number, path] : found)
         paths.push_back(std::move(path));
     return paths;
+}
+
+int not_a_chip(const std::string& path)
+{
+    struct stat status {};
+    if (::stat(path.c_str(), &status) != 0)
+        return errno;
+    if (!S_ISCHR(status.st_mode))
+        return ENOTTY;
+    std::error_code ec;
+    const std::filesystem::path bus = std::filesystem::canonical(
+        fmt::format("/sys/dev/char/{}:{}/subsystem", major(status.st_rdev), minor(status.st_rdev)), ec);
+    if (ec)
+        return ENOENT; // as libgpiod says it where there is no /sys
+    return bus.filename() == "gpio" ? 0 : ENODEV;
 }
 
 std::string group_of(const std::string& path)

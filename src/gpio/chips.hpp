@@ -17,6 +17,10 @@ namespace tactor::gpio {
 /// as a second name of gpiochip0.
 std::vector<std::string> chip_paths(const std::filesystem::path& folder = "/dev");
 
+/// Why a path is no GPIO chip, as an errno; 0: it is one. Opens nothing: a pipe would wait, and a watchdog
+/// would start.
+int not_a_chip(const std::string& path);
+
 /// Name of the group that owns a file, "gpio" where that cannot be found out.
 std::string group_of(const std::string& path);
 
@@ -32,7 +36,7 @@ struct located_line {
 /// The same, but only where it is.
 located_line locate(const gpio_line_name& wanted);
 
-/// Opens every chip.
+/// Opens every chip, and nothing else that is called so.
 std::vector<chip> read_chips();
 
 /// Who holds a line now; empty: nobody, or it cannot be known.

@@ -50,6 +50,11 @@ array read_included(const toml_table& table, const setup_source& source, located
                    "break the circle of files");
     if (source.opened.size() == longest_chain)
         table.fail("file", "a chain of too many files", fmt::format("at most {}", longest_chain));
+    // Nobody waits for a pipe that someone else's file names, and a device may take being opened for a
+    // command.
+    if (std::filesystem::exists(file, ignored) && !std::filesystem::is_directory(file, ignored) &&
+        !std::filesystem::is_regular_file(file, ignored))
+        table.fail("file", fmt::format("{} is not a regular file", file.string()), "name an array file");
     std::string text;
     try {
         text = read_text_file(file, max_setup_bytes);
@@ -59,6 +64,7 @@ array read_included(const toml_table& table, const setup_source& source, located
     setup_source next{file.string(), file.parent_path(), source.opened};
     next.opened.push_back(full);
     out = read_setup(text, next);
+    out.said.output.pcm_included = out.said.output.pcm.has_value();
     if (!out.said.layout)
         table.fail("file", fmt::format("{} has no array", file.string()), "name an array file");
     return *std::exchange(out.said.layout, std::nullopt);

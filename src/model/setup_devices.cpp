@@ -31,8 +31,11 @@ void read_output(const toml_table& root, located_setup& out)
         return;
     t->only({"pcm", "rate", "channels", "period_frames", "periods"});
     output_settings& o = out.said.output;
-    if (t->has("pcm"))
+    if (t->has("pcm")) {
         o.pcm = t->text("pcm");
+        o.pcm_at = t->where("pcm");
+        o.pcm_included = false;
+    }
     if (t->has("rate"))
         o.rate = t->whole("rate", 8000, 768000);
     if (t->has("channels")) {

@@ -41,8 +41,9 @@ class Check(ToolTest):
     def test_the_stream_is_opened_as_play_would_and_nothing_sounds(self):
         _, found = self.check("-D", "null", "--rate", "96000", "--latency-ms", "3")
         self.assertIn("96000 Hz, s32, period 96 of 288 frames, latency 3.0 ms", found["device"]["found"])
-        self.check("-D", f"raw:{self.dir}/out.raw")
-        self.assertFalse((self.dir / "out.raw").exists() and (self.dir / "out.raw").stat().st_size)
+        _, found = self.check("-D", f"raw:{self.dir}/out.raw")
+        self.assertEqual(found["device"]["level"], "warning")
+        self.assertFalse((self.dir / "out.raw").exists())
 
     def test_a_device_that_cannot_be_had_is_status_3(self):
         r = self.refused(3, "check", "-D", "nowhere", says=["device: PCM \"nowhere\""])

@@ -11,7 +11,8 @@ pcm.through_a_slave { type plug slave "named_slave" }
 pcm_slave.named_slave { pcm "mixed" }
 pcm.round_and_round { type plug slave.pcm "round_and_round" }
 pcm.sixteen_bits { type linear slave { pcm "null" format S16_LE } }
-pcm.broken { type file slave.pcm "null" file "/nowhere/x" format "no such format" }
+pcm.broken { type linear slave { pcm "null" format "no such format" } }
+pcm.kept { type file slave.pcm "null" file "kept.raw" format raw }
 pcm.said { type null hint { show on description "first line
 second line" } }
 """
@@ -66,7 +67,9 @@ class Devices(ToolTest):
     def test_a_pcm_that_cannot_be_opened_says_why(self):
         self.write("alsa.conf", ALSA_CONFIG + MORE_PCMS)
         _, pcms = self.devices("-D", "hw:CARD=Nowhere")
-        for name in ("broken", "round_and_round", "hw:CARD=Nowhere"):
+        self.assertEqual((pcms["round_and_round"]["tried"], pcms["round_and_round"]["opened"]), (False, False))
+        self.assertIn("leads to itself", pcms["round_and_round"]["error"])
+        for name in ("broken", "hw:CARD=Nowhere"):
             self.assertEqual((pcms[name]["tried"], pcms[name]["opened"], pcms[name]["fits"]), (True, False, None))
             self.assertTrue(pcms[name]["error"])
             self.assertNotIn("PCM \"", pcms[name]["error"])
@@ -74,10 +77,18 @@ class Devices(ToolTest):
         self.assertEqual(pcms["said"]["description"], "first line, second line")
         self.assertIn("hw:CARD=Nowhere   <- the one that is configured", self.ok("devices", "-D", "hw:CARD=Nowhere").stdout)
 
-    def test_the_pcm_that_is_asked_about_is_looked_at_and_not_configured(self):
+    def test_a_file_that_is_asked_about_is_listed_and_not_made(self):
         _, pcms = self.devices("-D", f"raw:{self.dir}/out.raw")
-        self.assertTrue(pcms[f"raw:{self.dir}/out.raw"]["fits"])
+        self.assertEqual((pcms[f"raw:{self.dir}/out.raw"]["configured"], pcms[f"raw:{self.dir}/out.raw"]["tried"]), (True, False))
+        self.assertIn("type file", pcms[f"raw:{self.dir}/out.raw"]["error"])
         self.assertFalse((self.dir / "out.raw").exists())
+
+    def test_nothing_is_opened_that_would_be_emptied(self):
+        self.write("alsa.conf", ALSA_CONFIG + MORE_PCMS)
+        self.write("kept.raw", "precious")
+        for args in ((), ("-D", "kept"), ("-D", "raw:kept.raw")):
+            self.assertFalse(self.devices(*args)[1]["kept"]["opened"])
+        self.assertEqual((self.dir / "kept.raw").read_text(), "precious")
 
     def test_text_is_plain_and_fits_80_columns(self):
         self.write("alsa.conf", ALSA_CONFIG + MORE_PCMS)

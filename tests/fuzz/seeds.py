@@ -16,6 +16,7 @@ SOURCES = {
     "stroke_csv": (["examples/strokes/*.csv"], ["test_stroke_csv.cpp"]),
     "stroke_svg": (["examples/strokes/*.svg"], ["test_stroke_svg.cpp", "test_stroke_svg_errors.cpp"]),
     "path_data": ([], ["test_path_svg.cpp", "test_path.cpp", "test_path_length.cpp", "test_path_meets.cpp"]),
+    "pcm_name": ([], ["../engine/test_pcm_names.cpp"]),
 }
 RAW = r'R"(\w*)\((.*?)\)\1"'
 PLAIN = r'"(?:[^"\\\n]|\\.)*"(?:\s*"(?:[^"\\\n]|\\.)*")*'

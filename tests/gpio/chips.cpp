@@ -2,8 +2,13 @@
 // The chips of a machine that has none, and folders that look like /dev.
 #include "gpio/chips.hpp"
 
+#include <cerrno>
 #include <filesystem>
 #include <string>
+
+#include <sys/inotify.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <doctest/doctest.h>
 
@@ -46,6 +51,34 @@ TEST_CASE("what is no GPIO chip is not opened as one")
         CHECK(c.info.lines.empty());
     }
     CHECK(tactor::gpio::read_chip("/nowhere").code == ENOENT);
+}
+
+TEST_CASE("what a file names as a chip and is none is never opened: a pipe, a file, a socket")
+{
+    const folder f;
+    f.write("file");
+    REQUIRE(::mkfifo((f / "pipe").c_str(), 0600) == 0);
+    REQUIRE(::mknod((f / "socket").c_str(), S_IFSOCK | 0600, 0) == 0);
+    const int watch = ::inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+    REQUIRE(watch >= 0);
+    for (const char* name : {"file", "pipe", "socket"})
+        REQUIRE(::inotify_add_watch(watch, (f / name).c_str(), IN_OPEN) >= 0);
+    for (const char* name : {"file", "pipe", "socket"}) {
+        CAPTURE(name);
+        const std::string path = (f / name).string();
+        CHECK(tactor::gpio::not_a_chip(path) == ENOTTY);
+        std::string said;
+        try {
+            tactor::find_gpio_line({.chip = path, .offset = 0});
+        } catch (const tactor::error& e) {
+            said = e.what();
+        }
+        CHECK(said.find("is not a GPIO chip") != std::string::npos);
+    }
+    char event[512];
+    CHECK(::read(watch, event, sizeof event) == -1);
+    CHECK(errno == EAGAIN);
+    ::close(watch);
 }
 
 TEST_CASE("a path that is no GPIO chip is an error that says so")

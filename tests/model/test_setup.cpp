@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // [output], [amplifier], [sync] and [defaults]; texts that are no TOML.
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <clocale>
 #include <random>
@@ -231,6 +232,13 @@ TEST_CASE("what is no TOML has its line")
     CHECK(complaint("# \xc3\x28\n").starts_with("t.toml:1:"));
     CHECK(complaint(std::string("[output]\npcm = \"a\0b\"\n", 20)).starts_with("t.toml:2:"));
     CHECK(complaint("<svg/>").starts_with("t.toml:1:1:"));
+}
+
+TEST_CASE("where pcm comes from is told")
+{
+    const setup s = parse_setup("[output]\nrate = 48000\npcm = \"null\"\n", "t.toml");
+    CHECK(s.output.pcm_at.text() == "t.toml:3:7");
+    CHECK_FALSE(s.output.pcm_included);
 }
 
 TEST_CASE("keys and values nested without end are refused, not followed")

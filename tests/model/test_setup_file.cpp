@@ -77,6 +77,8 @@ speed = 70
     CHECK(s.layout->tactors[1].where.text() == (f / "arrays/arm.toml").string() + ":3:8");
     // What the other file says besides holds, unless this one says other.
     CHECK(s.output.pcm == "null");
+    CHECK(s.output.pcm_included);
+    CHECK(s.output.pcm_at.text() == (f / "arrays/arm.toml").string() + ":5:7");
     CHECK(s.output.channels == 10u);
     CHECK(s.defaults == std::map<std::string, std::string>{{"soa", "0.06"}, {"speed", "70"}});
 

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What the name of a PCM leads to, as ALSA's configuration defines it. Nothing is opened.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <alsa/asoundlib.h>
+
+namespace tactor::pcm {
+
+/// ALSA's configuration as snd_pcm_open() finds it, kept from being reread meanwhile.
+class system_configuration {
+public:
+    system_configuration() { snd_config_update_ref(&top_); }
+    ~system_configuration()
+    {
+        if (top_ != nullptr)
+            snd_config_unref(top_);
+    }
+    system_configuration(const system_configuration&) = delete;
+    system_configuration& operator=(const system_configuration&) = delete;
+    /// Null where there is none.
+    snd_config_t* get() const noexcept { return top_; }
+
+private:
+    snd_config_t* top_ = nullptr;
+};
+
+/// The members of a compound by name; none of anything else.
+template <typename Visit>
+void each_member(snd_config_t* compound, Visit visit)
+{
+    if (snd_config_get_type(compound) != SND_CONFIG_TYPE_COMPOUND)
+        return;
+    snd_config_iterator_t i = snd_config_iterator_first(compound);
+    for (; i != snd_config_iterator_end(compound); i = snd_config_iterator_next(i)) {
+        snd_config_t* member = snd_config_iterator_entry(i);
+        const char* id = nullptr;
+        if (snd_config_get_id(member, &id) == 0 && id != nullptr)
+            visit(std::string(id), member);
+    }
+}
+
+/// Stands for the type of a definition that leads to itself, or farther than anyone's does.
+inline constexpr const char* endless = "?";
+
+/// The types of the plugins that playing on a PCM goes through, as their definitions say them: "plug", "hw".
+/// What is not defined has none.
+std::vector<std::string> find_route(snd_config_t* top, const std::string& name);
+/// By the system's configuration.
+std::vector<std::string> find_route(const std::string& name);
+
+/// The first type that has more effect than sound: "file", which writes a file or starts a command, and any
+/// that is not known. Empty: there is none.
+std::string unsafe_type(const std::vector<std::string>& route);
+
+/// The first type that starts something that lasts when it is opened: a mixer its card, a client its server;
+/// and any that is not known. Empty: opening changes nothing.
+std::string lasting_type(const std::vector<std::string>& route);
+
+/// Whether opening it empties a file or starts a command.
+bool writes(const std::vector<std::string>& route);
+
+/// "PipeWire", "PulseAudio" or "JACK", where the route ends in one; else empty.
+std::string server_of(const std::vector<std::string>& route);
+
+} // namespace tactor::pcm

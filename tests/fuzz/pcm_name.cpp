@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// Names of PCMs as an array file may say them: what passes is a name, and leads to no file and no command.
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include <alsa/asoundlib.h>
+
+#include "alsa/handle.hpp"
+#include "alsa/library_messages.hpp"
+#include "alsa/plain_name.hpp"
+#include "alsa/route.hpp"
+#include "holds.hpp"
+
+using namespace tactor;
+
+namespace {
+
+using configuration = std::unique_ptr<snd_config_t, pcm::deleter<snd_config_delete>>;
+
+// What can be spelt into: the stock definitions that take names, files and commands.
+configuration stock()
+{
+    constexpr const char* text =
+        "pcm.hw { @args [ CARD DEV ] @args.CARD { type string default 0 } @args.DEV { type integer default 0 "
+        "}\n"
+        " type hw card $CARD device $DEV }\n"
+        "pcm.plug { @args [ SLAVE ] @args.SLAVE { type string } type plug slave.pcm $SLAVE }\n"
+        "pcm.file { @args [ FILE FORMAT ] @args.FILE { type string } @args.FORMAT { type string default raw "
+        "}\n"
+        " type file slave.pcm null file $FILE format $FORMAT }\n"
+        "pcm.tee { @args [ SLAVE FILE ] @args.SLAVE { type string } @args.FILE { type string }\n"
+        " type file slave.pcm $SLAVE file $FILE format raw }\n"
+        "pcm.null { type null }\n";
+    snd_config_t* top = nullptr;
+    HOLDS(snd_config_load_string(&top, text, 0) == 0);
+    return configuration(top);
+}
+
+// Looks at a whole definition, the one that ALSA would open, without knowing what its members mean.
+void check_tree(snd_config_t* top, snd_config_t* node, int depth)
+{
+    const char* said = nullptr;
+    if (snd_config_get_string(node, &said) >= 0 && said != nullptr) {
+        HOLDS(std::strpbrk(said, "|/{}\"\n;$@\\") == nullptr);
+        HOLDS(std::strcmp(said, "file") != 0);
+        snd_config_t* next = nullptr;
+        if (depth < 4 && snd_config_search_definition(top, "pcm", said, &next) >= 0)
+            check_tree(top, configuration(next).get(), depth + 1);
+    }
+    pcm::each_member(node, [&](const std::string&, snd_config_t* m) { check_tree(top, m, depth); });
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+    static const configuration top = stock();
+    const pcm::library_messages silent;
+    const std::string name(fuzz::text_of(data, size));
+    if (!pcm::not_plain(name).empty())
+        return 0;
+    HOLDS(name.find('\0') == name.npos && name.size() <= 200);
+    const auto route = pcm::find_route(top.get(), name);
+    snd_config_t* definition = nullptr;
+    if (snd_config_search_definition(top.get(), "pcm", name.c_str(), &definition) < 0) {
+        HOLDS(route.empty());
+        return 0;
+    }
+    const configuration owned(definition);
+    if (pcm::unsafe_type(route).empty())
+        check_tree(top.get(), definition, 0);
+    return 0;
+}
