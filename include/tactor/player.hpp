@@ -150,7 +150,9 @@ struct player_lines {
 class TACTOR_API player {
 public:
     /// Starts the stream with silence. `a` gives the limit of each channel.
-    /// \throws error: not_available or runtime when the stream does not start.
+    /// \throws error: not_available or runtime when the stream does not start; bad_input where a tactor is on
+    /// a
+    ///         channel that the stream does not have.
     player(std::unique_ptr<sink> s, const array& a, const player_options& o = {}, player_lines lines = {});
     /// stop(), then closes.
     ~player();

@@ -13,7 +13,7 @@ namespace tactor::pcm {
 
 /// In the order in which they are tried: what I2S and USB devices carry without loss first.
 inline constexpr std::array format_preference{sample_format::s32, sample_format::float32,
-                                              sample_format::s24_3, sample_format::s24, sample_format::s16};
+                                              sample_format::s24_3, sample_format::s24_4, sample_format::s16};
 
 constexpr snd_pcm_format_t to_alsa(sample_format f) noexcept
 {
@@ -24,7 +24,7 @@ constexpr snd_pcm_format_t to_alsa(sample_format f) noexcept
         return SND_PCM_FORMAT_S16_LE;
     case sample_format::s24_3:
         return SND_PCM_FORMAT_S24_3LE;
-    case sample_format::s24:
+    case sample_format::s24_4:
         return SND_PCM_FORMAT_S24_LE;
     case sample_format::s32:
         return SND_PCM_FORMAT_S32_LE;

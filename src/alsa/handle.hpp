@@ -10,6 +10,8 @@
 
 #include <tactor/alsa.hpp>
 
+#include "alsa/library_messages.hpp"
+
 namespace tactor::pcm {
 
 /// More than any PCM has.
@@ -24,7 +26,16 @@ struct deleter {
     }
 };
 
-using handle = std::unique_ptr<snd_pcm_t, deleter<snd_pcm_close>>;
+/// What a plugin has to say of its end is not for standard error.
+struct closer {
+    void operator()(snd_pcm_t* p) const noexcept
+    {
+        const quiet silent;
+        snd_pcm_close(p);
+    }
+};
+
+using handle = std::unique_ptr<snd_pcm_t, closer>;
 using hw_params = std::unique_ptr<snd_pcm_hw_params_t, deleter<snd_pcm_hw_params_free>>;
 using sw_params = std::unique_ptr<snd_pcm_sw_params_t, deleter<snd_pcm_sw_params_free>>;
 using status = std::unique_ptr<snd_pcm_status_t, deleter<snd_pcm_status_free>>;

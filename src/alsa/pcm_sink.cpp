@@ -21,6 +21,7 @@ pcm_sink::pcm_sink(handle h, stream_setup s)
 
 io_status pcm_sink::prepare() noexcept
 {
+    const quiet silent;
     // The kernel does not prepare a stream that runs, as it may after a resume.
     if (state() == SND_PCM_STATE_RUNNING)
         snd_pcm_drop(handle_.get());
@@ -32,6 +33,7 @@ io_status pcm_sink::prepare() noexcept
 
 io_status pcm_sink::start() noexcept
 {
+    const quiet silent;
     const int code = snd_pcm_start(handle_.get());
     if (code < 0)
         return of_error(code, state());
@@ -56,6 +58,7 @@ bool pcm_sink::runs_without_clock() noexcept
 // Never snd_pcm_recover(), which sleeps in steps of a second.
 io_status pcm_sink::resume() noexcept
 {
+    const quiet silent;
     const int code = snd_pcm_resume(handle_.get());
     if (code >= 0)
         return io_status::ok;
@@ -65,6 +68,7 @@ io_status pcm_sink::resume() noexcept
 // Drivers stamp the stop; plugins leave the stamp of the start, and there the last position tells.
 std::int64_t pcm_sink::xrun_ns() noexcept
 {
+    const quiet silent;
     const std::int64_t now = rt::monotonic_ns();
     if (snd_pcm_status(handle_.get(), status_.get()) == 0) {
         snd_htimestamp_t stamp{};
@@ -78,6 +82,7 @@ std::int64_t pcm_sink::xrun_ns() noexcept
 
 std::size_t pcm_sink::descriptors(std::span<pollfd> fds) noexcept
 {
+    const quiet silent;
     if (paced_) {
         pacer_.arm();
         fds[0] = {.fd = pacer_.fd(), .events = POLLIN, .revents = 0};
@@ -90,6 +95,7 @@ std::size_t pcm_sink::descriptors(std::span<pollfd> fds) noexcept
 
 io_status pcm_sink::ready(std::span<pollfd> fds) noexcept
 {
+    const quiet silent;
     if (paced_)
         return pacer_.due() ? io_status::ok : io_status::again;
     if (fds.empty())
@@ -111,6 +117,7 @@ io_status pcm_sink::ready(std::span<pollfd> fds) noexcept
 
 io_result pcm_sink::room() noexcept
 {
+    const quiet silent;
     if (paced_)
         return {io_status::ok, static_cast<std::size_t>(pacer_.room()), 0};
     const snd_pcm_sframes_t n = snd_pcm_avail_update(handle_.get());
@@ -132,6 +139,7 @@ long pcm_sink::write_paced(const std::byte* data, std::size_t frames) noexcept
 
 io_result pcm_sink::write(const std::byte* data, std::size_t frames) noexcept
 {
+    const quiet silent;
     if (paced_)
         frames = std::min<std::size_t>(frames, pacer_.room());
     if (frames == 0)
@@ -149,6 +157,7 @@ io_result pcm_sink::write(const std::byte* data, std::size_t frames) noexcept
 
 stream_position pcm_sink::position() noexcept
 {
+    const quiet silent;
     const std::int64_t now = rt::monotonic_ns();
     if (paced_) {
         played_ = pacer_.played(now);
@@ -174,6 +183,7 @@ stream_position pcm_sink::position() noexcept
 
 void pcm_sink::drop() noexcept
 {
+    const quiet silent;
     snd_pcm_drop(handle_.get());
 }
 

@@ -88,13 +88,25 @@ std::unique_ptr<sink> not_null(std::unique_ptr<sink> s)
     return s;
 }
 
+// Frames for channels that the stream does not have would be left out, and nobody would feel why.
+const array& fitting(const array& a, const stream_setup& s)
+{
+    for (std::size_t i = 0; i < a.tactors.size(); ++i)
+        if (a.tactors[i].channel >= s.channels)
+            throw error(errc::bad_input, "player",
+                        fmt::format("tactor {} of {} is on channel {}, but the stream has {} channel{}", i,
+                                    a.name, a.tactors[i].channel, s.channels, s.channels == 1 ? "" : "s"),
+                        fmt::format("open it with {} channels; they count from 0", a.channels()));
+    return a;
+}
+
 } // namespace
 
 player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines l)
     : out(not_null(std::move(s))),
       lines(checked(std::move(l), out->setup().rate)),
       feed(link, horizon_frames(o, out->setup())),
-      tactors(a),
+      tactors(fitting(a, out->setup())),
       loop(*out, link, synth::channel_limits(a, out->setup().channels),
            loop_options(o, out->setup(), lines.amplifier != nullptr)),
       audio(loop, *out, link, thread_options(o))

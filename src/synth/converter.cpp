@@ -47,7 +47,7 @@ void to_bits(sample_format f, const channel_samples& c, unsigned n, lane& v) noe
     case sample_format::s16:
         return to_integer(c, n, 32768.0, v.data());
     case sample_format::s24_3:
-    case sample_format::s24:
+    case sample_format::s24_4:
         return to_integer(c, n, 8388608.0, v.data());
     case sample_format::s32:
         return to_integer(c, n, 2147483648.0, v.data());

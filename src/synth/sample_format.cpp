@@ -16,7 +16,7 @@ constexpr std::array<std::pair<std::string_view, sample_format>, 5> names{{
     {"float", sample_format::float32},
     {"s16", sample_format::s16},
     {"s24", sample_format::s24_3},
-    {"s24-4", sample_format::s24},
+    {"s24-4", sample_format::s24_4},
     {"s32", sample_format::s32},
 }};
 
@@ -30,7 +30,7 @@ std::size_t bytes_of(sample_format f) noexcept
     case sample_format::s24_3:
         return 3;
     case sample_format::float32:
-    case sample_format::s24:
+    case sample_format::s24_4:
     case sample_format::s32:
         break;
     }

@@ -22,7 +22,7 @@ bool is_float(sample_format f)
 
 void check_format(sample_format f, unsigned channels)
 {
-    if (f == sample_format::s24) {
+    if (f == sample_format::s24_4) {
         throw error(errc::bad_input, "--sample-format",
                     fmt::format("a WAV file cannot hold {}", to_string(f)), "use float, s16, s24 or s32");
     }

@@ -2,12 +2,14 @@
 // What is said when a PCM cannot be opened, on a system made of files.
 #include <cerrno>
 #include <chrono>
+#include <cstdarg>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
 
+#include <alsa/asoundlib.h>
 #include <doctest/doctest.h>
 
 #include <tactor/alsa.hpp>
@@ -15,6 +17,7 @@
 
 #include "alsa/cards.hpp"
 #include "alsa/error_text.hpp"
+#include "alsa/library_messages.hpp"
 #include "fake_system.hpp"
 #include "has.hpp"
 
@@ -178,6 +181,43 @@ TEST_CASE("the card and the device in an ALSA name")
     is("surround71:CARD=PCH,DEV=0", "PCH", 0);
     for (const char* name : {"null", "default", "raw:/tmp/x", "", ":", "file:hw"})
         CHECK_FALSE(pcm::named_device(name));
+}
+
+TEST_CASE("the host program keeps its handlers of libasound's messages")
+{
+    const auto fails = [] { CHECK_THROWS_AS(open_alsa({.pcm = "no-such-pcm", .channels = 1}), error); };
+    const auto host = snd_lib_error;
+    fails();
+    const bool kept = snd_lib_error == host;
+    CHECK(kept);
+
+    static unsigned heard = 0;
+    const auto own = [](const char*, int, const char*, int, const char*, va_list) { ++heard; };
+    const snd_local_error_handler_t before = pcm::set_local_handler(own);
+    fails();
+    { // What is said is the error's detail, not the host's, and in between its own calls are its own.
+        const auto sink = open_alsa({.pcm = "null", .channels = 1});
+        CHECK(heard == 0);
+        snd_pcm_t* p = nullptr;
+        CHECK(snd_pcm_open(&p, "no-such-pcm", SND_PCM_STREAM_PLAYBACK, 0) < 0);
+        CHECK(heard != 0);
+    }
+    const bool restored = pcm::set_local_handler(before) == static_cast<snd_local_error_handler_t>(own);
+    CHECK(restored);
+}
+
+TEST_CASE("messages within messages are the inner one's, and the outer one goes on")
+{
+    const pcm::library_messages outer;
+    {
+        const pcm::library_messages inner;
+        SNDERR("one");
+        SNDERR("two");
+        CHECK(inner.first() == "one");
+    }
+    CHECK(outer.first() == "");
+    SNDERR("three\n");
+    CHECK(outer.first() == "three");
 }
 
 } // namespace alsa_errors_test

@@ -114,7 +114,7 @@ TEST_CASE("what a PCM can do is told without configuring it")
     CHECK(dac.prepares() == 0);
 
     for (const alsa_options& o : {alsa_options{.channels = 65}, alsa_options{.channels = 9, .rate = 44100},
-                                  alsa_options{.channels = 9, .format = sample_format::s24}}) {
+                                  alsa_options{.channels = 9, .format = sample_format::s24_4}}) {
         pcm_info other;
         pcm::look_at(dac.pcm(), o, other);
         CHECK(other.opened);

@@ -87,7 +87,7 @@ TEST_CASE("null takes what is asked, in the first format of the preference")
 TEST_CASE("a format that is asked for is the format that is used")
 {
     for (const sample_format f : {sample_format::float32, sample_format::s16, sample_format::s24_3,
-                                  sample_format::s24, sample_format::s32}) {
+                                  sample_format::s24_4, sample_format::s32}) {
         alsa_options o;
         o.channels = 1;
         o.format = f;
@@ -202,7 +202,8 @@ TEST_CASE("a device of a card: formats in order of preference, rate and channels
     o.channels = 8;
     CHECK(open({.formats = {SND_PCM_FORMAT_S16_LE, SND_PCM_FORMAT_FLOAT_LE}}, o).format ==
           sample_format::float32);
-    CHECK(open({.formats = {SND_PCM_FORMAT_S16_LE, SND_PCM_FORMAT_S24_LE}}, o).format == sample_format::s24);
+    CHECK(open({.formats = {SND_PCM_FORMAT_S16_LE, SND_PCM_FORMAT_S24_LE}}, o).format ==
+          sample_format::s24_4);
     CHECK(open({.formats = {SND_PCM_FORMAT_S16_LE}}, o).format == sample_format::s16);
 
     const failure nothing = failure_of([&] { open({.formats = {SND_PCM_FORMAT_U8}}, o); });

@@ -128,4 +128,20 @@ TEST_CASE("null paces a stroke in real time, multi of nulls too")
     }
 }
 
+TEST_CASE("a stream with fewer channels than the array is refused, and says which tactor would be mute")
+{
+    const array palm = preset_array("palm-3x3");
+    try {
+        const player p(open_alsa({.pcm = "null", .channels = 4}), palm);
+        FAIL("it opened");
+    } catch (const error& e) {
+        CHECK(e.kind() == errc::bad_input);
+        CHECK(std::string(e.what()) ==
+              "player: tactor 4 of palm-3x3 is on channel 4, but the stream has 4 channels "
+              "(open it with 9 channels; they count from 0)");
+    }
+    CHECK_NOTHROW(player(open_alsa({.pcm = "null", .channels = 9}), palm));
+    CHECK_NOTHROW(player(open_alsa({.pcm = "null", .channels = 16}), palm));
+}
+
 } // namespace player_clockless_test

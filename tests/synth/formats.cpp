@@ -72,7 +72,7 @@ TEST_CASE("integers are rounded to the nearest, ties to even")
 
 TEST_CASE("S24 in four bytes is right-aligned and sign-extended")
 {
-    const auto bytes = converted(sample_format::s24, {-0.5, 0.5});
+    const auto bytes = converted(sample_format::s24_4, {-0.5, 0.5});
     CHECK(sample<std::int32_t>(bytes, 0) == -4194304);
     CHECK(sample<std::int32_t>(bytes, 1) == 4194304);
 }
@@ -135,8 +135,10 @@ TEST_CASE("sample formats have names and sizes")
     for (const sample_format f : all_formats) {
         CHECK(sample_format_from_string(to_string(f)) == f);
     }
+    CHECK(sample_format_from_string("s24") == sample_format::s24_3);
+    CHECK(sample_format_from_string("s24-4") == sample_format::s24_4);
     CHECK(bytes_of(sample_format::s24_3) == 3);
-    CHECK(bytes_of(sample_format::s24) == 4);
+    CHECK(bytes_of(sample_format::s24_4) == 4);
     CHECK(bytes_of(sample_format::s16) == 2);
     CHECK_THROWS_AS(sample_format_from_string("s25"), error);
     CHECK_THROWS_AS(sample_format_from_string(""), error);

@@ -153,7 +153,7 @@ inline double scale_of(tactor::sample_format f)
 
 inline constexpr tactor::sample_format all_formats[] = {
     tactor::sample_format::float32, tactor::sample_format::s16, tactor::sample_format::s24_3,
-    tactor::sample_format::s24, tactor::sample_format::s32};
+    tactor::sample_format::s24_4, tactor::sample_format::s32};
 
 /// One channel of a rendering in floats.
 inline std::vector<double> channel(const tactor::score& s, unsigned c)

@@ -83,7 +83,7 @@ TEST_CASE("what a header cannot say is bad input")
         }
         return false;
     };
-    CHECK(kind(sample_format::s24, 2));
+    CHECK(kind(sample_format::s24_4, 2));
     CHECK(kind(sample_format::float32, 16384)); // 65536 bytes a frame
     CHECK_FALSE(kind(sample_format::float32, 16383));
 }

@@ -218,7 +218,7 @@ TEST_CASE("names that cannot be a file are bad input")
     CHECK(kind_of(dir / "sub") == errc::bad_input);
     std::ofstream(dir / "plain") << "x";
     CHECK(kind_of(dir / "plain/a.wav") == errc::bad_input);
-    CHECK(kind_of(dir / "a.wav", sample_format::s24) == errc::bad_input);
+    CHECK(kind_of(dir / "a.wav", sample_format::s24_4) == errc::bad_input);
     CHECK(dir.names() == std::vector<std::string>{"plain", "sub"});
 }
 
