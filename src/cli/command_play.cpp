@@ -10,6 +10,7 @@
 #include "cli/play_report.hpp"
 #include "cli/play_session.hpp"
 #include "cli/say.hpp"
+#include "cli/sound_server.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -95,13 +96,17 @@ int play(settings& s, option_list& options, const play_options& o)
     if (!names_device(s, e))
         say(stderr, "tactor: no device is configured: playing to \"null\", which nobody feels (-D PCM plays "
                     "on hardware)\n");
-    play_session session(device_options(s, o, e, scores.front().channels(), scores.front().rate()), o, e);
+    const alsa_options device = device_options(s, o, e, scores.front().channels(), scores.front().rate());
+    const std::string server = settle_server(device.pcm);
+    play_session session(device, o, e);
     if (!o.json())
         say(stdout, "{}\n", describe(session.setup()));
     std::fflush(stdout);
     const std::string warning = latency_warning(o, session.setup());
     if (!warning.empty())
         say(stderr, "tactor: warning: {}\n", warning);
+    if (!server.empty())
+        say(stderr, "tactor: warning: {} ({})\n", server_note(server), server_cure);
 
     run_report r;
     for (std::size_t i = 0; i < pieces.size(); ++i)

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Sound servers between the tool and the card.
+#pragma once
+
+#include <string>
+
+namespace tactor::cli {
+
+/// The sound server that playing on a PCM goes through; empty: none. PipeWire is asked to give each channel
+/// to the output of its number, not to mix: in the environment of this process, where nothing is said there
+/// yet. Before there are threads, and before the PCM is opened.
+std::string settle_server(const std::string& pcm);
+
+/// What a server in between may do.
+std::string server_note(const std::string& server);
+
+/// What to do about it.
+inline constexpr const char* server_cure =
+    "-D hw:CARD=NAME plays on the card itself; tactor devices lists them";
+
+} // namespace tactor::cli
