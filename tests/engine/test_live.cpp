@@ -186,6 +186,7 @@ TEST_CASE("options that cannot be are errors")
     refused([](live_options& o) { o.plan.carrier_hz = 24000.0; });
     refused([](live_options& o) { o.plan.carrier_hz = std::nan(""); });
     refused([](live_options& o) { o.plan.soa_s = 0.2; });
+    refused([](live_options& o) { o.plan.burst_s = 0.0701; });
     refused([](live_options& o) { o.timeout_s = 0.0; });
     refused([](live_options& o) { o.timeout_s = std::nan(""); });
     refused([](live_options& o) { o.render.level_dbfs = 3.0; });

@@ -188,7 +188,7 @@ TEST_CASE("[defaults] takes the options it lists, checked")
 {
     for (const std::string& name : setup_default_names())
         CHECK_FALSE(complaint("[defaults]\n" + name + " = []\n").empty());
-    CHECK(setup_default_names().size() == 19);
+    CHECK(setup_default_names().size() == 20);
     CHECK(complaint("[defaults]\nphantoms = \"log\"\n") ==
           "t.toml:2:1: unknown key 'phantoms' in [defaults] (did you mean 'phantom'?)");
     CHECK(complaint("[defaults]\nlevel_dbfs = -6\n") ==
