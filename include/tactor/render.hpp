@@ -28,15 +28,19 @@ enum class phase_mode { stroke, burst };
 /// "stroke" or "burst".
 TACTOR_API std::string_view to_string(phase_mode p) noexcept;
 
-/// What the array may be given at run time, over and above each channel's own max_dbfs. Plans within these
-/// limits are not touched in a single bit. The defaults are safe guesses: know your actuators.
+/// What the array may be given at run time, over and above each channel's own max_dbfs: what the channels
+/// get after all strokes are summed, by its envelope. Plans within these limits are not touched in a single
+/// bit. The defaults are safe guesses: know your actuators.
 struct drive_limits {
-    /// Greatest power of all tactors together, in dB above one channel's sine at full scale. Default: that of
-    /// three; infinite: no limit. The gain of all falls within the wave, without a click, and returns with
-    /// 50 ms.
+    /// Greatest power of all tactors together, in dB above one channel's sine at full scale: the sum of the
+    /// squared envelopes in every frame, where carriers beat on a tactor at their crests. Default: that of
+    /// three; infinite: no limit. The gain of all falls within some 10 ms, without a click, and returns with
+    /// 50 ms; what begins at once meanwhile fades in.
     double power_dbfs = 4.771212547196624;
     /// Longest time that one tactor is driven (above -40 dBFS) within any window; then its channel fades out
-    /// until half of that time has left the window. Not below window_s: no limit.
+    /// until half of that time has left the window. No window holds more than this and one fade of 20 ms.
+    /// What begins oftener than each 1/256 of the window may be cut so much early. Not below window_s: no
+    /// limit.
     double max_drive_s = 5.0;
     double window_s = 10.0;
 };

@@ -2,6 +2,7 @@
 #include "synth/carrier.hpp"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "synth/clones.hpp"
 
@@ -9,38 +10,41 @@ namespace tactor::synth {
 
 void carrier_block::forget() noexcept
 {
-    plain_place_ = {};
-    shaped_place_ = {};
+    for (kept& k : kept_) {
+        k.plain_place = {};
+        k.shaped_place = {};
+    }
 }
 
-const double* carrier_block::get(const voice& v, const fade* f, std::uint64_t at, unsigned n) noexcept
+const double* carrier_block::get(const voice& v, const fade* f, std::uint64_t at, unsigned n, wave w) noexcept
 {
+    kept& k = kept_[static_cast<std::size_t>(w)];
     const place here{at, n, v.cycles_per_frame, v.phase};
-    if (!(here == plain_place_)) {
+    if (!(here == k.plain_place)) {
         sine_block(tables_.get(v.cycles_per_frame), v.cycles_per_frame,
-                   static_cast<std::int64_t>(v.phase + at), n, plain_.data());
-        plain_place_ = here;
+                   static_cast<std::int64_t>(v.phase + at), n, k.plain.data(), w);
+        k.plain_place = here;
     }
     const auto first = static_cast<std::int64_t>(v.window_place + at);
     if (f == nullptr && window_is_flat(first, first + n, v.window, v.ramp)) {
-        return plain_.data();
+        return k.plain.data();
     }
     shape wanted{v.window_place, v.window, v.ramp, 0, 0};
     if (f != nullptr) {
         wanted.fade_place = static_cast<std::int64_t>(at - f->start);
         wanted.fade_length = f->length;
     }
-    if (here == shaped_place_ && wanted == shaped_shape_) {
-        return shaped_.data();
+    if (here == k.shaped_place && wanted == k.shaped_shape) {
+        return k.shaped.data();
     }
-    std::copy(plain_.begin(), plain_.begin() + n, shaped_.begin());
-    window_block(tables_, first, v.window, v.ramp, 0, n, shaped_.data());
+    std::copy(k.plain.begin(), k.plain.begin() + n, k.shaped.begin());
+    window_block(tables_, first, v.window, v.ramp, 0, n, k.shaped.data());
     if (f != nullptr) {
-        fade_block(tables_, wanted.fade_place, f->length, 0, n, shaped_.data());
+        fade_block(tables_, wanted.fade_place, f->length, 0, n, k.shaped.data());
     }
-    shaped_place_ = here;
-    shaped_shape_ = wanted;
-    return shaped_.data();
+    k.shaped_place = here;
+    k.shaped_shape = wanted;
+    return k.shaped.data();
 }
 
 TACTOR_CLONES void set_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept

@@ -3,6 +3,7 @@
 /// The carrier of a voice, window and fade included, shared by the voices that have it in common.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "synth/fades.hpp"
@@ -15,8 +16,11 @@ namespace tactor::synth {
 class carrier_block {
 public:
     /// Samples of the n frames (at most block_frames) from frame `at` of the stream on. Valid until the next
-    /// call.
-    const double* get(const voice& v, const fade* f, std::uint64_t at, unsigned n) noexcept;
+    /// call for the same wave.
+    const double* get(const voice& v, const fade* f, std::uint64_t at, unsigned n,
+                      wave w = wave::sine) noexcept;
+    /// Whether neither a window nor a fade shapes what get() gave for the sine.
+    bool is_plain(const double* s) const noexcept { return s == kept_[0].plain.data(); }
     void forget() noexcept;
 
 private:
@@ -35,12 +39,15 @@ private:
         std::uint64_t fade_length = 0;
         bool operator==(const shape&) const = default;
     };
+    struct kept {
+        place plain_place;
+        place shaped_place;
+        shape shaped_shape;
+        alignas(64) block plain{};
+        alignas(64) block shaped{};
+    };
     oscillator_tables tables_;
-    place plain_place_;
-    place shaped_place_;
-    shape shaped_shape_;
-    alignas(64) block plain_{};
-    alignas(64) block shaped_{};
+    std::array<kept, 2> kept_; ///< by wave
 };
 
 /// sum[j] = a * s[j] for lo <= j < hi.

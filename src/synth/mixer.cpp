@@ -101,8 +101,19 @@ bool mixer::fade_out(std::uint32_t score, std::uint32_t fade) noexcept
     return true;
 }
 
+drive_history mixer::history() const
+{
+    return impl_->duty.history(impl_->clock);
+}
+
+void mixer::resume(const drive_history& h) noexcept
+{
+    impl_->duty.resume(h);
+}
+
 void mixer::reset() noexcept
 {
+    impl_->power.silence(0);
     impl_->voices.clear();
     impl_->fading.clear();
     impl_->carrier.forget();
@@ -124,7 +135,7 @@ void mixer::process(std::size_t frames, std::byte* out) noexcept
             m.power.silence(silent);
         } else {
             const auto n = static_cast<unsigned>(
-                std::min<std::uint64_t>({block_frames, frames, m.duty.longest_block(m.clock)}));
+                std::min<std::uint64_t>({block_frames, frames, m.duty.longest_block()}));
             m.segment(n, out);
             out += n * m.frame_bytes;
             frames -= n;

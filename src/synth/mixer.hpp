@@ -12,6 +12,7 @@
 #include <tactor/array.hpp>
 #include <tactor/sample_format.hpp>
 
+#include "synth/drive_history.hpp"
 #include "synth/event.hpp"
 #include "synth/guard.hpp"
 
@@ -45,6 +46,13 @@ public:
     /// forgets them; drives of that score that are added later are dropped until the fade has ended and
     /// forgotten after it: the caller stops feeding them. False if 256 fades run already.
     bool fade_out(std::uint32_t score, std::uint32_t fade) noexcept;
+
+    /// For how long each channel was driven lately, for the next mixer of the same array. Allocates; nobody
+    /// may be in process().
+    drive_history history() const;
+    /// Counts on from what another mixer, at any rate, had counted; call drive_history::pass() for the time
+    /// that went by meanwhile. Before the first process(). Allocates nothing.
+    void resume(const drive_history& h) noexcept;
 
     /// Drops everything at once and counts frames from 0: a new epoch. What the channels were given before
     /// still counts.

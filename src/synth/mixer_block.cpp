@@ -8,16 +8,6 @@ namespace tactor::synth {
 
 namespace {
 
-/// The sum, where a lone voice stood in for it.
-double* summed(strip& t, unsigned n) noexcept
-{
-    if (t.lone != nullptr) {
-        set_constant(t.lone, t.gain, 0, n, t.sum.data());
-        t.lone = nullptr;
-    }
-    return t.sum.data();
-}
-
 constexpr block ones = [] {
     block b{};
     b.fill(1.0);
@@ -33,7 +23,10 @@ void mixer::impl::segment(unsigned n, std::byte* out) noexcept
     for (std::size_t i = 0; i < active.size(); ++i) {
         mix(voices[active[i]], i + 1 == active.size(), n);
     }
-    guard(n);
+    limit(n);
+    if (!envelopes.empty()) {
+        guard(n);
+    }
     write(n, out);
 }
 
@@ -54,11 +47,12 @@ void mixer::impl::mix(const voice& v, bool last, unsigned n) noexcept
             limited += to - from; // there is no tactor that it could be meant for
             continue;
         }
-        if (duty.on() && peak >= least_counted_drive && !t.spare) {
-            duty.drive(d.channel, clock + from, clock + to);
-        }
         if (!t.sounding) {
             t.sounding = true;
+            t.since = from;
+            t.cycles_per_frame = v.cycles_per_frame;
+            t.steady = d.slope == 0.0 && carrier.is_plain(s);
+            t.beats = false;
             t.peak = 0.0;
             t.until = 0;
             t.reach(from, to, peak);
@@ -67,15 +61,17 @@ void mixer::impl::mix(const voice& v, bool last, unsigned n) noexcept
                 t.lone = s;
                 t.gain = d.from;
                 if (!last) {
-                    summed(t, n);
+                    t.summed(n);
                 }
                 continue;
             }
             std::fill_n(t.sum.begin(), n, 0.0);
         } else {
             t.reach(from, to, peak);
+            t.steady = false;
+            t.beats = t.beats || t.cycles_per_frame != v.cycles_per_frame;
         }
-        double* sum = summed(t, n);
+        double* sum = t.summed(n);
         if (d.slope == 0.0) {
             add_constant(s, d.from, from, to, sum);
         } else {
@@ -84,34 +80,16 @@ void mixer::impl::mix(const voice& v, bool last, unsigned n) noexcept
     }
 }
 
-void mixer::impl::guard(unsigned n) noexcept
+void mixer::impl::limit(unsigned n) noexcept
 {
-    double most = 0.0; // sum of squares
     for (const std::uint32_t c : sounding) {
         strip& t = strips[c];
         if (t.spare) {
-            limit_block(summed(t, n), n, 1.0); // two markers at once are one
-            continue;
-        }
-        if (!within_limit(t.peak, t.limit)) {
-            limited += limit_block(summed(t, n), n, t.limit);
-        }
-        if (duty.on() && duty.acts(c, clock)) {
-            duty.apply(c, clock, n, summed(t, n));
-        }
-        const double peak = t.peak < t.limit ? t.peak : t.limit;
-        most += peak * peak;
-    }
-    if (power.passes(most)) {
-        return;
-    }
-    powered.clear();
-    for (const std::uint32_t c : sounding) {
-        if (!strips[c].spare) {
-            powered.push_back(summed(strips[c], n));
+            limit_block(t.summed(n), n, 1.0); // two markers at once are one
+        } else if (!within_limit(t.peak, t.limit)) {
+            limited += limit_block(t.summed(n), n, t.limit);
         }
     }
-    power_limited += power.apply(powered, n);
 }
 
 void mixer::impl::write(unsigned n, std::byte* out) noexcept

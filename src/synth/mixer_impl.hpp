@@ -4,16 +4,21 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "synth/carrier.hpp"
 #include "synth/converter.hpp"
+#include "synth/drive_guard.hpp"
 #include "synth/fades.hpp"
 #include "synth/limiter.hpp"
 #include "synth/mixer.hpp"
+#include "synth/power_guard.hpp"
 #include "synth/voice.hpp"
 
 namespace tactor::synth {
@@ -27,7 +32,13 @@ struct strip {
     double peak = 0.0;     ///< what the voices could reach together
     double together = 0.0; ///< what those could that last until `until`, a frame of the block
     unsigned until = 0;
-    bool spare = false; ///< no tactor: for markers
+    unsigned since = 0;            ///< frame of the block at which the first voice begins
+    unsigned look = block_frames;  ///< the envelope is needed from this frame of the block on
+    double cycles_per_frame = 0.0; ///< of the first voice
+    bool steady = false;           ///< one voice alone, with a constant envelope
+    bool beats = false;            ///< voices of several carriers
+    bool only_crests = false;      ///< what the beat does between them is not needed
+    bool spare = false;            ///< no tactor: for markers
     bool sounding = false;
 
     /// A voice of that amplitude from one frame of the block to another. They come in order of their start.
@@ -37,6 +48,29 @@ struct strip {
         until = std::max(until, to);
         peak = std::max(peak, together);
     }
+    /// Whether it is not driven in this block, whatever the voices do.
+    bool is_quiet() const noexcept { return std::min(peak, limit) <= least_counted_drive; }
+    /// The sum, where a lone voice stood in for it.
+    double* summed(unsigned n) noexcept
+    {
+        if (lone != nullptr) {
+            set_constant(lone, gain, 0, n, sum.data());
+            lone = nullptr;
+        }
+        return sum.data();
+    }
+};
+
+/// Of a cache line's alignment in a vector, too.
+struct alignas(64) aligned_block : block {};
+
+/// Some frames of a channel where carriers beat.
+struct crest {
+    static constexpr std::size_t frames = 128;
+    alignas(64) std::array<double, frames> x{}; ///< of the carrier at hand, zero between two
+    alignas(64) std::array<double, frames> y{};
+    alignas(64) std::array<double, frames> reach{}; ///< of those before it
+    bool touched = false;
 };
 
 struct mixer::impl {
@@ -44,8 +78,10 @@ struct mixer::impl {
         : format(f),
           strips(limits.size()),
           voices(capacity),
-          power(g.power, g.rate),
-          duty(limits.size(), g.drive_frames, g.window_frames, g.rate)
+          power(limits.size(), g.power, reach(limits), g.rate),
+          duty(limits.size(), g.drive_frames, g.window_frames, g.rate),
+          envelopes(power.on() || duty.on() ? limits.size() : 0),
+          crests(power.on() ? limits.size() : 0)
     {
         std::transform(limits.begin(), limits.end(), strips.begin(), [](double l) {
             strip s;
@@ -56,12 +92,31 @@ struct mixer::impl {
         sounding.reserve(strips.size());
         powered.reserve(strips.size());
         samples.reserve(strips.size());
+        carriers.reserve(power.on() ? capacity : 0);
         frame_bytes = strips.size() * bytes_of(format);
+    }
+
+    static double reach(std::span<const double> limits) noexcept
+    {
+        return std::accumulate(limits.begin(), limits.end(), 0.0,
+                               [](double sum, double l) { return sum + clean_limit(l) * clean_limit(l); });
     }
 
     void segment(unsigned n, std::byte* out) noexcept;
     void mix(const voice& v, bool last, unsigned n) noexcept;
+    void limit(unsigned n) noexcept;
     void guard(unsigned n) noexcept;
+    void look_from(bool together, unsigned n) noexcept;
+    void add_wave(const voice& v, const voice_drive& d, wave w, unsigned look, unsigned n,
+                  double* sum) noexcept;
+    void find_envelopes(unsigned n) noexcept;
+    void count_drive(unsigned n) noexcept;
+    void find_beats(unsigned from, unsigned n) noexcept;
+    void list_carriers() noexcept;
+    void find_crests(unsigned from, unsigned to) noexcept;
+    void add_carrier(unsigned from, unsigned to) noexcept;
+    void cut(unsigned n) noexcept;
+    void guard_power(bool together, unsigned n) noexcept;
     void write(unsigned n, std::byte* out) noexcept;
     bool plays(const voice& v) const noexcept;
     void end_fades() noexcept;
@@ -75,7 +130,10 @@ struct mixer::impl {
     carrier_block carrier;
     power_guard power;
     drive_guard duty;
-    std::vector<double*> powered; ///< sums that the power guard looks at
+    std::vector<aligned_block> envelopes; ///< squared, by channel; none where nobody asks
+    std::vector<powered_channel> powered;
+    std::vector<crest> crests;                              ///< by channel
+    std::vector<std::pair<double, std::uint32_t>> carriers; ///< cycles per frame, place among the active
     std::vector<channel_samples> samples;
     std::uint64_t clock = 0; ///< frames since the construction
     std::uint64_t position = 0;

@@ -92,7 +92,7 @@ const oscillator_table& oscillator_tables::get(double cycles_per_frame) noexcept
 }
 
 TACTOR_CLONES void sine_block(const oscillator_table& t, double cycles_per_frame, std::int64_t first,
-                              unsigned n, double* out) noexcept
+                              unsigned n, double* out, wave w) noexcept
 {
     auto offset = static_cast<unsigned>(static_cast<std::uint64_t>(first) % table_frames);
     const base_angles base = angles(first - offset, offset + n, cycles_per_frame);
@@ -101,8 +101,8 @@ TACTOR_CLONES void sine_block(const oscillator_table& t, double cycles_per_frame
         const double* __restrict c = t.cos.data() + offset;
         double* __restrict o = out;
         const unsigned length = std::min(n, table_frames - offset);
-        const double base_sin = base.sin[i];
-        const double base_cos = base.cos[i];
+        const double base_sin = w == wave::sine ? base.sin[i] : base.cos[i];
+        const double base_cos = w == wave::sine ? base.cos[i] : -base.sin[i];
         for (unsigned j = 0; j < length; ++j) {
             o[j] = base_sin * c[j] + base_cos * s[j];
         }

@@ -20,6 +20,9 @@ inline constexpr unsigned table_frames = 64;
 
 using block = std::array<double, block_frames>;
 
+/// Both together are the envelope: sin^2 + cos^2 = 1 in each frame.
+enum class wave : unsigned char { sine, cosine };
+
 /// Sine and cosine of the first frames of one frequency.
 struct oscillator_table {
     alignas(64) std::array<double, table_frames> sin;
@@ -69,9 +72,10 @@ void for_each_part(std::int64_t first, unsigned lo, unsigned hi, F f) noexcept
 }
 
 /// out[j] = sin(2 pi f (first + j)) for j < n (at most block_frames), with f = `cycles_per_frame`, whose
-/// table is `t`: an exact angle at each multiple of table_frames, added to those of the table.
+/// table is `t`: an exact angle at each multiple of table_frames, added to those of the table. The cosine
+/// in place of the sine: the same carrier a quarter of a cycle later.
 void sine_block(const oscillator_table& t, double cycles_per_frame, std::int64_t first, unsigned n,
-                double* out) noexcept;
+                double* out, wave w = wave::sine) noexcept;
 
 /// out[j] *= offset + scale * cos(2 pi (a + (offset + j - lo) f)) for the part's j: both halves of a raised
 /// cosine; `base` is a's sine and cosine, `t` f's table.

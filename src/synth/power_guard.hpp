@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// How much power all tactors together may be given.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tactor::synth {
+
+/// A channel in one block.
+struct powered_channel {
+    std::size_t channel = 0;
+    double* x = nullptr;              ///< samples
+    const double* envelope = nullptr; ///< squared, in each frame at least the square of the sample
+};
+
+/// Holds the sum over the channels of the squared envelopes, and with it that of x^2, at or below a limit in
+/// every frame, without a click: the gain of all follows the envelopes, not the waves, and takes about 10 ms.
+/// Where envelopes rise faster than that, what rises waits for the room that the gain makes: what sounds
+/// already is never cut off, and what begins fades in. The gain comes back 20 ms after the loud part with a
+/// time constant of 50 ms. State changes frame by frame, so that block sizes make no difference.
+class power_guard {
+public:
+    /// `most`: greatest sum of squares; not finite: no limit. `reach`: what `channels` channels could come
+    /// to.
+    power_guard(std::size_t channels, double most, double reach, unsigned rate);
+
+    /// Whether it can ever act.
+    bool on() const noexcept { return on_; }
+    /// Whether a block that cannot exceed this sum of squares passes as it is.
+    bool passes(double sum_of_squares) const noexcept
+    {
+        return !on_ || (held_ <= most_ && gain_ >= 1.0 && sum_of_squares <= most_ * (1.0 - 1e-12));
+    }
+    /// After such a block: the squared envelopes in its last frame matter to the next.
+    void passed(std::span<const powered_channel> channels, unsigned n) noexcept;
+    /// Scales n frames of the channels, at most block_frames; returns how many it changed.
+    std::uint64_t apply(std::span<const powered_channel> channels, unsigned n) noexcept;
+    /// Time passes in silence.
+    void silence(std::uint64_t frames) noexcept;
+
+private:
+    void step(double sum) noexcept;
+    void keep(std::span<const powered_channel> channels) noexcept;
+    void admit(std::span<const powered_channel> channels, unsigned frame) noexcept;
+    void squeeze(std::span<const powered_channel> channels, unsigned frame, double sum, double room) noexcept;
+
+    double most_;
+    bool on_;
+    double decay_;
+    double blend_;
+    double held_;       ///< greatest sum of late; never below most_
+    double near_ = 1.0; ///< half-way smoothed
+    double gain_ = 1.0; ///< of all
+    /// By channel, in the frame before: the squared envelope that it had, or was let have, but for gain_.
+    std::vector<double> let_;
+    std::vector<double> other_; ///< takes the place of let_ from block to block
+};
+
+} // namespace tactor::synth
