@@ -11,6 +11,7 @@
 #include "engine/feeder.hpp"
 #include "nowhere.hpp"
 #include "pieces.hpp"
+#include "synth/guard.hpp"
 
 using namespace tactor;
 
@@ -40,14 +41,16 @@ double cpu_s() noexcept
 }
 
 /// One step of the audio thread is one period.
-void periods(benchmark::State& state)
+void periods(benchmark::State& state, double power_dbfs)
 {
     const auto period = static_cast<unsigned>(state.range(0));
     static const std::vector<score> strokes = scores();
     bench::nowhere out(64, period);
     engine::link link;
     engine::feeder feed(link, 24'000);
-    engine::audio_loop loop(out, link, std::vector<double>(64, 1.0), {});
+    engine::loop_options o;
+    o.guards = synth::guards_of({.power_dbfs = power_dbfs}, 48000);
+    engine::audio_loop loop(out, link, std::vector<double>(64, 1.0), o);
     loop.start(0);
     stroke_id id = 0;
     std::size_t ended = 64;
@@ -75,11 +78,17 @@ void periods(benchmark::State& state)
     state.counters["worst_%_of_a_core"] = 100.0 * worst / period_s;
     state.counters["mean_%_of_a_core"] = 100.0 * total / (static_cast<double>(state.iterations()) * period_s);
 }
-BENCHMARK(periods)
+BENCHMARK_CAPTURE(periods, within_limits, drive_limits{}.power_dbfs)
     ->Name("engine/64_strokes_on_64_channels")
     ->Arg(48)
     ->Arg(96)
     ->Arg(480)
+    ->UseManualTime()
+    ->Unit(benchmark::kMicrosecond);
+// 64 carriers, each of which counts by itself.
+BENCHMARK_CAPTURE(periods, held_down, -40.0)
+    ->Name("engine/64_strokes_held_down")
+    ->Arg(96)
     ->UseManualTime()
     ->Unit(benchmark::kMicrosecond);
 
