@@ -63,6 +63,15 @@ class Play(ToolTest):
         self.refused(2, *long, "--max-drive-s", "0", says=["--max-drive-s"])
         self.refused(2, *long, "--power-dbfs", "loud", says=["--power-dbfs", "loud"])
 
+    def test_weak_strokes_together_count_as_a_strong_one(self):
+        stroke = '[[stroke]]\npath = "M 0 10 L 1 10"\nduration_s = 1.0\nstart_s = 0.0\n'
+        limits = ("--level-dbfs", "-40.1", "--max-drive-s", "0.3", "--drive-window-s", "1")
+        for strokes, cut in ((1, False), (20, True)):
+            self.write("s.toml", stroke * strokes)
+            r = self.ok("play", "s.toml", "-D", "null", "--format", "json", *limits)
+            self.assertEqual(json.loads(r.stdout)["counters"]["drives_cut"] > 0, cut)
+            self.assertEqual("driven for longer than 0.3 s in 1 s" in r.stderr, cut, r.stderr)
+
     def test_ctrl_c_fades_out_and_exits_130(self):
         for number, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
             p = subprocess.Popen([TOOL, "play", "--path", "M 0 10 L 40 30", "--duration", "3600", "-D",

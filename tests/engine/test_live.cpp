@@ -10,6 +10,7 @@
 #include <tactor/error.hpp>
 
 #include "live_rig.hpp"
+#include "synth/guard.hpp"
 
 namespace live_test {
 
@@ -196,6 +197,41 @@ TEST_CASE("options that cannot be are errors")
         o.plan.profile.intercept_s = 0.0;
         o.plan.soa_s = 0.001;
     });
+}
+
+TEST_CASE("live strokes that are weak one by one count as what they are together, and so do a plan's")
+{
+    drive_limits limits;
+    limits.max_drive_s = 0.3;
+    limits.window_s = 1.0;
+    rig_options few;
+    few.loop.guards = synth::guards_of(limits, rate);
+    live_options weak;
+    weak.render.level_dbfs = -41.0;
+    const auto cuts = [&](unsigned strokes, bool continuous) {
+        live_rig r(weak, few);
+        std::vector<std::shared_ptr<live_stroke::impl>> all{r.live};
+        while (all.size() < strokes)
+            all.push_back(r.add(weak));
+        if (continuous) {
+            plan_options o;
+            o.method = algorithm::continuous;
+            render_options level;
+            level.level_dbfs = -41.0;
+            const point stay[] = {{0.0, 0.0}, {0.1, 0.0}};
+            const stroke there{"", trajectory::along(path::polyline(stay), 1.0)};
+            r.submit(score(palm(), {{make_plan(palm(), there, o), {}}}, level));
+        }
+        for (unsigned i = 0; i < 100; ++i) {
+            for (const auto& s : all)
+                s->to({0.0, 0.0}, 1.0);
+            r.play(480);
+        }
+        return r.link.count.drives_cut.load();
+    };
+    CHECK(cuts(1, false) == 0);
+    CHECK(cuts(1, true) >= 1);
+    CHECK(cuts(16, false) >= 1);
 }
 
 } // namespace live_test
