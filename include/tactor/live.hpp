@@ -35,9 +35,9 @@ struct live_counts {
     std::uint64_t limited = 0; ///< of these, with a tactor that was held at its channel's limit
 };
 
-/// The producer's end of a live stroke. Cheap to copy; all copies feed the same stroke. May outlive the
-/// player. Without end() or cancel(), or when no copy is left, the stroke ends when points no longer come
-/// (live_options::timeout_s).
+/// The producer's end of a live stroke. Cheap to copy; all copies feed the same stroke, and a move is a copy.
+/// May outlive the player. Without end() or cancel(), or when no copy is left, the stroke ends when points no
+/// longer come (live_options::timeout_s).
 /// Any thread may call all members; none waits for the audio thread or the player, only (for a
 /// microsecond) for another call of to() on the same stroke.
 class TACTOR_API live_stroke {
@@ -63,8 +63,11 @@ public:
     bool open() const noexcept;
     live_counts counts() const noexcept;
 
+    live_stroke(const live_stroke&) noexcept = default;
+    live_stroke& operator=(const live_stroke&) noexcept = default;
+
     struct impl;
-    explicit live_stroke(std::shared_ptr<impl> p) noexcept; ///< for the player
+    explicit live_stroke(std::shared_ptr<impl> p); ///< for the player. \throws error (bad_input) for none
 
 private:
     std::shared_ptr<impl> impl_;

@@ -14,8 +14,8 @@
 
 namespace tactor {
 
-/// One open or closed curve of lines, arcs and Beziers. Immutable; copies share it. All members may
-/// be called from any thread and do not block.
+/// One open or closed curve of lines, arcs and Beziers. Immutable; copies share it, and so do moves: what is
+/// moved from stays what it was. All members may be called from any thread and do not block.
 class TACTOR_API path {
 public:
     /// SVG path data in millimetres, e.g. "M 0 10 C 20 -5 20 45 40 30".
@@ -46,9 +46,12 @@ public:
     /// SVG path data of the curve, for plots.
     std::string svg() const;
 
+    path(const path&) noexcept = default; ///< and no move: there is no path without a curve
+    path& operator=(const path&) noexcept = default;
+
     struct impl;
     const impl& data() const noexcept; ///< for the library
-    explicit path(std::shared_ptr<const impl> p) noexcept;
+    explicit path(std::shared_ptr<const impl> p); ///< for the library. \throws error (bad_input) for none
 
 private:
     std::shared_ptr<const impl> impl_;

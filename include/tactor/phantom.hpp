@@ -22,12 +22,14 @@ struct drive {
 };
 
 /// Delaunay faces of an array (rendering model, section 4). Tactors on one circumcircle form one
-/// face. Immutable; any thread may call.
+/// face. Immutable; copies and moves share it (what is moved from stays what it was); any thread may call.
 class TACTOR_API layout {
 public:
     /// O(n log n). \throws error (bad_input) as validate() does, and where two tactors are too near to each
     /// other for faces between places that are so far apart (nearer than some 1e-9 of the array's extent).
     explicit layout(const array& a);
+    layout(const layout&) noexcept = default;
+    layout& operator=(const layout&) noexcept = default;
 
     /// Tactor places by index.
     const std::vector<point>& places() const noexcept;

@@ -74,13 +74,16 @@ struct placed_plan {
     std::optional<double> start_s = {};
 };
 
-/// Plans at a sample rate and at levels: frames and channels. Immutable, cheap to copy.
+/// Plans at a sample rate and at levels: frames and channels. Immutable, cheap to copy; a move is a copy, so
+/// that what is moved from stays what it was.
 class TACTOR_API score {
 public:
     /// \throws error (bad_input): carrier at or above half the rate, a level that a tactor may not
     ///         have (above full scale or its max_dbfs; with its line in the array file), a tactor
     ///         without a threshold where a sensation level is asked for, too few channels.
     score(const array& a, std::vector<placed_plan> plans, const render_options& o);
+    score(const score&) noexcept = default;
+    score& operator=(const score&) noexcept = default;
 
     std::uint64_t frames() const noexcept; ///< length of the piece
     unsigned channels() const noexcept;
@@ -97,7 +100,8 @@ private:
 };
 
 /// Renders a score offline, block by block. The same mixer as in the player: same score, same
-/// samples, whatever the block sizes. One thread at a time.
+/// samples, whatever the block sizes. One thread at a time. What is moved from can be destroyed and assigned
+/// to; its other members throw error (bad_input).
 class TACTOR_API renderer {
 public:
     renderer(const score& s, sample_format f);
@@ -107,14 +111,14 @@ public:
 
     /// Writes `frames` interleaved frames to out (frames * channels * bytes_of(format) bytes) and
     /// goes on; silence after the end, and after a failure(). Allocates nothing.
-    void process(std::size_t frames, std::byte* out) noexcept;
+    void process(std::size_t frames, std::byte* out);
 
     /// Next frame to be rendered.
-    std::uint64_t position() const noexcept;
+    std::uint64_t position() const;
 
     /// Why the rest is silence: a plan's `at` threw, or gave what is no amplitude of a tactor, in mid-stroke.
     /// Empty while all is well.
-    const std::string& failure() const noexcept;
+    const std::string& failure() const;
 
 private:
     struct impl;

@@ -30,8 +30,8 @@ struct meeting {
     point position = {};
 };
 
-/// Position and intensity over time (rendering model, section 2). Immutable; copies share it; any
-/// thread may call.
+/// Position and intensity over time (rendering model, section 2). Immutable; copies and moves share it (what
+/// is moved from stays what it was); any thread may call.
 class TACTOR_API trajectory {
 public:
     /// Along a path at constant speed in `duration_s`.
@@ -62,12 +62,16 @@ public:
     std::vector<double> meets_x(double x_mm) const;
     std::vector<double> meets_y(double y_mm) const;
 
+    trajectory(const trajectory&) noexcept = default; ///< and no move: see path
+    trajectory& operator=(const trajectory&) noexcept = default;
+
     struct impl;
     const impl& data() const noexcept; ///< for the library
-    explicit trajectory(std::shared_ptr<const impl> p) noexcept;
+    explicit trajectory(
+        std::shared_ptr<const impl> p); ///< for the library. \throws error (bad_input) for none
 
 private:
-    std::shared_ptr<const impl> impl_ = {};
+    std::shared_ptr<const impl> impl_;
 };
 
 /// Speed of a stroke that says neither duration nor speed.

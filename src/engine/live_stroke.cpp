@@ -113,8 +113,10 @@ bool live_stroke::impl::to(point p, double intensity)
     return true;
 }
 
-live_stroke::live_stroke(std::shared_ptr<impl> p) noexcept : impl_(std::move(p))
+live_stroke::live_stroke(std::shared_ptr<impl> p) : impl_(std::move(p))
 {
+    if (impl_ == nullptr)
+        throw error(errc::bad_input, "live stroke", "there is none", "begin one with player::begin()");
 }
 
 stroke_id live_stroke::id() const noexcept

@@ -67,6 +67,7 @@ const char* error::what() const noexcept
     return text_.c_str();
 }
 
+// The text is empty where the error was moved from.
 std::string_view error::subject() const noexcept
 {
     return std::string_view(text_).substr(0, why_at_ - 2);
@@ -74,12 +75,16 @@ std::string_view error::subject() const noexcept
 
 std::string_view error::why() const noexcept
 {
+    if (why_at_ > text_.size())
+        return {};
     const std::size_t end = hint_at_ == text_.size() ? hint_at_ : hint_at_ - 2;
     return std::string_view(text_).substr(why_at_, end - why_at_);
 }
 
 std::string_view error::hint() const noexcept
 {
+    if (hint_at_ > text_.size())
+        return {};
     const std::string_view rest = std::string_view(text_).substr(hint_at_);
     return rest.substr(0, rest.empty() ? 0 : rest.size() - 1);
 }

@@ -107,8 +107,11 @@ path path::arc(point centre, double radius_mm, double from_deg, double sweep_deg
     return detail::make_path(std::move(o), "arc");
 }
 
-path::path(std::shared_ptr<const impl> p) noexcept : impl_(std::move(p))
+path::path(std::shared_ptr<const impl> p) : impl_(std::move(p))
 {
+    if (impl_ == nullptr)
+        throw error(errc::bad_input, "path", "there is no curve",
+                    "make one with path::from_svg(), polyline() or arc()");
 }
 
 const path::impl::measured_curve* path::impl::curve_of(std::size_t segment) const noexcept

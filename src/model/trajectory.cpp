@@ -123,15 +123,18 @@ std::vector<double> trajectory::impl::meets(axis a, double line) const
     return times;
 }
 
-trajectory::trajectory(std::shared_ptr<const impl> p) noexcept : impl_(std::move(p))
+trajectory::trajectory(std::shared_ptr<const impl> p) : impl_(std::move(p))
 {
+    if (impl_ == nullptr)
+        throw error(errc::bad_input, "trajectory", "there is no movement",
+                    "make one with trajectory::along() or timed()");
 }
 
 trajectory trajectory::along(path p, double duration_s, double intensity)
 {
     check_duration(duration_s);
     check_intensity("stroke", intensity);
-    return trajectory(std::make_shared<impl>(impl{constant_speed{std::move(p), intensity}, duration_s, 1.0}));
+    return trajectory(std::make_shared<impl>(impl{constant_speed{p, intensity}, duration_s, 1.0}));
 }
 
 trajectory trajectory::timed(std::vector<timed_point> points)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <memory>
 
+#include <tactor/error.hpp>
 #include <tactor/render.hpp>
 
 #include "synth/event_source.hpp"
@@ -42,6 +44,18 @@ struct renderer::impl {
     std::size_t frame_bytes;
 };
 
+namespace {
+
+template <typename Impl>
+Impl& not_moved(const std::unique_ptr<Impl>& p)
+{
+    if (p == nullptr)
+        throw error(errc::bad_input, "renderer", "it was moved from", "use the one that it was moved to");
+    return *p;
+}
+
+} // namespace
+
 renderer::renderer(const score& s, sample_format f) : impl_(std::make_unique<impl>(s, f))
 {
 }
@@ -50,29 +64,30 @@ renderer::~renderer() = default;
 renderer::renderer(renderer&&) noexcept = default;
 renderer& renderer::operator=(renderer&&) noexcept = default;
 
-void renderer::process(std::size_t frames, std::byte* out) noexcept
+void renderer::process(std::size_t frames, std::byte* out)
 {
+    impl& r = not_moved(impl_);
     // Whole blocks of the mixer, several at once: little to keep waiting, little to do between.
     constexpr std::uint64_t stride = std::uint64_t{8} * synth::block_frames;
     while (frames > 0) {
-        const std::uint64_t at = impl_->mix.position();
+        const std::uint64_t at = r.mix.position();
         const std::uint64_t until = std::min(at + frames, at / stride * stride + stride);
-        const std::uint64_t ready = std::max(impl_->feed(until), at + 1);
+        const std::uint64_t ready = std::max(r.feed(until), at + 1);
         const auto n = static_cast<std::size_t>(ready - at);
-        impl_->mix.process(n, out);
-        out += n * impl_->frame_bytes;
+        r.mix.process(n, out);
+        out += n * r.frame_bytes;
         frames -= n;
     }
 }
 
-std::uint64_t renderer::position() const noexcept
+std::uint64_t renderer::position() const
 {
-    return impl_->mix.position();
+    return not_moved(impl_).mix.position();
 }
 
-const std::string& renderer::failure() const noexcept
+const std::string& renderer::failure() const
 {
-    return impl_->source.failure();
+    return not_moved(impl_).source.failure();
 }
 
 } // namespace tactor

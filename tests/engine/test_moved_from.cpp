@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: MIT
+// What was moved from can be destroyed, assigned to and asked: it is what it was, or says what is wrong.
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <tactor/alsa.hpp>
+#include <tactor/error.hpp>
+#include <tactor/percept.hpp>
+#include <tactor/player.hpp>
+#include <tactor/wav.hpp>
+
+#include "alsa/adopt.hpp"
+#include "clock_runner.hpp"
+#include "has.hpp"
+#include "player_support.hpp"
+#include "scores.hpp"
+
+namespace moved_from_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+// Nothing here may be spared to the tests by the compiler's eye: reading what was moved from is what they are
+// about. NOLINTBEGIN(bugprone-use-after-move,hicpp-invalid-access-moved)
+
+namespace {
+
+path line()
+{
+    const std::vector<point> points{{0.0, 0.0}, {40.0, 30.0}};
+    return path::polyline(points);
+}
+
+// Moves, looks at what was left, assigns it anew.
+template <typename T, typename Same>
+void stays_usable(T a, T other, Same same)
+{
+    T b(std::move(a));
+    CHECK(same(a));
+    CHECK(same(b));
+    a = other;
+    CHECK(same(a));
+    T c(b);
+    c = std::move(b);
+    CHECK(same(b));
+    CHECK(same(c));
+    b = std::move(c);
+    CHECK(same(b));
+}
+
+template <typename Call>
+std::string refused(Call c)
+{
+    try {
+        c();
+    } catch (const error& e) {
+        CHECK(e.kind() == errc::bad_input);
+        return e.what();
+    }
+    return "no error";
+}
+
+} // namespace
+
+TEST_CASE("a path, a trajectory, a layout and a score that were moved from are what they were")
+{
+    stays_usable(line(), line(), [](const path& p) {
+        return p.length_mm() == 50.0 && p.at(25.0) == point{20.0, 15.0} && p.meets_x(20.0).size() == 1 &&
+               p.svg() == line().svg();
+    });
+    stays_usable(trajectory::along(line(), 1.0), trajectory::along(line(), 1.0), [](const trajectory& t) {
+        return t.duration_s() == 1.0 && t.length_mm() == 50.0 && t.position(0.5) == point{20.0, 15.0} &&
+               t.intensity(0.5) == 1.0 && t.meets_y(15.0).size() == 1 &&
+               t.with_duration(2.0).with_intensity(0.5).duration_s() == 2.0;
+    });
+    stays_usable(layout(palm()), layout(palm()), [](const layout& l) {
+        return l.places().size() == 9 && l.contains({20.0, 20.0}) && l.nearest({-5.0, 0.0}) == point{} &&
+               l.pitch_mm() == 20.0 && !l.faces().empty();
+    });
+    const score s = random_score(1, 3);
+    stays_usable(s, s, [&s](const score& m) {
+        return m.frames() == s.frames() && m.channels() == 9 && m.rate() == rate && m.starts().size() == 1 &&
+               m.plans().size() == 1 && rendered(m, sample_format::s16) == rendered(s, sample_format::s16);
+    });
+}
+
+TEST_CASE("handles without anything behind them are refused where they are made")
+{
+    has(refused([] { path{std::shared_ptr<const path::impl>()}; }), "path: there is no curve");
+    has(refused([] { trajectory{std::shared_ptr<const trajectory::impl>()}; }),
+        "trajectory: there is no movement");
+    has(refused([] { live_stroke{std::shared_ptr<live_stroke::impl>()}; }), "live stroke: there is none");
+    has(refused([] { player(nullptr, palm()); }), "no sink");
+}
+
+TEST_CASE("a renderer that was moved from says so, and can be assigned to")
+{
+    const score s = tone(0.01);
+    std::vector<std::byte> out(480 * 9 * 2);
+    renderer a(s, sample_format::s16);
+    renderer b(std::move(a));
+    has(refused([&] { a.process(480, out.data()); }), "renderer: it was moved from (use the one");
+    has(refused([&] { static_cast<void>(a.position()); }), "renderer: it was moved from");
+    b.process(480, out.data());
+    CHECK(out == rendered(s, sample_format::s16));
+    a = std::move(b);
+    CHECK(a.position() == 480);
+    CHECK_THROWS_AS(b.process(1, out.data()), error);
+    b = renderer(s, sample_format::s16);
+    CHECK(b.position() == 0);
+}
+
+TEST_CASE("plain values that were moved from are empty, and refused where something is needed")
+{
+    array a = palm();
+    const array b(std::move(a));
+    CHECK(b.channels() == 9);
+    CHECK(a.channels() == 0);
+    CHECK_FALSE(find_grid(a).has_value());
+    const stroke s{"line", trajectory::along(line(), 1.4)};
+    CHECK_THROWS_AS(validate(a), error);
+    CHECK_THROWS_AS(layout{a}, error);
+    CHECK_THROWS_AS(make_plan(a, s), error);
+    CHECK_THROWS_AS(score(a, {}, {}), error);
+
+    plan p = make_plan(b, s);
+    const plan q(std::move(p));
+    CHECK(q.bursts.size() == 21);
+    CHECK(p.bursts.empty());
+    CHECK(predict_percept(b, s, p).size() == 1401);
+    CHECK(summarise({}).silent_share == 0.0);
+    CHECK(score(b, {{p}}, {}).channels() == 9);
+
+    stroke t = s;
+    const stroke u(std::move(t));
+    CHECK(make_plan(b, t).bursts.size() == 21);
+    CHECK(make_plan(b, u).bursts.size() == 21);
+
+    plan_options o;
+    o.method = algorithm::continuous;
+    plan flowing = make_plan(b, s, o);
+    const plan kept(std::move(flowing));
+    CHECK(kept.at);
+    CHECK_FALSE(flowing.at);
+    CHECK(score(b, {{flowing}}, {}).channels() == 9);
+}
+
+TEST_CASE("an error that was moved from or copied is still one")
+{
+    error a(errc::runtime, "a subject that is longer than any small string", "why it was", "what to do");
+    const error b(a);
+    const error c(std::move(a));
+    CHECK(b.why() == "why it was");
+    CHECK(c.hint() == "what to do");
+    CHECK(a.kind() == errc::runtime);
+    CHECK(a.what() != nullptr);
+    CHECK(a.why().size() + a.hint().size() + a.subject().size() < 100);
+    a = c;
+    CHECK(a.subject() == c.subject());
+}
+
+TEST_CASE("a live stroke that was moved from feeds the same stroke")
+{
+    fake_dac dac;
+    const running_clock clock(dac);
+    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    live_stroke a = p.begin();
+    live_stroke b(std::move(a));
+    CHECK(a.to(1.0, 1.0));
+    CHECK(b.counts().points == 1);
+    CHECK(a.id() == b.id());
+    a.end();
+    CHECK_FALSE(b.open());
+    const auto r = p.wait(b.id());
+    REQUIRE(r);
+    CHECK(r->state == stroke_state::finished);
+    p.stop();
+}
+
+TEST_CASE("a player takes what it is given, and what is left can be used again")
+{
+    fake_dac dac;
+    const running_clock clock(dac);
+    std::unique_ptr<sink> out = pcm::adopt(dac.pcm(), nine());
+    player_lines lines;
+    player p(std::move(out), palm(), patient(), std::move(lines));
+    CHECK_THROWS_AS(player(std::move(out), palm(), patient(), std::move(lines)), error);
+    score s = tone(0.01);
+    const score other(std::move(s));
+    CHECK(p.wait(p.submit(s))->state == stroke_state::finished);
+    p.stop();
+}
+
+// NOLINTEND(bugprone-use-after-move,hicpp-invalid-access-moved)
+
+} // namespace moved_from_test
