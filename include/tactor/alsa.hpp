@@ -29,13 +29,15 @@ struct alsa_options {
 /// Opens a PCM exactly as asked. Blocks shortly (ALSA reads its configuration).
 /// \throws error: not_available when the PCM does not exist, is busy, may not be opened or cannot do
 ///         the whole set asked for (the message prints the set and what the device can do), bad_input
-///         for numbers that no PCM can have and for configuration text that ALSA cannot read.
+///         for numbers that no PCM can have and for configuration text that ALSA cannot read, runtime when
+///         the process has no descriptors left. It keeps the PCM's own descriptors and one more.
 TACTOR_API std::unique_ptr<sink> open_alsa(const alsa_options& o);
 
 /// Opens a PCM that was lost once it is back: tries after 0.1 s, then after twice as long each time, up to
 /// 5 s. `pause` waits for the time that it is given; it returns false to give up, because of a signal or a
 /// deadline. Null when given up.
-/// \throws error: what open_alsa() throws, but for not_available, which means not yet.
+/// \throws error: what open_alsa() throws, but for not_available, which means not yet; bad_input without
+/// `pause`.
 TACTOR_API std::unique_ptr<sink> reopen_alsa(const alsa_options& o,
                                              const std::function<bool(std::chrono::milliseconds)>& pause);
 

@@ -13,6 +13,7 @@
 #include <boost/asio/async_result.hpp>
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/system_executor.hpp>
 
 #include <tactor/error.hpp>
 #include <tactor/player.hpp>
@@ -20,17 +21,19 @@
 namespace tactor {
 namespace detail {
 
-/// A handler that waits for a stroke's end, and keeps the caller's executor at work until then.
-template <typename Handler>
+/// A handler that waits for a stroke's end, and keeps its executor, and the one that the caller named, at
+/// work until then.
+template <typename Handler, typename Named>
 class stroke_waiter {
 public:
-    explicit stroke_waiter(Handler h)
-        : handler_(std::move(h)), work_(boost::asio::get_associated_executor(handler_))
+    stroke_waiter(Handler h, const Named& named)
+        : handler_(std::move(h)), named_(named), work_(boost::asio::get_associated_executor(handler_, named))
     {
     }
 
     void operator()(std::exception_ptr failed, stroke_report r)
     {
+        const auto named = std::move(named_); // until the handler has been posted
         auto work = std::move(work_);
         boost::asio::post(work.get_executor(),
                           [h = std::move(handler_), failed = std::move(failed), r = std::move(r)]() mutable {
@@ -39,18 +42,34 @@ public:
     }
 
 private:
-    using executor = boost::asio::associated_executor_t<Handler>;
+    using executor = boost::asio::associated_executor_t<Handler, Named>;
 
     Handler handler_;
+    boost::asio::executor_work_guard<Named> named_;
     boost::asio::executor_work_guard<executor> work_;
 };
 
+/// An executor, or that of what has one: a context, a socket, a timer.
+template <typename Where>
+auto executor_of(Where& where)
+{
+    if constexpr (requires { where.get_executor(); })
+        return where.get_executor();
+    else
+        return where;
+}
+
+/// Whether a completion token is a plain callback, of which nobody knows in which context it is to run.
+template <typename Token>
+constexpr bool runs_nowhere = std::is_invocable_v<std::decay_t<Token>&, std::exception_ptr, stroke_report>&&
+    std::is_same_v<boost::asio::associated_executor_t<std::decay_t<Token>>, boost::asio::system_executor>;
+
 /// Calls the handler when the stroke that `id_of` names or starts has ended.
-template <typename Handler, typename Start>
-void wait_for_stroke(player& p, Handler&& h, Start id_of)
+template <typename Named, typename Handler, typename Start>
+void wait_for_stroke(const Named& named, player& p, Handler&& h, Start id_of)
 {
     // Shared, because std::function must be able to copy what it holds.
-    auto w = std::make_shared<stroke_waiter<std::decay_t<Handler>>>(std::forward<Handler>(h));
+    auto w = std::make_shared<stroke_waiter<std::decay_t<Handler>, Named>>(std::forward<Handler>(h), named);
     stroke_report none;
     try {
         none.id = id_of();
@@ -64,32 +83,52 @@ void wait_for_stroke(player& p, Handler&& h, Start id_of)
 
 } // namespace detail
 
-/// Waits for a stroke's end: handler(std::exception_ptr, stroke_report). The handler runs in its associated
-/// executor (boost::asio::bind_executor), never in this call and never in a thread of the player; with
-/// use_future or use_awaitable the exception is rethrown there. The exception is an error (bad_input) for a
-/// stroke that is not known; a stroke that was cancelled or interrupted is none: the report says so. The
-/// player must live until the handler was called, or be closed before: closing ends all strokes.
-template <typename Token>
-auto async_wait(player& p, stroke_id id, Token&& token)
+/// Waits for a stroke's end: handler(std::exception_ptr, stroke_report). `where` is an executor, or what has
+/// one (an io_context, a socket): the handler runs there, unless it has an associated executor of its own
+/// (boost::asio::bind_executor), never in this call and never in a thread of the player; with use_future or
+/// use_awaitable the exception is rethrown there. Both are kept at work until then: io_context::run() does
+/// not return before. The exception is an error (bad_input) for a stroke that is not known; a stroke that was
+/// cancelled or interrupted is none: the report says so. The player must live until the handler was called,
+/// or be closed before: closing ends all strokes.
+template <typename Where, typename Token>
+auto async_wait(Where&& where, player& p, stroke_id id, Token&& token)
 {
     return boost::asio::async_initiate<Token, void(std::exception_ptr, stroke_report)>(
-        [&p, id](auto&& handler) {
-            detail::wait_for_stroke(p, std::forward<decltype(handler)>(handler), [id] { return id; });
+        [named = detail::executor_of(where), &p, id](auto&& handler) {
+            detail::wait_for_stroke(named, p, std::forward<decltype(handler)>(handler), [id] { return id; });
         },
         token);
 }
 
+/// The same for tokens that know where they run: use_awaitable, use_future, bind_executor().
+template <typename Token>
+auto async_wait(player& p, stroke_id id, Token&& token)
+{
+    static_assert(!detail::runs_nowhere<Token>,
+                  "name the context: async_wait(io_context, player, id, handler)");
+    return async_wait(boost::asio::system_executor(), p, id, std::forward<Token>(token));
+}
+
 /// Submits a score and waits for its end, as async_wait() does. What submit() throws comes as the exception.
 /// The score is submitted when the operation is initiated: at once with callbacks and futures.
-template <typename Token>
-auto async_play(player& p, score s, start_at start, Token&& token)
+template <typename Where, typename Token>
+auto async_play(Where&& where, player& p, score s, start_at start, Token&& token)
 {
     return boost::asio::async_initiate<Token, void(std::exception_ptr, stroke_report)>(
-        [&p, s = std::move(s), start](auto&& handler) {
-            detail::wait_for_stroke(p, std::forward<decltype(handler)>(handler),
+        [named = detail::executor_of(where), &p, s = std::move(s), start](auto&& handler) {
+            detail::wait_for_stroke(named, p, std::forward<decltype(handler)>(handler),
                                     [&p, &s, start] { return p.submit(s, start); });
         },
         token);
+}
+
+/// The same for tokens that know where they run: use_awaitable, use_future, bind_executor().
+template <typename Token>
+auto async_play(player& p, score s, start_at start, Token&& token)
+{
+    static_assert(!detail::runs_nowhere<Token>,
+                  "name the context: async_play(io_context, player, score, start, handler)");
+    return async_play(boost::asio::system_executor(), p, std::move(s), start, std::forward<Token>(token));
 }
 
 } // namespace tactor

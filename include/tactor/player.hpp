@@ -4,6 +4,7 @@
 #pragma once
 
 #include <chrono>
+#include <concepts>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -20,6 +21,27 @@
 
 namespace tactor {
 
+namespace detail {
+
+/// What can count frames or nanoseconds. Seconds in a double would be taken for 0 or 1 of them.
+template <typename T>
+concept whole_number = std::integral<T> && !std::same_as<T, bool>;
+template <typename T>
+concept no_count = std::floating_point<T> || std::same_as<T, bool>;
+
+[[noreturn]] TACTOR_API void refuse_frame(long long stream_frame);
+
+template <whole_number T>
+constexpr std::uint64_t stream_frame(T n)
+{
+    if constexpr (std::signed_integral<T>)
+        if (n < 0)
+            refuse_frame(n);
+    return static_cast<std::uint64_t>(n);
+}
+
+} // namespace detail
+
 /// When a stroke starts. A plain value.
 class start_at {
 public:
@@ -28,18 +50,35 @@ public:
     /// As soon as possible.
     constexpr start_at() noexcept = default;
     /// The same as frame(), for short.
-    constexpr start_at(std::uint64_t stream_frame) noexcept : frame_(stream_frame) {}
+    template <detail::whole_number T>
+    constexpr start_at(T stream_frame) : frame_(detail::stream_frame(stream_frame))
+    {
+    }
     constexpr start_at(std::optional<std::uint64_t> stream_frame) noexcept : frame_(stream_frame.value_or(0))
     {
     }
+    template <detail::no_count T>
+    start_at(T seconds) = delete; ///< 0.5 is no frame
+    template <detail::no_count T>
+    start_at(std::optional<T> seconds) = delete;
 
     /// With the next period that is written.
     static constexpr start_at now() noexcept { return {}; }
-    /// From a frame of the stream on; one that has been written already means as soon as possible.
-    /// Frames of the stream count on over an xrun.
-    static constexpr start_at frame(std::uint64_t stream_frame) noexcept { return {stream_frame}; }
+    /// From a frame of the stream on; one that has been written already means as soon as possible, and one
+    /// that never comes waits to be cancelled. Frames of the stream count on over an xrun.
+    /// \throws error (bad_input) for a negative one.
+    template <detail::whole_number T>
+    static constexpr start_at frame(T stream_frame)
+    {
+        return {stream_frame};
+    }
+    template <detail::no_count T>
+    static start_at frame(T seconds) = delete;
     /// CLOCK_MONOTONIC, ns, at which the first sample is to be at the DAC: within half a frame and the error
-    /// of the DAC clock. What is over already means as soon as possible; see stroke_report::late_s.
+    /// of the DAC clock. What is over already means as soon as possible; see stroke_report::late_s. Any
+    /// number may be given.
+    template <detail::no_count T>
+    static start_at time(T seconds) = delete;
     static constexpr start_at time(std::int64_t monotonic_ns) noexcept
     {
         start_at s;
@@ -146,15 +185,23 @@ struct player_lines {
 };
 
 /// Owns the sink, the audio thread and the control thread. Its members may be called from any thread
-/// but the audio thread; they lock, so that several producers are safe.
+/// but the audio thread; they lock, so that several producers are safe. Numbers may be any: what cannot be is
+/// an error, never a crash. Where memory runs out std::bad_alloc is passed on, and what was called has done
+/// nothing; the player's own threads wait for memory and lose nothing.
+///
+/// Handlers (on_report(), on_end()) may call all members, and may destroy the player. One that throws ends
+/// the stream: all strokes fade out, interrupted, with what it threw as the reason, which ended() gives as
+/// well.
 class TACTOR_API player {
 public:
     /// Starts the stream with silence. `a` gives the limit of each channel.
-    /// \throws error: not_available or runtime when the stream does not start; bad_input where a tactor is on
-    /// a
-    ///         channel that the stream does not have.
+    /// \throws error: not_available or runtime when the stream does not start, runtime too when there are not
+    ///         enough descriptors or threads (it takes 7 to 9 descriptors), bad_input for options that cannot
+    ///         be, no sink, a tactor on a channel that the stream does not have, and a trigger whose
+    ///         descriptor cannot be polled.
     player(std::unique_ptr<sink> s, const array& a, const player_options& o = {}, player_lines lines = {});
-    /// stop(), then closes.
+    /// stop(), then closes: all strokes have been reported when it returns, and the sink is closed; in a
+    /// handler too, which is then called from within for the strokes that were left.
     ~player();
     player(const player&) = delete;
     player& operator=(const player&) = delete;
@@ -174,6 +221,8 @@ public:
     /// or as soon as possible when that is over. Returns how many there were. An edge at the trigger line
     /// does the same with its own time and player_lines::trigger_delay_s. Does not block.
     std::size_t fire(std::int64_t monotonic_ns);
+    template <detail::no_count T>
+    std::size_t fire(T seconds) = delete;
 
     /// Begins a stroke that is fed point by point; silent until the first, which must come within
     /// live_options::timeout_s. It ends in a report like all strokes. At most 16 at a time sound; further
@@ -188,27 +237,28 @@ public:
     bool cancel(stroke_id id);
 
     /// Blocks until the stroke has ended and returns how; nothing on time-out, for a stroke that is not
-    /// known, and in the handler (which runs in the thread that would have to bring the report) for one
+    /// known, and in a handler (which runs in the thread that would have to bring the report) for one
     /// that has not ended. Each report is given once by wait(), and to the handler when there is one; of
     /// those that nobody waits for, the 4096 newest are kept.
     std::optional<stroke_report> wait(stroke_id id, std::optional<std::chrono::nanoseconds> timeout = {});
 
-    /// Called in the control thread for each ended stroke; it must not throw. Set it before the first
-    /// submit().
+    /// Called in the control thread for each ended stroke. Set it before the first submit().
     void on_report(std::function<void(const stroke_report&)> handler);
 
     /// Calls `done` once when a stroke has ended: in the control thread, or at once and here when it has
-    /// ended already. It must not throw. False, without a call, for a stroke that is not known (any more).
-    /// Several may be set for one stroke. See <tactor/asio.hpp> for completion tokens.
+    /// ended already; what it throws here comes out here. False, without a call, for a stroke that is not
+    /// known (any more). Several may be set for one stroke. See <tactor/asio.hpp> for completion tokens.
+    /// \throws error (bad_input) for an empty function.
     bool on_end(stroke_id id, std::function<void(const stroke_report&)> done);
 
     /// Fades everything out, plays silence until it is out, stops. What that ends counts as cancelled
-    /// (interrupted, where the destructor does it). Returns when that is done and reported; in the handler
+    /// (interrupted, where the destructor does it). Returns when that is done and reported; in a handler
     /// at once.
     void stop();
 
-    /// Why the stream has ended: the device was lost, it failed, or stop() was called. Nothing while it goes
-    /// on. A stream that has ended stays so: open the device again (reopen_alsa()) for a new player.
+    /// Why the stream has ended: the device was lost, it failed, a handler threw, or stop() was called.
+    /// Nothing while it goes on. A stream that has ended stays so: open the device again (reopen_alsa()) for
+    /// a new player.
     std::optional<std::string> ended() const;
 
     player_position position() const noexcept;
@@ -216,7 +266,7 @@ public:
 
 private:
     struct impl;
-    std::unique_ptr<impl> impl_;
+    std::shared_ptr<impl> impl_; ///< the control thread's, too, while a handler runs
 };
 
 } // namespace tactor

@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "model/refused.hpp"
+
 namespace tactor::pcm {
 namespace {
 
@@ -140,6 +142,10 @@ error open_error(const std::string& name, int code, const std::string& detail, c
     case EACCES:
     case EPERM:
         return forbidden(name, s);
+    case EMFILE:
+    case ENFILE:
+        return {errc::runtime, thing(name), with_detail(snd_strerror(code), detail),
+                tactor::detail::advice_for(-code)};
     default:
         return {errc::not_available, thing(name), with_detail(snd_strerror(code), detail),
                 "tactor devices lists the PCMs"};

@@ -4,10 +4,7 @@
 #pragma once
 
 #include <functional>
-#include <list>
-
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/posix/stream_descriptor.hpp>
+#include <memory>
 
 #include "rt/event_fd.hpp"
 #include "rt/thread.hpp"
@@ -18,31 +15,28 @@ namespace tactor::engine {
 /// their place beside it in the same io_context.
 class control_thread {
 public:
-    /// \throws std::system_error when there is no thread to be had.
+    /// \throws std::system_error or boost::system::system_error when there are no descriptors or threads to
+    /// be
+    ///         had.
     control_thread(rt::event_fd& e, std::function<void()> woken);
-    /// Ends the thread; `woken` is not called any more.
+    /// Ends the thread; `woken` and `readable` are not called any more. In the thread itself, that is within
+    /// one of these, it returns at once, and the thread ends when they have returned: what it was given may
+    /// be gone by then.
     ~control_thread();
+    control_thread(const control_thread&) = delete;
+    control_thread& operator=(const control_thread&) = delete;
 
     /// Calls `readable` in the control thread whenever a descriptor is readable, until it returns false. The
-    /// descriptor stays the caller's and must live as long as this object. Any thread.
+    /// descriptor stays the caller's and must live as long as this object. Once, before the first signal.
+    /// \throws std::system_error when the descriptor cannot be waited for.
     void watch(int fd, std::function<bool()> readable);
 
     bool is_current() const noexcept { return thread_.is_current(); }
 
 private:
-    struct watched {
-        boost::asio::posix::stream_descriptor descriptor;
-        std::function<bool()> readable;
-    };
+    struct state;
 
-    void wait();
-    void wait(watched& w);
-
-    rt::event_fd& event_;
-    std::function<void()> woken_;
-    boost::asio::io_context context_;
-    boost::asio::posix::stream_descriptor descriptor_;
-    std::list<watched> watched_; ///< control thread only
+    std::shared_ptr<state> state_; ///< the thread's too, which may outlive this object for a moment
     rt::thread thread_;
 };
 

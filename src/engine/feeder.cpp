@@ -3,13 +3,22 @@
 
 #include <algorithm>
 #include <atomic>
+#include <functional>
 #include <span>
 #include <utility>
 
 namespace tactor::engine {
+namespace {
+
+// Drives that strokes which begin together are given at once: the mixer has room for twice as many.
+constexpr std::size_t drives_ahead = 2048;
+
+} // namespace
 
 feeder::feeder(link& l, std::uint64_t horizon_frames) : link_(l), horizon_(horizon_frames)
 {
+    in_use_.reserve(voices);
+    next_.reserve(voices);
     batch_.reserve(std::min(l.commands.capacity(), 2 + l.commands.capacity() / 8));
 }
 
@@ -38,24 +47,29 @@ void feeder::pump(std::uint64_t written, const clock_line& clock)
     look_at_waiting_live(written);
     admit_live();
     // While a score waits for room, the others may not use up what becomes free.
-    const std::uint64_t horizon = admit(written) ? horizon_ : horizon_ / 2;
-    while (feed_next(written, horizon)) {
-    }
+    feed(written, admit(written) ? horizon_ : horizon_ / 2);
 }
 
 // Begins what is due within the horizon, the earliest first; false when the ring had too little room.
 bool feeder::admit(std::uint64_t written)
 {
+    const auto due = waiting_.upper_bound(written + horizon_);
+    std::size_t beginning = 0;
+    for (auto w = waiting_.begin(); w != due && in_use_.size() + beginning < voices; ++w)
+        ++beginning;
+    const std::size_t share = drives_ahead / std::max<std::size_t>(in_use_.size() + beginning, 1);
     while (!waiting_.empty() && waiting_.begin()->first <= written + horizon_ && in_use_.size() < voices) {
         if (!has_room(batch_.capacity()))
             return false;
         const auto& [at, t] = *waiting_.begin();
+        const bool soon = at <= written + horizon_ / 8;
         const std::uint32_t place = take_slot({.id = t.id,
                                                .music = t.music,
                                                .due_ns = t.due_ns,
                                                .at = at,
                                                .source = synth::event_source(t.music)});
-        hand_over_beginning(*slots_[place].use, ticket_of(place));
+        // What begins later is fed in time, in the order of all.
+        hand_over_beginning(*slots_[place].use, ticket_of(place), soon ? std::max<std::size_t>(share, 1) : 0);
         waiting_.erase(waiting_.begin());
     }
     return true;
@@ -72,12 +86,13 @@ std::uint32_t feeder::take_slot(active a)
 
 // The begin and its first drives become visible together: the audio thread starts the score as soon as it
 // sees the begin, and this thread may lose its processor at any point.
-void feeder::hand_over_beginning(active& a, ticket t)
+void feeder::hand_over_beginning(active& a, ticket t, std::size_t drives)
 {
     batch_.clear();
     batch_.push_back(
         {.what = command::kind::begin, .score = t, .id = a.id, .at = a.at, .length = a.music->frames()});
-    while (batch_.size() < batch_.capacity() && !a.fed) {
+    const std::size_t most = std::min(batch_.capacity(), 1 + drives);
+    while (batch_.size() < most && !a.fed) {
         const synth::drive_event* e = a.source->peek();
         if (e != nullptr && e->start > horizon_ / 8)
             break;
@@ -91,11 +106,10 @@ command feeder::next_command(active& a, ticket t)
 {
     const synth::drive_event* e = a.source->peek();
     if (e == nullptr) {
+        a.failure = a.source->failure(); // the first to be done: there may be no memory for it
         a.fed = true;
-        if (!a.source->failure().empty()) {
-            a.failure = a.source->failure();
+        if (!a.failure.empty())
             return {.what = command::kind::fail, .score = t, .at = a.source->failed_at()};
-        }
         return {.what = command::kind::end, .score = t};
     }
     command c{.what = command::kind::drive, .score = t, .drive = *e};
@@ -104,33 +118,37 @@ command feeder::next_command(active& a, ticket t)
     return c;
 }
 
-// Hands over the drive that starts first; false when there is none within the horizon, or no room.
-bool feeder::feed_next(std::uint64_t written, std::uint64_t horizon)
+std::uint64_t feeder::next_start(active& a, std::uint64_t written) noexcept
 {
-    slot* first = nullptr;
-    std::uint32_t first_place = 0;
-    std::uint64_t first_start = 0;
-    for (const std::uint32_t place : in_use_) {
+    const synth::drive_event* e = a.source->peek();
+    // Until the audio thread says where it begins, what is certain is: not before this.
+    const std::uint64_t base = a.begun ? a.base : std::max(a.at, written);
+    return e != nullptr ? base + e->start : 0;
+}
+
+// Hands over drives, the one that starts first first, until there is none within the horizon, or no room.
+void feeder::feed(std::uint64_t written, std::uint64_t horizon)
+{
+    next_.clear();
+    for (std::uint32_t i = 0; i < in_use_.size(); ++i) {
+        active& a = *slots_[in_use_[i]].use;
+        if (!a.fed)
+            next_.push_back({next_start(a, written), i});
+    }
+    std::make_heap(next_.begin(), next_.end(), std::greater<>{});
+    while (!next_.empty() && next_.front().start <= written + horizon && has_room(1)) {
+        std::pop_heap(next_.begin(), next_.end(), std::greater<>{});
+        next_drive& n = next_.back();
+        const std::uint32_t place = in_use_[n.order];
         active& a = *slots_[place].use;
-        if (a.fed)
-            continue;
-        const synth::drive_event* e = a.source->peek();
-        // Until the audio thread says where it begins, what is certain is: not before this.
-        const std::uint64_t base = a.begun ? a.base : std::max(a.at, written);
-        const std::uint64_t start = e != nullptr ? base + e->start : 0;
-        if (first == nullptr || start < first_start) {
-            first = &slots_[place];
-            first_place = place;
-            first_start = start;
+        link_.commands.push(next_command(a, ticket_of(place)));
+        if (a.fed) {
+            next_.pop_back();
+        } else {
+            n.start = next_start(a, written);
+            std::push_heap(next_.begin(), next_.end(), std::greater<>{});
         }
     }
-    if (first == nullptr || first_start > written + horizon)
-        return false;
-
-    if (!has_room(1))
-        return false;
-    link_.commands.push(next_command(*first->use, ticket_of(first_place)));
-    return true;
 }
 
 bool feeder::has_room(std::size_t n)
@@ -192,7 +210,6 @@ void feeder::handle(const report& r)
 
 void feeder::end_all(const report& r)
 {
-    stream_over_ = true;
     stream_reason_ = text(r.why, r.code);
     const bool cut = r.why != reason::none || closing_;
     const std::string why = r.why != reason::none ? stream_reason_ : cut ? text(reason::closed, 0) : "";
@@ -207,23 +224,22 @@ void feeder::end_all(const report& r)
             s.use->voice->close();
         release(s);
     }
-    for (const auto& [id, t] : armed_)
-        end(id, false);
-    for (const auto& [at, t] : waiting_)
-        end(t.id, false);
-    for (const auto& [time, t] : timed_)
-        end(t.id, false);
-    for (const auto& [id, voice] : waiting_live_) {
-        voice->close();
-        end(id, false);
+    // One by one, so that it can be called again where memory has run out.
+    const auto end_tasks = [&](auto& tasks) {
+        for (auto t = tasks.begin(); t != tasks.end(); t = tasks.erase(t))
+            end(t->second.id, false);
+    };
+    end_tasks(armed_);
+    end_tasks(waiting_);
+    end_tasks(timed_);
+    for (auto w = waiting_live_.begin(); w != waiting_live_.end(); w = waiting_live_.erase(w)) {
+        end(w->first, false);
+        w->second->close();
     }
-    armed_.clear();
-    waiting_.clear();
-    timed_.clear();
-    waiting_live_.clear();
+    stream_over_ = true;
 }
 
-std::vector<stroke_report> feeder::take_reports()
+std::list<stroke_report> feeder::take_reports()
 {
     return std::exchange(reports_, {});
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <list>
 #include <map>
 #include <memory>
 #include <optional>
@@ -56,7 +57,9 @@ public:
     void handle(const report& r);
 
     /// Reports since the last call, in order of their ends.
-    std::vector<stroke_report> take_reports();
+    std::list<stroke_report> take_reports();
+    /// The same, where they are.
+    std::list<stroke_report>& reports() noexcept { return reports_; }
 
     /// Whether take_reports() would give any.
     bool has_reports() const noexcept { return !reports_.empty(); }
@@ -89,6 +92,15 @@ private:
         bool fed = false;
         bool cancelled = false;
     };
+    /// The next drive of one that is being fed.
+    struct next_drive {
+        std::uint64_t start = 0; ///< stream frame
+        std::uint32_t order = 0; ///< in in_use_
+        bool operator>(const next_drive& o) const noexcept
+        {
+            return start != o.start ? start > o.start : order > o.order;
+        }
+    };
     struct slot {
         std::uint32_t generation = 1; ///< ticket 0 belongs to no score
         std::optional<active> use;
@@ -105,10 +117,11 @@ private:
     void begun(active& a, std::uint64_t frame);
     void over(const active& a, const report& r);
     void tell(stroke_report r);
-    bool feed_next(std::uint64_t written, std::uint64_t horizon);
+    void feed(std::uint64_t written, std::uint64_t horizon);
     bool has_room(std::size_t n);
-    void hand_over_beginning(active& a, ticket t);
+    void hand_over_beginning(active& a, ticket t, std::size_t drives);
     static command next_command(active& a, ticket t);
+    static std::uint64_t next_start(active& a, std::uint64_t written) noexcept;
     slot* slot_of(ticket t) noexcept;
     void release(slot& s) noexcept;
     void end_all(const report& r);
@@ -124,8 +137,9 @@ private:
     clock_line clock_;
     std::array<slot, voices> slots_;
     std::vector<std::uint32_t> in_use_; ///< places, in order of their beginning
+    std::vector<next_drive> next_;      ///< a heap, the earliest first; of fixed capacity
     std::vector<command> batch_;        ///< of fixed capacity
-    std::vector<stroke_report> reports_;
+    std::list<stroke_report> reports_;
     std::function<void(stroke_id, std::uint64_t)> begins_;
     std::function<void(stroke_id)> ended_;
     bool stream_over_ = false;

@@ -25,10 +25,13 @@ bool erase_task(Tasks& tasks, stroke_id id)
     return true;
 }
 
-// Seconds; within a frame is as good as it gets.
+// Seconds; within a frame is as good as it gets. The time that was asked for can be any number.
 double late(std::int64_t started_ns, std::int64_t due_ns, double ns_per_frame)
 {
-    const auto ns = static_cast<double>(started_ns - due_ns);
+    std::int64_t d = 0;
+    const double ns = __builtin_sub_overflow(started_ns, due_ns, &d)
+                          ? static_cast<double>(started_ns) - static_cast<double>(due_ns)
+                          : static_cast<double>(d);
     return ns > ns_per_frame ? ns * 1e-9 : 0.0;
 }
 
@@ -57,10 +60,10 @@ void feeder::submit(stroke_id id, std::shared_ptr<live_voice> voice)
 std::size_t feeder::fire(std::int64_t time_ns)
 {
     const std::size_t n = armed_.size();
-    for (auto& [id, t] : armed_) {
-        t.due_ns = time_ns;
-        timed_.emplace(time_ns, std::move(t));
-    }
+    decltype(timed_) fired; // all or none, should memory run out
+    for (const auto& [id, t] : armed_)
+        fired.emplace(time_ns, task{t.id, t.music, time_ns});
+    timed_.merge(fired);
     armed_.clear();
     return n;
 }
@@ -117,15 +120,17 @@ void feeder::admit_live()
 
 bool feeder::cancel_waiting(stroke_id id)
 {
+    if (!waits(id))
+        return false;
+    // Before it is forgotten: there may be no memory for it.
+    tell({.id = id, .state = stroke_state::cancelled, .frames = 0, .reason = {}});
     const auto live = waiting_live_.find(id);
     if (live != waiting_live_.end()) {
         live->second->close();
         waiting_live_.erase(live);
-    } else if (!erase_task(waiting_, id) && !erase_task(timed_, id) && !erase_task(armed_, id)) {
-        return false;
+        return true;
     }
-    tell({.id = id, .state = stroke_state::cancelled, .frames = 0, .reason = {}});
-    return true;
+    return erase_task(waiting_, id) || erase_task(timed_, id) || erase_task(armed_, id);
 }
 
 bool feeder::waits(stroke_id id) const

@@ -8,6 +8,7 @@
 #include <tactor/error.hpp>
 #include <tactor/sink.hpp>
 
+#include "model/refused.hpp"
 #include "rt/pacer.hpp"
 
 namespace tactor {
@@ -39,7 +40,7 @@ rt::pacer make_pacer(const stream_setup& s)
 try {
     return rt::pacer(s.rate, s.buffer_frames, s.period_frames);
 } catch (const std::system_error& e) {
-    throw error(errc::runtime, s.name, e.what());
+    detail::refused_by_system(s.name, e.code().value(), e.what());
 }
 
 } // namespace

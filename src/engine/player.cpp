@@ -3,19 +3,41 @@
 
 #include <algorithm>
 #include <mutex>
+#include <system_error>
 #include <utility>
 #include <vector>
 
+#include <boost/system/system_error.hpp>
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
 #include "engine/player_impl.hpp"
+#include "model/refused.hpp"
 
 namespace tactor {
 
-player::player(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines lines)
-    : impl_(std::make_unique<impl>(std::move(s), a, o, std::move(lines)))
+void detail::refuse_frame(long long stream_frame)
 {
+    throw error(errc::bad_input, "start", fmt::format("frame {}", stream_frame),
+                "frames of the stream count from 0; start_at::now() is as soon as possible");
 }
 
-player::~player() = default;
+player::player(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines lines)
+try : impl_(std::make_shared<impl>(std::move(s), a, o, std::move(lines))) {
+    impl_->start(o);
+} catch (const error&) {
+    throw;
+} catch (const boost::system::system_error& e) {
+    detail::refused_by_system("player", e.code().value(), e.what());
+} catch (const std::system_error& e) {
+    detail::refused_by_system("player", e.code().value(), e.what());
+}
+
+player::~player()
+{
+    impl_->close();
+}
 
 const stream_setup& player::setup() const noexcept
 {
@@ -54,8 +76,9 @@ std::optional<stroke_report> player::wait(stroke_id id, std::optional<std::chron
 
 void player::on_report(std::function<void(const stroke_report&)> handler)
 {
+    auto shared = handler ? std::make_shared<const impl::report_handler>(std::move(handler)) : nullptr;
     const std::lock_guard lock(impl_->mutex);
-    impl_->handler = std::move(handler);
+    impl_->handler.swap(shared); // the old one goes after the lock: it may own what calls the player
 }
 
 void player::stop()
@@ -68,8 +91,7 @@ std::optional<std::string> player::ended() const
     const std::lock_guard lock(impl_->mutex);
     if (!impl_->feed.stream_over())
         return std::nullopt;
-    const std::string& reason = impl_->feed.stream_reason();
-    return reason.empty() ? "it was stopped" : reason;
+    return impl_->why_ended();
 }
 
 player_position player::position() const noexcept

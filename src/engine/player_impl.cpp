@@ -2,10 +2,15 @@
 #include "engine/player_impl.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <ctime>
+#include <new>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
+#include <poll.h>
 
 #include <tactor/error.hpp>
 #include <tactor/realtime.hpp>
@@ -45,11 +50,17 @@ engine::loop_options loop_options(const player_options& o, const stream_setup& s
     return l;
 }
 
+// Of SCHED_FIFO, as far as there are any.
+int priority(const player_options& o, int higher)
+{
+    return std::clamp(std::clamp(o.priority, 1, 99) + higher, 1, 99);
+}
+
 rt::thread_options thread_options(const player_options& o)
 {
     return {.name = "tactor-audio",
             .fifo = o.realtime || o.require_realtime,
-            .priority = o.priority,
+            .priority = priority(o, 0),
             .audio = true};
 }
 
@@ -67,9 +78,7 @@ engine::driver_options driver_options(const player_lines& l, const stream_setup&
 // 150 ms only.
 rt::thread_options amplifier_thread_options(const player_options& o)
 {
-    return {.name = "tactor-amp",
-            .fifo = o.realtime || o.require_realtime,
-            .priority = std::max(1, o.priority - 5)};
+    return {.name = "tactor-amp", .fifo = o.realtime || o.require_realtime, .priority = priority(o, -5)};
 }
 
 // Before there are threads that an error would have to stop.
@@ -79,6 +88,14 @@ player_lines checked(player_lines l, unsigned rate)
     frames_of(l.settle_s, rate, "settle");
     frames_of(l.pulse_s, rate, "pulse");
     return l;
+}
+
+// A wait of a century is one without end: the clock must not run over.
+std::chrono::steady_clock::time_point deadline(std::chrono::nanoseconds timeout)
+{
+    constexpr std::chrono::hours century{24 * 365 * 100};
+    return std::chrono::steady_clock::now() +
+           std::clamp<std::chrono::nanoseconds>(timeout, std::chrono::nanoseconds{0}, century);
 }
 
 std::unique_ptr<sink> not_null(std::unique_ptr<sink> s)
@@ -111,18 +128,39 @@ player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options
            loop_options(o, out->setup(), lines.amplifier != nullptr)),
       audio(loop, *out, link, thread_options(o))
 {
+}
+
+void player::impl::start(const player_options& o)
+{
     try {
         check_start(o);
         start_lines(o);
-        control = std::make_unique<engine::control_thread>(link.to_control, [this] { woken(); });
+        control = std::make_unique<engine::control_thread>(link.to_control, [weak = weak_from_this()] {
+            if (const auto alive = weak.lock())
+                alive->woken();
+        });
         if (lines.trigger != nullptr)
-            control->watch(lines.trigger->descriptor(), [this] { return edges(); });
+            listen();
     } catch (...) {
         link.requests.push({.what = engine::request::kind::stop, .closing = true});
         link.to_audio.signal();
         audio.join();
+        control.reset();
         amplifier.reset();
         throw;
+    }
+}
+
+void player::impl::listen()
+{
+    const int fd = lines.trigger->descriptor();
+    try {
+        control->watch(fd, [this] { return edges(); });
+    } catch (const std::system_error& e) {
+        if (e.code() != std::errc::bad_file_descriptor && e.code() != std::errc::operation_not_permitted)
+            throw;
+        throw error(errc::bad_input, "trigger", fmt::format("its descriptor {}: {}", fd, e.code().message()),
+                    "edge_input::descriptor() is one that can be polled, and open as long as the input");
     }
 }
 
@@ -136,7 +174,7 @@ void player::impl::start_lines(const player_options& o)
     // Above the audio thread: it sleeps nearly always, and what it does takes microseconds.
     const rt::thread_options t{.name = "tactor-sync",
                                .fifo = o.realtime || o.require_realtime,
-                               .priority = o.priority + 1,
+                               .priority = priority(o, 1),
                                .audio = true};
     pulses = std::make_unique<engine::trigger_thread>(
         link, *lines.sync_out, std::int64_t{frames_of(lines.pulse_s, 1'000'000, "pulse")} * 1000, t);
@@ -161,10 +199,25 @@ void player::impl::check_start(const player_options& o)
                     realtime_advice(probe_realtime_rights(), o.priority));
 }
 
-player::impl::~impl()
+void player::impl::close()
 {
     stop(true);
+    if (control->is_current()) {
+        // A handler destroys the player: this thread has to do here what it would do after the handler.
+        if (telling != nullptr)
+            tell_watchers(*telling);
+        for (woken(); !all_delivered; woken()) {
+            pollfd fd{.fd = link.to_control.fd(), .events = POLLIN, .revents = 0};
+            if (::poll(&fd, 1, -1) > 0)
+                link.to_control.consume();
+        }
+    }
     audio.join();
+    pulses.reset();
+    amplifier.reset();
+    control.reset();
+    lines = {};
+    out.reset();
 }
 
 stroke_id player::impl::submit(const score& s, start_at start)
@@ -179,16 +232,22 @@ stroke_id player::impl::submit(const score& s, start_at start)
     check_open();
     const stroke_id id = ++last_id;
     feed.submit(id, s, start);
-    pump();
+    pump(); // without memory for that the control thread does it later
     return id;
 }
 
 void player::impl::check_open() const
 {
     if (stopping || feed.stream_over())
-        throw error(errc::runtime, fmt::format("stream on \"{}\"", out->setup().name),
-                    feed.stream_reason().empty() ? "it has been stopped" : feed.stream_reason(),
+        throw error(errc::runtime, fmt::format("stream on \"{}\"", out->setup().name), why_ended(),
                     "open a new player");
+}
+
+std::string player::impl::why_ended() const
+{
+    if (!handler_failed.empty())
+        return handler_failed;
+    return feed.stream_reason().empty() ? "it was stopped" : feed.stream_reason();
 }
 
 bool player::impl::cancel(stroke_id id)
@@ -202,15 +261,23 @@ bool player::impl::cancel(stroke_id id)
     return known;
 }
 
-// Under the mutex.
-void player::impl::pump()
+// Under the mutex. False when there was no memory to go on: nothing is lost, and the control thread tries
+// again.
+bool player::impl::pump()
 {
-    feed.pump(link.status.load().written, link.clock.load());
-    if (pulses)
-        pulses->hand_over();
-    if (feed.has_reports())
+    bool done = true;
+    try {
+        feed.pump(link.status.load().written, link.clock.load());
+        if (pulses)
+            pulses->hand_over();
+        if (feed.has_reports())
+            link.to_control.signal();
+    } catch (const std::bad_alloc&) {
+        done = false;
         link.to_control.signal();
+    }
     link.to_audio.signal();
+    return done;
 }
 
 std::optional<stroke_report> player::impl::wait(stroke_id id, std::optional<std::chrono::nanoseconds> timeout)
@@ -220,7 +287,7 @@ std::optional<stroke_report> player::impl::wait(stroke_id id, std::optional<std:
     // The control thread would wait for itself.
     if (!control->is_current()) {
         if (timeout)
-            news.wait_for(lock, *timeout, settled);
+            news.wait_until(lock, deadline(*timeout), settled);
         else
             news.wait(lock, settled);
     }
@@ -249,26 +316,48 @@ void player::impl::stop(bool closing)
 void player::impl::woken()
 {
     std::unique_lock lock(mutex);
-    engine::report r;
-    while (link.reports.pop(r))
-        feed.handle(r);
-    const std::vector<stroke_report> reports = feed.take_reports();
-    for (const stroke_report& e : reports)
-        ended.insert_or_assign(e.id, e);
-    while (ended.size() > most_unread_reports)
-        ended.erase(ended.begin());
-    if (!feed.stream_over())
-        pump();
-    const bool last = feed.stream_over();
+    const bool done = take_reports() && (feed.stream_over() || pump());
+    const bool last = done && feed.stream_over();
     lock.unlock();
     news.notify_all();
-    tell(reports);
+    tell();
+    if (!done) {
+        constexpr timespec soon{.tv_sec = 0, .tv_nsec = 10'000'000};
+        ::nanosleep(&soon, nullptr); // somebody may give memory back
+        link.to_control.signal();
+    }
     if (!last)
         return;
     lock.lock();
     all_delivered = true;
     lock.unlock();
     news.notify_all();
+}
+
+// What the audio thread has said. False when there was no memory for all of it: the rest stays where it is.
+bool player::impl::take_reports()
+{
+    try {
+        for (const engine::report* r = link.reports.front(); r != nullptr; r = link.reports.front()) {
+            feed.handle(*r);
+            link.reports.drop_front();
+        }
+        if (unfired)
+            feed.fire(*unfired);
+        unfired.reset();
+        std::list<stroke_report>& news_of_strokes = feed.reports();
+        for (stroke_report& r : news_of_strokes) {
+            if (!handler_failed.empty() && r.reason == engine::text(engine::reason::closed, 0))
+                r.reason = handler_failed;
+            ended.insert_or_assign(r.id, r);
+        }
+        untold.splice(untold.end(), news_of_strokes);
+    } catch (const std::bad_alloc&) {
+        return false;
+    }
+    while (ended.size() > most_unread_reports)
+        ended.erase(ended.begin());
+    return true;
 }
 
 } // namespace tactor

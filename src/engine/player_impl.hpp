@@ -5,10 +5,12 @@
 
 #include <condition_variable>
 #include <functional>
+#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 
 #include <tactor/phantom.hpp>
 #include <tactor/player.hpp>
@@ -23,17 +25,26 @@
 
 namespace tactor {
 
-struct player::impl {
+/// Shared with the control thread while that is at work, so that a handler can destroy the player.
+struct player::impl : std::enable_shared_from_this<player::impl> {
+    using report_handler = std::function<void(const stroke_report&)>;
+
+    /// Starts the stream.
     impl(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines l);
-    ~impl();
+    /// Starts the other threads; what it throws leaves none.
+    void start(const player_options& o);
+    /// Ends them all, and closes the sink and the lines. Once, after start().
+    void close();
 
     stroke_id submit(const score& s, start_at start);
     std::size_t fire(std::int64_t time_ns);
     live_stroke begin(const live_options& o);
-    bool on_end(stroke_id id, std::function<void(const stroke_report&)> done);
+    bool on_end(stroke_id id, report_handler done);
     bool cancel(stroke_id id);
     std::optional<stroke_report> wait(stroke_id id, std::optional<std::chrono::nanoseconds> timeout);
     void stop(bool closing);
+    /// Why the stream has ended, or is about to, for people. Under the mutex.
+    std::string why_ended() const;
 
     std::unique_ptr<sink> out;
     player_lines lines;
@@ -42,14 +53,18 @@ struct player::impl {
     std::condition_variable news;
     engine::feeder feed;
     std::map<stroke_id, stroke_report> ended;
-    std::function<void(const stroke_report&)> handler;
-    std::multimap<stroke_id, std::function<void(const stroke_report&)>> watchers;
+    std::list<stroke_report> untold; ///< that the handlers have not seen
+    std::shared_ptr<const report_handler> handler;
+    std::multimap<stroke_id, report_handler> watchers;
     array tactors;
     std::optional<layout> faces; ///< of the array, once a live stroke needs it
     stroke_id last_id = 0;
     bool stopping = false;
-    int empty_reads = 0;        ///< of the trigger line, control thread
-    bool all_delivered = false; ///< the stream is over and the handler has seen all
+    std::string handler_failed;             ///< what one of the program's handlers threw; empty: none
+    int empty_reads = 0;                    ///< of the trigger line, control thread
+    const stroke_report* telling = nullptr; ///< the handlers see it now, control thread
+    std::optional<std::int64_t> unfired;    ///< an edge for which there was no memory, control thread
+    bool all_delivered = false;             ///< the stream is over and the handler has seen all
 
     engine::audio_loop loop;
     engine::audio_thread audio;
@@ -60,11 +75,17 @@ struct player::impl {
 private:
     void start_lines(const player_options& o);
     void check_start(const player_options& o);
+    void listen();
     void woken();
-    void pump();
+    bool take_reports();
+    bool pump();
     void check_open() const;
     bool edges();
-    void tell(const std::vector<stroke_report>& reports);
+    void tell();
+    void tell(const stroke_report& r);
+    void tell_watchers(const stroke_report& r);
+    void call(const report_handler& f, const stroke_report& r) noexcept;
+    void give_up(const char* what) noexcept;
 };
 
 } // namespace tactor

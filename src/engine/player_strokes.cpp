@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Strokes that wait for a trigger or for points, and who is told of their ends.
+#include <exception>
+#include <limits>
+#include <list>
+#include <new>
 #include <utility>
-#include <vector>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
 
 #include "engine/live_stroke.hpp"
 #include "engine/player_impl.hpp"
@@ -29,8 +36,17 @@ bool player::impl::edges()
     const auto delay = static_cast<std::int64_t>(lines.trigger_delay_s * 1e9);
     bool any = false;
     for (auto e = lines.trigger->read(); e; e = lines.trigger->read()) {
-        fire(e->time_ns + delay);
         any = true;
+        std::int64_t due = 0;
+        if (__builtin_add_overflow(e->time_ns, delay, &due))
+            due = std::numeric_limits<std::int64_t>::max();
+        try {
+            fire(due);
+        } catch (const std::bad_alloc&) {
+            const std::lock_guard lock(mutex);
+            unfired = due;
+            link.to_control.signal();
+        }
     }
     empty_reads = any ? 0 : empty_reads + 1;
     return empty_reads < most_empty_reads;
@@ -49,8 +65,10 @@ live_stroke player::impl::begin(const live_options& o)
     return live_stroke(std::move(stroke));
 }
 
-bool player::impl::on_end(stroke_id id, std::function<void(const stroke_report&)> done)
+bool player::impl::on_end(stroke_id id, report_handler done)
 {
+    if (!done)
+        throw error(errc::bad_input, "on_end", "there is nothing to call", "give a function");
     std::unique_lock lock(mutex);
     const auto found = ended.find(id);
     if (found == ended.end()) {
@@ -65,25 +83,68 @@ bool player::impl::on_end(stroke_id id, std::function<void(const stroke_report&)
     return true;
 }
 
-// Control thread, without the mutex: what is called may call the player.
-void player::impl::tell(const std::vector<stroke_report>& reports)
+// Control thread, without the mutex: what is called may call the player, and may destroy it; then close()
+// tells the rest before it returns.
+void player::impl::tell()
 {
     std::unique_lock lock(mutex);
-    const std::function<void(const stroke_report&)> common = handler;
-    lock.unlock();
-    for (const stroke_report& r : reports) {
-        if (common)
-            common(r);
-        lock.lock();
-        std::vector<std::function<void(const stroke_report&)>> own;
-        const auto [first, last] = watchers.equal_range(r.id);
-        for (auto w = first; w != last; ++w)
-            own.push_back(std::move(w->second));
-        watchers.erase(first, last);
+    while (!untold.empty()) {
+        std::list<stroke_report> one;
+        one.splice(one.end(), untold, untold.begin());
         lock.unlock();
-        for (const auto& f : own)
-            f(r);
+        tell(one.front());
+        lock.lock();
     }
+}
+
+void player::impl::tell(const stroke_report& r)
+{
+    std::unique_lock lock(mutex);
+    const auto common = handler;
+    lock.unlock();
+    const stroke_report* const before = std::exchange(telling, &r);
+    if (common != nullptr)
+        call(*common, r);
+    tell_watchers(r);
+    telling = before;
+}
+
+void player::impl::tell_watchers(const stroke_report& r)
+{
+    std::unique_lock lock(mutex);
+    for (auto own = watchers.extract(r.id); own; own = watchers.extract(r.id)) {
+        lock.unlock();
+        call(own.mapped(), r);
+        lock.lock();
+    }
+}
+
+void player::impl::call(const report_handler& f, const stroke_report& r) noexcept
+{
+    try {
+        f(r);
+    } catch (const std::exception& e) {
+        give_up(e.what());
+    } catch (...) {
+        give_up("not a std::exception");
+    }
+}
+
+// A program whose handler fails knows no more what is on the skin.
+void player::impl::give_up(const char* what) noexcept
+{
+    const std::lock_guard lock(mutex);
+    if (stopping)
+        return;
+    try {
+        handler_failed = fmt::format("a handler of the program threw: {}", what);
+    } catch (const std::bad_alloc&) {
+        handler_failed = "a handler threw"; // short enough to need no memory
+    }
+    stopping = true;
+    feed.set_closing();
+    link.requests.push({.what = engine::request::kind::stop, .closing = true});
+    link.to_audio.signal();
 }
 
 } // namespace tactor

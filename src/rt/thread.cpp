@@ -134,6 +134,13 @@ void thread::join() noexcept
     joinable_ = false;
 }
 
+void thread::detach() noexcept
+{
+    if (joinable_)
+        pthread_detach(handle_);
+    joinable_ = false;
+}
+
 bool thread::is_current() const noexcept
 {
     return joinable_ && pthread_equal(handle_, pthread_self()) != 0;

@@ -31,6 +31,8 @@ public:
     thread& operator=(const thread&) = delete;
 
     void join() noexcept;
+    /// Lets it go on by itself: for a thread that gives up what owns it.
+    void detach() noexcept;
 
     /// Whether this is the calling thread.
     bool is_current() const noexcept;

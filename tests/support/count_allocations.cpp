@@ -22,6 +22,8 @@ namespace {
 thread_local constinit bool counting = false;
 thread_local constinit std::uint64_t calls_made = 0;
 thread_local constinit std::int64_t bytes_held = 0;
+thread_local constinit std::uint64_t calls_granted = 0;
+thread_local constinit std::uint64_t calls_refused = 0; // after those
 
 } // namespace
 
@@ -38,6 +40,19 @@ void __libc_free(void* p);
 // NOLINTEND
 
 namespace {
+
+bool refused() noexcept
+{
+    if (calls_refused == 0)
+        return false;
+    if (calls_granted != 0) {
+        --calls_granted;
+        return false;
+    }
+    --calls_refused;
+    errno = ENOMEM;
+    return true;
+}
 
 void* taken(void* p) noexcept
 {
@@ -62,33 +77,35 @@ extern "C" {
 
 void* malloc(std::size_t n)
 {
-    return taken(__libc_malloc(n));
+    return refused() ? nullptr : taken(__libc_malloc(n));
 }
 
 void* calloc(std::size_t n, std::size_t size)
 {
-    return taken(__libc_calloc(n, size));
+    return refused() ? nullptr : taken(__libc_calloc(n, size));
 }
 
 void* realloc(void* p, std::size_t n)
 {
+    if (refused())
+        return nullptr;
     given(p);
     return taken(__libc_realloc(p, n));
 }
 
 void* memalign(std::size_t alignment, std::size_t n)
 {
-    return taken(__libc_memalign(alignment, n));
+    return refused() ? nullptr : taken(__libc_memalign(alignment, n));
 }
 
 void* aligned_alloc(std::size_t alignment, std::size_t n)
 {
-    return taken(__libc_memalign(alignment, n));
+    return refused() ? nullptr : taken(__libc_memalign(alignment, n));
 }
 
 int posix_memalign(void** p, std::size_t alignment, std::size_t n)
 {
-    *p = taken(__libc_memalign(alignment, n));
+    *p = refused() ? nullptr : taken(__libc_memalign(alignment, n));
     return *p != nullptr ? 0 : ENOMEM;
 }
 
@@ -118,6 +135,19 @@ bool can_count(const char* test_case) noexcept
     if (!counts_allocations())
         std::printf("SKIPPED: %s: a sanitizer has an allocator of its own\n", test_case);
     return counts_allocations();
+}
+
+bool can_exhaust(const char* test_case) noexcept
+{
+    if (!counts_allocations())
+        std::printf("SKIPPED: %s: a sanitizer needs descriptors of its own\n", test_case);
+    return counts_allocations();
+}
+
+void refuse_allocations(std::uint64_t granted, std::uint64_t refused) noexcept
+{
+    calls_granted = granted;
+    calls_refused = refused;
 }
 
 count_allocations::count_allocations() noexcept

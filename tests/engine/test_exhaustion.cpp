@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: MIT
+// When descriptors or memory run out: an error that says so, or std::bad_alloc; and nothing is lost or left
+// behind.
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <tactor/alsa.hpp>
+#include <tactor/devices.hpp>
+#include <tactor/error.hpp>
+#include <tactor/gpio.hpp>
+#include <tactor/player.hpp>
+#include <tactor/realtime.hpp>
+#include <tactor/setup.hpp>
+#include <tactor/stroke.hpp>
+
+#include "alsa/adopt.hpp"
+#include "clock_runner.hpp"
+#include "count_allocations.hpp"
+#include "folder.hpp"
+#include "has.hpp"
+#include "player_support.hpp"
+#include "scores.hpp"
+
+namespace exhaustion_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+// Leaves the process so many descriptors, as long as it lives.
+class descriptors_left {
+public:
+    explicit descriptors_left(unsigned n)
+    {
+        REQUIRE(::getrlimit(RLIMIT_NOFILE, &before_) == 0);
+        rlimit few = before_;
+        few.rlim_cur = 256;
+        REQUIRE(::setrlimit(RLIMIT_NOFILE, &few) == 0);
+        for (int fd = ::dup(0); fd >= 0; fd = ::dup(0))
+            taken_.push_back(fd);
+        REQUIRE(taken_.size() > n);
+        for (unsigned i = 0; i < n; ++i)
+            release();
+    }
+    ~descriptors_left()
+    {
+        while (!taken_.empty())
+            release();
+        ::setrlimit(RLIMIT_NOFILE, &before_);
+    }
+    descriptors_left(const descriptors_left&) = delete;
+    descriptors_left& operator=(const descriptors_left&) = delete;
+
+private:
+    void release()
+    {
+        ::close(taken_.back());
+        taken_.pop_back();
+    }
+
+    rlimit before_{};
+    std::vector<int> taken_;
+};
+
+std::ptrdiff_t open_descriptors()
+{
+    const std::filesystem::directory_iterator all("/proc/self/fd");
+    return std::distance(begin(all), end(all));
+}
+
+// What a call throws with so many descriptors: "" for nothing.
+std::string said_with(unsigned descriptors, const std::function<void()>& call)
+{
+    const descriptors_left few(descriptors);
+    try {
+        call();
+    } catch (const error& e) {
+        return e.what();
+    } catch (const std::exception& e) {
+        return std::string("not a tactor::error: ") + e.what();
+    }
+    return "";
+}
+
+// Calls again and again with more memory each time, until there is enough.
+template <typename Call>
+std::uint64_t until_it_fits(Call call)
+{
+    for (std::uint64_t granted = 0;; ++granted) {
+        REQUIRE(granted < 100'000);
+        refuse_allocations(granted, UINT64_MAX);
+        bool fits = false;
+        try {
+            call();
+            fits = true;
+        } catch (const std::bad_alloc&) {
+            fits = false;
+        } catch (...) {
+            refuse_allocations(0, 0);
+            throw;
+        }
+        refuse_allocations(0, 0);
+        if (fits)
+            return granted;
+    }
+}
+
+} // namespace
+
+EXHAUSTING_TEST_CASE(
+    "a player without descriptors says so, leaves none behind, and opens once there are enough")
+{
+    for (unsigned n = 0;; ++n) {
+        CAPTURE(n);
+        REQUIRE(n < 20);
+        fake_dac dac;
+        const running_clock clock(dac);
+        std::unique_ptr<sink> out = pcm::adopt(dac.pcm(), nine());
+        const auto before = open_descriptors();
+        bool played = false;
+        const std::string said = said_with(n, [&] {
+            player p(std::move(out), palm(), patient());
+            played = p.wait(p.submit(tone(0.001)))->state == stroke_state::finished;
+            p.stop();
+        });
+        CHECK(dac.closed());
+        CHECK(open_descriptors() <= before);
+        if (played) {
+            CHECK(said.empty());
+            CHECK(n >= 3);
+            break;
+        }
+        has(said, "player: ");
+        has(said, "Too many open files (this process has too many files open: close some, or raise the limit "
+                  "(ulimit -n)");
+    }
+}
+
+EXHAUSTING_TEST_CASE("a PCM without descriptors says so, and opens once there are enough")
+{
+    alsa_options o = nine();
+    o.pcm = "null";
+    open_alsa(o); // ALSA keeps its configuration
+    for (unsigned n = 0;; ++n) {
+        CAPTURE(n);
+        REQUIRE(n < 20);
+        const auto before = open_descriptors();
+        const std::string said = said_with(n, [&] { open_alsa(o); });
+        CHECK(open_descriptors() == before);
+        if (said.empty())
+            break;
+        has(said, "Too many open files");
+        has(said, "ulimit -n");
+    }
+}
+
+EXHAUSTING_TEST_CASE("every call without descriptors throws what it documents")
+{
+    const folder here;
+    const auto array_file =
+        here.write("a.toml", "[array]\ngrid = { rows = 1, columns = 2, pitch_mm = 20.0 }\n");
+    const auto stroke_file = here.write("s.csv", "t_s,x_mm,y_mm\n0,0,0\n1,10,0\n");
+    const gpio_line_name line{.name = "no-such-line"};
+    const std::vector<std::pair<const char*, std::function<void()>>> calls{
+        {"open_alsa", [] { open_alsa(nine()); }},
+        {"hw", [] { open_alsa({.pcm = "hw:0", .channels = 2}); }},
+        {"list_pcms", [] { list_pcms(); }},
+        {"card_of", [] { card_of("hw:0"); }},
+        {"card_holders", [] { card_holders(0); }},
+        {"list_gpio", [] { list_gpio(); }},
+        {"find_gpio_line", [&] { find_gpio_line(line); }},
+        {"open_output", [&] { open_output(line); }},
+        {"open_edges", [&] { open_edges(line, "rising"); }},
+        {"open_amplifier", [&] { open_amplifier({.line = line}); }},
+        {"probe_realtime_rights", [] { probe_realtime_rights(); }},
+        {"load_setup", [&] { load_setup(array_file); }},
+        {"load_strokes", [&] { load_strokes(stroke_file); }},
+    };
+    for (const auto& [name, call] : calls) {
+        for (unsigned n = 0; n < 6; ++n) {
+            CAPTURE(name);
+            CAPTURE(n);
+            const std::string said = said_with(n, call);
+            CHECK(said.find("not a tactor::error") == std::string::npos);
+        }
+    }
+}
+
+COUNTING_TEST_CASE("without memory a call throws std::bad_alloc and has done nothing")
+{
+    fake_dac dac;
+    const running_clock clock(dac);
+    std::map<stroke_id, int> told;
+    std::vector<stroke_id> accepted;
+    std::mutex mutex;
+    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    p.on_report([&](const stroke_report& r) {
+        const std::lock_guard lock(mutex);
+        ++told[r.id];
+    });
+    accepted.reserve(100);
+    const score s = tone(0.001);
+    std::uint64_t calls = 0;
+    for (const start_at when :
+         {start_at::now(), start_at::frame(0), start_at::time(0), start_at::trigger()}) {
+        calls += until_it_fits([&] { accepted.push_back(p.submit(s, when)); });
+        calls += until_it_fits([&] { accepted.push_back(p.submit(s, start_at::trigger())); });
+        calls += until_it_fits([&] { p.cancel(accepted.back()); });
+    }
+    calls += until_it_fits([&] { p.fire(0); });
+    calls += until_it_fits([&] {
+        live_stroke live = p.begin();
+        accepted.push_back(live.id());
+        live.to(1.0, 1.0);
+        live.end();
+    });
+    CHECK(calls > 8);
+    p.submit(s, start_at::trigger());
+    until_it_fits([&] { p.on_end(accepted.back(), [](const stroke_report&) {}); });
+    until_it_fits([&] { static_cast<void>(p.stats()); });
+    until_it_fits([&] { static_cast<void>(p.ended()); });
+    until_it_fits([&] { p.stop(); });
+    for (const stroke_id id : accepted) {
+        CAPTURE(id);
+        CHECK(told[id] == 1);
+        CHECK(p.wait(id));
+    }
+}
+
+COUNTING_TEST_CASE("planning and opening without memory throw std::bad_alloc")
+{
+    const array a = palm();
+    // The reader of path data has GLib set something up once, which ends the process where there is no
+    // memory.
+    static_cast<void>(path::from_svg("M 0 10 L 40 30"));
+    until_it_fits([&] {
+        const stroke s = preset_stroke("park2016-1");
+        const score piece(a, {{make_plan(a, s)}}, {});
+        renderer r(piece, sample_format::s16);
+    });
+    const std::string text = "t_s,x_mm,y_mm\n0,0,0\n1,10,0\n";
+    until_it_fits([&] { parse_strokes_csv(text, "s.csv"); });
+    until_it_fits([&] { path::from_svg("M 0 10 C 20 -5 20 45 40 30"); });
+}
+
+COUNTING_TEST_CASE("the player's own thread waits for memory: every stroke ends, and is told once")
+{
+    fake_dac dac;
+    const running_clock clock(dac);
+    std::map<stroke_id, int> told;
+    std::atomic<unsigned> ended{0};
+    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    p.on_report([&](const stroke_report& r) {
+        refuse_allocations(0, 0);
+        ++told[r.id];
+        ++ended;
+        ended.notify_all();
+        refuse_allocations(ended % 5, 3); // what comes next in this thread
+    });
+    constexpr unsigned strokes = 30;
+    const score s = tone(0.002);
+    for (unsigned i = 0; i < strokes; ++i) {
+        const stroke_id id = p.submit(s, i % 3 == 0 ? start_at::time(0) : start_at::frame(96 * i));
+        if (i % 7 == 0)
+            p.cancel(id);
+    }
+    for (unsigned n = ended; n < strokes; n = ended)
+        ended.wait(n);
+    p.stop();
+    CHECK(told.size() == strokes);
+    for (const auto& [id, times] : told)
+        CHECK(times == 1);
+}
+
+} // namespace exhaustion_test

@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: MIT
+// What the program's handlers may do to the player: anything; and what is called after the end.
+#include <atomic>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <boost/asio/bind_executor.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/strand.hpp>
+#include <boost/asio/use_future.hpp>
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <tactor/alsa.hpp>
+#include <tactor/asio.hpp>
+#include <tactor/error.hpp>
+#include <tactor/player.hpp>
+
+#include "alsa/adopt.hpp"
+#include "clock_runner.hpp"
+#include "has.hpp"
+#include "player_support.hpp"
+#include "scores.hpp"
+
+namespace player_handlers_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+void wait_for(std::atomic<bool>& flag)
+{
+    flag.wait(false);
+}
+
+void raise(std::atomic<bool>& flag)
+{
+    flag = true;
+    flag.notify_all();
+}
+
+// An input that has no edges, with a descriptor of any kind.
+class odd_input final : public edge_input {
+public:
+    explicit odd_input(int fd) : fd_(fd) {}
+    int descriptor() const noexcept override { return fd_; }
+    std::optional<gpio_edge> read() noexcept override { return std::nullopt; }
+
+private:
+    int fd_;
+};
+
+std::string refused_trigger(int fd)
+{
+    fake_dac dac;
+    const running_clock clock(dac);
+    player_lines lines;
+    lines.trigger = std::make_unique<odd_input>(fd);
+    try {
+        const player p(pcm::adopt(dac.pcm(), nine()), palm(), patient(), std::move(lines));
+    } catch (const error& e) {
+        CHECK(e.kind() == errc::bad_input);
+        CHECK(dac.closed());
+        return e.what();
+    }
+    return "no error";
+}
+
+} // namespace
+
+TEST_CASE("a handler may destroy the player: what is left is reported from within, and the device is closed")
+{
+    for (const bool own : {false, true}) {
+        CAPTURE(own);
+        fake_dac dac;
+        const running_clock clock(dac);
+        std::atomic<bool> submitted{false};
+        std::atomic<bool> gone{false};
+        std::vector<stroke_report> told;
+        auto p = std::make_unique<player>(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+        const auto destroy = [&](const stroke_report& r) {
+            told.push_back(r);
+            if (p == nullptr)
+                return;
+            wait_for(submitted);
+            p.reset();
+            CHECK(told.size() == 3);
+            CHECK(dac.closed());
+            raise(gone);
+        };
+        const stroke_id armed = p->submit(tone(0.01), start_at::trigger());
+        const stroke_id sounding = p->submit(tone(100.0));
+        const stroke_id first = p->submit(tone(0.01), start_at::trigger());
+        if (own) {
+            for (const stroke_id id : {armed, sounding, first})
+                CHECK(p->on_end(id, destroy));
+        } else {
+            p->on_report(destroy);
+        }
+        p->cancel(first);
+        raise(submitted);
+        wait_for(gone);
+        REQUIRE(told.size() == 3);
+        CHECK(told[0].id == first);
+        CHECK(told[0].state == stroke_state::cancelled);
+        for (std::size_t i = 1; i < 3; ++i) {
+            CHECK(told[i].state == stroke_state::interrupted);
+            CHECK(told[i].reason == "the player was closed");
+        }
+    }
+}
+
+TEST_CASE("a handler may destroy a player whose device is gone, and one that was stopped")
+{
+    for (const bool unplugged : {false, true}) {
+        fake_dac dac;
+        const running_clock clock(dac);
+        std::atomic<bool> submitted{false};
+        std::atomic<bool> gone{false};
+        auto p = std::make_unique<player>(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+        p->on_report([&](const stroke_report&) {
+            wait_for(submitted);
+            if (!unplugged)
+                p->stop();
+            p.reset();
+            raise(gone);
+        });
+        const stroke_id id = p->submit(tone(100.0));
+        if (unplugged)
+            dac.disconnect();
+        else
+            p->cancel(id);
+        raise(submitted);
+        wait_for(gone);
+        CHECK(dac.closed());
+    }
+}
+
+TEST_CASE("a handler that destroys the player: the stroke's other handlers are called before that is done")
+{
+    fake_dac dac;
+    const running_clock clock(dac);
+    std::atomic<bool> submitted{false};
+    std::atomic<bool> gone{false};
+    int others = 0;
+    auto p = std::make_unique<player>(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    p->on_report([&](const stroke_report&) {
+        wait_for(submitted);
+        p.reset();
+        CHECK(others == 2);
+        raise(gone);
+    });
+    const stroke_id id = p->submit(tone(0.01), start_at::trigger());
+    for (int i = 0; i < 2; ++i)
+        CHECK(p->on_end(id, [&](const stroke_report&) { ++others; }));
+    p->cancel(id);
+    raise(submitted);
+    wait_for(gone);
+    CHECK(others == 2);
+}
+
+TEST_CASE("a handler that throws ends the stream, with the reason, and not the program")
+{
+    for (const bool own : {false, true}) {
+        CAPTURE(own);
+        fake_dac dac;
+        const running_clock clock(dac);
+        player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+        const std::string why = "a handler of the program threw: no such file";
+        std::atomic<int> others{0};
+        const auto throws = [](const stroke_report&) { throw std::runtime_error("no such file"); };
+        const stroke_id longer = p.submit(tone(100.0));
+        const stroke_id armed = p.submit(tone(0.01), start_at::trigger());
+        const stroke_id id = p.submit(tone(100.0, 3));
+        if (own)
+            CHECK(p.on_end(id, throws));
+        else
+            p.on_report(throws);
+        CHECK(p.on_end(longer, [&](const stroke_report&) { ++others; }));
+        CHECK(p.on_end(armed, [&](const stroke_report&) { ++others; }));
+        CHECK(p.cancel(id));
+        CHECK(p.wait(id)->state == stroke_state::cancelled);
+        for (const stroke_id other : {longer, armed}) {
+            const auto r = p.wait(other);
+            REQUIRE(r);
+            CHECK(r->state == stroke_state::interrupted);
+            CHECK(r->reason == why);
+        }
+        p.stop();
+        CHECK(others == 2);
+        CHECK(p.ended() == why);
+        try {
+            p.submit(tone(0.01));
+            FAIL("no error");
+        } catch (const error& e) {
+            CHECK(e.kind() == errc::runtime);
+            has(e.what(), why);
+        }
+    }
+}
+
+TEST_CASE("a handler may throw anything; what on_end() calls at once throws to its caller")
+{
+    fake_dac dac;
+    const running_clock clock(dac);
+    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    const stroke_id id = p.submit(tone(0.001));
+    std::atomic<bool> ended{false};
+    CHECK(p.on_end(id, [&](const stroke_report&) { raise(ended); }));
+    wait_for(ended);
+    CHECK_THROWS_AS(p.on_end(id, [](const stroke_report&) { throw 17; }), int);
+    CHECK_FALSE(p.ended());
+    p.on_report([](const stroke_report&) { throw 17; });
+    const stroke_id other = p.submit(tone(0.001));
+    CHECK(p.wait(other)->state == stroke_state::finished);
+    p.stop();
+    CHECK(p.ended() == "a handler of the program threw: not a std::exception");
+}
+
+TEST_CASE("a handler may call all members, and set itself anew")
+{
+    fake_dac dac;
+    const running_clock clock(dac);
+    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    std::atomic<bool> first{false};
+    std::atomic<bool> second{false};
+    p.on_report([&](const stroke_report& r) {
+        const stroke_id armed = p.submit(tone(0.001), start_at::trigger());
+        CHECK(p.on_end(armed, [&](const stroke_report&) { raise(second); }));
+        CHECK_FALSE(p.on_end(r.id + 1000, [](const stroke_report&) {}));
+        CHECK_FALSE(p.ended());
+        CHECK(p.setup().channels == 9);
+        CHECK(p.stats().xruns == 0);
+        CHECK(p.position().running);
+        live_stroke live = p.begin();
+        CHECK(live.to(1.0, 1.0));
+        live.cancel();
+        p.on_report({});
+        CHECK(p.fire(0) == 1);
+        raise(first);
+    });
+    const stroke_id id = p.submit(tone(0.001));
+    wait_for(first);
+    wait_for(second);
+    CHECK(p.wait(id)->state == stroke_state::finished);
+    p.stop();
+}
+
+TEST_CASE("after the end all members may be called, and an empty function is refused")
+{
+    fake_dac dac;
+    const running_clock clock(dac);
+    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    CHECK_THROWS_AS(p.on_end(1, {}), error);
+    live_stroke live = p.begin();
+    const stroke_id id = p.submit(tone(100.0));
+    p.stop();
+    p.stop();
+    CHECK_THROWS_AS(p.submit(tone(0.01)), error);
+    CHECK_THROWS_AS(p.submit(tone(0.01), start_at::trigger()), error);
+    CHECK_THROWS_AS(p.begin(), error);
+    CHECK(p.fire(0) == 0);
+    CHECK_FALSE(p.cancel(id));
+    CHECK_FALSE(live.to(1.0, 1.0));
+    CHECK(p.wait(id)->state == stroke_state::cancelled);
+    CHECK_FALSE(p.wait(id));
+    CHECK_FALSE(p.on_end(id, [](const stroke_report&) {}));
+    CHECK(p.ended() == "it was stopped");
+    CHECK_FALSE(p.position().running);
+    CHECK(p.stats().frames > 0);
+    p.on_report([](const stroke_report&) {});
+}
+
+TEST_CASE("a trigger whose descriptor cannot be polled is an error")
+{
+    has(refused_trigger(-1), "trigger: its descriptor -1: Bad file descriptor");
+    has(refused_trigger(1 << 30), "Bad file descriptor");
+    const int file = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+    REQUIRE(file >= 0);
+    has(refused_trigger(file), "Operation not permitted");
+    ::close(file);
+    const int event = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+    CHECK(refused_trigger(event) == "no error");
+    ::close(event);
+}
+
+TEST_CASE("Asio: a plain callback runs in the context that was named, which is at work until then")
+{
+    fake_dac dac;
+    const running_clock clock(dac);
+    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    const auto here = std::this_thread::get_id();
+    int calls = 0;
+    const auto ran = [&](std::exception_ptr failed, const stroke_report& r) {
+        CHECK(std::this_thread::get_id() == here);
+        CHECK_FALSE(failed);
+        CHECK(r.state == stroke_state::finished);
+        ++calls;
+    };
+    boost::asio::io_context io;
+    async_play(io, p, tone(0.01), start_at::now(), ran);
+    CHECK(io.run() > 0);
+    CHECK(calls == 1);
+    io.restart();
+    async_wait(boost::asio::make_strand(io), p, p.submit(tone(0.01)), ran);
+    CHECK(io.run() > 0);
+    CHECK(calls == 2);
+
+    // One that runs elsewhere is waited for here, too.
+    boost::asio::io_context other;
+    io.restart();
+    async_play(io, p, tone(0.01), {}, boost::asio::bind_executor(other, ran));
+    io.run();
+    CHECK(calls == 2);
+    CHECK(other.run() > 0);
+    CHECK(calls == 3);
+
+    io.restart();
+    std::exception_ptr unknown;
+    async_wait(io, p, 77, [&](std::exception_ptr failed, const stroke_report&) { unknown = failed; });
+    CHECK_FALSE(unknown);
+    io.run();
+    CHECK_THROWS_AS(std::rethrow_exception(unknown), error);
+    async_play(p, tone(0.001), {}, boost::asio::detached);
+    p.stop();
+}
+
+TEST_CASE("Asio: callbacks that nobody gave a context are refused by the compiler")
+{
+    const auto plain = [](std::exception_ptr, const stroke_report&) {};
+    boost::asio::io_context io;
+    CHECK(detail::runs_nowhere<decltype(plain)>);
+    CHECK_FALSE(detail::runs_nowhere<decltype(boost::asio::bind_executor(io, plain))>);
+    CHECK_FALSE(detail::runs_nowhere<decltype(boost::asio::use_future)>);
+    CHECK_FALSE(detail::runs_nowhere<decltype(boost::asio::detached)>);
+}
+
+} // namespace player_handlers_test
