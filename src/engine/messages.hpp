@@ -14,7 +14,7 @@ namespace tactor::engine {
 class live_voice;
 
 /// Scores that the audio thread can hold at once, sounding or about to; more wait on the control side.
-inline constexpr std::uint32_t voices = 256;
+inline constexpr std::uint32_t voices = 512;
 
 /// Names one handing-over of a score to the audio thread: place in its table plus voices * generation. A
 /// score that must be handed over again after an xrun gets a new one, and what is still in the ring under
@@ -56,6 +56,7 @@ enum class reason : std::uint32_t {
     lost,
     failed,
     late,
+    crowded,
     closed,
     starved,
     muted,

@@ -58,13 +58,20 @@ bool score_table::add(const command& c) noexcept
     d.start += e->base;
     if (d.start < mixer_.position()) {
         // Half a burst would be a step on the skin.
-        want_fade(*e, stroke_state::interrupted, reason::late);
+        want_fade(*e, stroke_state::interrupted, why_late());
         return true;
     }
-    if (mixer_.room() <= reserve_ || !mixer_.add(d))
+    if (mixer_.room() <= reserve_ || !mixer_.add(d)) {
+        full_until_ = mixer_.position() + crowd_frames;
         return false;
+    }
     cover(*e, d);
     return true;
+}
+
+reason score_table::why_late() const noexcept
+{
+    return mixer_.position() < full_until_ ? reason::crowded : reason::late;
 }
 
 // What ends before its window does is continued by another drive, unless it has come down to zero.
@@ -92,7 +99,7 @@ void score_table::fade_what_runs_out(std::uint64_t period) noexcept
         } else if (e.ahead && e.base < next) {
             // Between one and two periods are left, as the last look found two; or none, and it is silent.
             e.fade = static_cast<std::uint32_t>(std::min<std::uint64_t>(fade_, e.covered - next));
-            want_fade(e, stroke_state::interrupted, reason::late);
+            want_fade(e, stroke_state::interrupted, why_late());
         }
     }
 }
@@ -151,7 +158,7 @@ void score_table::want_fade(entry& e, stroke_state s, reason why) noexcept
         over(e, s, why, 0, 0); // nothing of it has been mixed yet
         return;
     }
-    if (e.finish <= next && why != reason::late && why != reason::plan)
+    if (e.finish <= next && why != reason::late && why != reason::crowded && why != reason::plan)
         return; // all of it is on its way to the DAC: it finishes
     e.state = s;
     e.why = why;
@@ -240,6 +247,7 @@ void score_table::update(std::uint64_t played) noexcept
 
 void score_table::interrupt(reason why, int code, std::uint64_t played, bool give_back) noexcept
 {
+    full_until_ = 0; // frames begin anew
     for (std::uint32_t i = 0; i < top_; ++i) {
         entry& e = entries_[i];
         if (!e.used)

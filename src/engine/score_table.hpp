@@ -71,6 +71,9 @@ private:
     /// Base of a live stroke before its first point, and the length of one that is fed.
     static constexpr std::uint64_t never = std::uint64_t{1} << 62;
 
+    /// For so long a mixer that was full is what makes drives late.
+    static constexpr std::uint64_t crowd_frames = 8192;
+
     struct entry {
         ticket score = 0;
         stroke_id id = 0;
@@ -98,6 +101,7 @@ private:
     void look_at_wishes(entry& e) noexcept;
     void render_live(entry& e, std::uint64_t frames, std::uint64_t offset) noexcept;
     void close_live(entry& e) noexcept;
+    reason why_late() const noexcept;
     static void cover(entry& e, const synth::drive_event& d) noexcept;
     void want_fade(entry& e, stroke_state s, reason why) noexcept;
     void fade(entry& e) noexcept;
@@ -108,6 +112,8 @@ private:
     std::uint32_t fade_;
     std::size_t reserve_;
     std::array<entry, voices> entries_{};
+    std::uint64_t full_until_ =
+        0; ///< what comes too late before this frame had to wait for room in the mixer
     std::uint32_t used_ = 0;
     std::uint32_t top_ = 0; ///< entries from here on were never used
     /// By place: beginnings in the command ring that have been cancelled and reported. Those come first, as a

@@ -47,6 +47,8 @@ std::string text(reason r, int code)
                                        std::error_code(-code, std::generic_category()).message());
     case reason::late:
         return "the computer was too slow to prepare the stroke in time";
+    case reason::crowded:
+        return "too many strokes at once (let fewer overlap; bursts need less than continuous strokes)";
     case reason::starved:
         return "no more points came";
     case reason::muted:

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// Many strokes at once: they play, or they say that they were too many.
+#include <cstddef>
+#include <map>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include <tactor/plan.hpp>
+
+#include "has.hpp"
+#include "rig.hpp"
+
+namespace crowd_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+constexpr int crowd = 400;
+
+score drawn(algorithm how)
+{
+    plan_options o;
+    o.method = how;
+    const array a = palm();
+    render_options r;
+    r.level_dbfs = -60.0;
+    return {a, {{.schedule = make_plan(a, preset_stroke("park2016-1"), o), .start_s = {}}}, r};
+}
+
+// Every tactor of 64 at once.
+score broad()
+{
+    plan p;
+    burst b;
+    b.duration_s = 0.1;
+    for (unsigned i = 0; i < 64; ++i)
+        b.drives.push_back({.tactor = i, .amplitude = 1.0});
+    p.bursts.push_back(b);
+    p.total_s = 0.1;
+    p.stroke_duration_s = 0.1;
+    render_options r;
+    r.level_dbfs = -60.0;
+    return {make_grid("8x8", 8, 8, 20.0, 20.0), {{.schedule = p, .start_s = {}}}, r};
+}
+
+// How many strokes ended with each state and reason.
+std::map<std::string, int> play_at_once(const score& s, std::uint64_t at)
+{
+    rig_options o;
+    o.channels = s.channels();
+    rig r(o);
+    REQUIRE(r.start().status == io_status::ok);
+    for (int i = 0; i < crowd; ++i)
+        r.submit(s, at);
+    r.play_out();
+    std::map<std::string, int> ends;
+    for (const auto& [id, reports] : r.ended)
+        for (const stroke_report& e : reports)
+            ++ends[std::string(to_string(e.state)) + (e.late_s > 0.0 ? " late" : "") + ": " + e.reason];
+    return ends;
+}
+
+} // namespace
+
+TEST_CASE("400 strokes at once all play, at once")
+{
+    for (const algorithm how : {algorithm::park2016, algorithm::continuous}) {
+        for (const std::uint64_t at : {0, 48'000}) {
+            CAPTURE(to_string(how));
+            CAPTURE(at);
+            CHECK(play_at_once(drawn(how), at) == std::map<std::string, int>{{"finished: ", crowd}});
+        }
+    }
+}
+
+TEST_CASE("more than can be mixed: what does not play says that they were too many, and what to do")
+{
+    int refused = 0;
+    for (const auto& [end, n] : play_at_once(broad(), 48'000)) {
+        if (end.starts_with("finished"))
+            continue;
+        CHECK(has(end, "interrupted"));
+        CHECK(has(end, "too many strokes at once (let fewer overlap"));
+        refused += n;
+    }
+    CHECK(refused > 0);
+    CHECK(refused < crowd);
+}
+
+} // namespace crowd_test
