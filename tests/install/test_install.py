@@ -8,6 +8,7 @@ import os
 import pathlib
 import re
 import shutil
+import subprocess
 import sys
 
 from building import BUILD, CONSUMER, ROOT, FolderTest, main, run
@@ -85,10 +86,39 @@ class Install(FolderTest):
         self.compile(self.dir / "manual.cpp", "-o", self.dir / "manual")
         self.assertEqual(run(self.dir / "manual", env=self.env | {"LD_LIBRARY_PATH": str(self.libdir)}), "finished\n")
 
+        # Whole, as it stands there, with the command that stands there.
         readme = (ROOT / "README.md").read_text(encoding="utf-8").partition("## From C++")[2]
-        include, body = re.match(r"\s*    (#include <.*>)\n((?:    .*\n|\n)*)", readme).groups()
-        (self.dir / "readme.cpp").write_text(f"{include}\nint main()\n{{\n{body}}}\n", encoding="utf-8")
-        self.compile(self.dir / "readme.cpp", "-fsyntax-only")
+        body = re.match(r"\n*((?:    .*\n|\n)*)", readme)[1]
+        (self.dir / "curve.cpp").write_text(body, encoding="utf-8")
+        command = re.search(r"`(c\+\+ .*?)`", readme)[1].replace("c++", os.environ.get("CXX", "c++"), 1)
+        run("sh", "-c", command, cwd=self.dir, env=self.env)
+        told = subprocess.run([self.dir / "a.out"], capture_output=True, text=True, cwd=self.dir, check=False,
+                              env=self.env | {"LD_LIBRARY_PATH": str(self.libdir)})
+        self.assertTrue((self.dir / "curve.wav").stat().st_size > 1000)
+        if told.returncode:
+            self.assertIn("hw:CARD=Tactor", told.stderr)
+            self.assertEqual(told.returncode, 1)
+
+    def test_the_uninstalled_library_is_found(self):
+        env = self.env | {"PKG_CONFIG_PATH": str(BUILD / "meson-uninstalled")}
+        flags = run("pkg-config", "--cflags", "--libs", "tactor", env=env).split()
+        run(*os.environ.get("CXX", "c++").split(), "-std=c++20", CONSUMER / "consumer.cpp", "-o", self.dir / "uninstalled",
+            *flags, env=env)
+        said = run(self.dir / "uninstalled", env=env | {"LD_LIBRARY_PATH": str(BUILD / "src")})
+        self.assertIn(": finished\n", said)
+
+    def test_plain_builds_are_hardened_as_packages_are(self):
+        options = {o["name"]: o["value"] for o in json.loads(run("meson", "introspect", BUILD, "--buildoptions"))}
+        if options["b_sanitize"] != "none":
+            self.skipTest("a sanitizer's build is not hardened")
+        (library,) = (p for p in self.libdir.glob("libtactor.so.*") if not p.is_symlink())
+        for file in (library, self.prefix / "bin/tactor"):
+            dynamic, names = run("readelf", "-dlW", file), run("nm", "-D", file)
+            self.assertRegex(dynamic, r"BIND_NOW|FLAGS_1.*NOW", file)
+            self.assertIn("GNU_RELRO", dynamic, file)
+            self.assertIn("__stack_chk_fail", names, file)
+            if options["optimization"] not in ("0", "plain"):
+                self.assertRegex(names, r"__\w+_chk\b", file)
 
     def test_another_program_compiles_with_pkg_config_and_runs(self):
         program = self.dir / "consumer"
