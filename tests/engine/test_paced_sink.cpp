@@ -87,8 +87,13 @@ TEST_CASE("a sink of one's own that is lost ends the stream, and the stroke with
 {
     taken t;
     player p(std::make_unique<memory_sink>(nine_channels(), t, 4800), palm());
-    const auto r = p.wait(p.submit(tone(10.0)));
-    CHECK(r->state == stroke_state::interrupted);
+    try {
+        const auto r = p.wait(p.submit(tone(10.0)));
+        REQUIRE(r);
+        CHECK(r->state == stroke_state::interrupted);
+    } catch (const error& e) { // on a busy machine the stream is over before the stroke comes
+        CHECK(e.kind() == errc::runtime);
+    }
     CHECK(p.ended().has_value());
     CHECK(t.frames == 4800);
 }
