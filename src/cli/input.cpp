@@ -124,7 +124,7 @@ std::vector<stroke> read_strokes(const settings& s, const std::string& argument)
         path p = path::from_svg(*s.path_data);
         const double duration = p.length_mm() / s.speed_mm_s.value_or(default_speed_mm_s);
         strokes.push_back(
-            {"path", trajectory::along(std::move(p), s.duration_s.value_or(duration)), {}, {}, {}});
+            {"path", trajectory::along(p, s.duration_s.value_or(duration)), {}, {}, {}});
         return strokes;
     }
     strokes = read_one(argument);
