@@ -50,7 +50,7 @@ public:
     path& operator=(const path&) noexcept = default;
 
     struct impl;
-    const impl& data() const noexcept; ///< for the library
+    const impl& data() const noexcept;            ///< for the library
     explicit path(std::shared_ptr<const impl> p); ///< for the library. \throws error (bad_input) for none
 
 private:

@@ -123,8 +123,7 @@ std::vector<stroke> read_strokes(const settings& s, const std::string& argument)
     if (s.path_data) {
         path p = path::from_svg(*s.path_data);
         const double duration = p.length_mm() / s.speed_mm_s.value_or(default_speed_mm_s);
-        strokes.push_back(
-            {"path", trajectory::along(p, s.duration_s.value_or(duration)), {}, {}, {}});
+        strokes.push_back({"path", trajectory::along(p, s.duration_s.value_or(duration)), {}, {}, {}});
         return strokes;
     }
     strokes = read_one(argument);
