@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tactor/api.hpp>
@@ -125,6 +126,21 @@ struct stroke_report {
     std::optional<std::int64_t> started_ns = {};
 };
 
+/// For how long each channel was driven lately, and when that was: what drive_limits::max_drive_s goes by.
+/// One player gives it (player::history()), the next goes on from it. Cheap to copy; empty at first.
+class TACTOR_API drive_history {
+public:
+    struct impl;
+
+    drive_history() = default;
+
+private:
+    friend class player;
+    explicit drive_history(std::shared_ptr<const impl> i) : impl_(std::move(i)) {}
+
+    std::shared_ptr<const impl> impl_;
+};
+
 struct player_options {
     /// How far ahead drives are handed to the audio thread; two buffers and four periods at least.
     double horizon_s = 0.5;
@@ -135,6 +151,9 @@ struct player_options {
     int priority = 65;
     /// What the array may be given in all and over time, whatever the scores ask for.
     drive_limits limits = {};
+    /// Of the player before, where this one goes on on the same array: a device that was lost and is opened
+    /// again does not give a tactor its time back. Channels count from 0 in both.
+    drive_history driven = {};
 };
 
 /// Counters since the player was opened.
@@ -263,6 +282,9 @@ public:
 
     player_position position() const noexcept;
     player_stats stats() const;
+    /// What the array was given lately, for the next player on it. Waits for the audio thread to be through.
+    /// \throws error (runtime) while the stream goes on: stop() it first.
+    drive_history history() const;
 
 private:
     struct impl;

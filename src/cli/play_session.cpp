@@ -79,6 +79,7 @@ void play_session::start(std::unique_ptr<sink> s)
     player_options o;
     o.limits = limits_of(options_, environment_);
     o.require_realtime = options_.require_realtime;
+    o.driven = driven_;
     player_ = std::make_unique<player>(std::move(s), environment_.tactors, o, lines_.lend());
     player_->on_report([this](const stroke_report&) { ended_.raise(); });
     setup_ = player_->setup();
@@ -137,8 +138,11 @@ bool play_session::reopen()
     if (!waits() || (player_ != nullptr && player_->stats().left_on))
         return false;
     say(stderr, "tactor: waiting for \"{}\" to come back (Ctrl-C ends)\n", device_.pcm);
-    if (player_ != nullptr)
+    if (player_ != nullptr) {
         add_stats(before_, player_->stats());
+        player_->stop();
+        driven_ = player_->history();
+    }
     const auto until = clock::now() + std::chrono::duration<double>(options_.reopen_s);
     const auto pause = [&](std::chrono::milliseconds wait) {
         const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - clock::now());

@@ -72,7 +72,8 @@ private:
     alsa_options device_;
     stream_setup setup_;
     std::unique_ptr<player> player_;
-    player_stats before_; ///< of the players before this one
+    player_stats before_;  ///< of the players before this one
+    drive_history driven_; ///< what they gave the array lately
     unsigned reopened_ = 0;
     bool locked_ = false;
     int signal_ = 0;

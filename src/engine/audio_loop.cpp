@@ -43,6 +43,7 @@ audio_loop::audio_loop(sink& s, link& l, std::span<const double> limits, const l
       frame_bytes_(setup_.channels * bytes_of(setup_.format)),
       block_(setup_.period_frames * frame_bytes_)
 {
+    mixer_.resume(o.driven);
     l.amplifier.ready.store(!o.amplifier, std::memory_order_relaxed);
 }
 

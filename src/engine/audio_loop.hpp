@@ -31,6 +31,7 @@ struct loop_options {
     /// that refuses is tried again for another.
     std::int64_t off_ns = 2'000'000'000;
     synth::guard_settings guards{};
+    synth::drive_history driven = {}; ///< what the array was given before, as of now
 };
 
 /// Owns the mixer and everything that happens to the stream. After the constructor no member but the
@@ -49,6 +50,8 @@ public:
     bool over() const noexcept { return phase_ == phase::over; }
     /// Whether the sink's descriptors are worth polling now.
     bool polls_sink() const noexcept;
+    /// What the array was given lately. Once the audio thread is through.
+    synth::drive_history driven() const { return mixer_.history(); }
     /// Drives that wait or sound.
     std::size_t drives() const noexcept { return mixer_.size(); }
     /// When to wake up at the latest, ns from now.

@@ -29,7 +29,7 @@ try : impl_(std::make_shared<impl>(std::move(s), a, o, std::move(lines))) {
 } catch (const error&) {
     throw;
 } catch (const boost::system::system_error& e) {
-    detail::refused_by_system("player", e.code().value(), e.what());
+    detail::refused_by_system("player", e.code().value(), e.code().message());
 } catch (const std::system_error& e) {
     detail::refused_by_system("player", e.code().value(), e.what());
 }
@@ -92,6 +92,11 @@ std::optional<std::string> player::ended() const
     if (!impl_->feed.stream_over())
         return std::nullopt;
     return impl_->why_ended();
+}
+
+drive_history player::history() const
+{
+    return drive_history(impl_->history());
 }
 
 player_position player::position() const noexcept

@@ -15,6 +15,8 @@
 #include <tactor/error.hpp>
 #include <tactor/realtime.hpp>
 
+#include "rt/clock.hpp"
+
 namespace tactor {
 namespace {
 
@@ -36,7 +38,18 @@ std::uint64_t horizon_frames(const player_options& o, const stream_setup& s)
     return std::max<std::uint64_t>(frames_of(o.horizon_s, s.rate, "horizon"), least);
 }
 
-engine::loop_options loop_options(const player_options& o, const stream_setup& s, bool amplifier)
+// As of now: what went by since counts as silence.
+synth::drive_history as_of_now(const drive_history::impl* h)
+{
+    if (h == nullptr)
+        return {};
+    synth::drive_history driven = h->channels;
+    driven.pass(static_cast<double>(rt::monotonic_ns() - h->taken_ns) * 1e-9);
+    return driven;
+}
+
+engine::loop_options loop_options(const player_options& o, const drive_history::impl* before,
+                                  const stream_setup& s, bool amplifier)
 {
     engine::loop_options l;
     l.fade_frames = frames_of(o.fade_s, s.rate, "fade");
@@ -47,6 +60,7 @@ engine::loop_options loop_options(const player_options& o, const stream_setup& s
     l.stall_ns = std::max(periods, asked);
     l.amplifier = amplifier;
     l.guards = synth::guards_of(o.limits, s.rate);
+    l.driven = as_of_now(before);
     return l;
 }
 
@@ -125,7 +139,7 @@ player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options
       feed(link, horizon_frames(o, out->setup())),
       tactors(fitting(a, out->setup())),
       loop(*out, link, synth::channel_limits(a, out->setup().channels),
-           loop_options(o, out->setup(), lines.amplifier != nullptr)),
+           loop_options(o, o.driven.impl_.get(), out->setup(), lines.amplifier != nullptr)),
       audio(loop, *out, link, thread_options(o))
 {
 }
@@ -218,6 +232,16 @@ void player::impl::close()
     control.reset();
     lines = {};
     out.reset();
+}
+
+std::shared_ptr<const drive_history::impl> player::impl::history()
+{
+    const std::lock_guard lock(mutex);
+    if (!feed.stream_over())
+        throw error(errc::runtime, "drive history", "the stream goes on", "stop() it first");
+    // The last that it says comes a little before its end; it never waits for this mutex.
+    audio.join();
+    return std::make_shared<drive_history::impl>(drive_history::impl{loop.driven(), rt::monotonic_ns()});
 }
 
 stroke_id player::impl::submit(const score& s, start_at start)

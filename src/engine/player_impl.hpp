@@ -4,6 +4,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <cstdint>
 #include <functional>
 #include <list>
 #include <map>
@@ -22,10 +23,16 @@
 #include "engine/feeder.hpp"
 #include "engine/link.hpp"
 #include "engine/trigger_thread.hpp"
+#include "synth/drive_history.hpp"
 
 namespace tactor {
 
 /// Shared with the control thread while that is at work, so that a handler can destroy the player.
+struct drive_history::impl {
+    synth::drive_history channels;
+    std::int64_t taken_ns = 0; ///< CLOCK_MONOTONIC
+};
+
 struct player::impl : std::enable_shared_from_this<player::impl> {
     using report_handler = std::function<void(const stroke_report&)>;
 
@@ -43,6 +50,7 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     bool cancel(stroke_id id);
     std::optional<stroke_report> wait(stroke_id id, std::optional<std::chrono::nanoseconds> timeout);
     void stop(bool closing);
+    std::shared_ptr<const drive_history::impl> history();
     /// Why the stream has ended, or is about to, for people. Under the mutex.
     std::string why_ended() const;
 
