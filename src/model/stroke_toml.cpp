@@ -133,7 +133,7 @@ stroke read_stroke(const toml_table& t, std::string name)
     const auto carrier = t.number("carrier_hz", {1.0, 384000.0});
 
     const auto described = [&](trajectory motion, std::string note) {
-        return stroke{t.text("name").value_or(name), std::move(motion), start, carrier, std::move(note)};
+        return stroke{t.text("name").value_or(name), motion, start, carrier, std::move(note)};
     };
     if (kind == "timed")
         return described(paced(t, asked, read_timed(t, intensity)), {});

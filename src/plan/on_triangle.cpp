@@ -49,7 +49,7 @@ weights_of_three in_triangle(const layout::impl& l, const rank_triple& t, point 
 /// Barycentric coordinates in the Delaunay triangle of p, and what is made of them.
 class on_triangle final : public phantom_model {
 public:
-    on_triangle(phantom_kind k, layout l) : kind_(k), layout_(std::move(l)) {}
+    on_triangle(phantom_kind k, const layout& l) : kind_(k), layout_(l) {}
 
     std::string_view name() const noexcept override { return to_string(kind_); }
 
