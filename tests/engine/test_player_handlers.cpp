@@ -42,7 +42,7 @@ void wait_for(std::atomic<bool>& flag)
     flag.wait(false);
 }
 
-void raise(std::atomic<bool>& flag)
+void raise_flag(std::atomic<bool>& flag)
 {
     flag = true;
     flag.notify_all();
@@ -95,7 +95,7 @@ TEST_CASE("a handler may destroy the player: what is left is reported from withi
             p.reset();
             CHECK(told.size() == 3);
             CHECK(dac.closed());
-            raise(gone);
+            raise_flag(gone);
         };
         const stroke_id armed = p->submit(tone(0.01), start_at::trigger());
         const stroke_id sounding = p->submit(tone(100.0));
@@ -107,7 +107,7 @@ TEST_CASE("a handler may destroy the player: what is left is reported from withi
             p->on_report(destroy);
         }
         p->cancel(first);
-        raise(submitted);
+        raise_flag(submitted);
         wait_for(gone);
         REQUIRE(told.size() == 3);
         CHECK(told[0].id == first);
@@ -132,14 +132,14 @@ TEST_CASE("a handler may destroy a player whose device is gone, and one that was
             if (!unplugged)
                 p->stop();
             p.reset();
-            raise(gone);
+            raise_flag(gone);
         });
         const stroke_id id = p->submit(tone(100.0));
         if (unplugged)
             dac.disconnect();
         else
             p->cancel(id);
-        raise(submitted);
+        raise_flag(submitted);
         wait_for(gone);
         CHECK(dac.closed());
     }
@@ -157,13 +157,13 @@ TEST_CASE("a handler that destroys the player: the stroke's other handlers are c
         wait_for(submitted);
         p.reset();
         CHECK(others == 2);
-        raise(gone);
+        raise_flag(gone);
     });
     const stroke_id id = p->submit(tone(0.01), start_at::trigger());
     for (int i = 0; i < 2; ++i)
         CHECK(p->on_end(id, [&](const stroke_report&) { ++others; }));
     p->cancel(id);
-    raise(submitted);
+    raise_flag(submitted);
     wait_for(gone);
     CHECK(others == 2);
 }
@@ -215,7 +215,7 @@ TEST_CASE("a handler may throw anything; what on_end() calls at once throws to i
     player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
     const stroke_id id = p.submit(tone(0.001));
     std::atomic<bool> ended{false};
-    CHECK(p.on_end(id, [&](const stroke_report&) { raise(ended); }));
+    CHECK(p.on_end(id, [&](const stroke_report&) { raise_flag(ended); }));
     wait_for(ended);
     CHECK_THROWS_AS(p.on_end(id, [](const stroke_report&) { throw 17; }), int);
     CHECK_FALSE(p.ended());
@@ -235,7 +235,7 @@ TEST_CASE("a handler may call all members, and set itself anew")
     std::atomic<bool> second{false};
     p.on_report([&](const stroke_report& r) {
         const stroke_id armed = p.submit(tone(0.001), start_at::trigger());
-        CHECK(p.on_end(armed, [&](const stroke_report&) { raise(second); }));
+        CHECK(p.on_end(armed, [&](const stroke_report&) { raise_flag(second); }));
         CHECK_FALSE(p.on_end(r.id + 1000, [](const stroke_report&) {}));
         CHECK_FALSE(p.ended());
         CHECK(p.setup().channels == 9);
@@ -246,7 +246,7 @@ TEST_CASE("a handler may call all members, and set itself anew")
         live.cancel();
         p.on_report({});
         CHECK(p.fire(0) == 1);
-        raise(first);
+        raise_flag(first);
     });
     const stroke_id id = p.submit(tone(0.001));
     wait_for(first);
