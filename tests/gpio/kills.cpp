@@ -28,12 +28,20 @@ constexpr int beat_ms =
     10; // the engine's is 40: what is measured after the holder's death has so much less in it
 constexpr std::int64_t promised_off_ms = 1000; // 200 in real time, which not everybody may have
 
+#if defined(__SANITIZE_THREAD__)
+constexpr bool finds_forks = false;
+#else
+constexpr bool finds_forks = true;
+#endif
+
 bool no_tracing(const char* who)
 {
-    const bool can = can_trace();
-    if (!can)
-        std::printf("SKIPPED: %s killed at each system call: processes cannot be traced here\n", who);
-    return !can;
+    const char* why = !finds_forks   ? "the thread sanitizer forks for itself"
+                      : !can_trace() ? "processes cannot be traced here"
+                                     : nullptr;
+    if (why != nullptr)
+        std::printf("SKIPPED: %s killed at each system call: %s\n", who, why);
+    return why != nullptr;
 }
 
 void session(fake_line& line)
