@@ -4,35 +4,10 @@ import os
 import signal
 import time
 
-from rig import GpioSim, RigTest, wait_for
-
-LINE = 2
-LIMIT_S = 0.2
+from rig import AmplifierTest
 
 
-class Amplifier(RigTest):
-    def setUp(self):
-        super().setUp()
-        self.gpio = GpioSim()
-        self.addCleanup(self.gpio.close)
-        self.array = self.grid(extra=f'[amplifier]\nline = {{ chip = "{self.gpio.label}", offset = {LINE} }}\n')
-
-    def on(self):
-        return self.gpio.value(LINE) == 1
-
-    def playing(self, seconds="60"):
-        p = self.start("play", "--path", "M 0 10 L 40 30", "--duration", seconds, "--array", self.array)
-        wait_for(lambda: self.on() or p.poll() is not None, "the amplifier is switched on")
-        self.assertIsNone(p.poll(), p.stderr.read() if p.poll() is not None else "")
-        return p
-
-    def off_within(self, what, limit=LIMIT_S):
-        began = time.monotonic()
-        wait_for(lambda: not self.on(), f"off after {what}", 5)
-        took = time.monotonic() - began
-        print(f"off {took * 1000:.0f} ms after {what}")
-        self.assertLess(took, limit, what)
-
+class Amplifier(AmplifierTest):
     def test_it_is_on_while_a_stroke_plays_and_off_before_and_after(self):
         self.assertFalse(self.on())
         p = self.playing("1")
@@ -51,7 +26,7 @@ class Amplifier(RigTest):
             p = self.playing()
             p.send_signal(number)
             # The fade and the silence behind it come first: 16 periods of 240 frames are queued.
-            self.off_within(signal.Signals(number).name, LIMIT_S + 0.12)
+            self.off_within(signal.Signals(number).name, self.LIMIT_S + 0.12)
             self.assertEqual(p.wait(20), status)
 
     def test_sigkill_switches_it_off_at_any_moment(self):

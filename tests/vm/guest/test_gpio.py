@@ -3,14 +3,20 @@
 import re
 import subprocess
 
-from rig import BUILD, GpioSim, RigTest
+from rig import BUILD, ENTER, INSIDE, GpioSim, RigTest
 
 
 class Gpio(RigTest):
+    def test_the_library_is_the_one_that_is_meant(self):
+        facts = self.tool("--version").stdout
+        print(facts)
+        if INSIDE:  # Debian 13's
+            self.assertIn("libgpiod 2.", facts)
+
     def test_lines_edges_and_the_amplifiers_holder(self):
         sim = GpioSim(lines=8, names=[(2, "tactor-named")])
         self.addCleanup(sim.close)
-        r = subprocess.run([BUILD / "tests/gpio/hw", sim.sysfs, "--no-colors=true"], capture_output=True, text=True,
+        r = subprocess.run([*ENTER, BUILD / "tests/gpio/hw", sim.sysfs, "--no-colors=true"], capture_output=True, text=True,
                            timeout=300, check=False, cwd=self.dir, env=self.env)
         self.assertEqual(r.returncode, 0, r.stdout + r.stderr)
         counts = re.search(r"test cases: *(\d+) \| *(\d+) passed", r.stdout)

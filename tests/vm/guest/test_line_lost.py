@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: MIT
+"""The amplifier's line when it is taken away, and when nobody is left to switch it off."""
+import fcntl
+import os
+import pathlib
+import signal
+import struct
+
+from rig import AmplifierTest, wait_for
+
+MAY_BE_ON = "tactor: amplifier: its line cannot be switched off"
+
+
+def holders():
+    """The processes that hold an amplifier's line for a player."""
+    found = []
+    for process in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            if pathlib.Path("/proc", process, "comm").read_text() == "tactor-amp\n":
+                found.append(int(process))
+        except OSError:
+            pass  # it has just ended
+    return found
+
+
+class OtherProgram:
+    """Holds a line as an output that is on, through the kernel's own interface (linux/gpio.h, version 2)."""
+    GET_LINE = 3 << 30 | 592 << 16 | 0xB4 << 8 | 0x07
+    OUTPUT, OUTPUT_VALUES = 1 << 3, 2
+
+    def __init__(self, chip, line):
+        attribute = struct.pack("=IIQQ", self.OUTPUT_VALUES, 0, 1, 1)
+        config = struct.pack("=QI20x", self.OUTPUT, 1) + attribute.ljust(240, b"\0")
+        offsets = struct.pack("=I", line).ljust(256, b"\0")
+        request = bytearray(offsets + b"someone else".ljust(32, b"\0") + config + struct.pack("=II20xi", 1, 0, 0))
+        fd = os.open(f"/dev/{chip}", os.O_RDWR)
+        fcntl.ioctl(fd, self.GET_LINE, request)
+        os.close(fd)
+        self.fd = struct.unpack_from("=i", request, 588)[0]
+
+    def close(self):
+        os.close(self.fd)
+
+
+# 1 where the stream's end is known when the stroke is reported, else a warning.
+INTERRUPTED = (0, 1)
+
+
+class LineLost(AmplifierTest):
+    def ended(self, p, status):
+        _, err = p.communicate(timeout=60)
+        print(err)
+        self.assertIn(p.returncode, status if isinstance(status, tuple) else (status,), err)
+        return err
+
+    def holder_of(self):
+        # A listing of /proc may miss one while others come and go.
+        found = wait_for(holders, "a holder is there")
+        self.assertEqual(len(found), 1, found)
+        return found[0]
+
+    def test_a_chip_that_is_removed_while_the_line_is_on_is_an_error_that_says_so(self):
+        p = self.playing()
+        self.gpio.close()
+        p.send_signal(signal.SIGINT)
+        self.assertIn(MAY_BE_ON, self.ended(p, 3))
+        wait_for(lambda: not holders(), "the holder ends")
+        r = self.tool("off", "--array", self.array)
+        self.assertEqual(r.returncode, 3, r.stderr)
+        self.assertIn(self.gpio.label, r.stderr)
+
+    def test_a_line_that_another_program_took_after_the_holder_died_is_left_to_it_and_said_to_be_on(self):
+        p = self.playing()
+        holder = self.holder_of()
+        os.kill(p.pid, signal.SIGSTOP)  # or it would be faster
+        os.kill(holder, signal.SIGKILL)
+        wait_for(lambda: not holders(), "the holder is gone")
+        other = OtherProgram(self.gpio.chip, self.LINE)
+        self.addCleanup(lambda: other.fd >= 0 and other.close())
+        os.kill(p.pid, signal.SIGCONT)
+        self.assertIn(MAY_BE_ON, self.ended(p, 3))
+        self.assertTrue(self.on())
+        r = self.tool("off", "--array", self.array)
+        self.assertEqual(r.returncode, 3, r.stderr)
+        self.assertIn("someone else", r.stderr)
+        self.assertTrue(self.on())
+        other.close()
+        other.fd = -1
+        r = self.tool("off", "--array", self.array)
+        self.assertEqual((r.returncode, r.stderr), (0, ""))
+        self.assertEqual(r.stdout, f"amplifier: line {self.LINE} of {self.gpio.label} (/dev/{self.gpio.chip}) is off\n")
+        self.assertFalse(self.on())
+
+    def test_a_stopped_holder_loses_the_line_to_the_player(self):
+        p = self.playing()
+        os.kill(self.holder_of(), signal.SIGSTOP)
+        # Ten beats, each 40 ms and the emulated machine's lateness, are not answered.
+        self.off_within("SIGSTOP of the holder", 1.5)
+        self.assertIn("the amplifier was off", self.ended(p, INTERRUPTED))
+        self.assertEqual(holders(), [])
+        self.assertFalse(self.on())
+
+    def test_a_killed_holder_loses_the_line_to_the_player(self):
+        p = self.playing()
+        os.kill(self.holder_of(), signal.SIGKILL)
+        self.off_within("SIGKILL of the holder")
+        self.assertIn("the amplifier was off", self.ended(p, INTERRUPTED))
+
+    def test_off_waits_for_the_holder_of_a_player_that_was_killed(self):
+        p = self.playing()
+        p.kill()
+        r = self.tool("off", "--array", self.array)
+        self.assertEqual(r.returncode, 0, r.stderr)
+        self.assertFalse(self.on())
+        p.wait(20)
+
+    def test_both_killed_the_line_is_as_the_chip_leaves_it(self):
+        # Floating, this line is high: a stand-in for chips that keep what was driven.
+        p = self.playing()
+        self.gpio.pull(self.LINE, True)
+        holder = self.holder_of()
+        os.kill(p.pid, signal.SIGKILL)
+        os.kill(holder, signal.SIGKILL)
+        p.wait(20)
+        wait_for(lambda: not holders(), "the holder is gone")
+        print(f"player and holder killed together: the line is {'on' if self.on() else 'off'}, the stated exception")
+        self.gpio.pull(self.LINE, False)
+        r = self.tool("off", "--array", self.array)
+        self.assertEqual(r.returncode, 0, r.stderr)
+        self.assertFalse(self.on())
