@@ -78,7 +78,7 @@ bool holds_wav(const fs::path& file)
 fs::path checked_output(const std::string& name)
 {
     constexpr const char* standard_output = "/dev/stdout";
-    const fs::path file = name == "-" ? standard_output : name;
+    fs::path file = name == "-" ? standard_output : name;
     if (file == standard_output) {
         if (isatty(STDOUT_FILENO) != 0)
             throw error(errc::bad_input, "-o", "standard output is a terminal, which samples would garble",
