@@ -132,8 +132,9 @@ class AmplifierTest(RigTest):
     def on(self):
         return self.gpio.value(self.LINE) == 1
 
-    def playing(self, seconds="60"):
-        p = self.start("play", "--path", "M 0 10 L 40 30", "--duration", seconds, "--array", self.array)
+    def playing(self, seconds="60", strokes=20):
+        # An xrun of the emulated machine ends one stroke, not the run.
+        p = self.start("play", *["park2016-1"] * strokes, "--duration", seconds, "--array", self.array)
         wait_for(lambda: self.on() or p.poll() is not None, "the amplifier is switched on")
         self.assertIsNone(p.poll(), p.stderr.read() if p.poll() is not None else "")
         return p

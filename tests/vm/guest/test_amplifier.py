@@ -10,7 +10,7 @@ from rig import AmplifierTest
 class Amplifier(AmplifierTest):
     def test_it_is_on_while_a_stroke_plays_and_off_before_and_after(self):
         self.assertFalse(self.on())
-        p = self.playing("1")
+        p = self.playing("1", strokes=1)
         seen = []
         while p.poll() is None:
             seen.append(self.on())

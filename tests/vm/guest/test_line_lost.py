@@ -23,6 +23,11 @@ def holders():
     return found
 
 
+def stands_still(pid):
+    tasks = pathlib.Path(f"/proc/{pid}/task").iterdir()
+    return all((t / "stat").read_text().rpartition(")")[2].split()[0] == "T" for t in tasks)
+
+
 class OtherProgram:
     """Holds a line as an output that is on, through the kernel's own interface (linux/gpio.h, version 2)."""
     GET_LINE = 3 << 30 | 592 << 16 | 0xB4 << 8 | 0x07
@@ -73,6 +78,7 @@ class LineLost(AmplifierTest):
         p = self.playing()
         holder = self.holder_of()
         os.kill(p.pid, signal.SIGSTOP)  # or it would be faster
+        wait_for(lambda: stands_still(p.pid), "all threads of the player are stopped")
         os.kill(holder, signal.SIGKILL)
         wait_for(lambda: not holders(), "the holder is gone")
         other = OtherProgram(self.gpio.chip, self.LINE)
