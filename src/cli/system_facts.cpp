@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <set>
+#include <sstream>
 #include <system_error>
 
 #include <grp.h>
@@ -34,11 +35,14 @@ std::vector<fs::path> entries(const fs::path& folder)
     return all;
 }
 
-// Without the end of the last line; /proc also ends texts with zeros.
+// Without the end of the last line; /proc also ends texts with zeros. Empty where the process has ended
+// meanwhile: what reads stream buffers itself would throw then.
 std::string text_of(const fs::path& file)
 {
     std::ifstream in(file, std::ios::binary);
-    std::string s{std::istreambuf_iterator<char>(in), {}};
+    std::ostringstream text;
+    text << in.rdbuf();
+    std::string s = text.str();
     while (!s.empty() && (s.back() == '\n' || s.back() == '\0'))
         s.pop_back();
     return s;
