@@ -275,9 +275,9 @@ public:
     /// at once.
     void stop();
 
-    /// Why the stream has ended: the device was lost, it failed, a handler threw, or stop() was called.
-    /// Nothing while it goes on. A stream that has ended stays so: open the device again (reopen_alsa()) for
-    /// a new player.
+    /// Why the stream has ended: the device was lost, it failed, the amplifier's line did, or a handler
+    /// threw; empty text where stop() ended it in order. Nothing while it goes on. A stream that has ended
+    /// stays so: open the device again (reopen_alsa()) for a new player.
     std::optional<std::string> ended() const;
 
     player_position position() const noexcept;

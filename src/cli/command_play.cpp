@@ -51,18 +51,22 @@ bool play_piece(play_session& session, const piece& p, const score& s, stroke_ou
     }
 }
 
+// What is said of a stroke without its name.
+std::string fate(const play_session& session, const stroke_outcome& out)
+{
+    return describe(out, session.setup().rate).substr(out.name.size() + 2);
+}
+
 std::optional<broken_off> judge(const play_session& session, const play_options& o, const stroke_outcome& out,
-                                bool last)
+                                bool gone, const char* hint)
 {
     if (out.report->state != stroke_state::interrupted)
         return {};
-    const std::string text = describe(out, session.setup().rate);
-    const std::string why = text.substr(out.name.size() + 2);
     if (o.void_on_xrun)
-        return broken_off{out.name, why, "the run is void: --void-on-xrun"};
-    if (session.lost() && (last || !session.waits()))
-        return broken_off{out.name, why, last ? "" : wait_hint};
-    say(stderr, "tactor: warning: {}\n", text);
+        return broken_off{out.name, fate(session, out), "the run is void: --void-on-xrun"};
+    if (gone)
+        return broken_off{out.name, fate(session, out), hint};
+    say(stderr, "tactor: warning: {}\n", describe(out, session.setup().rate));
     return {};
 }
 
@@ -81,8 +85,9 @@ std::optional<broken_off> play_all(play_session& session, const play_options& o,
         }
         if (session.signal() != 0)
             return {};
-        auto broken = judge(session, o, outcomes[i], i + 1 == pieces.size());
-        if (broken)
+        if (i + 1 == pieces.size())
+            break;
+        if (auto broken = judge(session, o, outcomes[i], session.lost() && !session.waits(), wait_hint))
             return broken;
     }
     return {};
@@ -111,8 +116,12 @@ int play(settings& s, option_list& options, const play_options& o)
     run_report r;
     for (std::size_t i = 0; i < pieces.size(); ++i)
         r.strokes.push_back({pieces[i].name, scores[i].frames()});
-    const auto broken = play_all(session, o, pieces, scores, r.strokes);
+    auto broken = play_all(session, o, pieces, scores, r.strokes);
     session.finish(r);
+    // A stream that breaks interrupts its stroke first and ends when the amplifier is off: that the last one
+    // was such a case is known only now.
+    if (!broken && session.signal() == 0)
+        broken = judge(session, o, r.strokes.back(), session.broke(), "");
     warn_of_cuts(limits_of(o, e), r.stats);
     if (o.json())
         print_json(stdout, r);

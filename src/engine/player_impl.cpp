@@ -263,15 +263,15 @@ stroke_id player::impl::submit(const score& s, start_at start)
 void player::impl::check_open() const
 {
     if (stopping || feed.stream_over())
-        throw error(errc::runtime, fmt::format("stream on \"{}\"", out->setup().name), why_ended(),
-                    "open a new player");
+        throw error(errc::runtime, fmt::format("stream on \"{}\"", out->setup().name),
+                    why_ended().empty() ? "it was stopped" : why_ended(), "open a new player");
 }
 
 std::string player::impl::why_ended() const
 {
     if (!handler_failed.empty())
         return handler_failed;
-    return feed.stream_reason().empty() ? "it was stopped" : feed.stream_reason();
+    return feed.stream_reason();
 }
 
 bool player::impl::cancel(stroke_id id)

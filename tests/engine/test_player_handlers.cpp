@@ -277,7 +277,7 @@ TEST_CASE("after the end all members may be called, and an empty function is ref
     CHECK(p.wait(id)->state == stroke_state::cancelled);
     CHECK_FALSE(p.wait(id));
     CHECK_FALSE(p.on_end(id, [](const stroke_report&) {}));
-    CHECK(p.ended() == "it was stopped");
+    CHECK(p.ended() == "");
     CHECK_FALSE(p.position().running);
     CHECK(p.stats().frames > 0);
     p.on_report([](const stroke_report&) {});
