@@ -111,6 +111,7 @@ stroke_report play_session::play(const piece& p, const score& s)
         say(stdout, "{}: armed\n", p.name);
         std::fflush(stdout);
     }
+    double t = 0.0; // stays where it was while the report of the stroke's end is on its way
     for (;;) {
         if (const auto report = player_->wait(id, std::chrono::nanoseconds(0))) {
             // That the device is gone is told after the strokes that it interrupted.
@@ -119,7 +120,8 @@ stroke_report play_session::play(const piece& p, const score& s)
             return *report;
         }
         const player_position where = player_->position();
-        const double t = where.stroke == id ? static_cast<double>(where.stroke_frame) / s.rate() : 0.0;
+        if (where.stroke == id)
+            t = static_cast<double>(where.stroke_frame) / s.rate();
         if (picture.active())
             picture.draw(at_time(p.plans, starts, environment_.tactors.tactors.size(), t), t, total);
         const bool go_on = sleep(ended_.descriptor(), picture.active() ? frame_ms : -1);
