@@ -101,6 +101,11 @@ TACTOR_API stroke preset_stroke(std::string_view name);
 /// \throws error (bad_input) with file, line and column.
 TACTOR_API std::vector<stroke> load_strokes(const std::filesystem::path& file);
 
+/// Reads stroke file text from an open descriptor to its end, such as standard input, and guesses its kind as
+/// parse_strokes() does; `name` stands for it in messages. Blocks until the end comes.
+/// \throws error (bad_input) with line and column.
+TACTOR_API std::vector<stroke> load_strokes(int descriptor, const std::string& name);
+
 /// Stroke file text in TOML; `name` stands for the file in messages.
 TACTOR_API std::vector<stroke> parse_strokes_toml(std::string_view text, const std::string& name);
 /// CSV with a header line naming t_s, x_mm, y_mm and optionally intensity, in any order.

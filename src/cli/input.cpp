@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <iostream>
-#include <iterator>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace tactor::cli {
 namespace {
@@ -107,10 +106,8 @@ std::vector<stroke> read_one(const std::string& argument)
 {
     if (is_preset(stroke_presets(), argument))
         return {preset_stroke(argument)};
-    if (argument == "-") {
-        const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
-        return parse_strokes(text, "standard input");
-    }
+    if (argument == "-")
+        return load_strokes(STDIN_FILENO, "standard input");
     std::error_code ignored;
     if (!fs::exists(argument, ignored) && argument.find_first_of("./") == std::string::npos)
         return {preset_stroke(argument)}; // its error lists the presets

@@ -103,7 +103,7 @@ std::string edited(const std::string& text, const std::string& name, const array
 
 std::string with_channels(const std::filesystem::path& file, std::span<const unsigned> channels)
 {
-    const std::string text = detail::read_text_file(file, detail::max_setup_bytes);
+    const std::string text{std::string_view(detail::read_text_file(file, detail::max_setup_bytes))};
     std::error_code ignored;
     const detail::setup_source source{
         file.string(), file.parent_path(), {std::filesystem::weakly_canonical(file, ignored)}};

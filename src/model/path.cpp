@@ -49,10 +49,10 @@ point on_circle(point centre, double radius_mm, double degrees)
 
 } // namespace
 
-path detail::make_path(outline o, std::string_view what)
+path detail::make_path(outline o, const std::function<std::string()>& what)
 {
     if (const auto bad = absurd_coordinate(o))
-        absurd(what, *bad);
+        absurd(what(), *bad);
     auto made = std::make_shared<path::impl>();
     made->curves.reserve(o.curves.size());
     for (const outline::curve& c : o.curves)
@@ -69,7 +69,7 @@ path detail::make_path(outline o, std::string_view what)
             length.add(distance_mm(made->vertices[i], made->vertices[i + 1]));
     }
     if (made->s.empty() || !(made->s.back() > same_place_mm))
-        throw error(errc::bad_input, what, "has no length", "a path needs two different points");
+        throw error(errc::bad_input, what(), "has no length", "a path needs two different points");
     return path(std::move(made));
 }
 
@@ -83,7 +83,7 @@ path path::polyline(std::span<const point> points)
     o.vertices.push_back(points.front());
     for (const point p : points.subspan(1))
         o.line(p);
-    return detail::make_path(std::move(o), "polyline");
+    return detail::make_path(std::move(o), [] { return "polyline"; });
 }
 
 path path::arc(point centre, double radius_mm, double from_deg, double sweep_deg)
@@ -104,7 +104,7 @@ path path::arc(point centre, double radius_mm, double from_deg, double sweep_deg
     o.vertices.push_back(on_circle(centre, radius_mm, from));
     o.arc({centre, {radius_mm, 0.0}, {0.0, radius_mm}, from * radian, sweep_deg * radian},
           whole ? o.vertices.front() : on_circle(centre, radius_mm, from + sweep_deg));
-    return detail::make_path(std::move(o), "arc");
+    return detail::make_path(std::move(o), [] { return "arc"; });
 }
 
 path::path(std::shared_ptr<const impl> p) : impl_(std::move(p))

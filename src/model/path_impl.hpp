@@ -3,7 +3,8 @@
 #pragma once
 
 #include <cstddef>
-#include <string_view>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include <tactor/path.hpp>
@@ -30,9 +31,9 @@ struct path::impl {
 
 namespace detail {
 
-/// Measures an outline. `what` stands for it in messages.
+/// Measures an outline. What `what` gives stands for it in messages.
 /// \throws error (bad_input) for coordinates that are not finite or beyond max_mm and for no length.
-path make_path(outline o, std::string_view what);
+path make_path(outline o, const std::function<std::string()>& what);
 
 } // namespace detail
 } // namespace tactor

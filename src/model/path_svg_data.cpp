@@ -129,14 +129,14 @@ std::vector<outline> detail::parse_path_data(std::string_view data, double limit
 
 path path::from_svg(std::string_view data)
 {
-    constexpr std::string_view what = "path data";
+    constexpr const char* what = "path data";
     try {
         if (const auto second = detail::check_path_data(data, detail::max_mm).second_subpath)
             throw value_fault{*second, "a second subpath begins", "give one stroke for each"};
         std::vector<outline> found = detail::parse_path_data(data, detail::max_mm);
         if (found.empty())
             throw error(errc::bad_input, what, "draws nothing", "e.g. \"M 0 10 L 40 30\"");
-        return detail::make_path(std::move(found.front()), what);
+        return detail::make_path(std::move(found.front()), [] { return what; });
     } catch (const value_fault& f) {
         throw error(errc::bad_input, what, fmt::format("column {}: {}", f.offset + 1, f.why), f.hint);
     }

@@ -105,7 +105,7 @@ located_setup read_setup(std::string_view text, const setup_source& source)
 
 setup load_setup(const std::filesystem::path& file)
 {
-    const std::string text = detail::read_text_file(file, detail::max_setup_bytes);
+    const detail::whole_text text = detail::read_text_file(file, detail::max_setup_bytes);
     std::error_code ignored;
     return detail::read_setup(
                text, {file.string(), file.parent_path(), {std::filesystem::weakly_canonical(file, ignored)}})

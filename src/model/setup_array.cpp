@@ -55,7 +55,7 @@ array read_included(const toml_table& table, const setup_source& source, located
     if (std::filesystem::exists(file, ignored) && !std::filesystem::is_directory(file, ignored) &&
         !std::filesystem::is_regular_file(file, ignored))
         table.fail("file", fmt::format("{} is not a regular file", file.string()), "name an array file");
-    std::string text;
+    whole_text text;
     try {
         text = read_text_file(file, max_setup_bytes);
     } catch (const error& e) {

@@ -40,6 +40,8 @@ public:
         if (!next_line())
             fail({}, "is empty", header_hint);
         header();
+        // Exactly: a vector that grows needs three times as much for a moment.
+        points_.reserve(std::min<std::size_t>(std::count(rest_.begin(), rest_.end(), '\n') + 1, most_points));
         while (next_line())
             add(row());
         if (points_.size() < 2)
@@ -53,6 +55,8 @@ public:
 private:
     /// Seconds since 1970 are 1.8e9; farther from zero a time does not hold microseconds.
     static constexpr double farthest_time_s = 1e10;
+    static constexpr std::size_t most_fields = 1000;
+    static constexpr std::size_t most_points = 10'000'000;
     static constexpr std::string_view header_hint =
         "the first line names the columns: t_s,x_mm,y_mm,intensity";
 
@@ -77,6 +81,8 @@ private:
     {
         fields_.clear();
         for (std::size_t at = 0;; ++at) {
+            if (fields_.size() == most_fields)
+                fail(at + 1, fmt::format("more than {} values in a line", most_fields), header_hint);
             detail::skip_blanks(line_, at);
             fields_.push_back(at < line_.size() && line_[at] == '"' ? quoted_field(at) : plain_field(at));
             if (at == line_.size())
@@ -134,6 +140,8 @@ private:
     void add(const timed_point& p)
     {
         if (points_.empty() || p.t_s != points_.back().t_s) {
+            if (points_.size() == most_points)
+                fail({}, fmt::format("more than {} points", most_points), "thin them out, or cut it in two");
             points_.push_back(p);
             return;
         }
@@ -235,7 +243,7 @@ private:
 
 std::vector<stroke> parse_strokes_csv(std::string_view text, const std::string& name)
 {
-    detail::check_size(text, name);
+    detail::check_size(text, name, detail::max_stroke_bytes, "is it the right file?");
     return csv_reader(text, name).read();
 }
 

@@ -37,11 +37,11 @@ bool looks_like_csv(std::string_view line)
 
 } // namespace
 
-void detail::check_size(std::string_view text, const std::string& name)
+void detail::check_size(std::string_view text, const std::string& name, std::size_t max_bytes,
+                        std::string_view hint)
 {
-    if (text.size() > max_stroke_bytes)
-        throw error(errc::bad_input, name, fmt::format("longer than {} MB", max_stroke_bytes >> 20),
-                    "is it the right file?");
+    if (text.size() > max_bytes)
+        throw error(errc::bad_input, name, fmt::format("longer than {} MB", max_bytes >> 20), hint);
 }
 
 std::string_view detail::without_mark(std::string_view text) noexcept
@@ -75,7 +75,7 @@ std::vector<stroke> parse_strokes(std::string_view text, const std::string& name
 
 std::vector<stroke> load_strokes(const std::filesystem::path& file)
 {
-    const std::string text = detail::read_text_file(file, detail::max_stroke_bytes);
+    const detail::whole_text text = detail::read_text_file(file, detail::max_stroke_bytes);
     const std::string name = file.string();
     std::string extension = file.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -87,6 +87,11 @@ std::vector<stroke> load_strokes(const std::filesystem::path& file)
     if (extension == ".toml")
         return parse_strokes_toml(text, name);
     return parse_strokes(text, name);
+}
+
+std::vector<stroke> load_strokes(int descriptor, const std::string& name)
+{
+    return parse_strokes(detail::read_text(descriptor, name, detail::max_stroke_bytes), name);
 }
 
 } // namespace tactor

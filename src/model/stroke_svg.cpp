@@ -84,7 +84,7 @@ private:
                    doc_.length(n, "y", s.viewport, svg_extent::height)});
         else if (tag == "use")
             use(n, s);
-        else
+        else if (s.visible)
             shape(n, s);
     }
 
@@ -147,12 +147,13 @@ private:
         if (!(std::abs(s.to_mm.determinant()) > 1e-9 * scale))
             doc_.fail(n, fmt::format("{} is flattened by its transform", doc_.called(n)),
                       "a scale of 0 or a skew of 90 degrees leaves no drawing");
-        const std::string what = fmt::format("{}: {}", doc_.where(n).text(), doc_.called(n));
         std::vector<path> paths;
         for (outline& o : outlines) {
             vertices_ += o.vertices.size();
             if (vertices_ > most_vertices)
                 doc_.fail(n, "too many points", "simplify the drawing");
+            // Where it stands in the file is looked up for complaints only: that reads all before it.
+            const auto what = [&] { return fmt::format("{}: {}", doc_.where(n).text(), doc_.called(n)); };
             paths.push_back(detail::make_path(mapped(std::move(o), s.to_mm), what));
         }
         add(n, s, paths);
@@ -198,7 +199,7 @@ private:
 
 std::vector<stroke> parse_strokes_svg(std::string_view text, const std::string& name)
 {
-    detail::check_size(text, name);
+    detail::check_size(text, name, detail::max_tree_bytes, "simplify the drawing");
     return svg_reader(text, name).read();
 }
 

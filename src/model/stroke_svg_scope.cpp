@@ -16,6 +16,32 @@ namespace {
 
 constexpr double highest_carrier_hz = 20000.0;
 
+std::string_view trimmed(std::string_view text)
+{
+    std::size_t at = 0;
+    skip_blanks(text, at);
+    text.remove_prefix(at);
+    while (!text.empty() && blank(text.back()))
+        text.remove_suffix(1);
+    return text;
+}
+
+// A CSS property of the element's own: its style, of two declarations the last, wins over the attribute.
+std::string_view svg_property(xml_node n, const char* name)
+{
+    std::string_view value = n.attribute(name).value();
+    std::string_view style = n.attribute("style").value();
+    while (!style.empty()) {
+        const std::size_t end = std::min(style.find(';'), style.size());
+        const std::string_view item = style.substr(0, end);
+        style.remove_prefix(std::min(end + 1, style.size()));
+        const std::size_t colon = item.find(':');
+        if (colon != std::string_view::npos && trimmed(item.substr(0, colon)) == name)
+            value = item.substr(colon + 1);
+    }
+    return trimmed(value.substr(0, value.find('!'))); // without !important
+}
+
 } // namespace
 
 svg_scope svg_root_scope(const svg_document& doc)
@@ -66,6 +92,11 @@ void inherit_svg(const svg_document& doc, xml_node n, svg_scope& s)
 {
     if (const auto t = doc.read(n, "transform", parse_svg_transform))
         s.to_mm = s.to_mm * *t;
+    const std::string_view visibility = svg_property(n, "visibility");
+    if (visibility == "visible")
+        s.visible = true;
+    else if (visibility == "hidden" || visibility == "collapse")
+        s.visible = false;
     if (const auto v = doc.number(n, "data-speed-mm-s", 1e-6, max_mm))
         s.speed_mm_s = v;
     if (const auto v = doc.number(n, "data-intensity", 0.0, max_intensity))
@@ -76,28 +107,7 @@ void inherit_svg(const svg_document& doc, xml_node n, svg_scope& s)
 
 bool svg_hidden(xml_node n)
 {
-    const auto is_none = [](std::string_view v) {
-        std::size_t at = 0;
-        skip_blanks(v, at);
-        v.remove_prefix(at);
-        return v.substr(0, 4) == "none" && (v.size() == 4 || blank(v[4]) || v[4] == '!');
-    };
-    std::string_view style = n.attribute("style").value();
-    while (!style.empty()) {
-        const std::size_t end = std::min(style.find(';'), style.size());
-        std::string_view item = style.substr(0, end);
-        style.remove_prefix(std::min(end + 1, style.size()));
-        std::size_t at = 0;
-        skip_blanks(item, at);
-        item.remove_prefix(at);
-        const std::size_t colon = std::min(item.find(':'), item.size());
-        std::string_view key = item.substr(0, colon);
-        while (!key.empty() && blank(key.back()))
-            key.remove_suffix(1);
-        if (key == "display")
-            return is_none(item.substr(std::min(colon + 1, item.size())));
-    }
-    return is_none(n.attribute("display").value());
+    return svg_property(n, "display") == "none";
 }
 
 } // namespace tactor::detail

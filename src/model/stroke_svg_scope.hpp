@@ -13,6 +13,7 @@ struct svg_scope {
     svg_viewport viewport;
     std::optional<double> speed_mm_s;
     double intensity = 1.0;
+    bool visible = true; ///< visibility, which those inside may set anew; unlike display
     std::optional<double> carrier_hz;
     unsigned depth = 0; ///< elements round this one
     unsigned uses = 0;  ///< of these, <use>
@@ -26,7 +27,7 @@ svg_scope svg_root_scope(const svg_document& doc);
 void enter_svg_box(const svg_document& doc, pugi::xml_node n, svg_scope& s, const svg_view_box& box,
                    point corner, double width, double height);
 
-/// What the element's own attributes change: transform and data-...
+/// What the element's own attributes change: transform, visibility and data-...
 void inherit_svg(const svg_document& doc, pugi::xml_node n, svg_scope& s);
 
 /// display is "none".

@@ -17,9 +17,6 @@ using detail::bounds;
 using detail::max_mm;
 using detail::toml_table;
 
-// TOML takes some 40 bytes of memory for one of text: a million timed points fit, 2 GB are not exceeded.
-constexpr std::size_t max_bytes = std::size_t{48} << 20;
-
 constexpr double day_s = detail::longest_stroke_s;
 constexpr bounds positive_time{0.0, day_s, true};
 constexpr bounds anywhere{-max_mm, max_mm};
@@ -156,9 +153,8 @@ stroke read_stroke(const toml_table& t, std::string name)
 
 std::vector<stroke> parse_strokes_toml(std::string_view text, const std::string& name)
 {
-    if (text.size() > max_bytes)
-        throw error(errc::bad_input, name, fmt::format("longer than {} MB", max_bytes >> 20),
-                    "timed points by the million belong in a CSV file");
+    detail::check_size(text, name, detail::max_tree_bytes,
+                       "timed points by the million belong in a CSV file");
     const toml::table document = detail::parse_toml(text, name);
     const toml_table root(document, "a stroke file", name);
     for (const char* key : {"array", "output", "defaults"})

@@ -1,54 +1,80 @@
 // SPDX-License-Identifier: MIT
 #include "model/text_file.hpp"
 
+#include <algorithm>
 #include <cerrno>
-#include <cstdio>
-#include <memory>
+#include <new>
+#include <string>
 #include <system_error>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <tactor/error.hpp>
 
 namespace tactor::detail {
 namespace {
 
-struct closer {
-    void operator()(std::FILE* f) const noexcept { std::fclose(f); }
+struct open_file {
+    explicit open_file(const std::filesystem::path& file) : fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {}
+    ~open_file()
+    {
+        if (fd >= 0)
+            ::close(fd);
+    }
+    open_file(const open_file&) = delete;
+    open_file& operator=(const open_file&) = delete;
+
+    int fd;
 };
 
-[[noreturn]] void refuse(const std::filesystem::path& file, int code)
+[[noreturn]] void refuse(std::string_view name, int code)
 {
     const char* hint = code == ENOENT ? "check the name" : code == EACCES ? "check the permissions" : "";
-    throw error(errc::bad_input, file.string(), std::generic_category().message(code), hint);
+    throw error(errc::bad_input, name, std::generic_category().message(code), hint);
 }
 
 } // namespace
 
-std::string read_text_file(const std::filesystem::path& file, std::size_t max_bytes)
+whole_text read_text(int descriptor, std::string_view name, std::size_t max_bytes)
+{
+    constexpr std::size_t first_bytes = std::size_t{1} << 16;
+    whole_text text;
+    std::size_t room = 0;
+    for (;;) {
+        if (text.size_ == room) {
+            // Large ones are moved by mapping their pages elsewhere, not by a copy beside them.
+            room = std::min(std::max(room * 2, first_bytes), max_bytes + 1);
+            void* moved = std::realloc(text.bytes_.get(), room);
+            if (moved == nullptr)
+                throw std::bad_alloc();
+            static_cast<void>(text.bytes_.release());
+            text.bytes_.reset(static_cast<char*>(moved));
+        }
+        const ssize_t got = ::read(descriptor, text.bytes_.get() + text.size_, room - text.size_);
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got < 0)
+            refuse(name, errno);
+        if (got == 0)
+            return text;
+        text.size_ += static_cast<std::size_t>(got);
+        if (text.size_ > max_bytes)
+            throw error(errc::bad_input, name, fmt::format("longer than {} MB", max_bytes >> 20),
+                        "is it the right file?");
+    }
+}
+
+whole_text read_text_file(const std::filesystem::path& file, std::size_t max_bytes)
 {
     std::error_code ignored;
     if (std::filesystem::is_directory(file, ignored))
         throw error(errc::bad_input, file.string(), "is a directory", "name a file in it");
-
-    const std::unique_ptr<std::FILE, closer> in(std::fopen(file.c_str(), "rbe"));
-    if (!in)
-        refuse(file, errno);
-
-    constexpr std::size_t block = std::size_t{1} << 16;
-    std::string text;
-    for (std::size_t got = block; got == block;) {
-        const std::size_t had = text.size();
-        text.resize(had + block);
-        got = std::fread(text.data() + had, 1, block, in.get());
-        text.resize(had + got);
-        if (text.size() > max_bytes)
-            throw error(errc::bad_input, file.string(), fmt::format("longer than {} MB", max_bytes >> 20),
-                        "is it the right file?");
-    }
-    if (std::ferror(in.get()))
-        refuse(file, errno);
-    return text;
+    const open_file in(file);
+    if (in.fd < 0)
+        refuse(file.string(), errno);
+    return read_text(in.fd, file.string(), max_bytes);
 }
 
 } // namespace tactor::detail

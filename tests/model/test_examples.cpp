@@ -71,7 +71,7 @@ TEST_CASE("the example configuration is read")
 
 TEST_CASE("the examples in the manual page are read")
 {
-    const std::string page = detail::read_text_file(source / "man/tactor.toml.5", 1 << 20);
+    const std::string page(std::string_view(detail::read_text_file(source / "man/tactor.toml.5", 1 << 20)));
     int arrays = 0;
     int strokes = 0;
     for (std::size_t at = 0; (at = page.find(".Bd -literal", at)) != std::string::npos;) {
@@ -94,7 +94,7 @@ TEST_CASE("the examples in the manual page are read")
 
 TEST_CASE("the manual page names every option that [defaults] takes")
 {
-    const std::string page = detail::read_text_file(source / "man/tactor.toml.5", 1 << 20);
+    const std::string page(std::string_view(detail::read_text_file(source / "man/tactor.toml.5", 1 << 20)));
     for (const std::string& name : setup_default_names()) {
         CAPTURE(name);
         CHECK(page.find("\n" + name + "\t") != std::string::npos);

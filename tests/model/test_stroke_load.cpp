@@ -80,7 +80,7 @@ TEST_CASE("text of gigabytes is refused before it is looked at")
 {
     const std::string_view long_text(csv.data(), std::size_t{1} << 32);
     CHECK(message_of([&] { tactor::parse_strokes_csv(long_text, "x"); }).find("x: longer than 512 MB") == 0);
-    CHECK(message_of([&] { tactor::parse_strokes_svg(long_text, "x"); }).find("x: longer than 512 MB") == 0);
+    CHECK(message_of([&] { tactor::parse_strokes_svg(long_text, "x"); }).find("x: longer than 48 MB") == 0);
 }
 
 TEST_CASE("random bytes are refused by every reader")

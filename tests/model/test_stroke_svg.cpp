@@ -233,6 +233,20 @@ TEST_CASE("use draws what it refers to; definitions alone draw nothing")
     CHECK(one("<line x2='3' display='none'/><line x2='7'/>").motion.length_mm() == 7.0);
     CHECK(one("<g style='fill:red; display : none'><line x2='3'/></g><line x2='7'/>").motion.length_mm() ==
           7.0);
+    for (const char* hidden : {"visibility='hidden'", "visibility=' collapse '", "style='visibility:hidden'",
+                               "style='visibility: visible; visibility : hidden !important'",
+                               "visibility='visible' style='stroke:red;visibility:collapse;'"}) {
+        CAPTURE(hidden);
+        CHECK(one(fmt::format("<line x2='3' {}/><line x2='7'/>", hidden)).motion.length_mm() == 7.0);
+        CHECK(one(fmt::format("<g {}><line x2='3'/><line x2='7' visibility='visible'/></g>", hidden))
+                  .motion.length_mm() == 7.0);
+        // What is hidden need not be drawable.
+        CHECK(one(fmt::format("<g {}><line x2='x'/></g><line x2='7'/>", hidden)).motion.length_mm() == 7.0);
+    }
+    CHECK(one("<g display='none'><line x2='3' display='inline' visibility='visible'/></g><line x2='7'/>")
+              .motion.length_mm() == 7.0);
+    CHECK(one("<g visibility='hidden'><g visibility='inherit'><line x2='3'/></g></g><line x2='7'/>")
+              .motion.length_mm() == 7.0);
     CHECK(
         one("<svg:g xmlns:svg='http://www.w3.org/2000/svg'><svg:line x2='7'/></svg:g>").motion.length_mm() ==
         7.0);

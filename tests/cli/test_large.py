@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: MIT
+"""Input without end, or as large as it may be: bounded memory, and time that grows with the size only."""
+import os
+import subprocess
+import unittest
+
+from harness import PATIENCE_S, SANITIZED, TOOL, ToolTest, main
+
+MB = 1 << 20
+
+
+class Large(ToolTest):
+    def write_pieces(self, name, pieces):
+        """Piece by piece: what this process ever had counts as the peak of those that it starts."""
+        with open(self.dir / name, "wb") as f:
+            for piece in pieces:
+                f.write(piece)
+        return self.dir / name
+
+    def cost(self, *args, stdin=subprocess.DEVNULL):
+        """Exit status, what was said, peak memory in MB and processor time in seconds."""
+        with open(self.dir / "said", "w+b") as said:
+            p = subprocess.Popen([TOOL, *args], stdin=stdin, stdout=subprocess.DEVNULL, stderr=said, cwd=self.dir,
+                                 env=self.env)
+            try:
+                _, status, usage = os.wait4(p.pid, 0)
+            except BaseException:
+                p.kill()
+                raise
+            said.seek(0)
+            return os.waitstatus_to_exitcode(status), said.read().decode(), usage.ru_maxrss / 1024, usage.ru_utime
+
+    @unittest.skipIf(SANITIZED, "a sanitizer's own memory is not bounded")
+    def test_standard_input_without_end_is_refused_in_bounded_memory(self):
+        with open("/dev/zero", "rb") as endless:
+            status, said, mb, _ = self.cost("plan", "-", stdin=endless)
+        self.assertEqual((status, said), (2, "tactor: standard input: longer than 512 MB (is it the right file?)\n"))
+        self.assertLess(mb, 600)
+
+    @unittest.skipIf(SANITIZED, "a sanitizer's own memory is not bounded")
+    def test_values_without_end_in_a_line_are_refused_in_bounded_memory(self):
+        self.write_pieces("commas.csv", (b"," * MB for _ in range(64)))
+        status, said, mb, _ = self.cost("plan", "commas.csv")
+        self.assertEqual(status, 2, said)
+        self.assertIn("commas.csv:1:1001: more than 1000 values in a line", said)
+        self.assertLess(mb, 128)
+
+    @unittest.skipIf(SANITIZED, "a sanitizer's own memory is not bounded")
+    def test_a_million_timed_points_need_their_text_and_themselves(self):
+        def lines():
+            yield b"t_s,x_mm,y_mm\n"
+            for i in range(1_000_000):
+                yield b"%d.%03d,%d,%d.%020d\n" % (i // 1000, i % 1000, i % 40, i % 31, 7)
+
+        path = self.write_pieces("long.csv", lines())
+        with open(path, "rb") as f:
+            status, said, mb, _ = self.cost("plan", "-", "--format", "csv", stdin=f)
+        self.assertEqual((status, said), (0, ""))
+        self.assertLess(mb, path.stat().st_size / MB + 32 + 32)  # points of 32 bytes; the tool itself
+
+    def test_a_text_for_a_tree_is_refused_earlier(self):
+        self.write_pieces("big.svg", [b"<svg>", *[b" " * MB] * 48])
+        self.assertIn("big.svg: longer than 48 MB (simplify the drawing)", self.refused(2, "plan", "big.svg").stderr)
+        self.write_pieces("big.toml", [b"#", *[b"#" * MB] * 48])
+        self.refused(2, "plan", "big.toml", says=["big.toml: longer than 48 MB"])
+
+    def test_the_time_for_shapes_grows_with_their_number(self):
+        def time_for(shapes):
+            self.write("drawing.svg", "<svg>\n" + "".join(f"<path d='M {i % 40} 0 L 40 {i % 40}'/>\n"
+                                                          for i in range(shapes)) + "</svg>\n")
+            status, said, _, seconds = self.cost("plan", "drawing.svg", "--format", "csv")
+            self.assertEqual(status, 0, said)
+            return seconds
+
+        few = min(time_for(1500) for _ in range(3))
+        # Ten times as many took seventy times as long when each was looked up in the file.
+        self.assertLess(time_for(15000), 25 * few)
+
+    def test_a_pipe_is_read_as_a_file_is(self):
+        os.mkfifo(self.dir / "pipe")
+        p = subprocess.Popen([TOOL, "plan", "pipe", "--format", "csv"], stdout=subprocess.PIPE, cwd=self.dir, env=self.env)
+        with open(self.dir / "pipe", "w") as pipe:
+            pipe.write("t_s,x_mm,y_mm\n0,0,0\n1,40,40\n")
+        out, _ = p.communicate(timeout=PATIENCE_S)
+        self.assertEqual(p.returncode, 0)
+        self.write("plain.csv", "t_s,x_mm,y_mm\n0,0,0\n1,40,40\n")
+        self.assertEqual(out.decode(), self.ok("plan", "plain.csv", "--format", "csv").stdout)
+
+
+if __name__ == "__main__":
+    main()
