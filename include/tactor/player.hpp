@@ -271,8 +271,9 @@ public:
     bool on_end(stroke_id id, std::function<void(const stroke_report&)> done);
 
     /// Fades everything out, plays silence until it is out, stops. What that ends counts as cancelled
-    /// (interrupted, where the destructor does it). Returns when that is done and reported; in a handler
-    /// at once.
+    /// (interrupted, where the destructor does it). What is not silent after 0.4 s, for the device's buffer
+    /// is longer, is cut then, after the amplifier went off. Returns when that is done and reported; in a
+    /// handler at once.
     void stop();
 
     /// Why the stream has ended: the device was lost, it failed, the amplifier's line did, or a handler

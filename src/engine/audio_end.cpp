@@ -4,6 +4,13 @@
 
 namespace tactor::engine {
 
+void audio_loop::ask_to_stop() noexcept
+{
+    if (!stop_asked_)
+        stop_asked_ns_ = now_ns_;
+    stop_asked_ = true;
+}
+
 void audio_loop::finish_when_silent() noexcept
 {
     if (!scores_.empty())
@@ -71,7 +78,7 @@ void audio_loop::obey_amplifier() noexcept
         scores_.mute();
     mutes_ = mutes;
     if (link_.amplifier.failed.load(std::memory_order_acquire) && stop_why_ == reason::none) {
-        stop_asked_ = true;
+        ask_to_stop();
         stop_why_ = reason::amplifier;
         scores_.stop(stroke_state::interrupted, reason::amplifier);
     }

@@ -7,6 +7,9 @@
 namespace tactor::engine {
 namespace {
 
+// From the wish to stop: nobody waits longer for a fade.
+constexpr std::int64_t longest_stop_ns = 400'000'000;
+
 // From so many wake-ups in vain on, descriptors are not trusted: the loop sleeps instead of spinning.
 constexpr unsigned many_idle_steps = 16;
 
@@ -78,6 +81,9 @@ void audio_loop::step(io_status ready, std::int64_t now) noexcept TACTOR_NONBLOC
         if (stop_asked_)
             finish_when_silent();
     }
+    // In a long buffer the fade would be heard when all that was written before it is.
+    if (phase_ == phase::running && stop_asked_ && now - stop_asked_ns_ >= longest_stop_ns)
+        finish(stop_why_, 0, true);
     // Both, so that a process that was stopped and goes on is not taken for a dead device.
     if (phase_ == phase::running && idle_steps_ >= 4 && now - moved_ns_ > options_.stall_ns)
         finish(reason::lost, -ETIMEDOUT);
@@ -94,7 +100,10 @@ std::int64_t audio_loop::timeout_ns() const noexcept
 {
     const std::int64_t period =
         std::int64_t{setup_.period_frames} * 1'000'000'000 / std::max<std::int64_t>(setup_.rate, 1);
-    return polls_sink() ? 4 * period : period;
+    const std::int64_t normal = polls_sink() ? 4 * period : period;
+    if (phase_ == phase::running && stop_asked_)
+        return std::min(normal, std::max<std::int64_t>(stop_asked_ns_ + longest_stop_ns - now_ns_, 0));
+    return phase_ == phase::closing ? std::min(normal, longest_stop_ns) : normal;
 }
 
 void audio_loop::take_requests() noexcept
@@ -111,7 +120,7 @@ void audio_loop::take_requests() noexcept
         case request::kind::stop:
             if (!stop_asked_)
                 scores_.stop(r.closing);
-            stop_asked_ = true;
+            ask_to_stop();
             break;
         }
     }

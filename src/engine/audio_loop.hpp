@@ -81,6 +81,7 @@ private:
     void close_step(io_status ready, std::int64_t now) noexcept;
     void end() noexcept;
     void obey_amplifier() noexcept;
+    void ask_to_stop() noexcept;
     void finish_when_silent() noexcept;
     void tell_clock(const clock_line& line) noexcept;
     void publish() noexcept;
@@ -99,6 +100,7 @@ private:
 
     phase phase_ = phase::idle;
     bool stop_asked_ = false;
+    std::int64_t stop_asked_ns_ = 0;
     reason stop_why_ = reason::none;
     std::uint32_t mutes_ = 0;       ///< link::amplifier's, as far as obeyed
     bool end_runs_ = false;         ///< closing: the stream is fed with zeros meanwhile

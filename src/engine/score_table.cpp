@@ -266,7 +266,7 @@ void score_table::interrupt(reason why, int code, std::uint64_t played, bool giv
         else if ((e.fading || e.fade_wanted) && e.why == reason::none)
             over(e, e.state, e.why, 0, frames); // it was cancelled, and it is silent now
         else
-            over(e, stroke_state::interrupted, why, code, frames);
+            over(e, stroke_state::interrupted, why == reason::none ? e.why : why, code, frames);
     }
 }
 

@@ -168,6 +168,16 @@ class Play(ToolTest):
         self.assertEqual(told["counters"]["reopened"], 1)
         self.assertRegex(r.stderr, "(?s)warning: park2016-3: interrupted.*waiting for.*is back")
 
+    def test_ctrl_c_does_not_wait_for_a_buffer_of_a_minute(self):
+        p = subprocess.Popen([TOOL, "play", "park2016-1", "-D", "null", "--period-frames", "1048576"], cwd=self.dir,
+                             env=self.env, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.assertIn(b"latency 65536.0 ms", p.stdout.readline())
+        p.send_signal(signal.SIGINT)
+        # 0.4 s on a quiet machine; the period takes 22 s, the buffer 65 s.
+        out, _ = p.communicate(timeout=15)
+        self.assertEqual(p.returncode, 130)
+        self.assertIn(b"park2016-1: cancelled", out)
+
     def test_ctrl_c_still_reports(self):
         p = subprocess.Popen([TOOL, "play", "park2016-1", "park2016-2", "--duration", "600", "-D",
                               f"raw:{self.dir}/out.raw", "--format", "json"], cwd=self.dir, env=self.env,

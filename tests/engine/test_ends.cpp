@@ -190,6 +190,31 @@ TEST_CASE("stop fades what sounds, waits until it is out, and drops the stream")
     }
 }
 
+TEST_CASE("stop does not wait for a long buffer: what still sounds after 0.4 s is cut")
+{
+    for (const bool closing : {false, true}) {
+        CAPTURE(closing);
+        rig r({.period = 480, .periods = 200});
+        REQUIRE(r.start().status == io_status::ok);
+        const stroke_id sounding = r.submit(tone(10.0));
+        r.play(5 * rate);
+        REQUIRE(r.status().running);
+        if (closing)
+            r.feed.set_closing();
+        r.link.requests.push({.what = engine::request::kind::stop, .closing = closing});
+        r.play(rate / 10 * 4);
+        CHECK_FALSE(r.loop.over());
+        // So that it wakes by itself, however long a period is.
+        CHECK(r.loop.timeout_ns() <= 20'000'000);
+        r.play(960);
+        CHECK(r.loop.over());
+        CHECK_FALSE(r.dac.running());
+        REQUIRE(r.report(sounding));
+        CHECK(r.report(sounding)->state == (closing ? stroke_state::interrupted : stroke_state::cancelled));
+        CHECK(r.report(sounding)->reason == (closing ? "the player was closed" : ""));
+    }
+}
+
 TEST_CASE("a stopped loop stays stopped")
 {
     rig r;
