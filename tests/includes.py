@@ -23,7 +23,7 @@ MAY_INCLUDE = {
 }
 # The room that a public header belongs to; a room may use the public headers of the rooms it may include.
 PUBLIC = {
-    "api": None, "error": None, "version": None, "geometry": None, "tactor": "engine",
+    "api": None, "error": None, "version": None, "words": None, "geometry": None, "tactor": "engine",
     "array": "model", "path": "model", "setup": "model", "stroke": "model",
     "phantom": "plan", "plan": "plan", "percept": "plan",
     "render": "synth", "sample_format": None, "wav": "wav", "output_file": "wav",

@@ -24,3 +24,4 @@
 #include <tactor/stroke.hpp>
 #include <tactor/version.hpp>
 #include <tactor/wav.hpp>
+#include <tactor/words.hpp>

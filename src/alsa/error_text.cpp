@@ -123,6 +123,19 @@ error forbidden(const std::string& name, const surroundings& s)
                         group.empty() ? "audio" : group)};
 }
 
+// "default" leads to a sound server where its plugin is installed; its refusal comes as an errno that says
+// nothing to people ("Host is down").
+error no_server(const std::string& name, const std::string& detail, const surroundings& s)
+{
+    std::string hint = "start it, as the user who is logged in: systemctl --user start pipewire-pulse, or "
+                       "pulseaudio --start; root and services have none of their own. Or play on a card: ";
+    const auto cards = sound_cards(s.root);
+    hint += cards.empty() ? "-D hw:CARD=NAME" : fmt::format("-D hw:CARD={}", cards.front().id);
+    return {errc::not_available, thing(name),
+            with_detail("it leads to a sound server (PipeWire, PulseAudio), which is not there", detail),
+            hint + "; tactor devices lists all"};
+}
+
 } // namespace
 
 std::string with_detail(const std::string& text, const std::string& detail)
@@ -142,6 +155,12 @@ error open_error(const std::string& name, int code, const std::string& detail, c
     case EACCES:
     case EPERM:
         return forbidden(name, s);
+    case EHOSTDOWN:
+    case EHOSTUNREACH:
+    case ECONNREFUSED:
+    case ECONNRESET:
+    case ENOTCONN:
+        return no_server(name, detail, s);
     case EMFILE:
     case ENFILE:
         return {errc::runtime, thing(name), with_detail(snd_strerror(code), detail),

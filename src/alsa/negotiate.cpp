@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <tactor/words.hpp>
+
 #include "alsa/error_text.hpp"
 #include "alsa/format.hpp"
 #include "alsa/handle.hpp"
@@ -109,8 +111,8 @@ stream_setup read_back(const hw_params& h, const alsa_options& o, sample_format 
     s.batch = snd_pcm_hw_params_is_batch(h.get()) != 0;
     if (s.channels != o.channels || s.rate != o.rate || period == 0 || buffer < period)
         throw error(errc::not_available, fmt::format("PCM \"{}\"", o.pcm),
-                    fmt::format("asked for {}, it made {} channels at {} Hz with {} of {} frames of it",
-                                asked(o), s.channels, s.rate, s.period_frames, s.buffer_frames),
+                    fmt::format("asked for {}, it made {} at {} Hz with {} of {} frames of it", asked(o),
+                                counted(s.channels, "channel"), s.rate, s.period_frames, s.buffer_frames),
                     "use the PCM without plugins, e.g. hw:CARD=NAME");
     return s;
 }

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <tactor/words.hpp>
+
 #include "cli/walk.hpp"
 
 namespace tactor::cli {
@@ -94,7 +96,8 @@ finding check_channels(const render_options& r, const array& a)
     std::sort(used.begin(), used.end());
     const bool no_gap = used.back() - used.front() + 1 == used.size();
     std::string found =
-        fmt::format("{} of {} channels drive tactors: {}", used.size(), r.channels,
+        fmt::format("{} of {} {}: {}", used.size(), counted(r.channels, "channel"),
+                    used.size() == 1 ? "drives a tactor" : "drive tactors",
                     no_gap && used.size() > 2 ? fmt::format("{} to {}", used.front(), used.back())
                                               : fmt::format("{}", fmt::join(used, ", ")));
     if (r.marker_channel)

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <tactor/words.hpp>
+
 #include "cli/check_array.hpp"
 
 namespace tactor::cli {
@@ -84,9 +86,11 @@ void check_actuators(const array& a, double carrier_hz, double burst_s, bool has
 finding check_carrier(double carrier_hz, double burst_s, bool has_bursts, unsigned rate)
 {
     const double cycles = carrier_hz * burst_s;
-    const std::string found =
-        has_bursts ? fmt::format("{:.4g} ms at {:.4g} Hz, {:.4g} cycles", burst_s * 1e3, carrier_hz, cycles)
-                   : fmt::format("none (continuous), {:.4g} Hz", carrier_hz);
+    const std::string found = has_bursts
+                                  ? fmt::format("{} ms at {} Hz, {} {}", plain_number(burst_s * 1e3, 4),
+                                                plain_number(carrier_hz, 4), plain_number(cycles, 4),
+                                                plain_number(cycles, 4) == "1" ? "cycle" : "cycles")
+                                  : fmt::format("none (continuous), {:.4g} Hz", carrier_hz);
     if (2.0 * carrier_hz >= rate)
         return {"bursts", level::error, fmt::format("{}: not below half the rate of {} Hz", found, rate),
                 "lower --carrier", errc::bad_input};

@@ -10,6 +10,7 @@
 #include "cli/commands.hpp"
 #include "cli/compare_rows.hpp"
 #include "cli/input.hpp"
+#include "cli/pipes.hpp"
 #include "cli/say.hpp"
 #include "plot/compare_figure.hpp"
 #include "plot/figure.hpp"
@@ -112,6 +113,7 @@ void draw(const compare_options& o, const comparison& c, const array& a)
     for (const comparison_row& r : c.rows)
         rows.push_back({std::string(to_string(r.method)), std::string(to_string(r.phantom)), r.samples,
                         r.felt, r.refused ? r.refused->what() : ""});
+    tell_of_pipe_to_write(o.picture);
     plot::save(plot::draw_comparison(
                    a, c.target, rows,
                    std::string("The ring is the start; dots are where the felt position rests. This is ") +

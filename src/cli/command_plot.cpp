@@ -8,6 +8,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
+#include "cli/pipes.hpp"
 #include "cli/say.hpp"
 #include "plot/figure.hpp"
 #include "plot/output.hpp"
@@ -79,6 +80,7 @@ int draw(settings& s, option_list& options, const plot_settings& p)
         sound = make_score(q, e, settle_render(s, e));
     const plot::canvas picture =
         plot::draw_figure({e.tactors, name_of(q), q.strokes, q.plans, sound ? &*sound : nullptr}, p.figure);
+    tell_of_pipe_to_write(p.file);
     plot::save(picture, p.file, p.dpi);
     for (const placed_plan& k : q.plans)
         for (const std::string& w : k.schedule.warnings)

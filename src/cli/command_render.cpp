@@ -13,9 +13,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <tactor/words.hpp>
+
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/pipes.hpp"
 #include "cli/say.hpp"
 
 namespace tactor::cli {
@@ -108,6 +111,7 @@ int render(settings& s, option_list& options, const std::string& name)
     for (const placed_plan& q : p.plans)
         for (const std::string& w : q.schedule.warnings)
             say(stderr, "tactor: warning: {}\n", w);
+    tell_of_pipe_to_write(file.string());
     interrupt stop;
     int signal = 0;
     {
@@ -120,8 +124,8 @@ int render(settings& s, option_list& options, const std::string& name)
     }
     if (signal != 0)
         return interrupt::status(signal);
-    say(file == "/dev/stdout" ? stderr : stdout, "{}: {} channels, {} Hz, {}, {} frames ({:.3f} s)\n", name,
-        sc.channels(), sc.rate(), to_string(format), sc.frames(),
+    say(file == "/dev/stdout" ? stderr : stdout, "{}: {}, {} Hz, {}, {} ({:.3f} s)\n", name,
+        counted(sc.channels(), "channel"), sc.rate(), to_string(format), counted(sc.frames(), "frame"),
         static_cast<double>(sc.frames()) / sc.rate());
     return status_ok;
 }

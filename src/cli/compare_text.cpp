@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <tactor/words.hpp>
+
 #include "cli/compare_rows.hpp"
 #include "cli/say.hpp"
 
@@ -49,7 +51,8 @@ void print_warnings(std::FILE* out, std::string_view before, const comparison& c
 void print_one(std::FILE* out, const comparison& c, const array& a)
 {
     const trajectory& m = c.target.motion;
-    say(out, "{} on {}: {:.6g} mm in {:.6g} s\n", c.target.name, a.name, m.length_mm(), m.duration_s());
+    say(out, "{} on {}: {} mm in {}\n", c.target.name, a.name, plain_number(m.length_mm()),
+        seconds_text(m.duration_s()));
     if (!c.target.note.empty())
         say(out, "note: {}\n", c.target.note);
     fmt::print(out, "\n{:<13} {:<16} {:>6} {:>13} {:>14} {:>13}\n", "", "", "", "error mm   ", "CV      ",

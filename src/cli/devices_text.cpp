@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <tactor/words.hpp>
+
 #include "cli/devices_output.hpp"
 #include "cli/wrapped.hpp"
 
@@ -55,8 +57,11 @@ std::string sizes_text(const pcm_abilities& a)
 {
     if (a.period_frames.most == no_limit && a.buffer_frames.most == no_limit)
         return "any";
-    return fmt::format("{} frames, {} periods, buffer {}", text_of(a.period_frames), text_of(a.periods),
-                       text_of(a.buffer_frames));
+    const auto with_noun = [](const std::string& n, const char* noun) {
+        return fmt::format("{} {}{}", n, noun, n == "1" ? "" : "s");
+    };
+    return fmt::format("{}, {}, buffer {}", with_noun(text_of(a.period_frames), "frame"),
+                       with_noun(text_of(a.periods), "period"), text_of(a.buffer_frames));
 }
 
 std::string holders_text(const std::vector<process_info>& holders)
@@ -148,7 +153,7 @@ std::string chips_text(const std::vector<gpio_chip_info>& chips)
             s += fmt::format("\n{}", wrapped("  ", c.error));
             continue;
         }
-        s += fmt::format("\n  {}   {}, {} lines\n", c.label, c.path, c.lines.size());
+        s += fmt::format("\n  {}   {}, {}\n", c.label, c.path, counted(c.lines.size(), "line"));
         s += lines_text(c.lines);
     }
     return s;

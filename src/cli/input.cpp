@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "cli/pipes.hpp"
+
 namespace tactor::cli {
 namespace {
 
@@ -81,6 +83,7 @@ array find_array(const settings& s, option_list& options, environment& e)
     }
     if (!fs::exists(*s.array_name) && s.array_name->find_first_of("./") == std::string::npos)
         return preset_array(*s.array_name); // its error lists the presets
+    check_readable(*s.array_name);
     const setup file = load_setup(*s.array_name);
     if (!file.layout)
         throw error(errc::bad_input, *s.array_name, "says no [array]", "see tactor.toml(5)");
@@ -111,6 +114,7 @@ std::vector<stroke> read_one(const std::string& argument)
     std::error_code ignored;
     if (!fs::exists(argument, ignored) && argument.find_first_of("./") == std::string::npos)
         return {preset_stroke(argument)}; // its error lists the presets
+    check_readable(argument);
     return load_strokes(argument);
 }
 
@@ -155,6 +159,16 @@ std::string only_argument(const settings& s)
     return arguments.front();
 }
 
+// Which of several strokes it is about, said once: the planner knows its name, but not its number.
+error in_piece(const error& x, const std::string& argument, std::size_t number, const std::string& name)
+{
+    const std::string which =
+        name.empty() ? fmt::format("stroke {}", number) : fmt::format("stroke {} \"{}\"", number, name);
+    const bool said = x.subject() == "stroke" || x.subject() == fmt::format("stroke \"{}\"", name);
+    return said ? error(x.kind(), fmt::format("{}: {}", argument, which), x.why(), x.hint())
+                : error(x.kind(), fmt::format("{}: {}: {}", argument, which, x.subject()), x.why(), x.hint());
+}
+
 piece plan_piece(const settings& s, const environment& e, const layout& faces, const std::string& argument)
 {
     piece p{argument, read_strokes(s, argument), {}};
@@ -164,8 +178,7 @@ piece plan_piece(const settings& s, const environment& e, const layout& faces, c
         } catch (const error& x) {
             if (p.strokes.size() == 1)
                 throw;
-            throw error(x.kind(), fmt::format("{}: stroke {} \"{}\"", argument, p.plans.size() + 1, k.name),
-                        x.what());
+            throw in_piece(x, argument, p.plans.size() + 1, k.name);
         }
     }
     return p;
@@ -178,6 +191,7 @@ environment read_environment(settings& s, option_list& options)
     environment e;
     e.config_name = find_config(s);
     if (!e.config_name.empty()) {
+        check_readable(e.config_name);
         e.config = load_setup(e.config_name);
         options.apply_defaults(e.config.defaults, e.config_name);
     }

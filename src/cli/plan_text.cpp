@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <tactor/words.hpp>
+
 #include "cli/plan_output.hpp"
 #include "cli/plan_rows.hpp"
 #include "cli/say.hpp"
@@ -10,12 +12,12 @@ namespace {
 
 std::string heading(const stroke& s, const plan& p, double start_s, const array& a)
 {
-    const std::string soa = p.soa_s ? fmt::format(", SOA {:.6g} s", *p.soa_s) : "";
-    const std::string bursts = p.at ? "continuous" : fmt::format("{} bursts", p.bursts.size());
-    return fmt::format("{} on {}: {} with {}, {}{}\nstarts at {:.9g} s, {:.6g} mm in {:.6g} s, {:.6g} s of "
-                       "sound, carrier {:.6g} Hz\n",
-                       s.name, a.name, p.algorithm, p.phantom, bursts, soa, start_s, p.stroke_length_mm,
-                       p.stroke_duration_s, p.total_s, p.carrier_hz);
+    const std::string soa = p.soa_s ? ", SOA " + seconds_text(*p.soa_s) : "";
+    const std::string bursts = p.at ? "continuous" : counted(p.bursts.size(), "burst");
+    return fmt::format("{} on {}: {} with {}, {}{}\nstarts at {}, {} mm in {}, {} of sound, carrier {} Hz\n",
+                       s.name, a.name, p.algorithm, p.phantom, bursts, soa, seconds_text(start_s, 9),
+                       plain_number(p.stroke_length_mm), seconds_text(p.stroke_duration_s),
+                       seconds_text(p.total_s), plain_number(p.carrier_hz));
 }
 
 void print_one(std::FILE* out, const stroke& s, const plan& p, double start_s, const array& a)

@@ -4,7 +4,9 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
+#include <tactor/words.hpp>
 
 #include "cli/play_options.hpp"
 
@@ -125,29 +127,28 @@ std::string describe(const stroke_outcome& s, unsigned rate)
 
 std::string describe(const stream_setup& d)
 {
-    return fmt::format("{}: {} channels, {} Hz, {}, period {} of {} frames, latency {:.1f} ms", d.name,
-                       d.channels, d.rate, to_string(d.format), d.period_frames, d.buffer_frames,
-                       latency_ms(d));
+    return fmt::format("{}: {}, {} Hz, {}, period {} of {} frames, latency {:.1f} ms", d.name,
+                       counted(d.channels, "channel"), d.rate, to_string(d.format), d.period_frames,
+                       d.buffer_frames, latency_ms(d));
 }
 
 void warn_of_cuts(const drive_limits& l, const player_stats& s)
 {
     if (s.drives_cut != 0)
-        fmt::print(
-            stderr,
-            "tactor: warning: tactors were driven for longer than {} s in {} s and faded out, {} times "
-            "([limits] max_drive_s in the array file or configuration)\n",
-            l.max_drive_s, l.window_s, s.drives_cut);
+        fmt::print(stderr,
+                   "tactor: warning: tactors were driven for longer than {} s in {} s and faded out, {} "
+                   "([limits] max_drive_s in the array file or configuration)\n",
+                   l.max_drive_s, l.window_s, counted(s.drives_cut, "time"));
 }
 
 std::optional<error> left_on(const player_stats& s)
 {
     if (!s.left_on)
         return std::nullopt;
-    return error(
-        errc::not_available, "amplifier",
-        fmt::format("its line cannot be switched off, {} tries failed: it may be on", s.off_failures),
-        "cut the amplifier's supply; then see whether \"tactor off\" works, and what dmesg says");
+    return error(errc::not_available, "amplifier",
+                 fmt::format("its line cannot be switched off, {} failed: it may be on",
+                             counted(s.off_failures, "try", "tries")),
+                 "cut the amplifier's supply; then see whether \"tactor off\" works, and what dmesg says");
 }
 
 void print_table(std::FILE* to, const run_report& r)
@@ -155,14 +156,14 @@ void print_table(std::FILE* to, const run_report& r)
     const player_stats& s = r.stats;
     fmt::print(to, "xruns           {}\n", xruns_text(s));
     fmt::print(to, "latest wake-up  {:.3f} ms\n", s.latest_wakeup_s * 1e3);
-    fmt::print(to, "ring low water  {} drives\n", s.ring_low_water);
+    fmt::print(to, "ring low water  {}\n", counted(s.ring_low_water, "drive"));
     fmt::print(to, "page faults     {}, {} from disk\n", s.minor_faults + s.major_faults, s.major_faults);
-    fmt::print(to, "limited         {} samples, power in {} frames, {} drives cut\n", s.limited_frames,
-               s.power_limited_frames, s.drives_cut);
+    fmt::print(to, "limited         {}, power in {}, {} cut\n", counted(s.limited_frames, "sample"),
+               counted(s.power_limited_frames, "frame"), counted(s.drives_cut, "drive"));
     if (s.stalls != 0)
         fmt::print(to, "stalls          {}, amplifier off in each\n", s.stalls);
     if (s.off_failures != 0)
-        fmt::print(to, "off refused     {} times by the amplifier's line{}\n", s.off_failures,
+        fmt::print(to, "off refused     {} by the amplifier's line{}\n", counted(s.off_failures, "time"),
                    s.left_on ? "" : ", off in the end");
     if (s.sync_pulses + s.sync_missed != 0)
         fmt::print(to, "sync pulses     {}, {} missed, late by {:.3f} ms, at worst {:.3f} ms\n",

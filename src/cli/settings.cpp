@@ -2,6 +2,7 @@
 #include "cli/settings.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -13,6 +14,8 @@ namespace tactor::cli {
 namespace {
 
 constexpr int max_strokes = 10000; // on one command line
+// The planner holds it to the timing law and says so in its words: no number is refused before.
+constexpr const char* soa_range = "above 0.0473 to 0.07 s by the usual timing law; see --burst for others";
 
 // A choice among names that the library can print: "a|b|c" and the value of the one given.
 template <class Enum>
@@ -54,6 +57,55 @@ bool parse_flag(const std::string& what, const std::string& text)
     throw error(errc::bad_input, what, fmt::format("\"{}\" is neither true nor false", text));
 }
 
+// What one of a unit is in the option's own; 0 where it is none of its kind.
+double factor_of(std::string_view given, const std::string& unit)
+{
+    struct entry {
+        const char* unit;
+        std::string_view given;
+        double factor;
+    };
+    constexpr std::array<entry, 15> known{{{"s", "s", 1.0},
+                                           {"s", "sec", 1.0},
+                                           {"s", "ms", 1e-3},
+                                           {"s", "us", 1e-6},
+                                           {"s", "min", 60.0},
+                                           {"ms", "ms", 1.0},
+                                           {"ms", "s", 1e3},
+                                           {"Hz", "Hz", 1.0},
+                                           {"Hz", "kHz", 1e3},
+                                           {"mm", "mm", 1.0},
+                                           {"mm", "cm", 10.0},
+                                           {"mm/s", "mm/s", 1.0},
+                                           {"mm/s", "cm/s", 10.0},
+                                           {"dBFS", "dB", 1.0},
+                                           {"dB SL", "dB", 1.0}}};
+    for (const entry& e : known)
+        if (unit == e.unit && given == e.given)
+            return e.factor;
+    return given == unit ? 1.0 : 0.0;
+}
+
+// "70ms" for seconds: the number to give instead, where it can be told; "1,5": a decimal point.
+std::string without_unit(const std::string& text, double v, std::string_view rest, double lo, double hi,
+                         const std::string& unit)
+{
+    if (rest.front() == ',') {
+        std::string point = text;
+        point[point.find(',')] = '.';
+        double w = 0.0;
+        const auto r = std::from_chars(point.data(), point.data() + point.size(), w);
+        return r.ec == std::errc() && r.ptr == point.data() + point.size()
+                   ? fmt::format("write a decimal point, as {}", point)
+                   : "";
+    }
+    rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
+    const double meant = v * factor_of(rest, unit);
+    if (meant == 0.0 || meant < lo || meant > hi)
+        return {};
+    return fmt::format("give {} without a unit, as {}", unit == "s" ? "seconds" : unit, plain_number(meant));
+}
+
 std::string bare(const std::string& names)
 {
     return names.substr(names.rfind("--") + 2);
@@ -62,14 +114,21 @@ std::string bare(const std::string& names)
 } // namespace
 
 double parse_number(const std::string& what, const std::string& text, double lo, double hi,
-                    const std::string& unit)
+                    const std::string& unit, const std::string& range_text)
 {
     double v = 0.0;
     const char* end = text.data() + text.size();
     const auto r = std::from_chars(text.data(), end, v);
-    const std::string range = fmt::format("{} to {} {}", lo, hi, unit);
-    if (r.ec == std::errc::invalid_argument || r.ptr != end)
-        throw error(errc::bad_input, what, fmt::format("\"{}\" is not a number", text), range);
+    const std::string range =
+        range_text.empty()
+            ? fmt::format("{} to {}{}", plain_number(lo), plain_number(hi), unit.empty() ? "" : " " + unit)
+            : range_text;
+    if (r.ec == std::errc::invalid_argument || r.ptr != end) {
+        const std::string meant =
+            r.ec == std::errc() ? without_unit(text, v, {r.ptr, end}, lo, hi, unit) : "";
+        throw error(errc::bad_input, what, fmt::format("\"{}\" is not a number", text),
+                    meant.empty() ? range : fmt::format("{}; {}", meant, range));
+    }
     if (r.ec != std::errc() || !std::isfinite(v) || v < lo || v > hi)
         throw error(errc::bad_input, what, fmt::format("{} is out of range", text), range);
     return v;
@@ -160,7 +219,7 @@ void option_list::add_timing_options()
     value("--algorithm", algorithms.names("|"), "who plays when (default park2016)",
           [&s](const std::string& t) { s.plan.method = algorithms.parse("--algorithm", t); });
     value("--soa", "S", "onset to onset of two bursts (default 0.07)",
-          [&s](const std::string& t) { s.plan.soa_s = parse_number("--soa", t, -1e9, 1e9, "s"); });
+          [&s](const std::string& t) { s.plan.soa_s = parse_number("--soa", t, -1e9, 1e9, "s", soa_range); });
     value("--burst", "S", "duration of each burst (default: what the timing law gives for the SOA)",
           [&s](const std::string& t) { s.plan.burst_s = parse_number("--burst", t, 0.0001, 10, "s"); });
     value("--slope", "A", "slope of the timing law SOA = A duration + S (default 0.32)",

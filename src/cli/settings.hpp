@@ -73,8 +73,10 @@ private:
 void add_format_option(CLI::App& command, std::string& into, const std::vector<std::string>& names,
                        const std::string& help);
 
-/// A finite number between lo and hi. \throws error (bad_input) naming `what`, the text and the range.
+/// A finite number between lo and hi. \throws error (bad_input) naming `what`, the text, the number to give
+/// where the text has a unit, and the range (`range_text`, where what is sensible is less than what is
+/// taken).
 double parse_number(const std::string& what, const std::string& text, double lo, double hi,
-                    const std::string& unit);
+                    const std::string& unit, const std::string& range_text = {});
 
 } // namespace tactor::cli

@@ -22,13 +22,26 @@ const CLI::App& used_command(const CLI::App& app)
     return used.empty() ? app : *used.front();
 }
 
+// Without the dashes, which would make any two names more alike than they are.
 std::vector<std::string> option_names(const CLI::App& command)
 {
     std::vector<std::string> names;
     for (const CLI::Option* o : command.get_options())
         for (const std::string& l : o->get_lnames())
-            names.push_back("--" + l);
+            names.push_back(l);
     return names;
+}
+
+// The option that a name is a slip of, or nothing. Of a short name one letter makes another word: then its
+// beginning must agree ("seed" is not "speed", "sped" may be).
+std::string nearest_option(const std::string& given, const std::vector<std::string>& names)
+{
+    constexpr std::size_t short_name = 4;
+    const std::string bare = given.substr(std::min(given.find_first_not_of('-'), given.size()));
+    const std::string like = nearest(bare, names);
+    if (like.empty() || (bare.size() <= short_name && bare.substr(0, 2) != like.substr(0, 2)))
+        return {};
+    return "--" + like;
 }
 
 error unknown(const CLI::App& app, const CLI::App& command)
@@ -39,7 +52,7 @@ error unknown(const CLI::App& app, const CLI::App& command)
         "tactor " + (&command == &app ? "" : command.get_name() + " ") + "--help lists them";
     if (given.starts_with('-')) {
         const std::string name = given.substr(0, given.find('='));
-        const std::string like = nearest(name, option_names(command));
+        const std::string like = nearest_option(name, option_names(command));
         return {errc::bad_input, name, "no such option",
                 like.empty() ? help : fmt::format("did you mean {}? {}", like, help)};
     }

@@ -72,12 +72,17 @@ public:
         if (n > 1)
             say(fmt::format("\n{}\n", numbered_map(environment_.tactors)));
         walk_answers felt;
-        for (unsigned i = 0; i < n; ++i) {
+        while (felt.size() < n) {
+            const auto i = static_cast<unsigned>(felt.size());
             sound(i);
-            if (options_.ask)
-                felt.push_back(ask(i));
-            else
+            if (!options_.ask) {
                 say(place_of(i) + "\n");
+                felt.emplace_back();
+            } else if (const auto got = ask(i)) {
+                felt.push_back(got->felt);
+            } else {
+                felt.pop_back(); // and that one is driven again
+            }
         }
         return felt;
     }
@@ -110,31 +115,40 @@ private:
             say(fmt::format("tactor {}: interrupted: {}\n", i, r.reason));
     }
 
-    std::optional<unsigned> ask(unsigned i)
+    struct answer {
+        std::optional<unsigned> felt; // the number of a tactor; nothing where it was not felt
+    };
+
+    // Nothing: back to the one before.
+    std::optional<answer> ask(unsigned i)
     {
         const std::size_t last = tactors().size() - 1;
         for (;;) {
-            say(fmt::format("tactor {} (channel {}): which did you feel? 0 to {}, n none, r repeat, q quit: ",
-                            i, tactors()[i].channel, last));
+            say(fmt::format(
+                "tactor {} (channel {}): which did you feel? 0 to {}, n none, r repeat, {}q quit: ", i,
+                tactors()[i].channel, last, i > 0 ? "b back, " : ""));
             const auto line = input_.next();
             if (!line)
                 throw error(errc::runtime, "walk", fmt::format("no answer for tactor {}", i),
-                            "answer with a number, n, r or q; --auto asks nothing");
-            const std::string answer = without_blanks(*line);
+                            "answer with a number, n, r, b or q; --auto asks nothing");
+            const std::string said = without_blanks(*line);
             unsigned number = 0;
-            const char* end = answer.data() + answer.size();
-            const auto read = std::from_chars(answer.data(), end, number);
+            const char* end = said.data() + said.size();
+            const auto read = std::from_chars(said.data(), end, number);
             if (read.ec == std::errc() && read.ptr == end && number <= last)
-                return number;
-            if (answer == "n")
+                return answer{number};
+            if (said == "n")
+                return answer{};
+            if (said == "b" && i > 0)
                 return std::nullopt;
-            if (answer == "q")
+            if (said == "q")
                 throw error(errc::runtime, "walk", fmt::format("left after {} of {} tactors", i, last + 1),
                             "no map is made of a part");
-            if (answer == "r")
+            if (said == "r")
                 sound(i);
             else
-                say(fmt::format("\"{}\" is none of these.\n", answer));
+                say(said == "b" ? "This is the first, there is none before it.\n"
+                                : fmt::format("\"{}\" is none of these.\n", said));
         }
     }
 

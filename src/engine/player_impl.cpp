@@ -14,6 +14,7 @@
 
 #include <tactor/error.hpp>
 #include <tactor/realtime.hpp>
+#include <tactor/words.hpp>
 
 #include "rt/clock.hpp"
 
@@ -127,7 +128,7 @@ const array& fitting(const array& a, const stream_setup& s)
             throw error(errc::bad_input, "player",
                         fmt::format("tactor {} of {} is on channel {}, but the stream has {} channel{}", i,
                                     a.name, a.tactors[i].channel, s.channels, s.channels == 1 ? "" : "s"),
-                        fmt::format("open it with {} channels; they count from 0", a.channels()));
+                        fmt::format("open it with {}; they count from 0", counted(a.channels(), "channel")));
     return a;
 }
 
@@ -249,8 +250,8 @@ stroke_id player::impl::submit(const score& s, start_at start)
     const stream_setup& d = out->setup();
     if (s.rate() != d.rate || s.channels() != d.channels)
         throw error(errc::bad_input, "stroke",
-                    fmt::format("made for {} channels at {} Hz, the stream has {} at {} Hz", s.channels(),
-                                s.rate(), d.channels, d.rate),
+                    fmt::format("made for {} at {} Hz, the stream has {} at {} Hz",
+                                counted(s.channels(), "channel"), s.rate(), d.channels, d.rate),
                     "render it with the stream's rate and channels");
     const std::lock_guard lock(mutex);
     check_open();

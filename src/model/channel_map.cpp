@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <tactor/words.hpp>
+
 #include "model/setup_parts.hpp"
 #include "model/text_file.hpp"
 
@@ -112,7 +114,8 @@ std::string with_channels(const std::filesystem::path& file, std::span<const uns
         throw error(errc::bad_input, file.string(), "says no [array]", "see tactor.toml(5)");
     if (before.layout->tactors.size() != channels.size())
         throw error(errc::bad_input, file.string(),
-                    fmt::format("{} channels for {} tactors", channels.size(), before.layout->tactors.size()),
+                    fmt::format("{} for {}", counted(channels.size(), "channel"),
+                                counted(before.layout->tactors.size(), "tactor")),
                     "give one for each");
     std::string out = detail::edited(text, source.name, *before.layout, channels);
     const setup after = detail::read_setup(out, source).said;

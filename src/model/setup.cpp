@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <tactor/words.hpp>
+
 #include "model/setup_parts.hpp"
 #include "model/text_file.hpp"
 
@@ -29,13 +31,14 @@ void check_channels(const located_setup& s)
                 fail_at(s.channels_at,
                         fmt::format("channels is {}, but tactor {}{} is on channel {}", *count, i,
                                     place_note(t.where), t.channel),
-                        fmt::format("the array needs {} channels; they count from 0", needed));
+                        fmt::format("the array needs {}; they count from 0", counted(needed, "channel")));
         }
     }
     if (s.said.sync && s.said.sync->channel && *s.said.sync->channel >= *count)
         fail_at(s.sync_channel_at,
-                fmt::format("the marker's channel is {}, but there are {} channels{}", *s.said.sync->channel,
-                            *count, place_note(s.channels_at)),
+                fmt::format("the marker's channel is {}, but there {} {}{}", *s.said.sync->channel,
+                            *count == 1 ? "is" : "are", counted(*count, "channel"),
+                            place_note(s.channels_at)),
                 "channels count from 0");
 }
 

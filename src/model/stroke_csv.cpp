@@ -9,11 +9,13 @@
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
+#include <tactor/words.hpp>
 
 #include "model/limits.hpp"
 #include "model/path_number.hpp"
 #include "model/stroke_text.hpp"
 #include "model/suggest.hpp"
+#include "model/text_file.hpp"
 #include "model/trajectory_limits.hpp"
 
 namespace tactor {
@@ -168,7 +170,8 @@ private:
         split();
         if (fields_.size() != order_.size())
             fail(fields_[std::min(fields_.size(), order_.size()) - 1].column,
-                 fmt::format("{} values where the header names {} columns", fields_.size(), order_.size()),
+                 fmt::format("{} where the header names {}", counted(fields_.size(), "value"),
+                             counted(order_.size(), "column")),
                  "numbers have a decimal point, and a comma stands only between them");
         timed_point p;
         for (std::size_t i = 0; i < order_.size(); ++i) {
@@ -244,6 +247,7 @@ private:
 std::vector<stroke> parse_strokes_csv(std::string_view text, const std::string& name)
 {
     detail::check_size(text, name, detail::max_stroke_bytes, "is it the right file?");
+    detail::refuse_utf16(text, name);
     return csv_reader(text, name).read();
 }
 

@@ -77,4 +77,15 @@ whole_text read_text_file(const std::filesystem::path& file, std::size_t max_byt
     return read_text(in.fd, file.string(), max_bytes);
 }
 
+void refuse_utf16(std::string_view text, const std::string& name)
+{
+    const std::string_view mark = text.substr(0, 2);
+    const bool marked = mark == "\xFF\xFE" || mark == "\xFE\xFF";
+    // Without a mark, every other byte of plain letters is 0.
+    const bool bare = mark.size() == 2 && (mark[0] == '\0') != (mark[1] == '\0');
+    if (marked || bare)
+        throw error(errc::bad_input, name, "is UTF-16, not UTF-8",
+                    "save it as UTF-8 in the editor, or convert it: iconv -f UTF-16 -t UTF-8 OLD > NEW");
+}
+
 } // namespace tactor::detail

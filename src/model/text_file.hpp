@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <string_view>
 
 namespace tactor::detail {
@@ -36,5 +37,9 @@ whole_text read_text(int descriptor, std::string_view name, std::size_t max_byte
 /// The bytes of a file; pipes and devices are read up to `max_bytes` as well.
 /// \throws error (bad_input) naming the file when it is missing, a directory, not readable or longer.
 whole_text read_text_file(const std::filesystem::path& file, std::size_t max_bytes);
+
+/// \throws error (bad_input) where the text is UTF-16, as some editors save it: it would be refused anyway,
+/// at its first character and in words about bytes.
+void refuse_utf16(std::string_view text, const std::string& name);
 
 } // namespace tactor::detail

@@ -2,6 +2,13 @@
 // From text to toml++'s tables.
 #include "model/toml_reader.hpp"
 
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "model/stroke_text.hpp"
+#include "model/text_file.hpp"
+
 namespace tactor::detail {
 namespace {
 
@@ -67,15 +74,47 @@ void refuse_deep_keys(std::string_view t, const std::string& name)
     }
 }
 
+// Where the first string begins that its line, or of three quotes the text, does not end.
+std::optional<std::size_t> open_string(std::string_view t)
+{
+    for (std::size_t i = 0; i < t.size();) {
+        if (t[i] == '#') {
+            i = std::min(t.find('\n', i), t.size());
+        } else if (t[i] == '"' || t[i] == '\'') {
+            const std::size_t from = i;
+            const std::size_t quotes = t.substr(i, 3) == std::string(3, t[i]) ? 3 : 1;
+            i = after_string(t, i);
+            if (i < from + 2 * quotes || t.substr(i - quotes, quotes) != std::string(quotes, t[from]))
+                return from;
+        } else {
+            ++i;
+        }
+    }
+    return std::nullopt;
+}
+
 } // namespace
 
 toml::table parse_toml(std::string_view text, const std::string& name)
 {
+    refuse_utf16(text, name);
     refuse_deep_keys(text, name);
     try {
         return toml::parse(text, std::string_view(name));
     } catch (const toml::parse_error& e) {
         const auto& at = e.source().begin;
+        if (const auto open = open_string(text)) {
+            const source_place begin = place_of(text, *open, name);
+            const std::string three(3, text[*open]);
+            if (begin.line <= at.line)
+                fail_at(begin, "this text has no closing quote",
+                        text.substr(*open, 3) == three
+                            ? "end it with " + three
+                            : fmt::format("end it with {} on the same line", text[*open]));
+        }
+        if (e.description().find("could not determine value type") != std::string_view::npos)
+            fail_at({name, at.line, at.column}, "this is no value",
+                    "a text stands in quotes, as name = \"palm\"; numbers have no unit; see tactor.toml(5)");
         fail_at({name, at.line, at.column}, e.description(), "see tactor.toml(5)");
     }
 }

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <tactor/words.hpp>
+
 #include "plan/brush_points.hpp"
 #include "plan/brush_timing.hpp"
 #include "plan/job.hpp"
@@ -32,9 +34,8 @@ std::vector<double> times_of(const std::vector<meeting>& points)
         advice += "; or --drop-points";
     throw error(
         errc::bad_input, j.name(),
-        fmt::format(
-            "the Tactile Brush cannot play {} places on the grid in {} s: they follow one another too fast",
-            tau.size(), seconds_down(tau.back())),
+        fmt::format("the Tactile Brush cannot play {} on the grid in {} s: they follow one another too fast",
+                    counted(tau.size(), "place"), seconds_down(tau.back())),
         advice);
 }
 

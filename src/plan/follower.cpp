@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <tactor/words.hpp>
+
 #include "plan/job.hpp"
 #include "plan/numbers.hpp"
 
@@ -33,7 +35,8 @@ void follower::refuse(double t_s) const
     for (double middle = in + (out - in) / 2.0; in < middle && middle < out; middle = in + (out - in) / 2.0)
         (job_.faces.contains(motion.position(middle)) ? in : out) = middle;
     throw error(errc::bad_input, job_.name(),
-                fmt::format("leaves the array at {} after {:.6g} s", place(motion.position(in)), in), hint);
+                fmt::format("leaves the array at {} after {}", place(motion.position(in)), seconds_text(in)),
+                hint);
 }
 
 } // namespace tactor::detail

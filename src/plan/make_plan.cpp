@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <tactor/words.hpp>
+
 #include "plan/job.hpp"
 #include "plan/numbers.hpp"
 #include "plan/options.hpp"
@@ -26,9 +28,10 @@ void warn_of_long_bursts(plan& p)
     }
     if (count != 0)
         p.warnings.push_back(
-            fmt::format("{} of {} bursts last longer than {:.3f} s (up to {:.3f} s), beyond the range "
+            fmt::format("{} of {} {} longer than {:.3f} s (up to {:.3f} s), beyond the range "
                         "for which the timing law was fitted",
-                        count, p.bursts.size(), longest_fitted_s, longest));
+                        count, counted(p.bursts.size(), "burst"), count == 1 ? "lasts" : "last",
+                        longest_fitted_s, longest));
 }
 
 void warn_of_short_bursts(plan& p)
@@ -42,10 +45,11 @@ void warn_of_short_bursts(plan& p)
         }
     }
     if (count != 0)
-        p.warnings.push_back(fmt::format(
-            "{} of {} bursts are shorter than one cycle of the carrier, {:.4g} ms at {:.6g} Hz (down "
-            "to {:.4g} ms): too short to be felt as vibration",
-            count, p.bursts.size(), 1e3 / p.carrier_hz, p.carrier_hz, shortest * 1e3));
+        p.warnings.push_back(
+            fmt::format("{} of {} {} shorter than one cycle of the carrier, {:.4g} ms at {:.6g} Hz (down "
+                        "to {:.4g} ms): too short to be felt as vibration",
+                        count, counted(p.bursts.size(), "burst"), count == 1 ? "is" : "are",
+                        1e3 / p.carrier_hz, p.carrier_hz, shortest * 1e3));
 }
 
 /// Where the duration that was asked for is not the one that belongs to the SOA, or is not used.
@@ -55,7 +59,7 @@ void warn_of_own_duration(const plan_options& o, plan& p)
         return;
     if (!p.soa_s) {
         p.warnings.push_back(fmt::format(
-            "the duration asked for each burst, {} s, is not used: {}", *o.burst_s,
+            "the duration asked for each burst, {}, is not used: {}", seconds_text(*o.burst_s),
             p.at ? "continuous has no bursts" : "tactile-brush takes durations from path and timing law"));
         return;
     }
@@ -63,10 +67,11 @@ void warn_of_own_duration(const plan_options& o, plan& p)
     const bool in_bounds = *p.soa_s > law.intercept_s && *p.soa_s <= law.max_soa_s + detail::same_time_s;
     const double d = p.bursts.front().duration_s;
     if (!in_bounds || std::abs(d - detail::law_duration_s(law, *p.soa_s)) > law_tolerance_s)
-        p.warnings.push_back(fmt::format(
-            "bursts of {:.6g} s each {:.6g} s leave the timing law, SOA = {:.6g} duration + {:.6g} s, "
-            "by which their SOA is {:.4g} s: they may not be felt as one motion",
-            d, *p.soa_s, law.slope, law.intercept_s, law.slope * d + law.intercept_s));
+        p.warnings.push_back(
+            fmt::format("bursts of {} each {} leave the timing law, SOA = {:.6g} duration + {}, "
+                        "by which their SOA is {}: they may not be felt as one motion",
+                        seconds_text(d), seconds_text(*p.soa_s), law.slope, seconds_text(law.intercept_s),
+                        seconds_text(law.slope * d + law.intercept_s, 4)));
 }
 
 std::shared_ptr<const phantom_model> model_of(const layout& l, const plan_options& o)
@@ -80,9 +85,10 @@ plan make_plan(const array& a, const layout& l, const stroke& s, const plan_opti
 {
     detail::check_options(o);
     if (l.places().size() != a.tactors.size())
-        throw error(errc::bad_input, "layout",
-                    fmt::format("has {} tactors and the array {}", l.places().size(), a.tactors.size()),
-                    "build the layout from the same array");
+        throw error(
+            errc::bad_input, "layout",
+            fmt::format("has {} and the array {}", counted(l.places().size(), "tactor"), a.tactors.size()),
+            "build the layout from the same array");
     const detail::job j{a, l, s, o, model_of(l, o)};
     plan p;
     p.warnings = s.warnings;

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <tactor/words.hpp>
+
 #include "plan/numbers.hpp"
 
 namespace tactor::detail {
@@ -77,7 +79,7 @@ void sounding::add(const burst& b)
     for (const drive& d : b.drives) {
         if (d.tactor >= parts_.size())
             throw error(errc::bad_input, "plan", fmt::format("drives tactor {}", d.tactor),
-                        fmt::format("\"{}\" has {} tactors", tactors_.name, parts_.size()));
+                        fmt::format("\"{}\" has {}", tactors_.name, counted(parts_.size(), "tactor")));
         part& x = parts_[d.tactor];
         if (x.bursts == 0)
             touched_.push_back(d.tactor);

@@ -26,8 +26,11 @@ file_format format_of(const fs::path& file)
     if (e == ".pdf")
         return file_format::pdf;
     throw error(errc::bad_input, file.string(),
-                e.empty() ? "has no extension" : fmt::format("\"{}\" is no format for a picture", e),
-                "end the name in .svg, .png or .pdf");
+                e.empty() ? "has no extension, so it is not said which format the picture has"
+                          : fmt::format("\"{}\" is no format for a picture", e),
+                e.empty() && file.string().starts_with("/dev/")
+                    ? "its name says which: write FILE.svg, .png or .pdf, and pass that on"
+                    : "end the name in .svg, .png or .pdf");
 }
 
 void save(const canvas& c, const fs::path& file, unsigned dpi)

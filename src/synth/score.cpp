@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <tactor/words.hpp>
+
 #include <tactor/error.hpp>
 
 #include "synth/frames.hpp"
@@ -60,8 +62,9 @@ void check_marker(const array& a, const render_options& o, unsigned channels)
     }
     const std::string what = fmt::format("marker channel {}", *o.marker_channel);
     if (*o.marker_channel >= channels) {
-        throw error(errc::bad_input, what, fmt::format("there are {} channels", channels),
-                    fmt::format("ask for {} channels or more", *o.marker_channel + 1));
+        throw error(errc::bad_input, what,
+                    fmt::format("there {} {}", channels == 1 ? "is" : "are", counted(channels, "channel")),
+                    fmt::format("ask for {} or more", counted(*o.marker_channel + 1, "channel")));
     }
     for (std::size_t i = 0; i < a.tactors.size(); ++i) {
         if (a.tactors[i].channel == *o.marker_channel) {

@@ -70,6 +70,20 @@ TEST_CASE("a busy device names the program of another user, which only the drive
     CHECK(text.find("kill") == std::string::npos);
 }
 
+TEST_CASE("a sound server that is not there is named, and what to do without one")
+{
+    const fake_system s;
+    const std::string none = s.says("default", -EHOSTDOWN);
+    has(none, "a sound server (PipeWire, PulseAudio), which is not there");
+    has(none, "systemctl --user start pipewire-pulse");
+    has(none, "-D hw:CARD=NAME");
+    CHECK(none.find("Host is down") == std::string::npos);
+    s.two_cards();
+    for (const int code : {-EHOSTDOWN, -ECONNREFUSED})
+        has(s.says("pulse", code), "tactor devices lists all");
+    CHECK(s.says("default", -EHOSTDOWN).find("hw:CARD=NAME") == std::string::npos);
+}
+
 TEST_CASE("a busy device with nobody to be seen still says what to do")
 {
     const fake_system s;

@@ -73,7 +73,7 @@ TEST_CASE("the array of another file is changed where it is used")
 TEST_CASE("channels that the file cannot have, or cannot say, are refused")
 {
     const std::string grid = "[array]\ngrid = { rows = 1, columns = 2, pitch_mm = 20.0 }\n";
-    CHECK(message_of([&] { changed(grid, {0}); }).find("1 channels for 2 tactors") != std::string::npos);
+    CHECK(message_of([&] { changed(grid, {0}); }).find("1 channel for 2 tactors") != std::string::npos);
     CHECK(message_of([&] { changed(grid, {1, 1}); }).find("channel 1") != std::string::npos);
     CHECK(message_of([&] {
               changed(grid + "[output]\nchannels = 2\n", {0, 2});

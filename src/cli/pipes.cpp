@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "cli/pipes.hpp"
+
+#include <filesystem>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <tactor/error.hpp>
+
+#include "cli/say.hpp"
+
+namespace tactor::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A pipe of the shell's, <(...) or /dev/stdin, has its other end already.
+bool is_named_pipe(const std::string& file)
+{
+    std::error_code ignored;
+    return fs::is_fifo(fs::symlink_status(file, ignored));
+}
+
+// What this process writes to, or a terminal, would be read for ever.
+void refuse_endless(const std::string& file)
+{
+    struct stat s {};
+    if (::stat(file.c_str(), &s) != 0)
+        return;
+    const auto same = [&s](int fd) {
+        struct stat out {};
+        return ::fstat(fd, &out) == 0 && out.st_dev == s.st_dev && out.st_ino == s.st_ino;
+    };
+    if (S_ISFIFO(s.st_mode) && (same(STDOUT_FILENO) || same(STDERR_FILENO)))
+        throw error(errc::bad_input, file, "is where this program writes to",
+                    "name a file to read, or - for standard input");
+    if (!S_ISCHR(s.st_mode))
+        return;
+    const int fd = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    const bool terminal = fd >= 0 && ::isatty(fd) == 1;
+    if (fd >= 0)
+        ::close(fd);
+    if (terminal)
+        throw error(errc::bad_input, file, "is a terminal", "name a file to read");
+}
+
+} // namespace
+
+void check_readable(const std::string& file)
+{
+    refuse_endless(file);
+    if (is_named_pipe(file))
+        say(stderr, "tactor: {}: is a pipe: waiting for a program that writes to it (Ctrl-C ends)\n", file);
+}
+
+void tell_of_pipe_to_write(const std::string& file)
+{
+    if (is_named_pipe(file))
+        say(stderr, "tactor: {}: is a pipe: waiting for a program that reads it (Ctrl-C ends)\n", file);
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: MIT
+"""What messages say: numbers as people read them, names once, and what to do."""
+import os
+import re
+import subprocess
+import threading
+
+from harness import GRID, PATIENCE_S, TOOL, ToolTest, main
+
+GRID_ONE = '[array]\nname = "one"\ngrid = { rows = 1, columns = 1, pitch_mm = 20.0 }\n'
+
+
+class Numbers(ToolTest):
+    def test_one_is_singular(self):
+        self.write("one.toml", GRID_ONE)
+        one = ("--path", "M 0 0 L 10 0", "--duration", "0.05")
+        self.assertIn(", 1 burst, SOA", self.ok("plan", *one).stdout)
+        self.assertIn(", 2 bursts, SOA", self.ok("plan", *one[:2], "--duration", "0.08").stdout)
+        dot = ("--path", "M 0 0 L 1 0", "--outside", "clamp", "--array", "one.toml")
+        self.assertIn("o.wav: 1 channel, 48000 Hz", self.ok("render", *dot, "-o", "o.wav").stdout)
+        self.assertIn("null: 1 channel, 48000 Hz", self.both("play", *dot, "-D", "null"))
+        checked = self.both("check", "--array", "one.toml", "-D", "null")
+        self.assertIn("1 of 1 channel drives a tactor: 0", " ".join(checked.split()))
+        short = self.both("plan", *one, "--burst", "0.003")
+        self.assertIn("1 of 1 burst is shorter than one cycle", short)
+        for text in (short, checked):
+            self.assertIsNone(re.search(r"\b1 (bursts|strokes|tactors|channels|warnings|frames|samples|cycles)\b", text))
+
+    def both(self, *args):
+        r = self.run_tool(*args)
+        return r.stdout + r.stderr
+
+    def test_times_have_no_exponents(self):
+        for path, says in (("M 0 0 L 0.0000016 0", "in 26.7 ns"), ("M 0 0 L 0.0016 0", "in 26.7 us"),
+                           ("M 0 0 L 16 0", "in 0.266667 s")):
+            for command in ("plan", "compare"):
+                out = self.ok(command, "--path", path).stdout
+                self.assertIn(says, out)
+                self.assertIsNone(re.search(r"\de-\d+ s", out), out)
+
+    def test_a_stroke_is_named_once(self):
+        self.write("s.toml", '[[stroke]]\nname = "ok"\npath = "M 0 0 L 20 0"\n'
+                             '[[stroke]]\nname = "wave"\npath = "M 20 20 L 90 20"\n')
+        said = self.refused(2, "plan", "s.toml", says=['s.toml: stroke 2 "wave": leaves the array', "(--outside"]).stderr
+        self.assertEqual(said.count("wave"), 1, said)
+
+
+class Options(ToolTest):
+    def test_a_unit_is_answered_with_the_number_to_give(self):
+        for option, value, says in (
+                ("--soa", "70ms", ["give seconds without a unit, as 0.07", "0.0473 to 0.07 s"]),
+                ("--burst", "60 ms", ["give seconds without a unit, as 0.06", "0.0001 to 10 s"]),
+                ("--duration", "2s", ["as 2;"]), ("--duration", "3min", ["as 180;"]),
+                ("--duration", "1,5", ["a decimal point, as 1.5", "0.001 to 86400 s"]),
+                ("--carrier", "0.2kHz", ["give Hz without a unit, as 200"]), ("--speed", "6cm/s", ["as 60"]),
+                ("--level-dbfs", "-20dB", ["as -20"])):
+            said = self.refused(2, "plan", "park2016-1", f"{option}={value}", says=[option, "not a number", *says]).stderr
+            self.assertNotIn("1000000000", said)
+        self.assertNotIn("1000000000", self.refused(2, "plan", "park2016-1", "--soa", "1e300").stderr)
+        # What no factor can make right is only refused.
+        self.assertNotIn("without a unit", self.refused(2, "plan", "park2016-1", "--soa", "70furlongs").stderr)
+        self.refused(2, "plan", "park2016-1", "--soa", "70", says=["70 s is out of bounds", "0.07"])
+
+    def test_a_name_is_suggested_only_where_it_is_near(self):
+        said = self.refused(2, "plan", "park2016-1", "--seed", "3", says=["--seed", "no such option"]).stderr
+        self.assertNotIn("did you mean", said)
+        for slip, meant in (("--speeed", "--speed"), ("--sped", "--speed"), ("--arry", "--array"), ("--algoritm", "--algorithm"),
+                            ("--duratoin", "--duration")):
+            self.refused(2, "plan", "park2016-1", slip, "3", says=[f"did you mean {meant}?"])
+        for other in ("--loop", "--verbose", "--xyz", "--soap-opera"):
+            self.assertNotIn("did you mean", self.refused(2, "plan", "park2016-1", other).stderr)
+
+
+class Files(ToolTest):
+    def test_open_quotes_are_found_where_they_open(self):
+        for text, place in (('[array]\nname = "palm\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n', "2:8"),
+                            ("[array]\nname = 'palm\n", "2:8"), ('[array]\nname = "palm', "2:8")):
+            self.write("a.toml", text)
+            said = self.refused(2, "plan", "park2016-1", "--array", "a.toml",
+                                says=[f"a.toml:{place}: ", "no closing quote", "on the same line"]).stderr
+            self.assertNotIn("U+0009", said)
+        self.write("a.toml", '[array]\nname = """palm\n\n')
+        self.refused(2, "plan", "park2016-1", "--array", "a.toml", says=["a.toml:2:8", 'end it with """'])
+        self.write("a.toml", "[array]\nname = palm\n")
+        self.refused(2, "plan", "park2016-1", "--array", "a.toml", says=["a.toml:2:8", 'as name = "palm"'])
+        # Another fault before it is told first; quotes in comments and in other strings are no quotes.
+        self.write("a.toml", "[array\nname = 'palm\n")
+        self.refused(2, "plan", "park2016-1", "--array", "a.toml", says=["a.toml:1:"])
+        self.write("a.toml", GRID.replace("oak", "it's \"oak").replace('"desk"', "'5\" desk'"))
+        self.ok("check", "--array", "a.toml", "-D", "null")
+
+    def test_utf_16_is_named(self):
+        stroke = '[stroke]\npath = "M 0 0 L 20 0"\n'
+        csv = "t_s,x_mm,y_mm\n0,0,0\n1,20,0\n"
+        for name, text in (("s.toml", stroke), ("s.csv", csv), ("s.txt", csv)):
+            for code in ("utf-16", "utf-16-le", "utf-16-be"):
+                data = text.encode(code)
+                self.write(name, data)
+                self.refused(2, "plan", name, says=[f"{name}: is UTF-16", "save it as UTF-8"])
+            self.write(name, text.encode("utf-8-sig"))
+            self.ok("plan", name)
+        self.write("a.toml", GRID.encode("utf-16"))
+        self.refused(2, "plan", "park2016-1", "--array", "a.toml", says=["is UTF-16", "iconv"])
+
+    def test_what_is_written_to_cannot_be_read(self):
+        r = subprocess.run([TOOL, "plan", "/dev/stdout"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                           env=self.env, timeout=PATIENCE_S, check=False, stdin=subprocess.DEVNULL)
+        self.assertEqual((r.returncode, r.stdout), (2, ""))
+        self.assertIn("/dev/stdout: is where this program writes to (name a file", r.stderr)
+        self.refused(2, "plot", "park2016-1", "-o", "/dev/stdout", says=["/dev/stdout", "FILE.svg, .png or .pdf"])
+        self.refused(2, "plot", "park2016-1", "-o", "picture", says=["end the name in .svg, .png or .pdf"])
+
+    def test_a_named_pipe_says_that_it_waits(self):
+        os.mkfifo(self.dir / "s.toml")
+        def write():
+            (self.dir / "s.toml").write_text('[stroke]\npath = "M 0 0 L 20 0"\n', encoding="ascii")
+        writer = threading.Thread(target=write)
+        writer.start()
+        r = self.ok("plan", "s.toml")
+        writer.join()
+        self.assertIn("s.toml: is a pipe: waiting for a program that writes to it", r.stderr)
+        for command, name in (("render", "o.wav"), ("plot", "o.svg")):
+            os.mkfifo(self.dir / name)
+            got = []
+            reader = threading.Thread(target=lambda n=name: got.append((self.dir / n).read_bytes()))
+            reader.start()
+            r = self.ok(command, "park2016-1", "-o", name)
+            reader.join()
+            self.assertIn(f"{name}: is a pipe: waiting for a program that reads it", r.stderr)
+            self.assertGreater(len(got[0]), 1000)
+
+
+class Walk(ToolTest):
+    def test_b_goes_one_step_back(self):
+        self.write("a.toml", GRID)
+        r = self.run_tool("check", "--walk", "--array", "a.toml", "-o", "felt.toml",
+                          stdin="\n".join(["b", "0", "b", "1", "0"]) + "\n")
+        self.assertEqual(r.returncode, 0, r.stderr)
+        self.assertIn("This is the first, there is none before it.", r.stdout)
+        self.assertEqual(re.findall(r"tactor (\d) \(channel", r.stdout), ["0", "0", "1", "0", "1"])
+        self.assertNotIn("b back", r.stdout.split("tactor 1")[0])
+        self.assertIn("b back", r.stdout)
+        self.assertIn("tactors 0 to 1 are on channels 1, 0", r.stdout)
+
+
+if __name__ == "__main__":
+    main()
