@@ -35,7 +35,6 @@ USES_ALL_PUBLIC = {"cli", "plot", "server"}
 ONLY_IN = {
     "alsa/asoundlib.h": ["src/alsa/"],
     "gpiod.h": ["src/gpio/line_v"],
-    "2geom/": ["src/model/"],
     "pugixml.hpp": ["src/model/"],
     "toml++/": ["src/model/"],
     "boost/polygon": ["src/plan/"],

@@ -1,139 +1,182 @@
 // SPDX-License-Identifier: MIT
+// The grammar of path data; what its commands draw: path_svg_pen.cpp.
 #include "model/path_svg_data.hpp"
 
-#include <algorithm>
-#include <climits>
 #include <cmath>
-#include <new>
+#include <cstddef>
 #include <string>
+#include <utility>
 
-#include <2geom/elliptical-arc.h>
-#include <2geom/path-sink.h>
-#include <2geom/svg-path-parser.h>
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
 
 #include "model/path_impl.hpp"
+#include "model/path_svg_pen.hpp"
+#include "model/suggest.hpp"
 
 namespace tactor {
 namespace {
 
-using detail::outline;
+using detail::subpaths;
 using detail::value_fault;
 
-point from_geom(const Geom::Point& p)
+// What each command wants: n a number, f a flag.
+std::string_view arguments_of(char command) noexcept
 {
-    return {p.x(), p.y()};
+    switch (detail::upper(command)) {
+    case 'M':
+    case 'L':
+    case 'T':
+        return "nn";
+    case 'H':
+    case 'V':
+        return "n";
+    case 'S':
+    case 'Q':
+        return "nnnn";
+    case 'C':
+        return "nnnnnn";
+    case 'A':
+        return "nnnffnn";
+    default:
+        return {};
+    }
 }
 
-Geom::Point to_geom(point p)
-{
-    return {p.x_mm, p.y_mm};
-}
-
-// Takes lib2geom's absolute commands. Straight lines stay plain points, and lib2geom's check that curves
-// join to the last bit, which rounding in relative commands can break, is not in the way.
-class outline_sink final : public Geom::PathSink {
+class path_reader {
 public:
-    explicit outline_sink(std::vector<outline>& out) : out_(out) {}
+    path_reader(std::string_view data, double limit, subpaths wanted)
+        : data_(data), limit_(limit), one_(wanted == subpaths::one)
+    {
+    }
 
-    void moveTo(const Geom::Point& p) override
+    std::vector<detail::outline> run()
     {
-        flush();
-        start(from_geom(p));
-    }
-    void lineTo(const Geom::Point& p) override { open().line(from_geom(p)); }
-    void curveTo(const Geom::Point& c0, const Geom::Point& c1, const Geom::Point& p) override
-    {
-        open().bezier(from_geom(c0), from_geom(c1), from_geom(p));
-    }
-    void quadTo(const Geom::Point& c, const Geom::Point& p) override
-    {
-        open().quadratic(from_geom(c), from_geom(p));
-    }
-    void arcTo(Geom::Coord rx, Geom::Coord ry, Geom::Coord angle, bool large, bool sweep,
-               const Geom::Point& p) override
-    {
-        outline& o = open();
-        if (rx == 0.0 || ry == 0.0)
-            return o.line(from_geom(p));
-        const Geom::EllipticalArc arc(to_geom(o.vertices.back()), {rx, ry}, angle, large, sweep, p);
-        const double c = std::cos(angle);
-        const double s = std::sin(angle);
-        o.arc({from_geom(arc.center()),
-               {arc.ray(Geom::X) * c, arc.ray(Geom::X) * s},
-               {-arc.ray(Geom::Y) * s, arc.ray(Geom::Y) * c},
-               arc.initialAngle().radians(),
-               arc.sweepAngle()},
-              from_geom(p));
-    }
-    void closePath() override
-    {
-        const point first = open().vertices.front();
-        open().line(first);
-        drawn_ = true;
-        flush();
-        start(first); // what follows without a move begins here
-    }
-    void flush() override
-    {
-        if (drawn_)
-            out_.push_back(std::move(current_));
-        current_ = {};
-        drawn_ = false;
+        detail::skip_blanks(data_, at_);
+        if (at_ == data_.size())
+            fail("is empty");
+        if (detail::upper(data_[at_]) != 'M')
+            fail(fmt::format("{} where a path starts", found()), "it starts with M x y");
+        while (at_ < data_.size()) {
+            command();
+            detail::skip_blanks(data_, at_);
+        }
+        return pen_.take();
     }
 
 private:
-    void start(point p) { current_.vertices.assign(1, p); }
-
-    outline& open()
+    void command()
     {
-        drawn_ = true;
-        if (current_.vertices.empty())
-            start({});
-        return current_;
+        const char c = data_[at_];
+        const char kind = detail::upper(c);
+        const std::string_view wanted = arguments_of(c);
+        if (wanted.empty() && kind != 'Z')
+            fail(fmt::format("{} is not a path command", found()),
+                 "the commands are M L H V C S Q T A Z and the same in lower case");
+        if (one_ && begun_ && (kind == 'M' || (closed_ && kind != 'Z')))
+            fail("a second subpath begins", "give one stroke for each");
+        begun_ = true;
+        closed_ = kind == 'Z';
+        ++at_;
+        if (closed_)
+            return pen_.close();
+        detail::skip_blanks(data_, at_);
+        groups(c, wanted);
     }
 
-    std::vector<outline>& out_;
-    outline current_;
-    bool drawn_ = false;
+    // One set of arguments after the other; after a move's first they are lines.
+    void groups(char c, std::string_view wanted)
+    {
+        for (char drawn = c;; drawn = c == 'M' ? 'L' : c == 'm' ? 'l' : c) {
+            pen_.draw(drawn, group(c, wanted));
+            const bool comma = separator();
+            if (at_ == data_.size() || !begins_number(data_[at_])) {
+                if (comma)
+                    fail(fmt::format("{} where a number is wanted", found()));
+                return;
+            }
+        }
+    }
+
+    detail::path_arguments group(char c, std::string_view wanted)
+    {
+        detail::path_arguments values{};
+        for (std::size_t i = 0; i < wanted.size(); ++i) {
+            if (i > 0)
+                separator();
+            values[i] = wanted[i] == 'f' ? flag(c) : number(c, wanted.size());
+        }
+        return values;
+    }
+
+    double flag(char c)
+    {
+        if (at_ == data_.size() || (data_[at_] != '0' && data_[at_] != '1'))
+            fail(fmt::format("{} where {} wants a flag", found(), c), "flags are 0 or 1");
+        return data_[at_++] == '1' ? 1.0 : 0.0;
+    }
+
+    double number(char c, std::size_t count)
+    {
+        const std::size_t begin = at_;
+        const auto value = detail::scan_number(data_, at_);
+        if (!value)
+            fail(fmt::format("{} where {} wants a number", found(), c),
+                 fmt::format("{} takes {} numbers", c, count));
+        if (!(std::abs(*value) <= limit_)) {
+            at_ = begin;
+            fail(fmt::format("{:g} is beyond {:g}", *value, limit_), "is it the right unit?");
+        }
+        return *value;
+    }
+
+    bool separator()
+    {
+        detail::skip_blanks(data_, at_);
+        if (at_ == data_.size() || data_[at_] != ',')
+            return false;
+        ++at_;
+        detail::skip_blanks(data_, at_);
+        return true;
+    }
+
+    static bool begins_number(char c) noexcept
+    {
+        return (c >= '0' && c <= '9') || c == '.' || c == '+' || c == '-';
+    }
+
+    std::string found() const
+    {
+        return at_ == data_.size() ? "the end" : detail::quoted(data_.substr(at_, 1));
+    }
+
+    [[noreturn]] void fail(std::string why, std::string hint = {}) const
+    {
+        throw value_fault{at_, std::move(why), std::move(hint)};
+    }
+
+    std::string_view data_;
+    double limit_;
+    bool one_;
+    std::size_t at_ = 0;
+    bool begun_ = false;
+    bool closed_ = false;
+    detail::path_pen pen_;
 };
 
 } // namespace
 
-std::vector<outline> detail::parse_path_data(std::string_view data, double limit)
+std::vector<detail::outline> detail::parse_path_data(std::string_view data, double limit, subpaths wanted)
 {
-    if (auto check = check_path_data(data, limit); check.fault)
-        throw std::move(*check.fault);
-    if (data.size() > INT_MAX)
-        throw value_fault{0, "is too long", "split it"};
-    // lib2geom does not know that a form feed is a blank.
-    std::string without_feeds;
-    if (data.find('\f') != std::string_view::npos) {
-        without_feeds = data;
-        std::replace(without_feeds.begin(), without_feeds.end(), '\f', ' ');
-        data = without_feeds;
-    }
-    std::vector<outline> found;
-    outline_sink sink(found);
-    try {
-        Geom::SVGPathParser(sink).parse(data.data(), static_cast<int>(data.size()));
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const std::exception& e) {
-        throw value_fault{0, fmt::format("is not path data: {}", e.what()), {}};
-    }
-    return found;
+    return path_reader(data, limit, wanted).run();
 }
 
 path path::from_svg(std::string_view data)
 {
     constexpr const char* what = "path data";
     try {
-        if (const auto second = detail::check_path_data(data, detail::max_mm).second_subpath)
-            throw value_fault{*second, "a second subpath begins", "give one stroke for each"};
-        std::vector<outline> found = detail::parse_path_data(data, detail::max_mm);
+        std::vector<detail::outline> found = detail::parse_path_data(data, detail::max_mm, subpaths::one);
         if (found.empty())
             throw error(errc::bad_input, what, "draws nothing", "e.g. \"M 0 10 L 40 30\"");
         return detail::make_path(std::move(found.front()), [] { return what; });

@@ -133,8 +133,9 @@ std::vector<outline> path_element(const element& e)
     const std::string_view d = e.node.attribute("d").value();
     if (d == "none" || d.find_first_not_of(" \t\r\n\f") == std::string_view::npos)
         return {};
-    return *e.doc.read(e.node, "d",
-                       [](std::string_view text) { return parse_path_data(text, max_user_units); });
+    return *e.doc.read(e.node, "d", [](std::string_view text) {
+        return parse_path_data(text, max_user_units, subpaths::any);
+    });
 }
 
 } // namespace

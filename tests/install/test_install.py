@@ -120,6 +120,11 @@ class Install(FolderTest):
             if options["optimization"] not in ("0", "plain"):
                 self.assertRegex(names, r"__\w+_chk\b", file)
 
+    def test_the_library_brings_few_others(self):
+        library = self.libdir / "libtactor.so"
+        needed = run("ldd", library, env=self.env).splitlines()
+        self.assertLessEqual(len(needed), 20, needed)
+
     def test_another_program_compiles_with_pkg_config_and_runs(self):
         program = self.dir / "consumer"
         self.assertIn(f"-I{self.prefix}", " ".join(os.path.normpath(f) if f[0] == "/" else "-I" + os.path.normpath(f[2:])

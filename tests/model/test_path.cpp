@@ -71,28 +71,6 @@ TEST_CASE("a whole circle ends where it began")
     CHECK(p.at(0.0) == p.at(p.length_mm()));
 }
 
-TEST_CASE("arcs in path data are the circles they say")
-{
-    // A half circle, where the centre is known only from a root of nearly zero.
-    for (const char* data :
-         {"M 20 4 A 16 16 0 0 0 20 36", "m20 4a16 16 0 0 0 0 32", "M20,4A16,16,0,0020,36"}) {
-        const path p = path::from_svg(data);
-        CHECK(p.length_mm() == doctest::Approx(16.0 * pi).epsilon(1e-9));
-        check_at(p, 8.0 * pi, {4.0, 20.0}, 1e-7);
-    }
-    const path three_quarters = path::from_svg("M 20 36 A 16 16 0 1 1 36 20");
-    CHECK(three_quarters.length_mm() == doctest::Approx(24.0 * pi).epsilon(1e-12));
-    check_at(three_quarters, 8.0 * pi, {4.0, 20.0}, 1e-9);
-    check_at(three_quarters, 16.0 * pi, {20.0, 4.0}, 1e-9);
-}
-
-TEST_CASE("arc radii that are too small grow, and one of 0 is a line")
-{
-    CHECK(path::from_svg("M 0 0 A 1 1 0 0 1 20 0").length_mm() == doctest::Approx(10.0 * pi).epsilon(1e-9));
-    CHECK(path::from_svg("M 0 0 A 0 5 0 0 1 3 4").length_mm() == doctest::Approx(5.0).epsilon(1e-15));
-    CHECK(path::from_svg("M 0 0 A 5 0 30 1 0 3 4").length_mm() == doctest::Approx(5.0).epsilon(1e-15));
-}
-
 TEST_CASE("the length of an ellipse is its elliptic integral")
 {
     // 4 a E(e) for a = 2, b = 1.

@@ -137,8 +137,6 @@ TEST_CASE("changed path data gives a path or an error, nothing else")
         }
         CAPTURE(data);
         const std::string message = refusal(data);
-        // Checked before lib2geom sees it: the two must agree on the grammar.
-        CHECK(message.find("is not path data") == std::string::npos);
         if (!message.empty())
             continue;
         ++paths;
