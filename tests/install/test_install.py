@@ -125,6 +125,20 @@ class Install(FolderTest):
         needed = run("ldd", library, env=self.env).splitlines()
         self.assertLessEqual(len(needed), 20, needed)
 
+    def test_only_names_of_its_own_leave_the_library(self):
+        library = self.libdir / "libtactor.so"
+        self.assertRegex(run("readelf", "-dW", library), r"SONAME.*\[libtactor\.so\.0\]")
+        names = [line.split(" ", 2)[2] for line in run("nm", "-D", "-C", "--defined-only", library).splitlines()]
+        own = re.compile(r"((typeinfo( name)?|vtable) for )?tactor::")
+        self.assertEqual([n for n in names if not own.match(n)], [])
+        for wanted in ("tactor::player::", "tactor::path::from_svg(", "typeinfo for tactor::error", "vtable for tactor::sink"):
+            self.assertTrue(any(n.startswith(wanted) for n in names), wanted)
+
+    def test_errors_are_caught_across_the_border(self):
+        self.compile(CONSUMER / "errors.cpp", "-o", self.dir / "errors")
+        said = run(self.dir / "errors", env=self.env | {"LD_LIBRARY_PATH": str(self.libdir)})
+        self.assertEqual(said.splitlines(), ["error: path data", "system_error: tactor", "exception", "own: no level"])
+
     def test_another_program_compiles_with_pkg_config_and_runs(self):
         program = self.dir / "consumer"
         self.assertIn(f"-I{self.prefix}", " ".join(os.path.normpath(f) if f[0] == "/" else "-I" + os.path.normpath(f[2:])
