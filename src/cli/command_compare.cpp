@@ -112,7 +112,7 @@ void draw(const compare_options& o, const comparison& c, const array& a)
     std::vector<plot::prediction> rows;
     for (const comparison_row& r : c.rows)
         rows.push_back({std::string(to_string(r.method)), std::string(to_string(r.phantom)), r.samples,
-                        r.felt, r.refused ? r.refused->what() : ""});
+                        r.felt, r.refused ? std::string(r.refused->why()) : ""});
     tell_of_pipe_to_write(o.picture);
     plot::save(plot::draw_comparison(
                    a, c.target, rows,

@@ -2,7 +2,10 @@
 #include "plot/array_frame.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -14,12 +17,14 @@
 namespace tactor::plot {
 namespace {
 
-constexpr double margin_x = 17.0; // room for labels beside the outer tactors, pt
-constexpr double margin_y = 14.0;
 constexpr double largest_pitch = 100.0; // pt: neighbours are not farther apart on the page
 constexpr double lone_tactor_mm = 20.0; // shown round a tactor without neighbours
 constexpr std::size_t most_path_points = 20000;
-constexpr std::size_t most_tight_labels = 60;
+constexpr std::array<double, 3> number_sizes{7.0, 6.0, 5.2}; // pt
+constexpr double largest_radius = 7.0;
+constexpr double largest_share = 0.28; // of the distance of neighbours, for a circle's radius
+constexpr std::size_t most_listed = 8;
+constexpr double beside = 3.0;          // pt: farther away a label has lost its tactor
 constexpr std::size_t most_told = 1024; // tactors that get a group with a title of their own
 
 double pitch_mm(const array& a)
@@ -49,6 +54,62 @@ std::vector<point> sample(const trajectory& motion)
     return points;
 }
 
+// Shortest way between two tactors, pt: circles must not touch. Only looked for where each is told.
+double closest_pt(const array& a, double scale)
+{
+    double least = std::numeric_limits<double>::infinity();
+    if (a.tactors.size() <= most_told)
+        for (std::size_t i = 0; i < a.tactors.size(); ++i)
+            for (std::size_t k = 0; k < i; ++k)
+                least = std::min(least, distance_mm(a.tactors[i].position, a.tactors[k].position));
+    return least * scale;
+}
+
+// Circles in which the largest number fits, if there is room for them.
+void size_tactors(array_frame& f, const array& a)
+{
+    const double room = std::min(f.pitch, closest_pt(a, f.scale));
+    f.radius = std::clamp(0.2 * room, 0.3, largest_radius);
+    const std::string longest(fmt::format("{}", a.tactors.size() - 1).size(), '8');
+    f.number = 0.0;
+    for (const double size : number_sizes) {
+        const double need = std::hypot(text_width(longest, size), cap_height(size)) / 2.0 + 0.4;
+        if (need > std::max(f.radius, std::min(largest_share * room, largest_radius)))
+            continue;
+        f.number = size;
+        f.radius = std::max(f.radius, need);
+        return;
+    }
+}
+
+// Tactors that had no room for something.
+struct missing {
+    std::vector<unsigned> tactors = {};
+
+    void add(unsigned i) { tactors.push_back(i); }
+    std::string text(const std::string& what, const array& a) const
+    {
+        if (tactors.empty())
+            return {};
+        const std::string plural = tactors.size() == 1 ? "" : "s";
+        if (tactors.size() == a.tactors.size())
+            return fmt::format("no room for the {}{} of the tactors", what, plural);
+        std::string list;
+        for (std::size_t i = 0; i < std::min(tactors.size(), most_listed); ++i)
+            list += fmt::format("{}{}", i == 0 ? "" : ", ", tactors[i]);
+        if (tactors.size() > most_listed)
+            list = fmt::format("{} tactors", tactors.size());
+        else
+            list = fmt::format("tactor{} {}", plural, list);
+        return fmt::format("no room for the {}{} of {}", what, plural, list);
+    }
+};
+
+std::string joined(const std::string& a, const std::string& b)
+{
+    return a.empty() || b.empty() ? a + b : a + "; " + b;
+}
+
 } // namespace
 
 void extent::add(point p) noexcept
@@ -72,21 +133,21 @@ extent shown_extent(const array& a, const std::vector<stroke>& strokes)
     return e;
 }
 
-array_frame fit_array(const array& a, const extent& shown, box at_most)
+array_frame fit_array(const array& a, const extent& shown, box at_most, surround room)
 {
     const double w = shown.x1 - shown.x0;
     const double h = shown.y1 - shown.y0;
     const double pitch = pitch_mm(a);
     array_frame f;
-    f.scale = std::min({(at_most.width - 2.0 * margin_x) / std::max(w, 1e-3),
-                        (at_most.height - 2.0 * margin_y) / std::max(h, 1e-3), largest_pitch / pitch});
+    f.scale = std::min({(at_most.width - 2.0 * room.x) / std::max(w, 1e-3),
+                        (at_most.height - 2.0 * room.y) / std::max(h, 1e-3), largest_pitch / pitch});
     f.pitch = pitch * f.scale;
-    f.radius = std::clamp(0.2 * f.pitch, 0.3, 7.0);
-    f.area.width = f.scale * w + 2.0 * margin_x;
-    f.area.height = f.scale * h + 2.0 * margin_y;
+    size_tactors(f, a);
+    f.area.width = f.scale * w + 2.0 * room.x;
+    f.area.height = f.scale * h + 2.0 * room.y;
     f.area.x = at_most.x + (at_most.width - f.area.width) / 2.0;
     f.area.y = at_most.y;
-    f.origin = {f.area.x + margin_x - f.scale * shown.x0, f.area.y + margin_y - f.scale * shown.y0};
+    f.origin = {f.area.x + room.x - f.scale * shown.x0, f.area.y + room.y - f.scale * shown.y0};
     return f;
 }
 
@@ -101,54 +162,79 @@ std::vector<std::vector<spot>> path_on_page(const array_frame& f, const trajecto
     return parts;
 }
 
-void draw_tactors(canvas& c, const array_frame& f, const array& a, const std::vector<bool>& plays,
-                  numbering where, label_placer& taken)
+bool channels_are_numbers(const array& a)
+{
+    for (unsigned i = 0; i < a.tactors.size(); ++i)
+        if (a.tactors[i].channel != i)
+            return false;
+    return true;
+}
+
+void draw_tactors(canvas& c, const array_frame& f, const array& a, const tactor_looks& looks,
+                  label_placer& taken)
 {
     const group all(c, {.id = "tactors"});
-    const double size = f.radius >= 6.0 ? 7.0 : small_text;
     for (unsigned i = 0; i < a.tactors.size(); ++i) {
         const tactor_spec& t = a.tactors[i];
         const spot at = f(t.position);
-        const colour rim = plays[i] ? ink : grey;
+        const colour rim = looks.plays[i] ? ink : grey;
         const style look =
             f.radius < 1.5 ? style{.fill = rim} : style{.fill = white, .stroke = rim, .width = 0.7};
         if (a.tactors.size() > most_told) {
             c.circle(at, f.radius, look, {.kind = "tactor"});
             continue;
         }
-        taken.block_disc(at, f.radius, 20.0);
+        taken.forbid_disc(at, f.radius);
         const group one(c, {.id = fmt::format("tactor-{}", i),
                             .kind = "tactor",
                             .title = fmt::format("tactor {}, channel {}, at {}, {} mm", i, t.channel,
                                                  number(t.position.x_mm), number(t.position.y_mm)),
                             .data = {{"tactor", fmt::format("{}", i)}}});
         c.circle(at, f.radius, look);
-        if (where == numbering::inside)
-            c.text({at.x, at.y + cap_height(size) / 2.0}, fmt::format("{}", i),
-                   {.size = size, .anchor = align::middle, .ink = plays[i] ? ink : dark_grey},
+        if (looks.inside[i])
+            c.text({at.x, at.y + cap_height(f.number) / 2.0}, fmt::format("{}", i),
+                   {.size = f.number, .anchor = align::middle, .ink = looks.plays[i] ? ink : dark_grey},
                    {.kind = "number"});
     }
 }
 
-void draw_tactor_labels(canvas& c, const array_frame& f, const array& a, const std::vector<bool>& plays,
-                        numbering where, label_placer& taken)
+std::string draw_tactor_labels(canvas& c, const array_frame& f, const array& a, const tactor_looks& looks,
+                               label_placer& taken)
 {
-    const bool roomy = f.pitch >= 24.0 && a.tactors.size() <= 200;
-    const bool tight = !roomy && f.pitch >= 8.0 && a.tactors.size() <= most_told;
+    if (a.tactors.size() > most_told)
+        return "too many tactors to number each";
     const group all(c, {.id = "tactor-labels"});
-    std::size_t left = most_tight_labels;
-    for (unsigned i = 0; i < a.tactors.size() && (roomy || tight); ++i) {
-        std::string text = fmt::format("ch {}", a.tactors[i].channel);
-        if (tight && (!plays[i] || left-- == 0))
-            continue;
-        if (tight)
-            text = fmt::format("{}", i);
-        else if (where == numbering::beside)
-            text = fmt::format("{} ({})", i, text);
-        c.text(taken.place(text, small_text, f(a.tactors[i].position), f.radius + 1.2), text,
-               {.size = small_text, .ink = plays[i] ? ink : dark_grey, .halo = true},
-               {.kind = "tactor-label", .data = {{"tactor", fmt::format("{}", i)}}});
+    const bool channels = !channels_are_numbers(a);
+    std::vector<spot> sites;
+    for (const tactor_spec& t : a.tactors)
+        sites.push_back(f(t.position));
+    missing without_number;
+    missing without_channel;
+    for (unsigned i = 0; i < a.tactors.size(); ++i) {
+        const std::string channel = fmt::format("ch {}", a.tactors[i].channel);
+        std::vector<std::string> wished; // the first that has room
+        if (!looks.inside[i] && channels)
+            wished = {fmt::format("{} ({})", i, channel), fmt::format("{}", i)};
+        else if (!looks.inside[i])
+            wished = {fmt::format("{}", i)};
+        else if (channels)
+            wished = {channel};
+        std::optional<spot> at;
+        for (std::size_t k = 0; k < wished.size() && !at; ++k) {
+            const double size = small_text;
+            at = taken.place_at(wished[k], size, sites, i, f.radius + 1.2, beside);
+            if (at)
+                c.text(*at, wished[k], {.size = size, .ink = looks.plays[i] ? ink : dark_grey, .halo = true},
+                       {.kind = "tactor-label", .data = {{"tactor", fmt::format("{}", i)}}});
+            if (at && channels && k > 0)
+                without_channel.add(i);
+        }
+        if (!at && !looks.inside[i])
+            without_number.add(i);
+        else if (!at && !wished.empty())
+            without_channel.add(i);
     }
+    return joined(without_number.text("number", a), without_channel.text("channel", a));
 }
 
 void draw_scale_bar(canvas& c, const array_frame& f, spot at)

@@ -3,6 +3,7 @@
 /// The array on the page, to scale.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include <tactor/array.hpp>
@@ -30,6 +31,7 @@ struct array_frame {
     box area = {};       ///< that the array takes, margins included
     double pitch = 0.0;  ///< of neighbours, pt
     double radius = 5.0; ///< of a tactor's circle, pt
+    double number = 7.0; ///< size of the numbers in the circles, pt; 0: they have no room
 
     spot operator()(point p) const noexcept { return {origin.x + scale * p.x_mm, origin.y + scale * p.y_mm}; }
 };
@@ -37,24 +39,35 @@ struct array_frame {
 /// The array and the movement of strokes over it, as far as these are near it.
 extent shown_extent(const array& a, const std::vector<stroke>& strokes);
 
+/// Room round what is shown, for labels, pt.
+struct surround {
+    double x = 17.0;
+    double y = 14.0;
+};
+
 /// Puts what is shown into the upper middle of a box, as large as it goes.
-array_frame fit_array(const array& a, const extent& shown, box at_most);
+array_frame fit_array(const array& a, const extent& shown, box at_most, surround room = {});
 
 /// The movement on the page: bounded in points, inside the frame's area.
 std::vector<std::vector<spot>> path_on_page(const array_frame& f, const trajectory& motion);
 
-/// How tactors are told apart.
-enum class numbering { inside, beside };
+/// Whether each tactor is on the channel of its own number: then one of the two says both.
+bool channels_are_numbers(const array& a);
 
-/// Circles, with numbers inside if so asked and there is room; lighter where `plays` (by index) is false.
-/// Blocks their places.
-void draw_tactors(canvas& c, const array_frame& f, const array& a, const std::vector<bool>& plays,
-                  numbering where, label_placer& taken);
+/// What is drawn of tactors, by index.
+struct tactor_looks {
+    std::vector<bool> plays = {};  ///< else lighter
+    std::vector<bool> inside = {}; ///< its number stands in its circle; else something lies on that
+};
 
-/// Channels, and numbers where they are not inside, beside the tactors; with little room only the numbers of
-/// those that play.
-void draw_tactor_labels(canvas& c, const array_frame& f, const array& a, const std::vector<bool>& plays,
-                        numbering where, label_placer& taken);
+/// Circles, with the numbers that stand in them. Their places are forbidden to labels.
+void draw_tactors(canvas& c, const array_frame& f, const array& a, const tactor_looks& looks,
+                  label_placer& taken);
+
+/// Numbers that do not stand in their circles, and channels that are other numbers, each beside its own
+/// tactor and on nothing else. Returns what had no room, in words; empty: all has.
+std::string draw_tactor_labels(canvas& c, const array_frame& f, const array& a, const tactor_looks& looks,
+                               label_placer& taken);
 
 /// A bar of a round number of mm with its label, left end at `at`.
 void draw_scale_bar(canvas& c, const array_frame& f, spot at);

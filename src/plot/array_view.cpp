@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <tactor/words.hpp>
+
 #include "plot/array_frame.hpp"
 #include "plot/axes.hpp"
 #include "plot/path_marks.hpp"
@@ -18,6 +20,9 @@ constexpr double legend_height = 13.0;
 constexpr double note_height = 8.0;
 constexpr double least_spacing = 3.6; // of bursts on the page, pt
 constexpr std::size_t always_shown = 24;
+constexpr double close_pitch = 24.0; // of tactors on the page, pt
+constexpr double taller = 0.3;       // of the width
+constexpr std::size_t most_note_lines = 4;
 
 // How fine the marks are: the more bursts, the finer.
 struct fineness {
@@ -41,8 +46,7 @@ public:
         : canvas_(c),
           scene_(s),
           time_(t),
-          frame_(fit_array(s.tactors, shown_extent(s.tactors, s.strokes),
-                           {at_most.x, at_most.y, at_most.width, at_most.height - legend_height})),
+          frame_(fit(s, at_most)),
           taken_({at_most.x, frame_.area.y - 3.0, at_most.width, frame_.area.height + 3.0}),
           stride_(stride()),
           fine_(fineness_for(t.bursts.size() / stride_ + 1)),
@@ -57,10 +61,7 @@ public:
                                            {"x0", fmt::format("{:.9g}", frame_.origin.x)},
                                            {"y0", fmt::format("{:.9g}", frame_.origin.y)},
                                            {"stride", fmt::format("{}", stride_)}}});
-        const std::vector<bool> plays = who_plays();
-        const numbering numbers = place_numbers();
-        if (numbers == numbering::beside)
-            frame_.radius = std::min(frame_.radius, 4.6);
+        const tactor_looks looks = look_at_tactors();
         for (const stroke& s : scene_.strokes) // before what is lighter: obstacles are limited
             paths_.push_back(path_on_page(frame_, s.motion));
         for (const auto& parts : paths_)
@@ -68,17 +69,32 @@ public:
                 taken_.block_line(part, 2.0, 6.0);
         draw_joins();
         draw_paths();
-        draw_tactors(canvas_, frame_, scene_.tactors, plays, numbers, taken_);
+        draw_tactors(canvas_, frame_, scene_.tactors, looks, taken_);
         draw_dots();
         draw_path_marks(canvas_, scene_, frame_, fine_.dot, taken_);
-        draw_tactor_labels(canvas_, frame_, scene_.tactors, plays, numbers, taken_);
+        add_note(draw_tactor_labels(canvas_, frame_, scene_.tactors, looks, taken_));
+        if (time_.several())
+            add_note("rings with numbers in bold: starts; squares: ends");
+        add_note(label_strokes(canvas_, scene_, frame_, fine_.dot, taken_));
         const double y = frame_.area.bottom() + legend_height / 2.0;
         draw_scale_bar(canvas_, frame_, {where_.x, y});
         draw_amplitude_legend(y);
-        return frame_.area.height + legend_height + draw_note(y + legend_height / 2.0);
+        return frame_.area.height + legend_height + draw_notes(y + legend_height / 2.0);
     }
 
 private:
+    // Higher where tactors would be too close on the page to be numbered.
+    static array_frame fit(const scene& s, box at_most)
+    {
+        const extent shown = shown_extent(s.tactors, s.strokes);
+        at_most.height -= legend_height;
+        const array_frame f = fit_array(s.tactors, shown, at_most);
+        if (f.pitch >= close_pitch)
+            return f;
+        at_most.height += taller * at_most.width;
+        return fit_array(s.tactors, shown, at_most);
+    }
+
     // One in how many bursts is drawn.
     std::size_t stride() const
     {
@@ -99,39 +115,46 @@ private:
         return plays;
     }
 
-    // Inside the circles where they are large enough and nothing would lie on a number.
-    numbering place_numbers() const
+    // A number stands in its circle where that has room and nothing lies on it.
+    tactor_looks look_at_tactors() const
     {
-        if (frame_.radius < 4.6)
-            return numbering::beside;
         std::vector<spot> marks;
         for (const stroke& s : scene_.strokes)
             for (const double t : {0.0, s.motion.duration_s()})
                 marks.push_back(frame_(s.motion.position(t)));
         for_each_shown([&](const shown_burst&, spot at, colour) { marks.push_back(at); });
+        tactor_looks looks{who_plays(), {}};
         for (const tactor_spec& t : scene_.tactors.tactors) {
             const spot at = frame_(t.position);
-            for (const spot& m : marks)
-                if (std::hypot(m.x - at.x, m.y - at.y) < frame_.radius + fine_.dot - 1.5)
-                    return numbering::beside;
+            looks.inside.push_back(
+                frame_.number > 0.0 && std::none_of(marks.begin(), marks.end(), [&](spot m) {
+                    return std::hypot(m.x - at.x, m.y - at.y) < frame_.radius + fine_.dot - 1.5;
+                }));
         }
-        return numbering::inside;
+        return looks;
     }
 
-    // What of the bursts is not drawn.
-    double draw_note(double top)
+    void add_note(const std::string& text)
     {
-        std::string note;
+        if (!text.empty())
+            notes_.push_back(text);
+    }
+
+    // What of the bursts, numbers and channels is not drawn.
+    double draw_notes(double top)
+    {
         if (time_.sampled)
-            note =
-                fmt::format("positions each {} s", number(time_.sample_s * static_cast<double>(stride_), 6));
+            add_note(fmt::format("positions each {}",
+                                 seconds_text(time_.sample_s * static_cast<double>(stride_))));
         else if (stride_ > 1)
-            note = fmt::format("one burst in {} is drawn on the array", stride_);
-        if (note.empty())
-            return 0.0;
-        canvas_.text({where_.x, top + cap_height(small_text) + 1.0}, note, {.size = small_text},
-                     {.kind = "note"});
-        return note_height;
+            add_note(fmt::format("one burst in {} is drawn on the array", stride_));
+        double y = top;
+        for (const std::string& line : wrap(notes_, "; ", small_text, where_.width, most_note_lines)) {
+            canvas_.text({where_.x, y + cap_height(small_text) + 1.0}, line, {.size = small_text},
+                         {.kind = "note"});
+            y += note_height;
+        }
+        return y - top;
     }
 
     double width_of(double amplitude) const { return std::max(0.15, fine_.join * amplitude / time_.peak); }
@@ -140,8 +163,7 @@ private:
     void for_each_shown(Draw&& draw) const
     {
         for (std::size_t i = 0; i < time_.bursts.size(); i += stride_)
-            draw(time_.bursts[i], frame_(time_.bursts[i].what->position),
-                 time_colour(time_, time_.bursts[i].target_s));
+            draw(time_.bursts[i], frame_(time_.bursts[i].what->position), colour_of(time_, time_.bursts[i]));
     }
 
     void draw_joins()
@@ -163,10 +185,11 @@ private:
     void draw_paths()
     {
         const group all(canvas_, {.id = "paths"});
-        const double width = paths_.size() <= 20 ? 0.7 : 0.3;
+        const double width = paths_.size() == 1 ? 0.7 : paths_.size() <= 20 ? 1.2 : 0.5;
         for (std::size_t i = 0; i < paths_.size(); ++i)
             for (std::vector<spot>& part : paths_[i])
-                canvas_.poly(std::move(part), false, {.stroke = ink, .width = width},
+                canvas_.poly(std::move(part), false,
+                             {.stroke = time_.several() ? of_stroke(i) : ink, .width = width},
                              {.kind = "path", .title = scene_.strokes[i].name});
     }
 
@@ -211,14 +234,15 @@ private:
     std::size_t stride_;
     fineness fine_;
     box where_;
+    std::vector<std::string> notes_ = {};
     std::vector<std::vector<std::vector<spot>>> paths_ = {}; // by stroke, in parts
 };
 
 } // namespace
 
-colour time_colour(const timeline& t, double at_s) noexcept
+colour colour_of(const timeline& t, const shown_burst& b) noexcept
 {
-    return ordered(t.total_s > 0.0 ? at_s / t.total_s : 0.0);
+    return t.several() ? of_stroke(b.stroke) : ordered(t.total_s > 0.0 ? b.target_s / t.total_s : 0.0);
 }
 
 double draw_array_view(canvas& c, const scene& s, const timeline& t, box at_most)

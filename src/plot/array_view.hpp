@@ -18,7 +18,8 @@ double draw_array_view(canvas& c, const scene& s, const timeline& t, box at_most
 /// A strip of the colours of time, over x.
 void draw_time_strip(canvas& c, const timeline& t, box where);
 
-/// Colour of a time of the piece.
-colour time_colour(const timeline& t, double at_s) noexcept;
+/// Colour of a burst: of its time in the piece where there is one stroke, of its stroke where there are
+/// several.
+colour colour_of(const timeline& t, const shown_burst& b) noexcept;
 
 } // namespace tactor::plot

@@ -42,6 +42,21 @@ colour ordered(double u) noexcept
     return {between(a.r, b.r, part), between(a.g, b.g, part), between(a.b, b.b, part)};
 }
 
+colour of_stroke(std::size_t n) noexcept
+{
+    constexpr std::array<colour, stroke_colours> all{{{26, 133, 255},
+                                                      {230, 159, 0},
+                                                      {51, 34, 136},
+                                                      {34, 136, 51},
+                                                      {170, 68, 153},
+                                                      {102, 204, 238},
+                                                      {102, 51, 51},
+                                                      {119, 119, 119},
+                                                      {0, 0, 0},
+                                                      {187, 187, 187}}};
+    return all[n % all.size()];
+}
+
 double luminance(colour c) noexcept
 {
     return 0.2126 * linear_light(c.r) + 0.7152 * linear_light(c.g) + 0.0722 * linear_light(c.b);

@@ -3,6 +3,7 @@
 /// Colours that colour-blind people and black-and-white printers can tell apart.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace tactor::plot {
@@ -40,6 +41,14 @@ constexpr colour with_alpha(colour c, double alpha) noexcept
     c.alpha = alpha;
     return c;
 }
+
+/// How many strokes have a colour of their own.
+inline constexpr std::size_t stroke_colours = 10;
+
+/// Colour of the n-th stroke, from 0; they repeat after `stroke_colours`. Chosen so that any two differ by
+/// more than 20 in CIELAB for normal sight and for protan, deutan and tritan sight alike (model of Machado et
+/// al.).
+colour of_stroke(std::size_t n) noexcept;
 
 /// Relative luminance 0 ... 1 (ITU-R BT.709 weights on linear light).
 double luminance(colour c) noexcept;

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include <tactor/words.hpp>
+
 #include "plot/axes.hpp"
 #include "plot/compare_panel.hpp"
 #include "plot/figure.hpp"
@@ -17,6 +19,7 @@ namespace tactor::plot {
 namespace {
 
 constexpr double chart_height = 105.0;
+constexpr double scale_height = 12.0;
 
 // Of algorithms, in order: they differ in hue, lightness and dash.
 constexpr std::array<style, 3> looks{style{.stroke = blue, .width = 0.9},
@@ -66,8 +69,8 @@ double draw_heading(canvas& c, const array& a, const stroke& target, box where)
            {.size = title_size, .bold = true});
     y += line_pitch;
     const trajectory& m = target.motion;
-    const std::string facts =
-        fmt::format("on {}, {} mm in {} s", clean(a.name), number(m.length_mm()), number(m.duration_s(), 6));
+    const std::string facts = fmt::format("on {}, {} mm in {}", clean(a.name), plain_number(m.length_mm(), 4),
+                                          seconds_text(m.duration_s(), 4));
     c.text({where.x, y}, shorten(facts, small_text, where.width), {.size = small_text, .ink = dark_grey});
     return y + 6.0 - where.y;
 }
@@ -102,9 +105,16 @@ double draw_speeds(canvas& c, const std::string& phantom, std::vector<series> li
     return chart_height;
 }
 
+// All panels have one scale: a bar under the first row.
+double draw_scale(canvas& c, const panel_ground& g, box cell)
+{
+    draw_scale_bar(c, panel_frame(g, cell), {cell.x, cell.y + scale_height / 2.0});
+    return scale_height;
+}
+
 // The panels of one phantom model and their speeds.
 double draw_row(canvas& c, const panel_ground& g, const std::vector<prediction>& all,
-                const std::vector<std::string>& algorithms, const std::string& phantom, box where)
+                const std::vector<std::string>& algorithms, const std::string& phantom, bool first, box where)
 {
     double y = where.y + cap_height(title_text);
     c.text({where.x, y}, "phantom: " + phantom, {.size = title_text, .bold = true});
@@ -126,6 +136,8 @@ double draw_row(canvas& c, const panel_ground& g, const std::vector<prediction>&
             lines.push_back(felt_speed(p, look));
     }
     y += tallest;
+    if (first)
+        y += draw_scale(c, g, {where.x, y, width, std::min(width, 260.0)});
     if (!lines.empty())
         y += draw_speeds(c, phantom, std::move(lines), g.target.motion.duration_s(),
                          {where.x, y + 2.0, where.width, 0.0});
@@ -148,8 +160,9 @@ canvas draw_comparison(const array& a, const stroke& target, const std::vector<p
     const std::vector<std::string> algorithms = names(all, &prediction::algorithm);
     box rest{margin, margin, c.width - 2.0 * margin, 0.0};
     rest.y += draw_heading(c, a, target, rest);
-    for (const std::string& phantom : names(all, &prediction::phantom))
-        rest.y += draw_row(c, g, all, algorithms, phantom, rest);
+    const std::vector<std::string> phantoms = names(all, &prediction::phantom);
+    for (const std::string& phantom : phantoms)
+        rest.y += draw_row(c, g, all, algorithms, phantom, phantom == phantoms.front(), rest);
     rest.y += draw_note(c, note, rest);
     c.height = rest.y + margin;
     return c;

@@ -107,6 +107,11 @@ double draw_refusal(canvas& c, const std::string& why, box where)
 
 } // namespace
 
+array_frame panel_frame(const panel_ground& g, box where)
+{
+    return fit_array(g.tactors, g.shown, where, {6.0, 6.0}); // panels have no labels
+}
+
 double draw_panel(canvas& c, const panel_ground& g, const prediction& p, const style& look, box where)
 {
     const group one(c, {.id = fmt::format("panel-{}-{}", p.algorithm, p.phantom),
@@ -124,7 +129,7 @@ double draw_panel(canvas& c, const panel_ground& g, const prediction& p, const s
                {.size = small_text, .ink = dark_grey});
     }
     y += 2.0;
-    const array_frame f = fit_array(g.tactors, g.shown, {where.x, y, where.width, where.height});
+    const array_frame f = panel_frame(g, {where.x, y, where.width, where.height});
     draw_ground(c, g, f);
     draw_track(c, follow(f, p.samples), look);
     return f.area.bottom() - where.y;

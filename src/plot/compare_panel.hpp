@@ -15,6 +15,9 @@ struct panel_ground {
     extent shown;
 };
 
+/// Where the array is in a panel; the scale is the same in all of one size.
+array_frame panel_frame(const panel_ground& g, box where);
+
 /// The target's line, in panels and charts alike.
 inline constexpr style target_look{.stroke = light_grey, .width = 2.6};
 

@@ -5,8 +5,12 @@
 
 #include <fmt/format.h>
 
+#include <tactor/words.hpp>
+
+#include "plot/array_frame.hpp"
 #include "plot/array_view.hpp"
 #include "plot/axes.hpp"
+#include "plot/stroke_legend.hpp"
 #include "plot/text.hpp"
 #include "plot/timing_view.hpp"
 #include "plot/wave_view.hpp"
@@ -42,9 +46,11 @@ std::vector<std::string> details(const scene& s, const timeline& t)
     if (s.plans.size() > 1)
         d.push_back(fmt::format("{} strokes", s.plans.size()));
     if (!t.sampled)
-        d.push_back(fmt::format("{} burst{}", t.bursts.size(), t.bursts.size() == 1 ? "" : "s"));
-    d.push_back(
-        fmt::format("{} mm in {} s", number(length, length < 1000.0 ? 4 : 7), number(seconds(s, t), 4)));
+        d.push_back(counted(t.bursts.size(), "burst"));
+    d.push_back(fmt::format("{} mm in {}", plain_number(length, length < 1000.0 ? 4 : 5),
+                            seconds_text(seconds(s, t), 4)));
+    if (channels_are_numbers(s.tactors))
+        d.emplace_back(s.tactors.tactors.size() == 1 ? "tactor 0 on channel 0" : "tactor n on channel n");
     d.push_back(common(s, [](const plan& p) { return fmt::format("{} Hz", number(p.carrier_hz, 5)); }));
     return d;
 }
@@ -98,12 +104,13 @@ canvas draw_figure(const scene& s, const figure_options& o)
     }
     if (o.view == figure_view::timing)
         rest.y += 4.0;
-    if (o.view == figure_view::array)
+    rest.y += draw_stroke_legend(c, s, rest, o.view != figure_view::wave);
+    if (o.view == figure_view::array && !t.several())
         rest.y += draw_time_key(c, t, rest);
     else if (o.view == figure_view::wave)
         rest.y += draw_wave_view(c, s, t, rest);
-    else
-        rest.y += draw_timing_view(c, s, t, rest, true);
+    else if (o.view != figure_view::array)
+        rest.y += draw_timing_view(c, s, t, rest, !t.several());
 
     c.height = rest.y + margin;
     return c;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "plot/array_frame.hpp"
 #include "plot/text.hpp"
 
 namespace tactor::plot {
@@ -13,14 +14,16 @@ namespace {
 
 constexpr double highest_row = 11.0;
 constexpr double lowest_row = 2.2;
-constexpr double most_height = 260.0; // of all rows, pt
-constexpr double label_pitch = 7.2;   // of labels, pt
+constexpr double most_height = 260.0;     // of all rows, pt
+constexpr std::size_t most_labelled = 64; // rows that all get a label
+constexpr double label_pitch = 7.2;       // of labels, pt
 
-std::string label_of(const array& a, const std::vector<unsigned>& tactors)
+std::string label_of(const array& a, const std::vector<unsigned>& tactors, bool channels)
 {
     if (tactors.size() > 1)
         return fmt::format("{}-{}", tactors.front(), tactors.back());
-    return fmt::format("{} ({})", tactors.front(), a.tactors[tactors.front()].channel);
+    return channels ? fmt::format("{} ({})", tactors.front(), a.tactors[tactors.front()].channel)
+                    : fmt::format("{}", tactors.front());
 }
 
 } // namespace
@@ -37,21 +40,39 @@ lanes make_lanes(const array& a, const std::vector<unsigned>& playing)
         l.rows.back().tactors.push_back(playing[i]);
         l.row_of[playing[i]] = static_cast<int>(l.rows.size()) - 1;
     }
+    const bool channels = !channels_are_numbers(a);
+    l.heading = channels ? "tactor (ch)" : "tactor";
     for (lane& r : l.rows) {
-        r.label = label_of(a, r.tactors);
+        r.label = label_of(a, r.tactors, channels);
         l.label_width = std::max(l.label_width, text_width(r.label, small_text));
     }
-    l.label_width = std::max(l.label_width, text_width(lane_heading, small_text));
-    l.height = std::clamp(most_height / static_cast<double>(std::max<std::size_t>(1, l.rows.size())),
-                          lowest_row, highest_row);
+    l.label_width = std::max(l.label_width, text_width(l.heading, small_text));
+    l.set_levels(std::vector<std::size_t>(l.rows.size(), 1));
     return l;
+}
+
+void lanes::set_levels(const std::vector<std::size_t>& wished)
+{
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        rows[i].first = n;
+        rows[i].levels = wished[i];
+        n += wished[i];
+    }
+    const double room =
+        rows.size() <= most_labelled ? label_pitch * static_cast<double>(most_labelled) : most_height;
+    height = std::clamp(room / static_cast<double>(std::max<std::size_t>(1, n)), lowest_row, highest_row);
 }
 
 void draw_lane_labels(canvas& c, const lanes& l, double x, double top)
 {
-    const auto every = static_cast<std::size_t>(std::ceil(label_pitch / l.height));
-    for (std::size_t i = 0; i < l.rows.size(); i += every) {
-        const double middle = top + (static_cast<double>(i) + 0.5) * l.height;
+    double last = -label_pitch;
+    for (std::size_t i = 0; i < l.rows.size(); ++i) {
+        const double within = l.top_of(i) + l.height_of(i) / 2.0;
+        if (within - last < label_pitch - 1e-9)
+            continue;
+        last = within;
+        const double middle = top + within;
         c.text({x, middle + cap_height(small_text) / 2.0}, l.rows[i].label,
                {.size = small_text, .anchor = align::end}, {.kind = "row-label"});
     }

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <tactor/words.hpp>
+
 #include "plot/axes.hpp"
 #include "plot/text.hpp"
 
@@ -14,10 +16,12 @@ namespace {
 
 constexpr double arrow_length = 4.6;
 constexpr double arrow_half_width = 2.1;
-constexpr double arrow_every = 75.0;     // pt along the path
-constexpr std::size_t most_arrows = 60;  // in a picture
-constexpr std::size_t most_labelled = 6; // strokes whose ends get words
-constexpr std::size_t most_marked = 60;  // strokes whose ends are marked
+constexpr double arrow_every = 75.0;    // pt along the path
+constexpr std::size_t most_arrows = 60; // in a picture
+constexpr double farthest_number = 7.0;
+constexpr double same_start = 1.0;      // pt
+constexpr double farthest_label = 20.0; // from a start or end, pt
+constexpr std::size_t most_marked = 60; // strokes whose ends are marked
 
 class marker {
 public:
@@ -30,11 +34,47 @@ public:
     {
         const std::size_t n = std::min(scene_.strokes.size(), most_marked);
         for (std::size_t i = 0; i < n; ++i)
-            draw_ends(scene_.strokes[i].motion);
+            draw_ends(i);
         for (std::size_t i = 0; i < n; ++i)
             draw_arrows(scene_.strokes[i].motion, n);
-        for (std::size_t i = 0; i < n && scene_.strokes.size() <= most_labelled; ++i)
-            label_ends(i);
+    }
+
+    std::string label()
+    {
+        if (scene_.strokes.size() == 1) {
+            const trajectory& motion = scene_.strokes[0].motion;
+            const bool start = label("start", "start-label", motion.position(0.0));
+            const bool end = label("end", "end-label", motion.position(motion.duration_s()));
+            return start && end ? "" : "the ring is the start, the square the end";
+        }
+        std::vector<spot> starts;
+        std::vector<std::string> numbers; // of all strokes that start there
+        std::size_t left_out = 0;
+        for (std::size_t i = 0; i < scene_.strokes.size(); ++i) {
+            const spot at = frame_(scene_.strokes[i].motion.position(0.0));
+            const auto same = std::find_if(starts.begin(), starts.end(), [&](spot s) {
+                return std::hypot(s.x - at.x, s.y - at.y) < same_start;
+            });
+            if (!on_page(at) || i >= most_marked) {
+                ++left_out;
+            } else if (same != starts.end()) {
+                numbers[static_cast<std::size_t>(same - starts.begin())] += fmt::format(", {}", i + 1);
+            } else {
+                starts.push_back(at);
+                numbers.push_back(fmt::format("{}", i + 1));
+            }
+        }
+        for (std::size_t k = 0; k < starts.size(); ++k) {
+            const auto place =
+                taken_.place_at(numbers[k], label_text, starts, k, radius() + 1.0, farthest_number);
+            if (place)
+                canvas_.text(*place, numbers[k], {.size = label_text, .bold = true, .halo = true},
+                             {.kind = "start-label"});
+            else
+                left_out +=
+                    1 + static_cast<std::size_t>(std::count(numbers[k].begin(), numbers[k].end(), ','));
+        }
+        return left_out == 0 ? "" : "no room for the number of " + counted(left_out, "stroke");
     }
 
 private:
@@ -101,8 +141,9 @@ private:
 
     double radius() const { return dot_ + 1.7; }
 
-    void draw_ends(const trajectory& motion)
+    void draw_ends(std::size_t stroke)
     {
+        const trajectory& motion = scene_.strokes[stroke].motion;
         const spot start = frame_(motion.position(0.0));
         const spot end = frame_(motion.position(motion.duration_s()));
         const style look{.stroke = ink, .width = 0.9};
@@ -111,24 +152,20 @@ private:
             canvas_.circle(start, r, look, {.kind = "start"});
         if (on_page(end))
             canvas_.rect({end.x - r, end.y - r, 2.0 * r, 2.0 * r}, look, {.kind = "end"});
-        taken_.block_disc(start, r, 8.0);
-        taken_.block_disc(end, r, 8.0);
+        taken_.block_disc(start, r, 12.0);
+        taken_.block_disc(end, r, 12.0);
     }
 
-    void label_ends(std::size_t stroke)
+    // Whether there was room, or nothing to label.
+    bool label(const std::string& text, const char* kind, point where)
     {
-        const trajectory& motion = scene_.strokes[stroke].motion;
-        label(stroke, "start", frame_(motion.position(0.0)));
-        label(stroke, "end", frame_(motion.position(motion.duration_s())));
-    }
-
-    void label(std::size_t stroke, const std::string& word, spot at)
-    {
+        const spot at = frame_(where);
         if (!on_page(at))
-            return;
-        const std::string text = scene_.strokes.size() == 1 ? word : fmt::format("{} {}", word, stroke + 1);
-        canvas_.text(taken_.place(text, label_text, at, radius() + 1.5), text,
-                     {.size = label_text, .halo = true}, {.kind = word + "-label"});
+            return true;
+        const auto place = taken_.place_clear(text, label_text, at, radius() + 1.5, farthest_label);
+        if (place)
+            canvas_.text(*place, text, {.size = label_text, .halo = true}, {.kind = kind});
+        return place.has_value();
     }
 
     canvas& canvas_;
@@ -143,6 +180,11 @@ private:
 void draw_path_marks(canvas& c, const scene& s, const array_frame& f, double dot, label_placer& taken)
 {
     marker(c, s, f, dot, taken).draw();
+}
+
+std::string label_strokes(canvas& c, const scene& s, const array_frame& f, double dot, label_placer& taken)
+{
+    return marker(c, s, f, dot, taken).label();
 }
 
 } // namespace tactor::plot

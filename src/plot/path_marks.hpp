@@ -3,13 +3,19 @@
 /// Which way a stroke runs: arrows, start and end.
 #pragma once
 
+#include <string>
+
 #include "plot/array_frame.hpp"
 #include "plot/timeline.hpp"
 
 namespace tactor::plot {
 
-/// Arrowheads on the path where they cover least, a ring at the start and a square at the end with their
-/// labels. `dot`: radius of the bursts' dots, pt.
+/// Arrowheads on the path where they cover least, a ring at the start and a square at the end. `dot`: radius
+/// of the bursts' dots, pt.
 void draw_path_marks(canvas& c, const scene& s, const array_frame& f, double dot, label_placer& taken);
+
+/// The words start and end beside those; of several strokes, the number of each at its start. Returns what
+/// had no room, in words; empty: all has.
+std::string label_strokes(canvas& c, const scene& s, const array_frame& f, double dot, label_placer& taken);
 
 } // namespace tactor::plot

@@ -44,6 +44,9 @@ struct timeline {
     double sample_s = 0.0;              ///< interval of the instants
     std::deque<burst> instants = {};    ///< what they refer to
 
+    /// Then colours tell strokes apart, not times.
+    bool several() const noexcept { return starts_s.size() > 1; }
+
     timeline() = default;
     timeline(timeline&&) = default;
     timeline& operator=(timeline&&) = default;

@@ -15,12 +15,20 @@ struct timing_frame {
     double top = 0.0;  ///< of the first row, pt
     double peak = 1.0; ///< largest amplitude
 
-    double base_of(std::size_t row) const noexcept
+    /// Level of each stroke in each row, by row and stroke; empty: all have one.
+    std::vector<std::vector<std::size_t>> levels = {};
+
+    double base_of(std::size_t row, std::size_t stroke) const noexcept
     {
-        return top + static_cast<double>(row + 1) * rows.height;
+        const std::size_t level = levels.empty() ? 0 : levels[row][stroke];
+        return top + rows.top_of(row) + static_cast<double>(level + 1) * rows.height;
     }
+    double bottom_of(std::size_t row) const noexcept { return top + rows.top_of(row) + rows.height_of(row); }
     double bar_height(double amplitude) const noexcept { return 0.86 * rows.height * amplitude / peak; }
 };
+
+/// Strokes that play at one time on one tactor get levels of their own in its row, one below the other.
+void part_strokes(timing_frame& f, const timeline& t);
 
 /// Whether there are too many bars, or too narrow ones, to draw one by one.
 bool too_dense(const timeline& t, const timing_frame& f);

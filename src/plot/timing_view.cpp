@@ -3,13 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include <fmt/format.h>
+
+#include <tactor/words.hpp>
 
 #include "plot/array_view.hpp"
 #include "plot/axes.hpp"
 #include "plot/dimensions.hpp"
+#include "plot/stroke_legend.hpp"
 #include "plot/text.hpp"
 #include "plot/timing_bars.hpp"
 
@@ -17,13 +19,12 @@ namespace tactor::plot {
 namespace {
 
 constexpr double strip_height = 5.0;
+constexpr const char* strip_heading = "time (s)";
 constexpr double dimension_pitch = 9.5;
 constexpr double first_dimension = 8.0; // under the strip
 constexpr double heading_height = 9.5;
-constexpr double inset = 9.0;           // of time 0 in the diagram: room for arrows that point from outside
-constexpr double outset = 7.0;          // behind the last sound: room for half a label
-constexpr double starts_height = 7.0;   // for the numbers of strokes
-constexpr std::size_t most_starts = 60; // more say nothing
+constexpr double inset = 9.0;  // of time 0 in the diagram: room for arrows that point from outside
+constexpr double outset = 7.0; // behind the last sound: room for half a label
 constexpr double timing_legend_height = 10.0;
 
 class timing_drawing {
@@ -34,14 +35,17 @@ public:
           time_(t),
           where_(where),
           colours_(colours),
-          frame_{make_lanes(s.tactors, t.playing), {}, 0.0, t.peak}
+          frame_{make_lanes(s.tactors, t.playing), {}, 0.0, t.peak, {}}
     {
+        part_strokes(frame_, t);
+        if (colours)
+            frame_.rows.label_width =
+                std::max(frame_.rows.label_width, text_width(strip_heading, small_text));
         const double left = where.x + frame_.rows.label_width + 4.0;
         const double per_s = (where.right() - left - inset - outset) / std::max(t.total_s, 1e-9);
         frame_.x = {-inset / per_s, t.total_s + outset / per_s, left, where.right()};
         find_first_pair();
-        frame_.top = where.y + (colours ? strip_height : 0.0) + dimensions_height() + 3.0 +
-                     (has_starts() ? starts_height : 0.0);
+        frame_.top = where.y + (colours ? strip_height : 0.0) + dimensions_height() + 3.0 + starts_height(t);
         dense_ = too_dense(t, frame_);
     }
 
@@ -60,7 +64,7 @@ public:
                              "time (s)");
         if (colours_)
             draw_strip();
-        draw_stroke_starts(bottom);
+        draw_stroke_starts(canvas_, time_, frame_.x, frame_.top, bottom);
         draw_sound();
         conflicts_ = draw_conflicts(canvas_, scene_, time_, frame_);
         draw_dimensions();
@@ -92,51 +96,20 @@ private:
     void draw_rows()
     {
         for (std::size_t i = 0; i < frame_.rows.rows.size(); ++i)
-            canvas_.line({frame_.x.page_from, frame_.base_of(i)}, {frame_.x.page_to, frame_.base_of(i)},
+            canvas_.line({frame_.x.page_from, frame_.bottom_of(i)}, {frame_.x.page_to, frame_.bottom_of(i)},
                          {.stroke = light_grey, .width = 0.4}, {.kind = "row-line"});
         draw_lane_labels(canvas_, frame_.rows, frame_.x.page_from - 3.0, frame_.top);
-        canvas_.text({frame_.x.page_from - 3.0, frame_.top - 3.5}, lane_heading,
+        canvas_.text({frame_.x.page_from - 3.0, frame_.top - 3.5}, frame_.rows.heading,
                      {.size = small_text, .anchor = align::end, .ink = dark_grey}, {.kind = "row-heading"});
     }
 
     void draw_strip()
     {
         canvas_.text({frame_.x.page_from - 3.0, where_.y + (strip_height + cap_height(small_text)) / 2.0},
-                     "colour", {.size = small_text, .anchor = align::end, .ink = dark_grey},
+                     strip_heading, {.size = small_text, .anchor = align::end, .ink = dark_grey},
                      {.kind = "row-heading"});
         draw_time_strip(canvas_, time_,
                         {frame_.x(0.0), where_.y, frame_.x(time_.total_s) - frame_.x(0.0), strip_height});
-    }
-
-    bool has_starts() const { return time_.starts_s.size() > 1 && time_.starts_s.size() <= most_starts; }
-
-    // A line at each start with the numbers of the strokes that start there.
-    void draw_stroke_starts(double bottom)
-    {
-        if (!has_starts())
-            return;
-        const group g(canvas_, {.id = "stroke-starts"});
-        std::map<double, std::string> numbers;
-        for (std::size_t i = 0; i < time_.starts_s.size(); ++i) {
-            std::string& s = numbers[std::round(frame_.x(time_.starts_s[i]) * 10.0) / 10.0];
-            s += (s.empty() ? "" : ", ") + fmt::format("{}", i + 1);
-        }
-        std::string word = "stroke "; // for the first
-        double free = 0.0;
-        for (auto i = numbers.begin(); i != numbers.end(); ++i) {
-            const double x = i->first;
-            const double next = std::next(i) != numbers.end() ? std::next(i)->first : where_.right();
-            canvas_.line({x, frame_.top - 8.0}, {x, bottom}, {.stroke = dark_grey, .width = 0.5, .dash = 2.0},
-                         {.kind = "stroke-start"});
-            const std::string label =
-                x + 2.0 + text_width(word + i->second, small_text) < next ? word + i->second : i->second;
-            word.clear();
-            if (x < free)
-                continue;
-            canvas_.text({x + 2.0, frame_.top - 3.0}, label,
-                         {.size = small_text, .ink = dark_grey, .halo = true});
-            free = x + 2.0 + text_width(label, small_text);
-        }
     }
 
     void draw_sound()
@@ -150,10 +123,10 @@ private:
 
     double top_row_of(const burst& b) const
     {
-        int row = static_cast<int>(frame_.rows.rows.size());
+        std::size_t row = frame_.rows.rows.size() - 1;
         for (const drive& d : b.drives)
-            row = std::min(row, frame_.rows.row_of[d.tactor]);
-        return frame_.top + row * frame_.rows.height;
+            row = std::min(row, static_cast<std::size_t>(frame_.rows.row_of[d.tactor]));
+        return frame_.top + frame_.rows.top_of(row);
     }
 
     void draw_dimensions()
@@ -165,13 +138,13 @@ private:
         if (second_ != nullptr) {
             draw_dimension(canvas_, frame_.x(first_->from_s), frame_.x(second_->from_s), y,
                            std::max(top_row_of(*first_->what), top_row_of(*second_->what)),
-                           fmt::format("{}SOA {} s", which, number(second_->from_s - first_->from_s, 4)),
+                           fmt::format("{}SOA {}", which, seconds_text(second_->from_s - first_->from_s, 4)),
                            {.id = "soa"});
             y += dimension_pitch;
         }
         draw_dimension(canvas_, frame_.x(first_->from_s), frame_.x(first_->to_s), y,
                        top_row_of(*first_->what),
-                       fmt::format("{}duration {} s", which, number(first_->to_s - first_->from_s, 4)),
+                       fmt::format("{}duration {}", which, seconds_text(first_->to_s - first_->from_s, 4)),
                        {.id = "duration"});
     }
 

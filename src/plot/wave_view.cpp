@@ -9,6 +9,7 @@
 
 #include "plot/axes.hpp"
 #include "plot/lanes.hpp"
+#include "plot/stroke_legend.hpp"
 #include "plot/text.hpp"
 #include "plot/waveform.hpp"
 
@@ -31,14 +32,14 @@ double dbfs(double linear)
 class wave_drawing {
 public:
     wave_drawing(canvas& c, const scene& s, const timeline& t, box where)
-        : canvas_(c), scene_(s), where_(where), lanes_(make_lanes(s.tactors, t.playing))
+        : canvas_(c), scene_(s), time_(t), where_(where), lanes_(make_lanes(s.tactors, t.playing))
     {
         if (lanes_.rows.size() <= most_high_rows)
             lanes_.height *= row_factor;
         const double total = std::max(static_cast<double>(s.sound->frames()) / s.sound->rate(), 1e-9);
         const double left = where.x + lanes_.label_width + 4.0;
         x_ = {0.0, total, left, where.right() - peak_column};
-        top_ = where.y + wave_heading_height;
+        top_ = where.y + wave_heading_height + starts_height(t);
         double highest = 0.0;
         double lowest = std::numeric_limits<double>::infinity();
         for (const placed_plan& p : s.plans) {
@@ -65,6 +66,7 @@ public:
         const double bottom = top_ + lanes_.all_height();
         draw_horizontal_axis(canvas_, x_, bottom + 1.5, top_, "time (s)");
         draw_headings();
+        draw_stroke_starts(canvas_, time_, x_, top_, bottom);
         for (std::size_t i = 0; i < lanes_.rows.size(); ++i)
             draw_row(i);
         const double y = bottom + 1.5 + axis_height + wave_legend_height / 2.0;
@@ -88,8 +90,8 @@ private:
     void draw_headings()
     {
         draw_lane_labels(canvas_, lanes_, x_.page_from - 3.0, top_);
-        const double y = top_ - 4.0;
-        canvas_.text({x_.page_from - 3.0, y}, lane_heading,
+        const double y = top_ - 4.0 - starts_height(time_);
+        canvas_.text({x_.page_from - 3.0, y}, lanes_.heading,
                      {.size = small_text, .anchor = align::end, .ink = dark_grey});
         canvas_.text({where_.right(), y}, "peak (dBFS)",
                      {.size = small_text, .anchor = align::end, .ink = dark_grey});
@@ -97,7 +99,7 @@ private:
 
     void draw_row(std::size_t row)
     {
-        const double middle = top_ + (static_cast<double>(row) + 0.5) * lanes_.height;
+        const double middle = top_ + lanes_.top_of(row) + lanes_.height / 2.0;
         const group g(canvas_, {.kind = "channel", .data = {{"row", fmt::format("{}", row)}}});
         canvas_.line({x_.page_from, middle}, {x_.page_to, middle}, {.stroke = light_grey, .width = 0.4});
         std::size_t first = 0;
@@ -162,6 +164,7 @@ private:
 
     canvas& canvas_;
     const scene& scene_;
+    const timeline& time_;
     box where_;
     lanes lanes_;
     scale x_;

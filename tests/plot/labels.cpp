@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -49,6 +51,43 @@ TEST_CASE("labels stay in the area: in each corner too")
         CHECK(b.right() <= 100.0);
         CHECK(b.bottom() <= 100.0);
     }
+}
+
+TEST_CASE("a label that belongs to one of many sites is nearest to that one, or there is none")
+{
+    std::vector<spot> sites;
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column)
+            sites.push_back({30.0 + 18.0 * column, 30.0 + 18.0 * row});
+    label_placer p({0.0, 0.0, 120.0, 120.0});
+    for (const spot s : sites)
+        p.forbid_disc(s, 4.0);
+    std::vector<box> boxes;
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+        const auto place = p.place_at("88", 5.2, sites, i, 5.2, 3.0);
+        REQUIRE(place);
+        const box b = box_of(*place, "88", 5.2);
+        const auto distance = [&](spot s) {
+            return std::hypot(std::max({b.x - s.x, s.x - b.right(), 0.0}),
+                              std::max({b.y - s.y, s.y - b.bottom(), 0.0}));
+        };
+        for (std::size_t k = 0; k < sites.size(); ++k) {
+            CHECK(distance(sites[k]) >= (k == i ? 4.0 : 1.2 * distance(sites[i])));
+            CHECK_FALSE(overlap(b, {sites[k].x - 4.0, sites[k].y - 4.0, 8.0, 8.0}));
+        }
+        for (const box& other : boxes)
+            CHECK_FALSE(overlap(b, other));
+        boxes.push_back(b);
+    }
+    CHECK_FALSE(p.place_at("a long name", 6.0, sites, 5, 5.2, 3.0));
+}
+
+TEST_CASE("a label that must be clear is nowhere rather than on another")
+{
+    label_placer p({0.0, 0.0, 100.0, 100.0});
+    CHECK(p.place_clear("1", 6.0, {50.0, 50.0}, 3.0, 20.0));
+    p.forbid({0.0, 0.0, 100.0, 100.0});
+    CHECK_FALSE(p.place_clear("2", 6.0, {50.0, 50.0}, 3.0, 20.0));
 }
 
 TEST_CASE("labels avoid a line")

@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: MIT
+"""tactor plot and compare: labels belong to what they stand at, strokes are told apart, at every width.
+
+Boxes of texts are measured here by the advances of DejaVu Sans, the widest of the usual fonts."""
+import itertools
+import math
+
+from harness import main
+from pictures import NS, PlotTest, Svg, number
+
+WIDTHS = (60, 85, 170)
+CAP = 0.73
+ADVANCE = {" ": 0.318, "(": 0.39, ")": 0.39, ",": 0.318, "c": 0.55, "h": 0.634, "s": 0.521, "t": 0.392, "a": 0.613,
+           "r": 0.411, "e": 0.615, "n": 0.634, "d": 0.635, "k": 0.579, "o": 0.612, "u": 0.634, "v": 0.592, "w": 0.818,
+           "p": 0.635, "l": 0.278, "f": 0.352, "i": 0.278, "g": 0.635}
+PLACES = [(0, 0), (17, -3), (38, 2), (55, 8), (-4, 22), (14, 25), (33, 19), (60, 27), (2, 47), (22, 44), (41, 50), (58, 45)]
+
+
+def grid(rows, columns, pitch):
+    return f'[array]\nname = "grid"\ngrid = {{ rows = {rows}, columns = {columns}, pitch_mm = {pitch}.0 }}\n'
+
+
+def irregular():
+    return '[array]\nname = "sleeve"\n' + "".join(
+        f"[[tactor]]\nx_mm = {x}.0\ny_mm = {y}.0\nchannel = {i * 5 % 12}\n" for i, (x, y) in enumerate(PLACES))
+
+
+# Text of the array file, and a rectangle inside the array.
+ARRAYS = {"nine": (grid(3, 3, 20), (0, 0, 40, 40)), "twelve": (irregular(), (2, 4, 52, 40)),
+          "24": (grid(4, 6, 25), (0, 0, 125, 75)), "64": (grid(8, 8, 30), (0, 0, 210, 210))}
+
+
+def strokes(count, where):
+    """Curves over the whole array, the third closed and on tactors; three at once, ten in a row."""
+    x, y, w, h = where
+    def at(u, v):
+        return f"{x + u * w:.1f} {y + v * h:.1f}"
+    paths = [("curve", f"M {at(.05, .5)} C {at(.3, 0)} {at(.6, 1)} {at(.95, .4)}"),
+             ("sweep left", f"M {at(.9, .9)} L {at(.1, .8)}"),
+             ("ring", f"M {at(.3, .3)} L {at(.7, .3)} L {at(.7, .7)} L {at(.3, .7)} Z")]
+    if count == 10:
+        paths = [(f"stroke {chr(97 + i)}", f"M {at(.1 + .02 * i, .05 + .09 * i)} L {at(.9 - .03 * i, .05 + .095 * (i * 3 % 10))}")
+                 for i in range(10)]
+    return "\n".join(f'[[stroke]]\nname = "{n}"\npath = "{p}"\nspeed_mm_s = 60.0\n' +
+                     (f"start_s = {0.3 * i}\n" if count == 3 else "") for i, (n, p) in enumerate(paths[:count]))
+
+
+def box(e):
+    """Left, top, right and bottom of a text."""
+    size = number(e, "font-size")
+    width = size * sum(ADVANCE.get(c, 0.636) for c in e.text)
+    left = number(e, "x") - {"middle": width / 2, "end": width}.get(e.get("text-anchor"), 0)
+    return left, number(e, "y") - CAP * size, left + width, number(e, "y")
+
+
+def overlap(a, b):
+    return min(a[2], b[2]) - max(a[0], b[0]) > 0.01 and min(a[3], b[3]) - max(a[1], b[1]) > 0.01
+
+
+def distance(b, x, y):
+    return math.hypot(max(b[0] - x, x - b[2], 0), max(b[1] - y, y - b[3], 0))
+
+
+class Sheets(PlotTest):
+    def pictures(self, view, counts=(1, 3, 10), widths=WIDTHS):
+        for name, (text, where) in ARRAYS.items():
+            self.write("a.toml", text)
+            for count in counts:
+                self.write("s.toml", strokes(count, where))
+                for width in widths:
+                    yield (name, count, width), self.svg("s.toml", "--array", "a.toml", "--width", width, "--view", view)
+
+
+class Labels(Sheets):
+    def check_labels(self, what, svg):
+        circles = {int(g.get("data-tactor")): g.find(NS + "circle") for g in svg.all("tactor")}
+        sites = {i: (number(c, "cx"), number(c, "cy"), number(c, "r")) for i, c in circles.items()}
+        inside = {int(g.get("data-tactor")): g.find(NS + "text") for g in svg.all("tactor")}
+        beside = {int(e.get("data-tactor")): e for e in svg.all("tactor-label")}
+        notes = " ".join(e.text for e in svg.all("note"))
+        for i, (x, y, r) in sites.items():
+            if inside[i] is not None:
+                self.assertEqual(inside[i].text, str(i))
+                corner = max(math.hypot(cx - x, cy - y) for cx in box(inside[i])[::2] for cy in box(inside[i])[1::2])
+                self.assertLess(corner, r, (what, i))
+            elif i in beside:
+                self.assertEqual(beside[i].text.split()[0], str(i))
+            else:
+                self.assertIn("no room for the number", notes, (what, i))
+        for i, e in beside.items():
+            far = sorted((distance(box(e), x, y), k) for k, (x, y, _) in sites.items())
+            self.assertEqual(far[0][1], i, (what, e.text))
+            self.assertLess(far[0][0], far[1][0] / 1.1, (what, e.text))
+        labels = list(beside.values()) + svg.all("start-label") + svg.all("end-label")
+        for a, b in itertools.combinations(labels, 2):
+            self.assertFalse(overlap(box(a), box(b)), (what, a.text, b.text))
+        for e in labels:
+            for i, (x, y, r) in sites.items():
+                self.assertGreaterEqual(distance(box(e), x, y), r - 0.01, (what, e.text, i))
+            self.assertGreaterEqual(box(e)[0], 0)
+        return [i for i in sites if inside[i] is None and i not in beside]
+
+    def test_each_label_is_nearest_to_its_tactor_and_on_nothing_else(self):
+        without = [what for what, svg in self.pictures("array") if self.check_labels(what, svg)]
+        self.assertLessEqual(len(without), 3, without)  # of 36, where bursts crowd on the narrowest page
+
+    def test_idle_tactors_keep_their_numbers(self):
+        for what, svg in self.pictures("array", counts=(1,), widths=(85,)):
+            shown = len(svg.all("number")) + len(svg.all("tactor-label"))
+            self.assertGreaterEqual(shown, len(svg.all("tactor")), what)
+
+    def test_what_has_no_room_is_said(self):
+        self.write("a.toml", grid(30, 30, 5))
+        svg = self.svg("--path", "M 2 2 L 140 140", "--array", "a.toml", "--width", "60", "--view", "array")
+        self.assertIn("no room for the numbers", " ".join(e.text for e in svg.all("note")))
+
+    def test_a_channel_is_said_once(self):
+        for file, channels in (("nine", False), ("twelve", True)):
+            self.write("a.toml", ARRAYS[file][0])
+            self.write("s.toml", strokes(1, ARRAYS[file][1]))
+            svg = self.svg("s.toml", "--array", "a.toml")
+            self.assertIn("tactor (ch)" if channels else "tactor", [e.text for e in svg.all("row-heading")])
+            for e in svg.all("row-label"):
+                self.assertEqual("(" in e.text, channels, e.text)
+            self.assertEqual(any("ch" in e.text for e in svg.all("tactor-label")), channels)
+            self.assertEqual(any("tactor n on channel n" in t for t in svg.texts()), not channels)
+
+
+class Strokes(Sheets):
+    def test_names_and_colours_are_in_the_legend(self):
+        for what, svg in self.pictures("both", counts=(3, 10), widths=(60, 170)):
+            count = what[1]
+            names = [e.text for e in svg.all("stroke-name")]
+            self.assertEqual(len(names), count, what)
+            self.assertEqual([n.split()[0] for n in names], [str(i + 1) for i in range(count)])
+            self.assertIn("curve" if count == 3 else "stroke a", names[0])
+            colours = [e.get("fill") for e in svg.all("stroke-colour")]
+            self.assertEqual(len(set(colours)), count)
+            self.assertEqual([e.get("stroke") for e in svg.all("path")], colours)
+            for bar in svg.all("bar", "sound"):
+                self.assertEqual(bar.get("fill"), colours[int(bar.get("data-stroke"))])
+            for e, f in itertools.combinations(svg.all("stroke-name"), 2):
+                self.assertFalse(overlap(box(e), box(f)), (what, e.text, f.text))
+
+    def test_bars_of_strokes_at_one_time_do_not_lie_on_each_other(self):
+        seen = 0
+        for what, svg in self.pictures("timing", counts=(3,), widths=(170,)):
+            rows = {}
+            for bar in svg.all("bar", "sound"):
+                self.assertIsNone(bar.get("fill-opacity"), what)
+                rows.setdefault(bar.get("data-tactor"), []).append(bar)
+            for bars in rows.values():
+                for a, b in itertools.combinations(bars, 2):
+                    sides = [(number(e, "x"), number(e, "y"), number(e, "x") + number(e, "width"),
+                              number(e, "y") + number(e, "height")) for e in (a, b)]
+                    if a.get("data-stroke") != b.get("data-stroke"):
+                        seen += min(sides[0][2], sides[1][2]) > max(sides[0][0], sides[1][0])
+                        self.assertFalse(overlap(*sides), what)
+        self.assertGreater(seen, 20)
+
+    def test_each_row_has_its_label_and_very_many_strokes_still_make_a_page(self):
+        for what, svg in self.pictures("timing", counts=(10,), widths=(60,)):
+            playing = {bar.get("data-row") for bar in svg.all("envelope")} or {b.get("data-tactor") for b in svg.all("bar", "sound")}
+            self.assertEqual(len(svg.all("row-label")), len(playing), what)
+        self.write("a.toml", ARRAYS["nine"][0])
+        self.write("s.toml", "".join(f'[[stroke]]\nname = "s{i}"\npath = "M {i % 20} 0 L 40 {i % 40} L 0 40"\nstart_s = {i / 100}\n'
+                                     for i in range(55)))
+        svg = self.svg("s.toml", "--array", "a.toml")
+        self.assertLess(float(svg.root.get("height")[:-2]), 250)
+        self.assertIn("colours repeat after 10 strokes", " ".join(e.text for e in svg.all("note")))
+
+    def test_the_strip_of_colours_has_a_unit_and_is_only_for_time(self):
+        self.write("a.toml", ARRAYS["nine"][0])
+        for count in (1, 3):
+            self.write("s.toml", strokes(count, ARRAYS["nine"][1]))
+            svg = self.svg("s.toml", "--array", "a.toml")
+            self.assertNotIn("colour", svg.texts())
+            self.assertEqual(svg.texts().count("time (s)"), 2 if count == 1 else 1)
+            self.assertEqual([e.get("id") for e in svg.root.iter() if e.get("id") in ("time-colours", "strokes")],
+                             ["time-colours" if count == 1 else "strokes"])
+
+
+class Compare(PlotTest):
+    def test_the_picture_has_a_scale_and_neither_digits_nor_advice_too_many(self):
+        for width in WIDTHS:
+            self.ok("compare", "--path", "M 5 5 C 20 -5 20 45 39 30", "--duration", "2.61799387", "-o", "c.svg", "--width", width)
+            svg = Svg(self.dir / "c.svg")
+            said = " ".join(svg.texts())
+            self.assertIn("in 2.618 s", said)
+            self.assertIn("refused", said)
+            self.assertNotIn("--", said)
+            mm = float(svg.id("scale-bar").get("data-mm"))
+            bar = svg.all("bar", "scale-bar")[0]
+            panel = [g for g in svg.all("panel") if g.get("data-algorithm") == "park2016"][0]
+            first, second = [e for e in panel.iter() if e.get("class") == "tactor"][:2]
+            self.near((number(bar, "x2") - number(bar, "x1")) / mm, (number(second, "cx") - number(first, "cx")) / 20, 0.01)
+
+
+if __name__ == "__main__":
+    main()
