@@ -105,7 +105,9 @@ void add_play_options(CLI::App& c, play_options& o)
                "an xrun or a lost device in a stroke ends the run with status 1");
     c.add_option_function<std::string>(
          "--reopen-s",
-         [&o](const std::string& t) { o.reopen_s = parse_number("--reopen-s", t, 0, 1e9, "s"); },
+         [&o](const std::string& t) {
+             o.reopen_s = parse_number("--reopen-s", t, 0, 1e9, "s", "0 s or more");
+         },
          "wait so long for a lost device to come back, then go on with the next stroke (default 0)")
         ->type_name("S");
     add_lines(c, o);

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <tactor/words.hpp>
+
 #include "plan/numbers.hpp"
 
 namespace tactor {
@@ -87,8 +89,8 @@ void check_options(const plan_options& o)
     const double longest = law_duration_s(o.profile, o.soa_s);
     if (!(o.min_duration_s > 0.0 && o.min_duration_s <= longest))
         throw error(errc::bad_input, "--timing fit",
-                    fmt::format("bursts of at least {} s cannot be had: an SOA of {} s gives {:.6g} s",
-                                o.min_duration_s, o.soa_s, longest),
+                    fmt::format("bursts of at least {} cannot be had: an SOA of {} gives {}",
+                                seconds_text(o.min_duration_s), seconds_text(o.soa_s), seconds_text(longest)),
                     "ask for a shorter least duration, above 0 s, or for a longer SOA");
 }
 

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <tactor/words.hpp>
+
 #include "plan/numbers.hpp"
 #include "plan/percept_sounding.hpp"
 
@@ -16,7 +18,7 @@ std::size_t count_samples(double duration_s)
 {
     if (!(duration_s <= longest_percept_s))
         throw error(errc::bad_input, "stroke",
-                    fmt::format("lasts {} s, too long to predict what is felt", duration_s),
+                    fmt::format("lasts {}, too long to predict what is felt", seconds_text(duration_s)),
                     fmt::format("at most {} s", longest_percept_s));
     return static_cast<std::size_t>((duration_s + detail::same_time_s) / percept_step_s) + 1;
 }

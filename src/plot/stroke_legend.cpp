@@ -47,13 +47,14 @@ double draw_stroke_legend(canvas& c, const scene& s, box where, bool colours)
         n = shorten(n, small_text, most_of_width * where.width - lead - column_gap);
         widest = std::max(widest, text_width(n, small_text));
     }
-    const double column = lead + widest + column_gap;
+    const double entry_width = lead + widest + column_gap;
     const auto columns =
-        std::max<std::size_t>(1, static_cast<std::size_t>((where.width + column_gap) / column));
+        std::max<std::size_t>(1, static_cast<std::size_t>((where.width + column_gap) / entry_width));
     const std::size_t shown = std::min(names.size(), columns * most_rows);
     const std::size_t rows = (shown + columns - 1) / columns;
     for (std::size_t i = 0; i < shown; ++i) {
-        const double x = where.x + column * static_cast<double>(i / rows);
+        const std::size_t in_column = i / rows;
+        const double x = where.x + entry_width * static_cast<double>(in_column);
         const double middle = where.y + row_height * (static_cast<double>(i % rows) + 0.5);
         if (colours)
             c.rect({x, middle - 2.5, swatch, 5.0}, {.fill = of_stroke(i), .stroke = ink, .width = 0.3},

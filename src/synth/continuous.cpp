@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
+#include <tactor/words.hpp>
 
 #include "synth/expander.hpp"
 #include "synth/frames.hpp"
@@ -30,7 +31,7 @@ std::string unplayable(const burst& b, std::size_t tactors)
 void tell(std::string& failure, double t_s, std::string_view why) noexcept
 {
     try {
-        failure = fmt::format("the plan failed at {:.6g} s of the stroke: {}", t_s, why);
+        failure = fmt::format("the plan failed at {} of the stroke: {}", seconds_text(t_s), why);
     } catch (...) {
         failure = "no memory";
     }
@@ -42,7 +43,7 @@ void check_drives(const burst& b, double t_s, std::size_t tactors)
 {
     const std::string why = unplayable(b, tactors);
     if (!why.empty()) {
-        throw error(errc::bad_input, fmt::format("stroke at {} s", t_s), why);
+        throw error(errc::bad_input, "stroke at " + seconds_text(t_s), why);
     }
 }
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
+#include <tactor/words.hpp>
 
 #include "synth/frames.hpp"
 
@@ -33,7 +34,8 @@ struct use {
 void check(const burst& b, std::size_t number, std::size_t tactors)
 {
     if (!(b.onset_s >= 0.0 && b.duration_s >= 0.0 && b.onset_s + b.duration_s <= longest_plan_s)) {
-        refuse(number, fmt::format("it starts at {} s and lasts {} s", b.onset_s, b.duration_s));
+        refuse(number, fmt::format("it starts at {} and lasts {}", seconds_text(b.onset_s),
+                                   seconds_text(b.duration_s)));
     }
     if (!std::isfinite(b.intensity)) {
         refuse(number, fmt::format("its intensity is {}", b.intensity));
@@ -157,7 +159,7 @@ std::uint64_t place_plan(const plan& p, std::uint32_t plan, std::uint64_t start,
 {
     for (const double s : {p.total_s, p.stroke_duration_s}) {
         if (!(s >= 0.0 && s <= longest_plan_s)) {
-            throw error(errc::bad_input, "plan", fmt::format("it lasts {} s", s),
+            throw error(errc::bad_input, "plan", "it lasts " + seconds_text(s),
                         fmt::format("between 0 and {} s can be rendered", longest_plan_s));
         }
     }

@@ -57,6 +57,7 @@ class Options(ToolTest):
             said = self.refused(2, "plan", "park2016-1", f"{option}={value}", says=[option, "not a number", *says]).stderr
             self.assertNotIn("1000000000", said)
         self.assertNotIn("1000000000", self.refused(2, "plan", "park2016-1", "--soa", "1e300").stderr)
+        self.refused(2, "play", "park2016-1", "-D", "null", "--reopen-s", "-1", says=["(0 s or more)"])
         # What no factor can make right is only refused.
         self.assertNotIn("without a unit", self.refused(2, "plan", "park2016-1", "--soa", "70furlongs").stderr)
         self.refused(2, "plan", "park2016-1", "--soa", "70", says=["70 s is out of bounds", "0.07"])
@@ -114,7 +115,7 @@ class Files(ToolTest):
         os.mkfifo(self.dir / "s.toml")
         def write():
             (self.dir / "s.toml").write_text('[stroke]\npath = "M 0 0 L 20 0"\n', encoding="ascii")
-        writer = threading.Thread(target=write)
+        writer = threading.Thread(target=write, daemon=True)
         writer.start()
         r = self.ok("plan", "s.toml")
         writer.join()
@@ -122,7 +123,8 @@ class Files(ToolTest):
         for command, name in (("render", "o.wav"), ("plot", "o.svg")):
             os.mkfifo(self.dir / name)
             got = []
-            reader = threading.Thread(target=lambda n=name: got.append((self.dir / n).read_bytes()))
+            reader = threading.Thread(target=lambda n=name: got.append((self.dir / n).read_bytes()),
+                                      daemon=True)
             reader.start()
             r = self.ok(command, "park2016-1", "-o", name)
             reader.join()

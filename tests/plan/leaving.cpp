@@ -109,6 +109,19 @@ TEST_CASE("arrays in one line and of one tactor")
     CHECK(refusal(one, timed({{0.0, {3, 4}}, {5.0, {3, 4}}}), continuous()).empty());
 }
 
+namespace {
+
+// Short times are said in smaller units.
+double time_after(const std::string& said)
+{
+    const double v = number_after(said, "after ");
+    const std::string rest = said.substr(said.find("after ") + 6);
+    const std::string unit = rest.substr(rest.find(' ') + 1, 2);
+    return unit == "us" ? 1e-6 * v : unit == "ns" ? 1e-9 * v : v;
+}
+
+} // namespace
+
 TEST_CASE(
     "any curve on any array: what is refused is outside where it is said to be, what is not never leaves")
 {
@@ -154,7 +167,7 @@ TEST_CASE(
         ++refused;
         if (said.find("starts outside") != std::string::npos)
             continue;
-        const double when = number_after(said, "after ");
+        const double when = time_after(said);
         CHECK((e.first_s < 0.0 || when <= e.first_s + 1e-5));
         const point edge = s.motion.position(when);
         CHECK(distance_mm(edge, l.nearest(edge)) < 0.002); // six digits of the time
