@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -6,8 +7,11 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -36,15 +40,44 @@ int status_of(errc kind)
     return status_failed;
 }
 
+struct named_command {
+    std::string_view name;
+    command (*add)(CLI::App&);
+};
+constexpr std::array<named_command, 8> commands{{{"plan", add_plan},
+                                                 {"render", add_render},
+                                                 {"play", add_play},
+                                                 {"plot", add_plot},
+                                                 {"compare", add_compare},
+                                                 {"devices", add_devices},
+                                                 {"check", add_check},
+                                                 {"off", add_off}}};
+
+std::string version_text()
+{
+    return fmt::format("tactor {}\n{}", version(), build_facts());
+}
+
 int run(int argc, char** argv)
 {
+    const std::string_view first = argc > 1 ? argv[1] : "";
+    if (first == "--version" && argc == 2) {
+        fmt::print("{}\n", version_text());
+        return status_ok;
+    }
     CLI::App app("Draws on skin: moving tactile strokes over sparse arrays of tactors.", "tactor");
-    app.set_version_flag("--version", [] { return fmt::format("tactor {}\n{}", version(), build_facts()); });
+    app.set_version_flag("--version", version_text);
     app.require_subcommand(1);
     app.footer("Example: tactor play park2016-3        tactor COMMAND --help says more.");
-    std::array commands{add_plan(app),    add_render(app),  add_play(app),  add_plot(app),
-                        add_compare(app), add_devices(app), add_check(app), add_off(app)};
-    if (argc > 1 && std::string_view(argv[1]) == complete_command) {
+    // To describe all options of all commands takes as long as to plan a stroke: of a command that is named,
+    // its own.
+    const auto named = std::find_if(commands.begin(), commands.end(),
+                                    [&](const named_command& c) { return c.name == first; });
+    std::vector<std::pair<std::string_view, command>> added;
+    for (const named_command& c : commands)
+        if (named == commands.end() || c.name == first)
+            added.emplace_back(c.name, c.add(app));
+    if (first == complete_command) {
         for (const std::string& line : complete(app, {argv + 2, argv + argc}))
             fmt::print("{}\n", line);
         return status_ok;
@@ -56,10 +89,9 @@ int run(int argc, char** argv)
     } catch (const CLI::ParseError& e) {
         throw usage_error(app, e);
     }
-    const auto all = app.get_subcommands({});
-    for (std::size_t i = 0; i < commands.size(); ++i)
-        if (app.got_subcommand(all[i]))
-            return commands[i]();
+    for (const auto& [name, act] : added)
+        if (app.got_subcommand(std::string(name)))
+            return act();
     return status_usage;
 }
 

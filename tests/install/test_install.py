@@ -64,6 +64,30 @@ class Install(FolderTest):
         linked = run("ldd", tool, env=self.env)
         self.assertIn(str(self.libdir.resolve()), linked.replace(str(self.prefix / "bin/.."), str(self.prefix)))
 
+    def test_what_paints_is_loaded_from_beside_the_tool_and_only_for_pictures(self):
+        tool = self.prefix / "bin/tactor"
+        (painter,) = self.libdir.glob("tactor/painter-*.so")
+        self.assertNotIn("cairo", run("ldd", tool, env=self.env))
+        self.assertIn("cairo", run("ldd", painter, env=self.env | {"LD_LIBRARY_PATH": str(self.libdir)}))
+        elsewhere = self.env | {"LD_DEBUG": "files", "LD_DEBUG_OUTPUT": str(self.dir / "loaded")}
+        run(tool, "plot", "park2016-1", "-o", self.dir / "a.svg", env=elsewhere)
+        run(tool, "plot", "park2016-1", "-o", self.dir / "a.png", env=elsewhere)
+        run(tool, "plot", "park2016-1", "-o", self.dir / "a.pdf", env=elsewhere)
+        loaded = ["cairo" in log.read_text(errors="replace") for log in self.dir.glob("loaded.*")]
+        self.assertEqual(sorted(loaded), [False, True, True])
+        self.assertEqual((self.dir / "a.png").read_bytes()[:4], b"\x89PNG")
+        self.assertEqual((self.dir / "a.pdf").read_bytes()[:4], b"%PDF")
+
+        away = painter.rename(self.dir / painter.name)
+        try:  # neither the working folder nor the environment says where it is
+            r = subprocess.run([tool, "plot", "park2016-1", "-o", self.dir / "b.png"], capture_output=True, text=True, check=False,
+                               cwd=self.dir, env=self.env | {"LD_LIBRARY_PATH": str(self.dir)})
+        finally:
+            away.rename(painter)
+        self.assertEqual(r.returncode, 1)
+        self.assertRegex(r.stderr, r"^tactor: picture: what paints PNG and PDF cannot be loaded: .*painter-.*\(write SVG, or install tactor anew\)\n$")
+        self.assertFalse((self.dir / "b.png").exists())
+
     def test_nothing_remembers_where_it_was_built_or_installed(self):
         options = {o["name"]: o["value"] for o in json.loads(run("meson", "introspect", BUILD, "--buildoptions"))}
         if options["b_coverage"]:
@@ -112,12 +136,13 @@ class Install(FolderTest):
         if options["b_sanitize"] != "none":
             self.skipTest("a sanitizer's build is not hardened")
         (library,) = (p for p in self.libdir.glob("libtactor.so.*") if not p.is_symlink())
-        for file in (library, self.prefix / "bin/tactor"):
+        (painter,) = self.libdir.glob("tactor/painter-*.so")
+        for file in (library, self.prefix / "bin/tactor", painter):
             dynamic, names = run("readelf", "-dlW", file), run("nm", "-D", file)
             self.assertRegex(dynamic, r"BIND_NOW|FLAGS_1.*NOW", file)
             self.assertIn("GNU_RELRO", dynamic, file)
             self.assertIn("__stack_chk_fail", names, file)
-            if options["optimization"] not in ("0", "plain"):
+            if options["optimization"] not in ("0", "plain") and file != painter:  # which calls nothing that has a checked twin
                 self.assertRegex(names, r"__\w+_chk\b", file)
 
     def test_the_library_brings_few_others(self):

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// to_png() and to_pdf() of the tool: by the module, which is loaded when the first picture needs it.
+#include <array>
+#include <string>
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "plot/output.hpp"
+#include "plot/painter_module.hpp"
+
+namespace tactor::plot {
+namespace {
+
+// Beside the tool, where Meson installs it or built it, and nowhere else: the environment has no say.
+constexpr std::array places{TACTOR_PAINTER_INSTALLED, TACTOR_PAINTER_BUILT};
+
+// It stays loaded: fonts and libraries below it keep what they have begun.
+const painter_module& load()
+{
+    std::string why;
+    for (const char* place : places) {
+        void* const module = dlopen(place, RTLD_NOW | RTLD_LOCAL);
+        if (module == nullptr) {
+            const char* const said = dlerror();
+            why += fmt::format("{}{}", why.empty() ? "" : "; ", said != nullptr ? said : place);
+            continue;
+        }
+        if (const void* entry = dlsym(module, "tactor_painter"))
+            return *static_cast<const painter_module*>(entry);
+    }
+    throw error(errc::runtime, "picture", fmt::format("what paints PNG and PDF cannot be loaded: {}", why),
+                "write SVG, or install tactor anew");
+}
+
+const painter_module& painter()
+{
+    static const painter_module& loaded = load();
+    return loaded;
+}
+
+} // namespace
+
+std::string to_png(const canvas& c, unsigned dpi)
+{
+    return painter().to_png(c, dpi);
+}
+
+std::string to_pdf(const canvas& c)
+{
+    return painter().to_pdf(c);
+}
+
+} // namespace tactor::plot
