@@ -48,6 +48,9 @@ ONLY_IN = {
 PURE = {"model", "plan", "synth"}
 IMPURE = {"thread", "mutex", "condition_variable", "chrono", "atomic", "future", "poll.h", "unistd.h", "time.h"}
 
+# But for the one file that reads what a user named, by descriptors.
+IMPURE_IN = {"src/model/text_file.cpp": {"unistd.h"}}
+
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.M)
 
 
@@ -64,7 +67,7 @@ def complaints(root, file):
             yield f"{where}: a public header includes {header}"
         if room is None:
             continue
-        if room in PURE and header in IMPURE:
+        if room in PURE and header in IMPURE - IMPURE_IN.get(where, set()):
             yield f"{where}: {room} is pure and includes {header}"
         if header.startswith("tactor/"):
             name = header[len("tactor/"):-len(".hpp")]

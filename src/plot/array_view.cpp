@@ -118,18 +118,26 @@ private:
     // A number stands in its circle where that has room and nothing lies on it.
     tactor_looks look_at_tactors() const
     {
-        std::vector<spot> marks;
+        // How near a centre may come: dots, and the larger rings and squares of starts and ends.
+        struct mark_on_page {
+            spot at;
+            double reach;
+        };
+        const double number_half = frame_.number > 0.0 ? frame_.radius - 1.0 : 0.0;
+        std::vector<mark_on_page> marks;
         for (const stroke& s : scene_.strokes)
             for (const double t : {0.0, s.motion.duration_s()})
-                marks.push_back(frame_(s.motion.position(t)));
-        for_each_shown([&](const shown_burst&, spot at, colour) { marks.push_back(at); });
+                marks.push_back({frame_(s.motion.position(t)), number_half + end_mark_radius(fine_.dot)});
+        for_each_shown([&](const shown_burst&, spot at, colour) {
+            marks.push_back({at, number_half + fine_.dot});
+        });
         tactor_looks looks{who_plays(), {}};
         for (const tactor_spec& t : scene_.tactors.tactors) {
             const spot at = frame_(t.position);
-            looks.inside.push_back(
-                frame_.number > 0.0 && std::none_of(marks.begin(), marks.end(), [&](spot m) {
-                    return std::hypot(m.x - at.x, m.y - at.y) < frame_.radius + fine_.dot - 1.5;
-                }));
+            looks.inside.push_back(frame_.number > 0.0 &&
+                                   std::none_of(marks.begin(), marks.end(), [&](const mark_on_page& m) {
+                                       return std::hypot(m.at.x - at.x, m.at.y - at.y) < m.reach;
+                                   }));
         }
         return looks;
     }

@@ -139,7 +139,7 @@ private:
             draw_arrow(motion, (static_cast<double>(k) + 0.5) * each, 0.4 * each);
     }
 
-    double radius() const { return dot_ + 1.7; }
+    double radius() const { return end_mark_radius(dot_); }
 
     void draw_ends(std::size_t stroke)
     {

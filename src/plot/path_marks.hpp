@@ -14,6 +14,12 @@ namespace tactor::plot {
 /// of the bursts' dots, pt.
 void draw_path_marks(canvas& c, const scene& s, const array_frame& f, double dot, label_placer& taken);
 
+/// Of the ring at a start, and half a side of the square at an end, pt.
+constexpr double end_mark_radius(double dot) noexcept
+{
+    return dot + 1.7;
+}
+
 /// The words start and end beside those; of several strokes, the number of each at its start. Returns what
 /// had no room, in words; empty: all has.
 std::string label_strokes(canvas& c, const scene& s, const array_frame& f, double dot, label_placer& taken);

@@ -87,6 +87,12 @@ class Labels(Sheets):
                 self.assertEqual(beside[i].text.split()[0], str(i))
             else:
                 self.assertIn("no room for the number", notes, (what, i))
+        marks = [(number(e, "cx"), number(e, "cy"), number(e, "r")) for e in svg.all("burst") + svg.all("start")]
+        marks += [(number(e, "x") + number(e, "width") / 2, number(e, "y") + number(e, "height") / 2, number(e, "width") / 2)
+                  for e in svg.all("end")]
+        for i in (i for i in sites if inside[i] is not None):
+            for x, y, r in marks:
+                self.assertGreater(distance(box(inside[i]), x, y), r - 0.5, (what, i))
         for i, e in beside.items():
             far = sorted((distance(box(e), x, y), k) for k, (x, y, _) in sites.items())
             self.assertEqual(far[0][1], i, (what, e.text))
