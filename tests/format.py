@@ -31,8 +31,10 @@ def unclean(page):
     # That another page is not installed here says nothing about this one.
     yield from (line for line in said.splitlines() if "referenced manual not found" not in line)
     _, _, said = run("man", "--warnings", "-E", "UTF-8", "-l", "-Tutf8", "-Z", str(page))
-    # Lines in a narrow table column that stay short are a matter of taste, and of groff's version.
-    yield from (f"{page}: {line}" for line in said.splitlines() if "cannot adjust line" not in line)
+    # Lines in a narrow table column that stay short are a matter of taste, and of groff's version; and where
+    # a page of paper ends matters to nobody who reads this on a terminal.
+    matters = (line for line in said.splitlines() if "cannot adjust line" not in line and "not fit on one page" not in line)
+    yield from (f"{page}: {line}" for line in matters)
 
 
 def main():

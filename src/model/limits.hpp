@@ -7,8 +7,8 @@ namespace tactor::detail {
 inline constexpr unsigned max_tactors = 16384;
 
 /// Channels that a PCM or a WAV file can have; a file that names a channel must stay below.
-/// Channels that only follow from the index may go on to max_tactors: such an array can be planned,
-/// if not played.
+/// Channels that only follow from the index may go on to max_tactors: such an array can be planned and
+/// rendered, if not played.
 inline constexpr unsigned max_channels = 1024;
 
 /// Coordinates and lengths beyond a kilometre are slips of the unit.

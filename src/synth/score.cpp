@@ -24,7 +24,7 @@ namespace {
 using synth::item;
 using synth::item_kind;
 
-constexpr unsigned most_channels = 1024;
+constexpr unsigned most_channels = 16384; // of an array; no PCM has so many
 constexpr double latest_start_s = 1e6;
 
 unsigned channels_of(const array& a, const render_options& o)

@@ -60,7 +60,14 @@ bench::tool_row measure(const std::string& what, const std::vector<std::string>&
 
 std::vector<bench::tool_row> bench::measure_tool()
 {
-    return {measure("--version", {"--version"}, 10), measure("plan park2016-1", {"plan", "park2016-1"}, 10),
-            measure("render park2016-1 -o /dev/null", {"render", "park2016-1", "-o", "/dev/null"}, 5),
-            measure("play park2016-1 -D null", {"play", "park2016-1", "-D", "null"}, 3)};
+    return {
+        measure("--version", {"--version"}, 10),
+        measure("plan park2016-1", {"plan", "park2016-1"}, 10),
+        measure("render park2016-1 -o /dev/null", {"render", "park2016-1", "-o", "/dev/null"}, 5),
+        measure("the same, an hour", {"render", "park2016-1", "--duration", "3600", "-o", "/dev/null"}, 3),
+        measure(
+            "the same, continuous",
+            {"render", "park2016-1", "--duration", "3600", "--algorithm", "continuous", "-o", "/dev/null"},
+            3),
+        measure("play park2016-1 -D null", {"play", "park2016-1", "-D", "null"}, 3)};
 }
