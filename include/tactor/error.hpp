@@ -13,11 +13,11 @@
 
 namespace tactor {
 
-/// What kind of failure it was; the command-line tool turns it into its exit status.
+/// What kind of failure it was.
 enum class errc {
-    bad_input = 1,     ///< wrong usage or bad input: exit status 2
-    runtime = 2,       ///< failed while running (disk full, stream broken): exit status 1
-    not_available = 3, ///< a device is missing, busy or cannot do what is asked: exit status 3
+    bad_input = 1,     ///< wrong usage or bad input
+    runtime = 2,       ///< failed while running (disk full, stream broken)
+    not_available = 3, ///< a device is missing, busy or cannot do what is asked
 };
 
 TACTOR_API const std::error_category& error_category() noexcept;

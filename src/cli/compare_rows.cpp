@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "cli/option_words.hpp"
+
 namespace tactor::cli {
 
 bool comparison::playable() const
@@ -31,7 +33,7 @@ comparison compare(const stroke& s, const array& a, const layout& faces, const p
             } catch (const error& e) {
                 if (e.kind() != errc::bad_input)
                     throw;
-                row.refused = e;
+                row.refused = in_options(e);
             }
             c.rows.push_back(std::move(row));
         }

@@ -10,6 +10,8 @@
 
 #include <tactor/error.hpp>
 
+#include "cli/option_words.hpp"
+
 namespace tactor::cli {
 
 enum class level { ok, warning, error };
@@ -32,8 +34,9 @@ inline finding warning(std::string check, std::string found, std::string cure)
     return {std::move(check), level::warning, std::move(found), std::move(cure)};
 }
 
-inline finding failure(std::string check, const error& e)
+inline finding failure(std::string check, const error& of_library)
 {
+    const error e = in_options(of_library);
     return {std::move(check), level::error, std::string(e.subject()) + ": " + std::string(e.why()),
             std::string(e.hint()), e.kind()};
 }

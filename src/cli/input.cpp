@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "cli/option_words.hpp"
 #include "cli/pipes.hpp"
 
 namespace tactor::cli {
@@ -178,7 +179,7 @@ piece plan_piece(const settings& s, const environment& e, const layout& faces, c
         } catch (const error& x) {
             if (p.strokes.size() == 1)
                 throw;
-            throw in_piece(x, argument, p.plans.size() + 1, k.name);
+            throw in_piece(in_options(x), argument, p.plans.size() + 1, k.name);
         }
     }
     return p;

@@ -21,6 +21,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/complete.hpp"
+#include "cli/option_words.hpp"
 #include "cli/say.hpp"
 #include "cli/usage.hpp"
 
@@ -123,7 +124,7 @@ int main(int argc, char** argv)
     try {
         return flushed(run(argc, argv));
     } catch (const tactor::error& e) {
-        say(stderr, "tactor: {}\n", e.what());
+        say(stderr, "tactor: {}\n", in_options(e).what());
         return status_of(e.kind());
     } catch (const std::system_error& e) { // of fmt::print
         if (e.code() == std::errc::broken_pipe)

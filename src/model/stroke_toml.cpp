@@ -160,7 +160,7 @@ std::vector<stroke> parse_strokes_toml(std::string_view text, const std::string&
     for (const char* key : {"array", "output", "defaults"})
         if (root.has(key))
             root.fail(key, "this is an array or configuration file, not a stroke",
-                      "use it with --array or --config");
+                      "give it as array = FILE or config = FILE");
     root.only({"stroke"});
     if (!root.has("stroke"))
         detail::fail_at({name, 0, 0}, "there is no stroke in it", "add [stroke] or [[stroke]]");

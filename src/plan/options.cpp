@@ -88,7 +88,7 @@ void check_options(const plan_options& o)
         return;
     const double longest = law_duration_s(o.profile, o.soa_s);
     if (!(o.min_duration_s > 0.0 && o.min_duration_s <= longest))
-        throw error(errc::bad_input, "--timing fit",
+        throw error(errc::bad_input, "timing = fit",
                     fmt::format("bursts of at least {} cannot be had: an SOA of {} gives {}",
                                 seconds_text(o.min_duration_s), seconds_text(o.soa_s), seconds_text(longest)),
                     "ask for a shorter least duration, above 0 s, or for a longer SOA");
@@ -97,7 +97,7 @@ void check_options(const plan_options& o)
 double check_carrier(double hz)
 {
     if (!(hz > 0.0 && std::isfinite(hz)))
-        throw error(errc::bad_input, "--carrier", fmt::format("{} Hz is not a frequency", hz),
+        throw error(errc::bad_input, "carrier_hz", fmt::format("{} Hz is not a frequency", hz),
                     "more than 0; 250 is usual");
     return hz;
 }
@@ -108,7 +108,7 @@ double burst_duration_s(const timing_profile& p, double soa_s)
 {
     detail::check_profile(p);
     if (!(soa_s > p.intercept_s && soa_s <= p.max_soa_s))
-        throw error(errc::bad_input, "--soa",
+        throw error(errc::bad_input, "soa_s",
                     fmt::format("{} s is out of bounds: an SOA is longer than {} s and at most {} s", soa_s,
                                 p.intercept_s, p.max_soa_s),
                     fmt::format("use {}", p.max_soa_s));
@@ -122,7 +122,7 @@ double burst_duration_s(const plan_options& o)
     detail::check_profile(o.profile);
     if (!(o.soa_s >= shortest_burst_s && o.soa_s <= longest_free_soa_s))
         throw error(
-            errc::bad_input, "--soa",
+            errc::bad_input, "soa_s",
             fmt::format("{} s is out of bounds: with a duration of its own for the burst an SOA is {} to "
                         "{} s",
                         o.soa_s, shortest_burst_s, longest_free_soa_s),

@@ -43,7 +43,7 @@ phantom_kind phantom_from_string(std::string_view name)
         std::find_if(kinds.begin(), kinds.end(), [&](phantom_kind k) { return to_string(k) == name; });
     if (it != kinds.end())
         return *it;
-    throw error(errc::bad_input, "--phantom", fmt::format("there is no model \"{}\"", name),
+    throw error(errc::bad_input, "phantom", fmt::format("there is no model \"{}\"", name),
                 "one of inverse-distance, barycentric, linear, log, gaussian");
 }
 

@@ -21,7 +21,7 @@ double level_db(const array& a, std::size_t i, const render_options& o)
             refuse_tactor(
                 a, i,
                 fmt::format("has no threshold_dbfs, but a sensation level of {} dB is asked for", *o.sl_db),
-                "measure its detection threshold, or use --level-dbfs");
+                "measure its detection threshold, or use level_dbfs");
         }
         return *t.threshold_dbfs + *o.sl_db;
     }
@@ -32,7 +32,7 @@ double level_db(const array& a, std::size_t i, const render_options& o)
             fmt::format(
                 "would be driven at {:.4g} dBFS, above full scale: gain_db = {} on a level of {} dBFS", level,
                 t.gain_db, o.level_dbfs),
-            fmt::format("lower gain_db, or --level-dbfs to {:.4g} or less", -t.gain_db));
+            fmt::format("lower gain_db, or level_dbfs to {:.4g} or less", -t.gain_db));
     }
     return level;
 }
@@ -57,11 +57,11 @@ double tactor_limit(const array& a, std::size_t i)
 std::vector<tactor_level> tactor_levels(const array& a, const render_options& o)
 {
     if (o.sl_db && !std::isfinite(*o.sl_db)) {
-        throw error(errc::bad_input, "--sl", fmt::format("{} is not a level", *o.sl_db),
+        throw error(errc::bad_input, "sl_db", fmt::format("{} is not a level", *o.sl_db),
                     "the paper uses 7 dB SL");
     }
     if (!o.sl_db && !(std::isfinite(o.level_dbfs) && o.level_dbfs <= 0.0)) {
-        throw error(errc::bad_input, "--level-dbfs",
+        throw error(errc::bad_input, "level_dbfs",
                     fmt::format("{} dBFS is not a level of 0 dBFS or less", o.level_dbfs),
                     "the default is -12");
     }

@@ -117,7 +117,7 @@ void check(const array& a, std::size_t i, double peak, const render_options& o)
         limited ? fmt::format("its limit of {:.4g} dBFS (max_dbfs)", limit_db) : "full scale (0 dBFS)";
     refuse_tactor(a, i, fmt::format("would be driven at {:.4g} dBFS, above {}", in_db(peak), limit),
                   fmt::format("lower {} by {:.2f} dB or more{}",
-                              o.sl_db ? "--sl" : "--level-dbfs or the tactor's gain_db", excess_db,
+                              o.sl_db ? "sl_db" : "level_dbfs or the tactor's gain_db", excess_db,
                               limited ? ", or raise max_dbfs" : ""));
 }
 

@@ -46,11 +46,11 @@ unsigned channels_of(const array& a, const render_options& o)
 void check_options(const render_options& o)
 {
     if (o.rate < 8000 || o.rate > 768000) {
-        throw error(errc::bad_input, "--rate", fmt::format("{} Hz cannot be rendered", o.rate),
+        throw error(errc::bad_input, "rate", fmt::format("{} Hz cannot be rendered", o.rate),
                     "use 8000 to 768000, e.g. 48000");
     }
     if (o.ramp_s && !(*o.ramp_s >= 0.0 && *o.ramp_s <= latest_start_s)) {
-        throw error(errc::bad_input, "--ramp", fmt::format("{} s is not a ramp", *o.ramp_s),
+        throw error(errc::bad_input, "ramp_s", fmt::format("{} s is not a ramp", *o.ramp_s),
                     "use 0 or more, e.g. 0.002");
     }
 }
@@ -97,7 +97,7 @@ void place_markers(score::impl& s, std::uint64_t length, unsigned channel)
 void check_carrier(double carrier_hz, unsigned rate)
 {
     if (!(carrier_hz > 0.0 && carrier_hz < 0.5 * rate)) {
-        throw error(errc::bad_input, "--carrier",
+        throw error(errc::bad_input, "carrier_hz",
                     fmt::format("{} Hz cannot be rendered at a rate of {} Hz", carrier_hz, rate),
                     fmt::format("use a carrier above 0 and below {} Hz, half the rate", 0.5 * rate));
     }

@@ -23,8 +23,8 @@ bool is_float(sample_format f)
 void check_format(sample_format f, unsigned channels)
 {
     if (f == sample_format::s24_4) {
-        throw error(errc::bad_input, "--sample-format",
-                    fmt::format("a WAV file cannot hold {}", to_string(f)), "use float, s16, s24 or s32");
+        throw error(errc::bad_input, "sample_format", fmt::format("a WAV file cannot hold {}", to_string(f)),
+                    "use float, s16, s24 or s32");
     }
     const std::size_t most = 0xFFFFU / bytes_of(f); // the header has two bytes for those of a frame
     if (channels > most) {

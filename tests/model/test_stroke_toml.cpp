@@ -206,9 +206,8 @@ TEST_CASE("files without a stroke")
     CHECK(whole("stroke = []\n").starts_with("w.toml:1:10: there is no stroke in it"));
     CHECK(whole("[strokes]\n") ==
           "w.toml:1:2: unknown key 'strokes' in a stroke file (did you mean 'stroke'?)");
-    CHECK(
-        whole("[array]\n") ==
-        "w.toml:1:1: this is an array or configuration file, not a stroke (use it with --array or --config)");
+    CHECK(whole("[array]\n") == "w.toml:1:1: this is an array or configuration file, not a stroke (give it "
+                                "as array = FILE or config = FILE)");
     CHECK(whole("stroke = 3\n") == "w.toml:1:10: stroke is 3 (give [[stroke]] entries)");
     CHECK(whole("[[stroke]]\npath = \"M 0 0 H 1\"\n[[stroke]]\npat = 1\n") ==
           "w.toml:4:1: unknown key 'pat' in [[stroke]] (did you mean 'path'?)");

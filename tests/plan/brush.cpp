@@ -150,7 +150,7 @@ TEST_CASE("a start or end off the grid is refused with the nearest point on it; 
     const std::string start = refusal(palm, along("M 3 8 L 20 20", 1.0), o);
     CHECK(start.find("starts at (3.000, 8.000) mm") != std::string::npos);
     CHECK(start.find("(0.000, 8.000) mm") != std::string::npos);
-    CHECK(start.find("--snap") != std::string::npos);
+    CHECK(start.find("snap = true") != std::string::npos);
     const std::string end = refusal(palm, along("M 0 20 L 33 12", 1.0), o);
     CHECK(end.find("ends at (33.000, 12.000) mm") != std::string::npos);
     CHECK(end.find("(40.000, 12.000) mm") != std::string::npos);

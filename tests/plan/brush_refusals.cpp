@@ -35,7 +35,7 @@ TEST_CASE("an impossible timing is refused with the shortest duration that works
         ++refused;
         const double shortest = number_after(why, "that works is ");
         CAPTURE(why);
-        REQUIRE(why.find("--drop-points") != std::string::npos);
+        REQUIRE(why.find("drop_points = true") != std::string::npos);
         REQUIRE(shortest > duration);
         REQUIRE(refusal(arm, at(shortest), o).empty());
         REQUIRE_FALSE(refusal(arm, at(shortest - 1e-6), o).empty());
@@ -108,7 +108,7 @@ TEST_CASE("what was dropped is reported")
     // Even both ends alone need the intercept of the law.
     const std::string why = refusal(palm, along("M 0 18 L 22 40", 0.04), o);
     CHECK(number_after(why, "that works is ") == doctest::Approx(0.0473));
-    CHECK(why.find("--drop-points") == std::string::npos);
+    CHECK(why.find("drop_points = true") == std::string::npos);
     CHECK(make_plan(palm, s, o).dropped.empty());
 }
 

@@ -96,7 +96,7 @@ TEST_CASE("a burst that cannot be is refused, with what can")
     o.burst_s = 0.05;
     for (const double s : {0.0, -1.0, 10.1, not_a_number, infinite}) {
         o.soa_s = s;
-        CHECK(refusal(palm, across(1.0), o).starts_with("--soa"));
+        CHECK(refusal(palm, across(1.0), o).starts_with("soa_s"));
     }
     o.burst_s.reset();
     CHECK(burst_duration_s(o = {}) == 0.07);
@@ -182,7 +182,7 @@ TEST_CASE("an SOA out of bounds is refused with both bounds")
         plan_options o;
         o.soa_s = soa;
         const std::string why = refusal(palm, across(1.0), o);
-        CHECK(why.starts_with("--soa: "));
+        CHECK(why.starts_with("soa_s: "));
         CHECK(why.find("0.0473") != std::string::npos);
         CHECK(why.find("0.07 ") != std::string::npos);
         CHECK_THROWS_AS(burst_duration_s({}, soa), error);

@@ -97,7 +97,7 @@ TEST_CASE("levels that cannot be are refused")
     render_options o;
     for (const double level : {0.1, 1e9, std::nan(""), HUGE_VAL, -HUGE_VAL}) {
         o.level_dbfs = level;
-        CHECK(holds(message([&] { score(row(2), {{one, {}}}, o); }), "--level-dbfs"));
+        CHECK(holds(message([&] { score(row(2), {{one, {}}}, o); }), "level_dbfs"));
     }
     array a = row(2);
     a.tactors[1].gain_db = 12.5;
@@ -184,8 +184,8 @@ TEST_CASE("options that cannot be rendered are refused")
     CHECK(holds(with([](auto& o, auto&, auto&) { o.rate = 768001; }), "768001"));
     CHECK(holds(with([](auto& o, auto&, auto&) { o.channels = 1; }), "too few"));
     CHECK(holds(with([](auto& o, auto&, auto&) { o.channels = 16385; }), "16385"));
-    CHECK(holds(with([](auto& o, auto&, auto&) { o.ramp_s = -0.001; }), "--ramp"));
-    CHECK(holds(with([](auto& o, auto&, auto&) { o.ramp_s = std::nan(""); }), "--ramp"));
+    CHECK(holds(with([](auto& o, auto&, auto&) { o.ramp_s = -0.001; }), "ramp_s"));
+    CHECK(holds(with([](auto& o, auto&, auto&) { o.ramp_s = std::nan(""); }), "ramp_s"));
     for (const double hz : {24000.0, 1e9, 0.0, -250.0, std::nan("")}) {
         CHECK(holds(with([hz](auto&, auto& p, auto&) { p.carrier_hz = hz; }), "48000 Hz"));
     }

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include "cli/option_words.hpp"
+
+#include <array>
+#include <string>
+#include <string_view>
+
+namespace tactor::cli {
+namespace {
+
+struct translation {
+    std::string_view field;
+    std::string_view option;
+};
+
+// What can only mean a field, in advice too.
+constexpr std::array<translation, 14> in_advice{{{"soa_s", "--soa"},
+                                                 {"burst_s", "--burst"},
+                                                 {"carrier_hz", "--carrier"},
+                                                 {"ramp_s", "--ramp"},
+                                                 {"sl_db", "--sl"},
+                                                 {"level_dbfs", "--level-dbfs"},
+                                                 {"sample_format", "--sample-format"},
+                                                 {"timing = ", "--timing "},
+                                                 {"outside = ", "--outside "},
+                                                 {"algorithm = ", "--algorithm "},
+                                                 {"snap = true", "--snap"},
+                                                 {"drop_points = true", "--drop-points"},
+                                                 {"array = FILE", "--array FILE"},
+                                                 {"config = FILE", "--config FILE"}}};
+
+// Words of every day.
+constexpr std::array<translation, 2> as_subject{{{"rate", "--rate"}, {"phantom", "--phantom"}}};
+
+bool in_a_word(char c)
+{
+    return c == '_' || c == '-' || c == '.' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') ||
+           (c >= 'A' && c <= 'Z');
+}
+
+std::string replaced(std::string text)
+{
+    for (const translation& t : in_advice) {
+        for (std::size_t at = text.find(t.field); at != std::string::npos; at = text.find(t.field, at + 1)) {
+            const std::size_t end = at + t.field.size();
+            const bool begins = at == 0 || !in_a_word(text[at - 1]);
+            const bool ends = t.field.back() == ' ' || end == text.size() || !in_a_word(text[end]);
+            if (begins && ends)
+                text.replace(at, t.field.size(), t.option);
+        }
+    }
+    return text;
+}
+
+std::string subject(std::string_view what)
+{
+    for (const translation& t : as_subject)
+        if (what == t.field)
+            return std::string(t.option);
+    // A file's name and its keys stay as they are.
+    for (const translation& t : in_advice)
+        if (what.substr(0, t.field.size()) == t.field)
+            return replaced(std::string(what));
+    return std::string(what);
+}
+
+} // namespace
+
+error in_options(const error& e)
+{
+    return {e.kind(), subject(e.subject()), e.why(), replaced(std::string(e.hint()))};
+}
+
+} // namespace tactor::cli
