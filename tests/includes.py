@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Holds the include directions: which room may know which, and which library only one room may know.
+"""Holds the include directions: which folder may know which, and which library only one folder may know.
 
 Usage: includes.py SOURCE_ROOT. Prints each include that breaks a rule, then counts.
 """
@@ -7,7 +7,7 @@ import pathlib
 import re
 import sys
 
-# A room may include itself and these.
+# A folder may include itself and these.
 MAY_INCLUDE = {
     "model": set(),
     "plan": {"model"},
@@ -21,7 +21,7 @@ MAY_INCLUDE = {
     "cli": {"plot"},
     "server": set(),
 }
-# The room that a public header belongs to; a room may use the public headers of the rooms it may include.
+# The folder that a public header belongs to; a folder may use the public headers of the folders it may include.
 PUBLIC = {
     "api": None, "error": None, "version": None, "words": None, "geometry": None, "tactor": "engine",
     "array": "model", "path": "model", "setup": "model", "stroke": "model",
@@ -44,7 +44,7 @@ ONLY_IN = {
     "cairo": ["src/plot/"],
     "nlohmann/": ["src/cli/", "src/server/"],
 }
-# Standard headers of threads and clocks that the pure rooms must not see.
+# Standard headers of threads and clocks that the pure folders must not see.
 PURE = {"model", "plan", "synth"}
 IMPURE = {"thread", "mutex", "condition_variable", "chrono", "atomic", "future", "poll.h", "unistd.h", "time.h"}
 
@@ -57,7 +57,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.M)
 def complaints(root, file):
     where = file.relative_to(root).as_posix()
     parts = where.split("/")
-    room = parts[1] if parts[0] == "src" and len(parts) > 2 else None
+    folder = parts[1] if parts[0] == "src" and len(parts) > 2 else None
     for header in INCLUDE.findall(file.read_text(encoding="utf-8")):
         for prefix, places in ONLY_IN.items():
             if header.startswith(prefix) and not any(where.startswith(p) for p in places):
@@ -65,22 +65,22 @@ def complaints(root, file):
         if parts[0] == "include" and not header.startswith("tactor/") and "/" in header \
                 and where != "include/tactor/asio.hpp":  # there for those who use Asio
             yield f"{where}: a public header includes {header}"
-        if room is None:
+        if folder is None:
             continue
-        if room in PURE and header in IMPURE - IMPURE_IN.get(where, set()):
-            yield f"{where}: {room} is pure and includes {header}"
+        if folder in PURE and header in IMPURE - IMPURE_IN.get(where, set()):
+            yield f"{where}: {folder} is pure and includes {header}"
         if header.startswith("tactor/"):
             name = header[len("tactor/"):-len(".hpp")]
             if name not in PUBLIC:
-                yield f"{where}: {header} belongs to no room (PUBLIC in tests/includes.py)"
+                yield f"{where}: {header} belongs to no folder (PUBLIC in tests/includes.py)"
                 continue
             owner = PUBLIC[name]
-            if owner and room not in USES_ALL_PUBLIC and owner != room and owner not in MAY_INCLUDE[room]:
-                yield f"{where}: {room} may not know {owner} ({header})"
+            if owner and folder not in USES_ALL_PUBLIC and owner != folder and owner not in MAY_INCLUDE[folder]:
+                yield f"{where}: {folder} may not know {owner} ({header})"
         elif header.split("/")[0] in MAY_INCLUDE and "/" in header:
             owner = header.split("/")[0]
-            if (root / "src" / header).exists() and owner != room and owner not in MAY_INCLUDE[room]:
-                yield f"{where}: {room} may not know {owner} ({header})"
+            if (root / "src" / header).exists() and owner != folder and owner not in MAY_INCLUDE[folder]:
+                yield f"{where}: {folder} may not know {owner} ({header})"
 
 
 def main():

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The room's public functions, but for the list of chips.
+// The public functions of this folder, but for the list of chips.
 #include <tactor/gpio.hpp>
 
 #include <array>

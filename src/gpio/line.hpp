@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What the room needs of libgpiod, whichever version: line_v1.cpp or line_v2.cpp, chosen by Meson.
+/// What this folder needs of libgpiod, whichever version: line_v1.cpp or line_v2.cpp, chosen by Meson.
 #pragma once
 
 #include <memory>
