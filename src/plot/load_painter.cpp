@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // to_png() and to_pdf() of the tool: by the module, which is loaded when the first picture needs it.
 #include <array>
+#include <filesystem>
 #include <string>
+#include <system_error>
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -14,18 +16,29 @@
 namespace tactor::plot {
 namespace {
 
-// Beside the tool, where Meson installs it or built it, and nowhere else: the environment has no say.
+// From the tool's folder: where Meson installs it or built it, and nowhere else. The environment has no say.
 constexpr std::array places{TACTOR_PAINTER_INSTALLED, TACTOR_PAINTER_BUILT};
+
+// Not by $ORIGIN, which a sanitizer's dlopen() takes for its own.
+std::filesystem::path own_folder()
+{
+    std::error_code none;
+    return std::filesystem::read_symlink("/proc/self/exe", none).parent_path();
+}
 
 // It stays loaded: fonts and libraries below it keep what they have begun.
 const painter_module& load()
 {
-    std::string why;
+    const std::filesystem::path folder = own_folder();
+    std::string why = folder.empty() ? "/proc/self/exe, which says where the tool is, cannot be read" : "";
     for (const char* place : places) {
-        void* const module = dlopen(place, RTLD_NOW | RTLD_LOCAL);
+        if (folder.empty())
+            break;
+        const std::string file = (folder / place).lexically_normal().string();
+        void* const module = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
         if (module == nullptr) {
             const char* const said = dlerror();
-            why += fmt::format("{}{}", why.empty() ? "" : "; ", said != nullptr ? said : place);
+            why += fmt::format("{}{}", why.empty() ? "" : "; ", said != nullptr ? said : file);
             continue;
         }
         if (const void* entry = dlsym(module, "tactor_painter"))
