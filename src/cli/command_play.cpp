@@ -15,13 +15,12 @@
 namespace tactor::cli {
 namespace {
 
-std::vector<score> make_scores(const std::vector<piece>& pieces, const environment& e,
-                               const render_options& render)
+std::vector<score> make_scores(std::vector<piece>& pieces, const environment& e, const render_options& render)
 {
     std::vector<score> scores;
-    for (const piece& p : pieces) {
-        scores.push_back(make_score(p, e, render));
-        for (const placed_plan& q : p.plans)
+    for (piece& p : pieces) {
+        scores.push_back(take_score(p, e, render));
+        for (const placed_plan& q : scores.back().plans())
             for (const std::string& w : q.schedule.warnings)
                 say(stderr, "tactor: warning: {}\n", w);
     }
@@ -96,7 +95,7 @@ std::optional<broken_off> play_all(play_session& session, const play_options& o,
 int play(settings& s, option_list& options, const play_options& o)
 {
     const environment e = read_environment(s, options);
-    const auto pieces = plan_pieces(s, e);
+    auto pieces = plan_pieces(s, e);
     const auto scores = make_scores(pieces, e, settle_render(s, e));
     if (!names_device(s, e))
         say(stderr, "tactor: no device is configured: playing to \"null\", which nobody feels (-D PCM plays "

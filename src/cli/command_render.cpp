@@ -105,10 +105,10 @@ int render(settings& s, option_list& options, const std::string& name)
 {
     const fs::path file = checked_output(name); // before the work
     const environment e = read_environment(s, options);
-    const piece p = plan_one_piece(s, e);
-    const score sc = make_score(p, e, settle_render(s, e));
+    piece p = plan_one_piece(s, e);
+    const score sc = take_score(p, e, settle_render(s, e));
     const sample_format format = s.format.value_or(sample_format::float32);
-    for (const placed_plan& q : p.plans)
+    for (const placed_plan& q : sc.plans())
         for (const std::string& w : q.schedule.warnings)
             say(stderr, "tactor: warning: {}\n", w);
     tell_of_pipe_to_write(file.string());

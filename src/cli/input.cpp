@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -225,6 +226,11 @@ piece read_one_piece(const settings& s)
 piece plan_one_piece(const settings& s, const environment& e)
 {
     return plan_piece(s, e, layout(e.tactors), only_argument(s));
+}
+
+score take_score(piece& p, const environment& e, const render_options& render)
+{
+    return score(e.tactors, std::move(p.plans), render);
 }
 
 score make_score(const piece& p, const environment& e, const render_options& render)

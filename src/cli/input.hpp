@@ -40,7 +40,11 @@ piece read_one_piece(const settings& s);
 /// Reads and plans where only one STROKE is taken.
 piece plan_one_piece(const settings& s, const environment& e);
 
-/// The score of a piece with `render.rate` and channels settled. \throws error.
+/// The score of a piece with `render.rate` and channels settled; the plans go with it, so that there is one
+/// of each. \throws error.
+score take_score(piece& p, const environment& e, const render_options& render);
+
+/// The same of a piece that keeps its plans.
 score make_score(const piece& p, const environment& e, const render_options& render);
 
 /// Rate and channel count from the options, the configuration, then the defaults.

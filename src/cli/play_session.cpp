@@ -123,7 +123,7 @@ stroke_report play_session::play(const piece& p, const score& s)
         if (where.stroke == id)
             t = static_cast<double>(where.stroke_frame) / s.rate();
         if (picture.active())
-            picture.draw(at_time(p.plans, starts, environment_.tactors.tactors.size(), t), t, total);
+            picture.draw(at_time(s.plans(), starts, environment_.tactors.tactors.size(), t), t, total);
         const bool go_on = sleep(ended_.descriptor(), picture.active() ? frame_ms : -1);
         ended_.clear();
         if (!go_on) {

@@ -18,6 +18,7 @@ struct job {
     const stroke& motion;
     const plan_options& options;
     std::shared_ptr<const phantom_model> model;
+    mutable std::vector<drive> room = {}; ///< for the drives of a burst, until their number is known
 
     /// For messages: stroke "name".
     std::string name() const;

@@ -83,8 +83,9 @@ void expander::burst_event() noexcept
     }
     stretch(position_, std::min(item_->end() - position_, longest_event));
     for (; next_ < item_->count && event_.drives < drives_per_event; ++next_) {
-        const item_drive& d = score_->list.drives[item_->first + next_];
-        add(d.tactor, d.amplitude, d.amplitude);
+        const item_list& list = score_->list;
+        const double amplitude = list.drive_amplitudes[item_->first + next_];
+        add(list.drive_tactors[item_->first + next_], amplitude, amplitude);
     }
 }
 

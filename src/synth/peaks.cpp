@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -19,49 +21,89 @@ namespace {
 
 /// At a frame, a tactor's possible amplitude changes.
 struct change {
-    std::size_t tactor;
     std::uint64_t frame;
     double by;
+    std::size_t tactor;
+
+    /// Of two changes of a tactor at one frame the one downwards comes first.
+    bool operator>(const change& c) const { return std::tie(frame, by) > std::tie(c.frame, c.by); }
+};
+
+/// The greatest amplitude of each tactor, summed over what may sound at once. Items arrive by start, so that
+/// only the changes of those that sound are kept.
+class sweep {
+public:
+    explicit sweep(std::size_t tactors) : sums_(tactors), peaks_(tactors) {}
+
+    /// The last frame does not count: of two bursts that touch, rounding may put the end of one into the
+    /// first frame of the other.
+    void note(std::size_t tactor, const item& it, double peak)
+    {
+        if (peak > 0.0 && it.length > 1) {
+            pass(it.start);
+            add({it.start, peak, tactor});
+            add({it.end() - 1, -peak, tactor});
+        }
+    }
+
+    const std::vector<double>& peaks()
+    {
+        pass(UINT64_MAX);
+        return peaks_;
+    }
+
+private:
+    void add(const change& c)
+    {
+        heap_.push_back(c);
+        std::push_heap(heap_.begin(), heap_.end(), std::greater<>{});
+    }
+
+    /// Takes what changes before a frame.
+    void pass(std::uint64_t frame)
+    {
+        while (!heap_.empty() && heap_.front().frame < frame) {
+            const change c = heap_.front();
+            std::pop_heap(heap_.begin(), heap_.end(), std::greater<>{});
+            heap_.pop_back();
+            sums_[c.tactor] += c.by;
+            peaks_[c.tactor] = std::max(peaks_[c.tactor], sums_[c.tactor]);
+        }
+    }
+
+    std::vector<change> heap_;
+    std::vector<double> sums_;  // by tactor
+    std::vector<double> peaks_; // by tactor
 };
 
 /// What a continuous item asks of each tactor.
 using continuous_peaks_of = std::function<const std::vector<double>&(std::size_t number)>;
 
-/// The last frame does not count: of two bursts that touch, rounding may put the end of one into the first
-/// frame of the other.
-void note(std::vector<change>& changes, std::size_t tactor, const item& it, double peak)
+double joined_peak(const score::impl& s, std::size_t number)
 {
-    if (peak > 0.0 && it.length > 1) {
-        changes.push_back({tactor, it.start, peak});
-        changes.push_back({tactor, it.end() - 1, -peak});
-    }
-}
-
-void note_joined(const score::impl& s, std::size_t number, std::vector<change>& changes)
-{
-    const item& it = s.list.items[number];
     double peak = 0.0;
     expander e;
     for (e.begin(s, number, nullptr); !e.done(); e.advance()) {
         const channel_drive& d = e.event().drive[0];
         peak = std::max({peak, std::abs(d.from), std::abs(d.to)});
     }
-    note(changes, it.tactor, it, peak);
+    return peak;
 }
 
-std::vector<change> changes_of(const score::impl& s, const continuous_peaks_of& continuous)
+std::vector<double> peaks_of(const score::impl& s, const continuous_peaks_of& continuous)
 {
-    std::vector<change> changes;
-    for (std::size_t i = 0; i < s.list.items.size(); ++i) {
-        const item& it = s.list.items[i];
+    sweep all(s.tactors.size());
+    const item_list& list = s.list;
+    for (std::size_t i = 0; i < list.items.size(); ++i) {
+        const item& it = list.items[i];
         switch (it.kind) {
         case item_kind::joined:
-            note_joined(s, i, changes);
+            all.note(it.tactor, it, joined_peak(s, i));
             break;
         case item_kind::continuous: {
             const std::vector<double>& peaks = continuous(i);
             for (std::size_t k = 0; k < peaks.size(); ++k) {
-                note(changes, k, it, peaks[k]);
+                all.note(k, it, peaks[k]);
             }
             break;
         }
@@ -69,35 +111,13 @@ std::vector<change> changes_of(const score::impl& s, const continuous_peaks_of& 
             break;
         case item_kind::burst:
             for (std::size_t k = it.first; k < it.first + it.count; ++k) {
-                const item_drive& d = s.list.drives[k];
-                note(changes, d.tactor, it, std::abs(d.amplitude * s.tactors[d.tactor].gain));
+                const std::size_t tactor = list.drive_tactors[k];
+                all.note(tactor, it, std::abs(list.drive_amplitudes[k] * s.tactors[tactor].gain));
             }
             break;
         }
     }
-    return changes;
-}
-
-/// Calls found(tactor, greatest sum) for each tactor that plays, until it gives false.
-template <class Found>
-bool sum_up(std::vector<change> changes, Found found)
-{
-    std::sort(changes.begin(), changes.end(), [](const change& x, const change& y) {
-        return std::tie(x.tactor, x.frame, x.by) < std::tie(y.tactor, y.frame, y.by);
-    });
-    for (std::size_t i = 0; i < changes.size();) {
-        const std::size_t tactor = changes[i].tactor;
-        double sum = 0.0;
-        double peak = 0.0;
-        for (; i < changes.size() && changes[i].tactor == tactor; ++i) {
-            sum += changes[i].by;
-            peak = std::max(peak, sum);
-        }
-        if (!found(tactor, peak)) {
-            return false;
-        }
-    }
-    return true;
+    return all.peaks();
 }
 
 double in_db(double amplitude)
@@ -126,19 +146,25 @@ void check(const array& a, std::size_t i, double peak, const render_options& o)
 void check_peaks(const score::impl& s, const array& a, const render_options& o)
 {
     continuous_items continuous(s, a);
+    const auto within = [&](const std::vector<double>& peaks) {
+        for (std::size_t i = 0; i < peaks.size(); ++i) {
+            if (!(peaks[i] <= tactor_limit(a, i))) {
+                return false;
+            }
+        }
+        return true;
+    };
     // Nearly always the intensities say that all is well, and hours need not be looked through.
     if (continuous.have_bounds() &&
-        sum_up(changes_of(
-                   s, [&](std::size_t i) -> const auto& { return continuous.bounds(i); }),
-               [&](std::size_t tactor, double peak) { return peak <= tactor_limit(a, tactor); })) {
+        within(peaks_of(
+            s, [&](std::size_t i) -> const auto& { return continuous.bounds(i); }))) {
         return;
     }
-    sum_up(changes_of(
-               s, [&](std::size_t i) -> const auto& { return continuous.peaks(i); }),
-           [&](std::size_t tactor, double peak) {
-               check(a, tactor, peak, o);
-               return true;
-           });
+    const std::vector<double> peaks = peaks_of(
+        s, [&](std::size_t i) -> const auto& { return continuous.peaks(i); });
+    for (std::size_t i = 0; i < peaks.size(); ++i) {
+        check(a, i, peaks[i], o);
+    }
 }
 
 } // namespace tactor::synth

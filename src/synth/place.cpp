@@ -3,6 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <tuple>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -16,15 +20,6 @@ namespace tactor::synth {
 namespace {
 
 constexpr double longest_plan_s = 1e6;
-
-/// One drive of one burst: what has to be looked at for overlaps.
-struct use {
-    std::uint32_t tactor;
-    double from_s;
-    double to_s;
-    std::size_t burst;
-    item_member member;
-};
 
 [[noreturn]] void refuse(std::size_t number, const std::string& why)
 {
@@ -50,107 +45,219 @@ void check(const burst& b, std::size_t number, std::size_t tactors)
     }
 }
 
-/// All drives by tactor, then by start.
-std::vector<use> uses_of(const plan& p, std::uint64_t start, std::size_t tactors, const render_options& o)
+/// When a burst sounds.
+struct stretch {
+    double from_s;
+    double to_s;
+    std::uint64_t from; ///< frame of the plan
+    std::uint64_t to;
+};
+
+stretch stretch_of(const burst& b, unsigned rate)
 {
-    std::vector<use> uses;
-    for (std::size_t i = 0; i < p.bursts.size(); ++i) {
-        const burst& b = p.bursts[i];
-        check(b, i, tactors);
-        const double end_s = b.onset_s + b.duration_s;
-        const std::uint64_t from = frame_at(b.onset_s, o.rate);
-        const std::uint64_t length = frame_at(end_s, o.rate) - from;
-        const std::uint32_t ramp =
-            ramp_frames(burst_ramp_s(b.onset_s, b.duration_s, p.carrier_hz, o), o.rate, length);
-        for (const drive& d : b.drives) {
-            if (length > 0) {
-                uses.push_back(
-                    {d.tactor, b.onset_s, end_s, i, {start + from, length, ramp, d.amplitude, b.intensity}});
+    const double to_s = b.onset_s + b.duration_s;
+    return {b.onset_s, to_s, frame_at(b.onset_s, rate), frame_at(to_s, rate)};
+}
+
+/// The latest bursts of one tactor of which each overlaps with one before it. They arrive by start.
+class run {
+public:
+    /// Whether the burst goes on with the run; if not, another one begins with it.
+    bool takes(const stretch& s)
+    {
+        constexpr double touch_s = 1e-9;
+        const bool goes_on = s.from < end_ && s.from_s < end_s_ - touch_s;
+        end_ = goes_on ? std::max(end_, s.to) : s.to;
+        end_s_ = goes_on ? std::max(end_s_, s.to_s) : s.to_s;
+        return goes_on;
+    }
+
+private:
+    std::uint64_t end_ = 0;
+    double end_s_ = 0.0;
+};
+
+/// A plan's bursts by start.
+class bursts_by_start {
+public:
+    bursts_by_start(const plan& p, unsigned rate) : plan_(p), rate_(rate)
+    {
+        const auto earlier = [](const burst& a, const burst& b) { return a.onset_s < b.onset_s; };
+        if (std::is_sorted(p.bursts.begin(), p.bursts.end(), earlier)) {
+            return; // as planners leave them
+        }
+        order_.resize(p.bursts.size());
+        std::iota(order_.begin(), order_.end(), std::size_t{0});
+        std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
+            return frame_at(p.bursts[a].onset_s, rate) < frame_at(p.bursts[b].onset_s, rate);
+        });
+    }
+
+    /// Calls f(burst, stretch) for each that sounds in at least one frame.
+    template <class F>
+    void for_each(F f) const
+    {
+        for (std::size_t i = 0; i < plan_.bursts.size(); ++i) {
+            const burst& b = plan_.bursts[order_.empty() ? i : order_[i]];
+            const stretch s = stretch_of(b, rate_);
+            if (s.to > s.from) {
+                f(b, s);
             }
         }
     }
-    std::stable_sort(uses.begin(), uses.end(), [](const use& a, const use& b) {
-        return a.tactor != b.tactor ? a.tactor < b.tactor : a.member.start < b.member.start;
-    });
-    return uses;
-}
 
-/// End of the run of uses from i on that overlap with one before them on the same tactor.
-std::size_t run_end(const std::vector<use>& uses, std::size_t i)
-{
-    constexpr double touch_s = 1e-9;
-    std::uint64_t end = uses[i].member.end();
-    double end_s = uses[i].to_s;
-    std::size_t next = i + 1;
-    for (; next < uses.size() && uses[next].tactor == uses[i].tactor; ++next) {
-        if (uses[next].member.start >= end || uses[next].from_s >= end_s - touch_s) {
-            break;
+private:
+    const plan& plan_;
+    unsigned rate_;
+    std::vector<std::size_t> order_; // empty: as they are
+};
+
+/// Places the bursts of one plan. What sounds by itself is put there at once; a bit for each drive says
+/// which do, so that nothing else grows with the plan.
+class placer {
+public:
+    placer(const plan& p, std::uint32_t number, std::uint64_t start, std::size_t tactors,
+           const render_options& o, item_list& out)
+        : plan_(p),
+          number_(number),
+          start_(start),
+          tactors_(tactors),
+          options_(o),
+          out_(out),
+          bursts_(p, o.rate)
+    {
+    }
+
+    /// Returns the frame at which they end.
+    std::uint64_t place()
+    {
+        find_joined();
+        if (any_joined_) {
+            append_joined();
         }
-        end = std::max(end, uses[next].member.end());
-        end_s = std::max(end_s, uses[next].to_s);
+        append_bursts();
+        return end_;
     }
-    return next;
-}
 
-void append_joined(const std::vector<use>& uses, std::size_t from, std::size_t to, std::uint32_t plan,
-                   item_list& out)
-{
-    item it;
-    it.kind = item_kind::joined;
-    it.plan = plan;
-    it.tactor = uses[from].tactor;
-    it.start = uses[from].member.start;
-    it.first = out.members.size();
-    it.count = to - from;
-    for (std::size_t i = from; i < to; ++i) {
-        out.members.push_back(uses[i].member);
-        it.length = std::max(it.length, uses[i].member.end() - it.start);
+private:
+    void find_joined()
+    {
+        std::vector<run> runs(tactors_);
+        std::vector<std::size_t> latest(tactors_); // drive of each tactor
+        bursts_.for_each([&](const burst& b, const stretch& s) {
+            end_ = std::max(end_, start_ + s.to);
+            for (const drive& d : b.drives) {
+                const bool goes_on = runs[d.tactor].takes(s);
+                if (goes_on) {
+                    joined_[latest[d.tactor]] = true;
+                    any_joined_ = true;
+                }
+                latest[d.tactor] = joined_.size();
+                joined_.push_back(goes_on);
+            }
+        });
     }
-    out.items.push_back(it);
-}
 
-/// The drives that are in no group, burst by burst.
-void append_bursts(std::vector<use>& single, std::uint32_t plan, item_list& out)
-{
-    std::stable_sort(single.begin(), single.end(),
-                     [](const use& a, const use& b) { return a.burst < b.burst; });
-    for (std::size_t i = 0; i < single.size();) {
-        const item_member& m = single[i].member;
+    /// Items of bursts that overlap on a tactor, by start and then by tactor.
+    void append_joined()
+    {
+        std::vector<run> runs(tactors_);
+        std::vector<std::vector<item_member>> members(tactors_); // of the latest run
+        const std::size_t before = out_.items.size();
+        std::size_t number = 0;
+        bursts_.for_each([&](const burst& b, const stretch& s) {
+            for (const drive& d : b.drives) {
+                const bool goes_on = runs[d.tactor].takes(s);
+                if (!joined_[number++]) {
+                    continue;
+                }
+                if (!goes_on) {
+                    join(d.tactor, members[d.tactor]);
+                }
+                members[d.tactor].push_back(
+                    {start_ + s.from, s.to - s.from, ramp(b, s), d.amplitude, b.intensity});
+            }
+        });
+        for (std::size_t i = 0; i < tactors_; ++i) {
+            join(i, members[i]);
+        }
+        std::stable_sort(out_.items.begin() + static_cast<std::ptrdiff_t>(before), out_.items.end(),
+                         [](const item& a, const item& b) {
+                             return std::tie(a.start, a.tactor) < std::tie(b.start, b.tactor);
+                         });
+    }
+
+    void join(std::size_t tactor, std::vector<item_member>& members)
+    {
+        if (members.empty()) {
+            return;
+        }
         item it;
-        it.start = m.start;
-        it.length = m.length;
-        it.ramp = m.ramp;
-        it.plan = plan;
-        it.first = out.drives.size();
-        const std::size_t number = single[i].burst;
-        for (; i < single.size() && single[i].burst == number; ++i) {
-            out.drives.push_back({single[i].tactor, single[i].member.amplitude});
+        it.kind = item_kind::joined;
+        it.plan = number_;
+        it.tactor = static_cast<std::uint16_t>(tactor);
+        it.start = members.front().start;
+        it.first = out_.members.size();
+        it.count = static_cast<std::uint32_t>(members.size());
+        for (const item_member& m : members) {
+            it.length = std::max(it.length, m.end() - it.start);
         }
-        it.count = out.drives.size() - it.first;
-        out.items.push_back(it);
+        out_.members.insert(out_.members.end(), members.begin(), members.end());
+        out_.items.push_back(it);
+        members.clear();
     }
-}
 
-std::uint64_t place_bursts(const plan& p, std::uint32_t plan, std::uint64_t start, std::size_t tactors,
-                           const render_options& o, item_list& out)
-{
-    const std::vector<use> uses = uses_of(p, start, tactors, o);
-    std::vector<use> single;
-    std::uint64_t end = start;
-    for (std::size_t i = 0; i < uses.size();) {
-        const std::size_t next = run_end(uses, i);
-        if (next - i > 1) {
-            append_joined(uses, i, next, plan, out);
-        } else {
-            single.push_back(uses[i]);
-        }
-        for (; i < next; ++i) {
-            end = std::max(end, uses[i].member.end());
-        }
+    /// The drives that are in no run, burst by burst, in order of tactor.
+    void append_bursts()
+    {
+        std::vector<drive> single;
+        std::size_t number = 0;
+        bursts_.for_each([&](const burst& b, const stretch& s) {
+            single.clear();
+            for (const drive& d : b.drives) {
+                if (!joined_[number++]) {
+                    single.push_back(d);
+                }
+            }
+            if (single.empty()) {
+                return;
+            }
+            const auto lower = [](const drive& x, const drive& y) { return x.tactor < y.tactor; };
+            if (!std::is_sorted(single.begin(), single.end(), lower)) {
+                std::stable_sort(single.begin(), single.end(), lower);
+            }
+            item it;
+            it.start = start_ + s.from;
+            it.length = s.to - s.from;
+            it.ramp = ramp(b, s);
+            it.plan = number_;
+            it.first = out_.drive_tactors.size();
+            it.count = static_cast<std::uint32_t>(single.size());
+            for (const drive& d : single) {
+                out_.drive_tactors.push_back(static_cast<std::uint16_t>(d.tactor));
+                out_.drive_amplitudes.push_back(d.amplitude);
+            }
+            out_.items.push_back(it);
+        });
     }
-    append_bursts(single, plan, out);
-    return end;
-}
+
+    std::uint32_t ramp(const burst& b, const stretch& s) const
+    {
+        return ramp_frames(burst_ramp_s(b.onset_s, b.duration_s, plan_.carrier_hz, options_), options_.rate,
+                           s.to - s.from);
+    }
+
+    const plan& plan_;
+    std::uint32_t number_;
+    std::uint64_t start_;
+    std::size_t tactors_;
+    const render_options& options_;
+    item_list& out_;
+    bursts_by_start bursts_;
+    std::uint64_t end_ = start_;
+    std::vector<bool> joined_; // by drive, in order of bursts_
+    bool any_joined_ = false;
+};
 
 } // namespace
 
@@ -165,7 +272,10 @@ std::uint64_t place_plan(const plan& p, std::uint32_t plan, std::uint64_t start,
     }
     const std::uint64_t total = start + frame_at(p.total_s, o.rate);
     if (!p.at) {
-        return std::max(total, place_bursts(p, plan, start, tactors, o, out));
+        for (std::size_t i = 0; i < p.bursts.size(); ++i) {
+            check(p.bursts[i], i, tactors);
+        }
+        return std::max(total, placer(p, plan, start, tactors, o, out).place());
     }
     item it;
     it.kind = item_kind::continuous;

@@ -87,7 +87,7 @@ void place_markers(score::impl& s, std::uint64_t length, unsigned channel)
         it.start = s.starts[i];
         it.length = std::min(std::max<std::uint64_t>(length, 1), s.frames - std::min(it.start, s.frames));
         it.plan = static_cast<std::uint32_t>(i);
-        it.tactor = channel;
+        it.tactor = static_cast<std::uint16_t>(channel);
         if (it.length > 0) {
             s.list.items.push_back(it);
         }
@@ -168,6 +168,22 @@ void measure(score::impl& s)
     });
 }
 
+/// Exact where no bursts overlap, so that vectors need not grow by doubling.
+void reserve(score::impl& s)
+{
+    std::size_t bursts = 0;
+    std::size_t drives = 0;
+    for (const placed_plan& p : s.plans) {
+        bursts += p.schedule.bursts.size() + (p.schedule.at ? 1 : 0);
+        for (const burst& b : p.schedule.bursts) {
+            drives += b.drives.size();
+        }
+    }
+    s.list.items.reserve(bursts);
+    s.list.drive_tactors.reserve(drives);
+    s.list.drive_amplitudes.reserve(drives);
+}
+
 std::shared_ptr<const score::impl> make_score(const array& a, std::vector<placed_plan> plans,
                                               const render_options& o)
 {
@@ -184,6 +200,7 @@ std::shared_ptr<const score::impl> make_score(const array& a, std::vector<placed
     s->tactors = synth::tactor_levels(a, o);
     s->limits = synth::channel_limits(a, s->channels);
     s->plans = std::move(plans);
+    reserve(*s);
     std::uint64_t end = 0;
     for (const placed_plan& p : s->plans) {
         check_carrier(p.schedule.carrier_hz, o.rate);
@@ -198,8 +215,11 @@ std::shared_ptr<const score::impl> make_score(const array& a, std::vector<placed
         place_markers(*s, synth::frame_at(o.marker_s, o.rate), *o.marker_channel);
     }
     s->guards = o.limits;
-    std::stable_sort(s->list.items.begin(), s->list.items.end(),
-                     [](const item& x, const item& y) { return x.start < y.start; });
+    const auto earlier = [](const item& x, const item& y) { return x.start < y.start; };
+    // Mostly they are in order; sorting needs room for half of them again.
+    if (!std::is_sorted(s->list.items.begin(), s->list.items.end(), earlier)) {
+        std::stable_sort(s->list.items.begin(), s->list.items.end(), earlier);
+    }
     synth::check_peaks(*s, a, o);
     measure(*s);
     return s;

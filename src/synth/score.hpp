@@ -16,12 +16,6 @@ struct tactor_level {
     double gain = 0.0; ///< linear peak for amplitude 1, polarity included
 };
 
-/// A tactor's part in a burst: amplitude 1 is the intensity asked for.
-struct item_drive {
-    std::uint32_t tactor = 0;
-    double amplitude = 0.0;
-};
-
 /// A burst's part in a group of bursts that overlap on one tactor.
 struct item_member {
     std::uint64_t start = 0;
@@ -39,23 +33,26 @@ enum class item_kind : std::uint8_t {
     marker,     ///< a stroke's beginning, on a channel without a tactor
 };
 
-/// A stretch of one carrier. Frames of the score.
+/// A stretch of one carrier. Frames of the score. Ten hours are half a million of them: no byte is idle.
 struct item {
     std::uint64_t start = 0;
     std::uint64_t length = 0;
+    std::uint64_t first = 0; ///< of its drives (burst) or members (joined)
+    std::uint32_t count = 0;
     std::uint32_t plan = 0;
     std::uint32_t ramp = 0;
+    std::uint16_t tactor = 0; ///< of a joined one; of a marker, the channel
     item_kind kind = item_kind::burst;
-    std::uint32_t tactor = 0; ///< of a joined one; of a marker, the channel
-    std::size_t first = 0;    ///< of its drives (burst) or members (joined)
-    std::size_t count = 0;
     std::uint64_t end() const noexcept { return start + length; }
 };
+static_assert(sizeof(item) == 40);
 
 /// All items of a score by start, and what they refer to.
 struct item_list {
     std::vector<item> items;
-    std::vector<item_drive> drives;
+    // The drives of bursts: amplitude 1 is the intensity asked for. Two vectors, for one would be padded.
+    std::vector<std::uint16_t> drive_tactors;
+    std::vector<double> drive_amplitudes;
     std::vector<item_member> members;
 };
 

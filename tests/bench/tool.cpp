@@ -65,8 +65,9 @@ std::vector<bench::tool_row> bench::measure_tool()
         measure("plan park2016-1", {"plan", "park2016-1"}, 10),
         measure("render park2016-1 -o /dev/null", {"render", "park2016-1", "-o", "/dev/null"}, 5),
         measure("the same, an hour", {"render", "park2016-1", "--duration", "3600", "-o", "/dev/null"}, 3),
+        measure("ten hours", {"render", "park2016-1", "--duration", "36000", "-o", "/dev/null"}, 1),
         measure(
-            "the same, continuous",
+            "an hour, continuous",
             {"render", "park2016-1", "--duration", "3600", "--algorithm", "continuous", "-o", "/dev/null"},
             3),
         measure("play park2016-1 -D null", {"play", "park2016-1", "-D", "null"}, 3)};
