@@ -25,7 +25,7 @@ MAY_INCLUDE = {
 PUBLIC = {
     "api": None, "error": None, "version": None, "words": None, "geometry": None, "tactor": "engine",
     "array": "model", "path": "model", "setup": "model", "stroke": "model",
-    "phantom": "plan", "plan": "plan", "percept": "plan",
+    "phantom": "plan", "plan": "plan", "percept": "plan", "fit": "plan",
     "render": "synth", "sample_format": None, "wav": "wav", "output_file": "wav",
     "gpio": "gpio", "realtime": "rt", "sink": None, "alsa": "alsa", "devices": "alsa", "player": "engine", "live": "engine",
     "asio": "engine",

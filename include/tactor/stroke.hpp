@@ -88,9 +88,12 @@ struct stroke {
     std::string note = {};
     /// What was odd about the input and taken nevertheless; make_plan() hands it on to plan::warnings.
     std::vector<std::string> warnings = {};
+    /// The speed from which the motion's time follows; none where a time is given. fit_strokes() keeps it.
+    std::optional<double> speed_mm_s = {};
 };
 
-/// Names of the built-in strokes, "park2016-1" ... "park2016-4".
+/// Names of the built-in strokes: "park2016-1" ... "park2016-4" for palm-3x3, "wave-2x4" and "round-2x4" for
+/// palm-2x4.
 TACTOR_API const std::vector<std::string>& stroke_presets();
 
 /// A built-in stroke by name. \throws error (bad_input) that lists the presets.

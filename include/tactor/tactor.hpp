@@ -7,6 +7,7 @@
 #include <tactor/array.hpp>
 #include <tactor/devices.hpp>
 #include <tactor/error.hpp>
+#include <tactor/fit.hpp>
 #include <tactor/geometry.hpp>
 #include <tactor/gpio.hpp>
 #include <tactor/live.hpp>

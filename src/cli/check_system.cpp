@@ -18,7 +18,8 @@ bool among(const std::vector<std::string>& names, const std::string& name)
 std::string how_to_join(const system_facts& f, const std::string& group)
 {
     if (group == "root")
-        return "the device is root's alone: install the udev rules, or run as root";
+        return "the device is root's alone: install the udev rules (tactor-raspberry-pi(7) says how), or run "
+               "as root";
     if (among(f.joined, group) && !among(f.own.groups, group))
         return fmt::format("{} is in the group {} already: log out and in again", f.own.user, group);
     return fmt::format("sudo usermod -aG {} $USER, then log out and in again", group);

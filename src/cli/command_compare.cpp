@@ -149,7 +149,7 @@ int run(settings& s, option_list& options, const compare_options& asked, bool on
     // A row says what an algorithm cannot do; what nobody may ask for is wrong usage.
     burst_duration_s(s.plan);
     const layout faces(e.tactors);
-    const std::vector<stroke> strokes = read_one_piece(s).strokes;
+    const std::vector<stroke> strokes = read_one_piece(s, faces).strokes;
     if (!asked.picture.empty() && strokes.size() > 1)
         throw error(errc::bad_input, "-o", fmt::format("there are {} strokes", strokes.size()),
                     "a picture shows one");

@@ -120,23 +120,35 @@ std::vector<stroke> read_one(const std::string& argument)
     return load_strokes(argument);
 }
 
-std::vector<stroke> read_strokes(const settings& s, const std::string& argument)
+stroke stroke_of_path(const settings& s, const std::string& data)
 {
-    std::vector<stroke> strokes;
-    if (s.path_data) {
-        path p = path::from_svg(*s.path_data);
-        const double duration = p.length_mm() / s.speed_mm_s.value_or(default_speed_mm_s);
-        strokes.push_back({"path", trajectory::along(p, s.duration_s.value_or(duration)), {}, {}, {}});
-        return strokes;
+    const path p = path::from_svg(data);
+    const double speed = s.speed_mm_s.value_or(default_speed_mm_s);
+    stroke k{"path", trajectory::along(p, s.duration_s.value_or(p.length_mm() / speed)), {}, {}, {}};
+    k.speed_mm_s = speed;
+    return k;
+}
+
+// Times count where the stroke ends up: fitted first.
+piece read_piece(const settings& s, const layout& faces, const std::string& argument)
+{
+    piece p{argument, {}, {}};
+    if (s.path_data)
+        p.strokes.push_back(stroke_of_path(s, *s.path_data));
+    else
+        p.strokes = read_one(argument);
+    if (s.fit) {
+        fitted_strokes fitted = fit_strokes(p.strokes, faces, s.fit_margin_mm);
+        p.strokes = std::move(fitted.strokes);
+        p.fit = fitted.placed;
     }
-    strokes = read_one(argument);
-    for (stroke& k : strokes) {
+    for (stroke& k : p.strokes) {
         if (s.duration_s)
             k.motion = k.motion.with_duration(*s.duration_s);
         else if (s.speed_mm_s && k.motion.length_mm() > 0.0)
             k.motion = k.motion.with_duration(k.motion.length_mm() / *s.speed_mm_s);
     }
-    return strokes;
+    return p;
 }
 
 std::vector<std::string> stroke_arguments(const settings& s)
@@ -173,7 +185,7 @@ error in_piece(const error& x, const std::string& argument, std::size_t number, 
 
 piece plan_piece(const settings& s, const environment& e, const layout& faces, const std::string& argument)
 {
-    piece p{argument, read_strokes(s, argument), {}};
+    piece p = read_piece(s, faces, argument);
     for (const stroke& k : p.strokes) {
         try {
             p.plans.push_back({make_plan(e.tactors, faces, k, s.plan), k.start_s});
@@ -217,10 +229,9 @@ std::vector<piece> plan_pieces(const settings& s, const environment& e)
     return pieces;
 }
 
-piece read_one_piece(const settings& s)
+piece read_one_piece(const settings& s, const layout& faces)
 {
-    const std::string argument = only_argument(s);
-    return {argument, read_strokes(s, argument), {}};
+    return read_piece(s, faces, only_argument(s));
 }
 
 piece plan_one_piece(const settings& s, const environment& e)

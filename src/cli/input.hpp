@@ -3,6 +3,7 @@
 /// From settings to plain values: configuration, array, strokes, plans.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,13 +30,14 @@ struct piece {
     std::string name;
     std::vector<stroke> strokes;
     std::vector<placed_plan> plans;
+    std::optional<fitting> fit = {}; ///< what --fit did
 };
 
 /// Reads and plans all STROKE arguments. \throws error.
 std::vector<piece> plan_pieces(const settings& s, const environment& e);
 
-/// Reads the only STROKE argument without planning it. \throws error.
-piece read_one_piece(const settings& s);
+/// Reads the only STROKE argument without planning it; `faces` is what --fit puts it on. \throws error.
+piece read_one_piece(const settings& s, const layout& faces);
 
 /// Reads and plans where only one STROKE is taken.
 piece plan_one_piece(const settings& s, const environment& e);

@@ -14,7 +14,7 @@ struct translation {
 };
 
 // What can only mean a field, in advice too.
-constexpr std::array<translation, 14> in_advice{{{"soa_s", "--soa"},
+constexpr std::array<translation, 16> in_advice{{{"soa_s", "--soa"},
                                                  {"burst_s", "--burst"},
                                                  {"carrier_hz", "--carrier"},
                                                  {"ramp_s", "--ramp"},
@@ -27,7 +27,9 @@ constexpr std::array<translation, 14> in_advice{{{"soa_s", "--soa"},
                                                  {"snap = true", "--snap"},
                                                  {"drop_points = true", "--drop-points"},
                                                  {"array = FILE", "--array FILE"},
-                                                 {"config = FILE", "--config FILE"}}};
+                                                 {"config = FILE", "--config FILE"},
+                                                 {"margin_mm", "--fit-margin"},
+                                                 {"fit_strokes()", "--fit"}}};
 
 // Words of every day.
 constexpr std::array<translation, 2> as_subject{{{"rate", "--rate"}, {"phantom", "--phantom"}}};

@@ -20,6 +20,7 @@ struct record {
     std::uint64_t start_frame;
     const array& tactors;
     const score& samples; // of the whole piece
+    const std::optional<fitting>& fit;
     const render_options& options;
 };
 
@@ -95,6 +96,18 @@ json render_json(const record& r)
     return j;
 }
 
+// x' = a x + c y + e, y' = b x + d y + f, as in SVG.
+json fit_json(const fitting& f)
+{
+    const point origin = f({0.0, 0.0});
+    const point x = f({f.from.x_mm + 1.0, f.from.y_mm});
+    const point y = f({f.from.x_mm, f.from.y_mm + 1.0});
+    return {{"margin_mm", f.margin_mm},
+            {"matrix",
+             {x.x_mm - f.to.x_mm, x.y_mm - f.to.y_mm, y.x_mm - f.to.x_mm, y.y_mm - f.to.y_mm, origin.x_mm,
+              origin.y_mm}}};
+}
+
 // One object without its rows: they are streamed between head and tail.
 json head_json(const record& r)
 {
@@ -112,6 +125,8 @@ json head_json(const record& r)
                    {"carrier_hz", p.carrier_hz}};
     if (!s.note.empty())
         j["stroke"]["note"] = s.note;
+    if (r.fit)
+        j["stroke"]["fit"] = fit_json(*r.fit);
     j["array"] = array_json(r.tactors);
     j["soa_s"] = p.soa_s ? json(*p.soa_s) : json(nullptr);
     j["total_s"] = p.total_s;
@@ -172,7 +187,7 @@ void print_json(std::FILE* out, const piece& p, const environment& e, const scor
     const auto starts = starts_of(p.plans);
     const auto print = [&](std::size_t i) {
         print_plan(out, {p.strokes[i], p.plans[i].schedule, starts[i], samples.starts()[i], e.tactors,
-                         samples, options});
+                         samples, p.fit, options});
     };
     if (p.plans.size() == 1) {
         print(0);

@@ -10,6 +10,15 @@
 namespace tactor::cli {
 namespace {
 
+// What --fit did to places; several strokes share it.
+std::string fit_note(const fitting& f)
+{
+    return fmt::format(
+        "fitted: ({:.6g}, {:.6g}) mm as drawn is ({:.6g}, {:.6g}) mm here, lengths times {:.6g}{}\n",
+        f.from.x_mm, f.from.y_mm, f.to.x_mm, f.to.y_mm, f.scale,
+        f.line ? ", onto the line of the array" : "");
+}
+
 std::string heading(const stroke& s, const plan& p, double start_s, const array& a)
 {
     const std::string soa = p.soa_s ? ", SOA " + seconds_text(*p.soa_s) : "";
@@ -49,6 +58,8 @@ void print_one(std::FILE* out, const stroke& s, const plan& p, double start_s, c
 void print_text(std::FILE* out, const piece& p, const environment& e)
 {
     const auto starts = starts_of(p.plans);
+    if (p.fit)
+        say(out, "{}", fit_note(*p.fit));
     for (std::size_t i = 0; i < p.plans.size(); ++i) {
         if (i != 0)
             fmt::print(out, "\n");

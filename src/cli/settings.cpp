@@ -173,9 +173,10 @@ CLI::Option* option_list::flag(const std::string& name, const std::string& help,
 void option_list::add_stroke_options()
 {
     settings& s = settings_;
-    auto* strokes = command_.add_option("STROKE", s.strokes,
-                                        "preset (park2016-1 ... park2016-4), file (.toml, .csv, .svg), or - "
-                                        "for a stroke file on standard input");
+    auto* strokes =
+        command_.add_option("STROKE", s.strokes,
+                            "preset (park2016-1 ... park2016-4; wave-2x4 and round-2x4 on palm-2x4), "
+                            "file (.toml, .csv, .svg), or - for a stroke file on standard input");
     strokes->type_name("");
     strokes->expected(0, max_strokes);
     value("--path", "DATA", "SVG path data in mm instead of STROKE",
@@ -197,6 +198,10 @@ void option_list::add_stroke_options()
           "paths that leave the array: refuse, or move to its edge "
           "(default error)",
           [&s](const std::string& t) { s.plan.leave = outsides.parse("--outside", t); });
+    auto* fit = flag("--fit", "scale and centre what is drawn on the array", s.fit);
+    value("--fit-margin", "MM", "--fit: distance kept from the array's edge (default 0)",
+          [&s](const std::string& t) { s.fit_margin_mm = parse_number("--fit-margin", t, 0, 1e6, "mm"); })
+        ->needs(fit);
     flag("--snap", "tactile-brush: move a start or end onto the grid", s.plan.snap);
     flag("--drop-points", "tactile-brush: leave crossings out until the timing is possible",
          s.plan.drop_points);

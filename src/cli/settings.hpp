@@ -28,6 +28,8 @@ struct settings {
     std::optional<std::string> pcm;         ///< -D
     std::optional<double> duration_s;
     std::optional<double> speed_mm_s;
+    bool fit = false; ///< --fit
+    double fit_margin_mm = 0.0;
     std::optional<unsigned> rate;
     std::optional<sample_format> format;
     std::optional<double> slope;

@@ -36,8 +36,9 @@ std::string open_hint(const chip& c)
     if (c.code != EACCES && c.code != EPERM)
         return "tactor devices lists the chips";
     if (c.group == "root")
-        return "the device is root's alone: install the udev rules, which give it to the group gpio; then "
-               "sudo usermod -aG gpio $USER, and log in again";
+        return "the device is root's alone: sudo groupadd --system --force gpio, install the udev rules, "
+               "which give it "
+               "to that group, then sudo usermod -aG gpio $USER, and log in again";
     return fmt::format("sudo usermod -aG {} $USER, then log in again", c.group.empty() ? "gpio" : c.group);
 }
 

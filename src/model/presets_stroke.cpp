@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The four target motions of Park et al. 2016. The figure that shows them is not in the text; these agree
-// with all that the text says of them.
+// The four target motions of Park et al. 2016 on its palm-3x3: the figure that shows them is not in the text;
+// these agree with all that the text says of them. And two for palm-2x4, which is too low for the paper's
+// circles.
 #include <tactor/stroke.hpp>
 
 #include <array>
@@ -33,6 +34,18 @@ constexpr std::array motions{
     motion{"park2016-4", {20.0, 20.0}, 0.0, -270.0},
 };
 
+// Within 0 ... 60 by 0 ... 20 mm, in whole numbers of bursts of 0.07 s.
+struct drawing {
+    std::string_view name;
+    std::string_view path;
+    double duration_s;
+};
+
+constexpr std::array drawings{
+    drawing{"wave-2x4", "M 0 10 C 5 -2 15 -2 20 10 S 35 22 40 10 S 55 -2 60 10", 2.1},
+    drawing{"round-2x4", "M 58 10 A 28 8 0 0 1 2 10 A 28 8 0 0 1 58 10", 2.8},
+};
+
 double duration_s(const motion& m)
 {
     return (m.sweep_deg < 0.0 ? -m.sweep_deg : m.sweep_deg) / 90.0 * quarter_turn_s;
@@ -46,6 +59,8 @@ const std::vector<std::string>& stroke_presets()
         std::vector<std::string> all;
         for (const motion& m : motions)
             all.emplace_back(m.name);
+        for (const drawing& d : drawings)
+            all.emplace_back(d.name);
         return all;
     }();
     return names;
@@ -60,6 +75,10 @@ stroke preset_stroke(std::string_view name)
                     {},
                     {},
                     "reconstructed: the figure that shows it is not in the paper's text"};
+    }
+    for (const drawing& d : drawings) {
+        if (d.name == name)
+            return {std::string(name), trajectory::along(path::from_svg(d.path), d.duration_s), {}, {}, {}};
     }
     throw error(errc::bad_input, "stroke", fmt::format("no preset {}", detail::quoted(name)),
                 fmt::format("presets: {}", fmt::join(stroke_presets(), ", ")));

@@ -174,8 +174,8 @@ private:
         const std::string name(id.empty() ? svg_tag(n) : id);
         for (std::size_t i = 0; i < paths.size(); ++i) {
             const double length = paths[i].length_mm();
-            const double time =
-                duration ? *duration * (length / all) : length / s.speed_mm_s.value_or(default_speed_mm_s);
+            const double speed = s.speed_mm_s.value_or(default_speed_mm_s);
+            const double time = duration ? *duration * (length / all) : length / speed;
             if (time > detail::longest_stroke_s)
                 doc_.fail(n, fmt::format("{} takes {:g} s", doc_.called(n), time),
                           "a stroke takes at most a day");
@@ -183,7 +183,9 @@ private:
                                 trajectory::along(paths[i], time, s.intensity),
                                 start,
                                 s.carrier_hz,
-                                {}});
+                                {},
+                                {},
+                                duration ? std::nullopt : std::optional(speed)});
             start.reset();
         }
     }

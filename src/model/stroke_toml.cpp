@@ -130,7 +130,9 @@ stroke read_stroke(const toml_table& t, std::string name)
     const auto carrier = t.number("carrier_hz", {1.0, 384000.0});
 
     const auto described = [&](trajectory motion, std::string note) {
-        return stroke{t.text("name").value_or(name), motion, start, carrier, std::move(note)};
+        stroke s{t.text("name").value_or(name), motion, start, carrier, std::move(note)};
+        s.speed_mm_s = asked.speed_mm_s;
+        return s;
     };
     if (kind == "timed")
         return described(paced(t, asked, read_timed(t, intensity)), {});
@@ -146,7 +148,10 @@ stroke read_stroke(const toml_table& t, std::string name)
                          : at_key(t, kind, [&, data = *t.text("path")] { return path::from_svg(data); });
     const double seconds = asked.time_for(way.length_mm()).value_or(way.length_mm() / default_speed_mm_s);
     const std::string_view key = asked.speed_mm_s ? "speed_mm_s" : asked.duration_s ? "duration_s" : kind;
-    return described(at_key(t, key, [&] { return trajectory::along(way, seconds, intensity); }), {});
+    stroke s = described(at_key(t, key, [&] { return trajectory::along(way, seconds, intensity); }), {});
+    if (!asked.duration_s && !asked.speed_mm_s)
+        s.speed_mm_s = default_speed_mm_s;
+    return s;
 }
 
 } // namespace

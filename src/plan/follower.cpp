@@ -25,7 +25,8 @@ point follower::at(double t_s)
 void follower::refuse(double t_s) const
 {
     const trajectory& motion = job_.motion.motion;
-    constexpr std::string_view hint = "outside = clamp plays the nearest point of the array";
+    constexpr std::string_view hint =
+        "fit_strokes() scales it to the array, outside = clamp plays the nearest point of the array";
     if (inside_s_ < 0.0)
         throw error(errc::bad_input, job_.name(),
                     fmt::format("starts outside the array, at {}", place(motion.position(t_s))), hint);

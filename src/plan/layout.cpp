@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "plan/delaunay.hpp"
+#include "plan/hull.hpp"
 #include "plan/layout_impl.hpp"
 #include "plan/plane.hpp"
 
@@ -62,26 +63,6 @@ rings segments(const std::vector<unsigned>& order)
     for (std::size_t i = 1; i < order.size(); ++i)
         s.push_back({std::min(order[i - 1], order[i]), std::max(order[i - 1], order[i])});
     return s;
-}
-
-/// Andrew's monotone chain.
-std::vector<point> convex_hull(std::vector<point> p)
-{
-    std::sort(p.begin(), p.end(),
-              [](point a, point b) { return std::tie(a.x_mm, a.y_mm) < std::tie(b.x_mm, b.y_mm); });
-    std::vector<point> hull;
-    const auto half = [&hull](auto first, auto last) {
-        const std::size_t start = hull.size();
-        for (auto it = first; it != last; ++it) {
-            while (hull.size() >= start + 2 && detail::turn(hull[hull.size() - 2], hull.back(), *it) <= 0.0)
-                hull.pop_back();
-            hull.push_back(*it);
-        }
-        hull.pop_back();
-    };
-    half(p.begin(), p.end());
-    half(p.rbegin(), p.rend());
-    return hull;
 }
 
 std::vector<box> boxes_of(const rings& faces, const std::vector<point>& points)
@@ -147,7 +128,7 @@ layout::impl layout::impl::build(const array& a)
 
     const std::vector<unsigned> line = in_line(points);
     rings faces = line.empty() ? detail::join_cocircular(points, detail::delaunay(points)) : segments(line);
-    std::vector<point> hull = line.empty() ? convex_hull(points) : std::vector<point>{};
+    std::vector<point> hull = line.empty() ? detail::convex_hull(points) : std::vector<point>{};
     std::vector<std::pair<point, point>> rim;
     if (line.empty())
         for (std::size_t i = 0; i < hull.size(); ++i)

@@ -32,6 +32,7 @@ TEST_CASE("fields of the library become options of the tool, in what is named an
           "stroke: soa_s is why (use --algorithm park2016; or --drop-points leaves places out)");
     CHECK(said("stroke", "outside = clamp plays the nearest") ==
           "stroke: soa_s is why (--outside clamp plays the nearest)");
+    CHECK(said("margin_mm", "fit_strokes() scales it") == "--fit-margin: soa_s is why (--fit scales it)");
 }
 
 TEST_CASE("names of files, their keys, and words that only hold a field stay as they are")

@@ -22,7 +22,7 @@ SAMPLES = pathlib.Path(sys.argv[4]).resolve()
 PAGE = (ROOT / "man/tactor-json.5").read_text(encoding="utf-8")
 
 # What an object may have or not have. All else is always there, null where there is nothing to say.
-OPTIONAL = {"tactor-plan/1": {"stroke.note", "continuous", "bursts[].tau_s"},
+OPTIONAL = {"tactor-plan/1": {"stroke.note", "stroke.fit", "continuous", "bursts[].tau_s"},
             "tactor-compare/1": {"stroke.note"},
             "tactor-check/1": {"walk"}}
 
@@ -105,7 +105,7 @@ class Schemas(ToolTest):
         walk = self.run_tool("check", "--walk", "--array", "pair.toml", "-D", "null", "--format", "json", stdin="1\n0\n")
         self.write("o.toml", PAIR.partition("[sync]")[0])
         texts = [self.ok(*args, "--format", "json").stdout for args in (
-            ("plan", "park2016-3"), ("plan", "park2016-1", "--algorithm", "continuous", "--ramp", "0.01"),
+            ("plan", "park2016-3"), ("plan", "strokes.toml", "--fit", "--fit-margin", "1"), ("plan", "wave-2x4", "--fit"), ("plan", "park2016-1", "--algorithm", "continuous", "--ramp", "0.01"),
             ("plan", *BRUSH, "--duration", "1"), ("plan", *BRUSH, "--duration", "0.15", "--drop-points"),
             ("plan", "strokes.toml", "--array", "pair.toml", "--sl", "7"), ("plan", "--path", "M 1 1 L 9 9", "--phase", "burst"),
             ("plan", "--path", "M 0 0 L 10 0", "--array", "pair.toml", "--sl", "7"),

@@ -260,7 +260,15 @@ class StrokeFiles(ToolTest):
         strokes = [f for f in sorted((ROOT / "examples/strokes").iterdir()) if f.suffix in (".toml", ".csv", ".svg")]
         self.assertGreaterEqual({f.suffix for f in strokes}, {".toml", ".csv", ".svg"})
         for stroke in strokes:
-            self.plan(stroke)
+            self.plan(stroke, *(("--array", "palm-2x4") if stroke.stem.endswith("-2x4") else ()))
+
+    def test_each_built_in_array_has_presets_that_fit_it(self):
+        for name in ("wave-2x4", "round-2x4"):
+            for algorithm in ("park2016", "continuous"):
+                self.plan(name, "--array", "palm-2x4", "--algorithm", algorithm)
+            p = self.plan(name, "--array", "palm-2x4")
+            self.assertNotIn("note", p["stroke"])
+            self.assertEqual({d["tactor"] for b in p["bursts"] for d in b["drives"]}, set(range(8)), name)
 
 
 if __name__ == "__main__":

@@ -157,10 +157,11 @@ TEST_CASE("a chip that may not be opened is named with the group to join")
           "GPIO line 17 of /dev/gpiochip0: no permission to open /dev/gpiochip0 (sudo usermod -aG dialout "
           "$USER, "
           "then log in again)");
-    CHECK(
-        complaint({shut_chip(0, EACCES, "root")}, by_name("GPIO17")) ==
-        "GPIO line \"GPIO17\": no permission to open /dev/gpiochip0 (the device is root's alone: install the "
-        "udev rules, which give it to the group gpio; then sudo usermod -aG gpio $USER, and log in again)");
+    CHECK(complaint({shut_chip(0, EACCES, "root")}, by_name("GPIO17")) ==
+          "GPIO line \"GPIO17\": no permission to open /dev/gpiochip0 (the device is root's alone: sudo "
+          "groupadd --system --force gpio, install the udev rules, which give it to that group, then sudo "
+          "usermod -aG "
+          "gpio $USER, and log in again)");
     CHECK(
         complaint({shut_chip(0, ENOTTY, "")}, by_chip("/dev/gpiochip0", 17)) ==
         "GPIO line 17 of /dev/gpiochip0: /dev/gpiochip0 is not a GPIO chip (tactor devices lists the chips)");

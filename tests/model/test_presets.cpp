@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -27,7 +28,7 @@ TEST_CASE("the four motions of the paper, y down")
         {"park2016-3", 2.1, {{20, 36}, {4, 20}, {20, 4}, {36, 20}}},
         {"park2016-4", 2.1, {{36, 20}, {20, 4}, {4, 20}, {20, 36}}},
     };
-    REQUIRE(tactor::stroke_presets().size() == 4);
+    REQUIRE(tactor::stroke_presets().size() == 6);
     for (std::size_t i = 0; i < 4; ++i) {
         const motion& m = motions[i];
         CAPTURE(m.name);
@@ -51,10 +52,37 @@ TEST_CASE("the four motions of the paper, y down")
     }
 }
 
+TEST_CASE("two motions for palm-2x4 stay on it and use all of it")
+{
+    const tactor::stroke wave = tactor::preset_stroke("wave-2x4");
+    CHECK(wave.motion.position(0.0) == point{0, 10});
+    CHECK(tactor::distance_mm(wave.motion.position(wave.motion.duration_s()), {60, 10}) < 1e-9);
+    const tactor::stroke round = tactor::preset_stroke("round-2x4");
+    CHECK(tactor::distance_mm(round.motion.position(0.0), {58, 10}) < 1e-9);
+    CHECK(tactor::distance_mm(round.motion.position(round.motion.duration_s()), {58, 10}) < 1e-9);
+    CHECK(round.motion.position(0.1).y_mm > 10.0); // clockwise: down first
+    for (const tactor::stroke& s : {wave, round}) {
+        CAPTURE(s.name);
+        CHECK(s.note.empty());
+        point low{60, 20};
+        point high{0, 0};
+        for (double t = 0.0; t <= s.motion.duration_s(); t += 0.001) {
+            const point p = s.motion.position(t);
+            low = {std::min(low.x_mm, p.x_mm), std::min(low.y_mm, p.y_mm)};
+            high = {std::max(high.x_mm, p.x_mm), std::max(high.y_mm, p.y_mm)};
+        }
+        CHECK((low.x_mm >= 0.0 && low.x_mm <= 2.01));
+        CHECK((low.y_mm >= 0.0 && low.y_mm <= 2.01));
+        CHECK((high.x_mm <= 60.0 && high.x_mm >= 57.9));
+        CHECK((high.y_mm <= 20.0 && high.y_mm >= 17.99));
+    }
+}
+
 TEST_CASE("a preset that is not there is refused with the list")
 {
     const std::string m = message_of([] { tactor::preset_stroke("park2016-5"); });
-    CHECK(m == "stroke: no preset 'park2016-5' (presets: park2016-1, park2016-2, park2016-3, park2016-4)");
+    CHECK(m == "stroke: no preset 'park2016-5' (presets: park2016-1, park2016-2, park2016-3, park2016-4, "
+               "wave-2x4, round-2x4)");
 }
 
 } // namespace presets_test

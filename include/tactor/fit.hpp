@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Strokes that were drawn elsewhere, on an array.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <tactor/api.hpp>
+#include <tactor/geometry.hpp>
+#include <tactor/phantom.hpp>
+#include <tactor/stroke.hpp>
+
+namespace tactor {
+
+/// Where a picture was put: `from` became `to`, and all distances are `scale` times what they were.
+struct fitting {
+    point from = {};
+    point to = {};
+    double scale = 1.0;
+    double margin_mm = 0.0;
+    /// Direction, of length 1, of an array in one line; only what goes along it is left of the picture.
+    std::optional<point> line = {};
+
+    /// Where a place of the picture is now.
+    point operator()(point p) const noexcept
+    {
+        point way{scale * (p.x_mm - from.x_mm), scale * (p.y_mm - from.y_mm)};
+        if (line) {
+            const double along = way.x_mm * line->x_mm + way.y_mm * line->y_mm;
+            way = {along * line->x_mm, along * line->y_mm};
+        }
+        return {to.x_mm + way.x_mm, to.y_mm + way.y_mm};
+    }
+};
+
+/// What fit_strokes() gives.
+struct fitted_strokes {
+    std::vector<stroke> strokes = {};
+    fitting placed = {};
+};
+
+/// Moves and scales strokes, all alike as one picture, so that the middle of their common bounds comes to the
+/// array's and the picture is as large as it can be there: inside the hull of the tactors' centres, which is
+/// what outside::error accepts, and at least `margin_mm` (finite, >= 0) from its edge. Width and height keep
+/// their ratio. The array's middle is the centre of gravity of its hull.
+///
+/// Where all tactors lie in one line, to a tenth of their pitch, that line is the array: the picture is
+/// fitted by its extent along the line, and what goes across is left out. A picture without extent (a timed
+/// stroke that rests) is moved to the middle.
+///
+/// Strokes that say a speed (stroke::speed_mm_s) keep it; the others keep their time, whatever becomes of
+/// their length. Starts, intensities and carriers stay. A pure function; any thread. O(n log n) in the
+/// points, and O(k h) in k curves and the h corners of the hull. \throws error (bad_input) for a margin that
+/// leaves no room, for a picture with an extent on a single
+///         tactor, and for one that only goes across an array in one line.
+TACTOR_API fitted_strokes fit_strokes(const std::vector<stroke>& strokes, const layout& l,
+                                      double margin_mm = 0.0);
+
+} // namespace tactor

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+#include <tactor/fit.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "model/moved.hpp"
+#include "plan/hull.hpp"
+#include "plan/layout_impl.hpp"
+#include "plan/plane.hpp"
+#include "plan/sides.hpp"
+
+namespace tactor {
+namespace {
+
+using detail::affine;
+using detail::dot;
+using detail::operator+;
+using detail::operator-;
+using detail::operator*;
+
+/// Lower than this part of the pitch, an array is a line: places that were measured are never quite in one.
+constexpr double thin_by_pitch = 0.1;
+
+/// All that is drawn, for the question how far it goes.
+class picture {
+public:
+    explicit picture(const std::vector<stroke>& strokes)
+    {
+        std::vector<point> all;
+        for (const stroke& s : strokes)
+            detail::add_outline(s.motion, all, curves_);
+        corners_ = detail::convex_hull(std::move(all));
+    }
+
+    /// Greatest dot(out, p) of its points.
+    double reach(point out) const
+    {
+        double most = -std::numeric_limits<double>::infinity();
+        for (const point p : corners_)
+            most = std::max(most, dot(out, p));
+        for (const detail::shape& c : curves_) {
+            const auto frame = detail::frame_of(c);
+            if (std::none_of(frame.begin(), frame.end(), [&](point p) { return dot(out, p) > most; }))
+                continue;
+            for (const double t : detail::turns_towards(c, out))
+                most = std::max(most, dot(out, detail::position(c, t)));
+        }
+        return most;
+    }
+
+    double extent(point along) const { return reach(along) + reach(-1.0 * along); }
+    double middle(point along) const { return 0.5 * (reach(along) - reach(-1.0 * along)); }
+
+    bool rests() const { return extent({1.0, 0.0}) <= same_place_mm && extent({0.0, 1.0}) <= same_place_mm; }
+
+private:
+    std::vector<point> corners_; ///< of the convex hull
+    std::vector<detail::shape> curves_;
+};
+
+point centre_of_gravity(const std::vector<point>& hull)
+{
+    double all = 0.0;
+    point sum{};
+    for (std::size_t i = 2; i < hull.size(); ++i) {
+        const point b = hull[i - 1] - hull[0];
+        const point c = hull[i] - hull[0];
+        const double area = detail::turn({}, b, c);
+        all += area;
+        sum = sum + (area / 3.0) * (b + c);
+    }
+    return hull[0] + (1.0 / all) * sum;
+}
+
+/// The direction of an array in one line; nothing where it is wider.
+std::optional<point> line_of(const layout::impl& l, std::pair<point, point> ends)
+{
+    const double length = distance_mm(ends.first, ends.second);
+    const point along = length > 0.0 ? 1.0 / length * (ends.second - ends.first) : point{1.0, 0.0};
+    const point across{along.y_mm, -along.x_mm};
+    double low = 0.0;
+    double high = 0.0;
+    for (const point p : l.hull) {
+        const double off = dot(across, p - ends.first);
+        low = std::min(low, off);
+        high = std::max(high, off);
+    }
+    if (!l.hull.empty() && high - low > thin_by_pitch * l.pitch_mm)
+        return std::nullopt;
+    return along;
+}
+
+[[noreturn]] void refuse_margin(double margin_mm, double room_mm)
+{
+    throw error(errc::bad_input, "margin_mm",
+                fmt::format("{:.6g} mm on each side leave no room in the array", margin_mm),
+                room_mm > 0.0 ? fmt::format("less than {:.4g} mm", room_mm) : "one tactor has none");
+}
+
+fitting fit_to_line(const picture& drawn, const layout::impl& l, std::pair<point, point> ends, point along,
+                    double margin_mm)
+{
+    const double length = distance_mm(ends.first, ends.second);
+    fitting f{{drawn.middle({1.0, 0.0}), drawn.middle({0.0, 1.0})},
+              detail::between(ends.first, ends.second, 0.5),
+              1.0,
+              margin_mm,
+              along};
+    if (2.0 * margin_mm > length || (2.0 * margin_mm == length && margin_mm > 0.0))
+        refuse_margin(margin_mm, 0.5 * length);
+    if (drawn.rests())
+        return f;
+    if (l.points.size() == 1)
+        throw error(errc::bad_input, "stroke", "does not fit on a single tactor",
+                    "use an array of two or more");
+    const double extent = drawn.extent(along);
+    if (!(extent > same_place_mm))
+        throw error(errc::bad_input, "stroke",
+                    "goes across the line in which all tactors lie, and nothing of it along",
+                    "turn it, or use an array with two rows");
+    f.from = f.from + (drawn.middle(along) - dot(along, f.from)) * along;
+    f.scale = (length - 2.0 * margin_mm) / extent;
+    return f;
+}
+
+fitting fit_to_hull(const picture& drawn, const layout::impl& l, double margin_mm)
+{
+    fitting f{{drawn.middle({1.0, 0.0}), drawn.middle({0.0, 1.0})},
+              centre_of_gravity(l.hull),
+              std::numeric_limits<double>::infinity(),
+              margin_mm,
+              {}};
+    const bool rests = drawn.rests();
+    double narrowest = std::numeric_limits<double>::infinity();
+    for (const detail::beyond& side : detail::sides_of(l)) {
+        const double room = side.reach - dot(side.out, f.to);
+        narrowest = std::min(narrowest, room);
+        const double reach = rests ? 0.0 : drawn.reach(side.out) - dot(side.out, f.from);
+        if (reach > 0.0)
+            f.scale = std::min(f.scale, (room - margin_mm) / reach);
+    }
+    if (margin_mm >= narrowest)
+        refuse_margin(margin_mm, narrowest);
+    if (rests)
+        f.scale = 1.0;
+    return f;
+}
+
+fitting find_fit(const picture& drawn, const layout::impl& l, double margin_mm)
+{
+    const auto ends = detail::ends_of(l.points);
+    if (const auto along = line_of(l, ends))
+        return fit_to_line(drawn, l, ends, *along, margin_mm);
+    return fit_to_hull(drawn, l, margin_mm);
+}
+
+/// The fitting as it maps places whose origin is `from` already.
+affine map_of(const fitting& f)
+{
+    const point d = f.line.value_or(point{});
+    if (f.line)
+        return {f.scale * d.x_mm * d.x_mm,
+                f.scale * d.x_mm * d.y_mm,
+                f.scale * d.x_mm * d.y_mm,
+                f.scale * d.y_mm * d.y_mm,
+                f.to.x_mm,
+                f.to.y_mm};
+    return {f.scale, 0.0, 0.0, f.scale, f.to.x_mm, f.to.y_mm};
+}
+
+} // namespace
+
+fitted_strokes fit_strokes(const std::vector<stroke>& strokes, const layout& l, double margin_mm)
+{
+    if (!(margin_mm >= 0.0 && std::isfinite(margin_mm)))
+        throw error(errc::bad_input, "margin_mm", fmt::format("{} mm", margin_mm), "0 mm or more");
+    fitted_strokes all{strokes, {}};
+    if (strokes.empty())
+        return all;
+    all.placed = find_fit(picture(strokes), l.data(), margin_mm);
+    const affine map = map_of(all.placed);
+    for (stroke& s : all.strokes) {
+        s.motion = detail::moved(s.motion, all.placed.from, map, all.placed.line,
+                                 [&] { return fmt::format("stroke \"{}\" as fitted", s.name); });
+        const double length = s.motion.length_mm();
+        if (s.speed_mm_s && length > 0.0)
+            s.motion = s.motion.with_duration(length / *s.speed_mm_s);
+    }
+    return all;
+}
+
+} // namespace tactor
