@@ -39,7 +39,8 @@ class Fit(ToolTest):
                 for one in p.get("plans", [p]):
                     self.inside(one)
         p = self.plan("-", *LOW, "--fit", stdin=TWO)["plans"]
-        self.assertEqual([places(q)[0] for q in p], [(0, 0), (60, 0)])  # one picture
+        for q, corner in zip(p, ((0, 0), (60, 0)), strict=True):  # one picture
+            self.assertLess(math.dist(places(q)[0], corner), 1e-9)
 
     def test_every_command(self):
         for args in (("plan",), ("render", "-o", "a.wav"), ("plot", "-o", "a.svg"), ("compare", "-o", "b.svg"),

@@ -68,10 +68,12 @@ def objects_in(value, at=()):
 
 
 def shortened(value):
-    """The same with at most three members in each list."""
+    """The same with at most three members in each list of objects or lists."""
     if isinstance(value, dict):
         return {key: shortened(v) for key, v in value.items()}
-    return [shortened(v) for v in value[:3]] if isinstance(value, list) else value
+    if isinstance(value, list):
+        return [shortened(v) for v in value[:3]] if value and isinstance(value[0], (dict, list)) else value
+    return value
 
 
 def place_of(keys):
@@ -105,7 +107,8 @@ class Schemas(ToolTest):
         walk = self.run_tool("check", "--walk", "--array", "pair.toml", "-D", "null", "--format", "json", stdin="1\n0\n")
         self.write("o.toml", PAIR.partition("[sync]")[0])
         texts = [self.ok(*args, "--format", "json").stdout for args in (
-            ("plan", "park2016-3"), ("plan", "strokes.toml", "--fit", "--fit-margin", "1"), ("plan", "wave-2x4", "--fit"), ("plan", "park2016-1", "--algorithm", "continuous", "--ramp", "0.01"),
+            ("plan", "park2016-3"), ("plan", "strokes.toml", "--fit", "--fit-margin", "1"), ("plan", "wave-2x4", "--fit"),
+            ("plan", "park2016-1", "--algorithm", "continuous", "--ramp", "0.01"),
             ("plan", *BRUSH, "--duration", "1"), ("plan", *BRUSH, "--duration", "0.15", "--drop-points"),
             ("plan", "strokes.toml", "--array", "pair.toml", "--sl", "7"), ("plan", "--path", "M 1 1 L 9 9", "--phase", "burst"),
             ("plan", "--path", "M 0 0 L 10 0", "--array", "pair.toml", "--sl", "7"),

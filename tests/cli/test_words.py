@@ -41,7 +41,7 @@ class Numbers(ToolTest):
     def test_a_stroke_is_named_once(self):
         self.write("s.toml", '[[stroke]]\nname = "ok"\npath = "M 0 0 L 20 0"\n'
                              '[[stroke]]\nname = "wave"\npath = "M 20 20 L 90 20"\n')
-        said = self.refused(2, "plan", "s.toml", says=['s.toml: stroke 2 "wave": leaves the array', "(--outside"]).stderr
+        said = self.refused(2, "plan", "s.toml", says=['s.toml: stroke 2 "wave": leaves the array', "--outside"]).stderr
         self.assertEqual(said.count("wave"), 1, said)
 
 

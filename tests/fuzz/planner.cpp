@@ -68,7 +68,8 @@ trajectory any_motion(FuzzedDataProvider& in)
         return trajectory::along(p, in.ConsumeFloatingPointInRange(0.0, 10.0));
     }
     if (kind == 1)
-        return preset_stroke(in.PickValueInArray({"park2016-1", "park2016-2", "park2016-3", "park2016-4", "wave-2x4", "round-2x4"}))
+        return preset_stroke(in.PickValueInArray({"park2016-1", "park2016-2", "park2016-3", "park2016-4",
+                                                  "wave-2x4", "round-2x4"}))
             .motion;
     std::vector<timed_point> timed;
     std::vector<point> points;
