@@ -13,7 +13,7 @@ try {
     const tactor::stroke stroke = tactor::preset_stroke("park2016-3");
 
     const tactor::plan plan = tactor::make_plan(palm, stroke);
-    const tactor::score score(palm, {{plan}}, {});
+    const tactor::score score(palm, plan);
 
     tactor::alsa_options device;
     device.pcm = argc > 1 ? argv[1] : "null";
@@ -27,7 +27,7 @@ try {
     const auto report = player.wait(id);
     std::printf("%s after %llu frames\n", std::string(to_string(report->state)).c_str(),
                 static_cast<unsigned long long>(report->frames));
-    return report->state == tactor::stroke_state::finished ? 0 : 1;
+    return report->state == tactor::state_kind::finished ? 0 : 1;
 } catch (const std::exception& e) {
     std::fprintf(stderr, "play_preset: %s\n", e.what());
     return 1;

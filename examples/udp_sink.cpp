@@ -25,19 +25,19 @@ public:
         hints.ai_socktype = SOCK_DGRAM;
         addrinfo* found = nullptr;
         if (const int code = getaddrinfo(host, port, &hints, &found))
-            throw tactor::error(tactor::errc::not_available, host, gai_strerror(code));
+            throw tactor::error(tactor::error_kind::not_available, host, gai_strerror(code));
         fd_ = socket(found->ai_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
         const bool connected = connect(fd_, found->ai_addr, found->ai_addrlen) == 0;
         freeaddrinfo(found);
         if (!connected)
-            throw tactor::error(tactor::errc::not_available, host, "it cannot be reached");
+            throw tactor::error(tactor::error_kind::not_available, host, "it cannot be reached");
     }
     ~udp_sink() override { close(fd_); }
 
 private:
     // In the audio thread: no waiting, no memory, no exceptions. A datagram for which there is no room in the
     // network is lost, as others are on their way; the number tells the other end.
-    tactor::io_status take(std::uint64_t first, const std::byte* data, std::size_t frames) noexcept override
+    tactor::io_kind take(std::uint64_t first, const std::byte* data, std::size_t frames) noexcept override
     {
         const std::size_t bytes = frames * setup().channels * bytes_of(setup().format);
         iovec parts[] = {{&first, sizeof first}, {const_cast<std::byte*>(data), bytes}};
@@ -45,7 +45,7 @@ private:
         message.msg_iov = parts;
         message.msg_iovlen = 2;
         sendmsg(fd_, &message, MSG_DONTWAIT | MSG_NOSIGNAL);
-        return tactor::io_status::ok;
+        return tactor::io_kind::ok;
     }
 
     int fd_ = -1;
@@ -58,19 +58,19 @@ try {
     if (argc != 3)
         return std::fprintf(stderr, "usage: udp_sink HOST PORT\n"), 2;
     const tactor::array palm = tactor::preset_array("palm-3x3");
-    const tactor::score score(palm, {{tactor::make_plan(palm, tactor::preset_stroke("park2016-1"))}}, {});
+    const tactor::score score(palm, tactor::make_plan(palm, tactor::preset_stroke("park2016-1")));
 
     tactor::stream_setup stream;
     stream.name = argv[1];
     stream.channels = score.channels();
     stream.rate = score.rate();
-    stream.format = tactor::sample_format::s16;
+    stream.format = tactor::format_kind::s16;
     stream.period_frames = 48; // 1 ms, and a datagram that no network splits
     stream.buffer_frames = 480;
     tactor::player player(std::make_unique<udp_sink>(stream, argv[1], argv[2]), palm);
     const auto report = player.wait(player.submit(score));
     std::printf("%s\n", to_string(report->state).data());
-    return report->state == tactor::stroke_state::finished ? 0 : 1;
+    return report->state == tactor::state_kind::finished ? 0 : 1;
 } catch (const std::exception& e) {
     std::fprintf(stderr, "udp_sink: %s\n", e.what());
     return 1;

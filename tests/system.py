@@ -3,15 +3,17 @@
 
 udev and systemd check their own files where they are; the grammar below holds everywhere.
 """
+import os
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
+import tomllib
 
 MATCH = r"(?:ACTION|KERNEL|KERNELS|SUBSYSTEM|SUBSYSTEMS|ATTR\{[\w/]+\}|ATTRS\{[\w/]+\}|ENV\{\w+\})(?:==|!=)"
-ASSIGN = r"(?:GROUP|MODE|GOTO|LABEL|ATTR\{[\w/]+\}|ENV\{\w+\}|TAG)(?:=|\+=)"
+ASSIGN = r"(?:GROUP|MODE|GOTO|LABEL|ATTR\{[\w/]+\}|ENV\{\w+\}|SYMLINK|TAG)(?:=|\+=)"
 RULE = re.compile(rf'(?:(?:{MATCH}|{ASSIGN})"[^"]*"(?:, |$))+$')
 LIMIT = re.compile(r"@\w+\s+-\s+(?:rtprio|memlock)\s+\d+$")
 
@@ -33,8 +35,8 @@ def bad_rules(file):
         yield f"{file}: no label {gotos - labels}"
 
 
-def said_by(*command):
-    r = subprocess.run(command, capture_output=True, text=True, check=False)
+def said_by(*command, **more):
+    r = subprocess.run(command, capture_output=True, text=True, check=False, env=os.environ | more)
     return [] if r.returncode == 0 else (r.stdout + r.stderr).splitlines() or ["failed"]
 
 
@@ -44,28 +46,42 @@ def can_verify_rules():
     return "verify" in subprocess.run(["udevadm", "--help"], capture_output=True, text=True, check=False).stdout
 
 
-def bad_unit(file):
-    with tempfile.TemporaryDirectory() as folder:
-        copy = pathlib.Path(folder) / file.name
-        # Neither tool nor man pages are installed here.
-        text = re.sub(r"^(Exec\w+)=\S+", r"\1=/bin/true", file.read_text(encoding="utf-8"), flags=re.M)
-        copy.write_text(re.sub(r"^Documentation=.*\n", "", text, flags=re.M), encoding="utf-8")
-        yield from (f"{file}: {line}" for line in said_by("systemd-analyze", "verify", str(copy)))
+def bad_units(folder, *options):
+    """All units of a folder, which name one another. The system's must be hardened: exposure 2.0 at most."""
+    with tempfile.TemporaryDirectory() as place:
+        copies = []
+        for file in sorted(f for f in folder.iterdir() if f.is_file()):
+            copies.append(pathlib.Path(place) / file.name.replace("@.", "@x."))
+            # Neither tool nor man pages are installed here.
+            text = re.sub(r"^(Exec\w+)=\S+", r"\1=/bin/true", file.read_text(encoding="utf-8"), flags=re.M)
+            copies[-1].write_text(re.sub(r"^Documentation=.*\n", "", text, flags=re.M), encoding="utf-8")
+        yield from said_by("systemd-analyze", "verify", *options, *map(str, copies), XDG_RUNTIME_DIR=place)
+        for copy in copies:
+            if copy.suffix == ".service" and not options:
+                yield from said_by("systemd-analyze", "security", "--offline=true", "--threshold=20", str(copy))
 
 
 def bad_packages(root):
-    """The Debian packages are built with what tests/packages lists for library and tool, but for what all have."""
+    """The Debian packages are built with what tests/packages lists for library, tool and Python package, but for what all have."""
     lists = dict(line.split(": ", 1) for line in (root / "tests/packages").read_text(encoding="utf-8").splitlines()
                  if not line.startswith("#"))
-    wanted = set((lists["library"] + " " + lists["tool"]).split()) - {"dpkg-dev", "g++", "ninja-build", "pkg-config"}
+    wanted = set(" ".join(lists[n] for n in ("library", "tool", "python-build")).split()) - {"dpkg-dev", "g++", "ninja-build", "pkg-config"}
     control = (root / "examples/debian/control").read_text(encoding="utf-8")
     depends = re.search(r"^Build-Depends:\n((?: .*\n)+)", control, re.M)[1]
     named = {line.strip().split(" ")[0] for line in depends.replace(",", "").splitlines()}
-    if named - {"debhelper-compat", "dh-sequence-installsysusers", "pkgconf"} != wanted:
+    if named - {"debhelper-compat", "dh-sequence-installsysusers", "dh-sequence-python3", "pkgconf"} != wanted:
         yield f"examples/debian/control: Build-Depends differ from tests/packages: {sorted(named ^ wanted)}"
     version = re.search(r"^  version: '(.*)'", (root / "meson.build").read_text(encoding="utf-8"), re.M)[1]
     if not (root / "examples/debian/changelog").read_text(encoding="utf-8").startswith(f"tactor ({version}) "):
         yield f"examples/debian/changelog: not {version}, the version in meson.build"
+    with open(root / "pyproject.toml", "rb") as f:
+        package = tomllib.load(f)["project"]
+    if package["version"] != version:
+        yield f"pyproject.toml: version {package['version']}, not {version}, the version in meson.build"
+    metadata = (root / "src/python/metadata.in").read_text(encoding="utf-8")
+    said = [f"Summary: {package['description']}", "License: MIT", f"Requires-Python: {package['requires-python']}"]
+    if metadata.splitlines()[3:] != said + [f"Requires-Dist: {d}" for d in package["dependencies"]]:
+        yield "src/python/metadata.in: it says other things than pyproject.toml"
     soname = re.search(r"soversion: '(\d+)'", (root / "src/meson.build").read_text(encoding="utf-8"))[1]
     if f"Package: libtactor{soname}\n" not in control:
         yield f"examples/debian/control: no package libtactor{soname}, the name of the library"
@@ -77,16 +93,16 @@ def main():
     for rules in sorted((root / "udev").glob("*.rules")):
         checks.append(list(bad_rules(rules)))
         if can_verify_rules():
-            checks.append(said_by("udevadm", "verify", str(rules)))
+            checks.append(said_by("udevadm", "verify", "--resolve-names=never", str(rules)))
         else:
             skipped.append("udevadm verify: udev 254 or later is not here")
     limits = (root / "examples/limits.d-tactor.conf").read_text(encoding="utf-8").splitlines()
     checks.append([f"limits: {line}" for line in limits if not line.startswith("#") and not LIMIT.match(line)])
-    for unit in sorted((root / "examples/systemd").glob("*.service")):
+    for folder, options in (("", ()), ("user", ("--user",))):
         if shutil.which("systemd-analyze"):
-            checks.append(list(bad_unit(unit)))
+            checks.append(list(bad_units(root / "examples/systemd" / folder, *options)))
         else:
-            skipped.append(f"{unit.name}: systemd-analyze is not here")
+            skipped.append(f"examples/systemd/{folder}: systemd-analyze is not here")
     checks.append(list(bad_packages(root)))
     for bad in checks:
         print(*bad, sep="\n", end="\n" if bad else "")

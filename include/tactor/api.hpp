@@ -9,3 +9,7 @@
 #else
 #define TACTOR_API
 #endif
+
+namespace tactor::detail {
+struct access; // the library's own way into its classes
+} // namespace tactor::detail

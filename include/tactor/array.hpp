@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,8 +12,32 @@
 #include <tactor/api.hpp>
 #include <tactor/error.hpp>
 #include <tactor/geometry.hpp>
+#include <tactor/kinds.hpp>
 
 namespace tactor {
+
+/// How a tactor works, which decides what bursts it can make.
+enum class actuator_kind {
+    unknown,
+    piezo,
+    voice_coil,
+    lra, ///< linear resonant
+    erm, ///< eccentric rotating mass
+};
+
+TACTOR_API std::string_view to_string(actuator_kind k) noexcept;
+template <>
+TACTOR_API actuator_kind from_string<actuator_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const actuator_kind> values_of<actuator_kind>() noexcept;
+
+/// A detection threshold at a frequency.
+struct threshold_point {
+    double hz = 0.0; ///< above 0
+    double dbfs = 0.0;
+
+    friend bool operator==(const threshold_point&, const threshold_point&) = default;
+};
 
 /// One vibrating actuator. Its index is its place in array::tactors.
 struct tactor_spec {
@@ -22,8 +47,12 @@ struct tactor_spec {
     double max_dbfs = 0.0;                     ///< hard limit of this channel, <= 0 dBFS
     std::optional<double> threshold_dbfs = {}; ///< measured detection threshold, dBFS
     int polarity = 1;                          ///< 1, or -1 where the actuator is wired the other way round
-    std::string actuator = {};                 ///< "piezo", "voice-coil", "lra", "erm" or empty (unknown)
-    source_place where = {};                   ///< where the file says so, for error messages
+    actuator_kind actuator = actuator_kind::unknown;
+    /// Thresholds at several frequencies, ascending: between them linear in dB over the logarithm of the
+    /// frequency, outside them that of the nearest. They count in place of threshold_dbfs.
+    std::vector<threshold_point> thresholds = {};
+    std::optional<double> rise_s = {}; ///< until it moves with 1 - 1/e of its strength, s
+    source_place where = {};           ///< where the file says so, for error messages
 };
 
 /// A set of tactors. A plain value.
@@ -36,6 +65,9 @@ struct array {
     TACTOR_API unsigned channels() const noexcept;
 };
 
+/// The threshold of a tactor at a frequency, dBFS; none where none was measured.
+[[nodiscard]] TACTOR_API std::optional<double> threshold_at(const tactor_spec& t, double hz);
+
 /// The lines of a rectangular grid layout, each in ascending order, mm.
 struct grid_lines {
     std::vector<double> x_mm = {}; ///< columns
@@ -45,19 +77,19 @@ struct grid_lines {
 /// The grid that the tactors form, if every column crosses every row in a tactor and there is no
 /// other tactor; nothing otherwise. Lines nearer than same_place_mm are one line. A single row or
 /// column is a grid too.
-TACTOR_API std::optional<grid_lines> find_grid(const array& a);
+[[nodiscard]] TACTOR_API std::optional<grid_lines> find_grid(const array& a);
 
 /// rows x columns tactors, index = row * columns + column, channel = index, tactor 0 at (0, 0).
 /// \throws error (bad_input) for no rows or columns, more than 16384 tactors or a pitch that is not
 ///         positive and finite.
-TACTOR_API array make_grid(std::string name, unsigned rows, unsigned columns, double pitch_x_mm,
-                           double pitch_y_mm);
+[[nodiscard]] TACTOR_API array make_grid(std::string name, unsigned rows, unsigned columns, double pitch_x_mm,
+                                         double pitch_y_mm);
 
 /// Names of the built-in arrays: "palm-3x3" (Park et al. 2016), "palm-2x4".
-TACTOR_API const std::vector<std::string>& array_presets();
+[[nodiscard]] TACTOR_API const std::vector<std::string>& array_presets();
 
 /// A built-in array by name. \throws error (bad_input) that lists the presets.
-TACTOR_API array preset_array(std::string_view name);
+[[nodiscard]] TACTOR_API array preset_array(std::string_view name);
 
 /// Checks what every array must satisfy: at least one tactor, finite places, no two tactors on one
 /// place or one channel, limits and gains in range (max_dbfs <= 0, polarity 1 or -1, channel < 16384). A file

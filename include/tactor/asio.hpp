@@ -75,7 +75,8 @@ void wait_for_stroke(const Named& named, player& p, Handler&& h, Start id_of)
         none.id = id_of();
         if (p.on_end(none.id, [w](const stroke_report& r) { (*w)(nullptr, r); }))
             return;
-        throw error(errc::bad_input, "stroke", "it is not known to this player, or was waited for before");
+        throw error(error_kind::bad_input, "stroke",
+                    "it is not known to this player, or was waited for before");
     } catch (...) {
         (*w)(std::current_exception(), none);
     }

@@ -29,7 +29,7 @@ struct pcm_abilities {
     std::vector<count_range> channels = {};
     count_range rates_hz = {};
     std::vector<unsigned> usual_rates_hz = {}; ///< of the rates in use from 8 to 768 kHz those it takes
-    std::vector<sample_format> formats = {};   ///< of those that tactor plays, the preferred first
+    std::vector<format_kind> formats = {};     ///< of those that tactor plays, the preferred first
     count_range period_frames = {};
     count_range periods = {};
     count_range buffer_frames = {};
@@ -65,7 +65,7 @@ struct pcm_info {
 /// Blocks for some milliseconds. Any thread, but one at a time.
 /// \throws error: bad_input for numbers in `wanted` that no PCM can have. PCMs that cannot be opened say so
 ///         in the list.
-TACTOR_API std::vector<pcm_info> list_pcms(const std::optional<alsa_options>& wanted = {});
+[[nodiscard]] TACTOR_API std::vector<pcm_info> list_pcms(const std::optional<alsa_options>& wanted = {});
 
 /// What playing on a PCM goes through, as ALSA's configuration says.
 struct pcm_route {
@@ -77,7 +77,7 @@ struct pcm_route {
 
 /// Looks the name of a PCM up. Nothing is opened, and nothing thrown for names that nobody defines. Blocks
 /// for some milliseconds (ALSA reads its configuration). Any thread, but one at a time.
-TACTOR_API pcm_route route_of(const std::string& pcm);
+[[nodiscard]] TACTOR_API pcm_route route_of(const std::string& pcm);
 
 /// For names that others have chosen, as in an array file that they made: open_alsa() takes any ALSA name,
 /// and one such as "file:'|COMMAND',raw" runs the command. Passes letters, digits, "_", "-", and ":", "," and
@@ -96,10 +96,10 @@ struct card_info {
 
 /// The card that the name of a PCM says, as in "hw:CARD=Tactor" or "plughw:1,0", where there is such a card.
 /// Blocks shortly (/proc). Any thread.
-TACTOR_API std::optional<card_info> card_of(const std::string& pcm);
+[[nodiscard]] TACTOR_API std::optional<card_info> card_of(const std::string& pcm);
 
 /// Who has a playback device of this card open; of other users' processes only what the driver tells.
 /// Blocks shortly (/proc). Any thread.
-TACTOR_API std::vector<process_info> card_holders(unsigned card_index);
+[[nodiscard]] TACTOR_API std::vector<process_info> card_holders(unsigned card_index);
 
 } // namespace tactor

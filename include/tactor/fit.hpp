@@ -40,10 +40,10 @@ struct fitted_strokes {
     fitting placed = {};
 };
 
-/// Moves and scales strokes, all alike as one picture, so that the middle of their common bounds comes to the
-/// array's and the picture is as large as it can be there: inside the hull of the tactors' centres, which is
-/// what outside::error accepts, and at least `margin_mm` (finite, >= 0) from its edge. Width and height keep
-/// their ratio. The array's middle is the centre of gravity of its hull.
+/// Moves and scales strokes, all alike, as one picture. The middle of their common bounds comes to the
+/// array's middle, the centre of gravity of the hull of the tactors' centres. The picture becomes as large as
+/// it can be inside that hull (which is what outside_kind::error accepts), at least `margin_mm` (finite, >=
+/// 0) from its edge. Width and height keep their ratio.
 ///
 /// Where all tactors lie in one line, to a tenth of their pitch, that line is the array: the picture is
 /// fitted by its extent along the line, and what goes across is left out. A picture without extent (a timed
@@ -54,7 +54,11 @@ struct fitted_strokes {
 /// points, and O(k h) in k curves and the h corners of the hull. \throws error (bad_input) for a margin that
 /// leaves no room, for a picture with an extent on a single
 ///         tactor, and for one that only goes across an array in one line.
-TACTOR_API fitted_strokes fit_strokes(const std::vector<stroke>& strokes, const layout& l,
-                                      double margin_mm = 0.0);
+[[nodiscard]] TACTOR_API fitted_strokes fit_strokes(const std::vector<stroke>& strokes, const layout& l,
+                                                    double margin_mm = 0.0);
+
+/// The same for each stroke that asks for it by stroke::fit_margin_mm, by itself or with those of its
+/// stroke::fit_group, which do not ask any more. Throws as above.
+[[nodiscard]] TACTOR_API std::vector<stroke> fit_as_asked(std::vector<stroke> strokes, const layout& l);
 
 } // namespace tactor

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <tactor/api.hpp>
-#include <tactor/setup.hpp>
+#include <tactor/lines.hpp>
 
 namespace tactor {
 
@@ -18,6 +18,9 @@ namespace tactor {
 /// own.
 class TACTOR_API enable_line {
 public:
+    enable_line() = default;
+    enable_line(const enable_line&) = delete;
+    enable_line& operator=(const enable_line&) = delete;
     virtual ~enable_line();
     /// Switches. False when that failed. An "on" that failed stops the player's stream; an "off" is called
     /// again every 10 ms for a second, and once more when the player closes, see player_stats::left_on. One
@@ -30,18 +33,18 @@ public:
     virtual bool beat() noexcept { return true; }
 };
 
-/// The amplifier's enable line, owned by a small process of its own (the holder), which switches it off when
-/// this process ends in any way, SIGKILL included, when it is told to, and 150 ms after the last beat() or
-/// set(). Requested as off. Blocks until the holder has the line. Call it before real-time threads exist and
-/// before memory is locked; it forks.
-/// \throws error: not_available when there is no such chip or line (which there are), it is busy (by whom),
-/// or
-///         may not be opened (which group to join).
-TACTOR_API std::unique_ptr<enable_line> open_amplifier(const amplifier_settings& s);
+/// The amplifier's enable line, owned by a small process of its own, the holder. The holder switches the line
+/// off when it is told to, 150 ms after the last beat() or set(), and when this process ends in any way,
+/// SIGKILL included. The line is requested as off. Blocks until the holder has it. This forks: call it before
+/// there are real-time threads and before memory is locked.
+/// \throws error (not_available): no such chip or line (it says which there are), a line in use (by whom), or
+///         one that may not be opened (which group to join).
+[[nodiscard]] TACTOR_API std::unique_ptr<enable_line> open_amplifier(const amplifier_settings& s);
 
 /// A line of this process's own, requested as an output that is off; switched off again when destroyed. For
 /// sync pulses. Throws like open_amplifier.
-TACTOR_API std::unique_ptr<enable_line> open_output(const gpio_line_name& line, bool active_low = false);
+[[nodiscard]] TACTOR_API std::unique_ptr<enable_line> open_output(const gpio_line_name& line,
+                                                                  bool active_low = false);
 
 /// One edge on an input.
 struct gpio_edge {
@@ -52,6 +55,9 @@ struct gpio_edge {
 /// An input that reports edges.
 class TACTOR_API edge_input {
 public:
+    edge_input() = default;
+    edge_input(const edge_input&) = delete;
+    edge_input& operator=(const edge_input&) = delete;
     virtual ~edge_input();
     /// Readable when an edge waits; owned by this object.
     virtual int descriptor() const noexcept = 0;
@@ -59,12 +65,11 @@ public:
     virtual std::optional<gpio_edge> read() noexcept = 0;
 };
 
-/// `edge`: "rising", "falling" or "both". Edges that follow another of these within `debounce_ms` (0 to
-/// 10000) are dropped. `pull`: "up", "down", "none" or "as-is". Throws like open_amplifier, bad_input for an
-/// unknown word.
-TACTOR_API std::unique_ptr<edge_input> open_edges(const gpio_line_name& line, const std::string& edge,
-                                                  double debounce_ms = 1.0,
-                                                  const std::string& pull = "as-is");
+/// Edges that follow another of these within `debounce_s` (0 to 10) are dropped. Throws like open_amplifier,
+/// and bad_input for a time that cannot be.
+[[nodiscard]] TACTOR_API std::unique_ptr<edge_input> open_edges(const gpio_line_name& line, edge_kind edge,
+                                                                double debounce_s = 0.001,
+                                                                pull_kind pull = pull_kind::as_is);
 
 /// What `tactor devices` lists.
 struct gpio_line_info {
@@ -82,7 +87,7 @@ struct gpio_chip_info {
 };
 
 /// All GPIO chips, by path. Does not throw for chips that cannot be opened. Blocks shortly.
-TACTOR_API std::vector<gpio_chip_info> list_gpio();
+[[nodiscard]] TACTOR_API std::vector<gpio_chip_info> list_gpio();
 
 /// A line that there is.
 struct gpio_line_place {
@@ -94,6 +99,6 @@ struct gpio_line_place {
 /// Looks a line up as open_output() would, without requesting it: nothing is driven. Blocks shortly.
 /// \throws error: not_available when there is no such chip or line (which there are), or the chip may not be
 ///         opened (which group to join); bad_input for a name that says neither.
-TACTOR_API gpio_line_place find_gpio_line(const gpio_line_name& line);
+[[nodiscard]] TACTOR_API gpio_line_place find_gpio_line(const gpio_line_name& line);
 
 } // namespace tactor

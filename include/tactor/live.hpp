@@ -3,8 +3,12 @@
 /// Strokes that are fed point by point while they sound: from a sensor, a finger, a simulation.
 #pragma once
 
+#include <compare>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 
 #include <tactor/api.hpp>
 #include <tactor/plan.hpp>
@@ -12,20 +16,33 @@
 
 namespace tactor {
 
-/// Number of a stroke that a player was given, unique in one player.
-using stroke_id = std::uint32_t;
+/// A stroke that a player was given. A plain value; the number is unique in one player, and 0 stands for
+/// none.
+struct stroke_id {
+    std::uint32_t number = 0;
+
+    friend constexpr auto operator<=>(const stroke_id&, const stroke_id&) noexcept = default;
+};
 
 struct live_options {
-    /// What of it counts: `method` (continuous: the carrier runs and the phantom's weights follow the
+    /// What of it counts: `algorithm` (continuous: the carrier runs and the phantom's weights follow the
     /// points; park2016: bursts, each SOA one at the newest position), `phantom` or `custom_phantom`,
-    /// `carrier_hz`, `leave`; for bursts `soa_s` and `profile`, which give their duration.
-    plan_options plan{.method = algorithm::continuous, .leave = outside::clamp};
+    /// `carrier_hz`, `outside`; for bursts `soa_s` and `profile`, which give their duration.
+    plan_options plan{.algorithm = algorithm_kind::continuous, .outside = outside_kind::clamp};
     /// Levels, phase and the bursts' ramp; rate and channels are the stream's.
     render_options render = {};
     /// A producer that gives no point for so long, s, 0.001 to 86400, has failed: the stroke fades out and
     /// ends interrupted. Counted from player::begin() on, before the first point too; in frames of the
     /// stream, so not while the system sleeps.
     double timeout_s = 0.5;
+    /// A stroke that has sounded for so long, s, 0.001 to 86400, to a period, fades out and ends interrupted;
+    /// none: it may go on for ever.
+    std::optional<double> longest_s = {};
+    /// For points that come in bursts, as over a network, s, 0 (off) to 1: the stroke moves evenly, in place
+    /// and intensity, to where each point is, and is there so long after it came. It is the mean over this
+    /// window of where it was told to be: what moves evenly is half of it behind. end() waits for the last
+    /// point.
+    double smooth_s = 0.0;
 };
 
 /// What became of the points so far.
@@ -44,14 +61,17 @@ class TACTOR_API live_stroke {
 public:
     stroke_id id() const noexcept;
 
-    /// Moves the stroke to a place, mm, at an intensity (linear, 1 is the level that was asked for). Of
-    /// several points between two renderings the newest counts. Continuous: the weights go from the last
-    /// point's to this one's within one period (at least continuous_step_s), and do so from the next period
-    /// that is written on, so that a point begins to be audible within a period and that step, and the
-    /// delay of the buffer. Bursts: the next one that starts, an SOA later at most, has this place.
+    /// Moves the stroke to a place, mm, at an intensity (linear, 1 is the level that was asked for). When
+    /// several points arrive within one period, the newest counts.
+    ///
+    /// Continuous: the next period that is written begins to move the weights from the last point's to
+    /// this one's. The move takes one period, at least continuous_step_s. The buffer's delay comes on top.
+    /// Bursts: the next burst has this place. It starts one SOA later at most.
+    /// With live_options::smooth_s both begin then to move there.
+    ///
     /// False when the stroke has ended; its report says why.
-    /// \throws error (bad_input) for what is not finite or an intensity below 0, and with outside::error for
-    ///         a point outside the array; the stroke goes on where it was.
+    /// \throws error (bad_input): a number that is not finite, an intensity below 0, or (with
+    ///         outside_kind::error) a point outside the array. The stroke then stays where it was.
     bool to(double x_mm, double y_mm, double intensity = 1.0);
 
     /// No more points come: fades out (continuous), or plays its last burst to the end. It ends finished.
@@ -67,10 +87,17 @@ public:
     live_stroke& operator=(const live_stroke&) noexcept = default;
 
     struct impl;
-    explicit live_stroke(std::shared_ptr<impl> p); ///< for the player. \throws error (bad_input) for none
 
 private:
+    friend struct detail::access;
+    explicit live_stroke(std::shared_ptr<impl> p) noexcept;
+
     std::shared_ptr<impl> impl_;
 };
 
 } // namespace tactor
+
+template <>
+struct std::hash<tactor::stroke_id> {
+    std::size_t operator()(tactor::stroke_id id) const noexcept { return id.number; }
+};

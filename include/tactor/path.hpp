@@ -21,14 +21,14 @@ public:
     /// SVG path data in millimetres, e.g. "M 0 10 C 20 -5 20 45 40 30".
     /// \throws error (bad_input) with the column for what is not path data, for numbers that are not
     ///         finite or beyond 1e6 mm, for more than one subpath and for a path without length.
-    static path from_svg(std::string_view data);
+    [[nodiscard]] static path from_svg(std::string_view data);
 
     /// Straight lines from point to point (at least two, not all the same). Throws like from_svg.
-    static path polyline(std::span<const point> points);
+    [[nodiscard]] static path polyline(std::span<const point> points);
 
     /// Circular arc round `centre`; angles in degrees from the x axis towards the y axis (clockwise
     /// on a screen), |sweep_deg| <= 360. Throws like from_svg.
-    static path arc(point centre, double radius_mm, double from_deg, double sweep_deg);
+    [[nodiscard]] static path arc(point centre, double radius_mm, double from_deg, double sweep_deg);
 
     /// Length in mm, to 1 um.
     double length_mm() const noexcept;
@@ -50,10 +50,11 @@ public:
     path& operator=(const path&) noexcept = default;
 
     struct impl;
-    const impl& data() const noexcept;            ///< for the library
-    explicit path(std::shared_ptr<const impl> p); ///< for the library. \throws error (bad_input) for none
 
 private:
+    friend struct detail::access;
+    explicit path(std::shared_ptr<const impl> p) noexcept;
+
     std::shared_ptr<const impl> impl_;
 };
 

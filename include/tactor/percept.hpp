@@ -60,10 +60,25 @@ inline constexpr double longest_percept_s = 3600.0;
 /// O(samples * log n) for a stroke of n points, and O(1) for each burst in as many as overlap with it.
 /// \throws error (bad_input) where the stroke is longer than longest_percept_s, or the plan names a tactor
 ///         that the array does not have.
-TACTOR_API std::vector<percept_sample> predict_percept(const array& a, const stroke& s, const plan& p);
+[[nodiscard]] TACTOR_API std::vector<percept_sample> predict_percept(const array& a, const stroke& s,
+                                                                     const plan& p);
+
+/// In what one person differs from the one for whom the plan was made.
+struct person {
+    /// By tactor, how much more is felt of it, dB: less where the threshold is higher than was taken. Empty:
+    /// none.
+    std::vector<double> sensitivity_db = {};
+    /// By tactor, from where it was taken to be to where it is felt, mm. Empty: none.
+    std::vector<point> shift = {};
+};
+
+/// The same for somebody else. \throws error (bad_input) too for lists that are neither empty nor one number
+///         for each tactor, and for what is not finite.
+[[nodiscard]] TACTOR_API std::vector<percept_sample> predict_percept(const array& a, const stroke& s,
+                                                                     const plan& p, const person& who);
 
 /// Sums samples up. Errors and speed count only where something is felt. Standard deviations are those of the
 /// population (divided by n).
-TACTOR_API percept_summary summarise(const std::vector<percept_sample>& samples);
+[[nodiscard]] TACTOR_API percept_summary summarise(const std::vector<percept_sample>& samples);
 
 } // namespace tactor

@@ -3,17 +3,21 @@
 /// Planning: from an array and a stroke to the schedule of bursts. Pure functions of their arguments.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <tactor/api.hpp>
 #include <tactor/array.hpp>
+#include <tactor/choices.hpp>
+#include <tactor/curve.hpp>
+#include <tactor/kinds.hpp>
 #include <tactor/phantom.hpp>
 #include <tactor/stroke.hpp>
+#include <tactor/waveform.hpp>
 
 namespace tactor {
 
@@ -25,19 +29,55 @@ struct timing_profile {
     double max_soa_s = 0.07; ///< Eq. (11), as the paper rounds it: intercept / (1 - slope)
 };
 
-enum class algorithm { park2016, tactile_brush, continuous };
-enum class timing { fixed, fit };
-enum class outside { error, clamp };
+enum class timing_kind { fixed, fit };
+enum class outside_kind { error, clamp };
 /// How bursts that overlap on one tactor are joined into one carrier's amplitude.
-enum class overlap { energy, max, sum };
+enum class overlap_kind { energy, max, sum };
 
-TACTOR_API std::string_view to_string(algorithm a) noexcept;
-TACTOR_API std::string_view to_string(timing t) noexcept;
-TACTOR_API std::string_view to_string(outside o) noexcept;
-TACTOR_API std::string_view to_string(overlap o) noexcept;
+TACTOR_API std::string_view to_string(timing_kind k) noexcept;
+template <>
+TACTOR_API timing_kind from_string<timing_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const timing_kind> values_of<timing_kind>() noexcept;
+
+TACTOR_API std::string_view to_string(outside_kind k) noexcept;
+template <>
+TACTOR_API outside_kind from_string<outside_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const outside_kind> values_of<outside_kind>() noexcept;
+
+TACTOR_API std::string_view to_string(overlap_kind k) noexcept;
+template <>
+TACTOR_API overlap_kind from_string<overlap_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const overlap_kind> values_of<overlap_kind>() noexcept;
+
+/// What an intensity of one half means: half of the amplitude; half of the sensation level in dB; or half as
+/// strong as it is felt, by Stevens's law.
+enum class scale_kind { linear, sl, stevens };
+
+TACTOR_API std::string_view to_string(scale_kind k) noexcept;
+template <>
+TACTOR_API scale_kind from_string<scale_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const scale_kind> values_of<scale_kind>() noexcept;
+
+/// From the intensity that is asked for to an amplitude; 0 and 1 stay.
+struct intensity_scale {
+    scale_kind kind = scale_kind::linear;
+    /// stevens: felt = amplitude^exponent, so that the amplitude is intensity^(1 / exponent). 0.1 to 3. On
+    /// the finger 0.95 at 60 Hz and 0.6 at 250 Hz (Stevens, Perception & Psychophysics 3, 1968).
+    double exponent = 0.6;
+    double sl_db = 0.0; ///< sl: the sensation level of intensity 1, dB, above 0
+
+    /// \throws error (bad_input) for what is out of range.
+    [[nodiscard]] TACTOR_API double amplitude(double intensity) const;
+
+    friend bool operator==(const intensity_scale&, const intensity_scale&) = default;
+};
 
 struct plan_options {
-    algorithm method = algorithm::park2016;
+    algorithm_kind algorithm = algorithm_kind::park2016;
     phantom_kind phantom = phantom_kind::inverse_distance;
     /// A model of your own instead of `phantom`; it must outlive nothing, the plan shares it.
     std::shared_ptr<const phantom_model> custom_phantom = {};
@@ -46,13 +86,16 @@ struct plan_options {
     /// Duration of each burst of park2016 instead of the law's, 0.0001 to soa_s. The plan warns where the two
     /// leave the law. The other algorithms warn that they do not use it.
     std::optional<double> burst_s = {};
-    timing schedule = timing::fixed;
+    timing_kind timing = timing_kind::fixed;
     double min_duration_s = 0.020; ///< shortest burst that `fit` may use
-    outside leave = outside::error;
+    outside_kind outside = outside_kind::error;
     bool snap = false;        ///< Tactile Brush: move a start or end onto the grid
     bool drop_points = false; ///< Tactile Brush: leave crossings out until the timing is possible
-    overlap join = overlap::energy;
+    overlap_kind overlap = overlap_kind::energy;
     double carrier_hz = 250.0;
+    waveform wave = {};
+    modulation am = {};
+    intensity_scale scale = {};
 };
 
 /// Tactors that sound together from `onset_s` for `duration_s`.
@@ -63,6 +106,8 @@ struct burst {
     double intensity = 1.0;           ///< A_v
     std::optional<double> tau_s = {}; ///< Tactile Brush: when the target is at `position`
     std::vector<drive> drives = {};   ///< in order of tactor
+
+    friend bool operator==(const burst&, const burst&) = default;
 };
 
 /// Two or more bursts on one tactor at once.
@@ -70,47 +115,60 @@ struct conflict {
     unsigned tactor = 0;
     double from_s = 0.0;
     double to_s = 0.0;
+
+    friend bool operator==(const conflict&, const conflict&) = default;
 };
 
-/// Who plays, when and how strongly. A value: the same input gives the same plan.
+/// The frequency of a carrier at a time.
+struct carrier_point {
+    double t_s = 0.0; ///< from the beginning of the carrier
+    double hz = 0.0;  ///< >= 0
+
+    friend bool operator==(const carrier_point&, const carrier_point&) = default;
+};
+
+/// Who plays, when and how strongly: bursts or a curve. A value: the same input gives the same plan, and what
+/// is in it can be compared, stored and made again.
 struct plan {
-    std::string algorithm = {};
+    std::string algorithm = {}; ///< the planner's name: of an algorithm_kind, or your own
     std::string phantom = {};
     double stroke_duration_s = 0.0;
     double stroke_length_mm = 0.0;
     double carrier_hz = 250.0;
-    overlap join = overlap::energy;
-    std::optional<double> soa_s = {}; ///< none where bursts have no common SOA
-    double total_s = 0.0;             ///< end of the last sound
-    std::vector<burst> bursts = {};   ///< by onset; empty for `continuous`
+    overlap_kind overlap = overlap_kind::energy;
+    std::optional<double> soa_s = {};        ///< none where bursts have no common SOA
+    double total_s = 0.0;                    ///< end of the last sound
+    std::vector<burst> bursts = {};          ///< by onset; empty for `continuous`
+    std::optional<tactor::curve> curve = {}; ///< `continuous` only
     std::vector<conflict> conflicts = {};
     std::vector<meeting> dropped = {};
     std::vector<std::string> warnings = {};
+    waveform wave = {};
+    modulation am = {};
+    /// The frequency over time, linear between points, in order of time; none: carrier_hz all along. Of a
+    /// recording that lies along the path, how often it comes round.
+    std::vector<carrier_point> course = {};
 
-    /// `continuous` only: position, intensity and drives at a time in 0 ... stroke_duration_s, as a
-    /// burst without duration. Replaces `out`. Where it throws, or gives an amplitude that is not finite,
-    /// the stroke ends as interrupted. Empty for plans of bursts.
-    std::function<void(double t_s, burst& out)> at = {};
+    friend bool operator==(const plan&, const plan&) = default;
 };
 
-/// Interval at which `continuous` evaluates the phantom; linear between.
-inline constexpr double continuous_step_s = 0.001;
-
 /// Plans one stroke on an array. `l` must be the layout of `a`.
+/// What the stroke chooses (stroke::choices) wins over `o`; one that asks to be fitted (fit_margin_mm) is.
 /// O(log n) in the tactors for each burst.
 /// \throws error (bad_input): SOA out of bounds, path outside the array (where it leaves it), timing
 ///         that cannot be done (the nearest duration that can), no grid for Tactile Brush.
-TACTOR_API plan make_plan(const array& a, const layout& l, const stroke& s, const plan_options& o);
+[[nodiscard]] TACTOR_API plan make_plan(const array& a, const layout& l, const stroke& s,
+                                        const plan_options& o);
 
 /// The same, for one stroke only: builds the layout itself.
-TACTOR_API plan make_plan(const array& a, const stroke& s, const plan_options& o = {});
+[[nodiscard]] TACTOR_API plan make_plan(const array& a, const stroke& s, const plan_options& o = {});
 
 /// Burst duration for an SOA: min((SOA - intercept) / slope, SOA). \throws error (bad_input) unless
 /// intercept < soa <= max_soa; the message names both bounds.
-TACTOR_API double burst_duration_s(const timing_profile& p, double soa_s);
+[[nodiscard]] TACTOR_API double burst_duration_s(const timing_profile& p, double soa_s);
 
 /// Duration of the bursts of park2016: burst_s if it is given, else the law's. \throws error (bad_input) as
 /// above, or for a burst that is longer than the SOA or shorter than 0.1 ms.
-TACTOR_API double burst_duration_s(const plan_options& o);
+[[nodiscard]] TACTOR_API double burst_duration_s(const plan_options& o);
 
 } // namespace tactor

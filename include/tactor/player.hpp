@@ -3,20 +3,23 @@
 /// The engine: plays scores on a sink in real time.
 #pragma once
 
-#include <chrono>
 #include <concepts>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <tactor/api.hpp>
 #include <tactor/array.hpp>
 #include <tactor/gpio.hpp>
+#include <tactor/kinds.hpp>
 #include <tactor/live.hpp>
+#include <tactor/log.hpp>
 #include <tactor/render.hpp>
 #include <tactor/sink.hpp>
 
@@ -43,25 +46,21 @@ constexpr std::uint64_t stream_frame(T n)
 
 } // namespace detail
 
+/// What a stroke's start waits for.
+enum class start_kind { frame, time, trigger };
+
+TACTOR_API std::string_view to_string(start_kind k) noexcept;
+template <>
+TACTOR_API start_kind from_string<start_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const start_kind> values_of<start_kind>() noexcept;
+
 /// When a stroke starts. A plain value.
 class start_at {
 public:
-    enum class kind { frame, time, trigger };
-
     /// As soon as possible.
     constexpr start_at() noexcept = default;
-    /// The same as frame(), for short.
-    template <detail::whole_number T>
-    constexpr start_at(T stream_frame) : frame_(detail::stream_frame(stream_frame))
-    {
-    }
-    constexpr start_at(std::optional<std::uint64_t> stream_frame) noexcept : frame_(stream_frame.value_or(0))
-    {
-    }
-    template <detail::no_count T>
-    start_at(T seconds) = delete; ///< 0.5 is no frame
-    template <detail::no_count T>
-    start_at(std::optional<T> seconds) = delete;
+    start_at(const auto& frame_or_seconds) = delete; ///< say which: frame(), time()
 
     /// With the next period that is written.
     static constexpr start_at now() noexcept { return {}; }
@@ -71,7 +70,9 @@ public:
     template <detail::whole_number T>
     static constexpr start_at frame(T stream_frame)
     {
-        return {stream_frame};
+        start_at s;
+        s.frame_ = detail::stream_frame(stream_frame);
+        return s;
     }
     template <detail::no_count T>
     static start_at frame(T seconds) = delete;
@@ -83,7 +84,7 @@ public:
     static constexpr start_at time(std::int64_t monotonic_ns) noexcept
     {
         start_at s;
-        s.kind_ = kind::time;
+        s.kind_ = start_kind::time;
         s.time_ns_ = monotonic_ns;
         return s;
     }
@@ -91,32 +92,37 @@ public:
     static constexpr start_at trigger() noexcept
     {
         start_at s;
-        s.kind_ = kind::trigger;
+        s.kind_ = start_kind::trigger;
         return s;
     }
 
-    constexpr kind what() const noexcept { return kind_; }
+    constexpr start_kind what() const noexcept { return kind_; }
     constexpr std::uint64_t stream_frame() const noexcept { return frame_; }
     constexpr std::int64_t time_ns() const noexcept { return time_ns_; }
 
 private:
-    kind kind_ = kind::frame;
+    start_kind kind_ = start_kind::frame;
     std::uint64_t frame_ = 0;
     std::int64_t time_ns_ = 0;
 };
 
 /// How a submitted score ended. Each ends in exactly one of these.
-enum class stroke_state {
+enum class state_kind {
     finished,    ///< its last frame reached the DAC
     cancelled,   ///< faded out because it was asked for
-    interrupted, ///< an xrun, the loss of the device, a failure or a live stroke's silent producer cut it
+    interrupted, ///< an xrun, the loss of the device, a failure, a live stroke's silent producer or its
+                 ///< longest_s
 };
 
-TACTOR_API std::string_view to_string(stroke_state s) noexcept;
+TACTOR_API std::string_view to_string(state_kind k) noexcept;
+template <>
+TACTOR_API state_kind from_string<state_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const state_kind> values_of<state_kind>() noexcept;
 
 struct stroke_report {
-    stroke_id id = 0;
-    stroke_state state = stroke_state::finished;
+    stroke_id id = {};
+    state_kind state = state_kind::finished;
     std::uint64_t frames = 0; ///< frames of it that were played, from its first on
     std::string reason = {};  ///< why it was interrupted
     /// How much later than asked for its first sample came; 0 when in time, and for start_at::now().
@@ -154,6 +160,8 @@ struct player_options {
     /// Of the player before, where this one goes on on the same array: a device that was lost and is opened
     /// again does not give a tactor its time back. Channels count from 0 in both.
     drive_history driven = {};
+    /// Told of the stream's start and end, xruns and recovery, mutes of the amplifier, and limits that acted.
+    log_function log = {};
 };
 
 /// Counters since the player was opened.
@@ -228,38 +236,43 @@ public:
     const stream_setup& setup() const noexcept;
 
     /// Plays a score as soon as possible, from a frame of the stream or a time on, or when triggered.
-    /// Several may sound at once. Does not block for the ring: drives that do not fit wait on the control
-    /// side. With periods of P frames and N periods of buffer, a score that is to start now has its first
-    /// sample in the device's buffer within one period of this call and at the DAC within N + 1; one that is
-    /// to start at a time is in time when that is N + 1 periods away or more.
+    /// Several may sound at once. Does not block: drives that do not fit into the ring wait on the control
+    /// side. With N periods in the buffer, a score that starts now has its first sample in the device's
+    /// buffer one period after this call at the latest, and at the DAC after N + 1 periods at the latest.
+    /// A score that starts at a given time is punctual if this call is made N + 1 periods before it.
     /// \throws error: bad_input when rate or channels differ from the stream's, runtime when the
     ///         stream has ended.
     stroke_id submit(const score& s, start_at start = {});
 
-    /// Starts all armed strokes, so that their first samples are at the DAC at a CLOCK_MONOTONIC time, ns,
-    /// or as soon as possible when that is over. Returns how many there were. An edge at the trigger line
-    /// does the same with its own time and player_lines::trigger_delay_s. Does not block.
+    /// Starts all armed strokes: their first samples are at the DAC at a CLOCK_MONOTONIC time, ns, or as
+    /// soon as possible when that time has passed. Returns how many there were. An edge at the trigger
+    /// line does the same, player_lines::trigger_delay_s after its own time. Does not block.
     std::size_t fire(std::int64_t monotonic_ns);
     template <detail::no_count T>
     std::size_t fire(T seconds) = delete;
 
     /// Begins a stroke that is fed point by point; silent until the first, which must come within
-    /// live_options::timeout_s. It ends in a report like all strokes. At most 16 at a time sound; further
-    /// ones wait until one of them ends, and begin with their newest point. Those that have no point yet take
-    /// no place. \throws error: bad_input for options that cannot be (levels, carrier, SOA, Tactile Brush),
-    /// runtime
-    ///         when the stream has ended.
-    live_stroke begin(const live_options& o = {});
+    /// live_options::timeout_s. It ends in a report like all strokes. At most 16 sound at a time; further
+    /// ones wait until one of them ends, and begin with their newest point. A stroke without a point does
+    /// not count. \throws error: bad_input for options that cannot be (levels, carrier, SOA, Tactile
+    ///         Brush), runtime when the stream has ended.
+    [[nodiscard]] live_stroke begin(const live_options& o = {});
 
     /// Fades a stroke out. One that waits (for its time, a trigger, the amplifier, a point) ends at once,
     /// while the system sleeps too. False when it has ended or is not known.
     bool cancel(stroke_id id);
 
-    /// Blocks until the stroke has ended and returns how; nothing on time-out, for a stroke that is not
-    /// known, and in a handler (which runs in the thread that would have to bring the report) for one
-    /// that has not ended. Each report is given once by wait(), and to the handler when there is one; of
-    /// those that nobody waits for, the 4096 newest are kept.
-    std::optional<stroke_report> wait(stroke_id id, std::optional<std::chrono::nanoseconds> timeout = {});
+    /// Blocks until the stroke has ended and returns how. Returns nothing on time-out and for a stroke that
+    /// is not known. In a handler it does not block (reports come from the handler's own thread): a stroke
+    /// that has not ended gives nothing there. Each report is given once by wait(), and to the handler when
+    /// there is one. Of reports that nobody waits for, the 4096 newest are kept.
+    std::optional<stroke_report> wait(stroke_id id, std::optional<double> timeout_s = {});
+
+    /// Called in the control thread for each stroke that begins, soon after its first frame was handed to the
+    /// device and before its report: with the CLOCK_MONOTONIC, ns, at which that frame is (or was) at the
+    /// DAC, or nothing while the DAC's clock is not known. A stroke that an xrun cuts before its first sample
+    /// sounds begins again, and is told of again. Set it before the first submit().
+    void on_begin(std::function<void(stroke_id, std::optional<std::int64_t>)> handler);
 
     /// Called in the control thread for each ended stroke. Set it before the first submit().
     void on_report(std::function<void(const stroke_report&)> handler);

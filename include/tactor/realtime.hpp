@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
 
 #include <tactor/api.hpp>
 
@@ -18,11 +17,8 @@ struct realtime_rights {
     std::optional<std::uint64_t> lockable_bytes = 0;
 };
 
-/// Of this process, now. Does not throw for files that cannot be read: no rights then. Blocks shortly.
-TACTOR_API realtime_rights probe_realtime_rights();
-
-/// What to do where SCHED_FIFO at this priority, or memory of this size, is refused: one sentence for
-/// people. The library asks for priorities itself and never locks the memory of its host.
-TACTOR_API std::string realtime_advice(const realtime_rights& r, int priority);
+/// Of this process, now. The library asks for priorities itself and never locks the memory of its host. Does
+/// not throw for files that cannot be read: no rights then. Blocks shortly.
+[[nodiscard]] TACTOR_API realtime_rights probe_realtime_rights();
 
 } // namespace tactor

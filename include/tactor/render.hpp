@@ -3,16 +3,20 @@
 /// From plans to samples (rendering model, section 7).
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <tactor/api.hpp>
 #include <tactor/array.hpp>
+#include <tactor/kinds.hpp>
 #include <tactor/plan.hpp>
 #include <tactor/sample_format.hpp>
 
@@ -20,13 +24,43 @@ namespace tactor {
 
 /// Where the carrier's phase starts. With `stroke` one carrier runs from the stroke's first frame on, and
 /// bursts open and close it: a tactor that plays several in a row goes on without a break. With `burst` it
-/// starts again with each (or with the first of those that overlap on a tactor), so that 17.5 cycles, as 70
-/// ms at 250 Hz are, flip at each boundary: the line at 250 Hz splits into 242.9 and 257.1 Hz, with a mean
-/// above 0.
-enum class phase_mode { stroke, burst };
+/// starts again with each burst (where bursts overlap on a tactor, with the first). 70 ms at 250 Hz are 17.5
+/// cycles, so there the sign flips from burst to burst: the spectrum has lines at 242.9 and 257.1 Hz in place
+/// of 250, and the mean is above 0.
+enum class phase_kind { stroke, burst };
 
-/// "stroke" or "burst".
-TACTOR_API std::string_view to_string(phase_mode p) noexcept;
+TACTOR_API std::string_view to_string(phase_kind k) noexcept;
+template <>
+TACTOR_API phase_kind from_string<phase_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const phase_kind> values_of<phase_kind>() noexcept;
+
+/// How a burst rises and falls: like half a cosine's cycle, by a straight line, or by an exponential that
+/// ends after five of its time constants. `tukey` is the first with ramps that are a part of the burst.
+enum class envelope_kind { raised_cosine, linear, exponential, tukey };
+
+TACTOR_API std::string_view to_string(envelope_kind k) noexcept;
+template <>
+TACTOR_API envelope_kind from_string<envelope_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const envelope_kind> values_of<envelope_kind>() noexcept;
+
+/// Of every burst, and of a continuous stroke as a whole. Where both ramps do not fit, they are shortened
+/// alike.
+struct burst_envelope {
+    envelope_kind kind = envelope_kind::raised_cosine;
+    std::optional<double> attack_s = {};  ///< s, from 0; none: render_options::ramp_s
+    std::optional<double> release_s = {}; ///< s, from 0; none: render_options::ramp_s
+    double tukey_part = 0.5; ///< tukey: both ramps together, of the burst, 0 to 1; instead of all other ramps
+
+    friend bool operator==(const burst_envelope&, const burst_envelope&) = default;
+};
+
+/// The name of a kind, or "tukey:PART". The ramps are left open. \throws error (bad_input).
+[[nodiscard]] TACTOR_API burst_envelope parse_envelope(std::string_view text);
+
+/// What parse_envelope() takes: all but the ramps.
+[[nodiscard]] TACTOR_API std::string envelope_text(const burst_envelope& e);
 
 /// What the array may be given at run time, over and above each channel's own max_dbfs: what the channels
 /// get after all strokes are summed, by its envelope. Plans within these limits are not touched in a single
@@ -47,7 +81,7 @@ struct drive_limits {
 
 struct render_options {
     unsigned rate = 48000; ///< Hz, 8000 to 768000
-    phase_mode phase = phase_mode::stroke;
+    phase_kind phase = phase_kind::stroke;
     /// Raised-cosine ramp inside each burst, s, from 0. Default: 0 where the carrier crosses zero at the
     /// burst's begin and at its end (both within 1 % of a half cycle), else 2 ms; burst by burst.
     std::optional<double> ramp_s = {};
@@ -60,19 +94,29 @@ struct render_options {
     /// sync signal that no scheduler can delay.
     std::optional<unsigned> marker_channel = {};
     double marker_s = 0.005; ///< above 0, at most 10 s
+    burst_envelope envelope = {};
 };
 
 /// Ramp of a burst (or of a continuous stroke, whose onset is 0) in seconds: o.ramp_s, or the default. Both
 /// ends of a burst that is shorter than two of them have half of it.
-TACTOR_API double burst_ramp_s(double onset_s, double duration_s, double carrier_hz,
-                               const render_options& o) noexcept;
+[[nodiscard]] TACTOR_API double burst_ramp_s(double onset_s, double duration_s, double carrier_hz,
+                                             const render_options& o) noexcept;
+
+/// The same of a burst of a plan: by its waveform and its carrier, which may not be at zero where a sine is.
+[[nodiscard]] TACTOR_API double burst_ramp_s(double onset_s, double duration_s, const plan& p,
+                                             const render_options& o) noexcept;
 
 /// A plan and when it starts.
 struct placed_plan {
     plan schedule = {};
-    /// Seconds from the start of the piece; none: at the end of the plan before it (the first: 0).
+    /// Seconds from the start of the piece, or as `anchor` says; none: at the end of the plan before it (the
+    /// first: 0).
     std::optional<double> start_s = {};
+    start_anchor anchor = {}; ///< from when start_s counts
 };
+
+/// When each plan starts, in seconds. \throws error (bad_input) for one that would start before the piece.
+[[nodiscard]] TACTOR_API std::vector<double> starts_of(std::span<const placed_plan> plans);
 
 /// Plans at a sample rate and at levels: frames and channels. Immutable, cheap to copy; a move is a copy, so
 /// that what is moved from stays what it was.
@@ -81,7 +125,12 @@ public:
     /// \throws error (bad_input): carrier at or above half the rate, a level that a tactor may not
     ///         have (above full scale or its max_dbfs; with its line in the array file), a tactor
     ///         without a threshold where a sensation level is asked for, too few channels.
-    score(const array& a, std::vector<placed_plan> plans, const render_options& o);
+    score(const array& a, std::vector<placed_plan> plans, const render_options& o = {});
+    /// One plan, from the start of the piece on. Throws as above.
+    template <std::same_as<plan> Plan>
+    score(const array& a, Plan p, const render_options& o = {}) : score(a, alone(std::move(p)), o)
+    {
+    }
     score(const score&) noexcept = default;
     score& operator=(const score&) noexcept = default;
 
@@ -90,13 +139,45 @@ public:
     unsigned rate() const noexcept; ///< Hz
     /// Start of each plan in frames.
     const std::vector<std::uint64_t>& starts() const noexcept;
+    /// The plans without their bursts, which are not kept twice.
     const std::vector<placed_plan>& plans() const noexcept;
 
     struct impl;
-    const std::shared_ptr<const impl>& data() const noexcept; ///< for the library
 
 private:
+    friend struct detail::access;
+    explicit score(std::shared_ptr<const impl> made) noexcept;
+    static std::vector<placed_plan> alone(plan p);
+
     std::shared_ptr<const impl> impl_;
+};
+
+/// Makes a score stroke by stroke. What it plans itself is never there as a whole: an hour of park2016 takes
+/// 4 MB in place of 11. One thread at a time.
+class TACTOR_API score_builder {
+public:
+    /// \throws error (bad_input) for what render_options or the array ask that cannot be.
+    score_builder(const array& a, const render_options& o);
+    ~score_builder();
+    score_builder(const score_builder&) = delete;
+    score_builder& operator=(const score_builder&) = delete;
+
+    /// Adds a plan; its start as in placed_plan. \throws error (bad_input) where it cannot be rendered.
+    void add(plan p, std::optional<double> start_s = {}, const start_anchor& anchor = {});
+
+    /// Plans a stroke as make_plan() does and adds it at its start. `l` must be the layout of the array. The
+    /// bursts of park2016 are handed on as they come, the other algorithms plan as a whole.
+    /// \throws error (bad_input) as make_plan() does, and where the plan cannot be rendered; the builder is
+    ///         of no more use then.
+    void add(const layout& l, const stroke& s, const plan_options& o);
+
+    /// The score of what was added, with the same samples as that of the plans; the builder begins anew.
+    /// \throws error (bad_input) for levels that a tactor may not have.
+    [[nodiscard]] score take();
+
+private:
+    struct impl;
+    std::unique_ptr<impl> impl_;
 };
 
 /// Renders a score offline, block by block. The same mixer as in the player: same score, same
@@ -104,7 +185,7 @@ private:
 /// to; its other members throw error (bad_input).
 class TACTOR_API renderer {
 public:
-    renderer(const score& s, sample_format f);
+    renderer(const score& s, format_kind f);
     ~renderer();
     renderer(renderer&&) noexcept;
     renderer& operator=(renderer&&) noexcept;
@@ -116,7 +197,7 @@ public:
     /// Next frame to be rendered.
     std::uint64_t position() const;
 
-    /// Why the rest is silence: a plan's `at` threw, or gave what is no amplitude of a tactor, in mid-stroke.
+    /// Why the rest is silence: for want of memory, say, a continuous stroke could not be followed further.
     /// Empty while all is well.
     const std::string& failure() const;
 

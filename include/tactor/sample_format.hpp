@@ -7,10 +7,11 @@
 #include <string_view>
 
 #include <tactor/api.hpp>
+#include <tactor/kinds.hpp>
 
 namespace tactor {
 
-enum class sample_format {
+enum class format_kind {
     float32, ///< FLOAT_LE, full scale 1.0
     s16,     ///< S16_LE
     s24_3,   ///< S24_3LE: packed in three bytes, as in WAV files
@@ -19,11 +20,13 @@ enum class sample_format {
 };
 
 /// Bytes of one sample.
-TACTOR_API std::size_t bytes_of(sample_format f) noexcept;
+[[nodiscard]] TACTOR_API std::size_t bytes_of(format_kind f) noexcept;
 
 /// "float", "s16", "s24" (s24_3), "s24-4", "s32".
-TACTOR_API std::string_view to_string(sample_format f) noexcept;
-/// The format that prints so. \throws error (bad_input) that lists the names.
-TACTOR_API sample_format sample_format_from_string(std::string_view name);
+TACTOR_API std::string_view to_string(format_kind k) noexcept;
+template <>
+TACTOR_API format_kind from_string<format_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const format_kind> values_of<format_kind>() noexcept;
 
 } // namespace tactor

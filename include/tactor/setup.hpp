@@ -6,12 +6,13 @@
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <tactor/api.hpp>
 #include <tactor/array.hpp>
+#include <tactor/lines.hpp>
 
 namespace tactor {
 
@@ -26,32 +27,6 @@ struct output_settings {
     std::optional<unsigned> periods = {};       ///< periods in the buffer, >= 2
 };
 
-/// A GPIO line: either chip (label or path) and offset, or a line name.
-struct gpio_line_name {
-    std::string chip = {};
-    std::optional<unsigned> offset = {};
-    std::string name = {};
-    source_place where = {};
-};
-
-/// [amplifier]: the line that enables the amplifier.
-struct amplifier_settings {
-    gpio_line_name line = {};
-    bool active_low = false;
-    double settle_ms = 10.0; ///< turn-on time of the amplifier
-};
-
-/// [sync]: triggers out and in.
-struct sync_settings {
-    std::optional<gpio_line_name> out = {};
-    double pulse_ms = 5.0;
-    std::optional<unsigned> channel = {}; ///< marker on a spare PCM channel
-    std::optional<gpio_line_name> in = {};
-    std::string edge = "rising"; ///< "rising", "falling" or "both"
-    double debounce_ms = 1.0;    ///< edges that follow another within this are dropped
-    std::string pull = "as-is";  ///< "up", "down", "none" or "as-is"
-};
-
 /// [limits]: see drive_limits. Anything not said is that one's default.
 struct limit_settings {
     std::optional<double> power_dbfs = {};
@@ -59,34 +34,62 @@ struct limit_settings {
     std::optional<double> window_s = {};
 };
 
+/// [serve]: what tactor serve listens on and allows. Anything not said is that program's default.
+struct serve_settings {
+    std::optional<std::string> socket = {}; ///< path of the Unix socket
+    std::optional<std::string> tcp = {};    ///< "[HOST:]PORT", as for osc and http
+    std::optional<std::string> osc = {};
+    std::optional<std::string> http = {};
+    std::optional<std::string> token_file = {};
+    std::vector<std::string> allow_hosts = {};
+    std::vector<std::string> osc_peers = {};
+    std::optional<double> max_level_dbfs = {};
+    std::optional<double> idle_stop_s = {};
+    std::optional<unsigned> max_clients = {};
+    std::optional<unsigned> kept_clients = {};     ///< of these, places for the Unix socket alone
+    std::optional<unsigned> max_strokes = {};      ///< of one client at once
+    std::optional<unsigned> max_live_strokes = {}; ///< of these, live ones
+    std::optional<unsigned> max_points_per_s = {}; ///< of one client
+    std::optional<double> max_stroke_s = {};
+    std::optional<unsigned> max_message_bytes = {};
+    std::optional<unsigned> max_nesting = {};
+    std::optional<double> max_message_s = {};
+    std::optional<unsigned> max_unread_bytes = {};     ///< that wait for one client
+    std::optional<unsigned> max_all_unread_bytes = {}; ///< that wait for all together
+};
+
 /// All that a file may say.
+/// Of whom and at which carrier an array file's thresholds are: its [calibration].
+struct calibration_origin {
+    std::string participant = {};
+    double carrier_hz = 0.0;
+    bool simulated = false;
+
+    friend bool operator==(const calibration_origin&, const calibration_origin&) = default;
+};
+
 struct setup {
-    std::optional<array> layout = {};
+    std::optional<tactor::array> array = {};
     output_settings output = {};
     std::optional<amplifier_settings> amplifier = {};
     std::optional<sync_settings> sync = {};
     std::optional<limit_settings> limits = {};
+    std::optional<serve_settings> serve = {};
+    std::optional<calibration_origin> calibration = {};
     /// [defaults]: option name (without dashes) to value as text, e.g. "phantom" -> "barycentric".
     /// Only names that setup_default_names() lists.
     std::map<std::string, std::string> defaults = {};
 };
 
 /// Options that a [defaults] table may set.
-TACTOR_API const std::vector<std::string>& setup_default_names();
+[[nodiscard]] TACTOR_API const std::vector<std::string>& setup_default_names();
 
 /// Reads an array or configuration file. May block on the file system.
 /// \throws error (bad_input) with file, line and column; an unknown key names the nearest known one.
-TACTOR_API setup load_setup(const std::filesystem::path& file);
+[[nodiscard]] TACTOR_API setup load_setup(const std::filesystem::path& file);
 
 /// The same from text; `name` stands for the file in messages, relative names in it are resolved
 /// against the current directory.
-TACTOR_API setup parse_setup(std::string_view toml, const std::string& name);
-
-/// The text of an array or configuration file with other channels, one for each tactor in order; all else in
-/// it stays as it is, comments too. May block on the file system.
-/// \throws error (bad_input): what load_setup() throws; no array in the file; a wrong number of channels;
-///         channels that the file cannot have (two alike, more than [output] says). The text itself is
-///         checked: what it says is what was asked for.
-TACTOR_API std::string with_channels(const std::filesystem::path& file, std::span<const unsigned> channels);
+[[nodiscard]] TACTOR_API setup parse_setup(std::string_view toml, const std::string& name);
 
 } // namespace tactor

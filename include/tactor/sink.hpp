@@ -8,10 +8,12 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include <poll.h>
 
 #include <tactor/api.hpp>
+#include <tactor/kinds.hpp>
 #include <tactor/sample_format.hpp>
 
 namespace tactor {
@@ -21,7 +23,7 @@ struct stream_setup {
     std::string name; ///< as the user named it
     unsigned channels = 0;
     unsigned rate = 0; ///< Hz
-    sample_format format = sample_format::s32;
+    format_kind format = format_kind::s32;
     unsigned period_frames = 0;
     unsigned buffer_frames = 0;
     bool batch = false;    ///< the position moves by whole periods
@@ -29,7 +31,7 @@ struct stream_setup {
 };
 
 /// What a call on a sink came to. A plain value: the audio thread throws nothing.
-enum class io_status {
+enum class io_kind {
     ok,
     again,     ///< no room now
     xrun,      ///< the device ran dry; the stream has stopped
@@ -38,8 +40,14 @@ enum class io_status {
     failed,    ///< anything else; final
 };
 
+TACTOR_API std::string_view to_string(io_kind k) noexcept;
+template <>
+TACTOR_API io_kind from_string<io_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const io_kind> values_of<io_kind>() noexcept;
+
 struct io_result {
-    io_status status = io_status::ok;
+    io_kind status = io_kind::ok;
     std::size_t frames = 0; ///< frames taken
     int code = 0;           ///< negative errno of the device where status is not ok
 };
@@ -57,16 +65,19 @@ struct stream_position {
 /// must not block, lock, allocate or log.
 class TACTOR_API sink {
 public:
+    sink() = default;
+    sink(const sink&) = delete;
+    sink& operator=(const sink&) = delete;
     virtual ~sink();
 
     virtual const stream_setup& setup() const noexcept = 0;
 
     /// Makes the stream ready to be filled: at first, and again after an xrun. Begins a new epoch.
-    virtual io_status prepare() noexcept = 0;
+    virtual io_kind prepare() noexcept = 0;
     /// Starts the DAC explicitly, after the prefill.
-    virtual io_status start() noexcept = 0;
+    virtual io_kind start() noexcept = 0;
     /// Tries to come back from `suspended`; `again` while the device is not ready.
-    virtual io_status resume() noexcept = 0;
+    virtual io_kind resume() noexcept = 0;
     /// For how long the stream has stood still when an xrun was just reported, ns; 0 where that cannot be
     /// told. Asked before prepare().
     virtual std::int64_t xrun_ns() noexcept;
@@ -76,7 +87,7 @@ public:
     /// Fills `fds` with what to poll; returns how many.
     virtual std::size_t descriptors(std::span<pollfd> fds) noexcept = 0;
     /// Interprets the polled descriptors: `ok` room to write, `again` not yet, or an error.
-    virtual io_status ready(std::span<pollfd> fds) noexcept = 0;
+    virtual io_kind ready(std::span<pollfd> fds) noexcept = 0;
 
     /// Frames that can be written now.
     virtual io_result room() noexcept = 0;
@@ -99,12 +110,12 @@ public:
     ~paced_sink() override;
 
     const stream_setup& setup() const noexcept final;
-    io_status prepare() noexcept final;
-    io_status start() noexcept final;
-    io_status resume() noexcept final;
+    io_kind prepare() noexcept final;
+    io_kind start() noexcept final;
+    io_kind resume() noexcept final;
     std::size_t max_descriptors() const noexcept final;
     std::size_t descriptors(std::span<pollfd> fds) noexcept final;
-    io_status ready(std::span<pollfd> fds) noexcept final;
+    io_kind ready(std::span<pollfd> fds) noexcept final;
     io_result room() noexcept final;
     io_result write(const std::byte* data, std::size_t frames) noexcept final;
     stream_position position() noexcept final;
@@ -114,7 +125,7 @@ protected:
     /// Takes the next frames of the stream, at most a period of them, interleaved, up to buffer_frames
     /// before their time; `first` counts from the epoch's start. Called by the audio thread: it must not
     /// block, lock, allocate or log. `ok`, or `lost` or `failed`, which end the stream.
-    virtual io_status take(std::uint64_t first, const std::byte* data, std::size_t frames) noexcept = 0;
+    virtual io_kind take(std::uint64_t first, const std::byte* data, std::size_t frames) noexcept = 0;
 
 private:
     struct impl;

@@ -7,13 +7,18 @@
 #include <iosfwd>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <tactor/api.hpp>
+#include <tactor/choices.hpp>
 #include <tactor/geometry.hpp>
+#include <tactor/kinds.hpp>
+#include <tactor/movement.hpp>
 #include <tactor/path.hpp>
+#include <tactor/waveform.hpp>
 
 namespace tactor {
 
@@ -28,6 +33,8 @@ struct timed_point {
 struct meeting {
     double t_s = 0.0;
     point position = {};
+
+    friend bool operator==(const meeting&, const meeting&) = default;
 };
 
 /// Position and intensity over time (rendering model, section 2). Immutable; copies and moves share it (what
@@ -36,11 +43,16 @@ class TACTOR_API trajectory {
 public:
     /// Along a path at constant speed in `duration_s`.
     /// \throws error (bad_input) unless 0 < duration_s <= 86400.
-    static trajectory along(path p, double duration_s, double intensity = 1.0);
+    [[nodiscard]] static trajectory along(path p, double duration_s, double intensity = 1.0);
+
+    /// Along a path as `m` says: in its duration, else at its speeds (default_speed_mm_s where it has none).
+    /// \throws error (bad_input) for a movement that cannot be: parts that do not ascend from 0 to 1, speeds
+    ///         that are not above 0, rests that take all of the duration or more.
+    [[nodiscard]] static trajectory along(path p, const movement& m, double intensity = 1.0);
 
     /// Linear between timed points: at least two, times strictly ascending from 0, finite.
     /// \throws error (bad_input) naming the point (counting from 1).
-    static trajectory timed(std::vector<timed_point> points);
+    [[nodiscard]] static trajectory timed(std::vector<timed_point> points);
 
     double duration_s() const noexcept;
     double length_mm() const noexcept;
@@ -50,12 +62,20 @@ public:
     /// Intensity at a time (A_v), clamped in the same way.
     double intensity(double t_s) const noexcept;
 
-    /// The same movement in another time. Throws like along().
-    trajectory with_duration(double duration_s) const;
+    /// The same movement in another time, rests included. Throws like along().
+    [[nodiscard]] trajectory with_duration(double duration_s) const;
+
+    /// The same movement at another mean speed while it moves; the rests of a movement along a path stay as
+    /// long as they are, and what has no length stays as it is. \throws error (bad_input) unless speed_mm_s
+    /// is finite, above 0 and leaves a duration that can be.
+    [[nodiscard]] trajectory with_speed(double speed_mm_s) const;
+
+    /// Played backwards: at each time what this one is as long before its end.
+    [[nodiscard]] trajectory reversed() const;
 
     /// The same movement with every intensity times `factor`. \throws error (bad_input) unless factor
     /// is finite and >= 0.
-    trajectory with_intensity(double factor) const;
+    [[nodiscard]] trajectory with_intensity(double factor) const;
 
     /// Times, ascending, at which the target meets x = x_mm (or y = y_mm): see path::meets_x. A
     /// target that rests on the line meets it when it arrives.
@@ -66,59 +86,92 @@ public:
     trajectory& operator=(const trajectory&) noexcept = default;
 
     struct impl;
-    const impl& data() const noexcept; ///< for the library
-    explicit trajectory(
-        std::shared_ptr<const impl> p); ///< for the library. \throws error (bad_input) for none
 
 private:
+    friend struct detail::access;
+    explicit trajectory(std::shared_ptr<const impl> p) noexcept;
+
     std::shared_ptr<const impl> impl_;
 };
 
 /// Speed of a stroke that says neither duration nor speed.
 inline constexpr double default_speed_mm_s = 60.0;
 
+/// What must be said of a stroke.
+enum class note_kind {
+    none,
+    reconstructed, ///< a preset whose original is not in print
+};
+
+TACTOR_API std::string_view to_string(note_kind k) noexcept;
+template <>
+TACTOR_API note_kind from_string<note_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const note_kind> values_of<note_kind>() noexcept;
+
+/// The carrier at a part of the path.
+struct carrier_part {
+    double part = 0.0; ///< of the path's length that lies behind the target, 0 to 1
+    double hz = 250.0; ///< 1 to 384000
+
+    friend bool operator==(const carrier_part&, const carrier_part&) = default;
+};
+
 /// One stroke as the user gave it.
 struct stroke {
     std::string name = {};
     trajectory motion;
-    /// Start in seconds from the start of the piece; none: when the stroke before it has ended.
+    /// Start in seconds, counted from `anchor`; none: when the stroke before it has ended.
     std::optional<double> start_s = {};
     std::optional<double> carrier_hz = {}; ///< instead of the common carrier
-    /// "reconstructed" for presets that are not in print; otherwise empty.
-    std::string note = {};
+    note_kind note = note_kind::none;
     /// What was odd about the input and taken nevertheless; make_plan() hands it on to plan::warnings.
     std::vector<std::string> warnings = {};
     /// The speed from which the motion's time follows; none where a time is given. fit_strokes() keeps it.
     std::optional<double> speed_mm_s = {};
+    start_anchor anchor = {};
+    stroke_choices choices = {};
+    /// Wants to be as large as the array has room for, this far from its edge: see fit_strokes().
+    std::optional<double> fit_margin_mm = {};
+    /// With it: strokes of the same number, above 0, are fitted as one picture; 0: this one by itself.
+    unsigned fit_group = 0;
+    std::optional<waveform> wave = {}; ///< instead of the common waveform
+    std::optional<modulation> am = {}; ///< instead of the common modulation
+    /// The carrier along the path, linear between parts, which ascend; instead of carrier_hz. Its phase goes
+    /// on through every change.
+    std::vector<carrier_part> carrier_profile = {};
 };
 
 /// Names of the built-in strokes: "park2016-1" ... "park2016-4" for palm-3x3, "wave-2x4" and "round-2x4" for
 /// palm-2x4.
-TACTOR_API const std::vector<std::string>& stroke_presets();
+[[nodiscard]] TACTOR_API const std::vector<std::string>& stroke_presets();
 
 /// A built-in stroke by name. \throws error (bad_input) that lists the presets.
-TACTOR_API stroke preset_stroke(std::string_view name);
+[[nodiscard]] TACTOR_API stroke preset_stroke(std::string_view name);
 
 /// Reads a stroke file by its extension: .toml, .csv or .svg; see tactor.toml(5). One or more strokes.
 /// May block on the file system.
 /// \throws error (bad_input) with file, line and column.
-TACTOR_API std::vector<stroke> load_strokes(const std::filesystem::path& file);
+[[nodiscard]] TACTOR_API std::vector<stroke> load_strokes(const std::filesystem::path& file);
 
 /// Reads stroke file text from an open descriptor to its end, such as standard input, and guesses its kind as
 /// parse_strokes() does; `name` stands for it in messages. Blocks until the end comes.
 /// \throws error (bad_input) with line and column.
-TACTOR_API std::vector<stroke> load_strokes(int descriptor, const std::string& name);
+[[nodiscard]] TACTOR_API std::vector<stroke> load_strokes(int descriptor, const std::string& name);
 
 /// Stroke file text in TOML; `name` stands for the file in messages.
-TACTOR_API std::vector<stroke> parse_strokes_toml(std::string_view text, const std::string& name);
+[[nodiscard]] TACTOR_API std::vector<stroke> parse_strokes_toml(std::string_view text,
+                                                                const std::string& name);
 /// CSV with a header line naming t_s, x_mm, y_mm and optionally intensity, in any order.
 /// The time of the first line is the stroke's zero, whatever it is (-1e10 to 1e10 s). Of lines with
 /// equal times the last counts, with a warning.
-TACTOR_API std::vector<stroke> parse_strokes_csv(std::string_view text, const std::string& name);
+[[nodiscard]] TACTOR_API std::vector<stroke> parse_strokes_csv(std::string_view text,
+                                                               const std::string& name);
 /// SVG document: each shape's subpaths are strokes, one after the other in document order.
 /// One user unit is one millimetre, unless the document's width or height has a physical unit.
-TACTOR_API std::vector<stroke> parse_strokes_svg(std::string_view text, const std::string& name);
+[[nodiscard]] TACTOR_API std::vector<stroke> parse_strokes_svg(std::string_view text,
+                                                               const std::string& name);
 /// Guesses the kind from the text (SVG if it starts with '<', CSV if its first line names t_s, else TOML).
-TACTOR_API std::vector<stroke> parse_strokes(std::string_view text, const std::string& name);
+[[nodiscard]] TACTOR_API std::vector<stroke> parse_strokes(std::string_view text, const std::string& name);
 
 } // namespace tactor

@@ -5,13 +5,19 @@
 
 #include <tactor/alsa.hpp>
 #include <tactor/array.hpp>
+#include <tactor/choices.hpp>
+#include <tactor/curve.hpp>
 #include <tactor/devices.hpp>
 #include <tactor/error.hpp>
 #include <tactor/fit.hpp>
 #include <tactor/geometry.hpp>
 #include <tactor/gpio.hpp>
+#include <tactor/kinds.hpp>
+#include <tactor/lines.hpp>
 #include <tactor/live.hpp>
-#include <tactor/output_file.hpp>
+#include <tactor/log.hpp>
+#include <tactor/movement.hpp>
+#include <tactor/observer.hpp>
 #include <tactor/path.hpp>
 #include <tactor/percept.hpp>
 #include <tactor/phantom.hpp>
@@ -25,4 +31,5 @@
 #include <tactor/stroke.hpp>
 #include <tactor/version.hpp>
 #include <tactor/wav.hpp>
+#include <tactor/waveform.hpp>
 #include <tactor/words.hpp>

@@ -7,13 +7,21 @@
 
 #include <tactor/api.hpp>
 
+/// Version of these headers; version() is that of the library that runs.
+#define TACTOR_VERSION_MAJOR 0
+#define TACTOR_VERSION_MINOR 1
+#define TACTOR_VERSION_PATCH 0
+/// For comparing: TACTOR_VERSION >= TACTOR_VERSION_NUMBER(0, 2, 0).
+#define TACTOR_VERSION_NUMBER(major, minor, patch) ((major)*1000000 + (minor)*1000 + (patch))
+#define TACTOR_VERSION TACTOR_VERSION_NUMBER(TACTOR_VERSION_MAJOR, TACTOR_VERSION_MINOR, TACTOR_VERSION_PATCH)
+
 namespace tactor {
 
 /// "0.1.0".
-TACTOR_API const char* version() noexcept;
+[[nodiscard]] TACTOR_API const char* version() noexcept;
 
 /// What a bug report should say of this library: how and with what it was built, and which of its loops this
 /// processor runs. Some lines for people. Any thread.
-TACTOR_API std::string build_facts();
+[[nodiscard]] TACTOR_API std::string build_facts();
 
 } // namespace tactor

@@ -22,7 +22,7 @@ using wav_progress = std::function<bool(std::uint64_t done, std::uint64_t all)>;
 /// \returns false when `progress` gave up.
 /// \throws error: bad_input for a format that WAV cannot hold (s24_4), a folder that does not exist, and a
 ///         plan that fails in mid-stroke (renderer::failure()); runtime for what the file system refuses.
-TACTOR_API bool write_wav(const score& s, sample_format f, const std::filesystem::path& file,
+TACTOR_API bool write_wav(const score& s, format_kind f, const std::filesystem::path& file,
                           const wav_progress& progress = {});
 
 } // namespace tactor

@@ -34,7 +34,7 @@ int switch_off(settings& s, option_list& options)
 {
     const environment e = read_environment(s, options);
     if (!e.config.amplifier)
-        throw error(errc::bad_input, "amplifier",
+        throw error(error_kind::bad_input, "amplifier",
                     fmt::format("no [amplifier] in {}", e.config_name.empty()
                                                             ? "the array, and there is no configuration"
                                                             : e.config_name),
@@ -43,7 +43,7 @@ int switch_off(settings& s, option_list& options)
     const gpio_line_place p = wait_until_free(a.line);
     // Requested as off, so it goes there at once; asked once more for what the driver says.
     if (!open_output(a.line, a.active_low)->set(false))
-        throw error(errc::not_available, "amplifier",
+        throw error(error_kind::not_available, "amplifier",
                     fmt::format("line {} of {} cannot be switched off: it may be on", p.line.offset, p.label),
                     "cut the amplifier's supply; then see what dmesg says");
     fmt::print("amplifier: line {} of {} ({}) is off\n", p.line.offset, p.label, p.path);

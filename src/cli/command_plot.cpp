@@ -11,7 +11,7 @@
 #include "cli/pipes.hpp"
 #include "cli/say.hpp"
 #include "plot/figure.hpp"
-#include "plot/output.hpp"
+#include "plot/paint/output.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -34,7 +34,7 @@ figure_view parse_view(const std::string& text)
         return figure_view::wave;
     if (text == "both")
         return figure_view::both;
-    throw error(errc::bad_input, "--view", fmt::format("\"{}\" is not known", text),
+    throw error(error_kind::bad_input, "--view", fmt::format("\"{}\" is not known", text),
                 "one of array, timing, wave, both");
 }
 
@@ -78,8 +78,8 @@ int draw(settings& s, option_list& options, const plot_settings& p)
     std::optional<score> sound;
     if (p.figure.view == figure_view::wave)
         sound = make_score(q, e, settle_render(s, e));
-    const plot::canvas picture =
-        plot::draw_figure({e.tactors, name_of(q), q.strokes, q.plans, sound ? &*sound : nullptr}, p.figure);
+    const plot::canvas picture = plot::draw_figure(
+        {e.tactors, name_of(q), q.strokes, q.plans, sound ? &*sound : nullptr, q.moved}, p.figure);
     tell_of_pipe_to_write(p.file);
     plot::save(picture, p.file, p.dpi);
     for (const placed_plan& k : q.plans)

@@ -84,7 +84,8 @@ fs::path checked_output(const std::string& name)
     fs::path file = name == "-" ? standard_output : name;
     if (file == standard_output) {
         if (isatty(STDOUT_FILENO) != 0)
-            throw error(errc::bad_input, "-o", "standard output is a terminal, which samples would garble",
+            throw error(error_kind::bad_input, "-o",
+                        "standard output is a terminal, which samples would garble",
                         "name a file, or pipe it into another program");
         return file;
     }
@@ -93,10 +94,10 @@ fs::path checked_output(const std::string& name)
     if (name.empty() || fs::is_directory(there) || (fs::exists(there) && !fs::is_regular_file(there)))
         return file;
     if (!ends_in_wav(file))
-        throw error(errc::bad_input, name, "the name of a WAV file ends in .wav",
+        throw error(error_kind::bad_input, name, "the name of a WAV file ends in .wav",
                     "name it so, or write -o - > FILE");
     if (fs::exists(there) && !holds_wav(file))
-        throw error(errc::bad_input, name, "there is such a file, which is not a WAV file",
+        throw error(error_kind::bad_input, name, "there is such a file, which is not a WAV file",
                     "choose another name, or remove it first");
     return file;
 }
@@ -105,9 +106,10 @@ int render(settings& s, option_list& options, const std::string& name)
 {
     const fs::path file = checked_output(name); // before the work
     const environment e = read_environment(s, options);
-    piece p = plan_one_piece(s, e);
-    const score sc = take_score(p, e, settle_render(s, e));
-    const sample_format format = s.format.value_or(sample_format::float32);
+    const layout faces(e.tactors);
+    piece p = open_one_piece(s, e, faces);
+    const score sc = plan_and_score(p, s, e, faces, settle_render(s, e));
+    const format_kind format = s.format.value_or(format_kind::float32);
     for (const placed_plan& q : sc.plans())
         for (const std::string& w : q.schedule.warnings)
             say(stderr, "tactor: warning: {}\n", w);

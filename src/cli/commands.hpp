@@ -24,12 +24,19 @@ enum exit_status {
 using command = std::function<int()>;
 
 command add_plan(CLI::App& app);
+command add_analyze(CLI::App& app);
 command add_compare(CLI::App& app);
+command add_experiment(CLI::App& app);
+command add_report(CLI::App& app);
 command add_render(CLI::App& app);
 command add_play(CLI::App& app);
 command add_plot(CLI::App& app);
 command add_devices(CLI::App& app);
+command add_calibrate(CLI::App& app);
 command add_check(CLI::App& app);
 command add_off(CLI::App& app);
+command add_serve(CLI::App& app);
+command add_status(CLI::App& app);
+command add_stop(CLI::App& app);
 
 } // namespace tactor::cli

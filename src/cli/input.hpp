@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// From settings to plain values: configuration, array, strokes, plans.
+/// From STROKE arguments to strokes, plans and scores.
 #pragma once
 
 #include <optional>
@@ -9,21 +9,9 @@
 
 #include <tactor/tactor.hpp>
 
-#include "cli/settings.hpp"
+#include "cli/environment.hpp"
 
 namespace tactor::cli {
-
-/// The configuration that applies, and the array file's own [output], [amplifier] and [sync] over it.
-struct environment {
-    setup config;
-    std::string config_name; ///< file it came from; empty: none
-    array tactors;
-    std::string array_file; ///< that the array came from; empty: it is a preset of its name
-};
-
-/// Reads the configuration (--config, $TACTOR_CONFIG, the user's, the system's: the first that exists),
-/// feeds its [defaults] to the options and finds the array. \throws error.
-environment read_environment(settings& s, option_list& options);
 
 /// One piece: what one STROKE argument makes.
 struct piece {
@@ -31,28 +19,32 @@ struct piece {
     std::vector<stroke> strokes;
     std::vector<placed_plan> plans;
     std::optional<fitting> fit = {}; ///< what --fit did
+    /// What --compensate did to each plan; empty without it. Their schedules are moved to `plans`.
+    std::vector<compensated_plan> moved = {};
 };
 
-/// Reads and plans all STROKE arguments. \throws error.
-std::vector<piece> plan_pieces(const settings& s, const environment& e);
+/// Reads all STROKE arguments. A plan comes with its plans; what is a stroke is not planned yet. `faces` is
+/// what --fit puts strokes on. \throws error.
+std::vector<piece> open_pieces(const settings& s, const environment& e, const layout& faces);
 
-/// Reads the only STROKE argument without planning it; `faces` is what --fit puts it on. \throws error.
-piece read_one_piece(const settings& s, const layout& faces);
+/// The same where only one STROKE is taken.
+piece open_one_piece(const settings& s, const environment& e, const layout& faces);
+
+/// Reads the only STROKE argument, which may be no plan, without planning it. \throws error.
+piece read_one_piece(const settings& s, const environment& e, const layout& faces);
 
 /// Reads and plans where only one STROKE is taken.
 piece plan_one_piece(const settings& s, const environment& e);
 
-/// The score of a piece with `render.rate` and channels settled; the plans go with it, so that there is one
-/// of each. \throws error.
-score take_score(piece& p, const environment& e, const render_options& render);
+/// Makes the score of what was opened, with `render.rate` and channels settled. Nobody keeps any bursts: what
+/// is planned here is never there as a whole, and plans that were there leave the piece. \throws error.
+score plan_and_score(piece& p, const settings& s, const environment& e, const layout& faces,
+                     const render_options& render);
 
-/// The same of a piece that keeps its plans.
+/// What a stroke's note means, for people; empty for none.
+std::string note_text(note_kind n);
+
+/// The score of a piece that keeps its plans. \throws error.
 score make_score(const piece& p, const environment& e, const render_options& render);
-
-/// Rate and channel count from the options, the configuration, then the defaults.
-render_options settle_render(const settings& s, const environment& e);
-
-/// What play limits the array to: [limits], and the defaults for what that does not say.
-drive_limits settle_limits(const environment& e);
 
 } // namespace tactor::cli

@@ -20,7 +20,7 @@ interrupt::interrupt()
     pthread_sigmask(SIG_BLOCK, &set, &before_);
     fd_ = signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
     if (fd_ < 0)
-        throw error(errc::runtime, "signals", std::generic_category().message(errno));
+        throw error(error_kind::runtime, "signals", std::generic_category().message(errno));
 }
 
 interrupt::~interrupt()

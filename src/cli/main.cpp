@@ -20,7 +20,7 @@
 #include <tactor/version.hpp>
 
 #include "cli/commands.hpp"
-#include "cli/complete.hpp"
+#include "cli/completion/complete.hpp"
 #include "cli/option_words.hpp"
 #include "cli/say.hpp"
 #include "cli/usage.hpp"
@@ -28,14 +28,14 @@
 namespace tactor::cli {
 namespace {
 
-int status_of(errc kind)
+int status_of(error_kind kind)
 {
     switch (kind) {
-    case errc::bad_input:
+    case error_kind::bad_input:
         return status_usage;
-    case errc::not_available:
+    case error_kind::not_available:
         return status_device;
-    case errc::runtime:
+    case error_kind::runtime:
         break;
     }
     return status_failed;
@@ -45,14 +45,21 @@ struct named_command {
     std::string_view name;
     command (*add)(CLI::App&);
 };
-constexpr std::array<named_command, 8> commands{{{"plan", add_plan},
-                                                 {"render", add_render},
-                                                 {"play", add_play},
-                                                 {"plot", add_plot},
-                                                 {"compare", add_compare},
-                                                 {"devices", add_devices},
-                                                 {"check", add_check},
-                                                 {"off", add_off}}};
+constexpr std::array<named_command, 15> commands{{{"plan", add_plan},
+                                                  {"render", add_render},
+                                                  {"play", add_play},
+                                                  {"plot", add_plot},
+                                                  {"compare", add_compare},
+                                                  {"calibrate", add_calibrate},
+                                                  {"experiment", add_experiment},
+                                                  {"analyze", add_analyze},
+                                                  {"report", add_report},
+                                                  {"devices", add_devices},
+                                                  {"check", add_check},
+                                                  {"off", add_off},
+                                                  {"serve", add_serve},
+                                                  {"status", add_status},
+                                                  {"stop", add_stop}}};
 
 std::string version_text()
 {
@@ -70,8 +77,8 @@ int run(int argc, char** argv)
     app.set_version_flag("--version", version_text);
     app.require_subcommand(1);
     app.footer("Example: tactor play park2016-3        tactor COMMAND --help says more.");
-    // To describe all options of all commands takes as long as to plan a stroke: of a command that is named,
-    // its own.
+    // To describe all options of all commands takes as long as to plan a stroke: of a command that is
+    // named, its own.
     const auto named = std::find_if(commands.begin(), commands.end(),
                                     [&](const named_command& c) { return c.name == first; });
     std::vector<std::pair<std::string_view, command>> added;
@@ -100,15 +107,22 @@ int run(int argc, char** argv)
 constexpr int status_unread = 128 + SIGPIPE;
 
 // What was printed must have arrived: a full disk is a failure, not a shorter plan.
+int unprinted(int code)
+{
+    if (code == EPIPE)
+        return status_unread;
+    const bool full = code == ENOSPC || code == EDQUOT;
+    say_error("tactor: standard output: {}{}\n", std::strerror(code == 0 ? EIO : code),
+              full ? " (free some space, or write to another disk; what was written is cut short)" : "");
+    return status_failed;
+}
+
 int flushed(int status)
 {
     errno = 0;
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
         return status;
-    if (errno == EPIPE)
-        return status_unread;
-    say(stderr, "tactor: standard output: {}\n", std::strerror(errno));
-    return status_failed;
+    return unprinted(errno);
 }
 
 } // namespace
@@ -124,16 +138,16 @@ int main(int argc, char** argv)
     try {
         return flushed(run(argc, argv));
     } catch (const tactor::error& e) {
-        say(stderr, "tactor: {}\n", in_options(e).what());
+        say_error("tactor: {}\n", in_options(e).what());
         return status_of(e.kind());
-    } catch (const std::system_error& e) { // of fmt::print
-        if (e.code() == std::errc::broken_pipe)
-            return status_unread;
-        say(stderr, "tactor: failed: {}\n", e.what());
+    } catch (const std::system_error& e) {
+        if (std::ferror(stdout) != 0) // of fmt::print
+            return unprinted(e.code().value());
+        say_error("tactor: failed: {}\n", e.what());
     } catch (const std::bad_alloc&) {
-        say(stderr, "tactor: memory: not enough for this input\n");
+        say_error("tactor: memory: not enough for this input\n");
     } catch (const std::exception& e) {
-        say(stderr, "tactor: failed: {}\n", e.what());
+        say_error("tactor: failed: {}\n", e.what());
     }
     return status_failed;
 }

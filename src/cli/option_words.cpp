@@ -14,7 +14,7 @@ struct translation {
 };
 
 // What can only mean a field, in advice too.
-constexpr std::array<translation, 16> in_advice{{{"soa_s", "--soa"},
+constexpr std::array<translation, 21> in_advice{{{"soa_s", "--soa"},
                                                  {"burst_s", "--burst"},
                                                  {"carrier_hz", "--carrier"},
                                                  {"ramp_s", "--ramp"},
@@ -29,10 +29,19 @@ constexpr std::array<translation, 16> in_advice{{{"soa_s", "--soa"},
                                                  {"array = FILE", "--array FILE"},
                                                  {"config = FILE", "--config FILE"},
                                                  {"margin_mm", "--fit-margin"},
-                                                 {"fit_strokes()", "--fit"}}};
+                                                 {"fit_strokes()", "--fit"},
+                                                 {"texture_mm", "--texture-mm"},
+                                                 {"attack_s", "--attack"},
+                                                 {"release_s", "--release"},
+                                                 {"sigma_mm", "--sigma-mm"},
+                                                 {"sigma_v_mm_s", "--sigma-v-mm-s"}}};
 
 // Words of every day.
-constexpr std::array<translation, 2> as_subject{{{"rate", "--rate"}, {"phantom", "--phantom"}}};
+constexpr std::array<translation, 5> as_subject{{{"rate", "--rate"},
+                                                 {"phantom", "--phantom"},
+                                                 {"simulate", "--simulate"},
+                                                 {"waveform", "--waveform"},
+                                                 {"am", "--am"}}};
 
 bool in_a_word(char c)
 {

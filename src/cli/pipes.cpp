@@ -35,7 +35,7 @@ void refuse_endless(const std::string& file)
         return ::fstat(fd, &out) == 0 && out.st_dev == s.st_dev && out.st_ino == s.st_ino;
     };
     if (S_ISFIFO(s.st_mode) && (same(STDOUT_FILENO) || same(STDERR_FILENO)))
-        throw error(errc::bad_input, file, "is where this program writes to",
+        throw error(error_kind::bad_input, file, "is where this program writes to",
                     "name a file to read, or - for standard input");
     if (!S_ISCHR(s.st_mode))
         return;
@@ -44,7 +44,7 @@ void refuse_endless(const std::string& file)
     if (fd >= 0)
         ::close(fd);
     if (terminal)
-        throw error(errc::bad_input, file, "is a terminal", "name a file to read");
+        throw error(error_kind::bad_input, file, "is a terminal", "name a file to read");
 }
 
 } // namespace

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "cli/say.hpp"
 
+#include <algorithm>
+#include <cstdlib>
+
+#include <sys/stat.h>
+
 namespace tactor::cli {
 namespace {
 
@@ -27,6 +32,33 @@ std::string escaped(std::string_view text, bool lines)
     return out;
 }
 
+// What begins a line for the journal: sd-daemon(3).
+std::string_view journal_level(log_kind k)
+{
+    switch (k) {
+    case log_kind::debug:
+        return "<7>";
+    case log_kind::warning:
+        return "<4>";
+    case log_kind::error:
+        return "<3>";
+    default:
+        return "<6>";
+    }
+}
+
+std::string with_levels(const std::string& lines, log_kind k)
+{
+    std::string out;
+    for (std::size_t at = 0; at < lines.size();) {
+        const std::size_t end = std::min(lines.find('\n', at), lines.size() - 1) + 1;
+        out += journal_level(k);
+        out += lines.substr(at, end - at);
+        at = end;
+    }
+    return out;
+}
+
 } // namespace
 
 std::string shown(std::string_view name)
@@ -34,10 +66,26 @@ std::string shown(std::string_view name)
     return escaped(name, false);
 }
 
-void say_text(std::FILE* to, std::string_view text)
+bool goes_to_journal(std::FILE* to)
 {
-    const std::string line = escaped(text, true);
+    const char* journal = std::getenv("JOURNAL_STREAM");
+    struct stat is {};
+    return journal != nullptr && ::fstat(::fileno(to), &is) == 0 &&
+           fmt::format("{}:{}", is.st_dev, is.st_ino) == journal;
+}
+
+void say_text(std::FILE* to, std::string_view text, log_kind kind)
+{
+    std::string line = escaped(text, true);
+    if (goes_to_journal(to))
+        line = with_levels(line, text.starts_with("tactor: warning: ") ? log_kind::warning : kind);
     std::fwrite(line.data(), 1, line.size(), to);
+}
+
+void show(std::string_view text)
+{
+    say_text(stdout, text);
+    std::fflush(stdout);
 }
 
 } // namespace tactor::cli

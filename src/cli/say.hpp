@@ -10,6 +10,8 @@
 
 #include <fmt/format.h>
 
+#include <tactor/log.hpp>
+
 namespace tactor::cli {
 
 /// A name from a file or the command line as a terminal may get it: control characters, which could move its
@@ -19,12 +21,26 @@ std::string shown(std::string_view name);
 /// Prints text, escaped as above but for line ends. Never throws for what cannot be written: standard error
 /// that is gone (2>&-, a full disk) does not decide whether the work was done, and main() looks after
 /// standard output.
-void say_text(std::FILE* to, std::string_view text);
+/// To the journal each line goes with its level: `kind`, or a warning's where it begins "tactor: warning: ".
+void say_text(std::FILE* to, std::string_view text, log_kind kind = log_kind::info);
+
+/// Whether systemd reads what is written there, for its journal.
+bool goes_to_journal(std::FILE* to);
+
+/// The same on standard output, and at once: somebody sits before it.
+void show(std::string_view text);
 
 template <typename... T>
 void say(std::FILE* to, fmt::format_string<T...> format, T&&... values)
 {
     say_text(to, fmt::format(format, std::forward<T>(values)...));
+}
+
+/// On standard error, what ends the program.
+template <typename... T>
+void say_error(fmt::format_string<T...> format, T&&... values)
+{
+    say_text(stderr, fmt::format(format, std::forward<T>(values)...), log_kind::error);
 }
 
 } // namespace tactor::cli

@@ -20,33 +20,31 @@ constexpr const char* soa_range = "above 0.0473 to 0.07 s by the usual timing la
 // A choice among names that the library can print: "a|b|c" and the value of the one given.
 template <class Enum>
 struct choice {
-    std::vector<Enum> values;
-
     std::string names(const char* separator) const
     {
         std::string all;
-        for (Enum v : values)
+        for (const Enum v : values_of<Enum>())
             all += (all.empty() ? "" : separator) + std::string(to_string(v));
         return all;
     }
 
     Enum parse(const std::string& option, const std::string& text) const
     {
-        for (Enum v : values)
+        for (const Enum v : values_of<Enum>())
             if (to_string(v) == text)
                 return v;
-        throw error(errc::bad_input, option, fmt::format("\"{}\" is not known", text),
+        throw error(error_kind::bad_input, option, fmt::format("\"{}\" is not known", text),
                     "one of " + names(", "));
     }
 };
 
-const choice<algorithm> algorithms{{algorithm::park2016, algorithm::tactile_brush, algorithm::continuous}};
-const choice<phantom_kind> phantoms{{phantom_kind::inverse_distance, phantom_kind::barycentric,
-                                     phantom_kind::linear, phantom_kind::log, phantom_kind::gaussian}};
-const choice<timing> timings{{timing::fixed, timing::fit}};
-const choice<outside> outsides{{outside::error, outside::clamp}};
-const choice<overlap> overlaps{{overlap::energy, overlap::max, overlap::sum}};
-const choice<phase_mode> phases{{phase_mode::stroke, phase_mode::burst}};
+constexpr choice<algorithm_kind> algorithms;
+constexpr choice<phantom_kind> phantoms;
+constexpr choice<timing_kind> timings;
+constexpr choice<outside_kind> outsides;
+constexpr choice<overlap_kind> overlaps;
+constexpr choice<phase_kind> phases;
+constexpr choice<observer_kind> observers;
 
 bool parse_flag(const std::string& what, const std::string& text)
 {
@@ -54,7 +52,15 @@ bool parse_flag(const std::string& what, const std::string& text)
         return true;
     if (text == "false")
         return false;
-    throw error(errc::bad_input, what, fmt::format("\"{}\" is neither true nor false", text));
+    throw error(error_kind::bad_input, what, fmt::format("\"{}\" is neither true nor false", text));
+}
+
+bool parse_compensation(const std::string& text)
+{
+    if (text == "none" || text == "low-speed")
+        return text != "none";
+    throw error(error_kind::bad_input, "--compensate", fmt::format("\"{}\" is not known", text),
+                "one of none, low-speed");
 }
 
 // What one of a unit is in the option's own; 0 where it is none of its kind.
@@ -126,11 +132,11 @@ double parse_number(const std::string& what, const std::string& text, double lo,
     if (r.ec == std::errc::invalid_argument || r.ptr != end) {
         const std::string meant =
             r.ec == std::errc() ? without_unit(text, v, {r.ptr, end}, lo, hi, unit) : "";
-        throw error(errc::bad_input, what, fmt::format("\"{}\" is not a number", text),
+        throw error(error_kind::bad_input, what, fmt::format("\"{}\" is not a number", text),
                     meant.empty() ? range : fmt::format("{}; {}", meant, range));
     }
     if (r.ec != std::errc() || !std::isfinite(v) || v < lo || v > hi)
-        throw error(errc::bad_input, what, fmt::format("{} is out of range", text), range);
+        throw error(error_kind::bad_input, what, fmt::format("{} is out of range", text), range);
     return v;
 }
 
@@ -143,7 +149,7 @@ void add_format_option(CLI::App& command, std::string& into, const std::vector<s
             "--format",
             [&into, names](const std::string& t) {
                 if (std::find(names.begin(), names.end(), t) == names.end())
-                    throw error(errc::bad_input, "--format", fmt::format("\"{}\" is not known", t),
+                    throw error(error_kind::bad_input, "--format", fmt::format("\"{}\" is not known", t),
                                 fmt::format("one of {}", fmt::join(names, ", ")));
                 into = t;
             },
@@ -173,10 +179,10 @@ CLI::Option* option_list::flag(const std::string& name, const std::string& help,
 void option_list::add_stroke_options()
 {
     settings& s = settings_;
-    auto* strokes =
-        command_.add_option("STROKE", s.strokes,
-                            "preset (park2016-1 ... park2016-4; wave-2x4 and round-2x4 on palm-2x4), "
-                            "file (.toml, .csv, .svg), or - for a stroke file on standard input");
+    auto* strokes = command_.add_option(
+        "STROKE", s.strokes,
+        "preset (park2016-1 ... park2016-4; wave-2x4 and round-2x4 on palm-2x4), "
+        "file (.toml, .csv, .svg; .json: a plan), or - for such a file on standard input");
     strokes->type_name("");
     strokes->expected(0, max_strokes);
     value("--path", "DATA", "SVG path data in mm instead of STROKE",
@@ -193,11 +199,11 @@ void option_list::add_stroke_options()
         [&s](const std::string& t) { s.speed_mm_s = parse_number("--speed", t, 0.001, 100000, "mm/s"); });
     duration->excludes(speed);
     value("--timing", timings.names("|"), "SOA as given, or fitted to end with the path (default fixed)",
-          [&s](const std::string& t) { s.plan.schedule = timings.parse("--timing", t); });
+          [&s](const std::string& t) { s.plan.timing = timings.parse("--timing", t); });
     value("--outside", outsides.names("|"),
           "paths that leave the array: refuse, or move to its edge "
           "(default error)",
-          [&s](const std::string& t) { s.plan.leave = outsides.parse("--outside", t); });
+          [&s](const std::string& t) { s.plan.outside = outsides.parse("--outside", t); });
     auto* fit = flag("--fit", "scale and centre what is drawn on the array", s.fit);
     value("--fit-margin", "MM", "--fit: distance kept from the array's edge (default 0)",
           [&s](const std::string& t) { s.fit_margin_mm = parse_number("--fit-margin", t, 0, 1e6, "mm"); })
@@ -206,7 +212,8 @@ void option_list::add_stroke_options()
     flag("--drop-points", "tactile-brush: leave crossings out until the timing is possible",
          s.plan.drop_points);
     value("--overlap", overlaps.names("|"), "bursts that overlap on one tactor (default energy)",
-          [&s](const std::string& t) { s.plan.join = overlaps.parse("--overlap", t); });
+          [&s](const std::string& t) { s.plan.overlap = overlaps.parse("--overlap", t); });
+    add_compensation_options();
 }
 
 void option_list::add_array_options()
@@ -222,7 +229,7 @@ void option_list::add_timing_options()
 {
     settings& s = settings_;
     value("--algorithm", algorithms.names("|"), "who plays when (default park2016)",
-          [&s](const std::string& t) { s.plan.method = algorithms.parse("--algorithm", t); });
+          [&s](const std::string& t) { s.plan.algorithm = algorithms.parse("--algorithm", t); });
     value("--soa", "S", "onset to onset of two bursts (default 0.07)",
           [&s](const std::string& t) { s.plan.soa_s = parse_number("--soa", t, -1e9, 1e9, "s", soa_range); });
     value("--burst", "S", "duration of each burst (default: what the timing law gives for the SOA)",
@@ -233,16 +240,46 @@ void option_list::add_timing_options()
           [&s](const std::string& t) { s.intercept_s = parse_number("--intercept", t, 0.001, 10, "s"); });
 }
 
-void option_list::add_sound_options()
+void option_list::add_observer_options()
+{
+    settings& s = settings_;
+    value("--observer", observers.names("|"), "who is predicted to feel it (default centroid)",
+          [&s](const std::string& t) { s.observer = observers.parse("--observer", t); });
+}
+
+void option_list::add_compensation_options()
+{
+    settings& s = settings_;
+    value("--compensate", "none|low-speed", "move bursts so that the low-speed observer feels the target",
+          [&s](const std::string& t) { s.compensate = parse_compensation(t); });
+    value("--sigma-mm", "MM", "low-speed: how well places are known (default 5)", [&s](const std::string& t) {
+        s.low_speed.sigma_mm = parse_number("--sigma-mm", t, least_sigma_mm, most_sigma_mm, "mm");
+    });
+    value("--sigma-v-mm-s", "MM_PER_S", "low-speed: which speeds are expected (default 100)",
+          [&s](const std::string& t) {
+              s.low_speed.sigma_v_mm_s =
+                  parse_number("--sigma-v-mm-s", t, least_sigma_v_mm_s, most_sigma_v_mm_s, "mm/s");
+          });
+}
+
+void option_list::add_carrier_option()
 {
     settings& s = settings_;
     value("--carrier", "HZ", "frequency of the vibration (default 250)",
           [&s](const std::string& t) { s.plan.carrier_hz = parse_number("--carrier", t, 1, 384000, "Hz"); });
+}
+
+void option_list::add_sound_options()
+{
+    settings& s = settings_;
+    add_carrier_option();
+    add_waveform_options();
     value("--phase", phases.names("|"), "carrier starts with the stroke (default) or again with each burst",
           [&s](const std::string& t) { s.render.phase = phases.parse("--phase", t); });
     value("--ramp", "S",
           "raised-cosine ramp inside each burst (default: 0 between zero crossings, else 0.002)",
           [&s](const std::string& t) { s.render.ramp_s = parse_number("--ramp", t, 0, 10, "s"); });
+    add_envelope_options();
     auto* level = value("--level-dbfs", "DB", "peak of the carrier for intensity 1 (default -12)",
                         [&s](const std::string& t) {
                             s.render.level_dbfs = parse_number("--level-dbfs", t, -200, 0, "dBFS");
@@ -251,6 +288,7 @@ void option_list::add_sound_options()
         s.render.sl_db = parse_number("--sl", t, -60, 100, "dB SL");
     });
     level->excludes(sl);
+    add_scale_options();
     add_rate_options();
 }
 
@@ -260,11 +298,11 @@ void option_list::add_rate_options()
     value("--rate", "HZ", "sample rate (default 48000)", [&s](const std::string& t) {
         const double hz = parse_number("--rate", t, 8000, 768000, "Hz");
         if (hz != std::floor(hz))
-            throw error(errc::bad_input, "--rate", fmt::format("{} is not a whole number", t));
+            throw error(error_kind::bad_input, "--rate", fmt::format("{} is not a whole number", t));
         s.rate = static_cast<unsigned>(hz);
     });
     value("--sample-format", "float|s16|s24|s32", "samples (render: float; play: what the device takes)",
-          [&s](const std::string& t) { s.format = sample_format_from_string(t); });
+          [&s](const std::string& t) { s.format = from_string<format_kind>(t); });
 }
 
 void option_list::add_device_options()
@@ -274,22 +312,29 @@ void option_list::add_device_options()
           [&s](const std::string& t) { s.pcm = t; });
 }
 
+bool option_list::given(const std::string& name) const
+{
+    const auto o = by_name_.find(name);
+    return o != by_name_.end() && o->second.first->count() != 0;
+}
+
+bool option_list::has(const std::string& name) const
+{
+    return by_name_.contains(name);
+}
+
 void option_list::apply_defaults(const std::map<std::string, std::string>& defaults, const std::string& where)
 {
-    const auto given = [this](const char* name) {
-        const auto o = by_name_.find(name);
-        return o != by_name_.end() && o->second.first->count() != 0;
-    };
     for (const auto& [name, text] : defaults) {
         const auto o = by_name_.find(name);
         // Not an option of this command, or the command line says it, in one way or the other.
-        if (o == by_name_.end() || given(name.c_str()) || (name == "speed" && given("duration")) ||
+        if (o == by_name_.end() || given(name) || (name == "speed" && given("duration")) ||
             (name == "sl" && given("level-dbfs")) || (name == "level-dbfs" && given("sl")))
             continue;
         try {
             o->second.second(text);
         } catch (const error& e) {
-            throw error(errc::bad_input, where + ": [defaults]", e.what());
+            throw error(error_kind::bad_input, where + ": [defaults]", e.what());
         }
     }
 }

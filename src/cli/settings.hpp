@@ -31,9 +31,12 @@ struct settings {
     bool fit = false; ///< --fit
     double fit_margin_mm = 0.0;
     std::optional<unsigned> rate;
-    std::optional<sample_format> format;
+    std::optional<format_kind> format;
     std::optional<double> slope;
     std::optional<double> intercept_s;
+    bool compensate = false;                          ///< --compensate low-speed
+    observer_kind observer = observer_kind::centroid; ///< --observer
+    low_speed_observer low_speed;                     ///< --sigma-mm and --sigma-v-mm-s
     plan_options plan;
     render_options render;
 };
@@ -49,6 +52,16 @@ public:
     void add_array_options();
     /// --algorithm, --soa, --slope and --intercept.
     void add_timing_options();
+    /// --observer.
+    void add_observer_options();
+    /// What vibrates: --waveform, --am and what belongs to them.
+    void add_waveform_options();
+    /// --envelope, --attack and --release.
+    void add_envelope_options();
+    /// --intensity-scale and --stevens-exponent.
+    void add_scale_options();
+    /// --carrier alone.
+    void add_carrier_option();
     /// Carrier, levels and rate.
     void add_sound_options();
     /// --rate and --sample-format alone.
@@ -60,8 +73,15 @@ public:
     /// \throws error (bad_input).
     void apply_defaults(const std::map<std::string, std::string>& defaults, const std::string& where);
 
+    /// Whether the command line gives an option of that name (without dashes).
+    bool given(const std::string& name) const;
+    /// Whether the command has an option of that name.
+    bool has(const std::string& name) const;
+
 private:
     using setter = std::function<void(const std::string&)>;
+    /// --compensate, --sigma-mm and --sigma-v-mm-s.
+    void add_compensation_options();
     CLI::Option* value(const std::string& names, const std::string& type, const std::string& help,
                        setter set);
     CLI::Option* flag(const std::string& name, const std::string& help, bool& into);
@@ -70,6 +90,12 @@ private:
     settings& settings_;
     std::map<std::string, std::pair<CLI::Option*, setter>> by_name_;
 };
+
+/// What the scale of intensities needs of the level. \throws error (bad_input).
+void settle_scale(settings& s, const option_list& options);
+
+/// Refuses options of the sound that nothing uses. \throws error (bad_input).
+void check_sound(const settings& s, const option_list& options);
 
 /// --format: one of `names`, of which the first is the default. `into` must live as long as the command.
 void add_format_option(CLI::App& command, std::string& into, const std::vector<std::string>& names,

@@ -7,13 +7,15 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "core/suggest.hpp"
+
 namespace tactor::cli {
 namespace {
 
 std::string nearest(const std::string& given, const std::vector<std::string>& names)
 {
     const std::vector<std::string_view> views(names.begin(), names.end());
-    return std::string(nearest_name(given, views));
+    return std::string(detail::nearest_name(given, views));
 }
 
 const CLI::App& used_command(const CLI::App& app)
@@ -53,7 +55,7 @@ error unknown(const CLI::App& app, const CLI::App& command)
     if (given.starts_with('-')) {
         const std::string name = given.substr(0, given.find('='));
         const std::string like = nearest_option(name, option_names(command));
-        return {errc::bad_input, name, "no such option",
+        return {error_kind::bad_input, name, "no such option",
                 like.empty() ? help : fmt::format("did you mean {}? {}", like, help)};
     }
     if (&command == &app) {
@@ -61,10 +63,10 @@ error unknown(const CLI::App& app, const CLI::App& command)
         for (const CLI::App* c : app.get_subcommands({}))
             names.push_back(c->get_name());
         const std::string like = nearest(given, names);
-        return {errc::bad_input, given, "no such command",
+        return {error_kind::bad_input, given, "no such command",
                 like.empty() ? help : fmt::format("did you mean {}? {}", like, help)};
     }
-    return {errc::bad_input, given, "one argument too many", help};
+    return {error_kind::bad_input, given, "one argument too many", help};
 }
 
 } // namespace
@@ -76,7 +78,7 @@ error usage_error(const CLI::App& app, const CLI::ParseError& e)
         return unknown(app, command);
     if (app.get_subcommands().empty() && !app.remaining().empty())
         return unknown(app, app);
-    return {errc::bad_input, "command line", e.what(),
+    return {error_kind::bad_input, "command line", e.what(),
             fmt::format("tactor {}--help", &command == &app ? "" : command.get_name() + " ")};
 }
 

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "engine/dac_clock.hpp"
+#include "engine/audio/dac_clock.hpp"
 #include "engine/messages.hpp"
 #include "rt/event_fd.hpp"
 #include "rt/spsc_ring.hpp"
@@ -23,7 +23,7 @@ struct stream_status {
     std::uint64_t written = 0; ///< next frame that will be mixed
     std::uint64_t played = 0;
     std::uint64_t stroke_frame = 0;
-    stroke_id stroke = 0;
+    stroke_id stroke = {};
     bool sounding = false; ///< whether `stroke` says anything
     bool running = false;
     stream_stage stage = stream_stage::idle;
@@ -72,10 +72,10 @@ struct link {
     explicit link(std::size_t commands_in_ring = 2048) : commands(commands_in_ring) {}
 
     rt::spsc_ring<command> commands;
-    // Between two looks of the audio thread a place sees the cancel of one ticket, the beginning and the
-    // cancel of the next, and stop comes twice at most: never full.
+    // Never full. Until the audio thread reads the ring again, each voice gets at most three requests
+    // (cancel, begin, cancel), and there are at most two stops.
     rt::spsc_ring<request> requests{std::size_t{4} * voices};
-    // At most two reports a ticket, and a ticket is free again when its last one was read: never full.
+    // Never full. A ticket has at most two reports, and is used again only when its last one was read.
     rt::spsc_ring<report> reports{std::size_t{4} * voices};
     rt::event_fd to_audio;
     rt::event_fd to_control;

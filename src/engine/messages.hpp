@@ -7,7 +7,7 @@
 
 #include <tactor/player.hpp>
 
-#include "synth/event.hpp"
+#include "synth/score/event.hpp"
 
 namespace tactor::engine {
 
@@ -31,7 +31,7 @@ struct command {
     enum class kind : std::uint32_t { begin, drive, end, fail };
     kind what = kind::begin;
     ticket score = 0;
-    stroke_id id = 0; ///< begin
+    stroke_id id = {}; ///< begin
     /// begin: frame of the stream; one that is over means now. fail: frame of the score where its drives end
     std::uint64_t at = 0;
     std::uint64_t length = 0;   ///< begin: frames
@@ -43,7 +43,7 @@ struct request {
     enum class kind : std::uint32_t { cancel, stop, live };
     kind what = kind::cancel;
     ticket score = 0;
-    stroke_id id = 0;            ///< live
+    stroke_id id = {};           ///< live
     live_voice* voice = nullptr; ///< live: outlives the ticket
     bool closing = false;        ///< stop: the player is being closed; its strokes count as interrupted
 };
@@ -59,6 +59,7 @@ enum class reason : std::uint32_t {
     crowded,
     closed,
     starved,
+    too_long,
     muted,
     amplifier,
     left_on,
@@ -75,7 +76,7 @@ struct report {
     };
     kind what = kind::begun;
     ticket score = 0;
-    stroke_state state = stroke_state::finished;
+    state_kind state = state_kind::finished;
     reason why = reason::none;
     int code = 0; ///< negative errno of the device
     std::uint64_t frame = 0;

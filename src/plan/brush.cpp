@@ -33,7 +33,7 @@ std::vector<double> times_of(const std::vector<meeting>& points)
     if (!j.options.drop_points && tau.size() > 2)
         advice += "; or drop_points = true leaves places out";
     throw error(
-        errc::bad_input, j.name(),
+        error_kind::bad_input, j.name(),
         fmt::format("the Tactile Brush cannot play {} on the grid in {} s: they follow one another too fast",
                     counted(tau.size(), "place"), seconds_down(tau.back())),
         advice);
@@ -67,7 +67,7 @@ void plan_brush(const job& j, plan& out)
 {
     const std::optional<grid_lines> grid = find_grid(j.tactors);
     if (!grid)
-        throw error(errc::bad_input, fmt::format("array \"{}\"", j.tactors.name),
+        throw error(error_kind::bad_input, fmt::format("array \"{}\"", j.tactors.name),
                     "is no rectangular grid, which the Tactile Brush needs", "use algorithm = park2016");
     std::vector<meeting> points = virtual_tactors(j, *grid);
     if (j.options.drop_points)

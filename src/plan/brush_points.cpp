@@ -57,7 +57,8 @@ public:
 
     point held(point p) const
     {
-        return job_.options.leave == outside::clamp && !job_.faces.contains(p) ? job_.faces.nearest(p) : p;
+        return job_.options.outside == outside_kind::clamp && !job_.faces.contains(p) ? job_.faces.nearest(p)
+                                                                                      : p;
     }
     point at(double t_s) const { return held(job_.motion.motion.position(t_s)); }
 
@@ -89,7 +90,7 @@ virtual_tactor path_end(const job& j, const grid_lines& g, const in_array& path,
         v.place = p;
         v.moved_mm = 0.0;
     } else if (!j.options.snap)
-        throw error(errc::bad_input, j.name(),
+        throw error(error_kind::bad_input, j.name(),
                     fmt::format("{} at {}, which is on no line of the grid; the nearest point on one is {}",
                                 start ? "starts" : "ends", place(p), place(v.place)),
                     "snap = true moves it there");
@@ -116,7 +117,7 @@ void check_inside(const job& j, const std::vector<virtual_tactor>& crossed)
 std::vector<meeting> virtual_tactors(const job& j, const grid_lines& grid)
 {
     std::vector<virtual_tactor> crossed = crossings(j, grid);
-    if (j.options.leave == outside::error)
+    if (j.options.outside == outside_kind::error)
         check_inside(j, crossed);
 
     const in_array path(j);

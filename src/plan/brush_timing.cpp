@@ -17,92 +17,55 @@ bool possible(double part_s)
     return part_s >= -slack_s;
 }
 
-/// Virtual tactors in path order, from which interior ones are taken out. After one goes, the parts of
-/// those behind it are corrected as far as they change: the law forgets by (1 - slope) / (1 + slope) a step.
-class chain {
-public:
-    chain(const timing_profile& p, const std::vector<double>& tau_s)
-        : profile_(p),
-          tau_(tau_s),
-          before_(tau_s.size()),
-          after_(tau_s.size()),
-          part_(tau_s.size(), 0.0),
-          left_out_(tau_s.size(), false)
-    {
-        for (std::size_t i = 0; i < tau_.size(); ++i) {
-            before_[i] = i - 1;
-            after_[i] = i + 1;
-            if (i > 0)
-                part_[i] = computed(i);
-            impossible_ += possible(part_[i]) ? 0 : 1;
-        }
-        for (std::size_t i = 1; i + 1 < tau_.size(); ++i)
-            by_gap_.insert({gap(i), i});
+/// Interior virtual tactors in the order in which they go: the one with the smallest gap, the first of
+/// equals.
+std::vector<std::size_t> order_of_going(const std::vector<double>& tau_s)
+{
+    const std::size_t n = tau_s.size();
+    std::vector<std::size_t> before(n);
+    std::vector<std::size_t> after(n);
+    std::set<std::pair<long long, std::size_t>> by_gap;
+    // Whole nanoseconds, so that equal gaps tie.
+    const auto gap = [&](std::size_t i) {
+        return std::llround(std::min(tau_s[i] - tau_s[before[i]], tau_s[after[i]] - tau_s[i]) * 1e9);
+    };
+    const auto interior = [n](std::size_t i) { return i > 0 && i + 1 < n; };
+    for (std::size_t i = 0; i < n; ++i) {
+        before[i] = i - 1;
+        after[i] = i + 1;
+        if (interior(i))
+            by_gap.insert({gap(i), i});
     }
-
-    bool done() const { return impossible_ == 0 || by_gap_.empty(); }
-
-    void drop_one()
-    {
-        const std::size_t i = by_gap_.begin()->second;
-        const std::size_t a = before_[i];
-        const std::size_t b = after_[i];
+    std::vector<std::size_t> order;
+    while (!by_gap.empty()) {
+        const std::size_t i = by_gap.begin()->second;
+        const std::size_t a = before[i];
+        const std::size_t b = after[i];
         for (const std::size_t k : {a, i, b})
             if (interior(k))
-                by_gap_.erase({gap(k), k});
-        impossible_ -= possible(part_[i]) ? 0 : 1;
-        left_out_[i] = true;
-        after_[a] = b;
-        before_[b] = a;
+                by_gap.erase({gap(k), k});
+        after[a] = b;
+        before[b] = a;
         for (const std::size_t k : {a, b})
             if (interior(k))
-                by_gap_.insert({gap(k), k});
-        correct_from(b);
+                by_gap.insert({gap(k), k});
+        order.push_back(i);
     }
+    return order;
+}
 
-    std::vector<std::size_t> left() const
-    {
-        std::vector<std::size_t> places;
-        for (std::size_t i = 0; i < tau_.size(); ++i)
-            if (!left_out_[i])
-                places.push_back(i);
-        return places;
-    }
-
-private:
-    bool interior(std::size_t i) const { return i > 0 && i + 1 < tau_.size(); }
-
-    double computed(std::size_t i) const
-    {
-        return next_part_s(profile_, tau_[i] - tau_[before_[i]], part_[before_[i]]);
-    }
-
-    /// Whole nanoseconds, so that equal gaps tie and the first one goes.
-    long long gap(std::size_t i) const
-    {
-        return std::llround(std::min(tau_[i] - tau_[before_[i]], tau_[after_[i]] - tau_[i]) * 1e9);
-    }
-
-    void correct_from(std::size_t i)
-    {
-        for (; i < tau_.size(); i = after_[i]) {
-            const double part = computed(i);
-            if (part == part_[i])
-                return;
-            impossible_ += (possible(part) ? 0 : 1) - (possible(part_[i]) ? 0 : 1);
-            part_[i] = part;
-        }
-    }
-
-    const timing_profile& profile_;
-    const std::vector<double>& tau_;
-    std::vector<std::size_t> before_;
-    std::vector<std::size_t> after_;
-    std::vector<double> part_;
-    std::vector<bool> left_out_;
-    std::set<std::pair<long long, std::size_t>> by_gap_;
-    long impossible_ = 0;
-};
+/// What is left, ascending, of n places when the first `gone` of `order` have gone.
+std::vector<std::size_t> left_of(std::size_t n, const std::vector<std::size_t>& order, std::size_t gone)
+{
+    std::vector<bool> out(n, false);
+    for (std::size_t k = 0; k < gone; ++k)
+        out[order[k]] = true;
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < n; ++i)
+        if (!out[i])
+            places.push_back(i);
+    return places;
+}
 
 } // namespace
 
@@ -140,10 +103,26 @@ double shortest_duration_s(const timing_profile& p, const std::vector<double>& t
 
 std::vector<std::size_t> thin_out(const timing_profile& p, const std::vector<double>& tau_s)
 {
-    chain c(p, tau_s);
-    while (!c.done())
-        c.drop_one();
-    return c.left();
+    const std::vector<std::size_t> order = order_of_going(tau_s);
+    const auto works = [&](std::size_t gone) {
+        std::vector<double> tau;
+        for (const std::size_t i : left_of(tau_s.size(), order, gone))
+            tau.push_back(tau_s[i]);
+        return !parts_s(p, tau).empty();
+    };
+    // When a place goes, the part of the next grows by (2 slope part + intercept) / (1 + slope), with the
+    // part of the one that went. No part is below -intercept / (2 slope), so that is never negative: what
+    // works with some gone works with more gone.
+    std::size_t few = 0;
+    std::size_t many = order.size();
+    while (few < many) {
+        const std::size_t half = few + (many - few) / 2;
+        if (works(half))
+            many = half;
+        else
+            few = half + 1;
+    }
+    return left_of(tau_s.size(), order, many);
 }
 
 } // namespace tactor::detail

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <map>
+#include <optional>
 #include <tuple>
+#include <vector>
 
 #include "plan/job.hpp"
 #include "plan/numbers.hpp"
@@ -15,14 +16,18 @@ std::vector<conflict> find_conflicts(const std::vector<burst>& bursts)
         double sounds_until_s;
         std::ptrdiff_t last = -1; // place in `found`
     };
-    std::map<unsigned, state> tactors;
+    std::vector<std::optional<state>> tactors;
     for (const burst& b : bursts)
         for (const drive& d : b.drives) {
             const double end = b.onset_s + b.duration_s;
-            const auto [it, first] = tactors.try_emplace(d.tactor, state{end});
-            if (first)
+            if (d.tactor >= tactors.size())
+                tactors.resize(d.tactor + std::size_t{1});
+            std::optional<state>& there = tactors[d.tactor];
+            if (!there) {
+                there = state{end};
                 continue;
-            state& s = it->second;
+            }
+            state& s = *there;
             const double until = std::min(end, s.sounds_until_s);
             if (until - b.onset_s > same_time_s) {
                 if (s.last >= 0 && b.onset_s <= found[static_cast<std::size_t>(s.last)].to_s + same_time_s) {

@@ -1,31 +1,110 @@
 // SPDX-License-Identifier: MIT
-#include "plan/continuous.hpp"
+#include <cmath>
+#include <memory>
+#include <utility>
 
-#include <algorithm>
+#include <fmt/format.h>
 
+#include "plan/curve_impl.hpp"
 #include "plan/job.hpp"
 #include "plan/leaving.hpp"
 
 namespace tactor::detail {
+namespace {
+
+// A stroke of so many samples is computed once, when it is planned: 76 bytes a sample with three drives.
+// A longer one is computed whenever it is read.
+constexpr std::uint64_t most_kept = 4001;
+
+/// The phantom along a stroke.
+class follow {
+public:
+    explicit follow(const job& j)
+        : motion_(j.motion.motion), faces_(j.faces), model_(j.model), scale_(j.options.scale)
+    {
+    }
+
+    void at(double t_s, burst& out) const
+    {
+        const point p = motion_.position(t_s);
+        out.position = faces_.contains(p) ? p : faces_.nearest(p);
+        out.intensity = motion_.intensity(t_s);
+        drives_at(*model_, faces_, out.position, scale_.amplitude(out.intensity), out.drives);
+    }
+
+    const trajectory& motion() const noexcept { return motion_; }
+    /// Whether no tactor gets more than an intensity that is linear in time.
+    bool is_bounded() const noexcept { return scale_.kind == scale_kind::linear; }
+
+private:
+    trajectory motion_;
+    layout faces_;
+    std::shared_ptr<const phantom_model> model_;
+    intensity_scale scale_;
+};
+
+curve_samples all_samples(const follow& f)
+{
+    const double duration_s = f.motion().duration_s();
+    curve_samples all;
+    burst b;
+    const std::uint64_t count = samples_of(duration_s);
+    for (std::uint64_t k = 0; k < count; ++k) {
+        f.at(sample_time_s(k, duration_s), b);
+        all.add(b);
+    }
+    all.drives.shrink_to_fit();
+    return all;
+}
+
+/// Of the library's own models.
+class followed final : public curve::impl {
+public:
+    explicit followed(const job& j) : impl(j.motion.motion.duration_s()), follow_(j)
+    {
+        if (size <= most_kept)
+            kept_ = all_samples(follow_);
+    }
+
+    void fill(std::uint64_t k, burst& out) const override
+    {
+        if (kept_.ends.empty())
+            follow_.at(sample_time_s(k, duration_s), out);
+        else
+            read(kept_, static_cast<std::size_t>(k), out);
+    }
+
+    const trajectory* bounds() const noexcept override
+    {
+        return follow_.is_bounded() ? &follow_.motion() : nullptr;
+    }
+
+private:
+    follow follow_;
+    curve_samples kept_;
+};
+
+// What a model of the user's own does is asked once, so that the plan is a value.
+curve asked(const job& j)
+{
+    const double duration_s = j.motion.motion.duration_s();
+    const auto count = static_cast<double>(samples_of(duration_s));
+    if (count > most_bursts)
+        throw error(
+            error_kind::bad_input, j.name(),
+            fmt::format("would need {:.3g} samples of phantom model \"{}\"", count, j.model->name()),
+            fmt::format("at most {:.0f}, one each {} s; make it shorter", most_bursts, continuous_step_s));
+    return {duration_s, all_samples(follow(j))};
+}
+
+} // namespace
 
 void plan_continuous(const job& j, plan& out)
 {
-    if (j.options.leave == outside::error)
+    if (j.options.outside == outside_kind::error)
         check_inside(j);
     out.total_s = out.stroke_duration_s;
-    out.at = continuous_at{j.motion.motion, j.faces, j.model, j.options.custom_phantom == nullptr};
-}
-
-void continuous_at::operator()(double t_s, burst& at) const
-{
-    const double t = t_s > 0.0 ? std::min(t_s, motion.duration_s()) : 0.0;
-    const point p = motion.position(t);
-    at.onset_s = t;
-    at.duration_s = 0.0;
-    at.tau_s.reset();
-    at.position = faces.contains(p) ? p : faces.nearest(p);
-    at.intensity = motion.intensity(t);
-    drives_at(*model, faces, at.position, at.intensity, at.drives);
+    out.curve = j.options.custom_phantom ? asked(j) : curve_access::make(std::make_shared<followed>(j));
 }
 
 } // namespace tactor::detail

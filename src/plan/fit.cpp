@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -11,11 +12,12 @@
 
 #include <tactor/error.hpp>
 
-#include "model/moved.hpp"
-#include "plan/hull.hpp"
-#include "plan/layout_impl.hpp"
-#include "plan/plane.hpp"
-#include "plan/sides.hpp"
+#include "core/access.hpp"
+#include "core/moved.hpp"
+#include "plan/faces/hull.hpp"
+#include "plan/faces/layout_impl.hpp"
+#include "plan/faces/plane.hpp"
+#include "plan/faces/sides.hpp"
 
 namespace tactor {
 namespace {
@@ -100,7 +102,7 @@ std::optional<point> line_of(const layout::impl& l, std::pair<point, point> ends
 
 [[noreturn]] void refuse_margin(double margin_mm, double room_mm)
 {
-    throw error(errc::bad_input, "margin_mm",
+    throw error(error_kind::bad_input, "margin_mm",
                 fmt::format("{:.6g} mm on each side leave no room in the array", margin_mm),
                 room_mm > 0.0 ? fmt::format("less than {:.4g} mm", room_mm) : "one tactor has none");
 }
@@ -119,11 +121,11 @@ fitting fit_to_line(const picture& drawn, const layout::impl& l, std::pair<point
     if (drawn.rests())
         return f;
     if (l.points.size() == 1)
-        throw error(errc::bad_input, "stroke", "does not fit on a single tactor",
+        throw error(error_kind::bad_input, "stroke", "does not fit on a single tactor",
                     "use an array of two or more");
     const double extent = drawn.extent(along);
     if (!(extent > same_place_mm))
-        throw error(errc::bad_input, "stroke",
+        throw error(error_kind::bad_input, "stroke",
                     "goes across the line in which all tactors lie, and nothing of it along",
                     "turn it, or use an array with two rows");
     f.from = f.from + (drawn.middle(along) - dot(along, f.from)) * along;
@@ -181,20 +183,47 @@ affine map_of(const fitting& f)
 fitted_strokes fit_strokes(const std::vector<stroke>& strokes, const layout& l, double margin_mm)
 {
     if (!(margin_mm >= 0.0 && std::isfinite(margin_mm)))
-        throw error(errc::bad_input, "margin_mm", fmt::format("{} mm", margin_mm), "0 mm or more");
+        throw error(error_kind::bad_input, "margin_mm", fmt::format("{} mm", margin_mm), "0 mm or more");
     fitted_strokes all{strokes, {}};
     if (strokes.empty())
         return all;
-    all.placed = find_fit(picture(strokes), l.data(), margin_mm);
+    all.placed = find_fit(picture(strokes), detail::access::of(l), margin_mm);
     const affine map = map_of(all.placed);
     for (stroke& s : all.strokes) {
         s.motion = detail::moved(s.motion, all.placed.from, map, all.placed.line,
                                  [&] { return fmt::format("stroke \"{}\" as fitted", s.name); });
-        const double length = s.motion.length_mm();
-        if (s.speed_mm_s && length > 0.0)
-            s.motion = s.motion.with_duration(length / *s.speed_mm_s);
+        if (s.speed_mm_s)
+            s.motion = s.motion.with_speed(*s.speed_mm_s);
     }
     return all;
+}
+
+std::vector<stroke> fit_as_asked(std::vector<stroke> strokes, const layout& l)
+{
+    std::vector<std::vector<std::size_t>> pictures;
+    std::map<unsigned, std::size_t> of_group;
+    for (std::size_t i = 0; i < strokes.size(); ++i) {
+        const stroke& s = strokes[i];
+        if (!s.fit_margin_mm)
+            continue;
+        const auto [there, is_new] = of_group.try_emplace(s.fit_group, pictures.size());
+        if (is_new || s.fit_group == 0)
+            pictures.push_back({i});
+        else
+            pictures[there->second].push_back(i);
+    }
+    for (const std::vector<std::size_t>& members : pictures) {
+        std::vector<stroke> together;
+        for (const std::size_t i : members)
+            together.push_back(strokes[i]);
+        fitted_strokes fitted = fit_strokes(together, l, *strokes[members.front()].fit_margin_mm);
+        for (std::size_t k = 0; k < members.size(); ++k) {
+            stroke& s = strokes[members[k]] = std::move(fitted.strokes[k]);
+            s.fit_margin_mm.reset();
+            s.fit_group = 0;
+        }
+    }
+    return strokes;
 }
 
 } // namespace tactor

@@ -3,13 +3,33 @@
 /// One stroke that is being planned, and the parts that all algorithms share.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <tactor/plan.hpp>
 
 namespace tactor::detail {
+
+/// Of all bursts of a plan, what warnings are made of.
+struct burst_count {
+    std::size_t all = 0;
+    std::size_t too_long = 0;  ///< for the timing law
+    std::size_t too_short = 0; ///< for the carrier
+    double longest_s = 0.0;
+    double shortest_s = 0.0; ///< of the too short ones
+    double first_s = 0.0;    ///< duration of the first
+};
+
+/// Takes the next bursts of a plan, which end where nothing sounds; what else is known of it by then is its
+/// carrier, its phantom and such.
+using burst_taker = std::function<void(const plan& so_far, std::span<const burst> next)>;
+
+/// Bursts that are handed over at once where they are not kept.
+inline constexpr std::size_t bursts_at_once = 1024;
 
 /// What the algorithms work on; lives as long as make_plan().
 struct job {
@@ -18,11 +38,20 @@ struct job {
     const stroke& motion;
     const plan_options& options;
     std::shared_ptr<const phantom_model> model;
+    burst_count& counted;
+    const burst_taker& take;              ///< empty: all bursts stay in the plan
     mutable std::vector<drive> room = {}; ///< for the drives of a burst, until their number is known
 
     /// For messages: stroke "name".
     std::string name() const;
 };
+
+/// Plans a stroke as make_plan() does, but hands its bursts over as they come in place of keeping them.
+plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan_options& o,
+                    const burst_taker& take);
+
+/// Counts the plan's bursts, and hands them over where they are not kept.
+void pass_on(const job& j, plan& p);
 
 /// The algorithms; each fills in what is its own.
 void plan_park(const job& j, plan& out);

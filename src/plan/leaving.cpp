@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "plan/leaving.hpp"
+#include "core/access.hpp"
 
 #include <algorithm>
 #include <array>
 #include <vector>
 
-#include "model/path_shape.hpp"
-#include "model/trajectory_spans.hpp"
-#include "plan/layout_impl.hpp"
-#include "plan/sides.hpp"
+#include "core/path/shape.hpp"
+#include "core/trajectory/spans.hpp"
+#include "plan/faces/layout_impl.hpp"
+#include "plan/faces/sides.hpp"
 
 namespace tactor::detail {
 namespace {
@@ -33,7 +34,7 @@ void turns_seen(const shape& form, const std::vector<beyond>& sides, std::vector
 
 void check_inside(const job& j)
 {
-    const std::vector<beyond> sides = sides_of(j.faces.data());
+    const std::vector<beyond> sides = sides_of(detail::access::of(j.faces));
     std::vector<double> turns_at;
     follower target(j);
     target.at(0.0);

@@ -4,8 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <tactor/fit.hpp>
 #include <tactor/words.hpp>
 
+#include "plan/course.hpp"
 #include "plan/job.hpp"
 #include "plan/numbers.hpp"
 #include "plan/options.hpp"
@@ -15,57 +17,71 @@ namespace {
 
 // Durations beyond this are outside the data from which Eq. (1) was fitted (Israr and Poupyrev 2011).
 constexpr double longest_fitted_s = 0.160;
+// What travels less of the distance between two tactors is hardly felt to move (Remache-Vinueza,
+// Trujillo-Leon and Vidal-Verdu, Displays 2024).
+constexpr double least_travel = 0.2;
 // Durations are said to the millisecond: nearer than half of one is the law's.
 constexpr double law_tolerance_s = 0.0005;
 
-void warn_of_long_bursts(plan& p)
+void count(const plan& p, detail::burst_count& c)
 {
-    std::size_t count = 0;
-    double longest = 0.0;
+    if (c.all == 0 && !p.bursts.empty())
+        c.first_s = p.bursts.front().duration_s;
+    c.all += p.bursts.size();
     for (const burst& b : p.bursts) {
-        longest = std::max(longest, b.duration_s);
-        count += b.duration_s > longest_fitted_s + 1e-9 ? 1 : 0;
+        c.longest_s = std::max(c.longest_s, b.duration_s);
+        c.too_long += b.duration_s > longest_fitted_s + 1e-9 ? 1 : 0;
+        if (b.duration_s * p.carrier_hz < 1.0 - 1e-9) {
+            c.shortest_s = c.too_short == 0 ? b.duration_s : std::min(c.shortest_s, b.duration_s);
+            ++c.too_short;
+        }
     }
-    if (count != 0)
+}
+
+void warn_of_long_bursts(const detail::burst_count& c, plan& p)
+{
+    if (c.too_long != 0)
         p.warnings.push_back(
             fmt::format("{} of {} {} longer than {:.3f} s (up to {:.3f} s), beyond the range "
                         "for which the timing law was fitted",
-                        count, counted(p.bursts.size(), "burst"), count == 1 ? "lasts" : "last",
-                        longest_fitted_s, longest));
+                        c.too_long, counted(c.all, "burst"), c.too_long == 1 ? "lasts" : "last",
+                        longest_fitted_s, c.longest_s));
 }
 
-void warn_of_short_bursts(plan& p)
+void warn_of_short_bursts(const detail::burst_count& c, plan& p)
 {
-    std::size_t count = 0;
-    double shortest = 0.0;
-    for (const burst& b : p.bursts) {
-        if (b.duration_s * p.carrier_hz < 1.0 - 1e-9) {
-            shortest = count == 0 ? b.duration_s : std::min(shortest, b.duration_s);
-            ++count;
-        }
-    }
-    if (count != 0)
+    if (c.too_short != 0)
         p.warnings.push_back(
             fmt::format("{} of {} {} shorter than one cycle of the carrier, {:.4g} ms at {:.6g} Hz (down "
                         "to {:.4g} ms): too short to be felt as vibration",
-                        count, counted(p.bursts.size(), "burst"), count == 1 ? "is" : "are",
-                        1e3 / p.carrier_hz, p.carrier_hz, shortest * 1e3));
+                        c.too_short, counted(c.all, "burst"), c.too_short == 1 ? "is" : "are",
+                        1e3 / p.carrier_hz, p.carrier_hz, c.shortest_s * 1e3));
+}
+
+/// What rests is not meant to move.
+void warn_of_short_travel(double pitch_mm, plan& p)
+{
+    if (p.stroke_length_mm > 0.0 && p.stroke_length_mm < least_travel * pitch_mm * (1.0 - 1e-9))
+        p.warnings.push_back(
+            fmt::format("its path of {:.4g} mm is shorter than a fifth of the {:.4g} mm between "
+                        "tactors: it may not be felt to move",
+                        p.stroke_length_mm, pitch_mm));
 }
 
 /// Where the duration that was asked for is not the one that belongs to the SOA, or is not used.
-void warn_of_own_duration(const plan_options& o, plan& p)
+void warn_of_own_duration(const plan_options& o, const detail::burst_count& c, plan& p)
 {
     if (!o.burst_s)
         return;
     if (!p.soa_s) {
         p.warnings.push_back(fmt::format(
             "the duration asked for each burst, {}, is not used: {}", seconds_text(*o.burst_s),
-            p.at ? "continuous has no bursts" : "tactile-brush takes durations from path and timing law"));
+            p.curve ? "continuous has no bursts" : "tactile-brush takes durations from path and timing law"));
         return;
     }
     const timing_profile& law = o.profile;
     const bool in_bounds = *p.soa_s > law.intercept_s && *p.soa_s <= law.max_soa_s + detail::same_time_s;
-    const double d = p.bursts.front().duration_s;
+    const double d = c.first_s;
     if (!in_bounds || std::abs(d - detail::law_duration_s(law, *p.soa_s)) > law_tolerance_s)
         p.warnings.push_back(
             fmt::format("bursts of {} each {} leave the timing law, SOA = {:.6g} duration + {}, "
@@ -81,39 +97,74 @@ std::shared_ptr<const phantom_model> model_of(const layout& l, const plan_option
 
 } // namespace
 
-plan make_plan(const array& a, const layout& l, const stroke& s, const plan_options& o)
+namespace {
+
+/// The common options, but for what the stroke chooses.
+plan_options chosen(plan_options o, const stroke_choices& c)
 {
+    o.algorithm = c.algorithm.value_or(o.algorithm);
+    o.soa_s = c.soa_s.value_or(o.soa_s);
+    o.burst_s = c.burst_s ? c.burst_s : o.burst_s;
+    if (c.phantom) {
+        o.phantom = *c.phantom;
+        o.custom_phantom.reset();
+    }
+    return o;
+}
+
+plan planned(const array& a, const layout& l, const stroke& s, const plan_options& common,
+             const detail::burst_taker& take)
+{
+    if (s.fit_margin_mm)
+        return planned(a, l, fit_as_asked({s}, l).front(), common, take);
+    const plan_options o = chosen(common, s.choices);
     detail::check_options(o);
     if (l.places().size() != a.tactors.size())
         throw error(
-            errc::bad_input, "layout",
+            error_kind::bad_input, "layout",
             fmt::format("has {} and the array {}", counted(l.places().size(), "tactor"), a.tactors.size()),
             "build the layout from the same array");
-    const detail::job j{a, l, s, o, model_of(l, o)};
+    detail::burst_count bursts;
+    const detail::job j{a, l, s, o, model_of(l, o), bursts, take};
     plan p;
     p.warnings = s.warnings;
-    p.algorithm = to_string(o.method);
+    p.algorithm = to_string(o.algorithm);
     p.phantom = j.model->name();
     p.stroke_duration_s = s.motion.duration_s();
     p.stroke_length_mm = s.motion.length_mm();
-    p.carrier_hz = detail::check_carrier(s.carrier_hz.value_or(o.carrier_hz));
-    p.join = o.join;
-    switch (o.method) {
-    case algorithm::park2016:
+    p.carrier_hz = detail::check_carrier(s.carrier_profile.empty() ? s.carrier_hz.value_or(o.carrier_hz)
+                                                                   : s.carrier_profile.front().hz);
+    p.overlap = o.overlap;
+    p.wave = s.wave.value_or(o.wave);
+    p.am = s.am.value_or(o.am);
+    validate(p.wave);
+    validate(p.am);
+    p.course = detail::course_of(s, p.wave);
+    switch (o.algorithm) {
+    case algorithm_kind::park2016:
         detail::plan_park(j, p);
         break;
-    case algorithm::tactile_brush:
+    case algorithm_kind::tactile_brush:
         detail::plan_brush(j, p);
         break;
-    case algorithm::continuous:
+    case algorithm_kind::continuous:
         detail::plan_continuous(j, p);
         break;
     }
     p.conflicts = detail::find_conflicts(p.bursts);
-    warn_of_long_bursts(p);
-    warn_of_short_bursts(p);
-    warn_of_own_duration(o, p);
+    detail::pass_on(j, p);
+    warn_of_short_travel(l.pitch_mm(), p);
+    warn_of_long_bursts(bursts, p);
+    warn_of_short_bursts(bursts, p);
+    warn_of_own_duration(o, bursts, p);
     return p;
+}
+
+} // namespace
+
+plan make_plan(const array& a, const layout& l, const stroke& s, const plan_options& o)
+{
+    return planned(a, l, s, o, {});
 }
 
 plan make_plan(const array& a, const stroke& s, const plan_options& o)
@@ -123,6 +174,21 @@ plan make_plan(const array& a, const stroke& s, const plan_options& o)
 
 namespace detail {
 
+plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan_options& o,
+                    const burst_taker& take)
+{
+    return planned(a, l, s, o, take);
+}
+
+void pass_on(const job& j, plan& p)
+{
+    count(p, j.counted);
+    if (j.take) {
+        j.take(p, p.bursts);
+        p.bursts.clear();
+    }
+}
+
 std::string job::name() const
 {
     return motion.name.empty() ? "stroke" : fmt::format("stroke \"{}\"", motion.name);
@@ -131,7 +197,7 @@ std::string job::name() const
 void check_burst_count(const job& j, double bursts)
 {
     if (bursts > most_bursts)
-        throw error(errc::bad_input, j.name(), fmt::format("would need {:.3g} bursts", bursts),
+        throw error(error_kind::bad_input, j.name(), fmt::format("would need {:.3g} bursts", bursts),
                     fmt::format("at most {:.0f}; make it shorter or the SOA longer", most_bursts));
 }
 
@@ -139,7 +205,7 @@ void drives_at(const phantom_model& m, const layout& l, point p, double a_v, std
 {
     out.clear();
     if (!(a_v >= 0.0 && std::isfinite(a_v)))
-        throw error(errc::bad_input, "intensity", fmt::format("{} is not a number from 0 up", a_v));
+        throw error(error_kind::bad_input, "intensity", fmt::format("{} is not a number from 0 up", a_v));
     if (a_v == 0.0)
         return;
     m.weights(p, a_v, out);
@@ -147,7 +213,7 @@ void drives_at(const phantom_model& m, const layout& l, point p, double a_v, std
         const drive& d = out[i];
         const bool in_order = i == 0 || out[i - 1].tactor < d.tactor;
         if (!in_order || d.tactor >= l.places().size() || !(d.amplitude > 0.0 && std::isfinite(d.amplitude)))
-            throw error(errc::bad_input, fmt::format("phantom model \"{}\"", m.name()),
+            throw error(error_kind::bad_input, fmt::format("phantom model \"{}\"", m.name()),
                         fmt::format("gave tactor {} amplitude {}", d.tactor, d.amplitude),
                         "drives go in order of tactor, with finite amplitudes above 0");
     }
@@ -160,7 +226,7 @@ burst make_burst(const job& j, double onset_s, double duration_s, point p, doubl
     b.duration_s = duration_s;
     b.position = p;
     b.intensity = j.motion.motion.intensity(t_s);
-    drives_at(*j.model, j.faces, p, b.intensity, j.room);
+    drives_at(*j.model, j.faces, p, j.options.scale.amplitude(b.intensity), j.room);
     b.drives.assign(j.room.begin(), j.room.end());
     return b;
 }

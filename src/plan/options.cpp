@@ -19,42 +19,6 @@ constexpr double longest_free_soa_s = 10.0;
 
 } // namespace
 
-std::string_view to_string(algorithm a) noexcept
-{
-    switch (a) {
-    case algorithm::park2016:
-        return "park2016";
-    case algorithm::tactile_brush:
-        return "tactile-brush";
-    case algorithm::continuous:
-        return "continuous";
-    }
-    return "unknown";
-}
-
-std::string_view to_string(timing t) noexcept
-{
-    return t == timing::fixed ? "fixed" : "fit";
-}
-
-std::string_view to_string(outside o) noexcept
-{
-    return o == outside::error ? "error" : "clamp";
-}
-
-std::string_view to_string(overlap o) noexcept
-{
-    switch (o) {
-    case overlap::energy:
-        return "energy";
-    case overlap::max:
-        return "max";
-    case overlap::sum:
-        return "sum";
-    }
-    return "unknown";
-}
-
 namespace detail {
 
 double law_duration_s(const timing_profile& p, double soa_s)
@@ -65,7 +29,8 @@ double law_duration_s(const timing_profile& p, double soa_s)
 void check_profile(const timing_profile& p)
 {
     const auto refuse = [](std::string_view what, double value, std::string_view hint) {
-        throw error(errc::bad_input, "timing profile", fmt::format("{} {} cannot be", what, value), hint);
+        throw error(error_kind::bad_input, "timing profile", fmt::format("{} {} cannot be", what, value),
+                    hint);
     };
     if (!(p.slope > 0.0 && p.slope < 1.0))
         refuse("a slope of", p.slope, "between 0 and 1; 0.32 on palm and forearm");
@@ -78,17 +43,17 @@ void check_profile(const timing_profile& p)
 
 void check_options(const plan_options& o)
 {
-    if (o.method == algorithm::continuous)
+    if (o.algorithm == algorithm_kind::continuous)
         return;
     check_profile(o.profile);
-    if (o.method != algorithm::park2016)
+    if (o.algorithm != algorithm_kind::park2016)
         return;
-    burst_duration_s(o);
-    if (o.schedule != timing::fit || o.burst_s)
+    static_cast<void>(burst_duration_s(o)); // checks what it is made of
+    if (o.timing != timing_kind::fit || o.burst_s)
         return;
     const double longest = law_duration_s(o.profile, o.soa_s);
     if (!(o.min_duration_s > 0.0 && o.min_duration_s <= longest))
-        throw error(errc::bad_input, "timing = fit",
+        throw error(error_kind::bad_input, "timing = fit",
                     fmt::format("bursts of at least {} cannot be had: an SOA of {} gives {}",
                                 seconds_text(o.min_duration_s), seconds_text(o.soa_s), seconds_text(longest)),
                     "ask for a shorter least duration, above 0 s, or for a longer SOA");
@@ -97,7 +62,7 @@ void check_options(const plan_options& o)
 double check_carrier(double hz)
 {
     if (!(hz > 0.0 && std::isfinite(hz)))
-        throw error(errc::bad_input, "carrier_hz", fmt::format("{} Hz is not a frequency", hz),
+        throw error(error_kind::bad_input, "carrier_hz", fmt::format("{} Hz is not a frequency", hz),
                     "more than 0; 250 is usual");
     return hz;
 }
@@ -108,7 +73,7 @@ double burst_duration_s(const timing_profile& p, double soa_s)
 {
     detail::check_profile(p);
     if (!(soa_s > p.intercept_s && soa_s <= p.max_soa_s))
-        throw error(errc::bad_input, "soa_s",
+        throw error(error_kind::bad_input, "soa_s",
                     fmt::format("{} s is out of bounds: an SOA is longer than {} s and at most {} s", soa_s,
                                 p.intercept_s, p.max_soa_s),
                     fmt::format("use {}", p.max_soa_s));
@@ -122,17 +87,17 @@ double burst_duration_s(const plan_options& o)
     detail::check_profile(o.profile);
     if (!(o.soa_s >= shortest_burst_s && o.soa_s <= longest_free_soa_s))
         throw error(
-            errc::bad_input, "soa_s",
+            error_kind::bad_input, "soa_s",
             fmt::format("{} s is out of bounds: with a duration of its own for the burst an SOA is {} to "
                         "{} s",
                         o.soa_s, shortest_burst_s, longest_free_soa_s),
             fmt::format("use {}", o.profile.max_soa_s));
     if (!(*o.burst_s >= shortest_burst_s && std::isfinite(*o.burst_s)))
-        throw error(errc::bad_input, "duration of a burst",
+        throw error(error_kind::bad_input, "duration of a burst",
                     fmt::format("{} s is not one, {} s is the shortest", *o.burst_s, shortest_burst_s),
                     fmt::format("use {} to {} s", shortest_burst_s, o.soa_s));
     if (*o.burst_s > o.soa_s)
-        throw error(errc::bad_input, "duration of a burst",
+        throw error(error_kind::bad_input, "duration of a burst",
                     fmt::format("{} s is longer than the SOA of {} s, and bursts must not overlap",
                                 *o.burst_s, o.soa_s),
                     fmt::format("use at most {} s, or a longer SOA", o.soa_s));

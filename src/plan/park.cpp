@@ -27,7 +27,7 @@ double fitted_soa(const job& j, double duration_s)
                   : fmt::format("needs bursts of {:.3f} s, shorter than {} s", law_duration_s(o.profile, soa),
                                 o.min_duration_s);
     throw error(
-        errc::bad_input, "timing = fit",
+        error_kind::bad_input, "timing = fit",
         fmt::format("{} of {} s in {:.0f} equal intervals {}", j.name(), seconds_down(duration_s), n, needs),
         fmt::format("the nearest durations that work are {} s and {} s", seconds_down((n - 1.0) * o.soa_s),
                     seconds_up(n * shortest)));
@@ -39,7 +39,7 @@ void plan_park(const job& j, plan& out)
 {
     const double end = j.motion.motion.duration_s();
     const bool one_burst = end < j.options.soa_s - same_time_s;
-    const bool fit = j.options.schedule == timing::fit && !one_burst;
+    const bool fit = j.options.timing == timing_kind::fit && !one_burst;
     const double soa = fit ? fitted_soa(j, end) : j.options.soa_s;
     const double count = one_burst ? 1.0 : std::floor((end + same_time_s) / soa) + 1.0;
     check_burst_count(j, count);
@@ -48,14 +48,18 @@ void plan_park(const job& j, plan& out)
     const double duration =
         j.options.burst_s ? std::min(*j.options.burst_s, soa) : law_duration_s(j.options.profile, soa);
     follower target(j);
-    out.bursts.reserve(static_cast<std::size_t>(count));
+    const auto all = static_cast<std::size_t>(count);
+    out.bursts.reserve(j.take ? std::min(all, bursts_at_once) : all);
     for (double k = 0.0; k < count; ++k) {
+        // No burst lasts longer than the SOA, so that none overlaps what was handed over.
+        if (j.take && out.bursts.size() == bursts_at_once)
+            pass_on(j, out);
         // The last one may be a rounding error past the end.
         const double t = std::min(k * soa, end);
         out.bursts.push_back(make_burst(j, k * soa, duration, target.at(t), t));
     }
     out.soa_s = soa;
-    out.total_s = out.bursts.back().onset_s + duration;
+    out.total_s = (count - 1.0) * soa + duration;
 }
 
 } // namespace tactor::detail

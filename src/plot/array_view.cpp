@@ -8,10 +8,10 @@
 
 #include <tactor/words.hpp>
 
-#include "plot/array_frame.hpp"
-#include "plot/axes.hpp"
-#include "plot/path_marks.hpp"
-#include "plot/text.hpp"
+#include "plot/draw/array_frame.hpp"
+#include "plot/draw/axes.hpp"
+#include "plot/draw/path_marks.hpp"
+#include "plot/paint/text.hpp"
 
 namespace tactor::plot {
 namespace {
@@ -71,10 +71,13 @@ public:
         draw_paths();
         draw_tactors(canvas_, frame_, scene_.tactors, looks, taken_);
         draw_dots();
+        draw_felt();
         draw_path_marks(canvas_, scene_, frame_, fine_.dot, taken_);
         add_note(draw_tactor_labels(canvas_, frame_, scene_.tactors, looks, taken_));
         if (time_.several())
             add_note("rings with numbers in bold: starts; squares: ends");
+        if (!scene_.moved.empty())
+            add_notes_of_observer(scene_.moved.front().observer);
         add_note(label_strokes(canvas_, scene_, frame_, fine_.dot, taken_));
         const double y = frame_.area.bottom() + legend_height / 2.0;
         draw_scale_bar(canvas_, frame_, {where_.x, y});
@@ -214,6 +217,32 @@ private:
                  .title = fmt::format("burst {}: {}{}, at {}, {} mm", b.number, number(b.from_s, 6), end,
                                       number(b.what->position.x_mm), number(b.what->position.y_mm))});
         });
+    }
+
+    void add_notes_of_observer(const low_speed_observer& o)
+    {
+        add_note("line: target, dots: played");
+        add_note("dashes and small rings: predicted to be felt");
+        add_note("low-speed observer, built for taps");
+        add_note(fmt::format("sigma {} mm, sigma_v {} mm/s", plain_number(o.sigma_mm),
+                             plain_number(o.sigma_v_mm_s)));
+    }
+
+    // Of bursts that were moved: where an observer is predicted to feel them.
+    void draw_felt()
+    {
+        constexpr double radius = 1.1;
+        for (const compensated_plan& m : scene_.moved) {
+            const group one(canvas_, {.kind = "predicted"});
+            std::vector<spot> way;
+            for (const tap& t : m.taps)
+                way.push_back(frame_(t.felt));
+            canvas_.poly(simplify(way, 0.04), false, {.stroke = vermilion, .width = 0.7, .dash = 2.0},
+                         {.kind = "felt"});
+            for (std::size_t i = 0; i < way.size(); i += stride_)
+                canvas_.circle(way[i], radius, {.fill = white, .stroke = vermilion, .width = 0.5},
+                               {.kind = "felt-at"});
+        }
     }
 
     void draw_amplitude_legend(double y)

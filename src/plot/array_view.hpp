@@ -4,8 +4,8 @@
 /// 2016).
 #pragma once
 
-#include "plot/canvas.hpp"
-#include "plot/timeline.hpp"
+#include "plot/draw/timeline.hpp"
+#include "plot/paint/canvas.hpp"
 
 namespace tactor::plot {
 

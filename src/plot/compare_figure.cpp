@@ -10,10 +10,10 @@
 
 #include <tactor/words.hpp>
 
-#include "plot/axes.hpp"
 #include "plot/compare_panel.hpp"
+#include "plot/draw/axes.hpp"
 #include "plot/figure.hpp"
-#include "plot/text.hpp"
+#include "plot/paint/text.hpp"
 
 namespace tactor::plot {
 namespace {
@@ -53,6 +53,31 @@ series target_speed(const std::vector<percept_sample>& samples)
     return s;
 }
 
+// From tap to tap, at the middle between their onsets.
+series chain_speed(const std::string& name, const std::vector<tap>& taps, point tap::*place,
+                   const style& look)
+{
+    series s{name, {}, look};
+    for (std::size_t i = 1; i < taps.size(); ++i)
+        if (taps[i].onset_s > taps[i - 1].onset_s)
+            s.values.push_back(
+                {(taps[i].onset_s + taps[i - 1].onset_s) / 2.0,
+                 distance_mm(taps[i].*place, taps[i - 1].*place) / (taps[i].onset_s - taps[i - 1].onset_s)});
+    return s;
+}
+
+// One prediction's line, after the target's where it is the first.
+void add_speeds(std::vector<series>& lines, const prediction& p, const style& look)
+{
+    const bool by_taps = !p.taps.empty();
+    if (!p.refused.empty() || !p.unpredicted.empty())
+        return;
+    if (lines.empty())
+        lines.push_back(by_taps ? chain_speed("target", p.taps, &tap::target, target_look)
+                                : target_speed(p.samples));
+    lines.push_back(by_taps ? chain_speed(p.algorithm, p.taps, &tap::felt, look) : felt_speed(p, look));
+}
+
 double largest(const std::vector<series>& lines)
 {
     double v = 0.0;
@@ -75,32 +100,31 @@ double draw_heading(canvas& c, const array& a, const stroke& target, box where)
     return y + 6.0 - where.y;
 }
 
-double draw_note(canvas& c, const std::string& note, box where)
+chart_band band_of(const prediction& p, const style& look)
 {
-    std::vector<std::string> words;
-    for (std::size_t at = 0; at < note.size();) {
-        const std::size_t end = std::min(note.find(' ', at), note.size());
-        words.push_back(note.substr(at, end - at));
-        at = end + 1;
+    chart_band b{p.algorithm, {}, {}, {.fill = with_alpha(look.stroke.value_or(ink), 0.18)}};
+    for (const people_bands::range& r : p.people.speeds) {
+        b.low.push_back({r.t_s, r.low});
+        b.high.push_back({r.t_s, r.high});
     }
-    double y = where.y;
-    for (const std::string& line : wrap(words, " ", small_text, where.width, 6)) {
-        y += line_pitch;
-        c.text({where.x, y}, line, {.size = small_text, .ink = dark_grey}, {.kind = "note"});
-    }
-    return y - where.y;
+    return b;
 }
 
-double draw_speeds(canvas& c, const std::string& phantom, std::vector<series> lines, double end_s, box where)
+double draw_speeds(canvas& c, const std::string& phantom, std::vector<series> lines,
+                   std::vector<chart_band> bands, double end_s, box where)
 {
     chart ch;
     ch.id = "speed-" + phantom;
     ch.where = {where.x, where.y, where.width, chart_height};
     ch.x_to = end_s;
     ch.y_to = largest(lines);
+    for (const chart_band& b : bands)
+        for (const spot& v : b.high)
+            ch.y_to = std::max(ch.y_to, 1.05 * v.y);
     ch.x_title = "time (s)";
     ch.y_title = "speed (mm/s)";
     ch.lines = std::move(lines);
+    ch.bands = std::move(bands);
     draw_chart(c, ch);
     return chart_height;
 }
@@ -122,6 +146,7 @@ double draw_row(canvas& c, const panel_ground& g, const std::vector<prediction>&
     const double width = where.width / static_cast<double>(algorithms.size());
     double tallest = 0.0;
     std::vector<series> lines;
+    std::vector<chart_band> bands;
     for (const prediction& p : all) {
         if (p.phantom != phantom)
             continue;
@@ -130,16 +155,15 @@ double draw_row(canvas& c, const panel_ground& g, const std::vector<prediction>&
         const style& look = looks[column % looks.size()];
         const box cell{where.x + width * static_cast<double>(column), y, width, std::min(width, 260.0)};
         tallest = std::max(tallest, draw_panel(c, g, p, look, cell));
-        if (lines.empty() && p.refused.empty())
-            lines.push_back(target_speed(p.samples));
-        if (p.refused.empty())
-            lines.push_back(felt_speed(p, look));
+        add_speeds(lines, p, look);
+        if (!p.people.speeds.empty())
+            bands.push_back(band_of(p, look));
     }
     y += tallest;
     if (first)
         y += draw_scale(c, g, {where.x, y, width, std::min(width, 260.0)});
     if (!lines.empty())
-        y += draw_speeds(c, phantom, std::move(lines), g.target.motion.duration_s(),
+        y += draw_speeds(c, phantom, std::move(lines), std::move(bands), g.target.motion.duration_s(),
                          {where.x, y + 2.0, where.width, 0.0});
     return y + 8.0 - where.y;
 }
@@ -150,7 +174,7 @@ canvas draw_comparison(const array& a, const stroke& target, const std::vector<p
                        const std::string& note, double width_mm)
 {
     if (!(width_mm >= least_width_mm && width_mm <= most_width_mm))
-        throw error(errc::bad_input, "picture", fmt::format("{} mm wide", width_mm),
+        throw error(error_kind::bad_input, "picture", fmt::format("{} mm wide", width_mm),
                     fmt::format("{} to {} mm", least_width_mm, most_width_mm));
     canvas c;
     c.width = width_mm * pt_per_mm;
@@ -163,7 +187,7 @@ canvas draw_comparison(const array& a, const stroke& target, const std::vector<p
     const std::vector<std::string> phantoms = names(all, &prediction::phantom);
     for (const std::string& phantom : phantoms)
         rest.y += draw_row(c, g, all, algorithms, phantom, phantom == phantoms.front(), rest);
-    rest.y += draw_note(c, note, rest);
+    rest.y += draw_words(c, note, rest, 9, "note");
     c.height = rest.y + margin;
     return c;
 }

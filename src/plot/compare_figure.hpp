@@ -7,12 +7,24 @@
 #include <vector>
 
 #include <tactor/array.hpp>
+#include <tactor/observer.hpp>
 #include <tactor/percept.hpp>
 #include <tactor/stroke.hpp>
 
-#include "plot/canvas.hpp"
+#include "plot/paint/canvas.hpp"
 
 namespace tactor::plot {
+
+/// What many people feel: part of them at each time, and the ways that some of them feel.
+struct people_bands {
+    struct range {
+        double t_s = 0.0;
+        double low = 0.0;
+        double high = 0.0;
+    };
+    std::vector<range> speeds = {}; ///< mm/s
+    std::vector<std::vector<point>> tracks = {};
+};
 
 /// One algorithm with one phantom model.
 struct prediction {
@@ -20,7 +32,11 @@ struct prediction {
     std::string phantom;
     const std::vector<percept_sample>& samples; ///< empty where refused
     percept_summary felt;
-    std::string refused; ///< why there is no prediction; empty where there is
+    std::string refused; ///< why there is no plan; empty where there is
+    /// What the low-speed observer feels instead of samples.
+    const std::vector<tap>& taps;
+    std::string unpredicted; ///< why that one has no prediction; empty where it has
+    people_bands people = {};
 };
 
 /// For each phantom model a row of panels, one for each algorithm, and under it all their speeds over time.

@@ -6,8 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "plot/axes.hpp"
-#include "plot/text.hpp"
+#include "core/split.hpp"
+#include "plot/draw/axes.hpp"
+#include "plot/paint/text.hpp"
 
 namespace tactor::plot {
 namespace {
@@ -50,6 +51,16 @@ track follow(const array_frame& f, const std::vector<percept_sample>& samples)
     return t;
 }
 
+// Each tap is felt at its place.
+track follow(const array_frame& f, const std::vector<tap>& taps)
+{
+    track t;
+    for (const tap& x : taps)
+        t.line.push_back(f(x.felt));
+    t.rests = t.line;
+    return t;
+}
+
 void draw_track(canvas& c, const track& t, const style& look)
 {
     if (t.line.size() > 1)
@@ -89,20 +100,13 @@ std::string figures(const percept_summary& s, bool error, double width)
     return text_width(full, small_text) < width ? full : fmt::format("RMS {} mm", text);
 }
 
-double draw_refusal(canvas& c, const std::string& why, box where)
+// Under the panel's name, of the low-speed observer: error and length.
+std::string tap_figures(const prediction& p, bool error, double width)
 {
-    std::vector<std::string> words;
-    for (std::size_t at = 0; at < why.size();) {
-        const std::size_t end = std::min(why.find(' ', at), why.size());
-        words.push_back(clean(why.substr(at, end - at)));
-        at = end + 1;
-    }
-    double y = where.y;
-    for (const std::string& line : wrap(words, " ", small_text, where.width, 12)) {
-        y += line_pitch;
-        c.text({where.x, y}, line, {.size = small_text, .ink = dark_grey}, {.kind = "refused"});
-    }
-    return y - where.y;
+    if (error)
+        return figures(p.felt, true, width);
+    const tap_summary s = summarise(p.taps);
+    return fmt::format("length {} of target", s.length_ratio ? fmt::format("{:.2f}", *s.length_ratio) : "-");
 }
 
 } // namespace
@@ -110,6 +114,19 @@ double draw_refusal(canvas& c, const std::string& why, box where)
 array_frame panel_frame(const panel_ground& g, box where)
 {
     return fit_array(g.tactors, g.shown, where, {6.0, 6.0}); // panels have no labels
+}
+
+double draw_words(canvas& c, const std::string& text, box where, std::size_t most_lines, const char* kind)
+{
+    std::vector<std::string> words;
+    for (const std::string_view word : detail::split(text, ' '))
+        words.push_back(clean(word));
+    double y = where.y;
+    for (const std::string& line : wrap(words, " ", small_text, where.width, most_lines)) {
+        y += line_pitch;
+        c.text({where.x, y}, line, {.size = small_text, .ink = dark_grey}, {.kind = kind});
+    }
+    return y - where.y;
 }
 
 double draw_panel(canvas& c, const panel_ground& g, const prediction& p, const style& look, box where)
@@ -120,18 +137,32 @@ double draw_panel(canvas& c, const panel_ground& g, const prediction& p, const s
     double y = where.y + cap_height(label_text);
     c.text({where.x, y}, p.algorithm, {.size = label_text, .bold = true});
     if (!p.refused.empty()) {
-        y += draw_refusal(c, "refused: " + p.refused, {where.x, y, where.width - 6.0, 0.0});
+        y += draw_words(c, "refused: " + p.refused, {where.x, y, where.width - 6.0, 0.0}, 12, "refused");
         return y - where.y;
     }
+    if (!p.unpredicted.empty()) {
+        y += draw_words(c, "no prediction: " + p.unpredicted, {where.x, y, where.width - 6.0, 0.0}, 12,
+                        "refused");
+        return y - where.y;
+    }
+    const bool by_taps = !p.taps.empty();
     for (const bool error : {true, false}) {
         y += line_pitch;
-        c.text({where.x, y}, figures(p.felt, error, where.width - 4.0),
+        const double width = where.width - 4.0;
+        c.text({where.x, y}, by_taps ? tap_figures(p, error, width) : figures(p.felt, error, width),
                {.size = small_text, .ink = dark_grey});
     }
     y += 2.0;
     const array_frame f = panel_frame(g, {where.x, y, where.width, where.height});
     draw_ground(c, g, f);
-    draw_track(c, follow(f, p.samples), look);
+    for (const std::vector<point>& felt : p.people.tracks) {
+        std::vector<spot> line;
+        for (const point& at : felt)
+            line.push_back(f(at));
+        c.poly(simplify(line, 0.1), false,
+               {.stroke = with_alpha(look.stroke.value_or(ink), 0.12), .width = 0.5}, {.kind = "person"});
+    }
+    draw_track(c, by_taps ? follow(f, p.taps) : follow(f, p.samples), look);
     return f.area.bottom() - where.y;
 }
 

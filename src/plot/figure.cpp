@@ -7,11 +7,11 @@
 
 #include <tactor/words.hpp>
 
-#include "plot/array_frame.hpp"
 #include "plot/array_view.hpp"
-#include "plot/axes.hpp"
-#include "plot/stroke_legend.hpp"
-#include "plot/text.hpp"
+#include "plot/draw/array_frame.hpp"
+#include "plot/draw/axes.hpp"
+#include "plot/draw/stroke_legend.hpp"
+#include "plot/paint/text.hpp"
 #include "plot/timing_view.hpp"
 #include "plot/wave_view.hpp"
 

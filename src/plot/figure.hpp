@@ -3,8 +3,8 @@
 /// The whole picture.
 #pragma once
 
-#include "plot/canvas.hpp"
-#include "plot/timeline.hpp"
+#include "plot/draw/timeline.hpp"
+#include "plot/paint/canvas.hpp"
 
 namespace tactor::plot {
 

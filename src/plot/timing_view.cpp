@@ -9,11 +9,11 @@
 #include <tactor/words.hpp>
 
 #include "plot/array_view.hpp"
-#include "plot/axes.hpp"
-#include "plot/dimensions.hpp"
-#include "plot/stroke_legend.hpp"
-#include "plot/text.hpp"
-#include "plot/timing_bars.hpp"
+#include "plot/draw/axes.hpp"
+#include "plot/draw/dimensions.hpp"
+#include "plot/draw/stroke_legend.hpp"
+#include "plot/draw/timing_bars.hpp"
+#include "plot/paint/text.hpp"
 
 namespace tactor::plot {
 namespace {

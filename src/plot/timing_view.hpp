@@ -3,8 +3,8 @@
 /// Who plays when, and how strongly: one row for each tactor (as figure 4 of Park et al. 2016).
 #pragma once
 
-#include "plot/canvas.hpp"
-#include "plot/timeline.hpp"
+#include "plot/draw/timeline.hpp"
+#include "plot/paint/canvas.hpp"
 
 namespace tactor::plot {
 

@@ -7,11 +7,11 @@
 
 #include <fmt/format.h>
 
-#include "plot/axes.hpp"
-#include "plot/lanes.hpp"
-#include "plot/stroke_legend.hpp"
-#include "plot/text.hpp"
-#include "plot/waveform.hpp"
+#include "plot/draw/axes.hpp"
+#include "plot/draw/lanes.hpp"
+#include "plot/draw/stroke_legend.hpp"
+#include "plot/draw/waveform.hpp"
+#include "plot/paint/text.hpp"
 
 namespace tactor::plot {
 namespace {

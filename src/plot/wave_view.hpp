@@ -3,8 +3,8 @@
 /// What the tactors are driven with: the rendered samples.
 #pragma once
 
-#include "plot/canvas.hpp"
-#include "plot/timeline.hpp"
+#include "plot/draw/timeline.hpp"
+#include "plot/paint/canvas.hpp"
 
 namespace tactor::plot {
 

@@ -5,18 +5,20 @@
 #include <tactor/error.hpp>
 #include <tactor/render.hpp>
 
-#include "synth/event_source.hpp"
-#include "synth/mixer.hpp"
-#include "synth/oscillator.hpp"
-#include "synth/score.hpp"
+#include "core/access.hpp"
+#include "synth/mix/mixer.hpp"
+#include "synth/mix/oscillator.hpp"
+#include "synth/score/event_source.hpp"
+#include "synth/score/score.hpp"
 
 namespace tactor {
 
 struct renderer::impl {
     /// Room for what sounds at once, and for what begins in the block meanwhile.
-    impl(const score& s, sample_format f)
+    impl(const score& s, format_kind f)
         : source(s),
-          mix(s.data()->limits, f, s.data()->open_events + 256, guards(*s.data())),
+          mix(detail::access::of(s).limits, f, detail::access::of(s).open_events + 256,
+              guards(detail::access::of(s))),
           frame_bytes(s.channels() * bytes_of(f))
     {
     }
@@ -50,13 +52,14 @@ template <typename Impl>
 Impl& not_moved(const std::unique_ptr<Impl>& p)
 {
     if (p == nullptr)
-        throw error(errc::bad_input, "renderer", "it was moved from", "use the one that it was moved to");
+        throw error(error_kind::bad_input, "renderer", "it was moved from",
+                    "use the one that it was moved to");
     return *p;
 }
 
 } // namespace
 
-renderer::renderer(const score& s, sample_format f) : impl_(std::make_unique<impl>(s, f))
+renderer::renderer(const score& s, format_kind f) : impl_(std::make_unique<impl>(s, f))
 {
 }
 

@@ -7,11 +7,11 @@
 
 #include <benchmark/benchmark.h>
 
-#include "engine/audio_loop.hpp"
-#include "engine/feeder.hpp"
+#include "engine/audio/audio_loop.hpp"
+#include "engine/control/feeder.hpp"
 #include "nowhere.hpp"
 #include "pieces.hpp"
-#include "synth/guard.hpp"
+#include "synth/guard/guard.hpp"
 
 using namespace tactor;
 
@@ -21,7 +21,7 @@ std::vector<score> scores()
 {
     const array a = bench::square(64);
     std::vector<score> all;
-    for (const plan& p : bench::strokes(a, 64, algorithm::park2016))
+    for (const plan& p : bench::strokes(a, 64, algorithm_kind::park2016))
         all.emplace_back(a, std::vector<placed_plan>{{p, {}}}, bench::levels(64));
     return all;
 }
@@ -29,7 +29,7 @@ std::vector<score> scores()
 void submit(engine::feeder& feed, engine::link& link, stroke_id& id, const std::vector<score>& strokes)
 {
     for (const score& s : strokes)
-        feed.submit(++id, s, link.status.load().written + 4800);
+        feed.submit({++id.number}, s, start_at::frame(link.status.load().written + 4800));
 }
 
 // The thread's own time: what others do with the processor is not the engine's cost.
@@ -52,7 +52,7 @@ void periods(benchmark::State& state, double power_dbfs)
     o.guards = synth::guards_of({.power_dbfs = power_dbfs}, 48000);
     engine::audio_loop loop(out, link, std::vector<double>(64, 1.0), o);
     loop.start(0);
-    stroke_id id = 0;
+    stroke_id id = {};
     std::size_t ended = 64;
     double worst = 0.0;
     double total = 0.0;
@@ -67,7 +67,7 @@ void periods(benchmark::State& state, double power_dbfs)
         }
         feed.pump(link.status.load().written, link.clock.load());
         const double from = cpu_s();
-        loop.step(io_status::ok, 0);
+        loop.step(io_kind::ok, 0);
         const double took = cpu_s() - from;
         state.SetIterationTime(took);
         worst = std::max(worst, took);

@@ -5,9 +5,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include "engine/audio_loop.hpp"
-#include "engine/feeder.hpp"
-#include "engine/live_stroke.hpp"
+#include "engine/audio/audio_loop.hpp"
+#include "engine/control/feeder.hpp"
+#include "engine/live/live_stroke.hpp"
 #include "nowhere.hpp"
 #include "pieces.hpp"
 
@@ -31,20 +31,21 @@ void live_point(benchmark::State& state)
     engine::feeder feed(link, 24'000);
     engine::audio_loop loop(out, link, std::vector<double>(9, 1.0), {});
     loop.start(0);
-    const auto live = std::make_shared<live_stroke::impl>(1, a, layout(a), out.setup(), live_options{});
-    feed.submit(1, std::shared_ptr<engine::live_voice>(live, &live->voice));
+    const auto live =
+        std::make_shared<live_stroke::impl>(stroke_id{1}, a, layout(a), out.setup(), live_options{});
+    feed.submit({1}, std::shared_ptr<engine::live_voice>(live, &live->voice));
     feed.pump(link.status.load().written, link.clock.load());
     live->to({0.0, 0.0}, 1.0);
     unsigned waited = 0;
     do {
-        loop.step(io_status::ok, 0);
+        loop.step(io_kind::ok, 0);
         ++waited;
     } while (!sounds(out) && waited < 100);
     double x = 0.0;
     for (auto _ : state) {
         x = x < 40.0 ? x + 0.01 : 0.0;
         live->to({x, 20.0}, 1.0);
-        loop.step(io_status::ok, 0);
+        loop.step(io_kind::ok, 0);
     }
     state.counters["periods_to_first_sample"] = waited;
 }

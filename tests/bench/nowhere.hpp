@@ -22,24 +22,24 @@ public:
         setup_.name = "nowhere";
         setup_.channels = channels;
         setup_.rate = 48000;
-        setup_.format = sample_format::s32;
+        setup_.format = format_kind::s32;
         setup_.period_frames = period;
         setup_.buffer_frames = 3 * period;
         last_.resize(period * channels * bytes_of(setup_.format));
     }
     const stream_setup& setup() const noexcept override { return setup_; }
-    io_status prepare() noexcept override { return io_status::ok; }
-    io_status start() noexcept override { return io_status::ok; }
-    io_status resume() noexcept override { return io_status::ok; }
+    io_kind prepare() noexcept override { return io_kind::ok; }
+    io_kind start() noexcept override { return io_kind::ok; }
+    io_kind resume() noexcept override { return io_kind::ok; }
     std::size_t max_descriptors() const noexcept override { return 0; }
     std::size_t descriptors(std::span<pollfd>) noexcept override { return 0; }
-    io_status ready(std::span<pollfd>) noexcept override { return io_status::ok; }
-    io_result room() noexcept override { return {io_status::ok, setup_.period_frames, 0}; }
+    io_kind ready(std::span<pollfd>) noexcept override { return io_kind::ok; }
+    io_result room() noexcept override { return {io_kind::ok, setup_.period_frames, 0}; }
     io_result write(const std::byte* data, std::size_t frames) noexcept override
     {
         std::memcpy(last_.data(), data, frames * setup_.channels * bytes_of(setup_.format));
         written_ += frames;
-        return {io_status::ok, frames, 0};
+        return {io_kind::ok, frames, 0};
     }
     stream_position position() noexcept override
     {

@@ -18,7 +18,7 @@ stroke across_a_face(unsigned i, unsigned faces_a_side)
 {
     const point from{20.0 * (i % faces_a_side) + 3.0, 20.0 * (i / faces_a_side % faces_a_side) + 2.0};
     const point ends[] = {from, {from.x_mm + 12.0, from.y_mm + 9.0}};
-    return {"", trajectory::along(path::polyline(ends), 1.4), {}, 150.0 + 2.0 * i, ""};
+    return {"", trajectory::along(path::polyline(ends), 1.4), {}, 150.0 + 2.0 * i};
 }
 
 } // namespace
@@ -29,12 +29,12 @@ array square(unsigned channels)
     return make_grid("square", side, side, 20.0, 20.0);
 }
 
-std::vector<plan> strokes(const array& a, unsigned count, algorithm method)
+std::vector<plan> strokes(const array& a, unsigned count, algorithm_kind algorithm)
 {
     const layout l(a);
     const auto side = static_cast<unsigned>(std::lround(std::sqrt(a.tactors.size())));
     plan_options o;
-    o.method = method;
+    o.algorithm = algorithm;
     std::vector<plan> all;
     for (unsigned i = 0; i < count; ++i) {
         const stroke s = count == 1 ? preset_stroke("park2016-1") : across_a_face(i, side - 1);
@@ -50,24 +50,29 @@ render_options levels(unsigned count)
     return o;
 }
 
-score piece(unsigned channels, unsigned count, algorithm method)
+std::vector<placed_plan> plans(unsigned channels, unsigned count, algorithm_kind algorithm)
 {
     const array a = square(channels);
     std::vector<placed_plan> placed;
     for (unsigned r = 0; r < std::max(1U, 8 / count); ++r) {
-        for (plan& p : strokes(a, count, method))
+        for (plan& p : strokes(a, count, algorithm))
             placed.push_back({std::move(p), 1.5 * r});
     }
-    return {a, std::move(placed), levels(count)};
+    return placed;
 }
 
-plain_loop::plain_loop(const score& s, double level)
+score piece(unsigned channels, unsigned count, algorithm_kind algorithm)
+{
+    return {square(channels), plans(channels, count, algorithm), levels(count)};
+}
+
+plain_loop::plain_loop(const score& s, const std::vector<placed_plan>& plans, double level)
     : frames_(s.frames()), channels_(s.channels()), rate_(s.rate())
 {
-    for (std::size_t i = 0; i < s.plans().size(); ++i) {
-        const plan& p = s.plans()[i].schedule;
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+        const plan& p = plans[i].schedule;
         add_bursts(p, s.starts()[i], level);
-        if (p.at) {
+        if (p.curve) {
             add_lines(p, s.starts()[i], level);
         }
     }
@@ -95,9 +100,9 @@ void plain_loop::add_lines(const plan& p, std::uint64_t start, double level)
     std::map<unsigned, std::pair<double, double>> line; // amplitude here and at the next step
     burst here;
     burst next;
-    p.at(0.0, here);
+    p.curve->sample(0, here);
     for (std::uint64_t i = 0; i < steps; ++i) {
-        p.at(std::min(static_cast<double>(i + 1) * continuous_step_s, p.stroke_duration_s), next);
+        p.curve->sample(i + 1, next);
         line.clear();
         for (const drive& d : here.drives)
             line[d.tactor].first = level * d.amplitude;

@@ -19,18 +19,21 @@ tactor::array square(unsigned channels);
 
 /// For a square array: one stroke is park2016-1; of several, each has its own place, as far as there is room,
 /// and its own carrier.
-std::vector<tactor::plan> strokes(const tactor::array& a, unsigned count, tactor::algorithm method);
+std::vector<tactor::plan> strokes(const tactor::array& a, unsigned count, tactor::algorithm_kind algorithm);
 
 /// Options with a level at which so many strokes may sound together.
 tactor::render_options levels(unsigned count);
 
-/// So many strokes at once, over and over.
-tactor::score piece(unsigned channels, unsigned count, tactor::algorithm method);
+/// So many strokes at once, over and over, on a square array.
+std::vector<tactor::placed_plan> plans(unsigned channels, unsigned count, tactor::algorithm_kind algorithm);
+
+/// The score of these.
+tactor::score piece(unsigned channels, unsigned count, tactor::algorithm_kind algorithm);
 
 /// What one would write first: a call of std::sin for each sounding channel and sample.
 class plain_loop {
 public:
-    explicit plain_loop(const tactor::score& s, double level);
+    plain_loop(const tactor::score& s, const std::vector<tactor::placed_plan>& plans, double level);
     void process(std::size_t frames, float* out);
     bool at_end() const { return position_ >= frames_; }
 

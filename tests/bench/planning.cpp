@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <chrono>
 #include <random>
 
 #include <benchmark/benchmark.h>
@@ -19,6 +20,30 @@ void plan_park(benchmark::State& state)
     }
 }
 BENCHMARK(plan_park)->Name("plan/park2016-1")->Unit(benchmark::kMicrosecond);
+
+/// Of long strokes, where nothing but the bursts takes time.
+void plan_burst(benchmark::State& state, const stroke& s)
+{
+    const array a = preset_array("palm-3x3");
+    const layout l(a);
+    const stroke longer{s.name, s.motion.with_duration(600.0)};
+    for (auto _ : state) {
+        const auto from = std::chrono::steady_clock::now();
+        const plan p = make_plan(a, l, longer, {});
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - from;
+        state.SetIterationTime(took.count() / static_cast<double>(p.bursts.size()));
+    }
+}
+// Each iteration is thousands of bursts, though its time is that of one.
+BENCHMARK_CAPTURE(plan_burst, circle, preset_stroke("park2016-1"))
+    ->Name("plan/a burst of park2016-1")
+    ->Iterations(20)
+    ->UseManualTime();
+BENCHMARK_CAPTURE(plan_burst, cubic,
+                  stroke{"cubic", trajectory::along(path::from_svg("M 0 10 C 20 -5 20 45 40 30"), 1.0)})
+    ->Name("plan/a burst along a cubic")
+    ->Iterations(20)
+    ->UseManualTime();
 
 /// The drives of random points on a square array.
 void locate(benchmark::State& state)

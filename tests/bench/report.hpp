@@ -18,7 +18,7 @@ struct synth_row {
     unsigned channels = 0;
     unsigned strokes = 0; ///< 0: silence
     bool continuous = false;
-    tactor::sample_format format = tactor::sample_format::float32;
+    tactor::format_kind format = tactor::format_kind::float32;
 
     std::string name() const;
     std::string plain_name() const;

@@ -7,11 +7,12 @@
 #include <vector>
 
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 
 #include "pieces.hpp"
 #include "report.hpp"
-#include "synth/event_source.hpp"
-#include "synth/mixer.hpp"
+#include "synth/mix/mixer.hpp"
+#include "synth/score/event_source.hpp"
 
 using namespace tactor;
 
@@ -31,7 +32,7 @@ struct events {
 /// A mixer that is fed block by block, from the beginning again at the end.
 class player {
 public:
-    player(const events& e, unsigned channels, sample_format f)
+    player(const events& e, unsigned channels, format_kind f)
         : events_(e), mix_(std::vector<double>(channels, 1.0), f)
     {
     }
@@ -54,7 +55,7 @@ private:
     std::size_t next_ = 0;
 };
 
-void mix(benchmark::State& state, const events& e, unsigned channels, sample_format f)
+void mix(benchmark::State& state, const events& e, unsigned channels, format_kind f)
 {
     std::vector<std::byte> out(bench::block * channels * bytes_of(f));
     player p(e, channels, f);
@@ -130,10 +131,12 @@ private:
     {
         if (events_ == nullptr) {
             const unsigned count = std::max(1U, row_.strokes);
-            const score s = bench::piece(row_.channels, count,
-                                         row_.continuous ? algorithm::continuous : algorithm::park2016);
+            const algorithm_kind algorithm =
+                row_.continuous ? algorithm_kind::continuous : algorithm_kind::park2016;
+            const score s = bench::piece(row_.channels, count, algorithm);
             events_ = std::make_unique<events>(s);
-            plain_ = std::make_unique<bench::plain_loop>(s, 0.2 / count);
+            plain_ = std::make_unique<bench::plain_loop>(s, bench::plans(row_.channels, count, algorithm),
+                                                         0.2 / count);
             if (row_.strokes == 0) {
                 events_->all.clear();
             }
@@ -149,10 +152,42 @@ void add_piece(bench::synth_row row)
     const auto p = std::make_shared<prepared>(row);
     const unsigned channels = row.channels;
     add(row.plain_name(), [=](benchmark::State& state) { plain(state, p->plain(), channels); });
-    for (const sample_format f : {sample_format::float32, sample_format::s16, sample_format::s32}) {
+    for (const format_kind f : {format_kind::float32, format_kind::s16, format_kind::s32}) {
         row.format = f;
         add(row.name(), [=](benchmark::State& state) { mix(state, p->all(), channels, f); });
         bench::table().push_back(row);
+    }
+}
+
+/// What `render` does with a plan, from the first frame to the last and again.
+void whole(benchmark::State& state, const score& s)
+{
+    std::vector<std::byte> out(bench::block * s.channels() * sizeof(float));
+    auto r = std::make_unique<renderer>(s, format_kind::float32);
+    for (auto _ : state) {
+        if (r->position() >= s.frames()) {
+            state.PauseTiming();
+            r = std::make_unique<renderer>(s, format_kind::float32);
+            state.ResumeTiming();
+        }
+        r->process(bench::block, out.data());
+        benchmark::DoNotOptimize(out.data());
+        benchmark::ClobberMemory();
+    }
+}
+
+/// park2016-1 on nine channels, in its own time and in a minute, whose samples are not kept.
+void add_renderer(algorithm_kind method)
+{
+    for (const double duration_s : {1.4, 60.0}) {
+        plan_options o;
+        o.algorithm = method;
+        stroke k = preset_stroke("park2016-1");
+        k.motion = k.motion.with_duration(duration_s);
+        const array a = bench::square(9);
+        const score s(a, {{make_plan(a, k, o), {}}}, bench::levels(1));
+        add(fmt::format("renderer/{}/{}_s", to_string(method), duration_s),
+            [s](benchmark::State& state) { whole(state, s); });
     }
 }
 
@@ -160,6 +195,8 @@ void add_piece(bench::synth_row row)
 
 void bench::add_synth()
 {
+    add_renderer(algorithm_kind::park2016);
+    add_renderer(algorithm_kind::continuous);
     for (const unsigned channels : {9U, 16U, 64U}) {
         add_bounds(channels, 2);
         add_bounds(channels, 4);

@@ -79,9 +79,10 @@ class ToolTest(unittest.TestCase):
         path.write_bytes(text if isinstance(text, bytes) else text.encode())
         return path
 
-    def run_tool(self, *args, stdin="", env=None, timeout=PATIENCE_S):
+    def run_tool(self, *args, stdin="", env=None, timeout=PATIENCE_S, before=None):
+        """before: called in the process before it becomes the tool."""
         return subprocess.run([TOOL, *map(str, args)], input=stdin, capture_output=True, text=True, timeout=timeout,
-                              cwd=self.dir, env=self.env | (env or {}), check=False)
+                              cwd=self.dir, env=self.env | (env or {}), check=False, preexec_fn=before)
 
     def ok(self, *args, **more):
         result = self.run_tool(*args, **more)
@@ -99,6 +100,15 @@ class ToolTest(unittest.TestCase):
 
     def plan(self, *args, **more):
         return json.loads(self.ok("plan", *args, "--format", "json", **more).stdout)
+
+
+def wav_bytes(samples, rate=8000, channels=1, bits=16, tag=1):
+    """A WAV file of one channel; its header says what is asked for."""
+    data = b"".join(struct.pack("<h", round(32767 * s)) for s in samples)
+    size = bits // 8 * channels
+    head = struct.pack("<HHIIHH", tag, channels, rate, rate * size, size, bits)
+    chunks = b"fmt " + struct.pack("<I", len(head)) + head + b"data" + struct.pack("<I", len(data)) + data
+    return b"RIFF" + struct.pack("<I", 4 + len(chunks)) + b"WAVE" + chunks
 
 
 class Wav:

@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "cli/check_output.hpp"
-#include "cli/devices_output.hpp"
-#include "cli/play_report.hpp"
+#include "cli/check/check_output.hpp"
+#include "cli/devices/devices_output.hpp"
+#include "cli/play/play_report.hpp"
 
 namespace {
 
@@ -20,7 +20,7 @@ device_list studio()
     device_list d;
     d.array_name = "palm-2x4";
     d.wanted = {.pcm = "hw:DAC8x", .channels = 8};
-    d.wanted.format = sample_format::s16;
+    d.wanted.format = format_kind::s16;
     d.pcm_is_configured = true;
     d.pcms = {{.name = "hw:CARD=DAC8x,DEV=0",
                .description = "snd_rpi_hifiberry_dac8x",
@@ -30,7 +30,7 @@ device_list studio()
                .can = pcm_abilities{.channels = {{2, 2}, {8, 8}},
                                     .rates_hz = {44100, 192000},
                                     .usual_rates_hz = {44100, 48000},
-                                    .formats = {sample_format::s32, sample_format::s16},
+                                    .formats = {format_kind::s32, format_kind::s16},
                                     .period_frames = {32, 4096},
                                     .periods = {2, 32},
                                     .buffer_frames = {64, 65536}}},
@@ -51,7 +51,7 @@ run_report troubled_run()
     r.device = {.name = "hw:CARD=Tactor", .channels = 9, .rate = 48000, .period_frames = 96};
     r.device.buffer_frames = 288;
     const stroke_report cut{.id = 1,
-                            .state = stroke_state::interrupted,
+                            .state = state_kind::interrupted,
                             .frames = 480,
                             .reason = "an xrun",
                             .late_s = 0.001,

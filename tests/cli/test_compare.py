@@ -202,6 +202,112 @@ class Table(CompareTest):
             self.assertEqual(len(seen), 1)
 
 
+def pulled(onsets, places, sigma, sigma_v):
+    """Solves (I + K) x = m of section 10, written out, by Gauss and Jordan."""
+    n = len(onsets)
+    a = [[float(i == j) for j in range(n)] for i in range(n)]
+    for i in range(n - 1):
+        k = (sigma / (sigma_v * (onsets[i + 1] - onsets[i]))) ** 2
+        a[i][i] += k
+        a[i + 1][i + 1] += k
+        a[i][i + 1] -= k
+        a[i + 1][i] -= k
+    rows = [row + list(place) for row, place in zip(a, places)]
+    for i in range(n):
+        rows[i] = [v / rows[i][i] for v in rows[i]]
+        for r in range(n):
+            if r != i and rows[r][i]:
+                rows[r] = [v - rows[r][i] * w for v, w in zip(rows[r], rows[i])]
+    return [tuple(row[n:]) for row in rows]
+
+
+class LowSpeed(CompareTest):
+    ASK = ("--observer", "low-speed")
+
+    def centre(self, plan, burst):
+        at = {t["tactor"]: (t["x_mm"], t["y_mm"]) for t in plan["array"]["tactors"]}
+        energy = sum(d["amplitude"] ** 2 for d in burst["drives"])
+        return tuple(sum(d["amplitude"] ** 2 * at[d["tactor"]][c] for d in burst["drives"]) / energy for c in (0, 1))
+
+    def test_each_burst_is_felt_where_the_equations_of_the_plan_say(self):
+        for args, sigma, sigma_v in ((("park2016-3", "--algorithm", "park2016"), 5, 100),
+                                     (("park2016-1", "--algorithm", "tactile-brush"), 8.5, 60)):
+            p = self.plan(*args)
+            result = self.compare(*args, *self.ASK, "--sigma-mm", str(sigma), "--sigma-v-mm-s", str(sigma_v))["results"][0]
+            onsets = [b["onset_s"] for b in p["bursts"]]
+            felt_at = pulled(onsets, [self.centre(p, b) for b in p["bursts"]], sigma, sigma_v)
+            targets = [on_circle(args[0], t) for t in onsets]
+            self.assertEqual(len(result["taps"]), len(onsets))
+            for tap, t, place, target in zip(result["taps"], onsets, felt_at, targets):
+                self.assertEqual(tap["onset_s"], t)
+                self.assertLess(math.dist((tap["felt_x_mm"], tap["felt_y_mm"]), place), 1e-9)
+                self.assertLess(math.dist((tap["target_x_mm"], tap["target_y_mm"]), target), 1e-3)
+            errors = [math.dist(a, b) for a, b in zip(felt_at, targets)]
+            length, asked = (sum(map(math.dist, chain, chain[1:])) for chain in (felt_at, targets))
+            for name, value in (("rms_error_mm", math.sqrt(sum(e * e for e in errors) / len(errors))),
+                                ("largest_error_mm", max(errors)), ("felt_length_mm", length),
+                                ("target_length_mm", asked), ("length_ratio", length / asked)):
+                self.assertAlmostEqual(result[name], value, delta=1e-6, msg=name)
+            self.assertIsNone(result["silent_share"])
+
+    def test_the_readme_s_figures(self):
+        for sigma, ratio, rms in (("5", 0.950220, 1.066995), ("10", 0.864855, 1.191315)):
+            result = self.compare("park2016-1", *self.ASK, "--sigma-mm", sigma, "--algorithms", "park2016")["results"][0]
+            self.assertAlmostEqual(result["length_ratio"], ratio, 6)
+            self.assertAlmostEqual(result["rms_error_mm"], rms, 6)
+
+    def test_every_output_names_the_model_its_parameters_and_what_it_was_built_for(self):
+        args = ("park2016-1", *self.ASK, "--sigma-mm", "7.5", "--sigma-v-mm-s", "120")
+        told = self.compare(*args)
+        self.assertEqual(told["observer"], {"name": "low-speed", "sigma_mm": 7.5, "sigma_v_mm_s": 120, "built_for": "taps"})
+        self.ok("compare", *args, "-o", "c.svg")
+        drawn = " ".join(t.text for t in ElementTree.parse(self.dir / "c.svg").getroot().iter(SVG + "text"))
+        for text in (self.ok("compare", *args).stdout, told["note"], drawn):
+            for word in ("low-speed", "7.5 mm", "120 mm/s", "built for taps", "nobody has fitted", "not a measurement"):
+                self.assertIn(word, text)
+        for line in csv.DictReader(io.StringIO(self.ok("compare", *args, "--format", "csv").stdout)):
+            self.assertEqual([line[n] for n in ("observer", "sigma_mm", "sigma_v_mm_s", "built_for")],
+                             ["low-speed", "7.5", "120", "taps"])
+
+    def test_it_has_no_prediction_for_continuous_and_says_so_everywhere(self):
+        result = self.compare("park2016-1", *self.ASK)["results"][2]
+        self.assertIsNone(result["refused"])
+        self.assertIn("no bursts", result["unpredicted"])
+        self.assertIsNone(result["rms_error_mm"])
+        self.assertIn("no prediction: continuous has no bursts", self.ok("compare", "park2016-1", *self.ASK).stdout)
+        line = list(csv.DictReader(io.StringIO(self.ok("compare", "park2016-1", *self.ASK, "--format", "csv").stdout)))[2]
+        self.assertIn("no bursts", line["unpredicted"])
+        self.assertEqual(line["rms_error_mm"], "")
+        self.ok("compare", "park2016-1", *self.ASK, "--algorithms", "continuous", "-o", "c.svg")
+        tree = ElementTree.parse(self.dir / "c.svg").getroot()
+        self.assertTrue(any("no prediction" in t.text for t in of_kind(tree, "refused", "text")))
+        self.assertEqual(of_kind(tree, "chart"), [])
+
+    def test_the_picture_shows_where_each_burst_is_felt(self):
+        told = self.compare("park2016-3", *self.ASK)["results"][0]["taps"]
+        self.ok("compare", "park2016-3", *self.ASK, "-o", "c.svg")
+        panel = of_kind(ElementTree.parse(self.dir / "c.svg").getroot(), "panel")[0]
+        tactors = [(float(c.get("cx")), float(c.get("cy"))) for c in of_kind(panel, "tactor", "circle")]
+        scale = (tactors[8][0] - tactors[0][0]) / 40
+        dots = [(float(c.get("cx")), float(c.get("cy"))) for c in of_kind(panel, "felt-at", "circle")]
+        self.assertEqual(len(dots), len(told))
+        for dot, tap in zip(dots, told):
+            self.assertLess(math.dist(dot, (tactors[0][0] + scale * tap["felt_x_mm"],
+                                            tactors[0][1] + scale * tap["felt_y_mm"])), 0.01)
+
+    def test_the_parameters_are_checked_and_may_be_defaults(self):
+        self.refused(2, "compare", "park2016-1", "--observer", "fast", says=["fast", "low-speed"])
+        for option in ("--sigma-mm", "--sigma-v-mm-s"):
+            for value in ("0", "-1", "1e9", "nan", "five"):
+                self.refused(2, "compare", "park2016-1", *self.ASK, f"{option}={value}", says=[option])
+            self.refused(2, "compare", "park2016-1", option, "5", says=[option, "--observer low-speed", "--compensate"])
+        self.refused(2, "compare", "park2016-1", *self.ASK, "--sigma-mm", "5mm", says=["as 5"])
+        self.write("c.toml", '[defaults]\nobserver = "low-speed"\nsigma-mm = 10\nsigma-v-mm-s = 50.0\n')
+        told = self.compare("park2016-1", "--config", "c.toml")
+        self.assertEqual((told["observer"]["sigma_mm"], told["observer"]["sigma_v_mm_s"]), (10, 50))
+        self.ok("plan", "park2016-1", "--config", "c.toml")
+
+
 SVG = "{http://www.w3.org/2000/svg}"
 
 

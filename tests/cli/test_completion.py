@@ -91,6 +91,16 @@ class Completion(ToolTest):
         self.assertEqual(self.offered("compare", "--phantoms", "linear,log,l"), [])
         self.assertEqual(self.offered("compare", "--phantoms", "linear,l"), ["linear,log"])
         self.assertEqual(self.offered("plan", "--soa", ""), [])
+        self.assertEqual(self.offered("status", "--socket", ""), [":files"])
+        self.assertEqual(self.offered("serve", "--tcp", ""), [])
+        self.assertEqual(self.offered("analyze", ""), [":folders"])
+        self.assertEqual(self.offered("report", ""), [":folders"])
+        self.assertEqual(self.offered("report", "-o", ""), [":files .md"])
+        self.assertEqual(self.offered("experiment", ""), ["park2016", ":files .toml"])
+        self.assertEqual(self.offered("experiment", "park2016", "-o", ""), [":folders"])
+        self.assertEqual(self.offered("experiment", "--display", ""), ["page", "terminal"])
+        self.assertEqual(self.offered("analyze", "--format", "t"), ["text", "tsv"])
+        self.assertEqual(self.offered("analyze", "--participants", ""), [])
         self.assertEqual(self.offered("nonsense", ""), [])
         self.assertEqual(self.ok("__complete").stdout, "")
 
@@ -101,6 +111,7 @@ class Completion(ToolTest):
         ("tactor play park2016-3 --phantom ba", ["tactor", "play", "park2016-3", "--phantom", "barycentric"]),
         ("tactor plan --array=palm-3", ["tactor", "plan", "--array=palm-3x3"]),
         ("tactor plan --array fo", ["tactor", "plan", "--array", "folder/"]),
+        ("tactor analyze fo", ["tactor", "analyze", "folder/"]),
         ("tactor plan --array forea", ["tactor", "plan", "--array", "forearm.toml"]),
         ("tactor plan --array=forea", ["tactor", "plan", "--array=forearm.toml"]),
         ("tactor plan tr", ["tactor", "plan", "trace.csv"]),

@@ -13,16 +13,21 @@ import sys
 
 import jsonschema
 import record
-from harness import ROOT, TOOL, ToolTest, Wav, main
+from harness import ROOT, TOOL, ToolTest, Wav, main, wav_bytes
+
+sys.path.insert(0, str(ROOT / "tests/study"))
+import studies  # noqa: E402
 
 FOLDER = pathlib.Path(sys.argv[3]).resolve()
 SCHEMAS = {schema["properties"]["schema"]["const"]: schema
-           for schema in (json.loads(p.read_text()) for p in FOLDER.glob("tactor-*.schema.json"))}
+           for schema in (json.loads(p.read_text()) for p in FOLDER.glob("tactor-*.schema.json")
+                         if "protocol" not in p.name)}
 SAMPLES = pathlib.Path(sys.argv[4]).resolve()
 PAGE = (ROOT / "man/tactor-json.5").read_text(encoding="utf-8")
 
 # What an object may have or not have. All else is always there, null where there is nothing to say.
-OPTIONAL = {"tactor-plan/1": {"stroke.note", "stroke.fit", "continuous", "bursts[].tau_s"},
+OPTIONAL = {"tactor-plan/1": {"stroke.note", "stroke.fit", "continuous", "bursts[].tau_s", "compensation", "render.envelope", "array.tactors[].rise_s",
+                              *(f"stroke.{key}" for key in ("waveform", "noise_seed", "texture", "texture_mm", "am_hz", "am_depth", "course"))},
             "tactor-compare/1": {"stroke.note"},
             "tactor-check/1": {"walk"}}
 
@@ -34,12 +39,22 @@ STROKES = ('[[stroke]]\npath = "M 0 0 L 10 0"\nduration_s = 0.5\nstart_s = 0.1\n
            '[[stroke]]\npath = "M 10 0 L 0 0"\nduration_s = 0.33337\ncarrier_hz = 181.3\n'
            '[[stroke]]\npath = "M 10 0 L 0 0"\nduration_s = 0.5\nstart_s = 0.3\n')
 GRID = '[array]\nname = "a"\ngrid = { rows = 3, columns = 4, pitch_mm = 15.0 }\n'
+SOUNDS = ('[[stroke]]\npath = "M 0 0 L 10 0"\nduration_s = 0.5\nwaveform = "grain.wav"\ntexture = "length"\ntexture_mm = 5.0\n'
+          '[[stroke]]\npath = "M 10 0 L 0 0"\nduration_s = 0.5\nwaveform = "noise:50-500"\nnoise_seed = 3\nam_hz = 20.0\n')
 BRUSH = ("--array", "grid.toml", "--algorithm", "tactile-brush", "--path", "M 10 30 L 45 10")
 
 
+# Objects whose keys are names that users gave.
+MAPS = {"runs", "void", "runs{}.preference.motion", "runs{}.means", "runs{}.means{}.motion", "runs{}.tukey",
+        "runs{}.confusion", "runs{}.confusion{}", "runs{}.confusion{}{}", "runs{}.correct", "runs{}.correct{}.motion"}
+
+
 def paths_of(value, at=""):
-    """The places of all that a value holds: "a", "a.b", "a[].b"; "at" is its own."""
-    if isinstance(value, dict):
+    """The places of all that a value holds: "a", "a.b", "a[].b", "a{}.b"; "at" is its own."""
+    if isinstance(value, dict) and at in MAPS:
+        for v in value.values():
+            yield from paths_of(v, at + "{}")
+    elif isinstance(value, dict):
         for key, v in value.items():
             place = f"{at}.{key}" if at else key
             yield place
@@ -49,14 +64,38 @@ def paths_of(value, at=""):
             yield from paths_of(v, at + "[]")
 
 
-def paths_in(schema, at=""):
+# An experiment at a level in dBFS, without an attribute and without noise.
+FELT = """[experiment]
+name = "felt"
+level = { dbfs = -18 }
+[[motion]]
+name = "across"
+path = "M0 20H40"
+[[motion]]
+name = "back"
+path = "M40 20H0"
+[[method]]
+name = "park"
+[[run]]
+name = "which"
+task = "identify"
+trials = 2
+"""
+
+
+def paths_in(schema, at="", root=None):
     """The same of what a schema knows."""
+    root = root or schema
+    if "$ref" in schema:
+        schema = root["$defs"][schema["$ref"].rpartition("/")[2]]
     for key, v in schema.get("properties", {}).items():
         place = f"{at}.{key}" if at else key
         yield place
-        yield from paths_in(v, place)
+        yield from paths_in(v, place, root)
     if "items" in schema:
-        yield from paths_in(schema["items"], at + "[]")
+        yield from paths_in(schema["items"], at + "[]", root)
+    if isinstance(schema.get("additionalProperties"), dict):
+        yield from paths_in(schema["additionalProperties"], at + "{}", root)
 
 
 def objects_in(value, at=()):
@@ -77,7 +116,10 @@ def shortened(value):
 
 
 def place_of(keys):
-    return "".join("[]" if isinstance(k, int) else f".{k}" for k in keys).lstrip(".")
+    place = ""
+    for k in keys:
+        place += "[]" if isinstance(k, int) else "{}" if place in MAPS else f".{k}" if place else k
+    return place
 
 
 def paths_on_page(name):
@@ -99,6 +141,9 @@ class Schemas(ToolTest):
         self.write("pair.toml", PAIR)
         self.write("strokes.toml", STROKES)
         self.write("grid.toml", GRID)
+        self.write("sounds.toml", SOUNDS)
+        self.write("slow.toml", PAIR.replace("threshold_dbfs = -30", "rise_ms = 15"))
+        (self.dir / "grain.wav").write_bytes(wav_bytes([0.5, 0.5, -0.5, -0.5] * 20))
 
     def outputs(self):
         """Name of a schema -> what the tool prints of it; once for all tests here."""
@@ -106,14 +151,24 @@ class Schemas(ToolTest):
             return self.told
         walk = self.run_tool("check", "--walk", "--array", "pair.toml", "-D", "null", "--format", "json", stdin="1\n0\n")
         self.write("o.toml", PAIR.partition("[sync]")[0])
+        self.write("felt.toml", FELT)
+        for study in ("missing", "three-by-three"):
+            studies.STUDIES[study](self.dir / study)
         texts = [self.ok(*args, "--format", "json").stdout for args in (
             ("plan", "park2016-3"), ("plan", "strokes.toml", "--fit", "--fit-margin", "1"), ("plan", "wave-2x4", "--fit"),
             ("plan", "park2016-1", "--algorithm", "continuous", "--ramp", "0.01"),
             ("plan", *BRUSH, "--duration", "1"), ("plan", *BRUSH, "--duration", "0.15", "--drop-points"),
             ("plan", "strokes.toml", "--array", "pair.toml", "--sl", "7"), ("plan", "--path", "M 1 1 L 9 9", "--phase", "burst"),
             ("plan", "--path", "M 0 0 L 10 0", "--array", "pair.toml", "--sl", "7"),
+            ("plan", "--path", "M 0 0 L 10 0", "--array", "slow.toml"), ("plan", "sounds.toml"), ("plan", "--path", "M 0 0 L 10 0", "--waveform", "noise:50-500", "--am", "20", "--envelope", "tukey"),
+            ("plan", "--path", "M 0 0 L 10 0", "--waveform", "grain.wav", "--texture", "length", "--attack", "0.01", "--release", "0.02"),
             ("compare", "park2016-1"), ("compare", "--path", "M 1 1 L 9 9"), ("compare", "strokes.toml", "--array", "o.toml"),
-            ("devices",), ("devices", "--sample-format", "s16", "-D", "nowhere"), ("check", "-D", "null"),
+            ("compare", "park2016-1", "--observer", "low-speed", "--spread", "9"), ("compare", "park2016-1", "--spread", "5"),
+            ("compare", "park2016-1", "--observer", "low-speed"), ("compare", "park2016-1", "--compensate", "low-speed"),
+            ("plan", "park2016-1", "--compensate", "low-speed"),
+            ("plan", "strokes.toml", "--array", "o.toml", "--compensate", "low-speed"),
+            ("compare", "strokes.toml", "--array", "o.toml", "--observer", "low-speed"),
+            ("experiment", "park2016", "--dry-run"), ("experiment", "felt.toml", "--dry-run"), ("experiment", "felt.toml", "--power", "2,3", "--studies", "4", "--simulate", "sigma=2"), ("analyze", "missing"), ("analyze", "three-by-three"), ("devices",), ("devices", "--sample-format", "s16", "-D", "nowhere"), ("check", "-D", "null"),
             ("play", "--path", "M 0 0 L 1 0", "--duration", "0.1", "-D", "null"))]
         more = json.loads(subprocess.run([SAMPLES], capture_output=True, text=True, check=True).stdout)
         for one in [*map(json.loads, texts), json.loads(walk.stdout), *more]:
@@ -122,7 +177,7 @@ class Schemas(ToolTest):
 
     def test_there_is_a_schema_for_each_kind_of_output_and_none_without(self):
         self.assertEqual(set(self.outputs()), set(SCHEMAS))
-        self.assertEqual(len(SCHEMAS), 7)
+        self.assertEqual(len(SCHEMAS), 10)
         for schema in SCHEMAS.values():
             jsonschema.Draft202012Validator.check_schema(schema)
             self.assertEqual(schema["$schema"], "https://json-schema.org/draft/2020-12/schema")
@@ -148,13 +203,13 @@ class Schemas(ToolTest):
                     if (place, *sorted(inner)) in seen:
                         continue
                     seen.add((place, *sorted(inner)))
-                    inner["unheard_of"] = 1
+                    inner["unheard_of"] = "a text"
                     self.assertFalse(valid(changed), f"{name}: {place} may hold what is unknown")
                     del inner["unheard_of"]
                     for key in list(inner):
                         inside = re.sub(r"^(plans|comparisons)\[\]\.?", "", f"{place}.{key}".lstrip("."))
                         kept = inner.pop(key)
-                        optional = inside in OPTIONAL.get(name.replace("s/", "/"), ())
+                        optional = inside in OPTIONAL.get(name.replace("s/", "/"), ()) or place in MAPS
                         self.assertEqual(valid(changed), optional, f"{name}: {place} without {key}")
                         inner[key] = {"another": "type"}
                         self.assertFalse(valid(changed), f"{name}: {place}.{key} of another type")
@@ -170,6 +225,12 @@ class Schemas(ToolTest):
         for several, key, one in (("plans", "plans", "plan"), ("compares", "comparisons", "compare")):
             alone = {k: v for k, v in SCHEMAS[f"tactor-{one}/1"].items() if k != "$schema"}
             self.assertEqual(SCHEMAS[f"tactor-{several}/1"]["properties"][key]["items"], alone)
+
+    def test_the_protocols_options_are_those_that_the_service_takes(self):
+        taken = re.findall(r'option\{\s*"(\w+)"', (ROOT / "src/server/stroke_options.cpp").read_text(encoding="utf-8"))
+        schema = json.loads((ROOT / "src/cli/schemas/tactor-protocol-1.schema.json").read_text(encoding="utf-8"))
+        self.assertGreater(len(taken), 20)
+        self.assertEqual(sorted(schema["$defs"]["options"]["properties"]), sorted(taken))
 
     def test_the_page_describes_each_field_once(self):
         for name, schema in SCHEMAS.items():
@@ -216,6 +277,7 @@ class Record(ToolTest):
                                                            "--rate", "8000"),
         "over thresholds, other carriers": ("strokes.toml", "--array", "pair.toml", "--sl", "7", "--phase", "burst",
                                             "--rate", "11025"),
+        "moved for an observer": ("park2016-2", "--compensate", "low-speed", "--rate", "8000"),
         "intensity over time": ("touch.csv", "--rate", "8000"),
     }
 

@@ -59,14 +59,14 @@ class Large(ToolTest):
         self.assertLess(mb, path.stat().st_size / MB + 32 + 32)  # points of 32 bytes; the tool itself
 
     @unittest.skipIf(SANITIZED, "a sanitizer's own memory is not bounded")
-    def test_a_burst_of_an_hour_needs_a_quarter_of_a_kilobyte(self):
+    def test_a_burst_of_an_hour_needs_a_tenth_of_a_kilobyte(self):
         def peak_kb(seconds):
             status, said, mb, _ = self.cost("render", "park2016-1", "--duration", str(seconds), "-o", "-")
             self.assertEqual(status, 0, said)
             return mb * 1024
 
         bursts = 3600 / 0.07
-        self.assertLess((peak_kb(3600) - peak_kb(1)) * 1024, 250 * bursts)
+        self.assertLess((peak_kb(3600) - peak_kb(1)) * 1024, 100 * bursts)
 
     def test_a_text_for_a_tree_is_refused_earlier(self):
         self.write_pieces("big.svg", [b"<svg>", *[b" " * MB] * 48])

@@ -31,7 +31,7 @@ def man_options(commands):
             head, _, body = entry.partition("\n")
             takers = command_names(body, commands) | (set(of_all[1].split(" , ")) if of_all else set())
             for name in re.findall(r"(?:Fl|,) (-[\w-]+|[a-zA-Z](?= ))", head):
-                options["-" + name] = takers
+                options["-" + name] = options.get("-" + name, set()) | takers
     return options
 
 

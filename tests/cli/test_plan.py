@@ -250,6 +250,48 @@ class StrokeFiles(ToolTest):
         self.assertAlmostEqual(p["stroke"]["length_mm"], 40, 6)
         self.assertAlmostEqual(p["bursts"][0]["y_mm"], 10, 6)
 
+    def test_keys_of_movement_and_order_that_are_wrong_are_refused_with_their_place(self):
+        for key in ('easing = "fast"', "speed_mm_s = [[0, 0]]", "intensity = [[0, 2]]", "pauses = [[0.5, -1]]", "repeat = 0", "pause_s = -1",
+                    "start_s = -1", 'start_from = "x"', "reverse = 2", 'algorithm = "x"', 'phantom = "x"', "soa_s = 0", "burst_s = 0",
+                    "level_db = 100", "fit = 2", "fit_margin_mm = 1"):
+            self.write("s.toml", f'[stroke]\npath = "M 0 0 L 40 0"\n{key}\n')
+            with self.subTest(key):
+                self.assertEqual(self.refused(2, "plan", "s.toml", says=("s.toml:3:",)).stdout, "")
+        self.write("s.toml", "[[stroke]]\nrepeat = 2\n")
+        self.refused(2, "plan", "s.toml", says=("s.toml:1:",))
+
+    def test_a_stroke_that_would_start_before_the_piece_is_refused(self):
+        line = '[[stroke]]\npath = "M 0 0 L 40 0"\nduration_s = 0.7\n'
+        self.write("s.toml", line + line + 'start_s = -2\nstart_from = "end"\n')
+        for command in (("plan", "s.toml"), ("render", "s.toml", "-o", "s.wav"), ("plot", "s.toml", "-o", "s.svg")):
+            self.refused(2, *command, says=("2 s before the end of what comes before it",))
+        self.assertFalse((self.dir / "s.wav").exists() or (self.dir / "s.svg").exists())
+
+    def test_strokes_of_a_file_start_repeat_and_choose(self):
+        plans = self.plan(ROOT / "examples/strokes/knocks.toml")["plans"]
+        self.assertEqual(len(plans), 7)
+        starts = [p["start_s"] for p in plans]
+        once = plans[0]["total_s"] + plans[1]["total_s"]
+        self.assertAlmostEqual(starts[2], once + 0.3, 9)
+        self.assertAlmostEqual(starts[6], 3 * once + 2 * 0.3 + 0.5, 9)
+        self.assertEqual({p["algorithm"] for p in plans[:6]}, {"park2016"})
+        self.assertEqual((plans[6]["algorithm"], plans[6]["phantom"]), ("continuous", "barycentric"))
+        self.assertAlmostEqual(plans[1]["bursts"][0]["x_mm"], 30.0, 9)
+        strongest = [max(d["amplitude"] for b in p["bursts"] for d in b["drives"]) for p in plans[:2]]
+        self.assertAlmostEqual(20 * math.log10(strongest[1] / strongest[0]), -9.0, 6)
+
+    def test_speed_leaves_pauses_and_duration_takes_them_along(self):
+        self.write("s.toml", '[stroke]\npath = "M 0 0 L 40 0"\npauses = [[0.5, 0.5]]\nspeed_mm_s = 40\n')
+        self.assertAlmostEqual(self.plan("s.toml")["stroke"]["duration_s"], 1.5, 9)
+        self.assertAlmostEqual(self.plan("s.toml", "--speed", "20")["stroke"]["duration_s"], 2.5, 9)
+        self.assertAlmostEqual(self.plan("s.toml", "--duration", "3")["stroke"]["duration_s"], 3.0, 9)
+
+    def test_a_path_too_short_to_be_felt_to_move_is_warned_of(self):
+        for command in (("plan",), ("render", "-o", "s.wav")):
+            done = self.ok(*command, "--path", "M 10 10 h 3")
+            self.assertIn("shorter than a fifth", done.stdout + done.stderr)
+        self.assertNotIn("a fifth", self.ok("plan", "--path", "M 10 10 h 4.1").stdout)
+
     def test_every_example_can_be_planned(self):
         arrays = sorted((ROOT / "examples/arrays").glob("*.toml"))
         self.assertTrue(arrays)

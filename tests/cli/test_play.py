@@ -9,7 +9,7 @@ import subprocess
 import time
 import unittest
 
-from harness import SANITIZED, TOOL, ToolTest, Wav, main
+from harness import GRID, SANITIZED, TOOL, ToolTest, Wav, main
 
 
 class Play(ToolTest):
@@ -167,6 +167,41 @@ class Play(ToolTest):
         self.assertEqual((r.returncode, states), (0, ["interrupted", "finished"]), r.stderr)
         self.assertEqual(told["counters"]["reopened"], 1)
         self.assertRegex(r.stderr, "(?s)warning: park2016-3: interrupted.*waiting for.*is back")
+
+    LOG_LINE = r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z (debug|info|warning|error) \S.*"
+
+    def test_a_log_tells_what_was_agreed_on_and_is_appended_to(self):
+        quiet = self.ok("play", *self.SHORT, "-D", "null")
+        self.assertNotRegex(quiet.stderr, self.LOG_LINE)
+        for times in (1, 2):
+            r = self.ok("play", *self.SHORT, "-D", "null", "--log", "play.log")
+            self.assertEqual(r.stderr, quiet.stderr)
+            lines = (self.dir / "play.log").read_text().splitlines()
+            for line in lines:
+                self.assertRegex(line, f"^{self.LOG_LINE}$")
+            self.assertEqual(sum('info PCM "null": 9 channels, 48000 Hz' in line for line in lines), times)
+            self.assertEqual(sum(line.endswith("info the stream has ended") for line in lines), times)
+        self.assertRegex(self.ok("play", *self.SHORT, "-D", "null", "--verbose").stderr, f"(?m)^{self.LOG_LINE}$")
+
+    def test_a_log_tells_of_a_lost_device_and_its_return(self):
+        r, _, _ = self.on_failing_device("--reopen-s", "20", "--log", "play.log", "--verbose")
+        self.assertEqual(r.returncode, 0, r.stderr)
+        log = (self.dir / "play.log").read_text()
+        self.assertRegex(log, r'(?s)error the stream has ended: .*info waiting for PCM "raw:.*info PCM "raw:.*" is back'
+                              r".*info stream on .*info the stream has ended\n")
+
+    def test_a_log_is_written_to_nothing_but_logs(self):
+        array = self.write("a.toml", GRID)
+        (self.dir / "link.log").symlink_to("elsewhere")
+        os.mkfifo(self.dir / "pipe")
+        for name, why in (("a.toml", "no log"), ("link.log", "is a link"), ("pipe", "no regular file"), ("/dev/null", "no regular file"),
+                          (".", "directory"), ("none/play.log", "No such file"), ("", "empty")):
+            r = self.refused(2, "play", *self.SHORT, "-D", "null", "--log", name, says=[why])
+            self.assertEqual(r.stdout, "", name)
+        self.assertEqual(array.read_text(), GRID)
+        self.assertFalse((self.dir / "elsewhere").exists())
+        self.refused(2, "check", "--verbose", says=["--walk"])
+        self.refused(3, "play", *self.SHORT, "-D", "nowhere", "--log", "play.log", says=["nowhere"])
 
     def test_ctrl_c_does_not_wait_for_a_buffer_of_a_minute(self):
         p = subprocess.Popen([TOOL, "play", "park2016-1", "-D", "null", "--period-frames", "1048576"], cwd=self.dir,

@@ -57,6 +57,21 @@ class Samples(ToolTest):
         self.assertEqual(high, list(range(240)) + list(range(36000, 36240)))
         self.assertTrue(all(f[3] > 0.9999 and f[2] == 0 for n, f in enumerate(wav.samples()) if n in set(high)))
 
+    def test_an_array_of_more_tactors_than_a_pcm_has_channels_is_planned_and_rendered(self):
+        for side, sample, status in ((64, "float", 0), (128, "s16", 0), (128, "float", 2)):
+            with self.subTest(side=side, sample=sample):
+                self.write("large.toml", f'[array]\nname = "large"\ngrid = {{ rows = {side}, columns = {side}, '
+                                         'pitch_mm = 2 }\n')
+                stroke = ("--array", "large.toml", "--path", "M 0 0 L 4 4", "--duration", "0.1")
+                self.ok("plan", *stroke)
+                args = ("render", *stroke, "--sample-format", sample, "-o", "large.wav")
+                if status == 0:
+                    self.ok(*args)
+                    self.assertEqual(Wav(self.dir / "large.wav").channels, side * side)
+                else:
+                    self.refused(status, *args, says=["holds 16383 at most, not 16384"])
+                self.refused(2, "play", *stroke, "-D", "null", says=["channels out of range"])
+
     def test_level_gain_polarity_and_map_reach_their_channel(self):
         self.write("a.toml", '[array]\nname = "pair"\n'
                              '[[tactor]]\nx_mm = 0.0\ny_mm = 0.0\nchannel = 2\ngain_db = -6.0\npolarity = -1\n'
@@ -135,7 +150,8 @@ class Samples(ToolTest):
 
 
 class Files(ToolTest):
-    LONG = ("render", "--path", "M 0 10 L 40 30", "--duration", "86400", "-o", "long.wav")
+    # A day's; under sanitizers planning it took half a minute.
+    LONG = ("render", "--path", "M 0 10 L 40 30", "--duration", "3600" if SANITIZED else "86400", "-o", "long.wav")
 
     def leftovers(self):
         return sorted(p.name for p in self.dir.iterdir() if p.name not in ("alsa.conf",))

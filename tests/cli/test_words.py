@@ -132,6 +132,34 @@ class Files(ToolTest):
             self.assertGreater(len(got[0]), 1000)
 
 
+class Journal(ToolTest):
+    def said(self, *args, is_journal=True):
+        """What is written to a file that is, or is not, what systemd says its journal is."""
+        with open(self.dir / "said", "w+b") as file:
+            at = os.fstat(file.fileno())
+            number = at.st_ino if is_journal else at.st_ino + 1
+            subprocess.run([TOOL, *args], stdout=subprocess.DEVNULL, stderr=file, cwd=self.dir, check=False, timeout=PATIENCE_S,
+                           env=self.env | {"JOURNAL_STREAM": f"{at.st_dev}:{number}"})
+            file.seek(0)
+            return file.read().decode().splitlines()
+
+    def test_lines_have_levels(self):
+        short = ("--path", "M 0 0 L 10 0", "--duration", "0.05", "--burst", "0.003")
+        for is_journal, warning, error in ((True, "<4>", "<3>"), (False, "", "")):
+            lines = self.said("render", *short, "-o", "w.wav", is_journal=is_journal)
+            self.assertTrue(lines)
+            for line in lines:
+                self.assertTrue(line.startswith(warning + "tactor: warning: "), line)
+            self.assertTrue(self.said("plan", "--path", "M 0 0 L", is_journal=is_journal)[0].startswith(error + "tactor: "))
+
+    def test_the_log_has_levels_in_place_of_time_and_kind(self):
+        lines = self.said("play", "park2016-1", "-D", "null", "--verbose")
+        self.assertIn("<6>strokes may sound", lines)
+        self.assertIn("<6>the stream has ended", lines)
+        self.assertRegex("\n".join(self.said("play", "park2016-1", "-D", "null", "--verbose", is_journal=False)),
+                         r"(?m)^\d{4}-\S+Z info strokes may sound$")
+
+
 class Walk(ToolTest):
     def test_b_goes_one_step_back(self):
         self.write("a.toml", GRID)

@@ -14,7 +14,7 @@
 
 #include <tactor/gpio.hpp>
 
-#include "engine/amplifier_driver.hpp"
+#include "engine/control/amplifier_driver.hpp"
 #include "rig.hpp"
 
 namespace tactor::test {
@@ -38,13 +38,13 @@ public:
             return forwarding_sink::write(d, n);
         const io_result r = spoilt_->front();
         spoilt_->pop_front();
-        if (r.status == io_status::ok && r.frames > 0)
+        if (r.status == io_kind::ok && r.frames > 0)
             return forwarding_sink::write(d, std::min(n, r.frames));
         return r;
     }
 
-    io_status prepare() noexcept override { return note("prepare", forwarding_sink::prepare()); }
-    io_status start() noexcept override { return note("start", forwarding_sink::start()); }
+    io_kind prepare() noexcept override { return note("prepare", forwarding_sink::prepare()); }
+    io_kind start() noexcept override { return note("start", forwarding_sink::start()); }
     void drop() noexcept override
     {
         log_.emplace_back("drop");
@@ -52,9 +52,9 @@ public:
     }
 
 private:
-    io_status note(const char* what, io_status s) noexcept
+    io_kind note(const char* what, io_kind s) noexcept
     {
-        log_.emplace_back(s == io_status::ok ? what : std::string(what) + " fails");
+        log_.emplace_back(s == io_kind::ok ? what : std::string(what) + " fails");
         return s;
     }
     event_log& log_;
@@ -151,7 +151,7 @@ inline std::string reason_of(const amplifier_rig& r, stroke_id id)
 struct playing : amplifier_rig {
     explicit playing(rig_options o = {}) : amplifier_rig(std::move(o))
     {
-        REQUIRE(start().status == io_status::ok);
+        REQUIRE(start().status == io_kind::ok);
         warm_up();
         id = submit(tone(2.0));
         play(4800);
@@ -163,7 +163,7 @@ struct playing : amplifier_rig {
         step();
         control();
     }
-    stroke_id id = 0;
+    stroke_id id = {};
 };
 
 } // namespace tactor::test

@@ -25,7 +25,7 @@ public:
     {
     }
 
-    io_status prepare() noexcept override
+    io_kind prepare() noexcept override
     {
         empty_ = true;
         before_.fill(0.0); // a gap that the device made: from zero
@@ -37,9 +37,9 @@ public:
         // An empty buffer always takes something.
         switch (empty_ ? 63 : random_() % 64) {
         case 0:
-            return {io_status::again, 0, 0};
+            return {io_kind::again, 0, 0};
         case 1:
-            return {io_status::ok, 0, 0};
+            return {io_kind::ok, 0, 0};
         case 2:
             n = 1 + random_() % n; // short
             break;

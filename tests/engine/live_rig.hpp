@@ -12,7 +12,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/live_stroke.hpp"
+#include "engine/live/live_stroke.hpp"
 #include "rig.hpp"
 
 namespace tactor::test {
@@ -24,15 +24,15 @@ class live_rig : public rig {
 public:
     explicit live_rig(const live_options& o = {}, const rig_options& r = {}) : rig(r)
     {
-        REQUIRE(start().status == io_status::ok);
+        REQUIRE(start().status == io_kind::ok);
         live = add(o);
     }
 
     std::shared_ptr<live_stroke::impl> add(const live_options& o = {})
     {
         const array a = palm();
-        auto s = std::make_shared<live_stroke::impl>(++last_id, a, layout(a), out->setup(), o);
-        feed.submit(last_id, std::shared_ptr<engine::live_voice>(s, &s->voice));
+        auto s = std::make_shared<live_stroke::impl>(next_id(), a, layout(a), out->setup(), o);
+        feed.submit(last(), std::shared_ptr<engine::live_voice>(s, &s->voice));
         feed.pump(status().written, link.clock.load());
         return s;
     }
@@ -63,7 +63,7 @@ inline double peak(const std::vector<double>& s, std::size_t from, std::size_t t
 inline live_options bursts()
 {
     live_options o;
-    o.plan.method = algorithm::park2016;
+    o.plan.algorithm = algorithm_kind::park2016;
     return o;
 }
 

@@ -12,7 +12,7 @@
 
 namespace tactor::test {
 
-inline alsa_options nine(sample_format f = sample_format::s32)
+inline alsa_options nine(format_kind f = format_kind::s32)
 {
     alsa_options o;
     o.channels = 9;

@@ -18,11 +18,11 @@
 
 #include <tactor/sink.hpp>
 
-#include "alsa/adopt.hpp"
-#include "engine/audio_loop.hpp"
-#include "engine/feeder.hpp"
+#include "engine/audio/audio_loop.hpp"
+#include "engine/control/feeder.hpp"
 #include "fake_dac.hpp"
 #include "scores.hpp"
+#include "sink/alsa/adopt.hpp"
 
 namespace tactor::test {
 
@@ -32,13 +32,13 @@ public:
     explicit forwarding_sink(std::unique_ptr<sink> s) : inner_(std::move(s)) {}
 
     const stream_setup& setup() const noexcept override { return inner_->setup(); }
-    io_status prepare() noexcept override { return inner_->prepare(); }
-    io_status start() noexcept override { return inner_->start(); }
-    io_status resume() noexcept override { return inner_->resume(); }
+    io_kind prepare() noexcept override { return inner_->prepare(); }
+    io_kind start() noexcept override { return inner_->start(); }
+    io_kind resume() noexcept override { return inner_->resume(); }
     std::int64_t xrun_ns() noexcept override { return inner_->xrun_ns(); }
     std::size_t max_descriptors() const noexcept override { return inner_->max_descriptors(); }
     std::size_t descriptors(std::span<pollfd> f) noexcept override { return inner_->descriptors(f); }
-    io_status ready(std::span<pollfd> f) noexcept override { return inner_->ready(f); }
+    io_kind ready(std::span<pollfd> f) noexcept override { return inner_->ready(f); }
     io_result room() noexcept override { return inner_->room(); }
     io_result write(const std::byte* d, std::size_t n) noexcept override { return inner_->write(d, n); }
     stream_position position() noexcept override { return inner_->position(); }
@@ -67,7 +67,7 @@ private:
 };
 
 struct rig_options {
-    sample_format format = sample_format::s32;
+    format_kind format = format_kind::s32;
     unsigned channels = 9;
     unsigned period = 96;
     unsigned periods = 3;
@@ -100,11 +100,15 @@ public:
 
     io_result start() { return loop.start(now); }
 
+    stroke_id next_id() { return {++last_id}; }
+    stroke_id last() const { return {last_id}; }
+
+    stroke_id submit(const score& s, std::uint64_t frame) { return submit(s, start_at::frame(frame)); }
     stroke_id submit(const score& s, start_at at = {})
     {
-        feed.submit(++last_id, s, at);
+        feed.submit(next_id(), s, at);
         feed.pump(status().written, link.clock.load());
-        return last_id;
+        return last();
     }
 
     engine::stream_status status() { return link.status.load(); }
@@ -112,7 +116,7 @@ public:
     /// One wake-up of the audio thread: poll, step.
     void step()
     {
-        io_status ready = io_status::again;
+        io_kind ready = io_kind::again;
         if (loop.polls_sink()) {
             std::array<pollfd, 4> fds{};
             const std::size_t n = out->descriptors(fds);
@@ -197,7 +201,7 @@ public:
     std::vector<double> limits;
     engine::audio_loop loop;
     rig_options options;
-    stroke_id last_id = 0;
+    std::uint32_t last_id = 0;
     std::function<void()> also_control{}; ///< at the end of control()
     std::map<stroke_id, std::vector<stroke_report>> ended;
 };

@@ -60,7 +60,7 @@ inline score tone(double seconds, unsigned tactor = 0)
 }
 
 /// What the offline renderer makes of a score, in one call.
-inline std::vector<std::byte> rendered(const score& s, sample_format f)
+inline std::vector<std::byte> rendered(const score& s, format_kind f)
 {
     std::vector<std::byte> out(s.frames() * s.channels() * bytes_of(f));
     renderer(s, f).process(s.frames(), out.data());

@@ -11,9 +11,9 @@
 #include <doctest/doctest.h>
 
 #include "count_allocations.hpp"
-#include "engine/live_stroke.hpp"
+#include "engine/live/live_stroke.hpp"
 #include "rig.hpp"
-#include "soak.hpp"
+#include "rounds.hpp"
 
 namespace soak_day_test {
 
@@ -58,7 +58,7 @@ public:
     day() : r_(options()), shorter_(stroke_of(5)), longer_(stroke_of(300))
     {
         r_.dac.reserve_capture(1 << 12);
-        REQUIRE(r_.start().status == io_status::ok);
+        REQUIRE(r_.start().status == io_kind::ok);
     }
 
     // Each hour is like every other.
@@ -66,7 +66,7 @@ public:
     {
         std::mt19937_64 random(4);
         work w;
-        const stroke_id before = r_.last_id;
+        const std::uint32_t before = r_.last_id;
         counted(w, [&] { begin_live(); });
         for (unsigned i = 0; i < periods_an_hour; ++i)
             half_second(i, random, w);
@@ -111,8 +111,8 @@ private:
         const array a = make_grid("pair", 1, 2, 20.0, 20.0);
         live_options o;
         o.timeout_s = 3600.0;
-        live_ = std::make_shared<live_stroke::impl>(++r_.last_id, a, layout(a), r_.out->setup(), o);
-        r_.feed.submit(r_.last_id, std::shared_ptr<engine::live_voice>(live_, &live_->voice));
+        live_ = std::make_shared<live_stroke::impl>(r_.next_id(), a, layout(a), r_.out->setup(), o);
+        r_.feed.submit(r_.last(), std::shared_ptr<engine::live_voice>(live_, &live_->voice));
     }
 
     void half_second(unsigned i, std::mt19937_64& random, work& w)
@@ -144,7 +144,7 @@ private:
         if (random() % 40 == 0)
             r_.feed.fire(r_.now + 1'000'000'000);
         if (random() % 50 == 0)
-            r_.feed.cancel(r_.last_id);
+            r_.feed.cancel(r_.last());
         if (i % 1800 == 1799) {
             r_.dac.advance(100'000); // an xrun every quarter of an hour
             r_.step();

@@ -12,9 +12,9 @@
 #include <doctest/doctest.h>
 
 #include "checking_sink.hpp"
-#include "engine/live_stroke.hpp"
+#include "engine/live/live_stroke.hpp"
 #include "rig.hpp"
-#include "soak.hpp"
+#include "rounds.hpp"
 
 namespace soak_faults_test {
 
@@ -68,7 +68,7 @@ struct totals {
     std::uint64_t strokes = 0;
     std::uint64_t rigs = 0;
     std::uint64_t xruns = 0;
-    std::map<stroke_state, std::uint64_t> states;
+    std::map<state_kind, std::uint64_t> states;
     double loudest = 0.0;
 };
 
@@ -85,7 +85,7 @@ public:
 
     void run(totals& t)
     {
-        REQUIRE(r_.start().status == io_status::ok);
+        REQUIRE(r_.start().status == io_kind::ok);
         for (std::uint64_t i = 0; i < most_periods_ && !r_.loop.over(); ++i) {
             producers();
             trouble();
@@ -143,7 +143,7 @@ private:
         if (random_() % 300 == 0)
             r_.feed.fire(r_.now + static_cast<std::int64_t>(random_() % 100'000'000) - 20'000'000);
         if (random_() % 90 == 0 && r_.last_id > 0)
-            r_.feed.cancel(r_.last_id - static_cast<stroke_id>(random_() % std::min(r_.last_id, 16U)));
+            r_.feed.cancel({r_.last_id - static_cast<std::uint32_t>(random_() % std::min(r_.last_id, 16U))});
         for (std::size_t i = 0; i < live_.size(); ++i)
             feed_live(i);
     }
@@ -165,12 +165,12 @@ private:
     void begin_live()
     {
         live_options o;
-        o.plan.method = random_() % 2 == 0 ? algorithm::continuous : algorithm::park2016;
+        o.plan.algorithm = random_() % 2 == 0 ? algorithm_kind::continuous : algorithm_kind::park2016;
         o.render = levels_;
         o.timeout_s = 0.05;
         const array a = row();
-        auto s = std::make_shared<live_stroke::impl>(++r_.last_id, a, layout(a), r_.out->setup(), o);
-        r_.feed.submit(r_.last_id, std::shared_ptr<engine::live_voice>(s, &s->voice));
+        auto s = std::make_shared<live_stroke::impl>(r_.next_id(), a, layout(a), r_.out->setup(), o);
+        r_.feed.submit(r_.last(), std::shared_ptr<engine::live_voice>(s, &s->voice));
         live_.push_back(std::move(s));
     }
 
@@ -246,12 +246,12 @@ TEST_CASE(
         life(random, 5000 + random() % 60'000).run(t);
     }
     MESSAGE(t.periods << " periods on " << t.rigs << " devices, " << t.xruns << " xruns, " << t.strokes
-                      << " strokes: " << t.states[stroke_state::finished] << " finished, "
-                      << t.states[stroke_state::cancelled] << " cancelled, "
-                      << t.states[stroke_state::interrupted] << " interrupted");
-    CHECK(t.states[stroke_state::finished] > all_periods / 1000);
-    CHECK(t.states[stroke_state::cancelled] > all_periods / 10'000);
-    CHECK(t.states[stroke_state::interrupted] > all_periods / 10'000);
+                      << " strokes: " << t.states[state_kind::finished] << " finished, "
+                      << t.states[state_kind::cancelled] << " cancelled, "
+                      << t.states[state_kind::interrupted] << " interrupted");
+    CHECK(t.states[state_kind::finished] > all_periods / 1000);
+    CHECK(t.states[state_kind::cancelled] > all_periods / 10'000);
+    CHECK(t.states[state_kind::interrupted] > all_periods / 10'000);
     CHECK(t.loudest > 0.05);
     CHECK(t.xruns > all_periods / 20'000);
 }

@@ -63,7 +63,7 @@ TEST_CASE("a line that never goes off is tried for a second, and the stream's re
     CHECK(r.link.amplifier.stuck);
     CHECK_FALSE(r.link.amplifier.off);
     CHECK(r.feed.stream_reason() == may_be_on);
-    CHECK(r.report(r.id)->state == stroke_state::cancelled);
+    CHECK(r.report(r.id)->state == state_kind::cancelled);
 
     r.driver.close(); // a last time, and in vain
     CHECK(offs(r.news()) == 1);
@@ -87,7 +87,7 @@ TEST_CASE("a mute that is refused once is made up for, and the stream goes on")
     CHECK(reason_of(r, r.id) == "the amplifier was off");
     const stroke_id next = r.submit(tone(0.1));
     r.play_out();
-    CHECK(r.report(next)->state == stroke_state::finished);
+    CHECK(r.report(next)->state == state_kind::finished);
 }
 
 TEST_CASE("a mute that stays refused ends the stream")
@@ -126,7 +126,7 @@ TEST_CASE("a line that refuses to go on is switched off, for it may have gone on
     amplifier_rig r;
     r.line.works = false;
     r.line.refusals = 1;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     const stroke_id id = r.submit(tone(0.1));
     r.play(9600);
     r.control();

@@ -19,7 +19,7 @@ using namespace tactor::test;
 TEST_CASE("a stroke that is submitted at once waits until the amplifier has settled, and is whole")
 {
     amplifier_rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     const score s = random_score(3, 4);
     const stroke_id id = r.submit(s);
     std::uint64_t on_at = 0;
@@ -33,9 +33,9 @@ TEST_CASE("a stroke that is submitted at once waits until the amplifier has sett
     REQUIRE(r.first_sound());
     CHECK(*r.first_sound() >= on_at + 480);
     CHECK(*r.first_sound() <= on_at + 480 + 4 * 96 + 960);
-    CHECK(r.report(id)->state == stroke_state::finished);
+    CHECK(r.report(id)->state == state_kind::finished);
     const std::uint64_t first = *r.first_sound() - 1; // a sine begins with 0
-    CHECK(r.captured(first, s.frames()) == rendered(s, sample_format::s32));
+    CHECK(r.captured(first, s.frames()) == rendered(s, format_kind::s32));
     CHECK(r.news() == event_log{"prepare", "start", "on"});
 }
 
@@ -56,7 +56,7 @@ TEST_CASE("stop: fade, silence played, off, and only then drop")
     r.control();
     CHECK(r.loop.over());
     CHECK(r.news() == event_log{"off", "drop"});
-    CHECK(r.report(r.id)->state == stroke_state::cancelled);
+    CHECK(r.report(r.id)->state == state_kind::cancelled);
 }
 
 TEST_CASE("an end that nobody answers comes all the same, after two seconds of zeros, and is said")
@@ -87,7 +87,7 @@ TEST_CASE("one xrun leaves the amplifier on; the stroke is interrupted, the next
     const score s = random_score(2, 3);
     const stroke_id next = r.submit(s);
     r.play_out();
-    CHECK(r.report(next)->state == stroke_state::finished);
+    CHECK(r.report(next)->state == state_kind::finished);
     CHECK(r.news().empty());
 }
 
@@ -106,8 +106,8 @@ TEST_CASE("two xruns in a second mute; a stroke that comes meanwhile waits for t
     CHECK_FALSE(r.line.is_on);
     r.play_out();
     CHECK(r.news() == event_log{"on"});
-    CHECK(r.report(next)->state == stroke_state::finished);
-    CHECK(r.captured(*r.first_sound(muted) - 1, s.frames()) == rendered(s, sample_format::s32));
+    CHECK(r.report(next)->state == state_kind::finished);
+    CHECK(r.captured(*r.first_sound(muted) - 1, s.frames()) == rendered(s, format_kind::s32));
 }
 
 TEST_CASE("xruns that end the stream: off before drop")
@@ -151,7 +151,7 @@ TEST_CASE("an unplugged device, one that fails to start again or stands still: o
         REQUIRE(log.size() >= 2);
         CHECK(log.back() == "drop");
         CHECK(std::count(log.begin(), log.end(), "off") == 1);
-        CHECK(r.report(r.id)->state == stroke_state::interrupted);
+        CHECK(r.report(r.id)->state == state_kind::interrupted);
     }
 }
 
@@ -175,10 +175,10 @@ TEST_CASE("EINTR, no room and wake-ups in vain do not touch the line")
 {
     playing r;
     for (int i = 0; i < 3; ++i)
-        r.loop.step(io_status::again, r.now);
+        r.loop.step(io_kind::again, r.now);
     r.dac.cry_ready(true);
     for (int i = 0; i < 20; ++i) {
-        r.loop.step(io_status::ok, r.now);
+        r.loop.step(io_kind::ok, r.now);
         r.control();
     }
     r.dac.cry_ready(false);
@@ -190,7 +190,7 @@ TEST_CASE("EINTR, no room and wake-ups in vain do not touch the line")
 TEST_CASE("short writes, writes of nothing and EAGAIN: the same samples, the line as it was")
 {
     amplifier_rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     r.warm_up();
     const score s = random_score(8, 5);
     const std::uint64_t from = r.dac.captured_frames();
@@ -198,25 +198,25 @@ TEST_CASE("short writes, writes of nothing and EAGAIN: the same samples, the lin
     std::mt19937_64 random(5);
     while (!r.report(id)) {
         if (random() % 3 == 0)
-            r.spoilt->push_back({io_status::ok, random() % 96, 0});
+            r.spoilt->push_back({io_kind::ok, random() % 96, 0});
         if (random() % 9 == 0)
-            r.spoilt->push_back({io_status::again, 0, -EAGAIN});
+            r.spoilt->push_back({io_kind::again, 0, -EAGAIN});
         r.play(96);
         REQUIRE(r.dac.captured_frames() < from + s.frames() + 48'000);
     }
-    CHECK(r.report(id)->state == stroke_state::finished);
+    CHECK(r.report(id)->state == state_kind::finished);
     const auto first = r.first_sound(from);
     REQUIRE(first);
-    CHECK(r.captured(*first - 1, s.frames()) == rendered(s, sample_format::s32));
+    CHECK(r.captured(*first - 1, s.frames()) == rendered(s, format_kind::s32));
     CHECK(r.news() == event_log{"prepare", "start", "on"});
 }
 
 TEST_CASE("a write that fails for good: off, then drop, and the reason is told")
 {
     for (const auto& [status, code, why] :
-         {std::tuple{io_status::failed, -EIO, "the device failed: Input/output error"},
-          std::tuple{io_status::failed, -EBADFD, "the device failed: File descriptor in bad state"},
-          std::tuple{io_status::lost, -ENODEV, "the device is gone"}}) {
+         {std::tuple{io_kind::failed, -EIO, "the device failed: Input/output error"},
+          std::tuple{io_kind::failed, -EBADFD, "the device failed: File descriptor in bad state"},
+          std::tuple{io_kind::lost, -ENODEV, "the device is gone"}}) {
         playing r;
         r.spoilt->push_back({status, 0, code});
         r.play(960);

@@ -31,7 +31,7 @@ TEST_CASE("an audio thread that stands still mutes within 150 ms, is counted, an
     CHECK_FALSE(r.first_sound(sounding + 96 + 480 + 96));
     const stroke_id next = r.submit(tone(0.1));
     r.play_out();
-    CHECK(r.report(next)->state == stroke_state::finished);
+    CHECK(r.report(next)->state == state_kind::finished);
 }
 
 TEST_CASE("a stroke that waits for its frame while the amplifier is muted begins when that is on again")
@@ -43,10 +43,10 @@ TEST_CASE("a stroke that waits for its frame while the amplifier is muted begins
     const std::uint64_t before = r.status().written;
     r.wait(200 * ms);
     r.play_out();
-    CHECK(r.report(later)->state == stroke_state::finished);
+    CHECK(r.report(later)->state == state_kind::finished);
     const auto sound = r.first_sound(before + 700);
     REQUIRE(sound);
-    CHECK(r.captured(*sound - 1, s.frames()) == rendered(s, sample_format::s32));
+    CHECK(r.captured(*sound - 1, s.frames()) == rendered(s, format_kind::s32));
 }
 
 TEST_CASE("the holder hears a beat every 50 ms, and a line that went off by itself is switched on again")
@@ -63,16 +63,36 @@ TEST_CASE("the holder hears a beat every 50 ms, and a line that went off by itse
     CHECK(reason_of(r, r.id) == "the amplifier was off");
 }
 
+TEST_CASE("the amplifier's thread, which has real-time priority, sleeps while it waits for the DAC after a "
+          "mute that is long over")
+{
+    playing r;
+    r.xrun();
+    r.play(9600);
+    r.xrun();
+    r.play(96'000);
+    REQUIRE(r.line.is_on);
+    r.line.is_on = false;
+    for (int i = 0; i < 6; ++i) { // it is seen with the next beat
+        r.now += 10 * ms;
+        r.driver.update();
+    }
+    CHECK(r.news().back() == "off");
+    CHECK(r.driver.next_ns() > 0);
+    r.play(9600);
+    CHECK(r.line.is_on);
+}
+
 TEST_CASE("a line that cannot be switched ends the stream and says so")
 {
     amplifier_rig r;
     r.line.works = false;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     const stroke_id id = r.submit(tone(0.1));
     r.play(9600);
     r.control();
     CHECK(r.loop.over());
-    CHECK(r.report(id)->state == stroke_state::interrupted);
+    CHECK(r.report(id)->state == state_kind::interrupted);
     CHECK(reason_of(r, id) == "the amplifier's line cannot be switched");
     CHECK(r.feed.stream_reason() == "the amplifier's line cannot be switched");
     CHECK_FALSE(r.first_sound());
@@ -83,7 +103,7 @@ TEST_CASE("a stroke that waits for the amplifier can be cancelled, and ends with
 {
     for (const bool cancel : {false, true}) {
         amplifier_rig r;
-        REQUIRE(r.start().status == io_status::ok);
+        REQUIRE(r.start().status == io_kind::ok);
         const stroke_id id = r.submit(tone(0.1));
         r.play(96);
         if (cancel)
@@ -93,7 +113,7 @@ TEST_CASE("a stroke that waits for the amplifier can be cancelled, and ends with
         r.play(48'000);
         r.control();
         REQUIRE(r.report(id));
-        CHECK(r.report(id)->state == stroke_state::cancelled);
+        CHECK(r.report(id)->state == state_kind::cancelled);
         CHECK_FALSE(r.first_sound());
     }
 }
@@ -107,7 +127,7 @@ TEST_CASE("whatever happens, nothing begins to sound while the amplifier is off 
         o.loop.stall_ns = 100'000'000'000;
         amplifier_rig r(o);
         int dark = 0;
-        REQUIRE(r.start().status == io_status::ok);
+        REQUIRE(r.start().status == io_kind::ok);
         for (int i = 0; i < 300 && !r.loop.over(); ++i) {
             if (random() % 4 == 0)
                 r.submit(random_score(random(), 2));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Plans that turn out to be broken in mid-stroke: a stroke that ends early never counts as finished.
+// Samples that cannot be computed in mid-stroke, as where memory is exhausted: a stroke that ends early never
+// counts as finished.
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -8,6 +9,7 @@
 
 #include <doctest/doctest.h>
 
+#include "own_curve.hpp"
 #include "rig.hpp"
 
 namespace broken_plan_test {
@@ -24,7 +26,7 @@ score made(const std::shared_ptr<fault>& broken, double from_s)
 {
     plan p;
     p.total_s = p.stroke_duration_s = 1.0;
-    p.at = [broken, from_s](double t, burst& out) {
+    p.curve = test::make_curve(1.0, [broken, from_s](double t, burst& out) {
         out.drives = {{4, 0.5}};
         if (t < from_s)
             return;
@@ -45,7 +47,7 @@ score made(const std::shared_ptr<fault>& broken, double from_s)
         case fault::throws_a_number:
             throw 7;
         }
-    };
+    });
     render_options o;
     o.rate = rate;
     return {palm(), {{.schedule = p, .start_s = {}}}, o};
@@ -74,18 +76,18 @@ TEST_CASE("a plan that fails in mid-stroke interrupts the stroke with the reason
             CAPTURE(s.why);
             const auto broken = std::make_shared<fault>(fault::none);
             const score music = made(broken, 0.3);
-            const std::vector<std::byte> whole = rendered(music, sample_format::s32);
+            const std::vector<std::byte> whole = rendered(music, format_kind::s32);
             *broken = s.kind;
             rig_options o;
             o.period = period;
             rig r(o);
-            REQUIRE(r.start().status == io_status::ok);
+            REQUIRE(r.start().status == io_kind::ok);
             const std::uint64_t base = r.status().written;
             const stroke_id id = r.submit(music);
             r.play_out();
             REQUIRE(r.report(id));
             const stroke_report report = *r.report(id);
-            CHECK(report.state == stroke_state::interrupted);
+            CHECK(report.state == state_kind::interrupted);
             CHECK(report.reason.find("the plan failed at 0.3") == 0);
             CHECK(report.reason.find(s.why) != std::string::npos);
             CHECK(report.started_ns.has_value());
@@ -109,13 +111,13 @@ TEST_CASE("a plan that fails at its first point is interrupted before it sounds"
     const score music = made(broken, 0.0);
     *broken = fault::throws;
     rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     const stroke_id now = r.submit(music);
     const stroke_id later = r.submit(music, r.status().written + 9600);
     r.play_out();
     for (const stroke_id id : {now, later}) {
         REQUIRE(r.report(id));
-        CHECK(r.report(id)->state == stroke_state::interrupted);
+        CHECK(r.report(id)->state == state_kind::interrupted);
         CHECK(r.report(id)->reason == "the plan failed at 0 s of the stroke: the model has no idea");
         CHECK(r.report(id)->frames == 0);
     }
@@ -128,26 +130,26 @@ TEST_CASE("what fails takes nothing else along")
     const score music = made(broken, 0.2);
     *broken = fault::nan;
     rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     const stroke_id before = r.submit(tone(0.5));
     const stroke_id fails = r.submit(music);
     const stroke_id after = r.submit(tone(0.1), r.status().written + rate);
     r.play_out();
-    CHECK(r.report(before)->state == stroke_state::finished);
-    CHECK(r.report(fails)->state == stroke_state::interrupted);
-    CHECK(r.report(after)->state == stroke_state::finished);
+    CHECK(r.report(before)->state == state_kind::finished);
+    CHECK(r.report(fails)->state == state_kind::interrupted);
+    CHECK(r.report(after)->state == state_kind::finished);
     // A cancel before it fails is a cancel, and a score that fails keeps no place.
     const stroke_id cancelled = r.submit(music);
     r.play(960);
     r.feed.cancel(cancelled);
     r.play_out();
-    CHECK(r.report(cancelled)->state == stroke_state::cancelled);
+    CHECK(r.report(cancelled)->state == state_kind::cancelled);
     CHECK(r.report(cancelled)->reason.empty());
     for (int n = 0; n < 600; ++n)
         r.submit(music);
     r.play_out();
     CHECK(r.ended.size() == r.last_id);
-    CHECK(r.report(r.last_id)->state == stroke_state::interrupted);
+    CHECK(r.report(r.last())->state == state_kind::interrupted);
 }
 
 } // namespace broken_plan_test

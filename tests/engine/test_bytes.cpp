@@ -27,7 +27,7 @@ public:
         case 0:
             return {};
         case 1:
-            return {io_status::again, 0, -EAGAIN};
+            return {io_kind::again, 0, -EAGAIN};
         case 2:
             return forwarding_sink::write(data, 1 + random_() % frames);
         default:
@@ -56,16 +56,16 @@ void add(std::vector<std::byte>& sum, const std::vector<std::byte>& part, std::s
 
 TEST_CASE("the DAC gets the renderer's bytes, in every format")
 {
-    for (const sample_format f : {sample_format::s16, sample_format::s32, sample_format::float32}) {
+    for (const format_kind f : {format_kind::s16, format_kind::s32, format_kind::float32}) {
         CAPTURE(to_string(f));
         rig r({.format = f});
-        REQUIRE(r.start().status == io_status::ok);
+        REQUIRE(r.start().status == io_kind::ok);
         const score s = random_score(7, 12);
         const std::uint64_t from = r.status().written;
         const stroke_id id = r.submit(s);
         r.play_out();
         REQUIRE(r.report(id));
-        CHECK(r.report(id)->state == stroke_state::finished);
+        CHECK(r.report(id)->state == state_kind::finished);
         CHECK(r.report(id)->frames == s.frames());
         CHECK(r.captured(from, s.frames()) == rendered(s, f));
         CHECK_FALSE(r.first_sound(from + s.frames()));
@@ -82,29 +82,29 @@ TEST_CASE("odd periods, one channel more and many buffers give the same bytes")
         CAPTURE(period);
         CAPTURE(periods);
         rig r({.channels = 10, .period = period, .periods = periods, .dac = {.least_period_bytes = 4}});
-        REQUIRE(r.start().status == io_status::ok);
+        REQUIRE(r.start().status == io_kind::ok);
         r.options.period = r.out->setup().period_frames;
         const score s = random_score(random(), 6, 10);
         const std::uint64_t from = r.status().written;
         r.submit(s);
         r.play_out();
-        CHECK(r.captured(from, s.frames()) == rendered(s, sample_format::s32));
+        CHECK(r.captured(from, s.frames()) == rendered(s, format_kind::s32));
     }
 }
 
 TEST_CASE("several strokes at once add up, each where it belongs")
 {
-    rig r({.format = sample_format::float32});
-    REQUIRE(r.start().status == io_status::ok);
+    rig r({.format = format_kind::float32});
+    REQUIRE(r.start().status == io_kind::ok);
     const score a = random_score(1, 8);
     const score b = random_score(2, 5);
     const std::uint64_t from = r.status().written;
     r.submit(a);
     r.submit(b, from + 5000);
     r.play_out();
-    std::vector<std::byte> sum(rendered(a, sample_format::float32));
+    std::vector<std::byte> sum(rendered(a, format_kind::float32));
     sum.resize(std::max<std::size_t>(a.frames(), 5000 + b.frames()) * r.dac.frame_bytes());
-    add(sum, rendered(b, sample_format::float32), 5000 * r.dac.frame_bytes());
+    add(sum, rendered(b, format_kind::float32), 5000 * r.dac.frame_bytes());
     // The mixer adds in double: the last bit may differ from a sum of rounded values.
     const std::vector<std::byte> got = r.captured(from, sum.size() / r.dac.frame_bytes());
     double worst = 0.0;
@@ -124,7 +124,7 @@ TEST_CASE("a stroke submitted now sounds in the next period that is written")
     std::mt19937_64 random(5);
     for (int round = 0; round < 50; ++round) {
         rig r;
-        REQUIRE(r.start().status == io_status::ok);
+        REQUIRE(r.start().status == io_kind::ok);
         r.play(96 * (1 + random() % 50));
         const std::uint64_t captured = r.dac.captured_frames();
         r.submit(tone(0.05));
@@ -141,14 +141,14 @@ TEST_CASE("a stroke submitted for a frame starts at that frame")
     std::mt19937_64 random(6);
     for (int round = 0; round < 30; ++round) {
         rig r;
-        REQUIRE(r.start().status == io_status::ok);
+        REQUIRE(r.start().status == io_kind::ok);
         r.play(96 * (random() % 20));
         const std::uint64_t at = r.status().written + random() % 60'000;
         const score s = random_score(random(), 3);
         const stroke_id id = r.submit(s, at);
         r.play_out();
-        CHECK(r.report(id)->state == stroke_state::finished);
-        CHECK(r.captured(at, s.frames()) == rendered(s, sample_format::s32));
+        CHECK(r.report(id)->state == state_kind::finished);
+        CHECK(r.captured(at, s.frames()) == rendered(s, format_kind::s32));
         CHECK(r.captured(0, at) == std::vector<std::byte>(at * r.dac.frame_bytes()));
     }
 }
@@ -156,13 +156,13 @@ TEST_CASE("a stroke submitted for a frame starts at that frame")
 TEST_CASE("a frame that is over means now")
 {
     rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     r.play(9600);
     const std::uint64_t next = r.status().written;
     const score s = random_score(9, 2);
     r.submit(s, 17);
     r.play_out();
-    CHECK(r.captured(next, s.frames()) == rendered(s, sample_format::s32));
+    CHECK(r.captured(next, s.frames()) == rendered(s, format_kind::s32));
 }
 
 TEST_CASE("a tiny ring is back-pressure: nothing is lost")
@@ -170,48 +170,48 @@ TEST_CASE("a tiny ring is back-pressure: nothing is lost")
     for (const std::size_t ring : {2U, 4U, 7U}) {
         CAPTURE(ring);
         rig r({.ring = ring});
-        REQUIRE(r.start().status == io_status::ok);
+        REQUIRE(r.start().status == io_kind::ok);
         // One drive a burst and a burst each 70 ms: even one command a period is enough.
         const score s = random_score(11, 40);
         const std::uint64_t from = r.status().written;
         const stroke_id id = r.submit(s);
         r.play_out();
         REQUIRE(r.report(id));
-        CHECK(r.report(id)->state == stroke_state::finished);
-        CHECK(r.captured(from, s.frames()) == rendered(s, sample_format::s32));
+        CHECK(r.report(id)->state == state_kind::finished);
+        CHECK(r.captured(from, s.frames()) == rendered(s, format_kind::s32));
     }
 }
 
 TEST_CASE("a mixer without room makes drives wait in the ring")
 {
     rig r({.loop = {.drives = 4}});
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     const score s = random_score(12, 40);
     const std::uint64_t from = r.status().written;
     const stroke_id id = r.submit(s);
     r.play_out();
-    CHECK(r.report(id)->state == stroke_state::finished);
-    CHECK(r.captured(from, s.frames()) == rendered(s, sample_format::s32));
+    CHECK(r.report(id)->state == state_kind::finished);
+    CHECK(r.captured(from, s.frames()) == rendered(s, format_kind::s32));
 }
 
 TEST_CASE("three hundred strokes at once wait for a place, and each ends once")
 {
     rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     for (int i = 0; i < 300; ++i)
         r.submit(tone(0.02));
     r.play_out();
     CHECK(r.ended.size() == 300);
     for (const auto& [id, reports] : r.ended) {
         REQUIRE(reports.size() == 1);
-        CHECK(reports[0].state == stroke_state::finished);
+        CHECK(reports[0].state == state_kind::finished);
     }
 }
 
 TEST_CASE("short writes and writes of nothing lose no frame")
 {
     rig r({.wrap = [](auto s) { return std::make_unique<stingy_sink>(std::move(s)); }});
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     const score s = random_score(13, 20);
     const stroke_id id = r.submit(s);
     // Writes fail so often that the DAC must wait at times; it has no patience, so it plays what is there.
@@ -221,10 +221,10 @@ TEST_CASE("short writes and writes of nothing lose no frame")
         r.control();
     }
     REQUIRE(r.report(id));
-    CHECK(r.report(id)->state == stroke_state::finished);
+    CHECK(r.report(id)->state == state_kind::finished);
     CHECK(r.link.count.xruns == 0);
     REQUIRE(r.first_sound());
-    CHECK(r.captured(*r.first_sound() - 1, s.frames()) == rendered(s, sample_format::s32));
+    CHECK(r.captured(*r.first_sound() - 1, s.frames()) == rendered(s, format_kind::s32));
 }
 
 } // namespace bytes_test

@@ -36,7 +36,7 @@ TEST_CASE("the length of each xrun is kept, of many the newest")
     rig_options o;
     o.wrap = [](std::unique_ptr<sink> s) { return std::make_unique<dry_sink>(std::move(s)); };
     rig r(o);
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     for (unsigned i = 1; i <= 70; ++i) {
         r.play(rate); // more than three in a second are the end
         r.dac.advance(1 << 20);
@@ -51,7 +51,7 @@ TEST_CASE("the length of each xrun is kept, of many the newest")
 TEST_CASE("a device that does not stamp its stop still tells how long an xrun was")
 {
     rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     r.play(960);
     r.dac.advance(1 << 20);
     r.step();

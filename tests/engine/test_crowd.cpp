@@ -20,10 +20,10 @@ namespace {
 
 constexpr int crowd = 400;
 
-score drawn(algorithm how)
+score drawn(algorithm_kind how)
 {
     plan_options o;
-    o.method = how;
+    o.algorithm = how;
     const array a = palm();
     render_options r;
     r.level_dbfs = -60.0;
@@ -52,7 +52,7 @@ std::map<std::string, int> play_at_once(const score& s, std::uint64_t at)
     rig_options o;
     o.channels = s.channels();
     rig r(o);
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     for (int i = 0; i < crowd; ++i)
         r.submit(s, at);
     r.play_out();
@@ -67,13 +67,36 @@ std::map<std::string, int> play_at_once(const score& s, std::uint64_t at)
 
 TEST_CASE("400 strokes at once all play, at once")
 {
-    for (const algorithm how : {algorithm::park2016, algorithm::continuous}) {
+    for (const algorithm_kind how : {algorithm_kind::park2016, algorithm_kind::continuous}) {
         for (const std::uint64_t at : {0, 48'000}) {
             CAPTURE(to_string(how));
             CAPTURE(at);
             CHECK(play_at_once(drawn(how), at) == std::map<std::string, int>{{"finished: ", crowd}});
         }
     }
+}
+
+TEST_CASE("64 continuous strokes wake the control side for few of the periods")
+{
+    rig r;
+    REQUIRE(r.start().status == io_kind::ok);
+    for (int i = 0; i < 64; ++i)
+        r.submit(drawn(algorithm_kind::continuous), 0);
+    r.link.to_control.consume();
+    int periods = 0;
+    int wakes = 0;
+    for (; r.ended.size() < 64 && periods < 10'000; ++periods) {
+        r.dac.advance_queued(r.options.period);
+        r.step();
+        if (r.link.to_control.consume() > 0) {
+            r.control();
+            ++wakes;
+        }
+    }
+    CHECK(periods > 400);
+    CHECK(wakes < periods / 3);
+    for (const auto& [id, reports] : r.ended)
+        CHECK(r.report(id)->state == state_kind::finished);
 }
 
 TEST_CASE("more than can be mixed: what does not play says that they were too many, and what to do")

@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/dac_clock.hpp"
+#include "engine/audio/dac_clock.hpp"
 
 namespace dac_clock_test {
 

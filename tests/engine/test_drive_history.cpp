@@ -5,10 +5,10 @@
 #include <tactor/error.hpp>
 #include <tactor/player.hpp>
 
-#include "alsa/adopt.hpp"
 #include "clock_runner.hpp"
 #include "player_support.hpp"
 #include "scores.hpp"
+#include "sink/alsa/adopt.hpp"
 
 namespace drive_history_test {
 

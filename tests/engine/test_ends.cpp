@@ -49,7 +49,7 @@ void sleep_of_control(rig& r, int periods)
 TEST_CASE("a stroke is not finished before its last frame has reached the DAC")
 {
     rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     const score s = tone(0.01);
     const std::uint64_t end = r.status().written + s.frames();
     const stroke_id id = r.submit(s);
@@ -59,7 +59,7 @@ TEST_CASE("a stroke is not finished before its last frame has reached the DAC")
         REQUIRE_FALSE(r.loop.over());
     }
     REQUIRE(r.report(id));
-    CHECK(r.report(id)->state == stroke_state::finished);
+    CHECK(r.report(id)->state == state_kind::finished);
     CHECK(r.report(id)->frames == s.frames());
     CHECK(r.report(id)->reason.empty());
 }
@@ -67,7 +67,7 @@ TEST_CASE("a stroke is not finished before its last frame has reached the DAC")
 TEST_CASE("a cancelled stroke fades and is then reported once, with the frames that it got")
 {
     rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     const std::uint64_t from = r.status().written;
     const stroke_id id = r.submit(tone(10.0));
     r.play(9600);
@@ -76,7 +76,7 @@ TEST_CASE("a cancelled stroke fades and is then reported once, with the frames t
     CHECK_FALSE(r.feed.cancel(id));
     r.play(9600);
     REQUIRE(r.report(id));
-    CHECK(r.report(id)->state == stroke_state::cancelled);
+    CHECK(r.report(id)->state == state_kind::cancelled);
     CHECK(r.report(id)->frames == fade_from + 480 - from);
     CHECK_FALSE(r.first_sound(fade_from + 480));
     CHECK(r.first_sound(fade_from + 470));
@@ -89,8 +89,8 @@ TEST_CASE("a cancelled stroke fades and is then reported once, with the frames t
 
 TEST_CASE("cancelling leaves the other strokes alone")
 {
-    rig r({.format = sample_format::s32});
-    REQUIRE(r.start().status == io_status::ok);
+    rig r({.format = format_kind::s32});
+    REQUIRE(r.start().status == io_kind::ok);
     const score other = random_score(4, 10);
     const std::uint64_t from = r.status().written;
     r.submit(other);
@@ -98,9 +98,9 @@ TEST_CASE("cancelling leaves the other strokes alone")
     r.play(960);
     CHECK(r.feed.cancel(id));
     r.play_out();
-    CHECK(r.captured(from, other.frames()) == rendered(other, sample_format::s32));
-    CHECK(r.report(1)->state == stroke_state::finished);
-    CHECK(r.report(id)->state == stroke_state::cancelled);
+    CHECK(r.captured(from, other.frames()) == rendered(other, format_kind::s32));
+    CHECK(r.report({1})->state == state_kind::finished);
+    CHECK(r.report(id)->state == state_kind::cancelled);
     CHECK(r.report(id)->frames == 0);
 }
 
@@ -109,14 +109,14 @@ TEST_CASE("a cancel before, in, and after the hand-over ends a stroke once and w
     for (const std::uint64_t ahead : {std::uint64_t{1'000'000}, std::uint64_t{10'000}, std::uint64_t{0}}) {
         CAPTURE(ahead);
         rig r;
-        REQUIRE(r.start().status == io_status::ok);
+        REQUIRE(r.start().status == io_kind::ok);
         const stroke_id id = r.submit(tone(0.5), ahead == 0 ? 0 : r.status().written + ahead);
         if (ahead == 10'000)
             r.play(960);
         CHECK(r.feed.cancel(id));
         r.play(20'000);
         REQUIRE(r.report(id));
-        CHECK(r.report(id)->state == stroke_state::cancelled);
+        CHECK(r.report(id)->state == state_kind::cancelled);
         CHECK(r.report(id)->frames == 0);
         CHECK_FALSE(r.first_sound());
         CHECK(r.feed.stream_over() == false);
@@ -126,14 +126,14 @@ TEST_CASE("a cancel before, in, and after the hand-over ends a stroke once and w
 TEST_CASE("an unknown stroke cannot be cancelled")
 {
     rig r;
-    CHECK_FALSE(r.feed.cancel(1));
+    CHECK_FALSE(r.feed.cancel({1}));
 }
 
 TEST_CASE("cancels at random times: each stroke ends once, and the stream goes on")
 {
     std::mt19937_64 random(21);
     rig r({.ring = 64});
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     unsigned cancelled = 0;
     for (int i = 0; i < 3000; ++i) {
         if (random() % 8 == 0)
@@ -141,7 +141,7 @@ TEST_CASE("cancels at random times: each stroke ends once, and the stream goes o
                      random() % 2 == 0 ? 0 : r.status().written + random() % 40'000);
         if (random() % 8 == 0 && r.last_id > 0)
             cancelled +=
-                static_cast<unsigned>(r.feed.cancel(1 + static_cast<stroke_id>(random() % r.last_id)));
+                static_cast<unsigned>(r.feed.cancel({1 + static_cast<std::uint32_t>(random() % r.last_id)}));
         r.play(96);
     }
     r.play_out();
@@ -150,8 +150,8 @@ TEST_CASE("cancels at random times: each stroke ends once, and the stream goes o
     unsigned reported = 0;
     for (const auto& [id, reports] : r.ended) {
         REQUIRE(reports.size() == 1);
-        CHECK(reports[0].state != stroke_state::interrupted);
-        reported += static_cast<unsigned>(reports[0].state == stroke_state::cancelled);
+        CHECK(reports[0].state != state_kind::interrupted);
+        reported += static_cast<unsigned>(reports[0].state == state_kind::cancelled);
     }
     // One that was all on its way to the DAC when it was cancelled has finished.
     CHECK(reported <= cancelled);
@@ -163,7 +163,7 @@ TEST_CASE("stop fades what sounds, waits until it is out, and drops the stream")
     for (const bool closing : {false, true}) {
         CAPTURE(closing);
         rig r;
-        REQUIRE(r.start().status == io_status::ok);
+        REQUIRE(r.start().status == io_kind::ok);
         const stroke_id sounding = r.submit(tone(5.0));
         const stroke_id later = r.submit(tone(5.0), r.status().written + 12'000);
         const stroke_id far = r.submit(tone(5.0), r.status().written + 10 * rate);
@@ -176,7 +176,7 @@ TEST_CASE("stop fades what sounds, waits until it is out, and drops the stream")
         CHECK(r.loop.over());
         CHECK_FALSE(r.dac.running());
         CHECK(r.feed.stream_over());
-        const auto state = closing ? stroke_state::interrupted : stroke_state::cancelled;
+        const auto state = closing ? state_kind::interrupted : state_kind::cancelled;
         for (const stroke_id id : {sounding, later, far}) {
             REQUIRE(r.report(id));
             CHECK(r.report(id)->state == state);
@@ -195,7 +195,7 @@ TEST_CASE("stop does not wait for a long buffer: what still sounds after 0.4 s i
     for (const bool closing : {false, true}) {
         CAPTURE(closing);
         rig r({.period = 480, .periods = 200});
-        REQUIRE(r.start().status == io_status::ok);
+        REQUIRE(r.start().status == io_kind::ok);
         const stroke_id sounding = r.submit(tone(10.0));
         r.play(5 * rate);
         REQUIRE(r.status().running);
@@ -210,7 +210,7 @@ TEST_CASE("stop does not wait for a long buffer: what still sounds after 0.4 s i
         CHECK(r.loop.over());
         CHECK_FALSE(r.dac.running());
         REQUIRE(r.report(sounding));
-        CHECK(r.report(sounding)->state == (closing ? stroke_state::interrupted : stroke_state::cancelled));
+        CHECK(r.report(sounding)->state == (closing ? state_kind::interrupted : state_kind::cancelled));
         CHECK(r.report(sounding)->reason == (closing ? "the player was closed" : ""));
     }
 }
@@ -218,7 +218,7 @@ TEST_CASE("stop does not wait for a long buffer: what still sounds after 0.4 s i
 TEST_CASE("a stopped loop stays stopped")
 {
     rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     r.link.requests.push({.what = engine::request::kind::stop});
     r.play(48'000);
     REQUIRE(r.loop.over());
@@ -231,18 +231,18 @@ TEST_CASE("a stopped loop stays stopped")
 TEST_CASE("drives that come too late end the stroke instead of starting in mid-burst")
 {
     rig r({.loop = {.horizon_frames = 2400}});
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     const std::uint64_t from = r.status().written;
     const score s = random_score(31, 20);
     const stroke_id id = r.submit(s);
     sleep_of_control(r, 200); // much longer than its horizon
     r.play_out();
     REQUIRE(r.report(id));
-    CHECK(r.report(id)->state == stroke_state::interrupted);
+    CHECK(r.report(id)->state == state_kind::interrupted);
     CHECK(r.report(id)->reason.find("too slow") != std::string::npos);
     // What sounded is a true beginning of the stroke.
     const std::uint64_t sure = 2400 - 480;
-    const std::vector<std::byte> all = rendered(s, sample_format::s32);
+    const std::vector<std::byte> all = rendered(s, format_kind::s32);
     const std::vector<std::byte> got = r.captured(from, sure);
     CHECK(std::equal(got.begin(), got.end(), all.begin()));
     CHECK_FALSE(r.first_sound(from + 2400 + 4800 + 480));
@@ -253,11 +253,11 @@ TEST_CASE("a continuous stroke whose drives stop coming fades out before the las
     stroke around = preset_stroke("park2016-3");
     around.carrier_hz = 230.0;
     plan_options o;
-    o.method = algorithm::continuous;
+    o.algorithm = algorithm_kind::continuous;
     const score s(palm(), {{make_plan(palm(), around, o)}}, {});
     for (const std::uint32_t fade : {48U, 480U, 4800U}) {
         rig r({.loop = {.fade_frames = fade, .horizon_frames = 2400}});
-        REQUIRE(r.start().status == io_status::ok);
+        REQUIRE(r.start().status == io_kind::ok);
         const std::uint64_t from = r.status().written;
         const stroke_id id = r.submit(s);
         r.play(9600);
@@ -265,13 +265,13 @@ TEST_CASE("a continuous stroke whose drives stop coming fades out before the las
         sleep_of_control(r, 100);
         r.play_out();
         REQUIRE(r.report(id));
-        CHECK(r.report(id)->state == stroke_state::interrupted);
+        CHECK(r.report(id)->state == state_kind::interrupted);
         CHECK(r.report(id)->reason.find("too slow") != std::string::npos);
         const std::uint64_t end = r.report(id)->frames;
         CHECK(end > 9600);
         CHECK_FALSE(r.first_sound(from + end));
         const std::vector<std::byte> got = r.captured(from, end);
-        const std::vector<std::byte> all = rendered(s, sample_format::s32);
+        const std::vector<std::byte> all = rendered(s, format_kind::s32);
         const std::size_t whole = (end - 192) * s.channels() * 4;
         CHECK(std::equal(got.begin(), got.begin() + static_cast<std::ptrdiff_t>(whole), all.begin()));
         // Its last frames are all but silent.
@@ -283,7 +283,7 @@ TEST_CASE("a continuous stroke whose drives stop coming fades out before the las
 TEST_CASE("the display sees the newest stroke that sounds")
 {
     rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     CHECK(r.status().running);
     CHECK_FALSE(r.status().sounding);
     const std::uint64_t base = r.status().written;

@@ -27,7 +27,7 @@ std::int64_t run_until_over(rig& r, int steps)
 TEST_CASE("the stream starts once, after a full buffer of silence")
 {
     rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     CHECK(r.dac.starts() == 1);
     CHECK(r.dac.captured_frames() == 288);
     CHECK(r.dac.queued() == 288);
@@ -38,7 +38,7 @@ TEST_CASE("the stream starts once, after a full buffer of silence")
 TEST_CASE("an xrun interrupts what sounded, and the stream goes on in silence")
 {
     rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     const std::uint64_t base = r.status().written;
     const stroke_id id = r.submit(tone(1.0));
     r.play(9600);
@@ -47,7 +47,7 @@ TEST_CASE("an xrun interrupts what sounded, and the stream goes on in silence")
     r.step();
     r.control();
     REQUIRE(r.report(id));
-    CHECK(r.report(id)->state == stroke_state::interrupted);
+    CHECK(r.report(id)->state == state_kind::interrupted);
     CHECK(r.report(id)->reason == "xrun: the device ran dry");
     CHECK(r.report(id)->frames == written - base);
     CHECK(r.link.count.xruns == 1);
@@ -60,8 +60,8 @@ TEST_CASE("an xrun interrupts what sounded, and the stream goes on in silence")
     const score s = random_score(2, 3);
     const stroke_id next = r.submit(s);
     r.play_out();
-    CHECK(r.report(next)->state == stroke_state::finished);
-    CHECK(r.captured(again, s.frames()) == rendered(s, sample_format::s32));
+    CHECK(r.report(next)->state == state_kind::finished);
+    CHECK(r.captured(again, s.frames()) == rendered(s, format_kind::s32));
 }
 
 TEST_CASE("a stroke that had not begun survives an xrun and keeps its distance")
@@ -69,7 +69,7 @@ TEST_CASE("a stroke that had not begun survives an xrun and keeps its distance")
     for (const std::uint64_t ahead : {std::uint64_t{5'000}, std::uint64_t{15'000}, std::uint64_t{200'000}}) {
         CAPTURE(ahead);
         rig r;
-        REQUIRE(r.start().status == io_status::ok);
+        REQUIRE(r.start().status == io_kind::ok);
         const score s = random_score(5, 4);
         const std::uint64_t at = r.status().written + ahead;
         const stroke_id id = r.submit(s, at);
@@ -80,8 +80,8 @@ TEST_CASE("a stroke that had not begun survives an xrun and keeps its distance")
         r.control();
         r.play_out();
         REQUIRE(r.report(id));
-        CHECK(r.report(id)->state == stroke_state::finished);
-        CHECK(r.captured(at, s.frames()) == rendered(s, sample_format::s32));
+        CHECK(r.report(id)->state == state_kind::finished);
+        CHECK(r.captured(at, s.frames()) == rendered(s, format_kind::s32));
         CHECK(r.first_sound() > at - 1);
     }
 }
@@ -89,7 +89,7 @@ TEST_CASE("a stroke that had not begun survives an xrun and keeps its distance")
 TEST_CASE("a cancelled stroke that an xrun cuts is still cancelled, a finished one finished")
 {
     rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     const stroke_id cancelled = r.submit(tone(1.0));
     r.play(9600);
     const stroke_id done = r.submit(tone(0.001));
@@ -100,15 +100,15 @@ TEST_CASE("a cancelled stroke that an xrun cuts is still cancelled, a finished o
     r.step();
     r.control();
     REQUIRE(r.report(cancelled));
-    CHECK(r.report(cancelled)->state == stroke_state::cancelled);
+    CHECK(r.report(cancelled)->state == state_kind::cancelled);
     REQUIRE(r.report(done));
-    CHECK(r.report(done)->state == stroke_state::finished);
+    CHECK(r.report(done)->state == state_kind::finished);
 }
 
 TEST_CASE("three xruns a second are survived, the fourth is the end")
 {
     rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     const stroke_id far = r.submit(tone(0.1), 10 * rate);
     for (int i = 0; i < 3; ++i) {
         r.play(4800);
@@ -124,14 +124,14 @@ TEST_CASE("three xruns a second are survived, the fourth is the end")
     CHECK(r.link.count.xruns == 4);
     CHECK(r.feed.stream_over());
     REQUIRE(r.report(far));
-    CHECK(r.report(far)->state == stroke_state::interrupted);
+    CHECK(r.report(far)->state == state_kind::interrupted);
     CHECK(r.report(far)->reason == "the device was given up: one xrun after the other");
 }
 
 TEST_CASE("xruns that are further apart never end the stream")
 {
     rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     for (int i = 0; i < 20; ++i) {
         r.play(17'000);
         r.dac.advance(1000);
@@ -144,7 +144,7 @@ TEST_CASE("xruns that are further apart never end the stream")
 TEST_CASE("an unplugged device ends the stream and every stroke")
 {
     rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     const stroke_id sounding = r.submit(tone(1.0));
     const stroke_id near = r.submit(tone(1.0), r.status().written + 15'000);
     const stroke_id far = r.submit(tone(1.0), 10 * rate);
@@ -155,7 +155,7 @@ TEST_CASE("an unplugged device ends the stream and every stroke")
     CHECK(r.loop.over());
     for (const stroke_id id : {sounding, near, far}) {
         REQUIRE(r.report(id));
-        CHECK(r.report(id)->state == stroke_state::interrupted);
+        CHECK(r.report(id)->state == state_kind::interrupted);
         CHECK(r.report(id)->reason == "the device is gone");
         CHECK((r.report(id)->frames > 0) == (id == sounding));
     }
@@ -167,7 +167,7 @@ TEST_CASE("a device that stands still is lost after its time, whether it says re
     for (const bool cries : {false, true}) {
         CAPTURE(cries);
         rig r;
-        REQUIRE(r.start().status == io_status::ok);
+        REQUIRE(r.start().status == io_kind::ok);
         const stroke_id id = r.submit(tone(1.0));
         r.play(4800);
         r.dac.cry_ready(cries);
@@ -176,7 +176,7 @@ TEST_CASE("a device that stands still is lost after its time, whether it says re
         CHECK(took >= 500'000'000);
         CHECK(took <= 520'000'000);
         r.control();
-        CHECK(r.report(id)->state == stroke_state::interrupted);
+        CHECK(r.report(id)->state == state_kind::interrupted);
         CHECK(r.report(id)->reason == "the device does not move any more");
         CHECK(r.link.count.xruns == 0);
     }
@@ -185,7 +185,7 @@ TEST_CASE("a device that stands still is lost after its time, whether it says re
 TEST_CASE("descriptors that lie are left out after a while, so that nothing spins")
 {
     rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     r.dac.cry_ready(true);
     for (int i = 0; i < 30; ++i)
         r.step();
@@ -199,7 +199,7 @@ TEST_CASE("descriptors that lie are left out after a while, so that nothing spin
 TEST_CASE("a process that was stopped for a minute does not take its device for dead")
 {
     rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     r.play(4800);
     r.now += 60'000'000'000;
     r.play(4800);
@@ -210,7 +210,7 @@ TEST_CASE("a device that does not prepare or start any more ends the stream")
 {
     for (const bool prepares : {false, true}) {
         rig r;
-        REQUIRE(r.start().status == io_status::ok);
+        REQUIRE(r.start().status == io_kind::ok);
         const stroke_id id = r.submit(tone(1.0));
         r.play(960);
         if (prepares)
@@ -221,7 +221,7 @@ TEST_CASE("a device that does not prepare or start any more ends the stream")
         run_until_over(r, 10);
         r.control();
         CHECK(r.loop.over());
-        CHECK(r.report(id)->state == stroke_state::interrupted);
+        CHECK(r.report(id)->state == state_kind::interrupted);
         CHECK(r.report(id)->reason == "xrun: the device ran dry");
         CHECK(r.feed.stream_reason().find("device failed") != std::string::npos);
     }
@@ -231,7 +231,7 @@ TEST_CASE("a device that does not start at first says so")
 {
     rig r;
     r.dac.fail_start(-EIO);
-    CHECK(r.start().status == io_status::failed);
+    CHECK(r.start().status == io_kind::failed);
     CHECK_FALSE(r.status().running);
 }
 

@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/feeder.hpp"
+#include "engine/control/feeder.hpp"
 #include "scores.hpp"
 
 namespace feeder_test {
@@ -38,7 +38,7 @@ TEST_CASE("a beginning and its first drives become visible at once")
             while (seen == 0)
                 seen = link.commands.size();
         });
-        feed.submit(1, tone(0.05), 0);
+        feed.submit({1}, tone(0.05), start_at::now());
         feed.pump(0);
         audio.join();
         REQUIRE(seen == 3);
@@ -50,7 +50,7 @@ TEST_CASE("nothing beyond the horizon is handed over, and what is within it at o
     engine::link link;
     engine::feeder feed(link, 4800);
     const score s = random_score(1, 100);
-    feed.submit(1, s, 0);
+    feed.submit({1}, s, start_at::now());
     feed.pump(0);
     std::vector<command> got = take_all(link);
     REQUIRE(got.size() > 1);
@@ -79,8 +79,8 @@ TEST_CASE("drives of several strokes come in the order of their start")
 {
     engine::link link;
     engine::feeder feed(link, 1'000'000);
-    for (stroke_id id = 1; id <= 5; ++id)
-        feed.submit(id, random_score(id, 100), 1000 * id);
+    for (std::uint32_t n = 1; n <= 5; ++n)
+        feed.submit({n}, random_score(n, 100), start_at::frame(1000 * n));
     feed.pump(0);
     std::map<engine::ticket, std::uint64_t> starts;
     std::uint64_t last = 0;
@@ -102,11 +102,25 @@ TEST_CASE("drives of several strokes come in the order of their start")
     CHECK(last > 0);
 }
 
+TEST_CASE("what begins is to be seen at once, drives are not")
+{
+    engine::link link;
+    engine::feeder feed(link, 4800);
+    feed.submit({1}, random_score(1, 100), start_at::now());
+    feed.pump(0);
+    CHECK(feed.take_urgent());
+    CHECK_FALSE(feed.take_urgent());
+    feed.handle({.what = engine::report::kind::begun, .score = take_all(link).front().score, .frame = 0});
+    feed.pump(2400);
+    CHECK(link.commands.size() > 0);
+    CHECK_FALSE(feed.take_urgent());
+}
+
 TEST_CASE("a full ring asks to be told, and the feeder goes on where it was")
 {
     engine::link link(4);
     engine::feeder feed(link, 1'000'000);
-    feed.submit(1, random_score(1, 30), 0);
+    feed.submit({1}, random_score(1, 30), start_at::now());
     feed.pump(0);
     CHECK(link.commands.size() == 4);
     CHECK(link.feeder_waits);

@@ -10,7 +10,7 @@
 #include <tactor/error.hpp>
 
 #include "live_rig.hpp"
-#include "synth/guard.hpp"
+#include "synth/guard/guard.hpp"
 
 namespace live_test {
 
@@ -26,7 +26,7 @@ TEST_CASE("silent until the first point, then a sine at its tactor, from the nex
     CHECK(r.live->to({0.0, 0.0}, 1.0));
     const std::uint64_t next = r.status().written;
     r.play(9600);
-    CHECK(r.status().stroke == r.last_id);
+    CHECK(r.status().stroke == r.last());
     const auto sound = r.first_sound();
     REQUIRE(sound);
     CHECK(*sound <= next + 2);
@@ -81,7 +81,7 @@ TEST_CASE("wherever the points jump, the samples do not")
         const double allowed = live_level * (2 * 3.1416 * 250 / rate + 1.0 / 48);
         for (unsigned c = 0; c < 9; ++c)
             CHECK(largest_step(r.channel(c)) < allowed);
-        CHECK(r.report(1)->state == stroke_state::finished);
+        CHECK(r.report({1})->state == state_kind::finished);
     }
 }
 
@@ -110,14 +110,14 @@ TEST_CASE("bursts: each SOA one, at the newest position, as long as the law says
     }
     r.live->voice.ask(engine::live_voice::wish::end);
     r.play_out();
-    CHECK(r.report(1)->state == stroke_state::finished);
-    CHECK(r.report(1)->frames % 2880 == duration);
+    CHECK(r.report({1})->state == state_kind::finished);
+    CHECK(r.report({1})->frames % 2880 == duration);
 }
 
 TEST_CASE(
     "bursts: those in a row on one tactor are one sine of the stroke; or each begins anew, if asked for")
 {
-    for (const phase_mode phase : {phase_mode::stroke, phase_mode::burst}) {
+    for (const phase_kind phase : {phase_kind::stroke, phase_kind::burst}) {
         // At 255 Hz a burst is 17.85 cycles, which end anywhere: 2 ms of ramp.
         for (const double hz : {250.0, 255.0}) {
             live_options o = bursts();
@@ -133,13 +133,13 @@ TEST_CASE(
                 const std::size_t place = k % 3360;
                 if (hz != 250.0 && (place < 96 || place >= 3360 - 96))
                     continue;
-                const auto at = static_cast<double>(phase == phase_mode::burst ? place : k);
+                const auto at = static_cast<double>(phase == phase_kind::burst ? place : k);
                 const double exact = live_level * std::sin(2 * 3.14159265358979 * hz * at / rate);
                 REQUIRE(s[k] == doctest::Approx(exact).epsilon(1e-6).scale(0.1));
             }
             // Half way up and down the ramps.
             for (const std::size_t k : {std::size_t{48}, std::size_t{3360 - 48}, std::size_t{3360 + 48}}) {
-                const double at = static_cast<double>(phase == phase_mode::burst ? k % 3360 : k);
+                const double at = static_cast<double>(phase == phase_kind::burst ? k % 3360 : k);
                 const double sine = live_level * std::sin(2 * 3.14159265358979 * hz * at / rate);
                 CHECK(s[k] == doctest::Approx(hz == 250.0 ? sine : 0.5 * sine).epsilon(1e-4).scale(0.1));
             }
@@ -156,7 +156,7 @@ TEST_CASE("outside the array the nearest point plays, and is counted; or it is a
     CHECK(r.live->points == 3);
     CHECK(r.live->outside_points == 2);
     live_options strict;
-    strict.plan.leave = outside::error;
+    strict.plan.outside = outside_kind::error;
     auto s = r.add(strict);
     CHECK_THROWS_AS(s->to({-50.0, 0.0}, 1.0), error);
     CHECK(s->to({0.0, 0.0}, 1.0));
@@ -183,13 +183,17 @@ TEST_CASE("options that cannot be are errors")
         CHECK_THROWS_AS(r.add(o), error);
         --r.last_id;
     };
-    refused([](live_options& o) { o.plan.method = algorithm::tactile_brush; });
+    refused([](live_options& o) { o.plan.algorithm = algorithm_kind::tactile_brush; });
     refused([](live_options& o) { o.plan.carrier_hz = 24000.0; });
     refused([](live_options& o) { o.plan.carrier_hz = std::nan(""); });
     refused([](live_options& o) { o.plan.soa_s = 0.2; });
     refused([](live_options& o) { o.plan.burst_s = 0.0701; });
     refused([](live_options& o) { o.timeout_s = 0.0; });
     refused([](live_options& o) { o.timeout_s = std::nan(""); });
+    for (const double bad : {0.0, -1.0, 86401.0, std::nan("")})
+        refused([bad](live_options& o) { o.longest_s = bad; });
+    for (const double bad : {-0.001, 1.001, std::nan("")})
+        refused([bad](live_options& o) { o.smooth_s = bad; });
     refused([](live_options& o) { o.render.level_dbfs = 3.0; });
     refused([](live_options& o) { o.render.sl_db = 7.0; });
     refused([](live_options& o) { o.render.ramp_s = -1.0; });
@@ -215,7 +219,7 @@ TEST_CASE("live strokes that are weak one by one count as what they are together
             all.push_back(r.add(weak));
         if (continuous) {
             plan_options o;
-            o.method = algorithm::continuous;
+            o.algorithm = algorithm_kind::continuous;
             render_options level;
             level.level_dbfs = -41.0;
             const point stay[] = {{0.0, 0.0}, {0.1, 0.0}};

@@ -8,6 +8,7 @@
 
 #include "count_allocations.hpp"
 #include "live_rig.hpp"
+#include "rounds.hpp"
 
 namespace live_ends_test {
 
@@ -25,14 +26,14 @@ TEST_CASE("end fades out, plays the last point given, and is reported once as fi
     CHECK_FALSE(r.live->to({0.0, 40.0}, 1.0));
     const std::uint64_t end = r.status().written + 96 + 480;
     r.play(9600);
-    REQUIRE(r.report(1));
-    CHECK(r.report(1)->state == stroke_state::finished);
-    CHECK(r.report(1)->frames == end - base);
+    REQUIRE(r.report({1}));
+    CHECK(r.report({1})->state == state_kind::finished);
+    CHECK(r.report({1})->frames == end - base);
     CHECK(peak(r.channel(8), 0, SIZE_MAX) > 0.7 * live_level);
     CHECK(peak(r.channel(6), 0, SIZE_MAX) == 0.0);
     CHECK_FALSE(r.first_sound(end));
     CHECK(r.live->voice.closed());
-    CHECK_FALSE(r.feed.knows(1));
+    CHECK_FALSE(r.feed.knows({1}));
 }
 
 TEST_CASE("a live stroke without a point: ended it is finished with nothing, and cancelled it is cancelled")
@@ -44,13 +45,13 @@ TEST_CASE("a live stroke without a point: ended it is finished with nothing, and
     CHECK(r.ended.empty());
     r.live->voice.ask(engine::live_voice::wish::end);
     other->voice.ask(engine::live_voice::wish::cancel);
-    CHECK(r.feed.cancel(3));
+    CHECK(r.feed.cancel({3}));
     r.play(960);
-    CHECK(r.report(1)->state == stroke_state::finished);
-    CHECK(r.report(2)->state == stroke_state::cancelled);
-    CHECK(r.report(3)->state == stroke_state::cancelled);
-    for (stroke_id id : {1U, 2U, 3U})
-        CHECK(r.report(id)->frames == 0);
+    CHECK(r.report({1})->state == state_kind::finished);
+    CHECK(r.report({2})->state == state_kind::cancelled);
+    CHECK(r.report({3})->state == state_kind::cancelled);
+    for (const std::uint32_t n : {1U, 2U, 3U})
+        CHECK(r.report({n})->frames == 0);
     CHECK_FALSE(third->to({0, 0}, 1.0));
 }
 
@@ -66,11 +67,11 @@ TEST_CASE("cancel fades, in both renderings and both ways")
             if (by_handle)
                 r.live->voice.ask(engine::live_voice::wish::cancel);
             else
-                CHECK(r.feed.cancel(1));
+                CHECK(r.feed.cancel({1}));
             const std::uint64_t from = r.status().written;
             r.play(9600);
-            REQUIRE(r.report(1));
-            CHECK(r.report(1)->state == stroke_state::cancelled);
+            REQUIRE(r.report({1}));
+            CHECK(r.report({1})->state == state_kind::cancelled);
             CHECK_FALSE(r.first_sound(from + 480));
             CHECK(largest_step(r.channel(0)) < live_level * (2 * 3.1416 * 250 / rate + 1.0 / 48));
         }
@@ -90,11 +91,35 @@ TEST_CASE("a producer that falls silent: faded out after the time-out, interrupt
         }
         const std::uint64_t last = r.status().written;
         r.play(48'000);
-        REQUIRE(r.report(1));
-        CHECK(r.report(1)->state == stroke_state::interrupted);
-        CHECK(r.report(1)->reason == "no more points came");
+        REQUIRE(r.report({1}));
+        CHECK(r.report({1})->state == state_kind::interrupted);
+        CHECK(r.report({1})->reason == "no more points came");
         CHECK(r.first_sound(last + 9000));
         CHECK_FALSE(r.first_sound(last + 9600 + 480 + 3 * 96 + (as_bursts ? 3360 : 0)));
+        CHECK_FALSE(r.live->to({0.0, 0.0}, 1.0));
+    }
+}
+
+TEST_CASE("a live stroke lasts as long as it may, to a period: faded out, interrupted, with the reason")
+{
+    for (const bool as_bursts : {false, true}) {
+        live_options o = as_bursts ? bursts() : live_options{};
+        o.longest_s = 0.2;
+        live_rig r(o);
+        r.play(48'000 / 4); // what waits for its first point does not sound
+        CHECK(r.ended.empty());
+        r.live->to({0.0, 0.0}, 1.0);
+        const std::uint64_t base = r.status().written;
+        for (int i = 0; i < 200; ++i) {
+            r.live->to({0.0, 0.0}, 1.0);
+            r.play(96);
+        }
+        REQUIRE(r.report({1}));
+        CHECK(r.report({1})->state == state_kind::interrupted);
+        CHECK(r.report({1})->reason == "it has lasted as long as it may");
+        CHECK(r.report({1})->frames >= 9600);
+        CHECK(r.report({1})->frames <= 9600 + 96 + 480);
+        CHECK_FALSE(r.first_sound(base + 9600 + 96 + 480));
         CHECK_FALSE(r.live->to({0.0, 0.0}, 1.0));
     }
 }
@@ -108,9 +133,9 @@ TEST_CASE("an xrun ends a live stroke that sounds, and leaves one alone that wai
     r.dac.advance(10'000);
     r.step();
     r.control();
-    REQUIRE(r.report(1));
-    CHECK(r.report(1)->state == stroke_state::interrupted);
-    CHECK(r.report(1)->reason == "xrun: the device ran dry");
+    REQUIRE(r.report({1}));
+    CHECK(r.report({1})->state == state_kind::interrupted);
+    CHECK(r.report({1})->reason == "xrun: the device ran dry");
     CHECK_FALSE(r.live->to({0.0, 0.0}, 1.0));
     const std::uint64_t from = r.dac.captured_frames();
     CHECK(waits->to({40.0, 40.0}, 1.0));
@@ -118,7 +143,7 @@ TEST_CASE("an xrun ends a live stroke that sounds, and leaves one alone that wai
     CHECK(r.first_sound(from));
     waits->voice.ask(engine::live_voice::wish::end);
     r.play_out();
-    CHECK(r.report(2)->state == stroke_state::finished);
+    CHECK(r.report({2})->state == state_kind::finished);
 }
 
 TEST_CASE("more live strokes than can sound at once wait their turn; stop and the device's loss end all")
@@ -146,8 +171,8 @@ TEST_CASE("more live strokes than can sound at once wait their turn; stop and th
         CHECK(r.ended.size() == 40);
         for (const auto& [id, reports] : r.ended) {
             REQUIRE(reports.size() == 1);
-            if (id > 10)
-                CHECK(reports[0].state == (lost ? stroke_state::interrupted : stroke_state::cancelled));
+            if (id.number > 10)
+                CHECK(reports[0].state == (lost ? state_kind::interrupted : state_kind::cancelled));
         }
         for (auto& s : all)
             CHECK_FALSE(s->to({0.0, 0.0}, 1.0));
@@ -164,7 +189,7 @@ COUNTING_TEST_CASE("an hour of a live stroke: no heap in the audio thread, nothi
     }
     std::uint64_t calls = 0;
     std::int64_t held = 0; // by the producer, whose phantom model may use the heap
-    for (int i = 0; i < 180'000; ++i) {
+    for (int i = 0; i < rounds(180'000); ++i) {
         {
             const count_allocations count;
             r.live->to({20.0 + 20.0 * std::sin(0.01 * i), 20.0 + 20.0 * std::cos(0.013 * i)}, 1.0);
@@ -183,8 +208,8 @@ COUNTING_TEST_CASE("an hour of a live stroke: no heap in the audio thread, nothi
     CHECK(held == 0);
     r.live->voice.ask(engine::live_voice::wish::end);
     r.play_out();
-    CHECK(r.report(1)->state == stroke_state::finished);
-    CHECK(r.report(1)->frames > 3600ULL * rate);
+    CHECK(r.report({1})->state == state_kind::finished);
+    CHECK(r.report({1})->frames > static_cast<std::uint64_t>(rounds(3600)) * rate);
 }
 
 } // namespace live_ends_test

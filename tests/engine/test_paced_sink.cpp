@@ -44,16 +44,16 @@ public:
     }
 
 private:
-    io_status take(std::uint64_t first, const std::byte* data, std::size_t frames) noexcept override
+    io_kind take(std::uint64_t first, const std::byte* data, std::size_t frames) noexcept override
     {
         if (first >= ends_after_)
-            return io_status::lost;
+            return io_kind::lost;
         taken_.gapless = taken_.gapless && first == taken_.frames;
         taken_.frames += frames;
         taken_.most = std::max(taken_.most, frames);
         taken_.bytes.insert(taken_.bytes.end(), data,
                             data + frames * setup().channels * bytes_of(setup().format));
-        return io_status::ok;
+        return io_kind::ok;
     }
 
     taken& taken_;
@@ -71,11 +71,11 @@ TEST_CASE("a sink of one's own gets each frame once, a period at most at a time,
         CHECK(p.setup().period_frames == 96);
         CHECK(p.setup().buffer_frames == 288);
         CHECK_FALSE(p.setup().has_clock);
-        REQUIRE(p.wait(p.submit(s))->state == stroke_state::finished);
+        REQUIRE(p.wait(p.submit(s))->state == state_kind::finished);
     }
     CHECK(t.gapless);
     CHECK(t.most == 96);
-    const auto expected = rendered(s, sample_format::s32);
+    const auto expected = rendered(s, format_kind::s32);
     // The stroke's first frame is silent, like what is before it: look for its first sound.
     const auto sound = [](std::byte b) { return b != std::byte{0}; };
     const auto heard = std::find_if(t.bytes.begin(), t.bytes.end(), sound) - t.bytes.begin();
@@ -90,9 +90,9 @@ TEST_CASE("a sink of one's own that is lost ends the stream, and the stroke with
     try {
         const auto r = p.wait(p.submit(tone(10.0)));
         REQUIRE(r);
-        CHECK(r->state == stroke_state::interrupted);
+        CHECK(r->state == state_kind::interrupted);
     } catch (const error& e) { // on a busy machine the stream is over before the stroke comes
-        CHECK(e.kind() == errc::runtime);
+        CHECK(e.kind() == error_kind::runtime);
     }
     CHECK(p.ended().has_value());
     CHECK(t.frames == 4800);

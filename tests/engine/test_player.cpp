@@ -15,11 +15,11 @@
 #include <tactor/error.hpp>
 #include <tactor/player.hpp>
 
-#include "alsa/adopt.hpp"
 #include "clock_runner.hpp"
 #include "fake_dac.hpp"
 #include "player_support.hpp"
 #include "scores.hpp"
+#include "sink/alsa/adopt.hpp"
 
 namespace player_test {
 
@@ -60,10 +60,10 @@ TEST_CASE("threads and all: the bytes are the renderer's, and the report comes o
         run_until(dac, 288, [&] { return p.position().played >= from + s.frames() + 288; });
         const auto r = p.wait(id);
         REQUIRE(r);
-        CHECK(r->state == stroke_state::finished);
+        CHECK(r->state == state_kind::finished);
         CHECK(r->frames == s.frames());
         CHECK_FALSE(p.wait(id));
-        CHECK(part(dac.captured(), from * 36, s.frames() * 36) == rendered(s, sample_format::s32));
+        CHECK(part(dac.captured(), from * 36, s.frames() * 36) == rendered(s, format_kind::s32));
         const running_clock clock(dac);
         p.stop();
         CHECK_FALSE(p.position().running);
@@ -74,7 +74,7 @@ TEST_CASE("threads and all: the bytes are the renderer's, and the report comes o
     }
     CHECK(dac.closed());
     REQUIRE(told.size() == 1);
-    CHECK(told[0].state == stroke_state::finished);
+    CHECK(told[0].state == state_kind::finished);
 }
 
 TEST_CASE("cancel and stop from another thread than the one that waits")
@@ -88,13 +88,13 @@ TEST_CASE("cancel and stop from another thread than the one that waits")
     const auto r = p.wait(id);
     canceller.join();
     REQUIRE(r);
-    CHECK(r->state == stroke_state::cancelled);
+    CHECK(r->state == state_kind::cancelled);
     CHECK_FALSE(p.cancel(id));
     std::thread stopper([&] { p.stop(); });
     const auto o = p.wait(other);
     stopper.join();
     REQUIRE(o);
-    CHECK(o->state == stroke_state::cancelled);
+    CHECK(o->state == state_kind::cancelled);
     CHECK_THROWS_AS(p.submit(tone(0.1)), error);
     p.stop();
 }
@@ -108,11 +108,11 @@ TEST_CASE("a player that is destroyed while strokes sound reports them as interr
         player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
         p.on_report([&](const stroke_report& r) { told.push_back(r); });
         p.submit(tone(100.0));
-        p.submit(tone(100.0), 48'000'000);
+        p.submit(tone(100.0), start_at::frame(48'000'000));
     }
     REQUIRE(told.size() == 2);
     for (const stroke_report& r : told) {
-        CHECK(r.state == stroke_state::interrupted);
+        CHECK(r.state == state_kind::interrupted);
         CHECK(r.reason == "the player was closed");
     }
     CHECK(dac.closed());
@@ -123,7 +123,7 @@ TEST_CASE("the handler may submit, cancel and stop, and is not made to wait for 
     fake_dac dac;
     const running_clock clock(dac);
     std::atomic<int> rounds{0};
-    std::atomic<stroke_id> last{0};
+    std::atomic<stroke_id> last{stroke_id{}};
     player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
     p.on_report([&](const stroke_report& r) {
         if (rounds++ < 5) {
@@ -153,7 +153,7 @@ TEST_CASE("several producers: every stroke ends once")
         producers.emplace_back([&, t] {
             for (int i = 0; i < 25; ++i) {
                 const auto r = p.wait(p.submit(tone(0.002, t)));
-                finished += static_cast<int>(r && r->state == stroke_state::finished);
+                finished += static_cast<int>(r && r->state == state_kind::finished);
             }
         });
     }
@@ -170,13 +170,13 @@ TEST_CASE("an unplugged device ends the waits and the stream")
     dac.disconnect();
     const auto r = p.wait(id);
     REQUIRE(r);
-    CHECK(r->state == stroke_state::interrupted);
+    CHECK(r->state == state_kind::interrupted);
     CHECK(r->reason == "the device is gone");
     try {
         p.submit(tone(0.1));
         FAIL("no error");
     } catch (const error& e) {
-        CHECK(e.kind() == errc::runtime);
+        CHECK(e.kind() == error_kind::runtime);
         CHECK(std::string(e.what()).find("the device is gone") != std::string::npos);
     }
     p.stop();
@@ -191,12 +191,12 @@ TEST_CASE("an xrun is counted and survived")
     dac.advance(10'000);
     const auto r = p.wait(id);
     REQUIRE(r);
-    CHECK(r->state == stroke_state::interrupted);
+    CHECK(r->state == state_kind::interrupted);
     CHECK(r->reason == "xrun: the device ran dry");
     dac.await([&] { return dac.starts() == 2; });
     CHECK(p.stats().xruns == 1);
     const running_clock clock(dac);
-    CHECK(p.wait(p.submit(tone(0.01)))->state == stroke_state::finished);
+    CHECK(p.wait(p.submit(tone(0.01)))->state == state_kind::finished);
     p.stop(); // while the clock still runs
 }
 
@@ -204,9 +204,9 @@ TEST_CASE("a wait can time out, and one for an unknown stroke does not block")
 {
     fake_dac dac;
     player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
-    CHECK_FALSE(p.wait(17));
+    CHECK_FALSE(p.wait({17}));
     const stroke_id id = p.submit(tone(100.0));
-    CHECK_FALSE(p.wait(id, std::chrono::nanoseconds(1)));
+    CHECK_FALSE(p.wait(id, 1e-9));
     CHECK(p.cancel(id));
     const running_clock clock(dac);
     CHECK(p.wait(id));
@@ -248,7 +248,7 @@ TEST_CASE("real-time priority that is required and refused is an error; otherwis
         const player p(pcm::adopt(dac.pcm(), nine()), palm(), o);
         CHECK(p.stats().realtime);
     } catch (const error& e) {
-        CHECK(e.kind() == errc::not_available);
+        CHECK(e.kind() == error_kind::not_available);
         realtime = false;
     }
     fake_dac other;

@@ -68,7 +68,7 @@ TEST_CASE("the player switches its amplifier on once, plays, and off once")
         stalls = p.stats().stalls;
         // On a machine that is too busy the watchdog may have had to do something.
         if (stalls == 0)
-            CHECK(report->state == stroke_state::finished);
+            CHECK(report->state == state_kind::finished);
         CHECK_FALSE(state->log.back());
     }
     if (stalls == 0)
@@ -100,7 +100,7 @@ TEST_CASE("an amplifier whose line fails ends the player's stream")
     try {
         const auto report = p.wait(p.submit(tone(0.05)));
         REQUIRE(report);
-        CHECK(report->state == stroke_state::interrupted);
+        CHECK(report->state == state_kind::interrupted);
         why = report->reason;
     } catch (const error& e) {
         why = e.what(); // the stream was over before the stroke came

@@ -26,7 +26,7 @@ using namespace tactor::test;
 namespace {
 
 // The PCM called t of a configuration.
-alsa_options configured(const std::string& text, sample_format f = sample_format::s32)
+alsa_options configured(const std::string& text, format_kind f = format_kind::s32)
 {
     alsa_options o = nine(f);
     o.pcm.assign(1, 't');
@@ -53,7 +53,7 @@ std::size_t first_sound(const std::vector<std::byte>& all)
 
 TEST_CASE("what a file PCM receives is silence, the renderer's bytes without a gap, silence")
 {
-    for (const sample_format f : {sample_format::s32, sample_format::s16}) {
+    for (const format_kind f : {format_kind::s32, format_kind::s16}) {
         CAPTURE(to_string(f));
         const folder dir;
         const std::filesystem::path file = dir / "out.raw";
@@ -70,7 +70,7 @@ TEST_CASE("what a file PCM receives is silence, the renderer's bytes without a g
             REQUIRE(p.wait(id));
             const auto r = p.wait(p.submit(b));
             REQUIRE(r);
-            CHECK(r->state == stroke_state::finished);
+            CHECK(r->state == state_kind::finished);
             p.stop();
             CHECK(p.stats().xruns == 0);
         }
@@ -99,10 +99,10 @@ TEST_CASE("a file that cannot be written ends the stream with the reason")
     try {
         const auto r = p.wait(p.submit(tone(60.0)));
         REQUIRE(r);
-        CHECK(r->state == stroke_state::interrupted);
+        CHECK(r->state == state_kind::interrupted);
         said = r->reason;
     } catch (const error& e) {
-        CHECK(e.kind() == errc::runtime);
+        CHECK(e.kind() == error_kind::runtime);
         said = e.what();
     }
     CHECK(said.find("the device failed: Input/output error") != std::string::npos);
@@ -122,7 +122,7 @@ TEST_CASE("null paces a stroke in real time, multi of nulls too")
         const auto begun = std::chrono::steady_clock::now();
         const auto r = p.wait(p.submit(tone(0.1)));
         REQUIRE(r);
-        CHECK(r->state == stroke_state::finished);
+        CHECK(r->state == state_kind::finished);
         CHECK(std::chrono::steady_clock::now() - begun >= std::chrono::milliseconds(100));
         CHECK(p.stats().xruns == 0);
     }
@@ -135,7 +135,7 @@ TEST_CASE("a stream with fewer channels than the array is refused, and says whic
         const player p(open_alsa({.pcm = "null", .channels = 4}), palm);
         FAIL("it opened");
     } catch (const error& e) {
-        CHECK(e.kind() == errc::bad_input);
+        CHECK(e.kind() == error_kind::bad_input);
         CHECK(std::string(e.what()) ==
               "player: tactor 4 of palm-3x3 is on channel 4, but the stream has 4 channels "
               "(open it with 9 channels; they count from 0)");

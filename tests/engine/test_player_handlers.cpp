@@ -24,11 +24,11 @@
 #include <tactor/error.hpp>
 #include <tactor/player.hpp>
 
-#include "alsa/adopt.hpp"
 #include "clock_runner.hpp"
 #include "has.hpp"
 #include "player_support.hpp"
 #include "scores.hpp"
+#include "sink/alsa/adopt.hpp"
 
 namespace player_handlers_test {
 
@@ -68,7 +68,7 @@ std::string refused_trigger(int fd)
     try {
         const player p(pcm::adopt(dac.pcm(), nine()), palm(), patient(), std::move(lines));
     } catch (const error& e) {
-        CHECK(e.kind() == errc::bad_input);
+        CHECK(e.kind() == error_kind::bad_input);
         CHECK(dac.closed());
         return e.what();
     }
@@ -111,9 +111,9 @@ TEST_CASE("a handler may destroy the player: what is left is reported from withi
         wait_for(gone);
         REQUIRE(told.size() == 3);
         CHECK(told[0].id == first);
-        CHECK(told[0].state == stroke_state::cancelled);
+        CHECK(told[0].state == state_kind::cancelled);
         for (std::size_t i = 1; i < 3; ++i) {
-            CHECK(told[i].state == stroke_state::interrupted);
+            CHECK(told[i].state == state_kind::interrupted);
             CHECK(told[i].reason == "the player was closed");
         }
     }
@@ -188,11 +188,11 @@ TEST_CASE("a handler that throws ends the stream, with the reason, and not the p
         CHECK(p.on_end(longer, [&](const stroke_report&) { ++others; }));
         CHECK(p.on_end(armed, [&](const stroke_report&) { ++others; }));
         CHECK(p.cancel(id));
-        CHECK(p.wait(id)->state == stroke_state::cancelled);
+        CHECK(p.wait(id)->state == state_kind::cancelled);
         for (const stroke_id other : {longer, armed}) {
             const auto r = p.wait(other);
             REQUIRE(r);
-            CHECK(r->state == stroke_state::interrupted);
+            CHECK(r->state == state_kind::interrupted);
             CHECK(r->reason == why);
         }
         p.stop();
@@ -202,7 +202,7 @@ TEST_CASE("a handler that throws ends the stream, with the reason, and not the p
             p.submit(tone(0.01));
             FAIL("no error");
         } catch (const error& e) {
-            CHECK(e.kind() == errc::runtime);
+            CHECK(e.kind() == error_kind::runtime);
             has(e.what(), why);
         }
     }
@@ -221,7 +221,7 @@ TEST_CASE("a handler may throw anything; what on_end() calls at once throws to i
     CHECK_FALSE(p.ended());
     p.on_report([](const stroke_report&) { throw 17; });
     const stroke_id other = p.submit(tone(0.001));
-    CHECK(p.wait(other)->state == stroke_state::finished);
+    CHECK(p.wait(other)->state == state_kind::finished);
     // The report may be here before the handler is there.
     while (!p.ended())
         std::this_thread::yield();
@@ -239,12 +239,12 @@ TEST_CASE("a handler may call all members, and set itself anew")
     p.on_report([&](const stroke_report& r) {
         const stroke_id armed = p.submit(tone(0.001), start_at::trigger());
         CHECK(p.on_end(armed, [&](const stroke_report&) { raise_flag(second); }));
-        CHECK_FALSE(p.on_end(r.id + 1000, [](const stroke_report&) {}));
+        CHECK_FALSE(p.on_end({r.id.number + 1000}, [](const stroke_report&) {}));
         CHECK_FALSE(p.ended());
         CHECK(p.setup().channels == 9);
         CHECK(p.stats().xruns == 0);
         CHECK(p.position().running);
-        live_stroke live = p.begin();
+        live_stroke live = p.begin({.timeout_s = 86400.0});
         CHECK(live.to(1.0, 1.0));
         live.cancel();
         p.on_report({});
@@ -254,7 +254,7 @@ TEST_CASE("a handler may call all members, and set itself anew")
     const stroke_id id = p.submit(tone(0.001));
     wait_for(first);
     wait_for(second);
-    CHECK(p.wait(id)->state == stroke_state::finished);
+    CHECK(p.wait(id)->state == state_kind::finished);
     p.stop();
 }
 
@@ -263,7 +263,7 @@ TEST_CASE("after the end all members may be called, and an empty function is ref
     fake_dac dac;
     const running_clock clock(dac);
     player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
-    CHECK_THROWS_AS(p.on_end(1, {}), error);
+    CHECK_THROWS_AS(p.on_end({1}, {}), error);
     live_stroke live = p.begin();
     const stroke_id id = p.submit(tone(100.0));
     p.stop();
@@ -274,7 +274,7 @@ TEST_CASE("after the end all members may be called, and an empty function is ref
     CHECK(p.fire(0) == 0);
     CHECK_FALSE(p.cancel(id));
     CHECK_FALSE(live.to(1.0, 1.0));
-    CHECK(p.wait(id)->state == stroke_state::cancelled);
+    CHECK(p.wait(id)->state == state_kind::cancelled);
     CHECK_FALSE(p.wait(id));
     CHECK_FALSE(p.on_end(id, [](const stroke_report&) {}));
     CHECK(p.ended() == "");
@@ -306,7 +306,7 @@ TEST_CASE("Asio: a plain callback runs in the context that was named, which is a
     const auto ran = [&](std::exception_ptr failed, const stroke_report& r) {
         CHECK(std::this_thread::get_id() == here);
         CHECK_FALSE(failed);
-        CHECK(r.state == stroke_state::finished);
+        CHECK(r.state == state_kind::finished);
         ++calls;
     };
     boost::asio::io_context io;
@@ -329,7 +329,8 @@ TEST_CASE("Asio: a plain callback runs in the context that was named, which is a
 
     io.restart();
     std::exception_ptr unknown;
-    async_wait(io, p, 77, [&](std::exception_ptr failed, const stroke_report&) { unknown = failed; });
+    async_wait(io, p, stroke_id{77},
+               [&](std::exception_ptr failed, const stroke_report&) { unknown = failed; });
     CHECK_FALSE(unknown);
     io.run();
     CHECK_THROWS_AS(std::rethrow_exception(unknown), error);

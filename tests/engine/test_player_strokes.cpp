@@ -25,10 +25,10 @@
 #include <tactor/asio.hpp>
 #include <tactor/error.hpp>
 
-#include "alsa/adopt.hpp"
 #include "clock_runner.hpp"
 #include "player_support.hpp"
 #include "scores.hpp"
+#include "sink/alsa/adopt.hpp"
 
 namespace player_strokes_test {
 
@@ -89,7 +89,7 @@ TEST_CASE("an edge fires what is armed: at its time and the delay, for all at on
     for (int round = 0; round < 5; ++round) {
         const stroke_id a = p.submit(tone(0.01), start_at::trigger());
         const stroke_id b = p.submit(tone(0.01, 3), start_at::trigger());
-        CHECK_FALSE(p.wait(a, std::chrono::nanoseconds(0)));
+        CHECK_FALSE(p.wait(a, 0.0));
         const std::int64_t t = now_ns();
         trigger.edge(t);
         trigger.edge(t + 1'000'000'000); // there is nothing left to start
@@ -97,19 +97,19 @@ TEST_CASE("an edge fires what is armed: at its time and the delay, for all at on
         const auto rb = p.wait(b);
         REQUIRE(ra);
         REQUIRE(rb);
-        CHECK(ra->state == stroke_state::finished);
-        CHECK(rb->state == stroke_state::finished);
+        CHECK(ra->state == state_kind::finished);
+        CHECK(rb->state == state_kind::finished);
         CHECK(ra->started_ns.has_value() == rb->started_ns.has_value());
     }
     const stroke_id c = p.submit(tone(0.01), start_at::trigger());
     trigger.break_off();
     const stroke_id d = p.submit(tone(0.01));
-    CHECK(p.wait(d)->state == stroke_state::finished);
+    CHECK(p.wait(d)->state == state_kind::finished);
     CHECK(p.fire(now_ns()) == 1);
-    CHECK(p.wait(c)->state == stroke_state::finished);
+    CHECK(p.wait(c)->state == state_kind::finished);
     const stroke_id e = p.submit(tone(0.01), start_at::trigger());
     p.stop();
-    CHECK(p.wait(e)->state == stroke_state::cancelled);
+    CHECK(p.wait(e)->state == state_kind::cancelled);
     CHECK(p.fire(now_ns()) == 0);
     CHECK_THROWS_AS(p.begin(), error);
 }
@@ -130,16 +130,16 @@ TEST_CASE("several producers of every kind at once: each stroke ends exactly onc
     fake_dac dac;
     const running_clock clock(dac);
     std::vector<int> ends(2000, 0);
-    stroke_id most = 0;
+    stroke_id most;
     {
         player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
         std::mutex mutex;
         p.on_report([&](const stroke_report& r) {
             const std::lock_guard lock(mutex);
-            ++ends.at(r.id);
+            ++ends.at(r.id.number);
             most = std::max(most, r.id);
         });
-        live_stroke shared = p.begin();
+        live_stroke shared = p.begin({.timeout_s = 86400.0});
         std::vector<std::thread> threads;
         for (unsigned t = 0; t < 4; ++t) {
             threads.emplace_back([&, t] {
@@ -154,7 +154,7 @@ TEST_CASE("several producers of every kind at once: each stroke ends exactly onc
                         p.fire(now_ns());
                     if (i % 5 == 0)
                         p.cancel(id);
-                    live_stroke own = p.begin();
+                    live_stroke own = p.begin({.timeout_s = 86400.0});
                     own.to(5.0, 5.0, 0.1);
                     if (i % 2 == 0)
                         own.end();
@@ -175,9 +175,9 @@ TEST_CASE("several producers of every kind at once: each stroke ends exactly onc
         CHECK(shared.counts().points <= 160);
         p.stop();
     }
-    CHECK(most == 321);
-    for (stroke_id id = 1; id <= most; ++id)
-        REQUIRE(ends[id] == 1);
+    CHECK(most.number == 321);
+    for (std::uint32_t n = 1; n <= most.number; ++n)
+        REQUIRE(ends[n] == 1);
 }
 
 TEST_CASE("a live stroke outlives its player")
@@ -187,7 +187,7 @@ TEST_CASE("a live stroke outlives its player")
     std::optional<live_stroke> left;
     {
         player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
-        left = p.begin();
+        left = p.begin({.timeout_s = 86400.0});
         CHECK(left->to(1.0, 1.0));
     }
     CHECK_FALSE(left->to(2.0, 2.0));
@@ -204,14 +204,14 @@ TEST_CASE("on_end: in time, too late, for strangers, several for one")
     player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
     std::atomic<int> calls{0};
     const auto count = [&calls](const stroke_report& r) {
-        CHECK(r.state == stroke_state::finished);
+        CHECK(r.state == state_kind::finished);
         ++calls;
         calls.notify_all();
     };
     const stroke_id id = p.submit(tone(0.05), start_at::trigger());
     CHECK(p.on_end(id, count));
     CHECK(p.on_end(id, count));
-    CHECK_FALSE(p.on_end(77, count));
+    CHECK_FALSE(p.on_end({77}, count));
     p.fire(now_ns());
     for (int n = calls; n < 2; n = calls)
         calls.wait(n);
@@ -246,8 +246,8 @@ TEST_CASE("Asio: callbacks in the caller's executor")
     context.run();
     REQUIRE(done.size() == 2);
     std::sort(done.begin(), done.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
-    CHECK(done[0].state == stroke_state::finished);
-    CHECK(done[1].state == stroke_state::cancelled);
+    CHECK(done[0].state == state_kind::finished);
+    CHECK(done[1].state == state_kind::cancelled);
     REQUIRE(refused);
     CHECK_THROWS_AS(std::rethrow_exception(refused), error);
 }
@@ -258,12 +258,12 @@ TEST_CASE("Asio: futures, and a stroke that is not known")
     const running_clock clock(dac);
     player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
     std::future<stroke_report> a = async_play(p, tone(0.01), start_at::now(), boost::asio::use_future);
-    std::future<stroke_report> b = async_wait(p, 99, boost::asio::use_future);
-    CHECK(a.get().state == stroke_state::finished);
+    std::future<stroke_report> b = async_wait(p, stroke_id{99}, boost::asio::use_future);
+    CHECK(a.get().state == state_kind::finished);
     CHECK_THROWS_AS(b.get(), error);
     std::future<stroke_report> c = async_play(p, tone(100.0), start_at::trigger(), boost::asio::use_future);
     p.stop();
-    CHECK(c.get().state == stroke_state::cancelled);
+    CHECK(c.get().state == state_kind::cancelled);
 }
 
 } // namespace player_strokes_test

@@ -8,9 +8,9 @@
 
 #include <doctest/doctest.h>
 
-#include "alsa/adopt.hpp"
 #include "fake_dac.hpp"
 #include "player_support.hpp"
+#include "sink/alsa/adopt.hpp"
 
 namespace poll_test {
 
@@ -23,17 +23,17 @@ TEST_CASE("a device without descriptors in an xrun, such as dmix, is not asked a
     dac.hide_descriptors_in_xrun();
     const auto s = pcm::adopt(dac.pcm(), nine());
     std::vector<std::byte> silence(288 * 9 * bytes_of(s->setup().format));
-    REQUIRE(s->prepare() == io_status::ok);
+    REQUIRE(s->prepare() == io_kind::ok);
     REQUIRE(s->write(silence.data(), 288).frames == 288);
-    REQUIRE(s->start() == io_status::ok);
+    REQUIRE(s->start() == io_kind::ok);
     std::vector<pollfd> fds(s->max_descriptors());
     CHECK(s->descriptors(fds) == 1);
-    CHECK(s->ready(std::span(fds).first(1)) == io_status::again);
+    CHECK(s->ready(std::span(fds).first(1)) == io_kind::again);
     dac.advance(10'000);
-    CHECK(s->room().status == io_status::xrun);
+    CHECK(s->room().status == io_kind::xrun);
     const std::size_t n = s->descriptors(fds);
     CHECK(n == 0);
-    CHECK(s->ready(std::span(fds).first(n)) == io_status::xrun);
+    CHECK(s->ready(std::span(fds).first(n)) == io_kind::xrun);
     CHECK(dac.asked_in_vain() == 0);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Which pulses stand where the sync thread takes them, and in which order.
-#include "engine/pulse_board.hpp"
+#include "engine/control/pulse_board.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -12,7 +12,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/pulses.hpp"
+#include "engine/control/pulses.hpp"
 
 namespace pulse_board_test {
 
@@ -36,8 +36,8 @@ std::optional<pulse> next(const engine::pulse_board& b, std::uint64_t epoch)
 // Of the strokes that a test calls off some have been sent before.
 bool may_be_forgotten(stroke_id id)
 {
-    for (stroke_id by = id; by < id + 5; ++by) {
-        if (by % 3 == 0 && by - by % 5 == id)
+    for (std::uint32_t by = id.number; by < id.number + 5; ++by) {
+        if (by % 3 == 0 && by - by % 5 == id.number)
             return true;
     }
     return false;
@@ -49,20 +49,20 @@ TEST_CASE("pulses come in order of their frames, those of other epochs and ended
 {
     engine::pulse_board board;
     engine::pulse_plan p(board);
-    CHECK(p.add(1, 500, line_of(1, 0)));
-    CHECK(p.add(2, 300, line_of(1, 0)));
-    CHECK(p.add(3, 700, line_of(1, 0)));
+    CHECK(p.add({1}, 500, line_of(1, 0)));
+    CHECK(p.add({2}, 300, line_of(1, 0)));
+    CHECK(p.add({3}, 700, line_of(1, 0)));
     CHECK(next(board, 1) == pulse{1, 300, 2});
-    p.forget(2);
+    p.forget({2});
     CHECK(next(board, 1) == pulse{1, 500, 1});
     CHECK(board.take(*board.next(line_of(1, 0))));
     CHECK(next(board, 1) == pulse{1, 700, 3});
     CHECK_FALSE(next(board, 2));
-    CHECK(p.add(4, 900, line_of(2, 800)));
+    CHECK(p.add({4}, 900, line_of(2, 800)));
     CHECK(next(board, 2) == pulse{2, 900, 4});
     CHECK_FALSE(next(board, 1));
-    CHECK_FALSE(p.add(5, 790, line_of(2, 800))); // from before the xrun
-    CHECK_FALSE(p.add(6, 990, line_of(0, 0)));   // between two epochs
+    CHECK_FALSE(p.add({5}, 790, line_of(2, 800))); // from before the xrun
+    CHECK_FALSE(p.add({6}, 990, line_of(0, 0)));   // between two epochs
     CHECK_FALSE(next(board, 2));
 }
 
@@ -70,12 +70,12 @@ TEST_CASE("what was seen waiting and has been called off since is not to be had 
 {
     engine::pulse_board board;
     engine::pulse_plan p(board);
-    p.add(1, 500, line_of(1, 0));
+    p.add({1}, 500, line_of(1, 0));
     const auto seen = board.next(line_of(1, 0));
     REQUIRE(seen);
-    p.forget(1);
+    p.forget({1});
     CHECK_FALSE(board.take(*seen));
-    p.add(2, 600, line_of(1, 0)); // in the same place
+    p.add({2}, 600, line_of(1, 0)); // in the same place
     CHECK_FALSE(board.take(*seen));
     CHECK(next(board, 1) == pulse{1, 600, 2});
 }
@@ -88,15 +88,15 @@ TEST_CASE("more pulses than places, in any order of planning, come all and in or
     std::iota(frames.begin(), frames.end(), 1);
     std::shuffle(frames.begin(), frames.end(), std::mt19937(3)); // NOLINT(cert-msc51-cpp)
     for (const std::uint64_t f : frames)
-        p.add(static_cast<stroke_id>(f), f, line_of(1, 0));
-    p.forget(7);
-    p.forget(900); // not on the board yet
+        p.add({static_cast<std::uint32_t>(f)}, f, line_of(1, 0));
+    p.forget({7});
+    p.forget({900}); // not on the board yet
     for (std::uint64_t f = 1; f <= frames.size(); ++f) {
         if (f == 7 || f == 900)
             continue;
         const auto seen = board.next(line_of(1, 0));
         REQUIRE(seen);
-        REQUIRE(seen->what == pulse{1, f, static_cast<stroke_id>(f)});
+        REQUIRE(seen->what == pulse{1, f, static_cast<std::uint32_t>(f)});
         REQUIRE(board.take(*seen));
         if (f % 100 == 0)
             p.hand_over();
@@ -107,7 +107,7 @@ TEST_CASE("more pulses than places, in any order of planning, come all and in or
 
 TEST_CASE("planned by one thread and sent by another: each pulse once at most, none in halves")
 {
-    constexpr stroke_id last = 20'000;
+    constexpr std::uint32_t last = 20'000;
     engine::pulse_board board;
     std::vector<int> sent(last + 1, 0);
     std::atomic<bool> over{false};
@@ -116,17 +116,17 @@ TEST_CASE("planned by one thread and sent by another: each pulse once at most, n
         for (bool ends = false; !ends;) {
             ends = over;
             while (const auto s = board.next(line_of(1, 0))) {
-                wrong += static_cast<std::uint64_t>(s->what.frame != 3 * std::uint64_t{s->what.id});
+                wrong += static_cast<std::uint64_t>(s->what.frame != 3 * std::uint64_t{s->what.id.number});
                 if (board.take(*s))
-                    ++sent[s->what.id];
+                    ++sent[s->what.id.number];
             }
         }
     });
     engine::pulse_plan p(board);
-    for (stroke_id id = 1; id <= last; ++id) {
-        p.add(id, 3 * std::uint64_t{id}, line_of(1, 0));
-        if (id % 3 == 0)
-            p.forget(id - id % 5);
+    for (std::uint32_t n = 1; n <= last; ++n) {
+        p.add({n}, 3 * std::uint64_t{n}, line_of(1, 0));
+        if (n % 3 == 0)
+            p.forget({n - n % 5});
     }
     // An empty board takes what waits, if anything does.
     for (bool empty = false, any = true; !empty || any;) {
@@ -138,8 +138,8 @@ TEST_CASE("planned by one thread and sent by another: each pulse once at most, n
     sender.join();
     CHECK(wrong == 0);
     std::size_t strangers = 0;
-    for (stroke_id id = 1; id <= last; ++id)
-        strangers += static_cast<std::size_t>(sent[id] > 1 || (sent[id] == 0 && !may_be_forgotten(id)));
+    for (std::uint32_t n = 1; n <= last; ++n)
+        strangers += static_cast<std::size_t>(sent[n] > 1 || (sent[n] == 0 && !may_be_forgotten({n})));
     CHECK(strangers == 0);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Sync pulses: which, when, and what is counted; on virtual time, and once with the real thread.
-#include "engine/pulses.hpp"
+#include "engine/control/pulses.hpp"
 
 #include <algorithm>
 #include <condition_variable>
@@ -14,7 +14,7 @@
 #include <tactor/player.hpp>
 
 #include "count_allocations.hpp"
-#include "engine/trigger_thread.hpp"
+#include "engine/control/trigger_thread.hpp"
 #include "player_support.hpp"
 #include "rt/clock.hpp"
 #include "scores.hpp"
@@ -149,7 +149,7 @@ TEST_CASE("the player sends or misses one pulse for each stroke")
         for (int i = 0; i < 3; ++i) {
             const auto r = p.wait(p.submit(tone(0.06)));
             REQUIRE(r);
-            REQUIRE(r->state == stroke_state::finished);
+            REQUIRE(r->state == state_kind::finished);
             // A machine that is busy may miss one: it says so.
             const auto settled = [&] {
                 const player_stats s = p.stats();
@@ -188,14 +188,14 @@ private:
 // Plans pulses 5 ms from now on, more than there are places, and waits until all were sent or missed.
 void send_many(enable_line& line)
 {
-    constexpr stroke_id pulses = engine::pulse_board::places + 100;
+    constexpr std::uint32_t pulses = engine::pulse_board::places + 100;
     engine::link link;
     const clock_line clock{
         .epoch = 1, .first = 0, .frame = 0, .time_ns = rt::monotonic_ns(), .ns_per_frame = 1e9 / 48000};
     link.sync_clock.store(clock);
     engine::trigger_thread t(link, line, 10 * us, {.name = "test-sync"});
-    for (stroke_id id = 1; id <= pulses; ++id)
-        t.add(id, 240 + 5 * std::uint64_t{id}, clock);
+    for (std::uint32_t n = 1; n <= pulses; ++n)
+        t.add({n}, 240 + 5 * std::uint64_t{n}, clock);
     for (engine::pulse_stats s; s.sent + s.missed < pulses; s = t.stats()) {
         pollfd fd{.fd = link.to_control.fd(), .events = POLLIN, .revents = 0};
         REQUIRE(::poll(&fd, 1, -1) == 1);

@@ -47,7 +47,7 @@ TEST_CASE("a start at a time: the first sample is at the DAC then, within a fram
 {
     std::mt19937_64 random(3);
     slow_rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     r.run(500);
     for (int round = 0; round < 60; ++round) {
         const std::int64_t ahead = 9 * ms + static_cast<std::int64_t>(random() % 3'000'000'000);
@@ -57,7 +57,7 @@ TEST_CASE("a start at a time: the first sample is at the DAC then, within a fram
         r.run_out();
         REQUIRE(r.report(id));
         const stroke_report report = *r.report(id);
-        CHECK(report.state == stroke_state::finished);
+        CHECK(report.state == state_kind::finished);
         CHECK(report.late_s == 0.0);
         const auto sound = r.first_sound(from);
         REQUIRE(sound);
@@ -74,7 +74,7 @@ TEST_CASE("a time that is over means now, and how late it is is reported")
          {std::int64_t{0}, 5 * ms, 100 * ms, std::int64_t{900'000'000'000}, INT64_MAX / 2}) {
         CAPTURE(ago);
         slow_rig r;
-        REQUIRE(r.start().status == io_status::ok);
+        REQUIRE(r.start().status == io_kind::ok);
         r.run(100);
         const std::uint64_t next = r.status().written;
         const std::int64_t due = r.now - ago;
@@ -90,7 +90,7 @@ TEST_CASE("a time that is over means now, and how late it is is reported")
 TEST_CASE("the most that is not late: the buffer's length and a period ahead")
 {
     slow_rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     r.run(100);
     const stroke_id id = r.submit(tone(0.01), start_at::time(r.now + 8 * ms));
     r.run_out();
@@ -102,17 +102,17 @@ TEST_CASE("a start at a time that is given before the clock is known waits for t
     slow_rig r;
     const stroke_id id = r.submit(tone(0.01), start_at::time(r.now + 300 * ms));
     CHECK_FALSE(r.link.clock.load().valid());
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     const std::int64_t due = r.now + 300 * ms;
     r.run_out();
-    CHECK(r.report(id)->state == stroke_state::finished);
+    CHECK(r.report(id)->state == state_kind::finished);
     CHECK(std::abs(r.true_time(*r.first_sound() - 1) - static_cast<double>(due)) < 1.05e9 / rate);
 }
 
 TEST_CASE("a start at a frame that is over is late by so much")
 {
     rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     r.play(9600);
     const std::uint64_t next = r.status().written;
     const stroke_id late = r.submit(tone(0.01), start_at::frame(next - 4800));
@@ -127,7 +127,7 @@ TEST_CASE("a start at a frame that is over is late by so much")
 TEST_CASE("armed strokes are silent until they are fired, and then start together at the time given")
 {
     slow_rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     const stroke_id a = r.submit(tone(0.02, 0), start_at::trigger());
     const stroke_id b = r.submit(tone(0.01, 4), start_at::trigger());
     r.run(2000);
@@ -140,7 +140,7 @@ TEST_CASE("armed strokes are silent until they are fired, and then start togethe
     r.run_out();
     for (const stroke_id id : {a, b}) {
         REQUIRE(r.report(id));
-        CHECK(r.report(id)->state == stroke_state::finished);
+        CHECK(r.report(id)->state == state_kind::finished);
         CHECK(r.report(id)->late_s == 0.0);
         CHECK(std::abs(*r.report(id)->started_ns - due) < 1'000'000'000 / rate);
     }
@@ -158,7 +158,7 @@ TEST_CASE("armed strokes can be cancelled, before and after they are fired, and 
 {
     for (const bool closing : {false, true}) {
         rig r;
-        REQUIRE(r.start().status == io_status::ok);
+        REQUIRE(r.start().status == io_kind::ok);
         const stroke_id a = r.submit(tone(0.1), start_at::trigger());
         const stroke_id b = r.submit(tone(0.1), start_at::trigger());
         const stroke_id c = r.submit(tone(0.1), start_at::time(r.now + 3600'000 * ms));
@@ -176,9 +176,9 @@ TEST_CASE("armed strokes can be cancelled, before and after they are fired, and 
         r.play(9600);
         r.control();
         for (const stroke_id id : {a, b, c})
-            CHECK(r.report(id)->state == stroke_state::cancelled);
+            CHECK(r.report(id)->state == state_kind::cancelled);
         for (const stroke_id id : {d, e})
-            CHECK(r.report(id)->state == (closing ? stroke_state::interrupted : stroke_state::cancelled));
+            CHECK(r.report(id)->state == (closing ? state_kind::interrupted : state_kind::cancelled));
         CHECK_FALSE(r.first_sound());
     }
 }
@@ -186,7 +186,7 @@ TEST_CASE("armed strokes can be cancelled, before and after they are fired, and 
 TEST_CASE("an xrun between the shot and the start: the time is kept, in the new epoch's frames")
 {
     rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     r.play(9600);
     const stroke_id id = r.submit(tone(0.01), start_at::trigger());
     const std::int64_t due = r.now + 200 * ms;
@@ -197,7 +197,7 @@ TEST_CASE("an xrun between the shot and the start: the time is kept, in the new 
     r.step();
     r.play_out();
     REQUIRE(r.report(id));
-    CHECK(r.report(id)->state == stroke_state::finished);
+    CHECK(r.report(id)->state == state_kind::finished);
     CHECK(r.report(id)->late_s == 0.0);
     CHECK(r.link.clock.load().epoch == 2);
     CHECK(std::abs(*r.report(id)->started_ns - due) < 2'000'000'000 / rate);

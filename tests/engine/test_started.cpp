@@ -65,11 +65,11 @@ TEST_CASE("the first stroke of a player, submitted before the clock is known, ha
         o.period = period;
         rig r(o);
         const stroke_id id = r.submit(tone(0.1));
-        REQUIRE(r.start().status == io_status::ok);
+        REQUIRE(r.start().status == io_kind::ok);
         CHECK_FALSE(r.link.clock.load().valid());
         r.play_out();
         REQUIRE(r.report(id));
-        CHECK(r.report(id)->state == stroke_state::finished);
+        CHECK(r.report(id)->state == state_kind::finished);
         CHECK(r.report(id)->late_s == 0.0);
         check_started(r, id, true_time(r, *r.first_sound() - 1)); // a sine begins with a zero
     }
@@ -78,7 +78,7 @@ TEST_CASE("the first stroke of a player, submitted before the clock is known, ha
 TEST_CASE("a stroke as short as a frame or as a period has its start, one without sound has none")
 {
     rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     const stroke_id frame = r.submit(tone(1.0 / rate));
     const stroke_id period = r.submit(tone(96.0 / rate));
     const stroke_id nothing = r.submit(score(palm(), {}, {}));
@@ -98,7 +98,7 @@ TEST_CASE("strokes that are cut tell when they began, those that never sounded t
     const stroke_id cut = r.submit(tone(5.0));
     const stroke_id waiting = r.submit(tone(0.1), start_at::frame(480'000));
     const stroke_id armed = r.submit(tone(0.1), start_at::trigger());
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     r.play(960);
     const double when = true_time(r, *r.first_sound() - 1);
     r.feed.cancel(cancelled);
@@ -106,11 +106,11 @@ TEST_CASE("strokes that are cut tell when they began, those that never sounded t
     r.feed.cancel(armed);
     r.play(4800);
     check_started(r, cancelled, when);
-    CHECK(r.report(cancelled)->state == stroke_state::cancelled);
+    CHECK(r.report(cancelled)->state == state_kind::cancelled);
     r.dac.advance(4800); // runs dry
     r.play(960);
     check_started(r, cut, when);
-    CHECK(r.report(cut)->state == stroke_state::interrupted);
+    CHECK(r.report(cut)->state == state_kind::interrupted);
     for (const stroke_id id : {waiting, armed}) {
         REQUIRE(r.report(id));
         CHECK_FALSE(r.report(id)->started_ns.has_value());
@@ -123,7 +123,7 @@ TEST_CASE("an xrun before the DAC's position was ever read does not take the sta
     rig_options o;
     o.wrap = [&shy](std::unique_ptr<sink> s) { return std::make_unique<shy_sink>(std::move(s), shy); };
     rig r(o);
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     const std::int64_t begin = r.now;
     const stroke_id id = r.submit(tone(5.0));
     r.play(960);
@@ -132,14 +132,14 @@ TEST_CASE("an xrun before the DAC's position was ever read does not take the sta
     shy = false;
     r.play(960);
     REQUIRE(r.report(id));
-    CHECK(r.report(id)->state == stroke_state::interrupted);
+    CHECK(r.report(id)->state == state_kind::interrupted);
     check_started(r, id, static_cast<double>(begin) + static_cast<double>(first) * 1e9 / rate);
 }
 
 TEST_CASE("the start of a stroke after an xrun is told by the clock of its own epoch")
 {
     rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     r.play(9600);
     r.dac.advance(4800); // runs dry, and stands for a second
     r.now += 1'000'000'000;
@@ -172,7 +172,7 @@ TEST_CASE("every stroke that was played on null has its start, the first of each
         for (int k = 0; k < 2; ++k) {
             const auto r = p.wait(p.submit(tone(0.005)));
             REQUIRE(r);
-            CHECK(r->state == stroke_state::finished);
+            CHECK(r->state == state_kind::finished);
             REQUIRE(r->started_ns);
             CHECK(*r->started_ns > before);
             CHECK(*r->started_ns < rt::monotonic_ns());

@@ -19,7 +19,7 @@ class sleepy_sink final : public forwarding_sink {
 public:
     using forwarding_sink::forwarding_sink;
 
-    io_status resume() noexcept override { return io_status::again; }
+    io_kind resume() noexcept override { return io_kind::again; }
 };
 
 } // namespace
@@ -29,7 +29,7 @@ TEST_CASE("a suspended device is resumed when it can, with a fresh stream")
     for (const bool can_resume : {true, false}) {
         CAPTURE(can_resume);
         rig r;
-        REQUIRE(r.start().status == io_status::ok);
+        REQUIRE(r.start().status == io_kind::ok);
         const std::uint64_t base = r.status().written;
         const stroke_id id = r.submit(tone(1.0));
         r.play(9600);
@@ -44,7 +44,7 @@ TEST_CASE("a suspended device is resumed when it can, with a fresh stream")
         CHECK(r.loop.timeout_ns() == 2'000'000);
         CHECK_FALSE(r.loop.over());
         REQUIRE(r.report(id));
-        CHECK(r.report(id)->state == stroke_state::interrupted);
+        CHECK(r.report(id)->state == state_kind::interrupted);
         CHECK(r.report(id)->reason == "the system was suspended");
         CHECK(r.report(id)->frames <= played - base);
 
@@ -58,7 +58,7 @@ TEST_CASE("a suspended device is resumed when it can, with a fresh stream")
         CHECK(r.dac.captured_frames() == captured + 288);
         CHECK(r.dac.starts() == 2);
         r.play_out();
-        CHECK(r.report(waiting)->state == stroke_state::finished);
+        CHECK(r.report(waiting)->state == state_kind::finished);
         // Nothing of the old stroke is heard again.
         CHECK(r.first_sound(captured) == captured + 289);
         CHECK(r.link.count.xruns == 0);
@@ -68,7 +68,7 @@ TEST_CASE("a suspended device is resumed when it can, with a fresh stream")
 TEST_CASE("a device that never wakes up is prepared afresh in the end")
 {
     rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     r.dac.suspend();
     const std::int64_t begun = r.now;
     for (int i = 0; i < 10'000; ++i)
@@ -83,7 +83,7 @@ TEST_CASE("a device that never wakes up is prepared afresh in the end")
 TEST_CASE("a resume that is never ready is given up after ten seconds, for a fresh start")
 {
     rig r({.wrap = [](auto s) { return std::make_unique<sleepy_sink>(std::move(s)); }});
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     r.play(960);
     r.dac.suspend();
     r.step();
@@ -102,7 +102,7 @@ TEST_CASE("a resume that is never ready is given up after ten seconds, for a fre
 TEST_CASE("stop ends a suspended stream at once")
 {
     rig r;
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     r.dac.suspend();
     r.play(960);
     r.link.requests.push({.what = engine::request::kind::stop});

@@ -29,7 +29,7 @@ live_options with_timeout(double s)
     return o;
 }
 
-stroke_state state_of(const rig& r, stroke_id id)
+state_kind state_of(const rig& r, stroke_id id)
 {
     REQUIRE(r.report(id));
     CHECK(r.report(id)->frames == 0);
@@ -42,7 +42,7 @@ TEST_CASE(
     "while the amplifier settles: a cancel is reported with the next wake-up, what is not cancelled plays")
 {
     rig r(held());
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     const score kept = random_score(3, 5);
     const stroke_id first = r.submit(tone(1.0));
     const stroke_id second = r.submit(kept);
@@ -54,36 +54,36 @@ TEST_CASE(
     CHECK_FALSE(r.feed.cancel(first));
     r.step(); // the DAC stands still
     r.control();
-    CHECK(state_of(r, first) == stroke_state::cancelled);
-    CHECK(state_of(r, third) == stroke_state::cancelled);
+    CHECK(state_of(r, first) == state_kind::cancelled);
+    CHECK(state_of(r, third) == state_kind::cancelled);
     CHECK_FALSE(r.report(second));
 
     const std::uint64_t from = r.status().written;
     r.link.amplifier.ready = true;
     r.play_out();
     REQUIRE(r.report(second));
-    CHECK(r.report(second)->state == stroke_state::finished);
-    CHECK(r.captured(from, kept.frames()) == rendered(kept, sample_format::s32));
+    CHECK(r.report(second)->state == state_kind::finished);
+    CHECK(r.captured(from, kept.frames()) == rendered(kept, format_kind::s32));
     CHECK(r.ended.size() == 3);
 }
 
 TEST_CASE("thousands that are submitted and cancelled while they wait end once each, and none is heard")
 {
     rig r(held());
-    REQUIRE(r.start().status == io_status::ok);
-    constexpr stroke_id rounds = 2000;
-    for (stroke_id id = 1; id <= rounds; ++id) {
-        r.submit(tone(0.01, id % 9));
-        if (id % 7 == 0)
+    REQUIRE(r.start().status == io_kind::ok);
+    constexpr unsigned rounds = 2000;
+    for (unsigned n = 1; n <= rounds; ++n) {
+        r.submit(tone(0.01, n % 9));
+        if (n % 7 == 0)
             r.play(96);
-        CHECK(r.feed.cancel(id));
-        if (id % 5 == 0)
+        CHECK(r.feed.cancel({n}));
+        if (n % 5 == 0)
             r.play(96);
     }
     r.play(960);
     CHECK(r.ended.size() == rounds);
-    for (stroke_id id = 1; id <= rounds; ++id)
-        CHECK(state_of(r, id) == stroke_state::cancelled);
+    for (unsigned n = 1; n <= rounds; ++n)
+        CHECK(state_of(r, {n}) == state_kind::cancelled);
     r.link.amplifier.ready = true;
     r.play(9600);
     CHECK_FALSE(r.first_sound());
@@ -91,22 +91,22 @@ TEST_CASE("thousands that are submitted and cancelled while they wait end once e
     const stroke_id next = r.submit(tone(0.01));
     r.play_out();
     REQUIRE(r.report(next));
-    CHECK(r.report(next)->state == stroke_state::finished);
+    CHECK(r.report(next)->state == state_kind::finished);
     CHECK(r.first_sound());
 }
 
 TEST_CASE("stop reaches what waits for the amplifier")
 {
     rig r(held());
-    REQUIRE(r.start().status == io_status::ok);
+    REQUIRE(r.start().status == io_kind::ok);
     const stroke_id cancelled = r.submit(tone(1.0));
     const stroke_id stopped = r.submit(tone(1.0));
     CHECK(r.feed.cancel(cancelled));
     r.link.requests.push({.what = engine::request::kind::stop});
     r.step();
     r.control();
-    CHECK(state_of(r, cancelled) == stroke_state::cancelled);
-    CHECK(state_of(r, stopped) == stroke_state::cancelled);
+    CHECK(state_of(r, cancelled) == state_kind::cancelled);
+    CHECK(state_of(r, stopped) == state_kind::cancelled);
     r.play(4 * 96 + 288);
     CHECK(r.loop.over());
 }
@@ -124,13 +124,13 @@ TEST_CASE(
     ended->voice.ask(engine::live_voice::wish::end);
     cancelled->voice.ask(engine::live_voice::wish::cancel);
     r.play(192);
-    CHECK(state_of(r, ended->id) == stroke_state::finished);
-    CHECK(state_of(r, cancelled->id) == stroke_state::cancelled);
+    CHECK(state_of(r, ended->id) == state_kind::finished);
+    CHECK(state_of(r, cancelled->id) == state_kind::cancelled);
     for (int i = 0; i < 110; ++i) {
         fed->to({0.0, 0.0}, 1.0);
         r.play(96);
     }
-    CHECK(state_of(r, r.live->id) == stroke_state::interrupted);
+    CHECK(state_of(r, r.live->id) == state_kind::interrupted);
     CHECK(r.report(r.live->id)->reason == "no more points came");
     CHECK_FALSE(r.report(before));
     CHECK_FALSE(r.report(fed->id));
@@ -140,8 +140,8 @@ TEST_CASE(
     CHECK(r.first_sound());
     fed->voice.ask(engine::live_voice::wish::end);
     r.play_out();
-    CHECK(r.report(fed->id)->state == stroke_state::finished);
-    CHECK(r.report(before)->state == stroke_state::finished);
+    CHECK(r.report(fed->id)->state == state_kind::finished);
+    CHECK(r.report(before)->state == state_kind::finished);
 }
 
 TEST_CASE("while the system sleeps a live stroke that waits can be cancelled by its handle")
@@ -157,8 +157,8 @@ TEST_CASE("while the system sleeps a live stroke that waits can be cancelled by 
     CHECK(r.feed.cancel(score));
     r.step();
     r.control();
-    CHECK(state_of(r, r.live->id) == stroke_state::cancelled);
-    CHECK(state_of(r, score) == stroke_state::cancelled);
+    CHECK(state_of(r, r.live->id) == state_kind::cancelled);
+    CHECK(state_of(r, score) == state_kind::cancelled);
 }
 
 } // namespace waiting_test

@@ -26,7 +26,7 @@ live_options short_timeout()
 
 bool starved(const rig& r, stroke_id id)
 {
-    return r.report(id) && r.report(id)->state == stroke_state::interrupted &&
+    return r.report(id) && r.report(id)->state == state_kind::interrupted &&
            r.report(id)->reason == "no more points came";
 }
 
@@ -97,7 +97,7 @@ TEST_CASE("more than can sound: they wait in order, with their newest point, and
     all[3]->voice.ask(engine::live_voice::wish::end); // one place, for the first that waits
     feed(3360);
     REQUIRE(r.report(ended->id));
-    CHECK(r.report(ended->id)->state == stroke_state::finished);
+    CHECK(r.report(ended->id)->state == state_kind::finished);
     CHECK(r.report(ended->id)->frames > 0);
     CHECK(peak(r.channel(1), 0, SIZE_MAX) > 0.5 * live_level);
     feed(960);
@@ -125,9 +125,9 @@ TEST_CASE("hundreds at once: each is cancelled by its handle, ended or timed out
         const auto report = r.report(all[i]->id);
         REQUIRE(report);
         CHECK(report->frames == 0);
-        CHECK(report->state == (i % 3 == 0   ? stroke_state::interrupted
-                                : i % 3 == 1 ? stroke_state::finished
-                                             : stroke_state::cancelled));
+        CHECK(report->state == (i % 3 == 0   ? state_kind::interrupted
+                                : i % 3 == 1 ? state_kind::finished
+                                             : state_kind::cancelled));
         CHECK(all[i]->voice.closed());
     }
     const auto fresh = r.add();

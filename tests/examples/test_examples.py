@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The C++ examples do what their first lines say, without hardware."""
+"""The examples do what their first lines say, without hardware."""
 import os
 import pathlib
 import re
@@ -9,9 +9,11 @@ import socket
 import struct
 import subprocess
 import sys
+import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
-from harness import ToolTest, Wav, main  # noqa: E402
+from harness import ROOT, ToolTest, Wav, main  # noqa: E402
+from serving import Server  # noqa: E402
 
 EXAMPLES = pathlib.Path(sys.argv[3]).resolve()
 SYN, KEY, REL, ABS = 0, 1, 2, 3
@@ -146,6 +148,39 @@ class Examples(ToolTest):
         self.assertIn(sound, Wav(self.dir / "o.wav").data)
         self.assertGreater(len(sound), 18 * 48000)
         self.assertIn("usage", self.run_example("udp_sink", status=2))
+
+    def test_serve_client(self):
+        server = Server(self)
+        self.assertEqual(self.run_example("serve_client", server.where["socket"]), "park2016-1: finished\ncircle: finished\n")
+        self.assertIn("No such file", self.run_example("serve_client", self.dir / "nowhere", status=1))
+
+    def test_the_shells_serve_client(self):
+        server = Server(self)
+        for stroke, said in (("park2016-1", "finished\n"), ("nonsense", "refused: ")):
+            r = subprocess.run([ROOT / "examples/serve_client.sh", server.where["socket"], stroke], capture_output=True, text=True,
+                               check=False, timeout=60)
+            self.assertEqual(r.returncode, 0, r.stderr)
+            self.assertTrue(r.stdout.startswith(said), r.stdout)
+
+    def test_the_serve_client_of_node(self):
+        server = Server(self)
+        for socket, status, said in ((server.where["socket"], 0, ("park2016-1: finished\ncircle: finished\n", "")),
+                                     (self.dir / "nowhere", 1, ("", f"serve_client: connect ENOENT {self.dir}/nowhere\n"))):
+            r = subprocess.run(["node", ROOT / "examples/serve_client.js", socket], capture_output=True, text=True, check=False, timeout=60)
+            self.assertEqual((r.returncode, r.stdout, r.stderr), (status, *said))
+
+    @unittest.skipUnless(os.environ.get("TACTOR_OSC") == "true", "this build has no OSC")
+    def test_the_patch_for_pure_data(self):
+        server = Server(self, "--osc", "0")
+        port = server.where["osc"].rpartition(":")[2]
+        patch = self.write("client.pd", (ROOT / "examples/serve_client.pd").read_text(encoding="utf-8").replace("4002", port))
+        pd = subprocess.Popen(["pd", "-nogui", "-noaudio", "-nomidi", "-open", patch, "-send", "play bang"],
+                              stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(pd.stderr.close)
+        self.addCleanup(pd.wait)
+        self.addCleanup(pd.kill)
+        said = [line.strip() for line in iter(pd.stderr.readline, "print: tactor stroke 1 finished\n")]
+        self.assertIn("print: tactor stroke 1 started", said)
 
 
 if __name__ == "__main__":

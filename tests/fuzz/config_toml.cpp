@@ -24,11 +24,11 @@ void check_setup(const setup& s)
     HOLDS(!s.output.channels || (*s.output.channels >= 1 && *s.output.channels <= 1024));
     if (s.amplifier) {
         check_line(s.amplifier->line);
-        HOLDS(s.amplifier->settle_ms >= 0.0 && std::isfinite(s.amplifier->settle_ms));
+        HOLDS(s.amplifier->settle_s >= 0.0 && std::isfinite(s.amplifier->settle_s));
     }
     if (s.sync) {
-        HOLDS(s.sync->pulse_ms > 0.0 && std::isfinite(s.sync->pulse_ms));
-        HOLDS(s.sync->edge == "rising" || s.sync->edge == "falling" || s.sync->edge == "both");
+        HOLDS(s.sync->pulse_s > 0.0 && std::isfinite(s.sync->pulse_s));
+        HOLDS(from_string<edge_kind>(to_string(s.sync->edge)) == s.sync->edge);
         for (const auto* l : {&s.sync->out, &s.sync->in}) {
             if (*l)
                 check_line(**l);

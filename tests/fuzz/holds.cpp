@@ -96,7 +96,9 @@ void check_stroke(const stroke& s)
     const trajectory& m = s.motion;
     HOLDS(m.duration_s() > 0.0 && m.duration_s() <= 86400.0);
     HOLDS(m.length_mm() >= 0.0 && std::isfinite(m.length_mm()));
-    HOLDS(!s.start_s || (*s.start_s >= 0.0 && std::isfinite(*s.start_s)));
+    HOLDS(!s.start_s || std::isfinite(*s.start_s));
+    HOLDS(!s.start_s || *s.start_s >= 0.0 || s.anchor.from != start_from_kind::piece);
+    HOLDS(s.anchor.back >= 1);
     HOLDS(!s.carrier_hz || (*s.carrier_hz > 0.0 && std::isfinite(*s.carrier_hz)));
     for (int i = 0; i <= 8; ++i) {
         const double t = m.duration_s() * i / 8.0;
@@ -122,16 +124,16 @@ void check_plan(const array& a, const stroke& s, const plan_options& o, const pl
         HOLDS(c.tactor < a.tactors.size());
         HOLDS(c.from_s < c.to_s && c.from_s >= 0.0 && c.to_s <= p.total_s + 1e-9);
     }
-    if (o.method == algorithm::park2016) {
+    if (o.algorithm == algorithm_kind::park2016) {
         HOLDS(p.conflicts.empty());
         HOLDS(!p.bursts.empty());
     }
-    HOLDS((o.method == algorithm::continuous) == static_cast<bool>(p.at));
-    if (!p.at)
+    HOLDS((o.algorithm == algorithm_kind::continuous) == p.curve.has_value());
+    if (!p.curve)
         return;
     burst now;
     for (int i = 0; i <= 8; ++i) {
-        p.at(p.stroke_duration_s * i / 8.0, now);
+        p.curve->at(p.stroke_duration_s * i / 8.0, now);
         HOLDS(now.intensity >= 0.0 && std::isfinite(now.intensity));
         check_place(now.position);
         check_drives(now.drives, a.tactors.size(), now.intensity);

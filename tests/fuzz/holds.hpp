@@ -35,7 +35,7 @@ auto accepted(Read read) -> decltype(read())
         return read();
     } catch (const error& e) {
         HOLDS(!std::string_view(e.what()).empty());
-        HOLDS(e.kind() == errc::bad_input);
+        HOLDS(e.kind() == error_kind::bad_input);
         return {};
     }
 }

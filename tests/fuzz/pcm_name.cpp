@@ -6,11 +6,11 @@
 
 #include <alsa/asoundlib.h>
 
-#include "alsa/handle.hpp"
-#include "alsa/library_messages.hpp"
-#include "alsa/plain_name.hpp"
-#include "alsa/route.hpp"
 #include "holds.hpp"
+#include "sink/alsa/devices/plain_name.hpp"
+#include "sink/alsa/devices/route.hpp"
+#include "sink/alsa/handle.hpp"
+#include "sink/alsa/library_messages.hpp"
 
 using namespace tactor;
 

@@ -93,12 +93,13 @@ double any_number(FuzzedDataProvider& in, double low, double high)
 plan_options any_options(FuzzedDataProvider& in)
 {
     plan_options o;
-    o.method = in.PickValueInArray({algorithm::park2016, algorithm::tactile_brush, algorithm::continuous});
+    o.algorithm = in.PickValueInArray(
+        {algorithm_kind::park2016, algorithm_kind::tactile_brush, algorithm_kind::continuous});
     o.phantom = in.PickValueInArray({phantom_kind::inverse_distance, phantom_kind::barycentric,
                                      phantom_kind::linear, phantom_kind::log, phantom_kind::gaussian});
-    o.schedule = in.PickValueInArray({timing::fixed, timing::fit});
-    o.leave = in.PickValueInArray({outside::error, outside::clamp});
-    o.join = in.PickValueInArray({overlap::energy, overlap::max, overlap::sum});
+    o.timing = in.PickValueInArray({timing_kind::fixed, timing_kind::fit});
+    o.outside = in.PickValueInArray({outside_kind::error, outside_kind::clamp});
+    o.overlap = in.PickValueInArray({overlap_kind::energy, overlap_kind::max, overlap_kind::sum});
     o.snap = in.ConsumeBool();
     o.drop_points = in.ConsumeBool();
     if (in.ConsumeBool())
@@ -126,7 +127,7 @@ void check_samples(const array& a, const plan& p)
     const auto s = fuzz::accepted([&] { return std::optional(score(a, {{p, {}}}, {})); });
     if (!s)
         return;
-    renderer r(*s, sample_format::float32);
+    renderer r(*s, format_kind::float32);
     constexpr std::size_t block = 256;
     std::vector<std::byte> bytes(block * s->channels() * sizeof(float));
     for (int i = 0; i < 8; ++i) {

@@ -1,23 +1,86 @@
 # SPDX-License-Identifier: MIT
-"""Writes what the fuzzers start from: the examples, and the texts in the readers' own tests.
+"""Writes what the fuzzers start from: the examples, the texts in the readers' own tests, and messages to the service.
 
 Usage: seeds.py SOURCE_ROOT FOLDER. Makes FOLDER/TARGET/... for each fuzzer of a reader.
 """
 import hashlib
 import pathlib
 import re
+import struct
 import sys
 
 # Target: files that are seeds whole; tests whose string literals are.
 SOURCES = {
-    "array_toml": (["examples/arrays/*.toml"], ["test_setup_array.cpp", "test_setup.cpp"]),
-    "config_toml": (["examples/tactor.toml"], ["test_setup.cpp", "test_setup_file.cpp"]),
-    "stroke_toml": (["examples/strokes/*.toml"], ["test_stroke_toml.cpp"]),
-    "stroke_csv": (["examples/strokes/*.csv"], ["test_stroke_csv.cpp"]),
-    "stroke_svg": (["examples/strokes/*.svg"], ["test_stroke_svg.cpp", "test_stroke_svg_errors.cpp"]),
-    "path_data": ([], ["test_path_svg.cpp", "test_path.cpp", "test_path_length.cpp", "test_path_meets.cpp"]),
-    "pcm_name": ([], ["../engine/test_pcm_names.cpp"]),
+    "array_toml": (["examples/arrays/*.toml"], ["files/test_setup_array.cpp", "files/test_setup.cpp"]),
+    "config_toml": (["examples/tactor.toml"], ["files/test_setup.cpp", "files/test_setup_file.cpp"]),
+    "stroke_toml": (["examples/strokes/*.toml"], ["files/test_stroke_toml.cpp", "files/test_stroke_movement.cpp", "files/test_stroke_order.cpp"]),
+    "stroke_csv": (["examples/strokes/*.csv"], ["files/test_stroke_csv.cpp"]),
+    "stroke_svg": (["examples/strokes/*.svg"], ["files/test_stroke_svg.cpp", "files/test_stroke_svg_errors.cpp", "files/test_stroke_svg_strength.cpp"]),
+    "path_data": ([], ["core/test_path_svg.cpp", "core/test_path.cpp", "core/test_path_length.cpp", "core/test_path_meets.cpp"]),
+    "pcm_name": ([], ["sink/alsa/test_pcm_names.cpp"]),
 }
+
+def wav_files():
+    """A few samples in each format, plain and behind other chunks; and the greatest and least floats."""
+    for tag, bits in ((1, 8), (1, 16), (1, 24), (1, 32), (3, 32), (3, 64), (0xFFFE, 16)):
+        size = bits // 8
+        form = struct.pack("<HHIIHH", tag, 1, 8000, 8000 * size, size, bits) + (struct.pack("<HHIHH", 22, bits, 4, 1, 0) if tag == 0xFFFE else b"")
+        one = {32: struct.pack("<f", 0.5), 64: struct.pack("<d", 0.5)}[bits] if tag == 3 else bytes(size - 1) + b"\x40"
+        extreme = [struct.pack("<4f", *v) for v in ((3.4e38, -3.4e38, -3.4e38, 3.4e38), (1e-45, 0.0, -1e-45, 0.0))] if (tag, bits) == (3, 32) else []
+        for data in [one * 16 + bytes(size) * 16, *extreme]:
+            for before in (b"", b"LIST" + struct.pack("<I", 4) + b"INFO"):
+                chunks = before + b"fmt " + struct.pack("<I", len(form)) + form + b"data" + struct.pack("<I", len(data)) + data
+                yield b"RIFF" + struct.pack("<I", 4 + len(chunks)) + b"WAVE" + chunks
+
+
+# What tests make of parts: a line of each is a seed of its own.
+def rpc_seeds():
+    stroke = '{"path":"M 0 0 L 40 40","options":{"algorithm":"continuous","duration":0.01}'
+    calls = ['"hello"', '"status"', '"stop"', '"fire"', f'"play","params":{stroke}}}', f'"play","params":{stroke},"start":"armed"}}',
+             f'"play","params":{stroke},"start":{{"delay_s":0.01}}}}', f'"plan","params":{stroke}}}',
+             '"play","params":{"stroke":"park2016-1","options":{"soa":0.07,"snap":true}}',
+             '"play","params":{"points":[[0,0,0],[0.1,20,20,0.5]]}', '"play","params":{"csv":"t_s,x_mm,y_mm\\n0,0,0\\n1,10,10\\n"}',
+             '"play","params":{"svg":"<svg><path d=\\"M 0 0 L 9 9\\"/></svg>"}',
+             '"play","params":{"toml":"[[stroke]]\\npath = \\"M 0 0 L 9 9\\"\\n"}', '"begin","params":{"timeout_s":0.01}',
+             '"to","params":{"stroke":1,"x_mm":20,"y_mm":20,"intensity":0.5}', '"end","params":{"stroke":1}', '"cancel","params":{"stroke":1}',
+             '"drive","params":{"tactor":4,"intensity":0.5,"duration_s":0.01,"start":"now"}',
+             '"subscribe","params":{"events":["strokes","levels","stream"],"levels_hz":100}']
+    lines = [f'{{"jsonrpc":"2.0","id":{i},"method":{call}}}' for i, call in enumerate(calls)]
+    return [line.encode() for line in lines + [f"[{','.join(lines)}]", "\n".join(lines)]]
+
+
+def osc_seeds():
+    def text(s):
+        return s.encode() + bytes(4 - len(s) % 4)
+
+    def message(address, *values):
+        tags = "".join({int: "i", float: "f", str: "s"}[type(v)] for v in values)
+        return text(address) + text("," + tags) + b"".join(text(v) if isinstance(v, str) else struct.pack(">" + tags[i], v)
+                                                           for i, v in enumerate(values))
+
+    def bundle(tag, *elements):
+        return b"#bundle\0" + struct.pack(">Q", tag) + b"".join(struct.pack(">i", len(e)) + e for e in elements)
+
+    each = [message("/tactor/play", 1, "M 0 0 L 40 40", "soa=0.07"), message("/tactor/play", "park2016-1"), message("/tactor/begin", 1, "timeout_s=1"),
+            message("/tactor/to", 1, 20.0, 20.0, 0.5), message("/tactor/end", 1), message("/tactor/cancel", 1), message("/tactor/stop"),
+            message("/tactor/drive", 4, 0.5, 0.1), message("/tactor/subscribe", 9000, "levels", "stream"), message("/tactor/error", "/x", "why"),
+            text("/x") + text(",ihfdsSbTFNItcrm") + bytes(64), text("/tactor/stop")]
+    return each + [bundle(1, *each), bundle(0xEA00000080000000, bundle(1, each[0]), each[6])]
+
+
+def web_seeds():
+    head = b"GET / HTTP/1.1\r\nHost: h\r\n"
+    rpc = b"GET /rpc HTTP/1.1\r\nHost: h\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n" \
+          b"Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
+    requests = [head + b"\r\n", head + b"Origin: http://h\r\nAuthorization: Bearer x\r\n\r\n", head.replace(b"GET", b"POST") + b"Content-Length: 5\r\n\r\nabcde",
+                head + b"Transfer-Encoding: chunked\r\n\r\n3\r\nabc\r\n0\r\n\r\n", rpc, rpc + b"\x81\x82\0\0\0\0[]"]
+    frames = [b"\x81\x82\0\0\0\0[]", b"\x81\x85\0\0\0\0close", b"\x01\x81\0\0\0\0a\x80\x81\1\2\3\4b", b"\x82\x81\0\0\0\0x", b"\x89\x81\0\0\0\0p",
+              b"\x88\x82\0\0\0\0\x03\xe8", b"\x81\xfe\x01\x00\0\0\0\0" + bytes(256), b"\x81\x82\0\0\0\0\xc3\x28", b"\x81\x02[]"]
+    names = [b"127.0.0.1:4003\nhttp://127.0.0.1:4003", b"localhost:4003\nhttps://localhost:4003", b"[::1]:80\nnull"]
+    return [b"\0" + r for r in requests] + [b"\1" + f for f in frames] + [b"\1" + b"".join(frames[:5])] + [b"\2" + n for n in names]
+
+
+MADE = {"wav_file": wav_files, "rpc_message": rpc_seeds, "osc_packet": osc_seeds, "web_request": web_seeds}
 RAW = r'R"(\w*)\((.*?)\)\1"'
 PLAIN = r'"(?:[^"\\\n]|\\.)*"(?:\s*"(?:[^"\\\n]|\\.)*")*'
 LITERAL = re.compile(f"{RAW}|({PLAIN})", re.S)
@@ -33,16 +96,19 @@ def literals(text):
 
 
 def seeds(root, target):
+    if target in MADE:
+        yield from MADE[target]()
+        return
     whole, tests = SOURCES[target]
     for pattern in whole:
         yield from (f.read_bytes() for f in sorted(root.glob(pattern)))
     for name in tests:
-        yield from (s for s in literals((root / "tests/model" / name).read_text(encoding="utf-8")) if len(s) > 3)
+        yield from (s for s in literals((root / "tests" / name).read_text(encoding="utf-8")) if len(s) > 3)
 
 
 def main():
     root, folder = (pathlib.Path(a) for a in sys.argv[1:])
-    for target in SOURCES:
+    for target in SOURCES | MADE:
         place = folder / target
         place.mkdir(parents=True, exist_ok=True)
         count = 0

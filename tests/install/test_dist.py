@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The tarball that `meson dist` makes builds, installs without DESTDIR, and serves as a subproject.
+Each file by itself, with warnings as errors, without the tests; nothing is made fast, which the suite and the packages do.
 
 Usage: test_dist.py TOOL SOURCE_ROOT BUILD_ROOT. Compiles the library twice.
 """
@@ -26,7 +27,7 @@ class Dist(FolderTest):
 
     def test_it_builds_and_installs_without_destdir_and_uninstalls(self):
         build, prefix = self.source / "build", self.dir / "prefix"
-        run("meson", "setup", build, self.source, "--prefix", prefix, "-Dwerror=true", *TOGETHER)
+        run("meson", "setup", build, self.source, "--prefix", prefix, "-Dwerror=true", "-Doptimization=0", "-Dtests=disabled", "-Dbenchmarks=disabled")
         run("ninja", "-C", build)
         run("meson", "install", "-C", build, "--no-rebuild")
         (pc,) = prefix.rglob("tactor.pc")
@@ -44,7 +45,7 @@ class Dist(FolderTest):
         shutil.copytree(CONSUMER, project)
         shutil.copytree(self.source, project / "subprojects/tactor", ignore=shutil.ignore_patterns("build"))
         # An installed library would be preferred.
-        run("meson", "setup", project / "build", project, "--wrap-mode=forcefallback", "-Dbuildtype=plain", *TOGETHER)
+        run("meson", "setup", project / "build", project, "--wrap-mode=forcefallback", "-Dbuildtype=plain", "-Doptimization=0", *TOGETHER)
         run("ninja", "-C", project / "build")
         self.assertIn(": finished\n", run(project / "build/consumer"))
         built = {p.name for p in (project / "build").rglob("*")

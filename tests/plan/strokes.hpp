@@ -16,7 +16,7 @@ namespace tactor::test {
 
 inline stroke stroke_of(trajectory t)
 {
-    return {"", std::move(t), {}, {}, ""};
+    return {"", std::move(t), {}, {}};
 }
 
 inline stroke along(std::string_view svg, double duration_s)
@@ -33,9 +33,9 @@ inline stroke timed(std::vector<timed_point> p)
 inline std::string refusal(const array& a, const stroke& s, const plan_options& o)
 {
     try {
-        make_plan(a, s, o);
+        static_cast<void>(make_plan(a, s, o));
     } catch (const error& e) {
-        return e.kind() == errc::bad_input ? e.what() : std::string("of the wrong kind: ") + e.what();
+        return e.kind() == error_kind::bad_input ? e.what() : std::string("of the wrong kind: ") + e.what();
     }
     return {};
 }
@@ -53,7 +53,7 @@ inline const array palm = preset_array("palm-3x3");
 inline plan_options brush()
 {
     plan_options o;
-    o.method = algorithm::tactile_brush;
+    o.algorithm = algorithm_kind::tactile_brush;
     return o;
 }
 

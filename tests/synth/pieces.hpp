@@ -14,6 +14,8 @@
 #include <tactor/plan.hpp>
 #include <tactor/render.hpp>
 
+#include "own_curve.hpp"
+
 namespace pieces {
 
 inline constexpr double pi = 3.14159265358979323846;
@@ -63,7 +65,7 @@ inline tactor::plan make_continuous(unsigned tactors, double duration_s, double 
     p.algorithm = "continuous";
     p.carrier_hz = carrier_hz;
     p.total_s = p.stroke_duration_s = duration_s;
-    p.at = [tactors, duration_s](double t, tactor::burst& out) {
+    p.curve = tactor::test::make_curve(duration_s, [tactors, duration_s](double t, tactor::burst& out) {
         const double place = t / duration_s * (tactors - 1);
         const auto left = static_cast<unsigned>(place);
         const double f = place - left;
@@ -72,7 +74,7 @@ inline tactor::plan make_continuous(unsigned tactors, double duration_s, double 
         if (f > 0.0) {
             out.drives.push_back({left + 1, std::sqrt(f)});
         }
-    };
+    });
     return p;
 }
 
@@ -96,7 +98,7 @@ inline tactor::plan make_random(std::mt19937_64& random, unsigned tactors, unsig
 
 /// The whole piece in blocks of the size that next() gives.
 template <class Next>
-std::vector<std::byte> render(const tactor::score& s, tactor::sample_format f, Next next, std::size_t frames)
+std::vector<std::byte> render(const tactor::score& s, tactor::format_kind f, Next next, std::size_t frames)
 {
     const std::size_t frame_bytes = s.channels() * tactor::bytes_of(f);
     std::vector<std::byte> out(frames * frame_bytes, std::byte{0x55});
@@ -109,7 +111,7 @@ std::vector<std::byte> render(const tactor::score& s, tactor::sample_format f, N
     return out;
 }
 
-inline std::vector<std::byte> render(const tactor::score& s, tactor::sample_format f)
+inline std::vector<std::byte> render(const tactor::score& s, tactor::format_kind f)
 {
     return render(
         s, f, [&s] { return std::max<std::size_t>(1, s.frames()); }, s.frames());
@@ -124,12 +126,12 @@ T sample(const std::vector<std::byte>& bytes, std::size_t i)
 }
 
 /// Sample i of a rendering as an integer, whatever the format (not float).
-inline std::int64_t integer(const std::vector<std::byte>& bytes, tactor::sample_format f, std::size_t i)
+inline std::int64_t integer(const std::vector<std::byte>& bytes, tactor::format_kind f, std::size_t i)
 {
     switch (f) {
-    case tactor::sample_format::s16:
+    case tactor::format_kind::s16:
         return sample<std::int16_t>(bytes, i);
-    case tactor::sample_format::s24_3: {
+    case tactor::format_kind::s24_3: {
         std::uint32_t v = 0;
         std::memcpy(&v, bytes.data() + 3 * i, 3);
         return static_cast<std::int32_t>(v << 8) >> 8;
@@ -139,26 +141,26 @@ inline std::int64_t integer(const std::vector<std::byte>& bytes, tactor::sample_
     }
 }
 
-inline double scale_of(tactor::sample_format f)
+inline double scale_of(tactor::format_kind f)
 {
     switch (f) {
-    case tactor::sample_format::s16:
+    case tactor::format_kind::s16:
         return 32768.0;
-    case tactor::sample_format::s32:
+    case tactor::format_kind::s32:
         return 2147483648.0;
     default:
         return 8388608.0;
     }
 }
 
-inline constexpr tactor::sample_format all_formats[] = {
-    tactor::sample_format::float32, tactor::sample_format::s16, tactor::sample_format::s24_3,
-    tactor::sample_format::s24_4, tactor::sample_format::s32};
+inline constexpr tactor::format_kind all_formats[] = {tactor::format_kind::float32, tactor::format_kind::s16,
+                                                      tactor::format_kind::s24_3, tactor::format_kind::s24_4,
+                                                      tactor::format_kind::s32};
 
 /// One channel of a rendering in floats.
 inline std::vector<double> channel(const tactor::score& s, unsigned c)
 {
-    const auto bytes = render(s, tactor::sample_format::float32);
+    const auto bytes = render(s, tactor::format_kind::float32);
     std::vector<double> x(s.frames());
     for (std::size_t k = 0; k < x.size(); ++k) {
         x[k] = static_cast<double>(sample<float>(bytes, k * s.channels() + c));

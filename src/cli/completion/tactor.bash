@@ -23,6 +23,11 @@ _tactor() {
     [[ -n $breaks ]] && kept=${current%"${current##*[$breaks]}"}
     COMPREPLY=()
     while IFS= read -r line; do
+        if [[ $line == :folders ]]; then
+            compopt -o filenames 2>/dev/null
+            while IFS= read -r file; do COMPREPLY+=("$file"); done < <(compgen -d -- "$current")
+            continue
+        fi
         if [[ $line != :files* ]]; then
             line=${line%%$'\t'*}
             COMPREPLY+=("${line#"$kept"}")

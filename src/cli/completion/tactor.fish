@@ -5,6 +5,10 @@ function __tactor_complete
     set -l words (commandline -opc)
     set -l typed (commandline -ct)
     for line in ($words[1] __complete $words[2..-1] "$typed" 2>/dev/null)
+        if test "$line" = :folders
+            __fish_complete_directories $typed ''
+            continue
+        end
         if not string match -q ':files*' -- $line
             echo $line
             continue

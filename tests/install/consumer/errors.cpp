@@ -26,7 +26,7 @@ struct deaf_model final : tactor::phantom_model {
 
 void fail()
 {
-    tactor::path::from_svg("M 0 0 X");
+    static_cast<void>(tactor::path::from_svg("M 0 0 X"));
 }
 
 } // namespace
@@ -41,7 +41,7 @@ int main()
     try {
         fail();
     } catch (const std::system_error& e) {
-        if (e.code() == make_error_code(tactor::errc::bad_input))
+        if (e.code() == make_error_code(tactor::error_kind::bad_input))
             std::printf("system_error: %s\n", e.code().category().name());
     }
     try {
@@ -53,7 +53,8 @@ int main()
     try {
         tactor::plan_options o;
         o.custom_phantom = std::make_shared<deaf_model>();
-        tactor::make_plan(tactor::preset_array("palm-3x3"), tactor::preset_stroke("park2016-1"), o);
+        static_cast<void>(
+            tactor::make_plan(tactor::preset_array("palm-3x3"), tactor::preset_stroke("park2016-1"), o));
     } catch (const deaf& e) {
         std::printf("own: %s\n", e.what());
     }

@@ -5,6 +5,7 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
 
@@ -32,6 +33,10 @@ def wait_for(condition, what, seconds=20.0):
         time.sleep(0.002)
 
 
+# What captures: a test that fails half-way leaves the card to the next one.
+CAPTURING = []
+
+
 class Capture:
     """arecord on the other end of the loopback."""
 
@@ -42,6 +47,7 @@ class Capture:
             ["arecord", "-q", "-D", BACK.format(subdevice), "-t", "raw", "-f", sample_format, "-c", str(channels),
              "-r", str(RATE), "--period-size=1024", "--buffer-size=16384", str(self.path)],
             stderr=subprocess.PIPE)
+        CAPTURING.append(self.process)
         wait_for(lambda: self.path.exists() or self.process.poll() is not None, "arecord starts")
 
     def stop(self):
@@ -49,6 +55,23 @@ class Capture:
         self.process.communicate(timeout=30)
         data = self.path.read_bytes()
         return data[:len(data) - len(data) % self.frame_bytes]
+
+
+class Card:
+    """The loopback card, in and out of its socket."""
+    DRIVER = pathlib.Path("/sys/bus/platform/drivers/snd_aloop")
+    DEVICE = "snd_aloop.0"
+
+    @staticmethod
+    def plug_in():
+        if not (Card.DRIVER / Card.DEVICE).exists():
+            (Card.DRIVER / "bind").write_text(Card.DEVICE)
+        wait_for(lambda: "Loopback" in pathlib.Path("/proc/asound/cards").read_text(), "the card is back")
+
+    @staticmethod
+    def pull_out():
+        """Waits in the kernel until who plays has closed the card: not in this process."""
+        return subprocess.Popen(["sh", "-c", f"echo {Card.DEVICE} > {Card.DRIVER}/unbind"])
 
 
 class GpioSim:
@@ -83,12 +106,35 @@ class GpioSim:
         self.lives = False
 
 
+def until(process, words, seconds=120.0):
+    """Reads what a process prints up to these words, letter by letter; ends it when they do not come."""
+    watchdog = threading.Timer(seconds, process.kill)
+    watchdog.start()
+    said = ""
+    while not said.endswith(words):
+        letter = process.stdout.read(1)
+        if not letter:
+            watchdog.cancel()
+            raise AssertionError(f"{words!r} does not come after {said!r}; status {process.wait(60)}: {process.stderr.read()}")
+        said += letter
+    watchdog.cancel()
+
+
 class RigTest(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.dir = pathlib.Path(folder.name)
+        self.addCleanup(self.end_captures)
         self.env = os.environ | {"XDG_CONFIG_HOME": str(self.dir), "HOME": str(self.dir)}
+
+    @staticmethod
+    def end_captures():
+        while CAPTURING:
+            p = CAPTURING.pop()
+            if p.poll() is None:
+                p.kill()
+                p.wait(20)
 
     def write(self, name, text):
         (self.dir / name).write_text(text)
@@ -98,8 +144,8 @@ class RigTest(unittest.TestCase):
         return subprocess.run([*ENTER, TOOL, *map(str, args)], capture_output=True, text=True, cwd=self.dir, env=self.env,
                               timeout=timeout, check=False)
 
-    def start(self, *args):
-        p = subprocess.Popen([*ENTER, TOOL, *map(str, args)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    def start(self, *args, stdin=None):
+        p = subprocess.Popen([*ENTER, TOOL, *map(str, args)], stdin=stdin, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                              cwd=self.dir, env=self.env)
         self.addCleanup(lambda: p.poll() is None and p.kill())
         return p

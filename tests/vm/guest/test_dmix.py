@@ -5,7 +5,7 @@ import array
 from rig import RATE, Capture, RigTest
 
 # Two players and the emulated kernel share two processors: deeper than for one.
-PERIOD, PERIODS = 480, 16
+PERIOD, PERIODS = 480, 32
 
 
 def peaks(data, channels):

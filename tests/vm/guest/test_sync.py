@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Sync pulses and start triggers against what was captured."""
 import json
-import statistics
 import subprocess
 import threading
 import time
 
-from rig import BACK, BUILD, GpioSim, RigTest, wait_for
+from rig import BACK, BUILD, CAPTURING, GpioSim, RigTest, wait_for
 
 OUT_LINE, IN_LINE = 3, 5
 
@@ -19,6 +18,7 @@ class Onsets:
         self.process = subprocess.Popen(
             [BUILD / "tests/vm/capture", BACK.format(0), str(channels), folder / "capture.raw"],
             stdout=subprocess.PIPE, text=True)
+        CAPTURING.append(self.process)
         assert self.process.stdout.readline() == "ready\n"
         self.reader = threading.Thread(target=self.read, daemon=True)
         self.reader.start()
@@ -36,7 +36,7 @@ class Onsets:
 
 
 class Watch:
-    """Notes when a line rises, by looking at it: about a millisecond under emulation."""
+    """Notes between which two looks a line rises: about a millisecond under emulation, more where others get the time."""
 
     def __init__(self, gpio, offset):
         self.gpio, self.offset, self.rises, self.ended = gpio, offset, [], False
@@ -45,11 +45,13 @@ class Watch:
 
     def run(self):
         before = 0
+        looked = time.monotonic_ns()
         while not self.ended:
+            asked = time.monotonic_ns()
             now = self.gpio.value(self.offset)
             if now and not before:
-                self.rises.append(time.monotonic_ns())
-            before = now
+                self.rises.append((looked, time.monotonic_ns()))
+            before, looked = now, asked
 
     def stop(self):
         self.ended = True
@@ -78,12 +80,14 @@ class Sync(RigTest):
         self.assertLessEqual(counters["sync_missed"], 4)
         self.assertEqual(len(pulses), counters["sync_pulses"])
         # Strokes that follow each other without a gap of 0.1 s are one sound: compare each onset with the nearest pulse.
-        late = [min((p - h for p in pulses), key=abs) / 1e6 for h in heard]
-        print(f"sync pulse after onset, ms: n {len(late)}, mean {statistics.mean(late):.2f}, "
-              f"min {min(late):.2f}, max {max(late):.2f}")
-        self.assertGreaterEqual(len(late), 1)
-        # The loopback card moves by jiffies of 4 ms and the watch looks each millisecond, under emulation.
-        self.assertLess(max(map(abs, late)), 30)
+        nearest = [min(pulses, key=lambda p, h=h: abs(p[1] - h)) for h in heard]
+        least, most = ([(p[end] - h) / 1e6 for p, h in zip(nearest, heard)] for end in (0, 1))
+        print(f"sync pulse after onset, ms: n {len(heard)}, between {min(least):.2f} and {max(most):.2f}")
+        self.assertGreaterEqual(len(heard), 1)
+        # How late a busy host lets a pulse be is told by the counters; that they tell the truth is held here, as well as a
+        # card that moves by jiffies of 4 ms can.
+        self.assertGreater(min(most), -10)
+        self.assertLess(max(least), counters["sync_worst_late_s"] * 1e3 + 10)
 
     def test_an_edge_starts_an_armed_stroke(self):
         array = self.grid(extra=f'[sync]\nin = {{ chip = "{self.gpio.label}", offset = {IN_LINE}, edge = "rising" }}\n')

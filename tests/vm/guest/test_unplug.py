@@ -2,12 +2,9 @@
 """The card goes away in mid-stroke, and comes back."""
 import json
 import pathlib
-import subprocess
 
-from rig import GpioSim, RigTest, wait_for
+from rig import Card, GpioSim, RigTest, wait_for
 
-DRIVER = pathlib.Path("/sys/bus/platform/drivers/snd_aloop")
-DEVICE = "snd_aloop.0"
 LINE = 2
 
 
@@ -16,28 +13,19 @@ class Unplug(RigTest):
         super().setUp()
         self.gpio = GpioSim()
         self.addCleanup(self.gpio.close)
-        self.addCleanup(self.plug_in)
+        self.addCleanup(Card.plug_in)
         self.array = self.grid(extra=f'[amplifier]\nline = {{ chip = "{self.gpio.label}", offset = {LINE} }}\n')
-
-    def plug_in(self):
-        if not (DRIVER / DEVICE).exists():
-            (DRIVER / "bind").write_text(DEVICE)
-        wait_for(lambda: "Loopback" in pathlib.Path("/proc/asound/cards").read_text(), "the card is back")
 
     def sounding(self):
         """A second of the stream has been played: the stroke has begun."""
         status = pathlib.Path("/proc/asound/Loopback/pcm0p/sub0/status").read_text()
         return any(int(line.split(":")[1]) > 48000 for line in status.splitlines() if line.startswith("hw_ptr"))
 
-    def pull_out(self):
-        # Waits in the kernel until the player has closed the card: not in this process.
-        return subprocess.Popen(["sh", "-c", f"echo {DEVICE} > {DRIVER}/unbind"])
-
     def test_the_stroke_is_interrupted_and_the_amplifier_off(self):
         p = self.start("play", "--path", "M 0 10 L 40 30", "--duration", "60", "--array", self.array, "--format", "json")
         wait_for(lambda: self.gpio.value(LINE) == 1, "the amplifier is on")
         wait_for(self.sounding, "the stroke has begun")
-        pull = self.pull_out()
+        pull = Card.pull_out()
         wait_for(lambda: self.gpio.value(LINE) == 0, "the amplifier is off", 2)
         out, said = p.communicate(timeout=30)
         pull.wait(20)
@@ -51,10 +39,10 @@ class Unplug(RigTest):
                        "--format", "json")
         wait_for(lambda: self.gpio.value(LINE) == 1, "the amplifier is on")
         wait_for(self.sounding, "the stroke has begun")
-        pull = self.pull_out()
+        pull = Card.pull_out()
         wait_for(lambda: self.gpio.value(LINE) == 0, "the amplifier is off", 2)
         pull.wait(20)
-        self.plug_in()
+        Card.plug_in()
         wait_for(lambda: self.gpio.value(LINE) == 1 or p.poll() is not None, "the amplifier is on again", 30)
         out, said = p.communicate(timeout=60)
         states = [s["state"] for s in json.loads(out)["strokes"]]

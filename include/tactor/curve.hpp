@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// A continuous stroke: what each tactor is given, sampled.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <tactor/api.hpp>
+#include <tactor/geometry.hpp>
+#include <tactor/phantom.hpp>
+
+namespace tactor {
+
+struct burst;
+
+/// Interval at which `continuous` evaluates the phantom; linear between.
+inline constexpr double continuous_step_s = 0.001;
+
+/// Samples by column, in order of time. A plain value.
+struct curve_samples {
+    std::vector<point> positions = {};
+    std::vector<double> intensities = {}; ///< A_v
+    std::vector<std::size_t> ends = {}; ///< for each sample, how many of `drives` are its or an earlier one's
+    std::vector<drive> drives = {};     ///< each sample's in order of tactor
+
+    /// Appends position, intensity and drives of `b`.
+    TACTOR_API void add(const burst& b);
+
+    friend bool operator==(const curve_samples&, const curve_samples&) = default;
+};
+
+/// Position, intensity and drives of a continuous stroke each continuous_step_s, the last at its end; linear
+/// between. A value: two are equal where all their samples are. Copies and moves share what is inside (what
+/// is moved from stays what it was); any thread may call. make_plan() stores the samples of short strokes.
+/// Those of a stroke of more than some seconds are computed as they are read: an hour needs no more memory.
+class TACTOR_API curve {
+public:
+    /// `samples`: ceil(duration_s / continuous_step_s) + 1 of them.
+    /// \throws error (bad_input): a duration that is not above 0 or beyond a day, another number of samples,
+    ///         drives that are not in order of tactor, numbers that are not finite.
+    curve(double duration_s, curve_samples samples);
+    curve(const curve&) noexcept = default;
+    curve& operator=(const curve&) noexcept = default;
+
+    double duration_s() const noexcept;
+    /// Number of samples.
+    std::uint64_t size() const noexcept;
+    /// Time of sample k: k steps, at most the duration.
+    double time_s(std::uint64_t k) const noexcept;
+
+    /// Replaces `out` by sample k (the last one, where there are not so many) as a burst without duration.
+    void sample(std::uint64_t k, burst& out) const;
+    /// The same at a time, clamped to 0 ... duration_s: linear between the samples next to it.
+    void at(double t_s, burst& out) const;
+
+    friend TACTOR_API bool operator==(const curve& a, const curve& b);
+
+    struct impl;
+
+private:
+    friend struct curve_access;
+    explicit curve(std::shared_ptr<const impl> p) noexcept;
+
+    std::shared_ptr<const impl> impl_;
+};
+
+} // namespace tactor

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Closed sets are enumerations, called ..._kind, so that fields can have the plain names. Each has its
+/// to_string(), and here is the way back. Any thread; nothing blocks.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace tactor {
+
+/// The value that to_string() prints so: from_string<phantom_kind>("barycentric").
+/// \throws error (bad_input) that lists the names.
+template <typename Kind>
+[[nodiscard]] Kind from_string(std::string_view name) = delete;
+
+/// All values, in the order of their declaration, for menus and for going through them.
+template <typename Kind>
+[[nodiscard]] std::span<const Kind> values_of() noexcept = delete;
+
+} // namespace tactor

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What the library says of its own doing, to programs that want to hear it; off by default.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string_view>
+
+#include <tactor/api.hpp>
+#include <tactor/kinds.hpp>
+
+namespace tactor {
+
+/// How much it matters.
+enum class log_kind {
+    debug,   ///< what was tried
+    info,    ///< what was agreed on, begins, goes on or ends in order
+    warning, ///< what was felt wrongly, or may be: xruns, mutes, limits that acted
+    error,   ///< what ended the stream
+};
+
+TACTOR_API std::string_view to_string(log_kind k) noexcept;
+template <>
+TACTOR_API log_kind from_string<log_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const log_kind> values_of<log_kind>() noexcept;
+
+/// Takes one line without a line end, UTF-8, for people: its words may change with each version. An empty
+/// function turns it off. Called by the thread that opens a device or a player, then by the player's control
+/// thread, where no lock is held: it may call the player. Never by the audio thread, but what takes long
+/// keeps drives waiting. What it throws is dropped, and so are lines for which there is no memory.
+using log_function = std::function<void(log_kind, std::string_view)>;
+
+} // namespace tactor

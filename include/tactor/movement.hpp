@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// How a target moves along a path: easing, speeds and rests, and how strong it is where.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <tactor/api.hpp>
+#include <tactor/kinds.hpp>
+
+namespace tactor {
+
+/// How a target gets from rest to rest. With u from 0 to 1 the part of the time, the part of the way is
+enum class easing_kind {
+    linear,       ///< u: at once at its speed
+    in_out,       ///< u^2 (3 - 2 u): its speed is a parabola, at most 1.5 times the mean
+    minimum_jerk, ///< u^3 (10 - 15 u + 6 u^2), as hands reach (Flash and Hogan 1985): at most 1.875 times
+};
+
+TACTOR_API std::string_view to_string(easing_kind k) noexcept;
+template <>
+TACTOR_API easing_kind from_string<easing_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const easing_kind> values_of<easing_kind>() noexcept;
+
+/// A value at a part of the path's length, 0 at its start and 1 at its end.
+struct profile_point {
+    double part = 0.0;
+    double value = 0.0;
+
+    friend bool operator==(const profile_point&, const profile_point&) = default;
+};
+
+/// The target stays at a part of the path.
+struct rest {
+    double part = 0.0;
+    double time_s = 0.0;    ///< more than 0
+    double intensity = 1.0; ///< factor meanwhile, 0 to 1; 0 is silence
+
+    friend bool operator==(const rest&, const rest&) = default;
+};
+
+/// How a target moves along a path. The default is even. Between the points of a profile all is linear, and
+/// before the first and after the last it is as there; parts ascend. Speeds are linear over the way, not over
+/// the time: between two of them speed grows or falls exponentially in time.
+struct movement {
+    /// Time of all, rests included. None: as the speeds say.
+    std::optional<double> duration_s = {};
+    /// Of each stretch from rest to rest. It keeps the time in which the stretch would be crossed without it.
+    easing_kind easing = easing_kind::linear;
+    std::vector<profile_point> speed_mm_s =
+        {}; ///< more than 0; with a duration their ratios count. Empty: even
+    std::vector<profile_point> intensity = {}; ///< factors, from 0. Empty: 1
+    std::vector<rest> rests = {};              ///< by ascending part
+
+    friend bool operator==(const movement&, const movement&) = default;
+};
+
+} // namespace tactor

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What vibrates: the shape of a carrier's cycle, noise, or recorded samples, and how it is modulated.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tactor/api.hpp>
+#include <tactor/kinds.hpp>
+
+namespace tactor {
+
+/// The shapes have the carrier's frequency and only those of their harmonics that are below half the rate;
+/// each begins at a crossing of zero upwards. Noise lies between two frequencies. The peak of each is the
+/// amplitude that is asked for: a square has up to 1.6 times a sine's power, and noise a tenth of it.
+enum class waveform_kind { sine, square, triangle, sawtooth, noise, recording };
+
+/// How recorded samples are laid along a stroke: as the carrier's cycle; in their own time, from the stroke's
+/// first frame on; or along the path, by its length. What ends before the stroke begins again.
+enum class texture_kind { cycle, time, length };
+
+TACTOR_API std::string_view to_string(waveform_kind k) noexcept;
+template <>
+TACTOR_API waveform_kind from_string<waveform_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const waveform_kind> values_of<waveform_kind>() noexcept;
+
+TACTOR_API std::string_view to_string(texture_kind k) noexcept;
+template <>
+TACTOR_API texture_kind from_string<texture_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const texture_kind> values_of<texture_kind>() noexcept;
+
+/// Samples of one channel.
+struct recording {
+    std::string file = {};    ///< where they came from, for messages
+    double rate_hz = 48000.0; ///< above 0
+    /// Finite, in any unit, and not all the same: what is played of them is their shape, with a peak of 1 and
+    /// without their mean.
+    std::vector<float> samples = {};
+
+    friend bool operator==(const recording&, const recording&) = default;
+};
+
+/// Frequencies of noise, Hz: at least so far from each other and from 0.
+inline constexpr double least_noise_hz = 1.0;
+/// Most samples of a recording that is a cycle, or lies along a path by its length.
+inline constexpr std::size_t most_cycle_samples = std::size_t{1} << 16;
+/// Most samples of any recording.
+inline constexpr std::size_t most_recording_samples = std::size_t{1} << 22;
+
+/// A plain value; the recording is shared.
+struct waveform {
+    waveform_kind kind = waveform_kind::sine;
+    double low_hz = 50.0;   ///< noise: its frequencies, >= least_noise_hz, below half the rate
+    double high_hz = 500.0; ///< noise: at least least_noise_hz above low_hz
+    std::uint64_t seed = 1; ///< noise: the same number gives the same noise
+    std::shared_ptr<const recording> recorded = {}; ///< recording only
+    texture_kind texture = texture_kind::cycle;     ///< recording only
+    /// texture_kind::length: so much of the path, mm, has the whole recording; 0: all of it.
+    double texture_mm = 0.0;
+
+    /// Compares recordings by what is in them.
+    TACTOR_API friend bool operator==(const waveform& a, const waveform& b);
+};
+
+/// Amplitude modulation: the vibration times (1 + depth sin(2 pi hz t)) / (1 + depth), so that its peak
+/// stays; t is 0 where the carrier begins.
+struct modulation {
+    double hz = 0.0;    ///< 0: none; at most 20000
+    double depth = 1.0; ///< 0 to 1
+
+    friend bool operator==(const modulation&, const modulation&) = default;
+};
+
+/// "sine", "square", "triangle", "sawtooth", "noise:LO-HI" or the name of a WAV file, relative to `folder`,
+/// which is read: one channel of integers or floats. May block on the file system.
+/// \throws error (bad_input) for what is none of these.
+[[nodiscard]] TACTOR_API waveform parse_waveform(std::string_view text,
+                                                 const std::filesystem::path& folder = {});
+
+/// Whether parse_waveform() would open a file for this text: to refuse one from somebody who may name none.
+[[nodiscard]] TACTOR_API bool waveform_names_file(std::string_view text) noexcept;
+
+/// What parse_waveform() takes: of noise its frequencies, of a recording its file.
+[[nodiscard]] TACTOR_API std::string waveform_text(const waveform& w);
+
+/// "HZ" or "HZ:DEPTH". \throws error (bad_input).
+[[nodiscard]] TACTOR_API modulation parse_modulation(std::string_view text);
+
+/// Reads a WAV file (RIFF or RF64) of one channel: integers of 8 to 32 bits or floats of 32 or 64.
+/// \throws error (bad_input) with its name.
+[[nodiscard]] TACTOR_API recording load_recording(const std::filesystem::path& file);
+
+/// Checks ranges; what depends on the sample rate is checked when a score is made.
+/// \throws error (bad_input) naming the field.
+TACTOR_API void validate(const waveform& w);
+TACTOR_API void validate(const modulation& m);
+
+} // namespace tactor

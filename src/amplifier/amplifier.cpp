@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "amplifier/amplifier.hpp"
+
+namespace tactor::engine {
+
+void amplifier::handle(amplifier_event e, std::int64_t now, std::uint64_t frames) noexcept
+{
+    if (state_ == state::ended)
+        return;
+    switch (e) {
+    case amplifier_event::started:
+        played_ = 0;
+        proof_from_ = 0;
+        if (state_ == state::stopped)
+            state_ = state::proving;
+        break;
+    case amplifier_event::moved:
+        played_ = frames;
+        break;
+    case amplifier_event::switched:
+        if (state_ == state::switching) {
+            state_ = state::settling;
+            settled_at_ = now + options_.settle_ns;
+        }
+        break;
+    case amplifier_event::xrun:
+        count_xrun(now);
+        break;
+    case amplifier_event::suspended:
+        state_ = state::stopped;
+        break;
+    case amplifier_event::stalled:
+        stalled_ = true;
+        prove();
+        break;
+    case amplifier_event::recovered:
+        stalled_ = false;
+        prove();
+        break;
+    case amplifier_event::lapsed:
+        prove();
+        break;
+    case amplifier_event::silent:
+    case amplifier_event::lost:
+    case amplifier_event::failed:
+        state_ = state::ended;
+        return;
+    case amplifier_event::tick:
+        break;
+    }
+    look(now);
+}
+
+// Off, and on again when the DAC has shown that it runs.
+void amplifier::prove() noexcept
+{
+    if (state_ != state::stopped)
+        state_ = state::proving;
+    proof_from_ = played_;
+}
+
+// Muting pops too: a single xrun, which is over in a few periods, is better left alone.
+void amplifier::count_xrun(std::int64_t now) noexcept
+{
+    if (xruns_ == 0 || now - first_xrun_ >= options_.calm_ns) {
+        first_xrun_ = now;
+        xruns_ = 0;
+    }
+    ++xruns_;
+    if (xruns_ >= options_.most_xruns || now < muted_until_) {
+        muted_until_ = now + options_.calm_ns;
+        first_xrun_ = now; // the next one is one too many again
+        prove();
+    }
+}
+
+void amplifier::look(std::int64_t now) noexcept
+{
+    if (state_ == state::proving && !stalled_ && now >= muted_until_ &&
+        played_ >= proof_from_ + options_.proof_frames)
+        state_ = state::switching;
+    if (state_ == state::settling && now >= settled_at_)
+        state_ = state::ready;
+}
+
+std::optional<std::int64_t> amplifier::deadline() const noexcept
+{
+    if (state_ == state::settling)
+        return settled_at_;
+    if (state_ == state::proving && !stalled_ && muted_until_ != INT64_MIN)
+        return muted_until_;
+    return std::nullopt;
+}
+
+} // namespace tactor::engine

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "amplifier/chips.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <grp.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+
+#include "amplifier/errors.hpp"
+
+namespace tactor::gpio {
+namespace {
+
+std::optional<unsigned> chip_number(const std::string& name)
+{
+    constexpr std::string_view prefix = "gpiochip";
+    unsigned number = 0;
+    if (!name.starts_with(prefix))
+        return std::nullopt;
+    const char* end = name.data() + name.size();
+    const auto [p, ec] = std::from_chars(name.data() + prefix.size(), end, number);
+    return ec == std::errc{} && p == end ? std::optional(number) : std::nullopt;
+}
+
+chip unread(const std::string& path, int code)
+{
+    chip c;
+    c.info.path = path;
+    c.info.name = std::filesystem::path(path).filename().string();
+    c.code = code;
+    return c;
+}
+
+chip read_with_group(const std::string& path)
+{
+    const int other = not_a_chip(path);
+    chip c = other == 0 ? read_chip(path) : unread(path, other);
+    if (c.code != 0)
+        c.group = group_of(path);
+    return c;
+}
+
+/// The file that a path means once its links are followed: an own name made by udev is as good as any.
+std::string real_path(const std::string& path)
+{
+    std::error_code ec;
+    const std::filesystem::path real = std::filesystem::canonical(path, ec);
+    return ec ? path : real.string();
+}
+
+} // namespace
+
+std::vector<std::string> chip_paths(const std::filesystem::path& folder)
+{
+    std::vector<std::pair<unsigned, std::string>> found;
+    std::error_code ec;
+    for (std::filesystem::directory_iterator it(folder, ec), end; it != end; it.increment(ec)) {
+        const auto number = chip_number(it->path().filename().string());
+        if (number && !it->is_symlink(ec))
+            found.emplace_back(*number, it->path().string());
+    }
+    std::sort(found.begin(), found.end());
+    std::vector<std::string> paths;
+    for (auto& [number, path] : found)
+        paths.push_back(std::move(path));
+    return paths;
+}
+
+int not_a_chip(const std::string& path)
+{
+    struct stat status {};
+    if (::stat(path.c_str(), &status) != 0)
+        return errno;
+    if (!S_ISCHR(status.st_mode))
+        return ENOTTY;
+    std::error_code ec;
+    const std::filesystem::path bus = std::filesystem::canonical(
+        fmt::format("/sys/dev/char/{}:{}/subsystem", major(status.st_rdev), minor(status.st_rdev)), ec);
+    if (ec)
+        return ENOENT; // as libgpiod says it where there is no /sys
+    return bus.filename() == "gpio" ? 0 : ENODEV;
+}
+
+std::string group_of(const std::string& path)
+{
+    struct stat status {};
+    group entry{};
+    group* found = nullptr;
+    std::array<char, 4096> names{};
+    if (::stat(path.c_str(), &status) == 0 &&
+        ::getgrgid_r(status.st_gid, &entry, names.data(), names.size(), &found) == 0 && found)
+        return found->gr_name;
+    return "gpio";
+}
+
+std::vector<chip> read_chips()
+{
+    std::vector<chip> chips;
+    for (const std::string& path : chip_paths())
+        chips.push_back(read_with_group(path));
+    return chips;
+}
+
+gpio_line_place look_up(const gpio_line_name& wanted)
+{
+    if (!built_in())
+        throw error(error_kind::not_available, thing(wanted), "tactor was built without GPIO",
+                    "build it anew with -Dgpio=enabled, where libgpiod is");
+    std::vector<chip> chips = read_chips();
+    gpio_line_name by = wanted;
+    if (wanted.chip.starts_with('/')) {
+        by.chip = real_path(wanted.chip);
+        const auto same = [&](const chip& c) { return c.info.path == by.chip; };
+        std::error_code ec;
+        if (std::none_of(chips.begin(), chips.end(), same) && std::filesystem::exists(by.chip, ec))
+            chips.push_back(read_with_group(by.chip));
+    }
+    const line_place p = find_line(chips, by);
+    const gpio_chip_info& c = chips[p.chip].info;
+    return {c.path, c.label, c.lines[p.offset]};
+}
+
+located_line locate(const gpio_line_name& wanted)
+{
+    const gpio_line_place p = look_up(wanted);
+    return {p.path, p.line.offset};
+}
+
+std::string holder_of(const located_line& l)
+{
+    const chip c = read_chip(l.path);
+    return l.offset < c.info.lines.size() ? c.info.lines[l.offset].consumer : std::string();
+}
+
+} // namespace tactor::gpio
+
+std::vector<tactor::gpio_chip_info> tactor::list_gpio()
+{
+    std::vector<gpio_chip_info> out;
+    for (gpio::chip& c : gpio::read_chips()) {
+        if (c.code != 0)
+            c.info.error = gpio::advice(c);
+        out.push_back(std::move(c.info));
+    }
+    return out;
+}
+
+tactor::gpio_line_place tactor::find_gpio_line(const gpio_line_name& line)
+{
+    return gpio::look_up(line);
+}

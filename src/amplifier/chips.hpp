@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The chips of this machine.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <tactor/gpio.hpp>
+
+#include "amplifier/find.hpp"
+
+namespace tactor::gpio {
+
+/// Device nodes gpiochipN in a folder, by number. Links are left out: Raspberry Pi kernels keep gpiochip4
+/// as a second name of gpiochip0.
+std::vector<std::string> chip_paths(const std::filesystem::path& folder = "/dev");
+
+/// Why a path is no GPIO chip, as an errno; 0: it is one. Opens nothing: a pipe would wait, and a watchdog
+/// would start.
+int not_a_chip(const std::string& path);
+
+/// Name of the group that owns a file, "gpio" where that cannot be found out.
+std::string group_of(const std::string& path);
+
+/// Looks the line up among the chips that there are now. Throws as find_line() does.
+gpio_line_place look_up(const gpio_line_name& wanted);
+
+/// What is to be opened.
+struct located_line {
+    std::string path;
+    unsigned offset = 0;
+};
+
+/// The same, but only where it is.
+located_line locate(const gpio_line_name& wanted);
+
+/// Opens every chip, and nothing else that is called so.
+std::vector<chip> read_chips();
+
+/// Who holds a line now; empty: nobody, or it cannot be known.
+std::string holder_of(const located_line& l);
+
+} // namespace tactor::gpio

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// The public functions of this folder, but for the list of chips.
+#include <tactor/gpio.hpp>
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "amplifier/chips.hpp"
+#include "amplifier/debounce.hpp"
+#include "amplifier/errors.hpp"
+#include "amplifier/holder.hpp"
+#include "amplifier/line.hpp"
+#include "core/refused.hpp"
+
+namespace tactor::gpio {
+namespace {
+
+class own_output final : public enable_line {
+public:
+    explicit own_output(std::unique_ptr<output> line) : line_(std::move(line)) {}
+    ~own_output() override { line_->set(false); }
+    own_output(const own_output&) = delete;
+    own_output& operator=(const own_output&) = delete;
+    bool set(bool on) noexcept override { return line_->set(on); }
+
+private:
+    std::unique_ptr<output> line_;
+};
+
+class debounced_input final : public edge_input {
+public:
+    debounced_input(std::unique_ptr<edge_input> raw, debounce filter) : raw_(std::move(raw)), filter_(filter)
+    {
+    }
+    int descriptor() const noexcept override { return raw_->descriptor(); }
+    std::optional<gpio_edge> read() noexcept override
+    {
+        while (const auto e = raw_->read())
+            if (filter_.accepts(e->time_ns))
+                return e;
+        return std::nullopt;
+    }
+
+private:
+    std::unique_ptr<edge_input> raw_;
+    debounce filter_;
+};
+
+template <typename T>
+std::unique_ptr<T> take(requested<T> r, const gpio_line_name& wanted, const located_line& at)
+{
+    if (!r.line)
+        detail::throw_caused(request_error(wanted, r.code, holder_of(at)), r.code);
+    return std::move(r.line);
+}
+
+constexpr double longest_debounce_s = 10.0;
+
+debounce make_debounce(const gpio_line_name& line, double seconds)
+{
+    if (!(seconds >= 0.0 && seconds <= longest_debounce_s))
+        throw error(error_kind::bad_input, thing(line), fmt::format("a debounce time of {} s", seconds),
+                    fmt::format("0 to {} s", longest_debounce_s));
+    return debounce(std::llround(seconds * 1e9));
+}
+
+bool set_output(void* line, bool on) noexcept
+{
+    return static_cast<output*>(line)->set(on);
+}
+
+} // namespace
+} // namespace tactor::gpio
+
+namespace tactor {
+
+using namespace gpio;
+
+enable_line::~enable_line() = default;
+edge_input::~edge_input() = default;
+
+std::unique_ptr<enable_line> open_amplifier(const amplifier_settings& s)
+{
+    const located_line at = locate(s.line);
+    const output_request request{at.path, at.offset, s.active_low};
+    // Requested here, where errors have words and libgpiod may allocate; the holder inherits the request and
+    // has it alone once this copy is given up.
+    const std::unique_ptr<output> line = take(request_output(request), s.line, at);
+    const auto rescue = [request] { return request_output(request).line != nullptr; };
+    return start_holder({&set_output, line.get(), {line->descriptor()}}, rescue);
+}
+
+std::unique_ptr<enable_line> open_output(const gpio_line_name& line, bool active_low)
+{
+    const located_line at = locate(line);
+    return std::make_unique<own_output>(take(request_output({at.path, at.offset, active_low}), line, at));
+}
+
+std::unique_ptr<edge_input> open_edges(const gpio_line_name& line, edge_kind edge, double debounce_s,
+                                       pull_kind pull)
+{
+    input_request request;
+    request.edge = edge;
+    request.bias = pull;
+    const debounce filter = make_debounce(line, debounce_s);
+    const located_line at = locate(line);
+    request.path = at.path;
+    request.offset = at.offset;
+    return std::make_unique<debounced_input>(take(request_input(request), line, at), filter);
+}
+
+} // namespace tactor

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The player's side of the holder process.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <sys/types.h>
+
+#include <tactor/gpio.hpp>
+
+#include "amplifier/holder_process.hpp"
+
+namespace tactor::gpio {
+
+/// What the holder is to hold.
+struct held_line {
+    bool (*set)(void* line, bool on) noexcept = nullptr; ///< async-signal-safe
+    void* line = nullptr;                                ///< must live until start_holder() has returned
+    std::vector<int> descriptors = {}; ///< what `set` needs; with a -1 the holder closes none of ours
+};
+
+/// A line in the hands of a holder. One thread at a time.
+class holder_link final : public enable_line {
+public:
+    holder_link(int socket, std::int32_t pid, std::function<bool()> rescue);
+    ~holder_link() override;
+    holder_link(const holder_link&) = delete;
+    holder_link& operator=(const holder_link&) = delete;
+
+    bool set(bool on) noexcept override;
+    bool beat() noexcept override;
+    /// Of the holder.
+    pid_t pid() const noexcept { return pid_; }
+
+private:
+    bool send(message_kind kind) noexcept;
+    bool await_answer(message_kind kind) noexcept;
+    std::optional<message> receive() noexcept;
+    void give_up() noexcept;
+    bool switch_off_here() noexcept;
+
+    int socket_;
+    pid_t pid_;
+    int process_; ///< pidfd of the holder
+    std::function<bool()> rescue_;
+    std::uint8_t number_ = 0;
+    unsigned unanswered_ = 0;
+    bool lapsed_ = false;
+    bool on_ = false; ///< or may be
+    bool gone_ = false;
+    bool rescued_ = false;
+};
+
+/// Forks twice, so that the holder is nobody's child that has to be waited for. The line must be off; it is
+/// in the holder's hands when this returns, and the caller then gives up its own copy.
+/// `rescue` is called when the holder was lost: switch the line off, true if that worked.
+/// \throws error (not_available).
+std::unique_ptr<holder_link> start_holder(const held_line& line, std::function<bool()> rescue);
+
+} // namespace tactor::gpio

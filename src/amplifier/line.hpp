@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What this folder needs of libgpiod, whichever version: line_v1.cpp or line_v2.cpp, chosen by Meson,
+/// or line_none.cpp where there is none.
+#pragma once
+
+#include <cerrno>
+#include <memory>
+#include <string>
+
+#include <tactor/gpio.hpp>
+
+namespace tactor::gpio {
+
+/// What other programs see as the holder of our lines.
+inline constexpr const char* consumer = "tactor";
+/// Stands for the consumer of a line in use whose consumer has no name.
+inline constexpr const char* nameless_consumer = "kernel";
+
+/// A name that the library gives; it gives null for none.
+inline std::string text(const char* s)
+{
+    return s ? s : "";
+}
+
+/// Why it returned nothing: it sets errno wherever it does.
+inline int failure() noexcept
+{
+    return errno != 0 ? errno : EIO;
+}
+
+/// A chip and what is on it.
+struct chip {
+    gpio_chip_info info = {};
+    int code = 0;           ///< errno of opening it; 0: it could be opened
+    std::string group = {}; ///< that its device node belongs to, said only where opening failed
+};
+
+struct output_request {
+    std::string path;
+    unsigned offset = 0;
+    bool active_low = false;
+};
+
+struct input_request {
+    std::string path;
+    unsigned offset = 0;
+    edge_kind edge = edge_kind::both;
+    pull_kind bias = pull_kind::as_is;
+};
+
+/// An output of this process, off from the moment of the request. Released, but not switched, when
+/// destroyed.
+class output {
+public:
+    virtual ~output() = default;
+    /// One ioctl; neither allocates nor locks, so a forked process may call it.
+    virtual bool set(bool on) noexcept = 0;
+    /// Of the request: who has it open has the line. -1 when it could not be found out.
+    virtual int descriptor() const noexcept = 0;
+};
+
+/// A line, or the errno of why there is none.
+template <typename T>
+struct requested {
+    std::unique_ptr<T> line;
+    int code = 0;
+};
+
+/// Whether there is a libgpiod behind all this.
+bool built_in() noexcept;
+/// All but the group. A chip that cannot be opened is not an error.
+chip read_chip(const std::string& path);
+/// Direction and value in one ioctl, so the line goes from what it was to off without a glitch.
+requested<output> request_output(const output_request& r);
+/// Every edge that the kernel saw, not debounced.
+requested<edge_input> request_input(const input_request& r);
+
+} // namespace tactor::gpio

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+// libgpiod 2 (Debian 13).
+#include "amplifier/line.hpp"
+
+#include <cerrno>
+#include <filesystem>
+
+#include <fcntl.h>
+#include <gpiod.h>
+
+#include "core/deleter.hpp"
+
+namespace tactor::gpio {
+namespace {
+
+using detail::deleter;
+
+using chip_handle = std::unique_ptr<gpiod_chip, deleter<gpiod_chip_close>>;
+using chip_data = std::unique_ptr<gpiod_chip_info, deleter<gpiod_chip_info_free>>;
+using line_data = std::unique_ptr<gpiod_line_info, deleter<gpiod_line_info_free>>;
+using settings_handle = std::unique_ptr<gpiod_line_settings, deleter<gpiod_line_settings_free>>;
+using line_config = std::unique_ptr<gpiod_line_config, deleter<gpiod_line_config_free>>;
+using request_config = std::unique_ptr<gpiod_request_config, deleter<gpiod_request_config_free>>;
+using request_handle = std::unique_ptr<gpiod_line_request, deleter<gpiod_line_request_release>>;
+using event_buffer = std::unique_ptr<gpiod_edge_event_buffer, deleter<gpiod_edge_event_buffer_free>>;
+
+gpio_line_info describe(gpiod_line_info* l)
+{
+    gpio_line_info out;
+    out.offset = gpiod_line_info_get_offset(l);
+    out.name = text(gpiod_line_info_get_name(l));
+    out.consumer = text(gpiod_line_info_get_consumer(l));
+    if (out.consumer.empty() && gpiod_line_info_is_used(l))
+        out.consumer = nameless_consumer;
+    out.output = gpiod_line_info_get_direction(l) == GPIOD_LINE_DIRECTION_OUTPUT;
+    return out;
+}
+
+class output_line final : public output {
+public:
+    output_line(request_handle r, unsigned offset) : request_(std::move(r)), offset_(offset) {}
+    bool set(bool on) noexcept override
+    {
+        return gpiod_line_request_set_value(request_.get(), offset_,
+                                            on ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE) == 0;
+    }
+    int descriptor() const noexcept override { return gpiod_line_request_get_fd(request_.get()); }
+
+private:
+    request_handle request_;
+    unsigned offset_;
+};
+
+class input_line final : public edge_input {
+public:
+    input_line(request_handle r, event_buffer b) : request_(std::move(r)), buffer_(std::move(b)) {}
+    int descriptor() const noexcept override { return gpiod_line_request_get_fd(request_.get()); }
+    // One event at a time: what waits must keep the descriptor readable.
+    std::optional<gpio_edge> read() noexcept override
+    {
+        if (gpiod_line_request_read_edge_events(request_.get(), buffer_.get(), 1) != 1)
+            return std::nullopt;
+        gpiod_edge_event* e = gpiod_edge_event_buffer_get_event(buffer_.get(), 0);
+        return gpio_edge{static_cast<std::int64_t>(gpiod_edge_event_get_timestamp_ns(e)),
+                         gpiod_edge_event_get_event_type(e) == GPIOD_EDGE_EVENT_RISING_EDGE};
+    }
+
+private:
+    request_handle request_;
+    event_buffer buffer_;
+};
+
+gpiod_line_bias to_gpiod(pull_kind p) noexcept
+{
+    switch (p) {
+    case pull_kind::none:
+        return GPIOD_LINE_BIAS_DISABLED;
+    case pull_kind::up:
+        return GPIOD_LINE_BIAS_PULL_UP;
+    case pull_kind::down:
+        return GPIOD_LINE_BIAS_PULL_DOWN;
+    case pull_kind::as_is:
+        break;
+    }
+    return GPIOD_LINE_BIAS_AS_IS;
+}
+
+gpiod_line_edge to_gpiod(edge_kind e) noexcept
+{
+    switch (e) {
+    case edge_kind::rising:
+        return GPIOD_LINE_EDGE_RISING;
+    case edge_kind::falling:
+        return GPIOD_LINE_EDGE_FALLING;
+    case edge_kind::both:
+        break;
+    }
+    return GPIOD_LINE_EDGE_BOTH;
+}
+
+// Null with errno set when there is no such line or it cannot be had.
+request_handle request(const std::string& path, unsigned offset, gpiod_line_settings* s)
+{
+    errno = 0;
+    const chip_handle c(gpiod_chip_open(path.c_str()));
+    const line_config lines(gpiod_line_config_new());
+    const request_config by(gpiod_request_config_new());
+    if (!c || !lines || !by || gpiod_line_config_add_line_settings(lines.get(), &offset, 1, s) != 0)
+        return nullptr;
+    gpiod_request_config_set_consumer(by.get(), consumer);
+    return request_handle(gpiod_chip_request_lines(c.get(), by.get(), lines.get()));
+}
+
+} // namespace
+
+bool built_in() noexcept
+{
+    return true;
+}
+
+chip read_chip(const std::string& path)
+{
+    chip out;
+    out.info.path = path;
+    out.info.name = std::filesystem::path(path).filename().string();
+    errno = 0;
+    const chip_handle c(gpiod_chip_open(path.c_str()));
+    const chip_data data(c ? gpiod_chip_get_info(c.get()) : nullptr);
+    if (!data) {
+        out.code = failure();
+        return out;
+    }
+    out.info.name = text(gpiod_chip_info_get_name(data.get()));
+    out.info.label = text(gpiod_chip_info_get_label(data.get()));
+    const std::size_t n = gpiod_chip_info_get_num_lines(data.get());
+    for (unsigned i = 0; i < n; ++i) {
+        const line_data l(gpiod_chip_get_line_info(c.get(), i));
+        out.info.lines.push_back(l ? describe(l.get()) : gpio_line_info{.offset = i});
+    }
+    return out;
+}
+
+requested<output> request_output(const output_request& r)
+{
+    const settings_handle s(gpiod_line_settings_new());
+    if (!s)
+        return {nullptr, ENOMEM};
+    gpiod_line_settings_set_direction(s.get(), GPIOD_LINE_DIRECTION_OUTPUT);
+    gpiod_line_settings_set_active_low(s.get(), r.active_low);
+    gpiod_line_settings_set_output_value(s.get(), GPIOD_LINE_VALUE_INACTIVE);
+    request_handle h = request(r.path, r.offset, s.get());
+    if (!h)
+        return {nullptr, failure()};
+    return {std::make_unique<output_line>(std::move(h), r.offset), 0};
+}
+
+requested<edge_input> request_input(const input_request& r)
+{
+    const settings_handle s(gpiod_line_settings_new());
+    event_buffer buffer(gpiod_edge_event_buffer_new(1));
+    if (!s || !buffer)
+        return {nullptr, ENOMEM};
+    gpiod_line_settings_set_direction(s.get(), GPIOD_LINE_DIRECTION_INPUT);
+    gpiod_line_settings_set_edge_detection(s.get(), to_gpiod(r.edge));
+    gpiod_line_settings_set_bias(s.get(), to_gpiod(r.bias));
+    gpiod_line_settings_set_event_clock(s.get(), GPIOD_LINE_CLOCK_MONOTONIC);
+    request_handle h = request(r.path, r.offset, s.get());
+    if (!h)
+        return {nullptr, failure()};
+    // The kernel's own debounce is left off: it stamps an edge when the line has settled, not when it came.
+    const int fd = gpiod_line_request_get_fd(h.get());
+    ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) | O_NONBLOCK);
+    return {std::make_unique<input_line>(std::move(h), std::move(buffer)), 0};
+}
+
+} // namespace tactor::gpio

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include "cli/analyze/analyze_output.hpp"
+#include "plot/bar_figure.hpp"
+
+namespace tactor::cli {
+namespace {
+
+plot::bar_series bars_of(const std::string& name, const study::by_motion& b)
+{
+    plot::bar_series s{name};
+    for (const study::t_test& t : b.motion)
+        s.bars.push_back({t.mean, t.se});
+    s.bars.push_back({b.all.mean, b.all.se});
+    return s;
+}
+
+plot::bar_panel panel_of(const study::run_analysis& r)
+{
+    plot::bar_panel p;
+    p.title = fmt::format("{} (n = {})", r.run.name, r.n);
+    p.groups = r.run.motions;
+    p.groups.emplace_back("all");
+    switch (r.run.task) {
+    case study::task_kind::choose:
+        p.y_title = fmt::format("{} chosen (%)", r.run.methods.back());
+        p.series.push_back(bars_of("", r.cells[0]));
+        p.level = 50.0;
+        p.y_to = 100.0;
+        return p;
+    case study::task_kind::rate:
+        p.y_title = "mean rating";
+        p.y_from = 1.0;
+        p.y_to = r.run.scale;
+        break;
+    case study::task_kind::identify:
+        p.y_title = "correct (%)";
+        p.level = study::chance(r.run);
+        p.y_to = 100.0;
+        break;
+    }
+    for (std::size_t m = 0; m < r.run.methods.size(); ++m)
+        p.series.push_back(bars_of(r.run.methods[m], r.cells[m]));
+    return p;
+}
+
+} // namespace
+
+plot::canvas draw_analysis(const study::analysis& a)
+{
+    plot::bar_figure f;
+    f.title = a.experiment;
+    f.note = "Means over participants; error bars are standard errors.";
+    f.across = a.simulated ? "simulated" : "";
+    for (const study::run_analysis& r : a.runs)
+        if (r.n != 0)
+            f.panels.push_back(panel_of(r));
+    return plot::draw_bars_of(f);
+}
+
+} // namespace tactor::cli

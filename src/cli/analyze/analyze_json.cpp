@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/analyze/analyze_output.hpp"
+
+namespace tactor::cli {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+json value(std::optional<double> v)
+{
+    return v ? json(*v) : json(nullptr);
+}
+
+json ends(const std::optional<study::interval>& i)
+{
+    return i ? json::array({i->first, i->second}) : json(nullptr);
+}
+
+json test_json(const study::t_test& t)
+{
+    return {{"mean", value(t.mean)},
+            {"se", value(t.se)},
+            {"ci", ends(t.ci)},
+            {"t", value(t.t)},
+            {"df", value(t.df)},
+            {"p", value(t.p)},
+            {"p_signflip", value(t.p_signflip)},
+            {"d", value(t.d)},
+            {"d_ci", ends(t.d_ci)}};
+}
+
+json tests_json(const study::by_motion& b, const std::vector<std::string>& motions)
+{
+    json j{{"all", test_json(b.all)}, {"motion", json::object()}};
+    for (std::size_t m = 0; m < motions.size(); ++m) {
+        json one = test_json(b.motion[m]);
+        one["p_holm"] = value(b.p_holm[m]);
+        j["motion"][motions[m]] = std::move(one);
+    }
+    return j;
+}
+
+json mean_json(const study::t_test& t)
+{
+    return {{"mean", value(t.mean)}, {"se", value(t.se)}, {"ci", ends(t.ci)}};
+}
+
+json means_json(const study::by_motion& b, const std::vector<std::string>& motions)
+{
+    json j{{"all", mean_json(b.all)}, {"motion", json::object()}};
+    for (std::size_t m = 0; m < motions.size(); ++m)
+        j["motion"][motions[m]] = mean_json(b.motion[m]);
+    return j;
+}
+
+// Of a factor with one level there is no effect.
+json effect_json(const study::effect& e, std::size_t levels)
+{
+    if (levels < 2)
+        return nullptr;
+    const auto df = [&](double v) { return v > 0.0 ? json(v) : json(nullptr); };
+    return {{"F", value(e.f)},
+            {"df1", df(e.df1)},
+            {"df2", df(e.df2)},
+            {"p", value(e.p)},
+            {"epsilon_gg", value(e.epsilon_gg)},
+            {"p_gg", value(e.p_gg)},
+            {"mauchly_w", value(e.mauchly_w)},
+            {"mauchly_p", value(e.mauchly_p)},
+            {"eta2_partial", value(e.eta2_partial)},
+            {"eta2_generalised", value(e.eta2_generalised)}};
+}
+
+json pairs_json(const std::vector<study::comparison>& pairs, const std::vector<std::string>& motions)
+{
+    json j = json::array();
+    for (const study::comparison& c : pairs)
+        j.push_back({{"a", motions[c.a]},
+                     {"b", motions[c.b]},
+                     {"difference", c.difference},
+                     {"q", value(c.q)},
+                     {"p", value(c.p)}});
+    return j;
+}
+
+void add_choose(json& j, const study::run_analysis& r)
+{
+    const std::vector<std::string>& motions = r.run.motions;
+    j["method"] = r.run.methods.back();
+    j["preference"] = tests_json(r.cells[0], motions);
+    j["first_interval"] = {{"mean", value(r.first_interval.mean)},
+                           {"t", value(r.first_interval.t)},
+                           {"p", value(r.first_interval.p)}};
+    j["anova"] = {{"motion", effect_json(r.effects.second, motions.size())}};
+    j["tukey"] = pairs_json(r.pairs[0], motions);
+}
+
+void add_rate(json& j, const study::run_analysis& r)
+{
+    const std::vector<std::string>& motions = r.run.motions;
+    const std::vector<std::string>& methods = r.run.methods;
+    j["means"] = json::object();
+    for (std::size_t m = 0; m < methods.size(); ++m)
+        j["means"][methods[m]] = means_json(r.cells[m], motions);
+    const study::t_test& t = r.paired;
+    j["paired"] =
+        methods.size() < 2
+            ? json(nullptr)
+            : json{
+                  {"difference", value(t.mean)}, {"ci", ends(t.ci)},      {"t", value(t.t)},
+                  {"df", value(t.df)},           {"p", value(t.p)},       {"p_signflip", value(t.p_signflip)},
+                  {"d_z", value(t.d)},           {"d_z_ci", ends(t.d_ci)}};
+    j["anova"] = {
+        {"method", effect_json(r.effects.first, methods.size())},
+        {"motion", effect_json(r.effects.second, motions.size())},
+        {"method:motion", effect_json(r.effects.interaction, std::min(methods.size(), motions.size()))}};
+    j["tukey"] = json::object();
+    for (std::size_t m = 0; m < methods.size(); ++m)
+        j["tukey"][methods[m]] = pairs_json(r.pairs[m], motions);
+}
+
+void add_identify(json& j, const study::run_analysis& r)
+{
+    j["chance"] = study::chance(r.run);
+    j["confusion"] = json::object();
+    j["correct"] = json::object();
+    for (std::size_t m = 0; m < r.run.methods.size(); ++m) {
+        json matrix = json::object();
+        for (std::size_t i = 0; i < r.run.motions.size(); ++i) {
+            json row = json::object();
+            for (std::size_t k = 0; k < r.run.motions.size(); ++k)
+                row[r.run.motions[k]] = r.confusion[m][i][k];
+            matrix[r.run.motions[i]] = std::move(row);
+        }
+        j["confusion"][r.run.methods[m]] = std::move(matrix);
+        j["correct"][r.run.methods[m]] = tests_json(r.cells[m], r.run.motions);
+    }
+}
+
+json run_json(const study::run_analysis& r)
+{
+    json j{{"task", to_string(r.run.task)}, {"n", r.n}};
+    switch (r.run.task) {
+    case study::task_kind::choose:
+        add_choose(j, r);
+        break;
+    case study::task_kind::rate:
+        add_rate(j, r);
+        break;
+    case study::task_kind::identify:
+        add_identify(j, r);
+        break;
+    }
+    j["trials"] = r.trials;
+    j["left_out"] = json::array();
+    for (const study::left_out& l : r.missing)
+        j["left_out"].push_back({{"participant", l.participant}, {"why", l.why}});
+    return j;
+}
+
+} // namespace
+
+void print_analysis_json(std::FILE* out, const study::analysis& a)
+{
+    json j{{"schema", "tactor-analysis/1"}, {"experiment", a.experiment}, {"participants", a.participants},
+           {"simulated", a.simulated},      {"runs", json::object()},     {"void", json::object()}};
+    for (const study::run_analysis& r : a.runs) {
+        j["runs"][r.run.name] = run_json(r);
+        j["void"][r.run.name] = r.voids;
+    }
+    j["warnings"] = a.warnings;
+    fmt::print(out, "{}\n", j.dump(2, ' ', false, json::error_handler_t::replace));
+}
+
+} // namespace tactor::cli

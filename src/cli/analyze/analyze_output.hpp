@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What `tactor analyze` prints and draws, from values.
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+#include "plot/paint/canvas.hpp"
+#include "study/analysis/analysis.hpp"
+
+namespace tactor::cli {
+
+/// All write to `out`. JSON is of schema tactor-analysis/1.
+void print_analysis_text(std::FILE* out, const study::analysis& a);
+void print_analysis_json(std::FILE* out, const study::analysis& a);
+
+/// Every trial that counts on a line, with tabs between, after lines that begin with # and tell R how to read
+/// and fit it.
+void print_trials(std::FILE* out, const study::dataset& d);
+
+/// Means with standard errors by motion, a panel for each run, as the paper's figures 8 and 9.
+plot::canvas draw_analysis(const study::analysis& a);
+
+/// What Park et al. (2016) report of a run of theirs, or nothing.
+std::string_view in_the_paper(std::string_view experiment, std::string_view run);
+
+} // namespace tactor::cli

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include <tactor/words.hpp>
+
+#include "cli/analyze/analyze_output.hpp"
+#include "cli/say.hpp"
+#include "cli/wrapped.hpp"
+#include "study/analysis/number_text.hpp"
+
+namespace tactor::cli {
+namespace {
+
+using study::effect_text;
+using study::interval_text;
+using study::p_clause;
+using study::p_text;
+using study::task_kind;
+using study::value_text;
+
+std::size_t widest(const std::vector<std::string>& names)
+{
+    std::size_t w = 5;
+    for (const std::string& n : names)
+        w = std::max(w, std::min<std::size_t>(n.size(), 16));
+    return w;
+}
+
+void print_tests(std::FILE* out, const study::by_motion& b, const std::vector<std::string>& motions)
+{
+    const std::size_t w = widest(motions);
+    fmt::print(out, "  {:<{}} {:>6} {:>5} {:>16} {:>6} {:>5} {:>5} {:>5}  {}\n", "", w, "mean", "se", "95 %",
+               "t", "p", "Holm", "signs", "d");
+    const auto row = [&](const std::string& name, const study::t_test& t, std::optional<double> holm) {
+        const std::string d = t.d ? fmt::format("{:.2f}", *t.d) : "-";
+        say(out, "  {:<{}} {:>6} {:>5} {:>16} {:>6} {:>5} {:>5} {:>5}  {}\n", name, w, value_text(t.mean),
+            value_text(t.se), interval_text(t.ci), value_text(t.t), p_text(t.p), p_text(holm),
+            p_text(t.p_signflip), d);
+    };
+    row("all", b.all, {});
+    for (std::size_t m = 0; m < motions.size(); ++m)
+        row(motions[m], b.motion[m], b.p_holm[m]);
+    if (b.all.t)
+        fmt::print(out, "  all: t({:.0f}) = {:.2f}, {}; d = {:.2f} ({})\n", *b.all.df, *b.all.t,
+                   p_clause(b.all.p), *b.all.d, interval_text(b.all.d_ci));
+}
+
+void print_effect(std::FILE* out, const char* name, const study::effect& e)
+{
+    if (e.f)
+        fmt::print(out, "{}", wrapped(fmt::format("  {}: ", name), effect_text(e)));
+}
+
+void print_pairs(std::FILE* out, const std::vector<study::comparison>& pairs,
+                 const std::vector<std::string>& motions, const std::string& of)
+{
+    if (pairs.empty() || !pairs[0].q)
+        return;
+    say(out, "  Tukey{}:\n", of);
+    const std::size_t w = widest(motions);
+    for (const study::comparison& c : pairs)
+        say(out, "    {:<{}} - {:<{}} {:>7} q = {:>5}, {}\n", motions[c.a], w, motions[c.b], w,
+            value_text(c.difference), value_text(c.q), p_clause(c.p));
+}
+
+void print_choose(std::FILE* out, const study::run_analysis& r)
+{
+    say(out, "  per cent of trials in which {} was chosen, against 50\n", r.run.methods.back());
+    print_tests(out, r.cells[0], r.run.motions);
+    const study::t_test& first = r.first_interval;
+    if (first.t)
+        fmt::print(out, "  first interval chosen: {:.1f} %, t({:.0f}) = {:.2f}, {}\n", *first.mean, *first.df,
+                   *first.t, p_clause(first.p));
+    print_effect(out, "motion", r.effects.second);
+    print_pairs(out, r.pairs[0], r.run.motions, "");
+}
+
+void print_rate(std::FILE* out, const study::run_analysis& r)
+{
+    say(out, "  mean rating (se), 1 to {}\n", r.run.scale);
+    const std::size_t w = widest(r.run.methods);
+    const auto cell = [](const study::t_test& t) {
+        return fmt::format("{} ({})", value_text(t.mean), value_text(t.se));
+    };
+    for (std::size_t m = 0; m < r.run.methods.size(); ++m) {
+        say(out, "  {:<{}} all {}", r.run.methods[m], w, cell(r.cells[m].all));
+        fmt::print(out, ", 95 % {}\n", interval_text(r.cells[m].all.ci));
+        for (std::size_t k = 0; k < r.run.motions.size(); ++k)
+            say(out, "  {:<{}} {} {}\n", "", w, r.run.motions[k], cell(r.cells[m].motion[k]));
+    }
+    if (r.run.methods.size() > 1 && r.paired.t)
+        say(out, "{}",
+            wrapped(fmt::format("  {} - {}: ", r.run.methods.back(), r.run.methods.front()),
+                    fmt::format("{:.2f} ({}), t({:.0f}) = {:.2f}, {}, signs {}; d_z = {:.2f} ({})",
+                                *r.paired.mean, interval_text(r.paired.ci), *r.paired.df, *r.paired.t,
+                                p_clause(r.paired.p), p_text(r.paired.p_signflip), *r.paired.d,
+                                interval_text(r.paired.d_ci))));
+    print_effect(out, "method", r.effects.first);
+    print_effect(out, "motion", r.effects.second);
+    print_effect(out, "method:motion", r.effects.interaction);
+    for (std::size_t m = 0; m < r.run.methods.size(); ++m)
+        print_pairs(out, r.pairs[m], r.run.motions, " within " + r.run.methods[m]);
+}
+
+void print_identify(std::FILE* out, const study::run_analysis& r)
+{
+    const std::size_t w = widest(r.run.motions);
+    for (std::size_t m = 0; m < r.run.methods.size(); ++m) {
+        say(out, "  {}: per cent correct, against {:.2f}\n", r.run.methods[m], study::chance(r.run));
+        print_tests(out, r.cells[m], r.run.motions);
+        say(out, "  answers, from left to right in the order of the rows:\n");
+        for (std::size_t i = 0; i < r.run.motions.size(); ++i) {
+            std::string row;
+            for (const std::size_t count : r.confusion[m][i])
+                row += fmt::format(" {:>5}", count);
+            say(out, "    {:<{}}{}\n", r.run.motions[i], w, row);
+        }
+    }
+}
+
+void print_run(std::FILE* out, const study::analysis& a, const study::run_analysis& r)
+{
+    say(out, "\n{}: {}, {}, {}\n", r.run.name, to_string(r.run.task), counted(r.n, "participant"),
+        counted(r.trials, "trial"));
+    if (r.n == 0)
+        return;
+    switch (r.run.task) {
+    case task_kind::choose:
+        print_choose(out, r);
+        break;
+    case task_kind::rate:
+        print_rate(out, r);
+        break;
+    case task_kind::identify:
+        print_identify(out, r);
+        break;
+    }
+    if (const std::string_view paper = in_the_paper(a.experiment, r.run.name); !paper.empty())
+        say(out, "{}", wrapped("  Park et al. 2016: ", std::string(paper)));
+}
+
+} // namespace
+
+void print_analysis_text(std::FILE* out, const study::analysis& a)
+{
+    say(out, "{}: {}{}\n", a.experiment, counted(a.participants, "participant"),
+        a.simulated ? ", SIMULATED: these are no people's answers" : "");
+    std::size_t voids = 0;
+    for (const study::run_analysis& r : a.runs)
+        voids += r.voids;
+    if (voids != 0)
+        fmt::print(out, "{} void, not counted\n", counted(voids, "trial"));
+    for (const study::run_analysis& r : a.runs)
+        print_run(out, a, r);
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include "cli/analyze/analyze_output.hpp"
+#include "cli/say.hpp"
+#include "study/analysis/cells.hpp"
+
+namespace tactor::cli {
+namespace {
+
+using study::task_kind;
+
+// What fits a run: participants differ, and of the stimuli nothing is taken to be a sample.
+std::string model_of(const study::run_outline& r)
+{
+    const char* motion = r.motions.size() > 1 ? "motion" : "1";
+    const std::string data = fmt::format("data = subset(d, run == \"{}\")", r.name);
+    switch (r.task) {
+    case task_kind::choose:
+        return fmt::format("glmer(chosen ~ {} + order + (1 | participant), family = binomial, {})", motion,
+                           data);
+    case task_kind::rate:
+        return fmt::format("lmer(rating ~ {}{} + (1 | participant), {})",
+                           r.methods.size() > 1 ? "method * " : "", motion, data);
+    case task_kind::identify:
+        break;
+    }
+    return fmt::format("glmer(correct ~ {}{} + (1 | participant), family = binomial, {})",
+                       r.methods.size() > 1 ? "method * " : "", motion, data);
+}
+
+// The columns that depend on the task; "method" of choose is the one that may be chosen.
+std::string answer(const study::trial& t, const study::run_outline& r)
+{
+    switch (r.task) {
+    case task_kind::choose: {
+        const bool chosen = study::last_chosen(t, r);
+        const bool first = t.method_1 + 1 == r.methods.size();
+        return fmt::format("{}\t{}\t{}\t{}\tn/a\tn/a", r.methods.back(), first ? "0.5" : "-0.5", t.response,
+                           chosen ? 1 : 0);
+    }
+    case task_kind::rate:
+        return fmt::format("{}\tn/a\t{}\tn/a\t{}\tn/a", r.methods[t.method_1], t.response, t.response);
+    case task_kind::identify:
+        break;
+    }
+    return fmt::format("{}\tn/a\t{}\tn/a\tn/a\t{}", r.methods[t.method_1], r.motions[t.response],
+                       t.response == t.motion ? 1 : 0);
+}
+
+} // namespace
+
+void print_trials(std::FILE* out, const study::dataset& d)
+{
+    std::string text;
+    if (d.simulated)
+        text += "# simulated: these are no people's answers\n";
+    text += "# library(lme4)\n"
+            "# d <- read.delim(\"trials.tsv\", comment.char = \"#\", na.strings = \"n/a\", quote = \"\", "
+            "colClasses = c(participant = \"character\"))\n";
+    for (const study::run_outline& r : d.experiment.runs)
+        text += fmt::format("# {}\n", model_of(r));
+    text +=
+        "participant\trun\ttask\ttrial\tattempt\tmotion\tmethod\torder\tresponse\tchosen\trating\tcorrect\t"
+        "response_time\n";
+    for (std::size_t i = 0; i < d.participants.size(); ++i)
+        for (std::size_t k = 0; k < d.experiment.runs.size(); ++k) {
+            const study::run_outline& r = d.experiment.runs[k];
+            for (const study::trial& t : d.data[i][k].trials)
+                text += fmt::format("{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\n", d.participants[i], r.name,
+                                    to_string(r.task), t.place, t.attempt, r.motions[t.motion], answer(t, r),
+                                    t.response_time_s ? fmt::format("{}", *t.response_time_s) : "n/a");
+        }
+    std::fwrite(text.data(), 1, text.size(), out);
+}
+
+} // namespace tactor::cli

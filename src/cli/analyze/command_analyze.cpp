@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+#include <tactor/error.hpp>
+
+#include "cli/analyze/analyze_output.hpp"
+#include "cli/analyze/study_options.hpp"
+#include "cli/commands.hpp"
+#include "cli/pipes.hpp"
+#include "cli/say.hpp"
+#include "cli/settings.hpp"
+#include "plot/paint/output.hpp"
+
+namespace tactor::cli {
+namespace {
+
+struct analyze_options {
+    std::string folder;
+    std::string format = "text";
+    std::string picture; // empty: none
+    study::selection who;
+};
+
+void draw(const analyze_options& o, const study::analysis& a)
+{
+    if (std::all_of(a.runs.begin(), a.runs.end(), [](const study::run_analysis& r) { return r.n == 0; }))
+        throw error(error_kind::bad_input, "-o", "there is nothing to draw",
+                    "no run has a participant with a trial in each cell");
+    make_derivatives(o.folder, o.picture);
+    constexpr unsigned dpi = 300;
+    tell_of_pipe_to_write(o.picture);
+    plot::save(draw_analysis(a), o.picture, dpi);
+}
+
+int run(const analyze_options& o)
+{
+    const study::dataset d = study::read_dataset(o.folder, o.who);
+    const study::analysis a = study::analyse(d);
+    if (!o.picture.empty())
+        draw(o, a);
+    for (const std::string& w : a.warnings)
+        say(stderr, "tactor: warning: {}\n", w);
+    if (o.format == "json")
+        print_analysis_json(stdout, a);
+    else if (o.format == "tsv")
+        print_trials(stdout, d);
+    else
+        print_analysis_text(stdout, a);
+    return status_ok;
+}
+
+} // namespace
+
+command add_analyze(CLI::App& app)
+{
+    CLI::App* c = app.add_subcommand("analyze", "Print the statistics of a study, as the paper has them");
+    auto o = std::make_shared<analyze_options>();
+    add_study_options(*c, o->folder, o->who);
+    add_format_option(*c, o->format, {"text", "json", "tsv"},
+                      "how to print it; tsv: a line for each trial, for R (default text)");
+    c->add_option_function<std::string>(
+         "-o,--output",
+         [o](const std::string& t) {
+             plot::format_of(t);
+             o->picture = t;
+         },
+         "draw it too: means with standard errors")
+        ->type_name("FILE.svg|.png|.pdf");
+    c->footer("Example: tactor analyze study --format json -o study.pdf");
+    return [o] { return run(*o); };
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#include "cli/analyze/study_options.hpp"
+
+#include <string_view>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include <tactor/error.hpp>
+
+#include "core/split.hpp"
+
+namespace tactor::cli {
+namespace {
+
+// "A,B,...": none empty.
+std::vector<std::string> parse_codes(const char* option, std::string_view text)
+{
+    std::vector<std::string> codes;
+    for (const std::string_view code : detail::split(text, ',')) {
+        if (code.empty())
+            throw error(error_kind::bad_input, option, "a code is empty",
+                        "codes with commas between, as 01,02");
+        codes.emplace_back(code);
+    }
+    return codes;
+}
+
+} // namespace
+
+void add_study_options(CLI::App& command, std::string& folder, study::selection& who)
+{
+    command.add_option("DIR", folder, "the folder of the study, as tactor experiment wrote it")->required();
+    command
+        .add_option_function<std::string>(
+            "--participants", [&who](const std::string& t) { who.only = parse_codes("--participants", t); },
+            "only these (default all)")
+        ->type_name("CODES");
+    command
+        .add_option_function<std::string>(
+            "--exclude", [&who](const std::string& t) { who.without = parse_codes("--exclude", t); },
+            "all but these")
+        ->type_name("CODES");
+}
+
+void make_derivatives(const std::filesystem::path& folder, const std::filesystem::path& file)
+{
+    const std::filesystem::path ours = folder / "derivatives" / "tactor";
+    std::error_code ignored;
+    if (file.parent_path().lexically_normal() == ours.lexically_normal())
+        std::filesystem::create_directories(ours, ignored);
+}
+
+} // namespace tactor::cli

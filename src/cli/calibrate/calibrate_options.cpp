@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: MIT
+#include "cli/calibrate/calibrate_options.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "cli/session/key_input.hpp"
+#include "core/split.hpp"
+#include "study/random/sha256.hpp"
+
+namespace tactor::cli {
+namespace {
+
+using take = std::function<void(const std::string&)>;
+
+constexpr double most_seed = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t most_steps = 20;
+
+[[noreturn]] void refuse(std::string_view option, const std::string& why, std::string_view hint)
+{
+    throw error(error_kind::bad_input, option, why, hint);
+}
+
+void add(CLI::App& c, const std::string& names, const std::string& type, const std::string& help,
+         const take& t)
+{
+    c.add_option_function<std::string>(names, t, help)->type_name(type);
+}
+
+std::uint32_t whole(const char* option, const std::string& text, double low, double high)
+{
+    const double v = parse_number(option, text, low, high, "");
+    if (v != std::floor(v))
+        refuse(option, fmt::format("{} is not a whole number", text), "");
+    return static_cast<std::uint32_t>(v);
+}
+
+bool one_of(const char* option, const std::string& text, const char* yes, const char* no)
+{
+    if (text != yes && text != no)
+        refuse(option, fmt::format("\"{}\" is not known", text), fmt::format("one of {}, {}", yes, no));
+    return text == yes;
+}
+
+std::string code(const std::string& text)
+{
+    if (text.empty() || !std::all_of(text.begin(), text.end(), [](unsigned char ch) {
+            return (ch >= '0' && ch <= '9') || (ch >= 'a' && ch <= 'z') || (ch >= 'A' && ch <= 'Z');
+        }))
+        refuse("--participant", fmt::format("\"{}\" is no code", text), "letters and digits only, as P07");
+    return text;
+}
+
+std::vector<double> steps(const std::string& text)
+{
+    std::vector<double> all;
+    for (const std::string_view part : detail::split(text, ','))
+        all.push_back(parse_number("--steps", std::string(part), 0.01, 60.0, "dB"));
+    if (all.size() > most_steps)
+        refuse("--steps", fmt::format("{} steps", all.size()), fmt::format("at most {}", most_steps));
+    return all;
+}
+
+unsigned tactor_in(std::string_view text, const std::string& all, std::size_t n)
+{
+    unsigned i = 0;
+    const auto [stop, failed] = std::from_chars(text.data(), text.data() + text.size(), i);
+    if (failed == std::errc::invalid_argument || stop != text.data() + text.size())
+        refuse("--tactors", fmt::format("\"{}\" is no list of tactors", all), "as 0,3-5");
+    if (failed != std::errc() || i >= n)
+        refuse("--tactors", fmt::format("there is no tactor {}", text),
+               n == 1 ? std::string("the array has tactor 0 only")
+                      : fmt::format("the array has 0 to {}", n - 1));
+    return i;
+}
+
+std::vector<unsigned> tactors_in(const std::string& text, std::size_t n)
+{
+    std::vector<unsigned> all;
+    for (const std::string_view part : detail::split(text, ',')) {
+        const std::size_t dash = part.find('-');
+        const unsigned first = tactor_in(part.substr(0, dash), text, n);
+        const unsigned last = dash == part.npos ? first : tactor_in(part.substr(dash + 1), text, n);
+        if (last < first)
+            refuse("--tactors", fmt::format("\"{}\" runs backwards", part),
+                   fmt::format("as {}-{}", last, first));
+        for (unsigned i = first; i <= last; ++i) {
+            if (std::find(all.begin(), all.end(), i) != all.end())
+                refuse("--tactors", fmt::format("tactor {} is named twice", i), "each is measured once");
+            all.push_back(i);
+        }
+    }
+    return all;
+}
+
+std::string today()
+{
+    const std::time_t now = std::time(nullptr);
+    std::tm utc{};
+    gmtime_r(&now, &utc);
+    return fmt::format("{:04}-{:02}-{:02}", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday);
+}
+
+// The same for the same participant, whoever asks.
+std::uint32_t seed_of(const std::string& participant)
+{
+    const study::sha256_digest d = study::sha256(participant);
+    return std::accumulate(d.begin(), d.begin() + 4, std::uint32_t{0},
+                           [](std::uint32_t s, std::uint8_t b) { return s << 8 | b; });
+}
+
+void check_staircase(const study::calibration_settings& c)
+{
+    if (c.staircase.reversals < c.staircase.discard + 2)
+        refuse("--discard",
+               fmt::format("of {} reversals {} are discarded", c.staircase.reversals, c.staircase.discard),
+               "two at least must be left");
+}
+
+void add_staircase_options(CLI::App& c, calibrate_options& o)
+{
+    study::staircase_options& s = o.settings.staircase;
+    const auto only = [&o](const char* name, const take& t) {
+        return [&o, name, t](const std::string& text) {
+            t(text);
+            o.of_staircase.emplace_back(name);
+        };
+    };
+    add(c, "--rule", "1up3down|1up2down", "what is right in 79.4 % (default), or in 70.7 %",
+        only("--rule", [&s](const std::string& t) {
+            s.right_for_down = one_of("--rule", t, "1up3down", "1up2down") ? 3 : 2;
+        }));
+    add(c, "--steps", "DB,DB,...", "steps, the next from every second reversal on (default 4,2,1)",
+        only("--steps", [&s](const std::string& t) { s.steps_db = steps(t); }));
+    add(c, "--reversals", "N", "reversals before the threshold is taken (default 12)",
+        only("--reversals", [&s](const std::string& t) {
+            s.reversals = whole("--reversals", t, 2, static_cast<double>(study::most_reversals));
+        }));
+    add(c, "--discard", "N", "the first of them, which do not count (default 4)",
+        only("--discard", [&s](const std::string& t) {
+            s.discard = whole("--discard", t, 0, static_cast<double>(study::most_reversals));
+        }));
+    add(c, "--feedback", "on|off", "whether the participant is told what was right (default on)",
+        only("--feedback",
+             [&o](const std::string& t) { o.settings.feedback = one_of("--feedback", t, "on", "off"); }));
+    add(c, "--practice", "N", "trials at first that do not count (default 0)",
+        only("--practice",
+             [&o](const std::string& t) { o.settings.practice = whole("--practice", t, 0, 1000); }));
+}
+
+void add_masker_options(CLI::App& c, calibrate_options& o)
+{
+    add(c, "--masker", "PCM", "masking noise on a second device, in stereo, through both intervals",
+        [&o](const std::string& t) {
+            if (t.empty())
+                refuse("--masker", "no device is named", "as hw:CARD=Phones");
+            o.masker = t;
+        });
+    add(c, "--masker-noise", "white|pink", "which noise (default white)", [&o](const std::string& t) {
+        o.masking.color = one_of("--masker-noise", t, "white", "pink") ? study::noise_color::white
+                                                                       : study::noise_color::pink;
+        o.of_masker.emplace_back("--masker-noise");
+    });
+    add(c, "--masker-dbfs", "DB", "level of the noise, root of the mean square (default -30)",
+        [&o](const std::string& t) {
+            o.masking.level_dbfs = parse_number("--masker-dbfs", t, -100, 0, "dBFS");
+            o.of_masker.emplace_back("--masker-dbfs");
+        });
+}
+
+// As the files say it.
+std::string masker_text(const calibrate_options& o)
+{
+    if (o.masker.empty())
+        return {};
+    return fmt::format("{} noise, {} dBFS, {}",
+                       o.masking.color == study::noise_color::white ? "white" : "pink", o.masking.level_dbfs,
+                       o.masker);
+}
+
+void check_masker(const calibrate_options& o)
+{
+    if (o.masker.empty() && !o.of_masker.empty())
+        refuse(o.of_masker.front(), "there is no device for the noise", "--masker PCM, or leave it out");
+    const double most = study::greatest_noise_dbfs(o.masking.color);
+    if (o.masking.level_dbfs > most)
+        refuse("--masker-dbfs",
+               fmt::format("{} dBFS, and the peaks of this noise are at full scale from {} dBFS on",
+                           o.masking.level_dbfs, most),
+               "less here, and more at the amplifier of the headphones");
+}
+
+} // namespace
+
+void add_calibrate_options(CLI::App& c, calibrate_options& o)
+{
+    study::calibration_settings& s = o.settings;
+    c.add_option_function<std::string>(
+         "--participant", [&s](const std::string& t) { s.participant = code(t); },
+         "who is measured: letters and digits")
+        ->type_name("CODE")
+        ->required();
+    c.add_option("-o,--output", o.output, "the array file to write, with the thresholds")
+        ->type_name("FILE.toml")
+        ->required();
+    add(c, "--method", "staircase|adjustment", "two intervals and a question (default), or a level to set",
+        [&s](const std::string& t) {
+            s.method = one_of("--method", t, "staircase", "adjustment")
+                           ? study::calibration_method::staircase
+                           : study::calibration_method::adjustment;
+        });
+    add(c, "--tactors", "LIST", "which, in this order, as 0,3-5 (default all)",
+        [&o](const std::string& t) { o.tactors = t; });
+    add(c, "--interval", "S", "how long each interval or pulse is (default 0.5)",
+        [&s](const std::string& t) { s.interval_s = parse_number("--interval", t, 0.05, 4, "s"); });
+    add(c, "--start-dbfs", "DB", "level of the first trial (default -20)", [&s](const std::string& t) {
+        s.staircase.start_dbfs = parse_number("--start-dbfs", t, study::floor_dbfs, 0, "dBFS");
+    });
+    add_staircase_options(c, o);
+    add_masker_options(c, o);
+    add_page_options(c, o.page);
+    add_keypad_option(c, o.keypads);
+    add(c, "--log", "FILE.tsv", "a line for each trial (default: the output's name with .tsv)",
+        [&o](const std::string& t) { o.log = t; });
+    c.add_flag("--resume", o.resume, "go on with the session that the log is of");
+    add(c, "--simulate", "SPEC", "nobody and no device: an observer, as threshold=-45,spread=2,lapse=0.02",
+        [&o](const std::string& t) { o.simulate = t; });
+    add(c, "--seed", "N", "of the order of intervals (default: from the participant's code)",
+        [&o](const std::string& t) { o.seed = whole("--seed", t, 0, most_seed); });
+}
+
+void settle_names(calibrate_options& o)
+{
+    namespace fs = std::filesystem;
+    if (fs::path(o.output).extension() != ".toml")
+        refuse("-o", fmt::format("\"{}\" does not end in .toml", o.output),
+               "it will be an array file, as me.toml");
+    if (o.log.empty())
+        o.log = fs::path(o.output).replace_extension(".tsv").string();
+    else if (fs::path(o.log).extension() != ".tsv")
+        refuse("--log", fmt::format("\"{}\" does not end in .tsv", o.log), "as me.tsv");
+}
+
+study::calibration_settings settle_calibration(const calibrate_options& o, const settings& s, const array& a)
+{
+    study::calibration_settings c = o.settings;
+    if (c.method == study::calibration_method::adjustment && !o.of_staircase.empty())
+        refuse(o.of_staircase.front(), "an adjustment does not have that",
+               "leave it out, or use --method staircase");
+    check_staircase(c);
+    check_masker(o);
+    check_page_options(o.page, o.simulate.has_value());
+    if (o.simulate && !o.keypads.empty())
+        refuse("--keypad", "nobody is asked", "leave it out, or --simulate");
+    c.masker = masker_text(o);
+    c.carrier_hz = s.plan.carrier_hz;
+    if (o.tactors) {
+        c.tactors = tactors_in(*o.tactors, a.tactors.size());
+    } else {
+        c.tactors.resize(a.tactors.size());
+        std::iota(c.tactors.begin(), c.tactors.end(), 0U);
+    }
+    for (const unsigned t : c.tactors) {
+        const double ceiling = std::min(0.0, a.tactors[t].max_dbfs);
+        if (c.start_dbfs() > ceiling)
+            refuse(
+                "--start-dbfs",
+                fmt::format("tactor {} may have {:.4g} dBFS at most (max_dbfs), and {:.4g} dBFS is the start",
+                            t, ceiling, c.start_dbfs()),
+                "start lower");
+        c.ceilings_dbfs.push_back(ceiling);
+    }
+    c.simulate = o.simulate.value_or("");
+    c.seed = o.seed.value_or(seed_of(c.participant));
+    c.date = today();
+    return c;
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What `calibrate` is asked for.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/input.hpp"
+#include "cli/session/page_options.hpp"
+#include "study/calibrate/calibration.hpp"
+#include "study/masking/masking_stream.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace tactor::cli {
+
+struct calibrate_options {
+    study::calibration_settings settings; ///< as far as the options say it
+    std::string output;
+    std::string log; ///< empty: beside the output
+    std::optional<std::string> tactors;
+    std::optional<std::string> simulate;
+    std::optional<std::uint32_t> seed;
+    std::vector<std::string> keypads; ///< input devices of the participant's
+    page_options page;
+    std::string masker; ///< PCM of the masking noise; empty: none
+    study::masking_options masking;
+    std::vector<std::string> of_masker;    ///< options given that only a masker has
+    std::vector<std::string> of_staircase; ///< options given that an adjustment does not have
+    bool resume = false;
+};
+
+void add_calibrate_options(CLI::App& command, calibrate_options& into);
+
+/// Output and log have names that go with each other. \throws error (bad_input).
+void settle_names(calibrate_options& o);
+
+/// What is measured, on this array. \throws error (bad_input).
+study::calibration_settings settle_calibration(const calibrate_options& o, const settings& s, const array& a);
+
+} // namespace tactor::cli

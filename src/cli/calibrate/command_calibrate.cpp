@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "cli/calibrate/calibrate_options.hpp"
+#include "cli/calibrate/person.hpp"
+#include "cli/commands.hpp"
+#include "cli/play/sound_server.hpp"
+#include "cli/say.hpp"
+#include "study/calibrate/log.hpp"
+#include "study/calibrate/observer.hpp"
+#include "study/calibrate/result.hpp"
+#include "study/random/sha256.hpp"
+
+namespace tactor::cli {
+namespace {
+
+constexpr double paper_sl_db = 7.0; // Park et al. 2016
+
+// What the array's own file says besides it; a configuration is read anyway when its array is replaced, but
+// for the channels.
+setup said_besides(const environment& e)
+{
+    setup s;
+    if (!e.array_file.empty() && e.array_file != e.config_name)
+        s = load_setup(e.array_file);
+    else if (!e.array_file.empty())
+        s.output.channels = e.config.output.channels;
+    return s;
+}
+
+std::string head_of(const study::calibration_settings& s)
+{
+    std::string t = fmt::format("# Thresholds of {} at {} Hz in intervals of {} s (tactor calibrate).\n",
+                                s.participant, s.carrier_hz, s.interval_s);
+    return s.simulate.empty() ? t : t + "# SIMULATED: nobody was asked.\n";
+}
+
+const char* why_none(study::staircase_end end)
+{
+    return end == study::staircase_end::below_range ? "right where nothing is left to feel" : "not felt";
+}
+
+void print(const study::tactor_threshold& t, double ceiling_dbfs)
+{
+    if (!t.threshold_dbfs) {
+        say(stdout, "tactor {:>3}  {}, {}\n", t.tactor, why_none(t.end), counted(t.trials, "trial"));
+        say(stderr, "tactor: warning: tactor {} has no threshold ({}): --sl will refuse it\n", t.tactor,
+            why_none(t.end));
+        return;
+    }
+    say(stdout, "tactor {:>3}  {:>7.2f} dBFS, sd {:.2f} dB, {}\n", t.tactor, *t.threshold_dbfs,
+        t.sd_db.value_or(0.0), counted(t.trials, "trial"));
+    const double missing = *t.threshold_dbfs + paper_sl_db - ceiling_dbfs;
+    if (missing > 0.0)
+        say(stderr,
+            "tactor: warning: tactor {}: {} dB above its threshold of {:.2f} dBFS are {:.2f} dB more than it "
+            "may "
+            "have\n",
+            t.tactor, paper_sl_db, *t.threshold_dbfs, missing);
+}
+
+// All trials that are left; each is in the log before the next.
+template <typename Who, typename Told>
+void ask(study::calibration& c, study::calibration_log& log, Who& who, const Told& told)
+{
+    while (!c.done()) {
+        const study::calibration_record r = c.answer(who.answer(c.next()));
+        log.append(r);
+        told(r);
+    }
+}
+
+// Returns the signal that ended it, or 0.
+int ask_person(study::calibration& c, study::calibration_log& log, const settings& s, const environment& e,
+               const calibrate_options& asked)
+{
+    const render_options render = settle_render(s, e);
+    const play_options o;
+    const alsa_options device = device_options(s, o, e, render.channels, render.rate);
+    const std::string server = settle_server(device.pcm);
+    person who(device, o, e, render, c.settings(), asked.keypads, open_page(asked.page));
+    if (!server.empty())
+        say(stderr, "tactor: warning: {} ({})\n", server_note(server), server_cure);
+    if (!asked.masker.empty()) {
+        study::masking_options noise = asked.masking;
+        noise.seed = fmt::format("{}/calibrate/{}/noise", c.settings().seed, c.settings().participant);
+        who.mask(asked.masker, noise);
+    }
+    return until_left(who, [&] {
+        ask(c, log, who, [&](const study::calibration_record& r) { who.tell(r); });
+        who.thank();
+    });
+}
+
+int write_result(const calibrate_options& o, const environment& e, const setup& besides,
+                 const study::calibration& c)
+{
+    const array a = study::with_thresholds(e.tactors, e.config.calibration, c.settings(), c.thresholds());
+    study::write_new_output(o.output, head_of(c.settings()) + study::array_text(a, besides) +
+                                          study::calibration_text(c.settings(), c.thresholds()));
+    say(stdout, "{}{}\n", c.settings().participant,
+        c.settings().simulate.empty() ? "" : ": SIMULATED, nobody was asked");
+    for (std::size_t i = 0; i < c.thresholds().size(); ++i)
+        print(c.thresholds()[i], c.settings().ceilings_dbfs[i]);
+    say(stdout, "{} is written: --array {} --sl {}\n", o.output, o.output, paper_sl_db);
+    return status_ok;
+}
+
+int calibrate(settings& s, option_list& options, calibrate_options& o)
+{
+    settle_names(o);
+    std::error_code ignored;
+    if (o.resume && std::filesystem::exists(o.output, ignored)) {
+        say(stdout, "{} is there: the session is finished\n", o.output);
+        return status_ok;
+    }
+    study::check_new_output(o.output);
+    const environment e = read_environment(s, options);
+    study::calibration_settings begun = settle_calibration(o, s, e.tactors);
+    std::optional<study::observer_settings> simulated;
+    if (o.simulate)
+        simulated = study::parse_observer(*o.simulate, begun.tactors, e.tactors.tactors.size());
+    else if (!names_device(s, e))
+        throw error(error_kind::bad_input, "-D", "no device is configured", "-D PCM, or --simulate SPEC");
+    const setup besides = said_besides(e);
+    begun.array = study::sha256_text(study::array_text(e.tactors, besides));
+
+    study::calibration_log log(o.log, o.resume, begun);
+    study::calibration c(begun);
+    std::optional<study::observer> observer;
+    if (simulated)
+        observer.emplace(*simulated, begun);
+    replay(c, log, observer ? &*observer : nullptr);
+    if (!log.lines().empty())
+        say(stdout, "{}\n",
+            c.done() ? "all trials are answered" : fmt::format("goes on at trial {}", c.next().number));
+    int signal = 0;
+    if (observer)
+        ask(c, log, *observer, [](const study::calibration_record&) {});
+    else if (!c.done())
+        signal = ask_person(c, log, s, e, o);
+    if (signal != 0) {
+        say(stderr, "tactor: ended before trial {}: what was answered is in {}, and --resume goes on\n",
+            c.next().number, o.log);
+        return interrupt::status(signal);
+    }
+    return write_result(o, e, besides, c);
+}
+
+} // namespace
+
+command add_calibrate(CLI::App& app)
+{
+    CLI::App* c = app.add_subcommand("calibrate", "Measure what a participant just feels, tactor by tactor");
+    auto s = std::make_shared<settings>();
+    auto o = std::make_shared<calibrate_options>();
+    auto options = std::make_shared<option_list>(*c, *s);
+    add_calibrate_options(*c, *o);
+    options->add_carrier_option();
+    options->add_array_options();
+    options->add_device_options();
+    c->footer("Example: tactor calibrate --participant P07 -o P07.toml -D hw:CARD=Tactor");
+    return [s, o, options] { return calibrate(*s, *options, *o); };
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+#include "cli/check/check_array.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <tactor/words.hpp>
+
+#include "cli/check/walk.hpp"
+
+namespace tactor::cli {
+namespace {
+
+// Tactors are discs of 5 mm and more on a body part: what is far from that was not meant in mm.
+constexpr double closest_mm = 4.0;
+constexpr double widest_mm = 2000.0;
+// No hand or forearm is so wide: a trunk, or a leg.
+constexpr double trunk_mm = 150.0;
+
+struct spread {
+    double least = std::numeric_limits<double>::infinity();
+    double most = -std::numeric_limits<double>::infinity();
+
+    void add(double v)
+    {
+        least = std::min(least, v);
+        most = std::max(most, v);
+    }
+    // A difference that nobody measures is none.
+    std::string text(const char* unit) const
+    {
+        return most - least < 0.05 ? fmt::format("{:.4g} {}", least, unit)
+                                   : fmt::format("{:.4g} to {:.4g} {}", least, most, unit);
+    }
+};
+
+// Distances from each tactor to its nearest neighbour, by a sweep from left to right.
+spread neighbours(const array& a)
+{
+    std::vector<point> p;
+    for (const tactor_spec& t : a.tactors)
+        p.push_back(t.position);
+    std::sort(p.begin(), p.end(), [](point l, point r) { return l.x_mm < r.x_mm; });
+    spread all;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        double nearest = std::numeric_limits<double>::infinity();
+        const auto look = [&](const point& q) {
+            nearest = std::min(nearest, std::hypot(q.x_mm - p[i].x_mm, q.y_mm - p[i].y_mm));
+            return std::abs(q.x_mm - p[i].x_mm) <= nearest;
+        };
+        for (std::size_t k = i + 1; k < p.size() && look(p[k]); ++k)
+            ;
+        for (std::size_t k = i; k > 0 && look(p[k - 1]); --k)
+            ;
+        all.add(nearest);
+    }
+    return all;
+}
+
+std::string shape(const array& a)
+{
+    if (const auto grid = find_grid(a))
+        return fmt::format("{} x {}", grid->y_mm.size(), grid->x_mm.size());
+    return "no grid";
+}
+
+finding check_places(const array& a)
+{
+    spread x;
+    spread y;
+    for (const tactor_spec& t : a.tactors) {
+        x.add(t.position.x_mm);
+        y.add(t.position.y_mm);
+    }
+    const std::size_t n = a.tactors.size();
+    if (n == 1)
+        return warning("array", fmt::format("{}: 1 tactor, so nothing moves", a.name),
+                       "two or more make a stroke");
+    const spread d = neighbours(a);
+    const double width = x.most - x.least;
+    const double height = y.most - y.least;
+    const std::string found = fmt::format("{}: {} tactors, {}, {:.4g} x {:.4g} mm, neighbours {} apart",
+                                          a.name, n, shape(a), width, height, d.text("mm"));
+    if (d.least < closest_mm || std::max(width, height) > widest_mm)
+        return warning("array", found, "places are in millimetres: see x_mm, y_mm and pitch_mm");
+    // Plaisier et al., Perception 2024; Lee, Scientific Reports 2025.
+    if (std::min(width, height) >= trunk_mm)
+        return fine("array", found,
+                    "on a back, places are told apart about twice as well across as along the body, so that "
+                    "rows may be further apart than columns; on trunk and shank a circle was followed best "
+                    "with --phantom linear");
+    return fine("array", found);
+}
+
+finding check_channels(const render_options& r, const array& a)
+{
+    std::vector<unsigned> used;
+    for (const tactor_spec& t : a.tactors)
+        used.push_back(t.channel);
+    std::sort(used.begin(), used.end());
+    const bool no_gap = used.back() - used.front() + 1 == used.size();
+    std::string found =
+        fmt::format("{} of {} {}: {}", used.size(), counted(r.channels, "channel"),
+                    used.size() == 1 ? "drives a tactor" : "drive tactors",
+                    no_gap && used.size() > 2 ? fmt::format("{} to {}", used.front(), used.back())
+                                              : fmt::format("{}", fmt::join(used, ", ")));
+    if (r.marker_channel)
+        found += fmt::format("; {} marks strokes", *r.marker_channel);
+    return fine("channels", found);
+}
+
+// At which thresholds count that are known at several frequencies.
+constexpr double usual_hz = 250.0;
+
+// Peaks of intensity 1, dBFS.
+spread peaks(const render_options& r, const array& a)
+{
+    spread s;
+    for (const tactor_spec& t : a.tactors)
+        s.add(r.sl_db ? threshold_at(t, usual_hz).value_or(0.0) + *r.sl_db : r.level_dbfs + t.gain_db);
+    return s;
+}
+
+std::string indices(const array& a, bool (*take)(const tactor_spec&, const render_options&),
+                    const render_options& r)
+{
+    std::vector<std::size_t> all;
+    for (std::size_t i = 0; i < a.tactors.size(); ++i)
+        if (take(a.tactors[i], r))
+            all.push_back(i);
+    return fmt::format("{}", fmt::join(all, ", "));
+}
+
+finding check_levels(const render_options& r, const array& a, const plan_options& p)
+{
+    try {
+        // What play would refuse, in its words. The carrier is looked at by itself.
+        const piece all = walk_piece(a, std::min(p.carrier_hz, r.rate / 4.0));
+        score(a, all.plans, r);
+    } catch (const error& e) {
+        return failure("levels", e);
+    }
+    const std::string found = fmt::format("peaks of {}{}", peaks(r, a).text("dBFS"),
+                                          r.sl_db ? fmt::format(", {} dB SL", *r.sl_db) : "");
+    const std::string unmeasured = indices(
+        a, [](const tactor_spec& t, const render_options&) { return !threshold_at(t, usual_hz); }, r);
+    const bool some = std::any_of(a.tactors.begin(), a.tactors.end(),
+                                  [](const tactor_spec& t) { return threshold_at(t, usual_hz).has_value(); });
+    if (some && !unmeasured.empty())
+        return warning("levels", fmt::format("{}; no threshold of tactors {}", found, unmeasured),
+                       "measure threshold_dbfs of all, or --sl cannot be used");
+    const std::string unfelt = indices(
+        a,
+        [](const tactor_spec& t, const render_options& o) {
+            return !o.sl_db && o.level_dbfs + t.gain_db <= threshold_at(t, usual_hz).value_or(-HUGE_VAL);
+        },
+        r);
+    if (!unfelt.empty())
+        return warning("levels", fmt::format("{}; not above the threshold of tactors {}", found, unfelt),
+                       "raise --level-dbfs or gain_db, or use --sl");
+    return fine("levels", found);
+}
+
+std::string limit_text(const drive_limits& l)
+{
+    const std::string power =
+        std::isfinite(l.power_dbfs)
+            ? fmt::format("all together at most {:+.3g} dB of one at full scale", l.power_dbfs)
+            : "no limit on all together";
+    return l.max_drive_s < l.window_s
+               ? fmt::format("{}; each at most {:.4g} s in {:.4g} s", power, l.max_drive_s, l.window_s)
+               : fmt::format("{}; no limit on time", power);
+}
+
+} // namespace
+
+std::vector<finding> check_array(const settings& s, const environment& e, const drive_limits& l)
+{
+    const render_options r = settle_render(s, e);
+    std::vector<finding> all{check_places(e.tactors), check_channels(r, e.tactors),
+                             check_levels(r, e.tactors, s.plan)};
+    for (finding& f : check_bursts(s.plan, e.tactors, r.rate))
+        all.push_back(std::move(f));
+    all.push_back(fine("limits", limit_text(l)));
+    return all;
+}
+
+} // namespace tactor::cli

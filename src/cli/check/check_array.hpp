@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What can be known about an array without hardware.
+#pragma once
+
+#include <vector>
+
+#include "cli/check/finding.hpp"
+#include "cli/input.hpp"
+
+namespace tactor::cli {
+
+/// Places, channels, levels, actuators, bursts, limits. Looks at values only.
+std::vector<finding> check_array(const settings& s, const environment& e, const drive_limits& l);
+
+/// Actuators against burst length and carrier: the part of check_array() that knows actuators. `rate`: Hz.
+std::vector<finding> check_bursts(const plan_options& p, const array& a, unsigned rate);
+
+} // namespace tactor::cli

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Whether the PCM opens as it would for playing.
+#pragma once
+
+#include "cli/check/finding.hpp"
+#include "cli/play/play_options.hpp"
+
+namespace tactor::cli {
+
+/// Opens and closes it, but for one that writes a file; nothing sounds. `named`: whether anything names it,
+/// else it is the default.
+finding check_device(const alsa_options& device, const play_options& o, bool named);
+
+} // namespace tactor::cli

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include "cli/check/check_output.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace tactor::cli {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+std::size_t count(const std::vector<finding>& all, level l)
+{
+    return static_cast<std::size_t>(
+        std::count_if(all.begin(), all.end(), [l](const auto& f) { return f.how == l; }));
+}
+
+std::string summary(const std::vector<finding>& all)
+{
+    const auto number = [&](level l, const char* word) {
+        const std::size_t n = count(all, l);
+        return fmt::format("{} {}{}", n, word, n == 1 ? "" : "s");
+    };
+    return fmt::format("{}, {}, {} ok", number(level::error, "error"), number(level::warning, "warning"),
+                       count(all, level::ok));
+}
+
+json to_json(const std::vector<finding>& all)
+{
+    json list = json::array();
+    for (const finding& f : all)
+        list.push_back({{"check", f.check},
+                        {"level", std::string(to_string(f.how))},
+                        {"found", f.found},
+                        {"cure", f.cure.empty() ? json(nullptr) : json(f.cure)}});
+    return list;
+}
+
+json to_json(const walk_told& w)
+{
+    const walk_answers& felt = w.felt;
+    const walk_verdict& v = w.verdict;
+    json answers = json::array();
+    for (std::size_t i = 0; i < felt.size(); ++i)
+        answers.push_back({{"tactor", i},
+                           {"channel", w.tactors.tactors[i].channel},
+                           {"felt", felt[i] ? json(*felt[i]) : json(nullptr)}});
+    return {{"answers", answers},
+            {"problems", v.problems},
+            {"channels", v.channels.empty() ? json(nullptr) : json(v.channels)},
+            {"changed", v.changed}};
+}
+
+} // namespace
+
+std::string check_text(const std::vector<finding>& all, bool brief)
+{
+    std::vector<finding> shown;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(shown),
+                 [&](const finding& f) { return !brief || f.how != level::ok; });
+    return fmt::format("{}{}{}\n", findings_text(shown), shown.empty() ? "" : "\n", summary(all));
+}
+
+std::string check_json(const std::vector<finding>& all, const std::optional<walk_told>& walked)
+{
+    json told{{"schema", "tactor-check/1"},
+              {"errors", count(all, level::error)},
+              {"warnings", count(all, level::warning)},
+              {"findings", to_json(all)}};
+    if (walked)
+        told["walk"] = to_json(*walked);
+    return told.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+} // namespace tactor::cli

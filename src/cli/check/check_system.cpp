@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: MIT
+#include "cli/check/check_system.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "rt/advice.hpp"
+
+namespace tactor::cli {
+namespace {
+
+bool among(const std::vector<std::string>& names, const std::string& name)
+{
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// How to become a member: of a group that was joined since, by a new login only.
+std::string how_to_join(const system_facts& f, const std::string& group)
+{
+    if (group == "root")
+        return "the device is root's alone: install the udev rules (tactor-raspberry-pi(7) says how), or run "
+               "as root";
+    if (among(f.joined, group) && !among(f.own.groups, group))
+        return fmt::format("{} is in the group {} already: log out and in again", f.own.user, group);
+    return fmt::format("sudo usermod -aG {} $USER, then log out and in again", group);
+}
+
+finding check_nodes(const system_facts& f, const char* check, const std::vector<device_node>& nodes,
+                    const char* usual_group, bool needed)
+{
+    if (nodes.empty())
+        return fine(check, fmt::format("no device to open{}", f.own.root ? "; you are root" : ""),
+                    f.own.root || among(f.own.groups, usual_group) || !needed ? ""
+                                                                              : how_to_join(f, usual_group));
+    for (const device_node& n : nodes) {
+        if (n.may_open)
+            continue;
+        finding x = warning(check, fmt::format("no permission to open {}", n.path), how_to_join(f, n.group));
+        if (needed) {
+            x.how = level::error;
+            x.kind = error_kind::not_available;
+        }
+        return x;
+    }
+    return fine(check,
+                fmt::format("{} may be opened{}",
+                            nodes.size() == 1 ? nodes.front().path : fmt::format("{} devices", nodes.size()),
+                            f.own.root ? "; you are root" : ", group " + nodes.front().group));
+}
+
+finding insist(finding x, bool required)
+{
+    if (required) {
+        x.how = level::error;
+        x.kind = error_kind::not_available;
+    }
+    return x;
+}
+
+finding check_priority(const system_facts& f, const system_needs& n)
+{
+    if (f.own.rights.priority >= n.priority)
+        return fine("real time",
+                    fmt::format("SCHED_FIFO up to {}, {} is asked for", f.own.rights.priority, n.priority));
+    const std::string found =
+        f.own.rights.priority == 0
+            ? std::string("no real-time priority: RLIMIT_RTPRIO is 0")
+            : fmt::format("SCHED_FIFO up to {} only, {} is asked for", f.own.rights.priority, n.priority);
+    return insist(warning("real time", found, rt::realtime_advice(f.own.rights, n.priority)),
+                  n.require_realtime);
+}
+
+finding check_memory(const system_facts& f, const system_needs& n)
+{
+    constexpr std::uint64_t mib = 1U << 20;
+    const std::uint64_t wanted = (f.own.memory_bytes + mib - 1) / mib;
+    if (!f.own.rights.lockable_bytes)
+        return fine("memory", "may be locked without limit");
+    const std::uint64_t most = *f.own.rights.lockable_bytes / mib;
+    if (*f.own.rights.lockable_bytes >= f.own.memory_bytes)
+        return fine("memory", fmt::format("{} MiB may be locked, {} MiB are needed", most, wanted));
+    return insist(
+        warning("memory",
+                fmt::format("{} MiB may be locked (RLIMIT_MEMLOCK), {} MiB are needed", most, wanted),
+                rt::realtime_advice(f.own.rights, n.priority)),
+        n.require_realtime);
+}
+
+finding check_kernel(const system_facts& f)
+{
+    constexpr const char* cure =
+        "boot with preempt=full on the kernel's command line, or a PREEMPT_RT kernel "
+        "(Debian: linux-image-rt)";
+    switch (f.preempts) {
+    case preemption::realtime:
+        return fine("kernel", "PREEMPT_RT");
+    case preemption::full:
+        return fine("kernel", "fully preemptible");
+    case preemption::voluntary:
+        return warning("kernel", "preempted at some points only (voluntary): wake-ups can be late", cure);
+    case preemption::none:
+        return warning("kernel", "not preemptible: wake-ups can be late", cure);
+    case preemption::unknown:
+        break;
+    }
+    return fine("kernel", "PREEMPT_DYNAMIC; how preemptible, only debugfs tells, and only root",
+                "where there are xruns: preempt=full on the kernel's command line");
+}
+
+finding check_clock(const system_facts& f)
+{
+    const std::string all = fmt::format("{}", fmt::join(f.governors, ", "));
+    if (f.governors.empty())
+        return fine("CPU clock", "not scaled here");
+    if (f.governors == std::vector<std::string>{"performance"})
+        return fine("CPU clock", all);
+    return warning("CPU clock", fmt::format("governor {}: slow just when the audio thread wakes up", all),
+                   "echo performance | sudo tee /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor");
+}
+
+std::string names(const std::vector<process_info>& all)
+{
+    std::vector<std::string> texts;
+    for (const process_info& p : all)
+        texts.push_back(fmt::format("{} (process {})", p.program.empty() ? "a program" : p.program, p.pid));
+    return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+finding check_servers(const system_facts& f, const system_needs& n)
+{
+    constexpr const char* rules =
+        "call the card Tactor in the udev rules (70-tactor.rules), which keep them off "
+        "it; for now: systemctl --user stop pipewire.socket pipewire wireplumber "
+        "pulseaudio.socket pulseaudio";
+    if (!n.card)
+        return fine("sound servers", fmt::format("{}; \"{}\" is on no card of this machine",
+                                                 f.servers.empty() ? "none" : names(f.servers), n.pcm));
+    const auto is_server = [&](const process_info& p) {
+        return std::any_of(f.servers.begin(), f.servers.end(), [&](const auto& s) { return s.pid == p.pid; });
+    };
+    if (!n.holders.empty())
+        return warning("sound servers", fmt::format("{} plays on card {}", names(n.holders), n.card->id),
+                       std::any_of(n.holders.begin(), n.holders.end(), is_server)
+                           ? std::string(rules)
+                           : fmt::format("stop it: kill {}", n.holders.front().pid));
+    // JACK takes the card that it was told to, and no other.
+    std::vector<process_info> desktop;
+    std::copy_if(f.servers.begin(), f.servers.end(), std::back_inserter(desktop),
+                 [](const process_info& p) { return p.program.rfind("jack", 0) != 0; });
+    if (desktop.empty())
+        return fine("sound servers", "none that would take the card");
+    if (n.ignored)
+        return fine("sound servers",
+                    fmt::format("{}; udev keeps them off card {}", names(desktop), n.card->id));
+    return warning(
+        "sound servers",
+        fmt::format("{}: may take card {} at any time, and beep on it", names(desktop), n.card->id), rules);
+}
+
+// Each that runs, and one where none does.
+std::vector<finding> check_services(const system_facts& f)
+{
+    std::vector<finding> all;
+    for (const listening_service& s : f.services) {
+        std::vector<std::string> at;
+        bool open = false;
+        for (const endpoint& e : s.endpoints) {
+            at.push_back(e.at);
+            open = open || e.beyond_loopback;
+        }
+        const std::string who = names({s.who});
+        if (!s.may_look)
+            all.push_back(fine("service", who + " serves; where it listens its user and root may see",
+                               "sudo tactor check"));
+        else if (at.empty())
+            all.push_back(fine("service", who + " serves, and listens nowhere yet"));
+        else if (open)
+            all.push_back(
+                warning("service",
+                        fmt::format("{} listens at {}: other machines can connect, and nothing "
+                                    "that is said is encrypted",
+                                    who, fmt::join(at, ", ")),
+                        "let it listen on 127.0.0.1 and come by ssh -L, or keep others off by a firewall"));
+        else
+            all.push_back(fine("service", fmt::format("{} listens at {}", who, fmt::join(at, ", "))));
+    }
+    if (all.empty())
+        all.push_back(fine("service", "none runs"));
+    return all;
+}
+
+// Raspberry Pi kernels may leave an output as it was when its program has ended. That matters where nobody is
+// left to switch it off: the holder, killed together with the player.
+std::vector<finding> check_release(const system_facts& f, const system_needs& n)
+{
+    if (!n.amplifier)
+        return {};
+    constexpr const char* cure =
+        "dtparam=strict_gpiod in /boot/firmware/config.txt, then reboot, and a pull-down resistor at the "
+        "amplifier's enable input; where tactor is a service, ExecStopPost=tactor off";
+    if (f.keeps_outputs) {
+        const std::string found =
+            fmt::format("{} is Y: a line keeps its level when its program ends", *f.keeps_outputs);
+        if (!f.off_units.empty())
+            return {fine("GPIO release",
+                         fmt::format("{}; {} switches the amplifier off after its service, nothing does "
+                                     "where player and holder are killed together outside of it",
+                                     found, fmt::join(f.off_units, ", ")),
+                         "after such an end: tactor off")};
+        return {warning("GPIO release",
+                        found + ": nothing switches the amplifier off when player and holder are killed "
+                                "together",
+                        cure)};
+    }
+    if (f.releases_outputs)
+        return {fine("GPIO release", "lines become inputs when their program ends")};
+    if (f.raspberry_pi)
+        return {warning("GPIO release",
+                        "this kernel does not say whether lines keep their level when their program "
+                        "ends",
+                        cure)};
+    return {fine("GPIO release",
+                 "what becomes of a line whose program was killed is up to its chip: it may stay on when "
+                 "player and holder are killed together",
+                 f.off_units.empty() ? "a pull-down resistor at the amplifier's enable input; after such an "
+                                       "end: tactor off"
+                                     : "")};
+}
+
+} // namespace
+
+std::vector<finding> check_system(const system_facts& f, const system_needs& n)
+{
+    std::vector<finding> all{check_nodes(f, "sound rights", f.sound, "audio", n.card.has_value()),
+                             check_servers(f, n)};
+    for (finding& x : check_services(f))
+        all.push_back(std::move(x));
+    all.push_back(check_nodes(f, "GPIO rights", f.gpio, "gpio", n.gpio));
+    for (finding& x : check_release(f, n))
+        all.push_back(std::move(x));
+    all.push_back(check_priority(f, n));
+    all.push_back(check_memory(f, n));
+    all.push_back(check_kernel(f));
+    all.push_back(check_clock(f));
+    return all;
+}
+
+} // namespace tactor::cli

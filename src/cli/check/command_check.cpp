@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "cli/check/channel_file.hpp"
+#include "cli/check/check_array.hpp"
+#include "cli/check/check_device.hpp"
+#include "cli/check/check_lines.hpp"
+#include "cli/check/check_output.hpp"
+#include "cli/check/check_system.hpp"
+#include "cli/check/walk_session.hpp"
+#include "cli/commands.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/say.hpp"
+#include "cli/serve/owner.hpp"
+
+namespace tactor::cli {
+namespace {
+
+struct check_options {
+    play_options play;
+    bool walk = false;
+    bool no_questions = false;
+    std::string output; // empty: none
+};
+
+// Adds what needs no array, so that a file that cannot be read hides nothing else.
+void check_machine(const setup& config, const alsa_options& device, const play_options& o,
+                   std::vector<finding>& all)
+{
+    system_needs n;
+    n.pcm = device.pcm;
+    n.card = card_of(device.pcm);
+    if (n.card) {
+        n.holders = card_holders(n.card->index);
+        n.ignored = servers_ignore(n.card->index);
+    }
+    n.amplifier = config.amplifier && !o.no_gpio;
+    n.gpio = n.amplifier || (!o.no_gpio && config.sync && (config.sync->out || config.sync->in));
+    n.require_realtime = o.require_realtime;
+    for (finding& f : check_system(read_system(read_own()), n))
+        all.push_back(std::move(f));
+}
+
+alsa_options device_for(const settings& s, const check_options& o, const environment& e)
+{
+    const render_options r = settle_render(s, e);
+    return device_options(s, o.play, e, r.channels, r.rate);
+}
+
+std::vector<finding> check_all(const settings& s, const check_options& o, const environment& e)
+{
+    std::vector<finding> all = check_array(s, e, limits_of(o.play, e));
+    alsa_options device;
+    try {
+        device = device_for(s, o, e);
+        all.push_back(check_device(device, o.play, names_device(s, e)));
+    } catch (const error& x) {
+        all.push_back(failure("device", x));
+    }
+    if (!o.play.no_gpio)
+        for (finding& f : check_lines(e.config, find_gpio_line))
+            all.push_back(std::move(f));
+    if (e.config.serve) {
+        try {
+            static_cast<void>(read_token(settle_serve({}, e.config)));
+            static_cast<void>(settle_network(*e.config.serve));
+            all.push_back(fine("service settings", "[serve] can be served"));
+        } catch (const error& x) {
+            all.push_back(failure("service settings", x));
+        }
+    }
+    check_machine(e.config, device, o.play, all);
+    return all;
+}
+
+error no_map(const walk_verdict& v)
+{
+    return {error_kind::runtime, "channel map", fmt::format("{}", fmt::join(v.problems, "; ")),
+            "look after wires and amplifier channels, then walk again; no map is written"};
+}
+
+void conclude(const check_options& o, const environment& e, const walk_verdict& v)
+{
+    if (!v.problems.empty())
+        throw no_map(v);
+    if (!o.output.empty())
+        write_channel_file(o.output, e, v.channels);
+    if (o.play.json())
+        return;
+    say(stdout, "{}\n",
+        v.changed ? fmt::format("The map is wrong: tactors 0 to {} are on channels {}.",
+                                v.channels.size() - 1, fmt::join(v.channels, ", "))
+                  : "The map is right.");
+    if (!o.output.empty())
+        say(stdout, "Written: {}\n", o.output);
+    else if (v.changed)
+        say(stdout, "-o FILE writes it as an array file.\n");
+}
+
+int run_walk(const settings& s, const check_options& o, const environment& e, const std::vector<finding>& all)
+{
+    const walk_options how{o.play, s.plan.carrier_hz, !o.no_questions, o.output};
+    const walk_result w = walk(device_for(s, o, e), e, settle_render(s, e), how);
+    if (w.signal != 0)
+        return interrupt::status(w.signal);
+    if (o.no_questions) {
+        if (o.play.json())
+            fmt::print("{}", check_json(all, {}));
+        return status_ok;
+    }
+    const walk_verdict v = judge(e.tactors, w.felt);
+    if (o.play.json())
+        fmt::print("{}", check_json(all, walk_told{e.tactors, w.felt, v}));
+    conclude(o, e, v);
+    return status_ok;
+}
+
+int complain(const std::vector<finding>& all)
+{
+    const auto first =
+        std::find_if(all.begin(), all.end(), [](const auto& f) { return f.how == level::error; });
+    say(stderr, "tactor: {}: {}{}\n", first->check, first->found,
+        first->cure.empty() ? "" : fmt::format(" ({})", first->cure));
+    return status_of(all);
+}
+
+void check_usage(const check_options& o)
+{
+    if (!o.walk && (o.no_questions || !o.output.empty()))
+        throw error(error_kind::bad_input, o.no_questions ? "--auto" : "--output", "only a walk has it",
+                    "add --walk");
+    if (!o.walk && (o.play.verbose || !o.play.log.empty()))
+        throw error(error_kind::bad_input, o.play.verbose ? "--verbose" : "--log",
+                    "without a walk nothing is played", "add --walk");
+    if (o.no_questions && !o.output.empty())
+        throw error(error_kind::bad_input, "--output", "without answers there is no map",
+                    "leave out --auto or --output");
+    if (!o.output.empty())
+        check_new_file(o.output);
+}
+
+int check(settings& s, option_list& options, const check_options& o)
+{
+    check_usage(o);
+    std::vector<finding> all;
+    std::optional<environment> e;
+    try {
+        e = read_environment(s, options);
+        all = check_all(s, o, *e);
+    } catch (const error& x) {
+        all = {failure("array", x)};
+        check_machine({}, {.pcm = s.pcm.value_or("null")}, o.play, all);
+    }
+    const bool walks = o.walk && status_of(all) == status_ok;
+    if (!o.play.json())
+        say(stdout, "{}", check_text(all, o.walk));
+    else if (!walks)
+        fmt::print("{}", check_json(all, {}));
+    std::fflush(stdout);
+    if (status_of(all) != status_ok)
+        return complain(all);
+    return walks ? run_walk(s, o, *e, all) : status_ok;
+}
+
+void add_walk_options(CLI::App& c, check_options& o)
+{
+    c.add_flag("--walk", o.walk, "then drive one tactor after the other and ask where each is felt");
+    c.add_flag("--auto", o.no_questions, "with --walk: ask nothing");
+    c.add_option_function<std::string>(
+         "-o,--output", [&o](const std::string& t) { o.output = t; },
+         "with --walk: write an array file with the channels as they were felt")
+        ->type_name("FILE.toml");
+}
+
+} // namespace
+
+command add_check(CLI::App& app)
+{
+    CLI::App* c = app.add_subcommand("check", "Check array, device, rights, limits, lines and wiring");
+    auto s = std::make_shared<settings>();
+    auto o = std::make_shared<check_options>();
+    auto options = std::make_shared<option_list>(*c, *s);
+    options->add_array_options();
+    options->add_timing_options();
+    options->add_sound_options();
+    options->add_device_options();
+    add_stream_options(*c, o->play);
+    add_walk_options(*c, *o);
+    add_format_option(*c, o->play.format, {"text", "json"}, "how to print it (default text)");
+    c->footer("Example: tactor check --array palm-2x4 --walk -o palm-felt.toml");
+    return [s, o, options] { return check(*s, *options, *o); };
+}
+
+} // namespace tactor::cli

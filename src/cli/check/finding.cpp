@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include "cli/check/finding.hpp"
+
+#include <fmt/format.h>
+
+#include "cli/commands.hpp"
+#include "cli/wrapped.hpp"
+
+namespace tactor::cli {
+
+std::string_view to_string(level l)
+{
+    return l == level::ok ? "ok" : l == level::warning ? "warning" : "error";
+}
+
+std::string findings_text(const std::vector<finding>& all)
+{
+    std::string s;
+    for (const finding& f : all) {
+        s += wrapped(fmt::format("{:<8} {:<14} ", to_string(f.how), f.check), f.found);
+        if (!f.cure.empty())
+            s += wrapped(fmt::format("{:<24}-> ", ""), f.cure);
+    }
+    return s;
+}
+
+int status_of(const std::vector<finding>& all)
+{
+    int status = status_ok;
+    for (const finding& f : all) {
+        if (f.how != level::error)
+            continue;
+        if (f.kind == error_kind::bad_input)
+            return status_usage;
+        if (f.kind == error_kind::not_available)
+            status = status_device;
+        else if (status == status_ok)
+            status = status_failed;
+    }
+    return status;
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include "cli/check/listeners.hpp"
+
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <sstream>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+
+#include <fmt/format.h>
+
+#include "cli/check/proc_files.hpp"
+
+namespace tactor::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <class Number>
+std::optional<Number> number(std::string_view text, int base)
+{
+    Number n = 0;
+    const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), n, base);
+    if (wrong != std::errc() || end != text.data() + text.size())
+        return {};
+    return n;
+}
+
+// Endpoints of all sockets that wait for somebody, by inode.
+using by_inode = std::map<std::string, endpoint>;
+
+// The first ten words of each line, which are all that is asked for.
+std::vector<std::array<std::string, 10>> rows_of(const fs::path& file)
+{
+    std::vector<std::array<std::string, 10>> rows;
+    std::istringstream lines(text_of(file));
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream words(line);
+        for (std::string& word : rows.emplace_back())
+            words >> word;
+    }
+    return rows;
+}
+
+// "sl local_address rem_address st ... inode": the tenth of a line.
+void read_internet(const fs::path& file, std::string_view waiting, const char* before, by_inode& all)
+{
+    for (const auto& row : rows_of(file))
+        if (endpoint e = endpoint_of(row[1]); row[3] == waiting && !e.at.empty()) {
+            e.at.insert(0, before);
+            all[row[9]] = std::move(e);
+        }
+}
+
+// "Num RefCount Protocol Flags Type St Inode Path".
+void read_unix(const fs::path& file, by_inode& all)
+{
+    constexpr unsigned accepts = 0x10000;
+    for (const auto& row : rows_of(file))
+        if ((number<unsigned>(row[3], 16).value_or(0) & accepts) != 0 && !row[7].empty())
+            all[row[6]] = {row[7], false};
+}
+
+bool serves(const fs::path& process)
+{
+    // The arguments, each ended by a zero.
+    const std::string arguments = text_of(process / "cmdline");
+    const std::string first = arguments.substr(arguments.find('\0') + 1);
+    return text_of(process / "comm") == "tactor" && first.substr(0, first.find('\0')) == "serve";
+}
+
+} // namespace
+
+endpoint endpoint_of(std::string_view hexadecimal)
+{
+    const std::size_t colon = hexadecimal.find(':');
+    const std::string_view address = hexadecimal.substr(0, colon);
+    if (colon == std::string_view::npos || (address.size() != 8 && address.size() != 32))
+        return {};
+    const auto port = number<std::uint16_t>(hexadecimal.substr(colon + 1), 16);
+    // Words of 32 bits, each as this machine has them.
+    std::array<std::uint32_t, 4> words{};
+    for (std::size_t i = 0; i < address.size() / 8; ++i) {
+        const auto word = number<std::uint32_t>(address.substr(8 * i, 8), 16);
+        if (!word)
+            return {};
+        words[i] = *word;
+    }
+    const bool old = address.size() == 8;
+    const auto bytes = std::bit_cast<std::array<unsigned char, 16>>(words);
+    std::array<char, INET6_ADDRSTRLEN> text{};
+    if (!port || ::inet_ntop(old ? AF_INET : AF_INET6, bytes.data(), text.data(), text.size()) == nullptr)
+        return {};
+    const std::string name = text.data();
+    const bool loopback = name.starts_with("127.") || name == "::1" || name.starts_with("::ffff:127.");
+    return {old ? fmt::format("{}:{}", name, *port) : fmt::format("[{}]:{}", name, *port), !loopback};
+}
+
+std::vector<listening_service> find_services(const fs::path& root)
+{
+    by_inode all;
+    for (const char* file : {"proc/net/tcp", "proc/net/tcp6"})
+        read_internet(root / file, "0A", "", all); // TCP_LISTEN
+    for (const char* file : {"proc/net/udp", "proc/net/udp6"})
+        read_internet(root / file, "07", "osc ", all); // bound, to nobody in particular
+    read_unix(root / "proc/net/unix", all);
+    std::vector<listening_service> found;
+    for (const process_folder& process : processes(root)) {
+        if (!serves(process.path))
+            continue;
+        listening_service s;
+        s.who = {process.pid, "tactor"};
+        std::error_code refused;
+        static_cast<void>(fs::directory_iterator(process.path / "fd", refused));
+        s.may_look = !refused;
+        for (const fs::path& descriptor : entries(process.path / "fd")) {
+            std::error_code gone;
+            const std::string to = fs::read_symlink(descriptor, gone).string();
+            if (!to.starts_with("socket:["))
+                continue;
+            const auto at = all.find(to.substr(8, to.size() - 9));
+            if (at != all.end())
+                s.endpoints.push_back(at->second);
+        }
+        found.push_back(std::move(s));
+    }
+    return found;
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+#include "cli/check/walk_session.hpp"
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "cli/play/play_session.hpp"
+#include "cli/say.hpp"
+
+namespace tactor::cli {
+namespace {
+
+struct interrupted {};
+
+// Lines of standard input, waited for together with the signals.
+class line_reader {
+public:
+    explicit line_reader(play_session& s) : session_(s) {}
+
+    /// Nothing at the end of the input. \throws interrupted when a signal comes.
+    std::optional<std::string> next()
+    {
+        for (;;) {
+            if (const auto end = buffer_.find('\n'); end != buffer_.npos) {
+                std::string line = buffer_.substr(0, end);
+                buffer_.erase(0, end + 1);
+                return line;
+            }
+            if (!session_.wait_for(STDIN_FILENO))
+                throw interrupted{};
+            char bytes[256];
+            const ssize_t n = ::read(STDIN_FILENO, bytes, sizeof bytes);
+            if (n < 0 && errno != EINTR && errno != EAGAIN)
+                throw error(error_kind::runtime, "standard input", std::strerror(errno));
+            if (n == 0)
+                return std::nullopt;
+            if (n > 0)
+                buffer_.append(bytes, static_cast<std::size_t>(n));
+        }
+    }
+
+private:
+    play_session& session_;
+    std::string buffer_;
+};
+
+std::string without_blanks(std::string s)
+{
+    std::erase_if(s, [](char c) { return c == ' ' || c == '\t' || c == '\r'; });
+    return s;
+}
+
+class walker {
+public:
+    walker(play_session& s, const environment& e, const render_options& r, const walk_options& o)
+        : session_(s),
+          environment_(e),
+          render_(r),
+          options_(o),
+          input_(s),
+          to_(o.play.json() ? stderr : stdout)
+    {
+    }
+
+    walk_answers all()
+    {
+        const std::size_t n = tactors().size();
+        if (n > 1)
+            say(fmt::format("\n{}\n", numbered_map(environment_.tactors)));
+        walk_answers felt;
+        while (felt.size() < n) {
+            const auto i = static_cast<unsigned>(felt.size());
+            sound(i);
+            if (!options_.ask) {
+                say(place_of(i) + "\n");
+                felt.emplace_back();
+            } else if (const auto got = ask(i)) {
+                felt.push_back(got->felt);
+            } else {
+                felt.pop_back(); // and that one is driven again
+            }
+        }
+        return felt;
+    }
+
+private:
+    const std::vector<tactor_spec>& tactors() const { return environment_.tactors.tactors; }
+
+    void say(const std::string& text) const
+    {
+        say_text(to_, text);
+        std::fflush(to_);
+    }
+
+    std::string place_of(unsigned i) const
+    {
+        const tactor_spec& t = tactors()[i];
+        return fmt::format("tactor {}: channel {}, at {:.4g}, {:.4g} mm", i, t.channel, t.position.x_mm,
+                           t.position.y_mm);
+    }
+
+    void sound(unsigned i)
+    {
+        const piece p = walk_one(environment_.tactors, i, options_.carrier_hz);
+        const stroke_report r = session_.play(p, make_score(p, environment_, render_));
+        if (session_.signal() != 0)
+            throw interrupted{};
+        if (r.state == state_kind::interrupted && session_.lost())
+            throw error(error_kind::runtime, p.name, r.reason, "the walk ends here");
+        if (r.state == state_kind::interrupted)
+            say(fmt::format("tactor {}: interrupted: {}\n", i, r.reason));
+    }
+
+    struct answer {
+        std::optional<unsigned> felt; // the number of a tactor; nothing where it was not felt
+    };
+
+    // Nothing: back to the one before.
+    std::optional<answer> ask(unsigned i)
+    {
+        const std::size_t last = tactors().size() - 1;
+        for (;;) {
+            say(fmt::format(
+                "tactor {} (channel {}): which did you feel? 0 to {}, n none, r repeat, {}q quit: ", i,
+                tactors()[i].channel, last, i > 0 ? "b back, " : ""));
+            const auto line = input_.next();
+            if (!line)
+                throw error(error_kind::runtime, "walk", fmt::format("no answer for tactor {}", i),
+                            "answer with a number, n, r, b or q; --auto asks nothing");
+            const std::string said = without_blanks(*line);
+            unsigned number = 0;
+            const char* end = said.data() + said.size();
+            const auto read = std::from_chars(said.data(), end, number);
+            if (read.ec == std::errc() && read.ptr == end && number <= last)
+                return answer{number};
+            if (said == "n")
+                return answer{};
+            if (said == "b" && i > 0)
+                return std::nullopt;
+            if (said == "q")
+                throw error(error_kind::runtime, "walk",
+                            fmt::format("left after {} of {} tactors", i, last + 1),
+                            "no map is made of a part");
+            if (said == "r")
+                sound(i);
+            else
+                say(said == "b" ? "This is the first, there is none before it.\n"
+                                : fmt::format("\"{}\" is none of these.\n", said));
+        }
+    }
+
+    play_session& session_;
+    const environment& environment_;
+    const render_options& render_;
+    const walk_options& options_;
+    line_reader input_;
+    std::FILE* to_;
+};
+
+} // namespace
+
+walk_result walk(const alsa_options& device, const environment& e, const render_options& render,
+                 const walk_options& o)
+{
+    play_session session(device, o.play, e);
+    const auto finish = [&] {
+        run_report r;
+        session.finish(r);
+        warn_of_cuts(limits_of(o.play, e), r.stats);
+        if (const auto on = left_on(r.stats))
+            throw error(*on);
+    };
+    walk_result result;
+    try {
+        result.felt = walker(session, e, render, o).all();
+    } catch (const interrupted&) {
+        result.signal = session.signal();
+    } catch (const error&) {
+        finish();
+        throw;
+    }
+    finish();
+    return result;
+}
+
+} // namespace tactor::cli

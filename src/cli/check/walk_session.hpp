@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The walk itself: sounds, questions, answers.
+#pragma once
+
+#include <string>
+
+#include "cli/check/walk.hpp"
+#include "cli/play/play_options.hpp"
+
+namespace tactor::cli {
+
+struct walk_options {
+    play_options play; ///< how the stream is opened; its format says where questions go
+    double carrier_hz = 250.0;
+    bool ask = true;    ///< else each is only named
+    std::string output; ///< the file for the map; empty: none
+};
+
+struct walk_result {
+    int signal = 0; ///< that ended it, or 0
+    walk_answers felt;
+};
+
+/// Drives each tactor and asks where it was felt, on standard input. Questions go to standard output, or to
+/// standard error where that is JSON.
+/// \throws error: what play throws; runtime when the walk is left before its end.
+walk_result walk(const alsa_options& device, const environment& e, const render_options& render,
+                 const walk_options& o);
+
+} // namespace tactor::cli

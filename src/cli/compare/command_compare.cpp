@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <set>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "cli/commands.hpp"
+#include "cli/compare/compare_picture.hpp"
+#include "cli/compare/compare_rows.hpp"
+#include "cli/input.hpp"
+#include "cli/pipes.hpp"
+#include "cli/say.hpp"
+#include "core/split.hpp"
+#include "plot/figure.hpp"
+#include "plot/paint/output.hpp"
+
+namespace tactor::cli {
+namespace {
+
+double whole_number(const char* option, const std::string& text, double lo, double hi)
+{
+    const double v = parse_number(option, text, lo, hi, "");
+    if (v != std::floor(v))
+        throw error(error_kind::bad_input, option, fmt::format("{} is not a whole number", text));
+    return v;
+}
+
+template <class Enum>
+std::vector<Enum> all_of()
+{
+    const auto all = values_of<Enum>();
+    return {all.begin(), all.end()};
+}
+
+template <class Enum>
+std::string names_of(const std::vector<Enum>& values)
+{
+    std::string names;
+    for (const Enum v : values)
+        names += (names.empty() ? "" : ",") + std::string(to_string(v));
+    return names;
+}
+
+// "a,b,c", each once, in the order given.
+template <class Enum>
+std::vector<Enum> parse_list(const char* option, std::string_view text, const std::vector<Enum>& known)
+{
+    std::vector<Enum> list;
+    for (const std::string_view name : detail::split(text, ',')) {
+        const auto v = std::find_if(known.begin(), known.end(), [&](Enum e) { return to_string(e) == name; });
+        if (v == known.end())
+            throw error(error_kind::bad_input, option, fmt::format("\"{}\" is not known", name),
+                        "one or more of " + names_of(known));
+        if (std::find(list.begin(), list.end(), *v) != list.end())
+            throw error(error_kind::bad_input, option, fmt::format("\"{}\" is there twice", name),
+                        "name each once");
+        list.push_back(*v);
+    }
+    return list;
+}
+
+// The options of this command alone.
+struct compare_options {
+    comparison_choice choice;
+    std::string format = "text";
+    std::string picture; // empty: none
+    double width_mm = plot::figure_options{}.width_mm;
+    unsigned dpi = 300;
+};
+
+void add_lists(CLI::App& c, const std::shared_ptr<compare_options>& o)
+{
+    auto* algorithms = c.add_option_function<std::string>(
+        "--algorithms",
+        [o](const std::string& t) {
+            o->choice.algorithms = parse_list("--algorithms", t, all_of<algorithm_kind>());
+        },
+        "what to compare (default all three)");
+    algorithms->type_name(names_of(all_of<algorithm_kind>()));
+    auto* phantoms = c.add_option_function<std::string>(
+        "--phantoms",
+        [o](const std::string& t) {
+            o->choice.phantoms = parse_list("--phantoms", t, all_of<phantom_kind>());
+        },
+        "with which phantom models (default that of --phantom)");
+    phantoms->type_name(names_of(all_of<phantom_kind>()));
+    c.get_option("--algorithm")->description("only this one; see --algorithms")->excludes(algorithms);
+    c.get_option("--phantom")->excludes(phantoms);
+    add_format_option(c, o->format, {"text", "json", "csv"}, "how to print it (default text)");
+}
+
+void add_picture_options(CLI::App& c, const std::shared_ptr<compare_options>& o)
+{
+    c.add_option_function<std::string>(
+         "-o,--output",
+         [o](const std::string& t) {
+             plot::format_of(t);
+             o->picture = t;
+             o->choice.keep_samples = true;
+         },
+         "draw it too: target and prediction on the array, speed over time")
+        ->type_name("FILE.svg|.png|.pdf");
+    c.add_option_function<std::string>(
+         "--width",
+         [o](const std::string& t) {
+             o->width_mm = parse_number("--width", t, plot::least_width_mm, plot::most_width_mm, "mm");
+         },
+         "width of the picture (default 85, one print column)")
+        ->type_name("MM");
+    c.add_option_function<std::string>(
+         "--dpi",
+         [o](const std::string& t) {
+             o->dpi = static_cast<unsigned>(parse_number("--dpi", t, plot::least_dpi, plot::most_dpi, "dpi"));
+         },
+         "resolution of a PNG (default 300)")
+        ->type_name("N");
+}
+
+void add_spread_options(CLI::App& c, const std::shared_ptr<compare_options>& o)
+{
+    spread_choice& s = o->choice.spread;
+    auto* people = c.add_option_function<std::string>(
+        "--spread",
+        [&s](const std::string& t) {
+            s.people = static_cast<unsigned>(whole_number("--spread", t, 2, 100000));
+        },
+        "intervals of what so many people would feel, drawn at random");
+    people->type_name("N");
+    const auto option = [&](const char* name, const char* type, const char* help, auto set) {
+        c.add_option_function<std::string>(name, set, help)->type_name(type)->needs(people);
+    };
+    option("--spread-seed", "N", "--spread: of the draw (default 1)", [&s](const std::string& t) {
+        s.seed = static_cast<std::uint64_t>(whole_number("--spread-seed", t, 0, 4294967295.0));
+    });
+    option("--spread-sigma", "FACTOR", "--spread: low-speed's sigma by up to this factor (default 2)",
+           [&s](const std::string& t) { s.sigma_factor = parse_number("--spread-sigma", t, 1, 100, ""); });
+    option("--spread-threshold-db", "DB", "--spread: each threshold give or take (default 6)",
+           [&s](const std::string& t) {
+               s.threshold_db = parse_number("--spread-threshold-db", t, 0, 60, "dB");
+           });
+    option("--spread-place-mm", "MM", "--spread: each tactor's place within (default 2)",
+           [&s](const std::string& t) { s.place_mm = parse_number("--spread-place-mm", t, 0, 1000, "mm"); });
+}
+
+// Why strokes that no algorithm can play are refused. All reasons but the last are printed, each once.
+error why_refused(const std::vector<comparison>& all)
+{
+    std::vector<error> reasons;
+    std::set<std::string> seen;
+    for (const comparison& c : all)
+        if (!c.playable())
+            for (const comparison_row& r : c.rows)
+                if (seen.insert(r.refused->what()).second)
+                    reasons.push_back(*r.refused);
+    for (std::size_t i = 0; i + 1 < reasons.size(); ++i)
+        say(stderr, "tactor: {}\n", reasons[i].what());
+    return reasons.back();
+}
+
+int run(settings& s, option_list& options, const compare_options& asked, bool one_algorithm)
+{
+    const environment e = read_environment(s, options);
+    comparison_choice choice = asked.choice;
+    if (choice.algorithms.empty())
+        choice.algorithms = one_algorithm ? std::vector{s.plan.algorithm} : all_of<algorithm_kind>();
+    if (choice.phantoms.empty())
+        choice.phantoms = {s.plan.phantom};
+    choice.observer = {s.observer, s.low_speed};
+    choice.compensate = s.compensate;
+
+    // A row says what an algorithm cannot do; what nobody may ask for is wrong usage.
+    static_cast<void>(burst_duration_s(s.plan));
+    const layout faces(e.tactors);
+    const std::vector<stroke> strokes = read_one_piece(s, e, faces).strokes;
+    if (!asked.picture.empty() && strokes.size() > 1)
+        throw error(error_kind::bad_input, "-o", fmt::format("there are {} strokes", strokes.size()),
+                    "a picture shows one");
+    std::vector<comparison> all;
+    for (const stroke& k : strokes)
+        all.push_back(compare(k, e.tactors, faces, s.plan, choice));
+    const auto playable = std::count_if(all.begin(), all.end(), [](const auto& c) { return c.playable(); });
+    if (playable == 0)
+        throw why_refused(all);
+    if (!asked.picture.empty()) {
+        tell_of_pipe_to_write(asked.picture);
+        plot::save(picture_of(all[0], e.tactors, asked.width_mm), asked.picture, asked.dpi);
+    }
+    if (asked.format == "json")
+        print_json(stdout, all, e.tactors);
+    else if (asked.format == "csv")
+        print_csv(stdout, all, e.tactors);
+    else
+        print_text(stdout, all, e.tactors);
+    if (static_cast<std::size_t>(playable) < all.size())
+        throw why_refused(all);
+    return status_ok;
+}
+
+} // namespace
+
+command add_compare(CLI::App& app)
+{
+    CLI::App* c =
+        app.add_subcommand("compare", "Print what algorithms are predicted to feel like, side by side");
+    auto s = std::make_shared<settings>();
+    auto options = std::make_shared<option_list>(*c, *s);
+    auto asked = std::make_shared<compare_options>();
+    options->add_stroke_options();
+    options->add_sound_options();
+    options->add_observer_options();
+    add_lists(*c, asked);
+    add_spread_options(*c, asked);
+    add_picture_options(*c, asked);
+    c->footer("Example: tactor compare park2016-3 --phantoms inverse-distance,barycentric");
+    const CLI::Option* algorithm = c->get_option("--algorithm");
+    return [s, options, asked, algorithm] { return run(*s, *options, *asked, algorithm->count() != 0); };
+}
+
+} // namespace tactor::cli

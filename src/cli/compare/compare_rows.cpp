@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "cli/compare/compare_rows.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "cli/option_words.hpp"
+#include "percept/summaries.hpp"
+
+namespace tactor::cli {
+
+namespace {
+
+void predict_taps_of(comparison_row& row, const stroke& s, const array& a, const low_speed_observer& o)
+{
+    if (row.schedule->curve) {
+        row.unpredicted = "continuous has no bursts, and this observer feels taps";
+    } else {
+        row.taps = predict_taps(a, s, *row.schedule, o);
+        row.tapped = summarise(row.taps);
+        row.felt.rms_error_mm = row.tapped.rms_error_mm;
+        row.felt.largest_error_mm = row.tapped.largest_error_mm;
+    }
+}
+
+void predict_people(comparison_row& row, const stroke& s, const array& a, const comparison_choice& choice,
+                    const std::vector<drawn_person>& people)
+{
+    if (people.empty() || !row.unpredicted.empty())
+        return;
+    std::optional<low_speed_observer> taps;
+    if (choice.observer.kind == observer_kind::low_speed)
+        taps = choice.observer.low_speed;
+    row.spread = spread_of(people, a, s, *row.schedule, taps, choice.keep_samples);
+}
+
+// All rows at once, since they have the target in common.
+void predict_centroids(comparison& c, const array& a, bool keep_samples)
+{
+    std::vector<comparison_row*> rows;
+    std::vector<const plan*> plans;
+    for (comparison_row& row : c.rows)
+        if (row.schedule) {
+            rows.push_back(&row);
+            plans.push_back(&*row.schedule);
+        }
+    try {
+        const std::vector<percept_summary> felt = detail::predict_summaries(a, c.target, plans);
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            rows[i]->felt = felt[i];
+            if (keep_samples)
+                rows[i]->samples = predict_percept(a, c.target, *plans[i]);
+        }
+    } catch (const error& e) {
+        // For its length, whatever the plan.
+        if (e.kind() != error_kind::bad_input)
+            throw;
+        for (comparison_row* row : rows) {
+            row->schedule.reset();
+            row->refused = in_options(e);
+        }
+    }
+}
+
+} // namespace
+
+std::string prediction_note(const observer_choice& o)
+{
+    const std::string model = "a model's prediction, not a measurement: ";
+    if (o.kind == observer_kind::low_speed)
+        return model + describe(o.low_speed);
+    return model + "the felt position is taken to be the centre of energy of the tactors that sound";
+}
+
+bool comparison::playable() const
+{
+    return std::any_of(rows.begin(), rows.end(),
+                       [](const comparison_row& r) { return r.schedule.has_value(); });
+}
+
+comparison compare(const stroke& given, const array& a, const layout& faces, const plan_options& options,
+                   const comparison_choice& choice)
+{
+    // Side by side: here the command line chooses.
+    stroke s = given;
+    s.choices.algorithm.reset();
+    s.choices.phantom.reset();
+    comparison c{s, choice.observer, choice.compensate, choice.spread};
+    const std::vector<drawn_person> people = draw_people(choice.spread, a.tactors.size());
+    for (const algorithm_kind algorithm : choice.algorithms)
+        for (const phantom_kind phantom : choice.phantoms) {
+            comparison_row row{algorithm, phantom};
+            plan_options o = options;
+            o.algorithm = algorithm;
+            o.phantom = phantom;
+            try {
+                row.schedule = choice.compensate
+                                   ? make_compensated_plan(a, faces, s, o, choice.observer.low_speed).schedule
+                                   : make_plan(a, faces, s, o);
+                if (choice.observer.kind == observer_kind::low_speed)
+                    predict_taps_of(row, s, a, choice.observer.low_speed);
+                predict_people(row, s, a, choice, people);
+            } catch (const error& e) {
+                if (e.kind() != error_kind::bad_input)
+                    throw;
+                row.schedule.reset();
+                row.refused = in_options(e);
+            }
+            c.rows.push_back(std::move(row));
+        }
+    if (choice.observer.kind == observer_kind::centroid)
+        predict_centroids(c, a, choice.keep_samples);
+    return c;
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT
+#include <initializer_list>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tactor/words.hpp>
+
+#include "cli/compare/compare_rows.hpp"
+#include "cli/say.hpp"
+
+namespace tactor::cli {
+namespace {
+
+// A figure of the table, or a dash where there is none.
+std::string figure(std::optional<double> v)
+{
+    return v ? fmt::format("{:.3f}", *v) : "-";
+}
+
+std::string names(const comparison_row& r)
+{
+    return fmt::format("{:<13} {:<16}", to_string(r.algorithm), to_string(r.phantom));
+}
+
+std::string end_of(const std::optional<interval>& v, double interval::*end)
+{
+    return figure(v ? std::optional(*v.*end) : std::nullopt);
+}
+
+// Under a row, in its columns.
+void print_spread(std::FILE* out, const comparison_row& r, bool by_taps)
+{
+    if (!r.spread)
+        return;
+    const row_spread& s = *r.spread;
+    for (const auto& [name, end] : {std::pair{"5 %", &interval::low}, std::pair{"95 %", &interval::high}}) {
+        fmt::print(out, "{:>30} {:>6} {:>6} {:>6} ", name, "", end_of(s.rms_error_mm, end),
+                   end_of(s.largest_error_mm, end));
+        if (by_taps)
+            fmt::print(out, "{:>8} {:>8} {:>6}\n", end_of(s.felt_length_mm, end), "",
+                       end_of(s.length_ratio, end));
+        else
+            fmt::print(out, "{:>6} {:>7}\n", end_of(s.speed_cv, end), end_of(s.intensity_cv, end));
+    }
+}
+
+void print_row(std::FILE* out, const comparison_row& r, bool by_taps)
+{
+    if (r.refused) {
+        say(out, "{} refused: {}\n", names(r), r.refused->what());
+        return;
+    }
+    if (!r.unpredicted.empty()) {
+        say(out, "{} no prediction: {}\n", names(r), r.unpredicted);
+        return;
+    }
+    if (by_taps) {
+        fmt::print(out, "{} {:>6} {:>6} {:>6} {:>8} {:>8} {:>6}\n", names(r), r.schedule->bursts.size(),
+                   figure(r.felt.rms_error_mm), figure(r.felt.largest_error_mm),
+                   figure(r.tapped.felt_length_mm), figure(r.tapped.target_length_mm),
+                   figure(r.tapped.length_ratio));
+        return;
+    }
+    const std::string bursts = r.schedule->curve ? "-" : fmt::format("{}", r.schedule->bursts.size());
+    fmt::print(out, "{} {:>6} {:>6} {:>6} {:>6} {:>7} {:>6.1f} {:>6.1f}\n", names(r), bursts,
+               figure(r.felt.rms_error_mm), figure(r.felt.largest_error_mm), figure(r.felt.speed_cv),
+               figure(r.felt.intensity_cv), 100.0 * r.felt.silent_share, 100.0 * r.felt.shared_share);
+}
+
+// What a plan warns of is mostly the same for all phantom models.
+void print_warnings(std::FILE* out, std::string_view before, const comparison& c)
+{
+    std::set<std::string> said;
+    for (const comparison_row& r : c.rows)
+        if (r.schedule)
+            for (const std::string& w : r.schedule->warnings) {
+                const std::string text =
+                    fmt::format("{}warning: {}: {}\n", before, to_string(r.algorithm), w);
+                if (said.insert(text).second)
+                    say_text(out, text);
+            }
+}
+
+void print_heading(std::FILE* out, bool by_taps)
+{
+    if (by_taps) {
+        fmt::print(out, "\n{:<13} {:<16} {:>6} {:>13} {:>17}\n", "", "", "", "error mm   ", "length mm    ");
+        fmt::print(out, "{:<13} {:<16} {:>6} {:>6} {:>6} {:>8} {:>8} {:>6}\n", "algorithm", "phantom",
+                   "bursts", "RMS", "max", "felt", "target", "ratio");
+        return;
+    }
+    fmt::print(out, "\n{:<13} {:<16} {:>6} {:>13} {:>14} {:>13}\n", "", "", "", "error mm   ", "CV      ",
+               "% of time ");
+    fmt::print(out, "{:<13} {:<16} {:>6} {:>6} {:>6} {:>6} {:>7} {:>6} {:>6}\n", "algorithm", "phantom",
+               "bursts", "RMS", "max", "speed", "intens.", "silent", "shared");
+}
+
+void print_one(std::FILE* out, const comparison& c, const array& a)
+{
+    const trajectory& m = c.target.motion;
+    say(out, "{} on {}: {} mm in {}\n", c.target.name, a.name, plain_number(m.length_mm()),
+        seconds_text(m.duration_s()));
+    if (c.target.note != note_kind::none)
+        say(out, "note: {}\n", note_text(c.target.note));
+    const bool by_taps = c.observer.kind == observer_kind::low_speed;
+    print_heading(out, by_taps);
+    for (const comparison_row& r : c.rows) {
+        print_row(out, r, by_taps);
+        print_spread(out, r, by_taps);
+    }
+    print_warnings(out, "", c);
+}
+
+// A field of CSV: quoted where it must be (RFC 4180).
+std::string field(const std::string& text)
+{
+    if (text.find_first_of(",\"\r\n") == std::string::npos)
+        return text;
+    std::string quoted = "\"";
+    for (const char c : text)
+        quoted += c == '"' ? "\"\"" : std::string(1, c);
+    return quoted + "\"";
+}
+
+std::string field(std::optional<double> v)
+{
+    return v ? fmt::format("{}", *v) : "";
+}
+
+} // namespace
+
+void print_text(std::FILE* out, const std::vector<comparison>& all, const array& a)
+{
+    for (const comparison& c : all) {
+        print_one(out, c, a);
+        fmt::print(out, "\n");
+    }
+    const observer_choice& o = all.front().observer;
+    if (all.front().spread.people != 0)
+        fmt::print(out, "{}.\n", spread_note(all.front().spread, o.kind == observer_kind::low_speed));
+    fmt::print(out, "{}\nThis is {}.\n",
+               o.kind == observer_kind::low_speed
+                   ? "Errors count at the onsets of the bursts; length: of the chain of bursts."
+                   : "CV: standard deviation / mean; shared: a tactor serves two bursts.",
+               prediction_note(o));
+}
+
+namespace {
+
+// Columns after all others, of a table with people drawn.
+std::string heading_of_spread(const spread_choice& c, std::initializer_list<const char*> figures)
+{
+    std::string text = c.people == 0 ? "" : ",people,seed,sigma_factor,threshold_db,place_mm";
+    for (const char* f : figures)
+        text += c.people == 0 ? "" : fmt::format(",{0}_05,{0}_95", f);
+    return text;
+}
+
+std::string fields_of_spread(const spread_choice& c, const comparison_row& r,
+                             std::initializer_list<std::optional<interval> row_spread::*> figures)
+{
+    if (c.people == 0)
+        return {};
+    std::string text =
+        fmt::format(",{},{},{},{},{}", c.people, c.seed, c.sigma_factor, c.threshold_db, c.place_mm);
+    for (const auto f : figures) {
+        const std::optional<interval> v = r.spread ? (*r.spread).*f : std::nullopt;
+        text += v ? fmt::format(",{},{}", v->low, v->high) : ",,";
+    }
+    return text;
+}
+
+// The low-speed observer's table: each line says whose it is.
+void print_csv_of_taps(std::FILE* out, const std::vector<comparison>& all)
+{
+    fmt::print(out,
+               "stroke,name,algorithm,phantom,observer,sigma_mm,sigma_v_mm_s,built_for,bursts,rms_error_mm,"
+               "largest_error_mm,felt_length_mm,target_length_mm,length_ratio,unpredicted,refused{}\n",
+               heading_of_spread(all.front().spread,
+                                 {"rms_error_mm", "largest_error_mm", "felt_length_mm", "length_ratio"}));
+    for (std::size_t i = 0; i < all.size(); ++i)
+        for (const comparison_row& r : all[i].rows) {
+            const low_speed_observer& o = all[i].observer.low_speed;
+            const bool predicted = !r.refused && r.unpredicted.empty();
+            const auto if_predicted = [&](double v) { return predicted ? std::optional(v) : std::nullopt; };
+            fmt::print(out, "{},{},{},{},low-speed,{},{},taps,{},{},{},{},{},{},{},{}{}\n", i,
+                       field(all[i].target.name), to_string(r.algorithm), to_string(r.phantom), o.sigma_mm,
+                       o.sigma_v_mm_s, predicted ? fmt::format("{}", r.schedule->bursts.size()) : "",
+                       field(r.felt.rms_error_mm), field(r.felt.largest_error_mm),
+                       field(if_predicted(r.tapped.felt_length_mm)),
+                       field(if_predicted(r.tapped.target_length_mm)), field(r.tapped.length_ratio),
+                       field(r.unpredicted), r.refused ? field(std::string(r.refused->what())) : "",
+                       fields_of_spread(all[i].spread, r,
+                                        {&row_spread::rms_error_mm, &row_spread::largest_error_mm,
+                                         &row_spread::felt_length_mm, &row_spread::length_ratio}));
+        }
+}
+
+void print_csv_of_samples(std::FILE* out, const std::vector<comparison>& all)
+{
+    fmt::print(out,
+               "stroke,name,algorithm,phantom,bursts,rms_error_mm,largest_error_mm,speed_cv,intensity_cv,"
+               "silent_share,shared_share,refused{}\n",
+               heading_of_spread(all.front().spread,
+                                 {"rms_error_mm", "largest_error_mm", "speed_cv", "intensity_cv"}));
+    for (std::size_t i = 0; i < all.size(); ++i)
+        for (const comparison_row& r : all[i].rows) {
+            fmt::print(out, "{},{},{},{},", i, field(all[i].target.name), to_string(r.algorithm),
+                       to_string(r.phantom));
+            if (r.refused)
+                fmt::print(out, ",,,,,,,{}", field(std::string(r.refused->what())));
+            else
+                fmt::print(out, "{},{},{},{},{},{},{},",
+                           r.schedule->curve ? "" : fmt::format("{}", r.schedule->bursts.size()),
+                           field(r.felt.rms_error_mm), field(r.felt.largest_error_mm), field(r.felt.speed_cv),
+                           field(r.felt.intensity_cv), r.felt.silent_share, r.felt.shared_share);
+            fmt::print(out, "{}\n",
+                       fields_of_spread(all[i].spread, r,
+                                        {&row_spread::rms_error_mm, &row_spread::largest_error_mm,
+                                         &row_spread::speed_cv, &row_spread::intensity_cv}));
+        }
+}
+
+} // namespace
+
+void print_csv(std::FILE* out, const std::vector<comparison>& all, const array&)
+{
+    if (all.front().observer.kind == observer_kind::low_speed)
+        print_csv_of_taps(out, all);
+    else
+        print_csv_of_samples(out, all);
+    for (const comparison& c : all)
+        print_warnings(stderr, "tactor: ", c); // there is no place for them in a table
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+#include "cli/compare/spread.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include <tactor/words.hpp>
+
+namespace tactor::cli {
+namespace {
+
+constexpr double low_part = 0.05;
+constexpr double high_part = 0.95;
+constexpr std::size_t most_tracks = 40;
+constexpr std::size_t most_kept = 20'000'000; // speeds of all people, for a picture
+
+// SplitMix64 (Steele, Lea and Flood 2014): the same on every machine.
+class random_draws {
+public:
+    explicit random_draws(std::uint64_t seed) : state_(seed) {}
+
+    // From 0 up to 1.
+    double part()
+    {
+        state_ += 0x9e3779b97f4a7c15U;
+        std::uint64_t z = state_;
+        z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
+        z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
+        return static_cast<double>((z ^ (z >> 31U)) >> 11U) * 0x1p-53;
+    }
+
+    // Give or take 1.
+    double either_way() { return 2.0 * part() - 1.0; }
+
+private:
+    std::uint64_t state_;
+};
+
+// By figure, of each person.
+struct gathered {
+    std::vector<std::optional<double>> rms = {};
+    std::vector<std::optional<double>> largest = {};
+    std::vector<std::optional<double>> speed_cv = {};
+    std::vector<std::optional<double>> intensity_cv = {};
+    std::vector<std::optional<double>> length = {};
+    std::vector<std::optional<double>> ratio = {};
+    std::vector<double> times_s = {};
+    std::vector<std::vector<std::optional<double>>> speeds = {}; // by time, then by person
+};
+
+void keep_speed(gathered& g, std::size_t at, double t_s, std::optional<double> v)
+{
+    if (g.speeds.size() <= at) {
+        g.speeds.resize(at + 1);
+        g.times_s.resize(at + 1);
+        g.times_s[at] = t_s;
+    }
+    g.speeds[at].push_back(v);
+}
+
+void feel_taps(gathered& g, row_spread& r, const std::vector<tap>& taps, bool for_picture)
+{
+    const tap_summary s = summarise(taps);
+    g.rms.push_back(s.rms_error_mm);
+    g.largest.push_back(s.largest_error_mm);
+    g.length.push_back(s.felt_length_mm);
+    g.ratio.push_back(s.length_ratio);
+    if (!for_picture)
+        return;
+    std::vector<point> track;
+    for (std::size_t i = 0, at = 0; i < taps.size(); ++i) {
+        track.push_back(taps[i].felt);
+        if (i > 0 && taps[i].onset_s > taps[i - 1].onset_s)
+            keep_speed(g, at++, (taps[i].onset_s + taps[i - 1].onset_s) / 2.0,
+                       distance_mm(taps[i].felt, taps[i - 1].felt) / (taps[i].onset_s - taps[i - 1].onset_s));
+    }
+    if (r.tracks.size() < most_tracks)
+        r.tracks.push_back(std::move(track));
+}
+
+void feel_samples(gathered& g, row_spread& r, const std::vector<percept_sample>& samples, bool for_picture)
+{
+    const percept_summary s = summarise(samples);
+    g.rms.push_back(s.rms_error_mm);
+    g.largest.push_back(s.largest_error_mm);
+    g.speed_cv.push_back(s.speed_cv);
+    g.intensity_cv.push_back(s.intensity_cv);
+    if (!for_picture)
+        return;
+    std::vector<point> track;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        keep_speed(g, i, samples[i].t_s, samples[i].speed_mm_s);
+        if (samples[i].felt && (track.empty() || !(track.back() == *samples[i].felt)))
+            track.push_back(*samples[i].felt);
+    }
+    if (r.tracks.size() < most_tracks)
+        r.tracks.push_back(std::move(track));
+}
+
+} // namespace
+
+std::string spread_note(const spread_choice& c, bool by_taps)
+{
+    const std::string sigma =
+        by_taps ? fmt::format("sigma from 1/{0} to {0} times as much, ", plain_number(c.sigma_factor)) : "";
+    return fmt::format(
+        "5 to 95 % of {} drawn with seed {}: {}each tactor's threshold give or take {} dB, its place "
+        "within {} mm",
+        counted(c.people, "person", "people"), c.seed, sigma, plain_number(c.threshold_db),
+        plain_number(c.place_mm));
+}
+
+std::vector<drawn_person> draw_people(const spread_choice& c, std::size_t tactors)
+{
+    random_draws d(c.seed);
+    std::vector<drawn_person> people(c.people);
+    for (drawn_person& p : people) {
+        p.sigma_factor = std::pow(c.sigma_factor, d.either_way());
+        for (std::size_t i = 0; i < tactors; ++i) {
+            p.who.sensitivity_db.push_back(c.threshold_db * d.either_way());
+            const double turn = 2.0 * std::numbers::pi * d.part();
+            const double away = c.place_mm * std::sqrt(d.part());
+            p.who.shift.push_back({away * std::cos(turn), away * std::sin(turn)});
+        }
+    }
+    return people;
+}
+
+double quantile(const std::vector<double>& sorted, double part)
+{
+    const double at = part * static_cast<double>(sorted.size() - 1);
+    const auto i = static_cast<std::size_t>(at);
+    const std::size_t next = std::min(i + 1, sorted.size() - 1);
+    return sorted[i] + (at - static_cast<double>(i)) * (sorted[next] - sorted[i]);
+}
+
+std::optional<interval> interval_of(std::vector<std::optional<double>> values)
+{
+    std::vector<double> sorted;
+    for (const std::optional<double>& v : values)
+        if (v)
+            sorted.push_back(*v);
+    if (sorted.empty() || sorted.size() != values.size())
+        return {};
+    std::sort(sorted.begin(), sorted.end());
+    return interval{quantile(sorted, low_part), quantile(sorted, high_part)};
+}
+
+row_spread spread_of(const std::vector<drawn_person>& people, const array& a, const stroke& s, const plan& p,
+                     const std::optional<low_speed_observer>& low_speed, bool for_picture)
+{
+    const double kept =
+        low_speed ? static_cast<double>(p.bursts.size()) : s.motion.duration_s() / percept_step_s;
+    if (for_picture && kept * static_cast<double>(people.size()) > static_cast<double>(most_kept))
+        throw error(error_kind::bad_input, "--spread",
+                    fmt::format("{} people are too many for a picture of a stroke of {}", people.size(),
+                                seconds_text(s.motion.duration_s())),
+                    "fewer, or no -o");
+    gathered g;
+    row_spread r;
+    for (const drawn_person& x : people) {
+        if (low_speed) {
+            low_speed_observer o = *low_speed;
+            o.sigma_mm = std::clamp(o.sigma_mm * x.sigma_factor, least_sigma_mm, most_sigma_mm);
+            feel_taps(g, r, predict_taps(a, s, p, o, x.who), for_picture);
+        } else {
+            feel_samples(g, r, predict_percept(a, s, p, x.who), for_picture);
+        }
+    }
+    r.rms_error_mm = interval_of(std::move(g.rms));
+    r.largest_error_mm = interval_of(std::move(g.largest));
+    r.speed_cv = interval_of(std::move(g.speed_cv));
+    r.intensity_cv = interval_of(std::move(g.intensity_cv));
+    r.felt_length_mm = interval_of(std::move(g.length));
+    r.length_ratio = interval_of(std::move(g.ratio));
+    for (std::size_t i = 0; i < g.speeds.size(); ++i)
+        if (const auto range = interval_of(std::move(g.speeds[i])))
+            r.speeds.push_back({g.times_s[i], range->low, range->high});
+    return r;
+}
+
+} // namespace tactor::cli

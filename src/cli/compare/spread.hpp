@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Where people differ: the same plans felt by many who are drawn at random, and intervals of what they feel.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tactor/tactor.hpp>
+
+namespace tactor::cli {
+
+/// How many are drawn, and how far they may differ; all evenly within these ranges.
+struct spread_choice {
+    unsigned people = 0; ///< 0: nobody
+    std::uint64_t seed = 1;
+    double sigma_factor = 2.0; ///< sigma of low-speed from 1 / this to this times what it is, evenly by ratio
+    double threshold_db = 6.0; ///< each tactor's threshold, give or take
+    double place_mm = 2.0;     ///< each tactor's place, anywhere within this distance
+};
+
+/// The ranges in a sentence.
+std::string spread_note(const spread_choice& c, bool by_taps);
+
+/// One who was drawn.
+struct drawn_person {
+    tactor::person who;
+    double sigma_factor = 1.0;
+};
+
+/// The same for the same seed and number of tactors.
+std::vector<drawn_person> draw_people(const spread_choice& c, std::size_t tactors);
+
+/// What lies between 5 and 95 % of the people.
+struct interval {
+    double low = 0.0;
+    double high = 0.0;
+};
+
+/// Of a sorted list, linear between its members. \pre not empty.
+double quantile(const std::vector<double>& sorted, double part);
+
+/// None where somebody has no value.
+std::optional<interval> interval_of(std::vector<std::optional<double>> values);
+
+/// A band of a speed chart at one time.
+struct speed_range {
+    double t_s = 0.0;
+    double low = 0.0;
+    double high = 0.0;
+};
+
+/// Intervals of a row's figures; those that its observer does not give are none.
+struct row_spread {
+    std::optional<interval> rms_error_mm = {};
+    std::optional<interval> largest_error_mm = {};
+    std::optional<interval> speed_cv = {};
+    std::optional<interval> intensity_cv = {};
+    std::optional<interval> felt_length_mm = {};
+    std::optional<interval> length_ratio = {};
+    std::vector<speed_range> speeds = {};        ///< only where a picture asks
+    std::vector<std::vector<point>> tracks = {}; ///< of the first people, the same
+};
+
+/// Of a plan that the low-speed observer feels, or with none the centroid.
+row_spread spread_of(const std::vector<drawn_person>& people, const array& a, const stroke& s, const plan& p,
+                     const std::optional<low_speed_observer>& low_speed, bool for_picture);
+
+} // namespace tactor::cli

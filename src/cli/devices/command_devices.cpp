@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "cli/commands.hpp"
+#include "cli/devices/devices_output.hpp"
+#include "cli/input.hpp"
+#include "cli/play/play_options.hpp"
+#include "cli/say.hpp"
+
+namespace tactor::cli {
+namespace {
+
+int list_devices(settings& s, option_list& options, bool as_json)
+{
+    const environment e = read_environment(s, options);
+    const render_options render = settle_render(s, e);
+    device_list d;
+    d.array_name = e.tactors.name;
+    d.pcm_is_configured = names_device(s, e);
+    d.wanted = device_options(s, {}, e, render.channels, render.rate);
+    d.pcms = list_pcms(d.wanted);
+    d.chips = list_gpio();
+    if (as_json)
+        fmt::print("{}", devices_json(d));
+    else
+        say_text(stdout, devices_text(d));
+    return status_ok;
+}
+
+} // namespace
+
+command add_devices(CLI::App& app)
+{
+    CLI::App* c = app.add_subcommand("devices", "List PCMs, what they can do, and GPIO lines");
+    auto s = std::make_shared<settings>();
+    auto options = std::make_shared<option_list>(*c, *s);
+    auto format = std::make_shared<std::string>();
+    options->add_array_options();
+    options->add_device_options();
+    options->add_rate_options();
+    add_format_option(*c, *format, {"text", "json"}, "how to print it (default text)");
+    c->footer("Example: tactor devices --array palm-2x4");
+    return [s, options, format] { return list_devices(*s, *options, *format == "json"); };
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: MIT
+#include "cli/environment.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "cli/pipes.hpp"
+#include "files/stroke/text.hpp"
+#include "files/text_file.hpp"
+
+namespace tactor::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<std::string> from_environment(const char* name)
+{
+    const char* v = std::getenv(name);
+    if (v == nullptr || *v == '\0')
+        return {};
+    return v;
+}
+
+std::string find_config(const settings& s)
+{
+    if (s.config_file)
+        return *s.config_file;
+    if (const auto named = from_environment("TACTOR_CONFIG"))
+        return *named;
+    std::vector<fs::path> places;
+    if (const auto xdg = from_environment("XDG_CONFIG_HOME"))
+        places.emplace_back(*xdg);
+    else if (const auto home = from_environment("HOME"))
+        places.push_back(fs::path(*home) / ".config");
+    places.emplace_back("/etc");
+    for (const fs::path& p : places) {
+        std::error_code ignored;
+        if (fs::exists(p / "tactor/tactor.toml", ignored))
+            return (p / "tactor/tactor.toml").string();
+    }
+    return {};
+}
+
+// An array file may bring its own output, amplifier and sync: they belong to that array.
+void use_array_file(setup& config, const setup& file)
+{
+    config.array = file.array;
+    config.calibration = file.calibration;
+    const auto prefer = [](auto& ours, const auto& theirs) {
+        if (theirs)
+            ours = theirs;
+    };
+    if (file.output.pcm) {
+        config.output.pcm = file.output.pcm;
+        config.output.pcm_at = file.output.pcm_at;
+        config.output.pcm_included = true;
+    }
+    prefer(config.output.rate, file.output.rate);
+    // The channel count belongs to the map: one array's count says nothing of another's.
+    config.output.channels = file.output.channels;
+    prefer(config.output.period_frames, file.output.period_frames);
+    prefer(config.output.periods, file.output.periods);
+    prefer(config.amplifier, file.amplifier);
+    prefer(config.sync, file.sync);
+    prefer(config.limits, file.limits);
+}
+
+// What only planning asks for.
+constexpr std::array planning_options{"duration",
+                                      "speed",
+                                      "algorithm",
+                                      "phantom",
+                                      "soa",
+                                      "burst",
+                                      "slope",
+                                      "intercept",
+                                      "timing",
+                                      "outside",
+                                      "fit",
+                                      "fit-margin",
+                                      "snap",
+                                      "drop-points",
+                                      "overlap",
+                                      "carrier",
+                                      "compensate",
+                                      "sigma-mm",
+                                      "sigma-v-mm-s",
+                                      "waveform",
+                                      "am",
+                                      "noise-seed",
+                                      "texture",
+                                      "texture-mm",
+                                      "intensity-scale",
+                                      "stevens-exponent"};
+
+void refuse_planning(const std::string& what, const option_list& options)
+{
+    for (const char* option : planning_options)
+        if (options.given(option))
+            throw error(error_kind::bad_input, fmt::format("--{}", option),
+                        fmt::format("{} is planned already", what),
+                        "plan the stroke anew with it, or leave it out");
+}
+
+// It can be read only once, and what it holds is known by its first character.
+void read_standard_input(const option_list& options, environment& e)
+{
+    constexpr const char* name = "standard input";
+    const detail::whole_text text = detail::read_text(STDIN_FILENO, name, detail::max_stroke_bytes);
+    if (!holds_plans(text)) {
+        e.standard_input = parse_strokes(text, name);
+        return;
+    }
+    refuse_planning(name, options);
+    e.plans.emplace("-", read_plans(text, name));
+}
+
+// The plans among the STROKE arguments, and what is given on standard input.
+void read_given(const settings& s, const option_list& options, environment& e)
+{
+    if (std::find(s.strokes.begin(), s.strokes.end(), "-") != s.strokes.end())
+        read_standard_input(options, e);
+    for (const std::string& argument : s.strokes) {
+        if (!is_plan_file(argument) || e.plans.contains(argument))
+            continue;
+        refuse_planning(argument, options);
+        e.plans.emplace(argument, load_plans(argument));
+    }
+}
+
+// The first plan among the STROKE arguments; null for none.
+const plan_file* first_plan(const settings& s, const environment& e)
+{
+    const auto planned = std::find_if(s.strokes.begin(), s.strokes.end(), [&](const std::string& argument) {
+        return e.plans.contains(argument);
+    });
+    return planned == s.strokes.end() ? nullptr : &e.plans.at(*planned);
+}
+
+// How a plan was rendered is how it is, where no option says otherwise: no [defaults] does.
+void use_sound_of(const plan_file& f, settings& s, const option_list& options)
+{
+    if (!options.given("phase"))
+        s.render.phase = f.render.phase;
+    if (!options.given("ramp"))
+        s.render.ramp_s = f.render.ramp_s;
+    if (!options.given("envelope")) {
+        s.render.envelope.kind = f.render.envelope.kind;
+        s.render.envelope.tukey_part = f.render.envelope.tukey_part;
+    }
+    if (!options.given("attack"))
+        s.render.envelope.attack_s = f.render.envelope.attack_s;
+    if (!options.given("release"))
+        s.render.envelope.release_s = f.render.envelope.release_s;
+    if (!options.given("level-dbfs") && !options.given("sl")) {
+        s.render.level_dbfs = f.render.level_dbfs;
+        s.render.sl_db = f.render.sl_db;
+    }
+    if (!options.given("rate"))
+        s.rate = f.render.rate;
+    s.render.marker_channel = f.render.marker_channel;
+    s.render.marker_s = f.render.marker_s;
+}
+
+// What the array file of the plan said when it was made counts with its array.
+array use_array_of(const plan_file& f, environment& e)
+{
+    if (!e.config.output.channels)
+        e.config.output.channels = f.render.channels;
+    return f.tactors;
+}
+
+array find_array(const settings& s, option_list& options, environment& e)
+{
+    setup& config = e.config;
+    if (!s.array_name) {
+        e.array_file = config.array ? e.config_name : "";
+        if (const plan_file* f = first_plan(s, e); f != nullptr && !config.array)
+            return use_array_of(*f, e);
+        return config.array ? *config.array : preset_array("palm-3x3");
+    }
+    if (is_preset(array_presets(), *s.array_name)) {
+        config.output.channels.reset();
+        return preset_array(*s.array_name);
+    }
+    if (!fs::exists(*s.array_name) && s.array_name->find_first_of("./") == std::string::npos)
+        return preset_array(*s.array_name); // its error lists the presets
+    check_readable(*s.array_name);
+    const setup file = load_setup(*s.array_name);
+    if (!file.array)
+        throw error(error_kind::bad_input, *s.array_name, "says no [array]", "see tactor.toml(5)");
+    options.apply_defaults(file.defaults, *s.array_name);
+    use_array_file(config, file);
+    e.array_file = *s.array_name;
+    return *file.array;
+}
+
+// A configuration's marker channel may meet another file's array.
+void check_sync_channel(const environment& e)
+{
+    if (!e.config.sync || !e.config.sync->channel)
+        return;
+    for (const tactor_spec& t : e.tactors.tactors)
+        if (t.channel == *e.config.sync->channel)
+            throw error(error_kind::bad_input, "[sync] channel",
+                        fmt::format("channel {} drives a tactor of {}", t.channel, e.tactors.name),
+                        "choose a spare channel");
+}
+
+} // namespace
+
+bool is_preset(const std::vector<std::string>& presets, const std::string& name)
+{
+    return std::find(presets.begin(), presets.end(), name) != presets.end();
+}
+
+environment read_environment(settings& s, option_list& options)
+{
+    environment e;
+    e.config_name = find_config(s);
+    if (!e.config_name.empty()) {
+        check_readable(e.config_name);
+        e.config = load_setup(e.config_name);
+        options.apply_defaults(e.config.defaults, e.config_name);
+    }
+    read_given(s, options, e);
+    e.tactors = find_array(s, options, e);
+    if (const plan_file* f = first_plan(s, e))
+        use_sound_of(*f, s, options);
+    check_sound(s, options);
+    settle_scale(s, options);
+    check_sync_channel(e);
+    for (const char* option : {"sigma-mm", "sigma-v-mm-s"})
+        if (!s.compensate && s.observer != observer_kind::low_speed && options.given(option))
+            throw error(error_kind::bad_input, fmt::format("--{}", option), "nothing here uses it",
+                        options.has("observer") ? "add --observer low-speed or --compensate low-speed"
+                                                : "add --compensate low-speed");
+    if (s.slope || s.intercept_s) {
+        timing_profile& p = s.plan.profile;
+        p.slope = s.slope.value_or(p.slope);
+        p.intercept_s = s.intercept_s.value_or(p.intercept_s);
+        p.max_soa_s = p.intercept_s / (1.0 - p.slope);
+    }
+    return e;
+}
+
+render_options settle_render(const settings& s, const environment& e)
+{
+    render_options r = s.render;
+    r.rate = s.rate.value_or(e.config.output.rate.value_or(48000));
+    if (e.config.sync && e.config.sync->channel) {
+        r.marker_channel = e.config.sync->channel;
+        r.marker_s = e.config.sync->pulse_s;
+    }
+    const unsigned marker = r.marker_channel ? *r.marker_channel + 1 : 0;
+    r.channels = e.config.output.channels.value_or(std::max(e.tactors.channels(), marker));
+    return r;
+}
+
+drive_limits settle_limits(const environment& e)
+{
+    drive_limits l;
+    if (!e.config.limits)
+        return l;
+    l.power_dbfs = e.config.limits->power_dbfs.value_or(l.power_dbfs);
+    l.max_drive_s = e.config.limits->max_drive_s.value_or(l.max_drive_s);
+    l.window_s = e.config.limits->window_s.value_or(l.window_s);
+    return l;
+}
+
+} // namespace tactor::cli

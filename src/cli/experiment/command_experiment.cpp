@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include <memory>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "cli/commands.hpp"
+#include "cli/experiment/experiment_options.hpp"
+#include "cli/experiment/noise_check.hpp"
+#include "cli/experiment/power.hpp"
+#include "cli/experiment/prepared.hpp"
+#include "cli/experiment/real_session.hpp"
+#include "cli/experiment/simulated_session.hpp"
+#include "cli/experiment/trials.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/say.hpp"
+
+namespace tactor::cli {
+namespace {
+
+std::size_t trials_of(const prepared_experiment& p)
+{
+    std::size_t n = 0;
+    for (const study::run_sequence& s : p.runs)
+        n += s.trials.size();
+    return n;
+}
+
+int hold_session(const prepared_experiment& p, const experiment_options& o, const settings& s)
+{
+    const sound_servers between = o.simulate ? sound_servers{} : check_real_session(p, o, s);
+    net::owned_fd listening = o.simulate ? net::owned_fd() : open_page(o.page);
+    study::study_folder folder(o.folder, p.definition, o.simulate.has_value());
+    study::session_store store(folder, p.participant, session_facts(p, o), o.resume);
+    const std::string who =
+        fmt::format("sub-{}{}", p.participant, o.simulate ? ": SIMULATED, nobody was asked" : "");
+    if (store.resumed() && finished(p, store)) {
+        say(stdout, "{}: the session is finished\n", who);
+        return status_ok;
+    }
+    int signal = 0;
+    if (o.simulate) {
+        store.begin(p.stimuli.all());
+        signal = simulate_session(p, *o.simulate, store);
+    } else {
+        signal = hold_real_session(p, o, s, between, std::move(listening), store);
+    }
+    if (signal != 0) {
+        say(stderr, "tactor: ended by a signal: what was answered is in {}, and --resume goes on\n",
+            o.folder);
+        return interrupt::status(signal);
+    }
+    say(stdout, "{}: {} in {}, in {}\n", who, counted(trials_of(p), "trial"), counted(p.runs.size(), "run"),
+        o.folder);
+    return status_ok;
+}
+
+int run(const experiment_options& o, const power_options& power, settings& s, option_list& options)
+{
+    check_power_options(power, o);
+    if (power.participants.empty())
+        check_experiment_options(o);
+    if (o.print) {
+        fmt::print("{}", study::load_definition(o.definition).text);
+        return status_ok;
+    }
+    const prepared_experiment p = prepare(o, s, options);
+    for (const std::string& w : p.warnings)
+        say(stderr, "tactor: warning: {}\n", w);
+    if (!power.participants.empty())
+        return tell_power(p, power, o);
+    if (!o.dry_run)
+        return o.check_noise ? check_noise(p, o, s) : hold_session(p, o, s);
+    if (o.format == "json")
+        print_dry_run_json(stdout, p);
+    else
+        print_dry_run_text(stdout, p);
+    return status_ok;
+}
+
+} // namespace
+
+command add_experiment(CLI::App& app)
+{
+    CLI::App* c =
+        app.add_subcommand("experiment", "Hold an experiment with a participant, or a simulated one");
+    auto s = std::make_shared<settings>();
+    auto o = std::make_shared<experiment_options>();
+    auto power = std::make_shared<power_options>();
+    auto options = std::make_shared<option_list>(*c, *s);
+    add_experiment_options(*c, *o);
+    add_power_options(*c, *power);
+    options->add_array_options();
+    options->add_device_options();
+    c->footer("Example: tactor experiment park2016 --participant 01 -o trial --simulate seed=1,sigma=1");
+    return [s, o, power, options] { return run(*o, *power, *s, *options); };
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What the participant reads on a terminal. Nothing in it says by which method a motion is rendered.
+#pragma once
+
+#include <string>
+
+#include "cli/experiment/prepared.hpp"
+#include "cli/play/live_picture.hpp"
+
+namespace tactor::cli {
+
+/// "1 (not at all) to 5 (exactly)": what can be answered in a run.
+std::string choices_text(const study::experiment_definition& d, const study::run_definition& r);
+
+/// How many answers there are.
+unsigned choices_in(const study::run_definition& r);
+
+/// The moving target on a terminal, as long as this lives; elsewhere one line, without motion.
+class target_picture {
+public:
+    target_picture(const array& a, const stroke& target);
+
+    void draw(double t_s);
+
+private:
+    const trajectory& motion_;
+    layout faces_;
+    live_picture picture_;
+    instant now_;
+};
+
+} // namespace tactor::cli

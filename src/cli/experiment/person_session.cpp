@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: MIT
+#include "cli/experiment/person_session.hpp"
+
+#include <csignal>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "cli/check/walk.hpp"
+#include "cli/experiment/participant_screen.hpp"
+#include "cli/experiment/trials.hpp"
+#include "cli/say.hpp"
+#include "study/bids/acq_time.hpp"
+
+namespace tactor::cli {
+namespace {
+
+using json = nlohmann::ordered_json;
+using study::step_kind;
+
+constexpr double walk_carrier_hz = 250.0;
+constexpr const char* go_on = "what was answered is kept; --resume goes on";
+
+// Where the session is, for the flow.
+study::session_flow flow_of(const prepared_experiment& p, const study::session_store& store)
+{
+    std::vector<study::flow_run> runs;
+    for (const study::run_sequence& s : p.runs) {
+        const study::run_definition& r = p.definition.runs[s.run];
+        const auto practised = static_cast<unsigned>(store.practice_rows(r).size());
+        runs.push_back({static_cast<unsigned>(s.practice.size()), practised, replay(p, s, store.rows(r)),
+                        r.break_s > 0.0});
+    }
+    const bool consent = !p.definition.consent.empty() && !store.facts().contains("consent");
+    return {std::move(runs), consent, static_cast<unsigned>(p.where.tactors.tactors.size())};
+}
+
+} // namespace
+
+person_session::person_session(const prepared_experiment& p, study::session_store& store, stage& s,
+                               const answering& with, std::string pcm, sound_servers between)
+    : p_(p),
+      store_(store),
+      stage_(s),
+      page_(with.page),
+      pcm_(std::move(pcm)),
+      between_(std::move(between)),
+      keys_(s, with),
+      flow_(flow_of(p, store))
+{
+    if (store.facts().contains("streams"))
+        stream_ = static_cast<unsigned>(store.facts()["streams"].size());
+}
+
+void person_session::hold()
+{
+    say(stderr,
+        "Keys of the experimenter: r repeats the trial, v makes the one before void, p pauses, g goes "
+        "on, q or Ctrl-C stops.\n");
+    do {
+        for (study::session_step s = flow_.next(); s.what != step_kind::over; s = flow_.next())
+            step(s);
+        stage_.fade_out();
+    } while (!end());
+}
+
+void person_session::on_page(study::page_screen s)
+{
+    if (page_ != nullptr)
+        page_->show(std::move(s));
+}
+
+void person_session::step(const study::session_step& s)
+{
+    if (s.what != step_kind::trial)
+        stage_.fade_out(); // noise through the run ends with it
+    switch (s.what) {
+    case step_kind::consent:
+        return ask_consent();
+    case step_kind::walk:
+        return walk(s.tactor);
+    case step_kind::introduce:
+        return introduce(s);
+    case step_kind::trial:
+        return trial(s);
+    case step_kind::rest:
+        return rest(s);
+    case step_kind::pause:
+        return pause();
+    case step_kind::refused:
+        on_page(idle_screen(p_, "over"));
+        throw error(error_kind::runtime, "sub-" + p_.participant, "did not agree",
+                    "there are no data of the session");
+    case step_kind::not_felt:
+        on_page(idle_screen(p_, "wait"));
+        throw error(error_kind::runtime, fmt::format("tactor {}", s.tactor), "it was not felt",
+                    "tactor check --walk finds out why; then begin again");
+    case step_kind::over:
+        return;
+    }
+}
+
+const study::run_definition& person_session::run_of(const study::session_step& s) const
+{
+    return p_.definition.runs[p_.runs[s.run].run];
+}
+
+void person_session::ask_consent()
+{
+    on_page(consent_screen(p_));
+    show(fmt::format("{}\n\nDo you agree? y yes, n no: ", p_.definition.consent));
+    for (;;) {
+        const session_key k = keys_.wait();
+        if (k.asked == operator_key::quit)
+            obey(*k.asked);
+        if (k.character != 'y' && k.character != 'n')
+            continue;
+        show(k.character == 'y' ? "yes\n\n" : "no\n");
+        agreed_ = k.character == 'y';
+        return flow_.agree(agreed_);
+    }
+}
+
+void person_session::walk(unsigned tactor)
+{
+    const array& a = p_.where.tactors;
+    if (tactor == 0)
+        show(fmt::format("Each tactor vibrates once, in turn.\n\n{}\n", numbered_map(a)));
+    on_page(walk_screen(p_, tactor, false));
+    const score s(a, walk_one(a, tactor, walk_carrier_hz).plans.front().schedule, p_.render);
+    const given_stimulus g = [&] {
+        const noise_around noise(stage_);
+        return stage_.give(fmt::format("tactor {}", tactor), s, 0.0, [](std::uint64_t) {});
+    }();
+    if (!g.flaw.empty()) {
+        say(stderr, "tactor: tactor {}: {}\n", tactor, g.flaw);
+        find_device();
+    }
+    on_page(walk_screen(p_, tactor, true));
+    show(fmt::format("tactor {}: was it felt? y yes, n no, r again{}: ", tactor,
+                     tactor > 0 ? ", b back" : ""));
+    for (;;) {
+        const session_key k = keys_.wait();
+        if (k.asked == operator_key::quit)
+            obey(*k.asked);
+        if (k.character == '\0' || std::string("ynrb").find(k.character) == std::string::npos ||
+            (k.character == 'b' && tactor == 0))
+            continue;
+        show(fmt::format("{}\n", k.character));
+        if (k.character == 'y')
+            walked_.push_back({{"tactor", tactor}, {"asked", study::acq_time_text(study::utc_now_ns())}});
+        return flow_.felt(k.character == 'y'   ? study::walk_answer::felt
+                          : k.character == 'n' ? study::walk_answer::not_felt
+                          : k.character == 'r' ? study::walk_answer::again
+                                               : study::walk_answer::back);
+    }
+}
+
+// Only who agreed, and felt each tactor, leaves anything on the disk.
+void person_session::begin_store()
+{
+    if (std::exchange(begun_, true))
+        return;
+    const std::string now = study::acq_time_text(study::utc_now_ns());
+    store_.begin(p_.stimuli.all());
+    if (!store_.resumed())
+        store_.note("date", now);
+    if (agreed_)
+        store_.note("consent", now);
+    store_.note("walk", walked_);
+    const auto named = [](const std::string& server) {
+        return server.empty() ? json(nullptr) : json(server);
+    };
+    store_.note("sound_server", named(between_.array));
+    store_.note("masker_sound_server", named(between_.masker));
+    note_stream();
+}
+
+// Each opening of the device is counted.
+void person_session::note_stream()
+{
+    if (!begun_)
+        return;
+    ++stream_;
+    const stream_setup& d = stage_.session().setup();
+    json all = store_.facts().contains("streams") ? store_.facts()["streams"] : json::array();
+    all.push_back({{"stream", stream_},
+                   {"opened", study::acq_time_text(study::utc_now_ns())},
+                   {"device", pcm_},
+                   {"display", page_ != nullptr ? "page" : "terminal"},
+                   {"format", std::string(to_string(d.format))},
+                   {"period_frames", d.period_frames},
+                   {"buffer_frames", d.buffer_frames},
+                   {"realtime", stage_.session().stats().realtime},
+                   {"locked_memory", stage_.session().locked_memory()}});
+    store_.note("streams", all);
+}
+
+void person_session::find_device()
+{
+    if (!stage_.lost())
+        return;
+    on_page(idle_screen(p_, "wait"));
+    if (!stage_.reopen())
+        throw error(error_kind::runtime, pcm_, "it did not come back", go_on);
+    note_stream();
+}
+
+void person_session::introduce(const study::session_step& s)
+{
+    begin_store();
+    const study::run_definition& r = run_of(s);
+    practice_.emplace(store_, r, true);
+    table_.emplace(store_, r, false);
+    const std::size_t n = p_.runs[s.run].trials.size();
+    show(fmt::format("\n{} of {}: {}\n{}\n{}\n", s.run + 1, p_.runs.size(), counted(n, "trial"), r.question,
+                     choices_text(p_.definition, r)));
+    on_page(introduce_screen(p_, s));
+    if (keys_.come_early()) {
+        show(page_ != nullptr ? "The participant begins, or g.\n" : "Any key begins.\n");
+        wait_for_any_key();
+    }
+    // Asked for meanwhile: the last trial of the run before.
+    if (flow_.next() == s)
+        flow_.go_on();
+}
+
+// Ends, too, when the experimenter has changed what comes next.
+void person_session::wait_for_any_key()
+{
+    const study::session_step now = flow_.next();
+    for (;;) {
+        const session_key k = keys_.wait();
+        if (!k.asked || *k.asked == operator_key::go_on || *k.asked == operator_key::repeat)
+            return;
+        obey(*k.asked);
+        if (flow_.next() != now && flow_.next().what != step_kind::pause)
+            return;
+    }
+}
+
+// Lines are answers to what is asked next; only keys come early.
+void person_session::heed()
+{
+    keys_.drop_pressed();
+    while (keys_.come_early()) {
+        const auto k = keys_.poll();
+        if (!k)
+            return;
+        if (k->asked == operator_key::repeat)
+            repeat_ = true;
+        else if (k->asked == operator_key::quit)
+            quit_ = true;
+        else if (k->asked)
+            obey(*k->asked);
+    }
+}
+
+void person_session::obey(operator_key k)
+{
+    switch (k) {
+    case operator_key::void_last:
+        return void_last();
+    case operator_key::pause:
+        flow_.pause();
+        say(stderr, "tactor: a pause comes before the next trial\n");
+        return;
+    case operator_key::quit:
+        throw stage::left{SIGINT};
+    case operator_key::repeat:
+    case operator_key::go_on:
+        return;
+    }
+}
+
+void person_session::rest(const study::session_step& s)
+{
+    const double break_s = run_of(s).break_s;
+    show(fmt::format("\nA break of {:.0f} s.\n", break_s));
+    on_page(rest_screen(p_, s));
+    bool ended = false;
+    const bool there = stage_.pass(break_s, [&](double) {
+        for (auto k = keys_.come_early() ? keys_.poll() : std::nullopt; k; k = keys_.poll()) {
+            if (k->asked == operator_key::go_on)
+                ended = true;
+            else if (k->asked)
+                obey(*k->asked);
+        }
+        return !ended && flow_.next() == s;
+    });
+    if (!there)
+        return find_device(); // and the break again
+    if (flow_.next() == s)
+        flow_.go_on();
+}
+
+void person_session::pause()
+{
+    on_page(idle_screen(p_, "pause"));
+    show("\nA pause.\n");
+    say(stderr, "tactor: paused; g goes on\n");
+    const study::session_step now = flow_.next();
+    while (flow_.next() == now) {
+        const session_key k = keys_.wait();
+        if (k.asked == operator_key::go_on)
+            flow_.go_on();
+        else if (k.asked && *k.asked != operator_key::pause)
+            obey(*k.asked);
+    }
+}
+
+bool person_session::end()
+{
+    on_page(idle_screen(p_, "over"));
+    show("\nThat was all. Thank you.\n");
+    if (!keys_.is_terminal())
+        return true;
+    show(page_ != nullptr ? "g ends.\n" : "Any key ends.\n");
+    wait_for_any_key();
+    return flow_.next().what == step_kind::over;
+}
+
+} // namespace tactor::cli

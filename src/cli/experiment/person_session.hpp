@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// A session with somebody at a terminal or before a page: takes the steps of a session_flow on the stage.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/experiment/page_screens.hpp"
+#include "cli/experiment/prepared.hpp"
+#include "cli/experiment/run_table.hpp"
+#include "cli/experiment/session_keys.hpp"
+#include "cli/session/participant_page.hpp"
+#include "cli/session/stage.hpp"
+#include "study/bids/session_store.hpp"
+#include "study/experiment/session_flow.hpp"
+
+namespace tactor::cli {
+
+class person_session {
+public:
+    /// `pcm` and `between` are for the data. `page` (null: the terminal) is the participant's.
+    /// All must live as long.
+    person_session(const prepared_experiment& p, study::session_store& store, stage& s, const answering& with,
+                   std::string pcm, sound_servers between);
+
+    /// All that is left of the session. \throws stage::left; error: runtime where nobody agreed, a tactor was
+    /// not felt, there is no answer any more, the device did not come back, or the system refuses to write.
+    void hold();
+
+private:
+    void step(const study::session_step& s);
+    void ask_consent();
+    void walk(unsigned tactor);
+    void begin_store();
+    void introduce(const study::session_step& s);
+    void trial(const study::session_step& s);
+    void rest(const study::session_step& s);
+    void pause();
+    /// False where the last trial was made void, so that there is more to do.
+    bool end();
+
+    struct asked_answer {
+        unsigned choice = 0; ///< 0: the experimenter repeats the trial
+        double time_s = 0.0;
+    };
+    bool animate(const study::session_step& s, const study::planned_trial& t);
+    given_stimulus give(const study::session_step& s, const study::planned_trial& t);
+    asked_answer ask(const study::session_step& s, const given_stimulus& g);
+    void write(const study::session_step& s, const study::trial_row& row, std::int64_t started_ns);
+
+    /// Where there is a page: the participant sees this.
+    void on_page(study::page_screen s);
+    /// The experimenter's keys while something plays, and what they ask for at any time.
+    void heed();
+    void obey(operator_key k);
+    void void_last();
+    void wait_for_any_key();
+    void find_device();
+    void note_stream();
+
+    const study::run_definition& run_of(const study::session_step& s) const;
+    const study::planned_trial& trial_of(const study::session_step& s) const;
+
+    const prepared_experiment& p_;
+    study::session_store& store_;
+    stage& stage_;
+    participant_page* page_;
+    std::string pcm_;
+    sound_servers between_;
+    session_keys keys_;
+    study::session_flow flow_;
+    std::optional<run_table> practice_ = {}; ///< of the run that is on
+    std::optional<run_table> table_ = {};
+    nlohmann::ordered_json walked_ = nlohmann::ordered_json::array();
+    unsigned stream_ = 0;
+    bool agreed_ = false;
+    bool begun_ = false;  ///< the store is
+    bool repeat_ = false; ///< asked for while the stimulus plays
+    bool quit_ = false;
+};
+
+} // namespace tactor::cli

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+// A person's trials: the target, the stimuli, the question, the line.
+#include <algorithm>
+#include <csignal>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "cli/experiment/participant_screen.hpp"
+#include "cli/experiment/person_session.hpp"
+#include "cli/experiment/trials.hpp"
+#include "cli/say.hpp"
+#include "study/bids/acq_time.hpp"
+
+namespace tactor::cli {
+namespace {
+
+constexpr double lead_s = 0.5; // from what was shown before to the first frame, so that nobody is surprised
+
+} // namespace
+
+const study::planned_trial& person_session::trial_of(const study::session_step& s) const
+{
+    const study::run_sequence& run = p_.runs[s.run];
+    return s.practice ? run.practice[s.which.trial - 1] : run.trials[s.which.trial - 1];
+}
+
+bool person_session::animate(const study::session_step& s, const study::planned_trial& t)
+{
+    const stroke& target = p_.definition.motions[t.motion].drawn;
+    const double duration_s = target.motion.duration_s();
+    if (page_ != nullptr) {
+        page_->show(target_screen(p_, s, target));
+        return stage_.pass(duration_s, [&](double) {
+            heed();
+            return !repeat_ && !quit_;
+        });
+    }
+    target_picture picture(p_.where.tactors, target);
+    picture.draw(0.0);
+    return stage_.pass(duration_s, [&](double at_s) {
+        heed();
+        picture.draw(std::min(at_s, duration_s));
+        return !repeat_ && !quit_;
+    });
+}
+
+given_stimulus person_session::give(const study::session_step& s, const study::planned_trial& t)
+{
+    if (run_of(s).animation && !animate(s, t))
+        return {.flaw = "the device is gone"};
+    on_page(stimulus_screen(p_, s));
+    given_stimulus g;
+    if (!repeat_ && !quit_) {
+        std::optional<noise_around> noise;
+        if (!p_.definition.masking.through_run)
+            noise.emplace(stage_);
+        g = stage_.give(fmt::format("trial {}", s.which.trial), p_.stimuli.make_score(t), lead_s,
+                        [&](std::uint64_t) {
+                            heed();
+                            if (repeat_ || quit_)
+                                stage_.cut();
+                        });
+    }
+    heed(); // what was pressed too early is no answer
+    if (quit_)
+        throw stage::left{SIGINT};
+    if (std::exchange(repeat_, false))
+        g.flaw = "the experimenter repeats it";
+    else if (g.flaw.empty() && g.limited)
+        g.flaw = "a limit changed it ([limits] in the array file or configuration)";
+    return g;
+}
+
+void person_session::trial(const study::session_step& s)
+{
+    const study::run_definition& r = run_of(s);
+    const study::planned_trial& t = trial_of(s);
+    show(fmt::format("\n{} {} of {}{}: ", s.practice ? "practice" : "trial", s.which.trial,
+                     s.practice ? p_.runs[s.run].practice.size() : p_.runs[s.run].trials.size(),
+                     s.which.attempt > 1 ? " (again)" : ""));
+    const given_stimulus g = give(s, t);
+    study::trial_row row = planned_row(p_, t, s.which);
+    row.stream = stream_;
+    row.xruns = g.xruns;
+    row.frame_1 = g.first_frame;
+    if (t.method_2 && g.first_frame && g.frames > p_.stimuli.second(t))
+        row.frame_2 = *g.first_frame + p_.stimuli.second(t);
+    std::string flaw = g.flaw;
+    if (flaw.empty()) {
+        const asked_answer a = ask(s, g);
+        if (a.choice == 0) {
+            flaw = "the experimenter repeats it";
+        } else {
+            const bool named = r.outline.task == study::task_kind::identify;
+            set_response(row, p_, r, named ? static_cast<unsigned>(r.motions[a.choice - 1]) : a.choice);
+            row.response_time_s = a.time_s;
+        }
+    }
+    row.is_void = !flaw.empty();
+    if (row.is_void) {
+        show(s.practice ? "\n" : "once more, later\n");
+        say(stderr, "tactor: {}: trial {} is void: {}\n", r.outline.name, s.which.trial, flaw);
+    }
+    const std::int64_t started_ns = study::utc_now_ns() - (g.first_frame ? monotonic_ns() - g.started_ns : 0);
+    write(s, row, started_ns);
+    find_device();
+}
+
+void person_session::write(const study::session_step& s, const study::trial_row& row, std::int64_t started_ns)
+{
+    study::trial_row line = row;
+    (s.practice ? practice_ : table_)->add(line, started_ns, p_.render.rate);
+    flow_.took(row.is_void);
+}
+
+person_session::asked_answer person_session::ask(const study::session_step& s, const given_stimulus& g)
+{
+    const study::run_definition& r = run_of(s);
+    on_page(question_screen(p_, s));
+    const std::string choices = choices_text(p_.definition, r);
+    show(fmt::format("{} {}: ", r.question, choices));
+    for (;;) {
+        const session_key k = keys_.wait();
+        const double time_s = std::max(0.0, static_cast<double>(k.at_ns - g.ended_ns) * 1e-9);
+        if (k.asked == operator_key::repeat)
+            return {};
+        if (k.asked)
+            obey(*k.asked);
+        else if (k.answer >= 1 && k.answer <= choices_in(r)) {
+            show(fmt::format("{}\n", k.answer));
+            return {k.answer, time_s};
+        } else if (!keys_.come_early())
+            show(fmt::format("that is no answer: {} ", choices));
+    }
+}
+
+void person_session::void_last()
+{
+    if (!flow_.void_last()) {
+        say(stderr, "tactor: there is no trial before this one that can be made void\n");
+        return;
+    }
+    const study::run_definition& r = p_.definition.runs[p_.runs[flow_.void_run()].run];
+    study::trial_row row = store_.rows(r).back();
+    row.is_void = true;
+    store_.replace_last(r, row);
+    table_.emplace(store_, r, false);
+    practice_.emplace(store_, r, true);
+    say(stderr, "tactor: {}: trial {} is void: the experimenter says so\n", r.outline.name, row.trial);
+}
+
+} // namespace tactor::cli

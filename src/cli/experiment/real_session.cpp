@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "cli/experiment/real_session.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "cli/experiment/participant_screen.hpp"
+#include "cli/experiment/person_session.hpp"
+#include "cli/play/sound_server.hpp"
+#include "cli/play/terminal.hpp"
+#include "cli/say.hpp"
+#include "study/experiment/noise_options.hpp"
+
+namespace tactor::cli {
+namespace {
+
+constexpr double patience_s = 3600.0; // for a device that was lost; Ctrl-C ends it before
+constexpr unsigned most_keys = 9;
+
+play_options session_play_options()
+{
+    play_options o;
+    o.reopen_s = patience_s;
+    return o;
+}
+
+void check_keys(const prepared_experiment& p)
+{
+    for (const study::run_definition& r : p.definition.runs)
+        if (choices_in(r) > most_keys)
+            throw error(error_kind::bad_input, r.where.text(),
+                        fmt::format("run \"{}\" has {} answers, and the terminal's keys are 1 to {}",
+                                    r.outline.name, choices_in(r), most_keys),
+                        "motions = [...] with fewer of them");
+}
+
+void check_noise(const prepared_experiment& p, const experiment_options& o)
+{
+    const bool none = p.definition.masking.noise == study::noise_kind::none;
+    if (none && !o.masker.empty())
+        throw error(error_kind::bad_input, "--masker", "the definition has no masking noise",
+                    "[masking], or leave it out");
+    if (!none && o.masker.empty())
+        say(stderr,
+            "tactor: warning: the definition's masking noise has no device: whoever sits near hears the "
+            "array (--masker PCM)\n");
+}
+
+constexpr const char* masker_cure =
+    "--masker hw:CARD=NAME plays on the card itself; tactor devices lists them";
+
+// The server between the program and a card, where it may be there.
+std::string check_server(const std::string& pcm, const char* cure, const experiment_options& o)
+{
+    std::string server = settle_server(pcm);
+    if (!server.empty() && !o.allow_sound_server)
+        throw error(error_kind::bad_input, pcm, server_note(server),
+                    fmt::format("{}; --allow-sound-server takes it, and writes it down", cure));
+    if (!server.empty())
+        say(stderr, "tactor: warning: {} ({})\n", server_note(server), cure);
+    return server;
+}
+
+void warn_of_null(const std::string& pcm)
+{
+    const std::vector<std::string> types = route_of(pcm).types;
+    if (std::find(types.begin(), types.end(), "null") != types.end())
+        say(stderr, "tactor: warning: playing to \"{}\", which nobody feels (-D PCM plays on hardware)\n",
+            pcm);
+}
+
+// Whoever is asked about the target must have seen it.
+void warn_of_animation(const prepared_experiment& p)
+{
+    const auto& runs = p.definition.runs;
+    if (!can_draw() && std::any_of(runs.begin(), runs.end(), [](const auto& r) { return r.animation; }))
+        say(stderr,
+            "tactor: warning: the target cannot be drawn: standard output is no terminal, or NO_COLOR is "
+            "set\n");
+}
+
+} // namespace
+
+sound_servers check_real_session(const prepared_experiment& p, const experiment_options& o, const settings& s)
+{
+    if (!names_device(s, p.where))
+        throw error(error_kind::bad_input, "-D", "no device is configured", "-D PCM, or --simulate SPEC");
+    check_keys(p);
+    check_noise(p, o);
+    sound_servers between{check_server(p.pcm, server_cure, o), {}};
+    if (!o.masker.empty())
+        between.masker = check_server(o.masker, masker_cure, o);
+    warn_of_null(p.pcm);
+    if (!o.page.shown())
+        warn_of_animation(p);
+    return between;
+}
+
+std::unique_ptr<stage> open_stage(const prepared_experiment& p, const experiment_options& o,
+                                  const settings& s)
+{
+    const play_options how = session_play_options();
+    const alsa_options device = device_options(s, how, p.where, p.render.channels, p.render.rate);
+    auto there = std::make_unique<stage>(device, how, p.where);
+    if (!o.masker.empty())
+        there->mask(o.masker,
+                    study::noise_of(p.definition.masking,
+                                    fmt::format("{}/{}/{}/noise", p.seed, p.definition.name, p.participant)));
+    return there;
+}
+
+int hold_real_session(const prepared_experiment& p, const experiment_options& o, const settings& s,
+                      const sound_servers& between, net::owned_fd listening, study::session_store& store)
+{
+    const std::unique_ptr<stage> there = open_stage(p, o, s);
+    std::optional<participant_page> page; // its thread has the signals blocked that the stage takes
+    if (listening)
+        page.emplace(p.definition.page, p.where.tactors, std::move(listening));
+    return until_left(*there, [&] {
+        const answering with{page ? &*page : nullptr, o.keypads};
+        person_session(p, store, *there, with, p.pcm, between).hold();
+    });
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "cli/commands.hpp"
+#include "cli/input.hpp"
+#include "cli/plan/plan_output.hpp"
+#include "cli/say.hpp"
+
+namespace tactor::cli {
+
+command add_plan(CLI::App& app)
+{
+    CLI::App* c = app.add_subcommand("plan", "Print the schedule: who plays when, how strongly");
+    auto s = std::make_shared<settings>();
+    auto options = std::make_shared<option_list>(*c, *s);
+    auto format = std::make_shared<std::string>("text");
+    options->add_stroke_options();
+    options->add_sound_options();
+    add_format_option(*c, *format, {"text", "json", "csv"}, "how to print it (default text)");
+    c->footer("Example: tactor plan park2016-1 --format json");
+    return [s, options, format] {
+        const environment e = read_environment(*s, *options);
+        const piece p = plan_one_piece(*s, e);
+        const render_options sound = settle_render(*s, e);
+        const score samples = make_score(p, e, sound); // levels and carrier are checked when planned
+        if (*format == "json")
+            print_json(stdout, p, e, samples, sound);
+        else if (*format == "csv") {
+            for (const placed_plan& q : p.plans)
+                for (const std::string& w : q.schedule.warnings)
+                    say(stderr, "tactor: warning: {}\n", w); // there is no place for them in a table
+            print_csv(stdout, p, e);
+        } else
+            print_text(stdout, p, e);
+        return status_ok;
+    };
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+#include "cli/plan/plan_file.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <tactor/words.hpp>
+
+#include "cli/pipes.hpp"
+#include "cli/plan/plan_fields.hpp"
+
+namespace tactor::cli {
+namespace {
+
+constexpr const char* how_to_make = "tactor plan STROKE --format json makes one";
+
+/// Follows the parser: bursts and samples are taken as they end, and dropped from the document.
+class reader {
+public:
+    explicit reader(std::string file) : file_(std::move(file)) {}
+
+    bool event(int depth, nlohmann::json::parse_event_t what, nlohmann::json& parsed)
+    {
+        const auto d = static_cast<std::size_t>(depth);
+        if (what == nlohmann::json::parse_event_t::key) {
+            keys_.resize(d + 1);
+            keys_[d] = parsed.get<std::string>();
+        }
+        if (what != nlohmann::json::parse_event_t::object_end || keys_.size() < 2)
+            return true;
+        const std::size_t top = keys_[1] == "plans" ? 2 : 0; // depth of a plan
+        if (d == top)
+            return end_plan(parsed, top == 0);
+        return !(d > top && d - top <= 3 && take(d - top, top, parsed));
+    }
+
+    plan_file result() &&
+    {
+        if (read_.plans.empty())
+            throw error(error_kind::bad_input, file_, "there is no plan in it", how_to_make);
+        return std::move(read_);
+    }
+
+private:
+    std::string key(std::size_t depth) const { return depth < keys_.size() ? keys_[depth] : ""; }
+
+    // A burst or a sample, so deep in a plan.
+    bool take(std::size_t deep, std::size_t top, const nlohmann::json& j)
+    {
+        const bool is_burst = deep == 2 && key(top + 1) == "bursts";
+        const bool is_sample = deep == 3 && key(top + 1) == "continuous" && key(top + 2) == "points";
+        if (is_burst)
+            bursts_.push_back(burst_of({file_, fmt::format("bursts[{}]", bursts_.size()), j}));
+        if (is_sample)
+            samples_.add(sample_of({file_, fmt::format("points[{}]", samples_.ends.size()), j}));
+        return is_burst || is_sample;
+    }
+
+    // False: it is done with.
+    bool end_plan(const nlohmann::json& j, bool whole)
+    {
+        const fields all{file_, "", j};
+        const std::string schema = j.contains("schema") ? all.text("schema") : "none";
+        if (whole && schema == "tactor-plans/1")
+            return true;
+        if (schema != "tactor-plan/1")
+            throw error(error_kind::bad_input, file_,
+                        fmt::format("its schema is {}, not tactor-plan/1", schema), how_to_make);
+        array tactors = array_of(all);
+        if (read_.plans.empty()) {
+            read_.tactors = std::move(tactors);
+            read_.render = render_of(all);
+        } else {
+            check_same_array(file_, tactors, read_.tactors);
+        }
+        read_.plans.push_back(
+            plan_of(all, read_.tactors, std::exchange(bursts_, {}), std::exchange(samples_, {})));
+        std::optional<compensated_plan> moved = compensation_of(all);
+        read_.strokes.push_back(stroke_of(all, read_.plans.back().schedule, moved));
+        if (moved)
+            read_.moved.push_back(*std::move(moved));
+        if (!read_.moved.empty() && read_.moved.size() != read_.plans.size())
+            all.refuse("compensation", "is said of some plans and not of all");
+        return false;
+    }
+
+    std::string file_;
+    std::vector<std::string> keys_; ///< by depth
+    std::vector<burst> bursts_;
+    curve_samples samples_;
+    plan_file read_;
+};
+
+// "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error ..." without the library's
+// part.
+std::string said(const std::string& what)
+{
+    const std::size_t at = what.find("line ");
+    return at == std::string::npos ? what.substr(std::min(what.find("] ") + 2, what.size()))
+                                   : what.substr(at);
+}
+
+// Of a stream or of a text.
+template <class Input>
+plan_file read_from(Input&& in, const std::string& name)
+{
+    reader r(name);
+    try {
+        const nlohmann::json all =
+            nlohmann::json::parse(in, [&r](int depth, nlohmann::json::parse_event_t what,
+                                           nlohmann::json& parsed) { return r.event(depth, what, parsed); });
+    } catch (const nlohmann::json::exception& e) {
+        throw error(error_kind::bad_input, name, said(e.what()), how_to_make);
+    }
+    return std::move(r).result();
+}
+
+} // namespace
+
+bool is_plan_file(const std::string& argument)
+{
+    return std::filesystem::path(argument).extension() == ".json";
+}
+
+plan_file load_plans(const std::string& file)
+{
+    check_readable(file);
+    std::ifstream in(file, std::ios::binary);
+    in.peek(); // a folder opens, and cannot be read
+    if (in.bad() || !in.is_open())
+        throw error(error_kind::bad_input, file, std::generic_category().message(errno),
+                    "check the name and its rights");
+    return read_from(in, file);
+}
+
+plan_file read_plans(std::string_view text, const std::string& name)
+{
+    return read_from(text, name);
+}
+
+bool holds_plans(std::string_view text) noexcept
+{
+    const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+    return first != std::string_view::npos && text[first] == '{';
+}
+
+void check_same_array(const std::string& file, const array& made_for, const array& in_use)
+{
+    const auto refuse = [&](const std::string& why) {
+        throw error(error_kind::bad_input, file,
+                    fmt::format("it was planned for the array \"{}\", not for \"{}\": {}", made_for.name,
+                                in_use.name, why),
+                    "plan the stroke for this array, or say no --array: the plan has its own");
+    };
+    if (made_for.tactors.size() != in_use.tactors.size())
+        refuse(fmt::format("{} there, {} here", counted(made_for.tactors.size(), "tactor"),
+                           in_use.tactors.size()));
+    for (std::size_t i = 0; i < in_use.tactors.size(); ++i) {
+        const tactor_spec& a = made_for.tactors[i];
+        const tactor_spec& b = in_use.tactors[i];
+        if (distance_mm(a.position, b.position) > same_place_mm)
+            refuse(fmt::format("tactor {} is at ({:.6g}, {:.6g}) mm there, at ({:.6g}, {:.6g}) mm here", i,
+                               a.position.x_mm, a.position.y_mm, b.position.x_mm, b.position.y_mm));
+        if (a.channel != b.channel)
+            refuse(fmt::format("tactor {} is on channel {} there, on {} here", i, a.channel, b.channel));
+        if (a.polarity != b.polarity)
+            refuse(fmt::format("tactor {} has polarity {} there, {} here", i, a.polarity, b.polarity));
+    }
+}
+
+} // namespace tactor::cli

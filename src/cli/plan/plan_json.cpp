@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/plan/plan_output.hpp"
+#include "cli/plan/plan_rows.hpp"
+#include "cli/plan/plan_sound.hpp"
+#include "cli/plan/row_json.hpp"
+#include "cli/tap_json.hpp"
+
+namespace tactor::cli {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+// One stroke of a piece, and all that its samples depend on.
+struct record {
+    const stroke& drawn;
+    const plan& schedule;
+    double start_s;
+    bool follows; // the stroke before it, from the frame at which that ends
+    std::uint64_t start_frame;
+    const array& tactors;
+    const score& samples; // of the whole piece
+    const std::optional<fitting>& fit;
+    const compensated_plan* moved; // null without --compensate
+    const render_options& options;
+};
+
+// The peak of a tactor's channel at amplitude 1.
+double peak_dbfs(const tactor_spec& t, double carrier_hz, const render_options& o)
+{
+    return o.sl_db ? threshold_at(t, carrier_hz).value() + *o.sl_db : o.level_dbfs + t.gain_db;
+}
+
+// What turns the plan into samples.
+json render_json(const record& r)
+{
+    const render_options& o = r.options;
+    json j;
+    j["rate"] = o.rate;
+    j["channels"] = r.samples.channels();
+    j["frames"] = r.samples.frames();
+    j["phase"] = to_string(o.phase);
+    j["ramp_s"] = o.ramp_s ? json(*o.ramp_s) : json(nullptr);
+    if (o.sl_db)
+        j["sl_db"] = *o.sl_db;
+    else
+        j["level_dbfs"] = o.level_dbfs;
+    j["overlap"] = to_string(r.schedule.overlap);
+    j["peak_dbfs"] = json::array();
+    for (const tactor_spec& t : r.tactors.tactors)
+        j["peak_dbfs"].push_back(peak_dbfs(t, r.schedule.carrier_hz, o));
+    if (o.envelope != burst_envelope{})
+        j["envelope"] = envelope_json(o.envelope);
+    j["marker"] = nullptr;
+    if (o.marker_channel)
+        j["marker"] = {{"channel", *o.marker_channel}, {"duration_s", o.marker_s}};
+    return j;
+}
+
+// x' = a x + c y + e, y' = b x + d y + f, as in SVG.
+json fit_json(const fitting& f)
+{
+    const point origin = f({0.0, 0.0});
+    const point x = f({f.from.x_mm + 1.0, f.from.y_mm});
+    const point y = f({f.from.x_mm, f.from.y_mm + 1.0});
+    return {{"margin_mm", f.margin_mm},
+            {"matrix",
+             {x.x_mm - f.to.x_mm, x.y_mm - f.to.y_mm, y.x_mm - f.to.x_mm, y.y_mm - f.to.y_mm, origin.x_mm,
+              origin.y_mm}}};
+}
+
+// One object without its rows: they are streamed between head and tail.
+json head_json(const record& r)
+{
+    const stroke& s = r.drawn;
+    const plan& p = r.schedule;
+    json j;
+    j["schema"] = "tactor-plan/1";
+    j["algorithm"] = p.algorithm;
+    j["phantom"] = p.phantom;
+    j["start_s"] = r.start_s;
+    j["start_frame"] = r.start_frame;
+    j["follows"] = r.follows;
+    j["stroke"] = {{"name", s.name},
+                   {"duration_s", p.stroke_duration_s},
+                   {"length_mm", p.stroke_length_mm},
+                   {"carrier_hz", p.carrier_hz}};
+    put_sound(j["stroke"], p);
+    if (s.note != note_kind::none)
+        j["stroke"]["note"] = note_text(s.note);
+    if (r.fit)
+        j["stroke"]["fit"] = fit_json(*r.fit);
+    j["array"] = array_json(r.tactors);
+    j["soa_s"] = p.soa_s ? json(*p.soa_s) : json(nullptr);
+    j["total_s"] = p.total_s;
+    j["render"] = render_json(r);
+    return j;
+}
+
+json compensation_json(const compensated_plan& c)
+{
+    const tap_summary felt = summarise(c.taps);
+    json j = {{"observer", "low-speed"},
+              {"sigma_mm", c.observer.sigma_mm},
+              {"sigma_v_mm_s", c.observer.sigma_v_mm_s},
+              {"built_for", "taps"},
+              {"bursts_at_edge", c.at_edge},
+              {"residual_rms_mm", c.residual_rms_mm},
+              {"residual_largest_mm", c.residual_largest_mm},
+              {"predicted_rms_mm", felt.rms_error_mm ? json(*felt.rms_error_mm) : json(nullptr)},
+              {"predicted_largest_mm", felt.largest_error_mm ? json(*felt.largest_error_mm) : json(nullptr)}};
+    j["taps"] = json::array();
+    for (const tap& t : c.taps)
+        j["taps"].push_back(tap_json(t));
+    return j;
+}
+
+json tail_json(const record& r)
+{
+    const plan& p = r.schedule;
+    json j;
+    if (r.moved != nullptr)
+        j["compensation"] = compensation_json(*r.moved);
+    j["conflicts"] = json::array();
+    for (const conflict& c : p.conflicts)
+        j["conflicts"].push_back({{"tactor", c.tactor}, {"from_s", c.from_s}, {"to_s", c.to_s}});
+    j["dropped"] = json::array();
+    for (const meeting& m : p.dropped)
+        j["dropped"].push_back({{"tau_s", m.t_s}, {"x_mm", m.position.x_mm}, {"y_mm", m.position.y_mm}});
+    j["warnings"] = p.warnings;
+    return j;
+}
+
+// On one line; file names may be no UTF-8.
+std::string one_line(const json& j)
+{
+    return j.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+// The members of an object without its braces, so that objects can be joined.
+std::string members(const json& j)
+{
+    const std::string text = one_line(j);
+    return text.substr(1, text.size() - 2);
+}
+
+void print_plan(std::FILE* out, const record& r)
+{
+    const plan& p = r.schedule;
+    fmt::print(out, "{{{},\n", members(head_json(r)));
+    const bool sampled = p.curve.has_value();
+    if (sampled)
+        fmt::print(out, "\"bursts\":[],\n\"continuous\":{{{},\"points\":[",
+                   members({{"step_s", continuous_step_s},
+                            {"ramp_s", burst_ramp_s(0.0, p.stroke_duration_s, p, r.options)}}));
+    else
+        fmt::print(out, "\"bursts\":[");
+    row_json rows(r.tactors);
+    std::string row = "\n  ";
+    for_each_row(p, [&](const burst& b) {
+        if (sampled)
+            rows.append_sample(row, b);
+        else
+            rows.append(row, b, burst_ramp_s(b.onset_s, b.duration_s, p, r.options));
+        std::fwrite(row.data(), 1, row.size(), out);
+        row = ",\n  ";
+    });
+    fmt::print(out, "]{},\n{}}}", sampled ? "}" : "", members(tail_json(r)));
+}
+
+} // namespace
+
+json array_json(const array& a)
+{
+    json tactors = json::array();
+    for (unsigned i = 0; i < a.tactors.size(); ++i) {
+        const tactor_spec& t = a.tactors[i];
+        tactors.push_back({{"tactor", i},
+                           {"x_mm", t.position.x_mm},
+                           {"y_mm", t.position.y_mm},
+                           {"channel", t.channel},
+                           {"polarity", t.polarity < 0 ? -1 : 1},
+                           {"gain_db", t.gain_db},
+                           {"max_dbfs", t.max_dbfs},
+                           {"threshold_dbfs", threshold_json(t)}});
+        if (t.rise_s)
+            tactors.back()["rise_s"] = *t.rise_s;
+    }
+    return {{"name", a.name}, {"tactors", tactors}};
+}
+
+void print_json(std::FILE* out, const piece& p, const environment& e, const score& samples,
+                const render_options& options)
+{
+    const auto starts = starts_of(p.plans);
+    const auto print = [&](std::size_t i) {
+        print_plan(out,
+                   {p.strokes[i], p.plans[i].schedule, starts[i], !p.plans[i].start_s, samples.starts()[i],
+                    e.tactors, samples, p.fit, p.moved.empty() ? nullptr : &p.moved[i], options});
+    };
+    if (p.plans.size() == 1) {
+        print(0);
+        fmt::print(out, "\n");
+        return;
+    }
+    fmt::print(out, "{{\"schema\":\"tactor-plans/1\",\"plans\":[\n");
+    for (std::size_t i = 0; i < p.plans.size(); ++i) {
+        print(i);
+        fmt::print(out, "{}\n", i + 1 < p.plans.size() ? "," : "");
+    }
+    fmt::print(out, "]}}\n");
+}
+
+} // namespace tactor::cli

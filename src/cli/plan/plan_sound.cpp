@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include "cli/plan/plan_sound.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace tactor::cli {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+// Whoever plays the plan may be elsewhere.
+std::string name_of(const waveform& w)
+{
+    const std::string text = waveform_text(w);
+    return w.kind == waveform_kind::recording ? std::filesystem::absolute(text).string() : text;
+}
+
+} // namespace
+
+void put_sound(nlohmann::ordered_json& stroke, const plan& p)
+{
+    const waveform& w = p.wave;
+    if (w.kind != waveform_kind::sine)
+        stroke["waveform"] = name_of(w);
+    if (w.kind == waveform_kind::noise)
+        stroke["noise_seed"] = w.seed;
+    if (w.kind == waveform_kind::recording) {
+        stroke["texture"] = to_string(w.texture);
+        if (w.texture == texture_kind::length)
+            stroke["texture_mm"] = w.texture_mm;
+    }
+    if (p.am.hz > 0.0) {
+        stroke["am_hz"] = p.am.hz;
+        stroke["am_depth"] = p.am.depth;
+    }
+    if (p.course.empty())
+        return;
+    stroke["course"] = json::array();
+    for (const carrier_point& c : p.course)
+        stroke["course"].push_back({{"t_s", c.t_s}, {"hz", c.hz}});
+}
+
+nlohmann::ordered_json envelope_json(const burst_envelope& e)
+{
+    json j = {{"kind", to_string(e.kind)}, {"tukey_part", e.tukey_part}};
+    j["attack_s"] = e.attack_s ? json(*e.attack_s) : json(nullptr);
+    j["release_s"] = e.release_s ? json(*e.release_s) : json(nullptr);
+    return j;
+}
+
+nlohmann::ordered_json threshold_json(const tactor_spec& t)
+{
+    if (t.thresholds.empty())
+        return t.threshold_dbfs ? json(*t.threshold_dbfs) : json(nullptr);
+    json all = json::array();
+    for (const threshold_point& p : t.thresholds)
+        all.push_back({p.hz, p.dbfs});
+    return all;
+}
+
+void take_threshold(const fields& t, tactor_spec& into)
+{
+    if (!t.is_list("threshold_dbfs")) {
+        into.threshold_dbfs = t.number_or_null("threshold_dbfs");
+        return;
+    }
+    for (const auto& [hz, dbfs] : t.pairs("threshold_dbfs"))
+        into.thresholds.push_back({hz, dbfs});
+}
+
+void take_sound(const fields& stroke, plan& p)
+{
+    try {
+        if (stroke.has("waveform"))
+            p.wave = parse_waveform(stroke.text("waveform"));
+    } catch (const error& e) {
+        stroke.refuse("waveform", fmt::format("{}: {}", e.subject(), e.why()));
+    }
+    if (stroke.has("noise_seed")) {
+        const double seed = stroke.number("noise_seed");
+        if (!(seed >= 0.0 && seed <= 0x1p53 && seed == std::floor(seed)))
+            stroke.refuse("noise_seed", "is no whole number from 0 to 2^53");
+        p.wave.seed = static_cast<std::uint64_t>(seed);
+    }
+    if (stroke.has("texture"))
+        p.wave.texture =
+            stroke.one_of("texture", {texture_kind::cycle, texture_kind::time, texture_kind::length});
+    if (stroke.has("texture_mm"))
+        p.wave.texture_mm = stroke.number("texture_mm");
+    if (stroke.has("am_hz"))
+        p.am = {stroke.number("am_hz"), stroke.number("am_depth")};
+    if (!stroke.has("course"))
+        return;
+    for (const fields& c : stroke.list("course")) {
+        const carrier_point next{c.number("t_s"), c.number("hz")};
+        const bool ascends = p.course.empty() ? next.t_s >= 0.0 : next.t_s >= p.course.back().t_s;
+        if (!ascends || !(next.hz >= 0.0 && next.hz <= 384000.0))
+            stroke.refuse("course", "has a point out of order, or with no frequency");
+        p.course.push_back(next);
+    }
+}
+
+burst_envelope envelope_of(const fields& render)
+{
+    burst_envelope e;
+    if (!render.has("envelope"))
+        return e;
+    const fields f = render.object("envelope");
+    e.kind = f.one_of("kind", {envelope_kind::raised_cosine, envelope_kind::linear,
+                               envelope_kind::exponential, envelope_kind::tukey});
+    e.attack_s = f.number_or_null("attack_s");
+    e.release_s = f.number_or_null("release_s");
+    e.tukey_part = f.number("tukey_part");
+    return e;
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What vibrates, and how bursts rise and fall, in the JSON of a plan. What is as it is by default is not
+/// there.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <tactor/tactor.hpp>
+
+#include "cli/plan/plan_fields.hpp"
+
+namespace tactor::cli {
+
+/// Into the member "stroke".
+void put_sound(nlohmann::ordered_json& stroke, const plan& p);
+/// The member "render.envelope".
+nlohmann::ordered_json envelope_json(const burst_envelope& e);
+
+/// "threshold_dbfs" of a tactor: a level, a list of [Hz, dBFS], or null.
+nlohmann::ordered_json threshold_json(const tactor_spec& t);
+void take_threshold(const fields& t, tactor_spec& into);
+
+/// Back from "stroke". Reads the WAV file that it names. \throws error (bad_input).
+void take_sound(const fields& stroke, plan& p);
+/// Back from "render".
+burst_envelope envelope_of(const fields& render);
+
+} // namespace tactor::cli

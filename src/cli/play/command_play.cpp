@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "cli/commands.hpp"
+#include "cli/input.hpp"
+#include "cli/play/play_live.hpp"
+#include "cli/play/play_options.hpp"
+#include "cli/play/play_report.hpp"
+#include "cli/play/play_session.hpp"
+#include "cli/play/sound_server.hpp"
+#include "cli/say.hpp"
+#include "cli/serve/play_remote.hpp"
+
+namespace tactor::cli {
+namespace {
+
+std::vector<score> make_scores(std::vector<piece>& pieces, const settings& s, const environment& e,
+                               const layout& faces, const render_options& render)
+{
+    std::vector<score> scores;
+    for (piece& p : pieces) {
+        scores.push_back(plan_and_score(p, s, e, faces, render));
+        for (const placed_plan& q : scores.back().plans())
+            for (const std::string& w : q.schedule.warnings)
+                say(stderr, "tactor: warning: {}\n", w);
+    }
+    return scores;
+}
+
+constexpr const char* wait_hint = "--reopen-s S waits for the device to come back";
+
+// What ends a run before its strokes are through; a kind of its own, for the report comes before it.
+struct broken_off {
+    std::string stroke;
+    std::string why;
+    std::string hint;
+};
+
+// Plays one piece, once more where its device went before it began. False when there is no device.
+bool play_piece(play_session& session, const piece& p, const score& s, stroke_outcome& out)
+{
+    for (bool again = false;; again = true) {
+        if (session.lost() && !session.reopen())
+            return false;
+        out.report = session.play(p, s);
+        const bool untouched =
+            out.report->state == state_kind::interrupted && out.report->frames == 0 && session.lost();
+        if (!untouched || again || !session.waits())
+            return true;
+    }
+}
+
+// What is said of a stroke without its name.
+std::string fate(const play_session& session, const stroke_outcome& out)
+{
+    return describe(out, session.setup().rate).substr(out.name.size() + 2);
+}
+
+std::optional<broken_off> judge(const play_session& session, const play_options& o, const stroke_outcome& out,
+                                bool gone, const char* hint)
+{
+    if (out.report->state != state_kind::interrupted)
+        return {};
+    if (o.void_on_xrun)
+        return broken_off{out.name, fate(session, out), "the run is void: --void-on-xrun"};
+    if (gone)
+        return broken_off{out.name, fate(session, out), hint};
+    say(stderr, "tactor: warning: {}\n", describe(out, session.setup().rate));
+    return {};
+}
+
+std::optional<broken_off> play_all(play_session& session, const play_options& o,
+                                   const std::vector<piece>& pieces, const std::vector<score>& scores,
+                                   std::vector<stroke_outcome>& outcomes)
+{
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        const bool there = play_piece(session, pieces[i], scores[i], outcomes[i]);
+        if (!there && session.signal() == 0)
+            return broken_off{pieces[i].name, "not played: the device is gone",
+                              session.waits() ? "it did not come back in time" : wait_hint};
+        if (!o.json() && outcomes[i].report) {
+            say(stdout, "{}\n", describe(outcomes[i], session.setup().rate));
+            std::fflush(stdout);
+        }
+        if (session.signal() != 0)
+            return {};
+        if (i + 1 == pieces.size())
+            break;
+        if (auto broken = judge(session, o, outcomes[i], session.lost() && !session.waits(), wait_hint))
+            return broken;
+    }
+    return {};
+}
+
+int play(settings& s, option_list& options, const play_options& o)
+{
+    if (o.live)
+        check_live(s, options, o);
+    else if (o.smooth_s)
+        throw error(error_kind::bad_input, "--smooth", "only points that come one by one are smoothed",
+                    "use it with --live, or leave it out");
+    if (o.socket)
+        return play_remote(s, options, o);
+    if (o.live)
+        return play_live(s, options, o);
+    const environment e = read_environment(s, options);
+    const layout faces(e.tactors);
+    auto pieces = open_pieces(s, e, faces);
+    const auto scores = make_scores(pieces, s, e, faces, settle_render(s, e));
+    if (!names_device(s, e))
+        say(stderr, "tactor: no device is configured: playing to \"null\", which nobody feels (-D PCM plays "
+                    "on hardware)\n");
+    const alsa_options device = device_options(s, o, e, scores.front().channels(), scores.front().rate());
+    const std::string server = settle_server(device.pcm);
+    play_session session(device, o, e);
+    if (!o.json())
+        say(stdout, "{}\n", describe(session.setup()));
+    std::fflush(stdout);
+    const std::string warning = latency_warning(o, session.setup());
+    if (!warning.empty())
+        say(stderr, "tactor: warning: {}\n", warning);
+    if (!server.empty())
+        say(stderr, "tactor: warning: {} ({})\n", server_note(server), server_cure);
+
+    run_report r;
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+        r.strokes.push_back({pieces[i].name, scores[i].frames()});
+    auto broken = play_all(session, o, pieces, scores, r.strokes);
+    session.finish(r);
+    // A stream that breaks interrupts its stroke first and ends when the amplifier is off: that the last one
+    // was such a case is known only now.
+    if (!broken && session.signal() == 0)
+        broken = judge(session, o, r.strokes.back(), session.broke(), "");
+    if (const auto status = tell_end(session, o, e, r))
+        return *status;
+    if (broken)
+        throw error(error_kind::runtime, broken->stroke, broken->why, broken->hint);
+    return status_ok;
+}
+
+} // namespace
+
+command add_play(CLI::App& app)
+{
+    CLI::App* c = app.add_subcommand("play", "Play on the array");
+    auto s = std::make_shared<settings>();
+    auto o = std::make_shared<play_options>();
+    auto options = std::make_shared<option_list>(*c, *s);
+    options->add_stroke_options();
+    options->add_sound_options();
+    options->add_device_options();
+    add_play_options(*c, *o);
+    c->footer("Example: tactor play park2016-3 -D hw:CARD=Tactor");
+    return [s, o, options] { return play(*s, *options, *o); };
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "cli/play/live_lines.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <tactor/error.hpp>
+
+namespace tactor::cli {
+namespace {
+
+constexpr std::size_t longest_line = 4096;
+constexpr double farthest_mm = 1e6;
+
+std::vector<std::string_view> words_of(std::string_view line)
+{
+    std::vector<std::string_view> words;
+    constexpr const char* blanks = " \t\r,";
+    for (std::size_t at = line.find_first_not_of(blanks); at != std::string_view::npos;) {
+        const std::size_t end = std::min(line.find_first_of(blanks, at), line.size());
+        words.push_back(line.substr(at, end - at));
+        at = line.find_first_not_of(blanks, end);
+    }
+    return words;
+}
+
+} // namespace
+
+// False when there is nothing to take now.
+bool live_lines::fill()
+{
+    pollfd p{fd_, POLLIN, 0};
+    if (end_ || ::poll(&p, 1, 0) <= 0)
+        return false;
+    char bytes[4096];
+    const ssize_t n = ::read(fd_, bytes, sizeof bytes);
+    if (n < 0 && (errno == EINTR || errno == EAGAIN))
+        return false;
+    if (n < 0)
+        throw error(error_kind::runtime, "standard input", std::strerror(errno));
+    if (n == 0) {
+        end_ = true;
+        if (!buffer_.empty() && buffer_.back() != '\n')
+            buffer_ += '\n'; // the last line counts without its end, too
+        return !buffer_.empty();
+    }
+    buffer_.append(bytes, static_cast<std::size_t>(n));
+    return true;
+}
+
+std::optional<timed_point> live_lines::next()
+{
+    do {
+        for (std::size_t end = buffer_.find('\n'); end != std::string::npos; end = buffer_.find('\n')) {
+            const std::string line = buffer_.substr(0, end);
+            buffer_.erase(0, end + 1);
+            ++line_;
+            if (const auto point = parse(line))
+                return point;
+        }
+        if (buffer_.size() > longest_line)
+            throw error(error_kind::bad_input, fmt::format("standard input:{}", line_ + 1),
+                        fmt::format("a line of more than {} bytes", longest_line), "x y [intensity], in mm");
+    } while (fill());
+    return std::nullopt;
+}
+
+std::optional<timed_point> live_lines::parse(const std::string& line) const
+{
+    const auto words = words_of(line);
+    if (words.empty() || words.front().front() == '#')
+        return std::nullopt;
+    const auto refuse = [&](const std::string& why) {
+        throw error(error_kind::bad_input, fmt::format("standard input:{}", line_), why,
+                    "x y [intensity]: two places in mm and a factor from 0 up, such as 20 12.5 0.8");
+    };
+    if (words.size() < 2 || words.size() > 3)
+        refuse(fmt::format("{} words", words.size()));
+    double v[3] = {0.0, 0.0, 1.0};
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const char* last = words[i].data() + words[i].size();
+        const auto r = std::from_chars(words[i].data(), last, v[i]);
+        if (r.ec != std::errc() || r.ptr != last || !std::isfinite(v[i]))
+            refuse(fmt::format("\"{}\" is not a number", words[i]));
+        if (std::abs(v[i]) > farthest_mm || (i == 2 && v[i] < 0.0))
+            refuse(fmt::format("{} is out of range", words[i]));
+    }
+    return timed_point{.position = {v[0], v[1]}, .intensity = v[2]};
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Lines "x y [intensity]" that move a live stroke.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include <tactor/stroke.hpp>
+
+namespace tactor::cli {
+
+/// The pipe's end is the stroke's end: no silence before it is.
+inline constexpr double live_timeout_s = 86400.0;
+
+class live_lines {
+public:
+    /// Reads the descriptor without waiting, whatever its mode.
+    explicit live_lines(int descriptor) : fd_(descriptor) {}
+
+    /// The next place that has come, mm, and its intensity; nothing where there is none yet, and at the end.
+    /// Empty lines, and those that begin with #, are left out. \throws error (bad_input) with the line.
+    std::optional<timed_point> next();
+    /// No more will come, and all that came was given.
+    bool over() const noexcept { return end_ && buffer_.empty(); }
+    /// Readable when something has come.
+    int descriptor() const noexcept { return fd_; }
+
+private:
+    bool fill();
+    std::optional<timed_point> parse(const std::string& line) const;
+
+    int fd_;
+    std::string buffer_;
+    std::size_t line_ = 0;
+    bool end_ = false;
+};
+
+} // namespace tactor::cli

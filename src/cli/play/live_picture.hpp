@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The array on a terminal while it plays.
+#pragma once
+
+#include <optional>
+
+#include <tactor/tactor.hpp>
+
+#include "cli/play/instant.hpp"
+#include "cli/play/terminal.hpp"
+
+namespace tactor::cli {
+
+/// Draws over itself, and takes itself away when destroyed. It changes no mode of the terminal (the cursor
+/// stays visible), so that there is nothing to restore whatever ends the program. Where standard output is no
+/// terminal, or NO_COLOR is set, it draws nothing.
+class live_picture {
+public:
+    explicit live_picture(const array& a, bool wanted = true);
+    ~live_picture();
+    live_picture(const live_picture&) = delete;
+    live_picture& operator=(const live_picture&) = delete;
+
+    bool active() const noexcept { return terminal_.has_value(); }
+    /// Skipped while the terminal has not taken what was drawn before.
+    void draw(const instant& now, double t_s, double total_s);
+
+private:
+    const array& array_;
+    std::optional<terminal> terminal_ = {};
+    bool unicode_;
+    std::size_t drawn_lines_ = 0;
+};
+
+} // namespace tactor::cli

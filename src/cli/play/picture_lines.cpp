@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+#include "cli/play/picture_lines.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace tactor::cli {
+namespace {
+
+constexpr unsigned margin = 3;              // left of the array
+constexpr double natural_mm = 1.25;         // a column, where there is room: 4 columns to 5 mm
+constexpr unsigned least_array_columns = 5; // less shows nothing
+constexpr const char* level_colour = "\033[33m";
+constexpr const char* target_colour = "\033[1;36m";
+constexpr const char* no_colour = "\033[0m";
+
+struct bounds {
+    point low;
+    point high;
+};
+
+bounds bounds_of(const array& a)
+{
+    bounds b{a.tactors.front().position, a.tactors.front().position};
+    for (const tactor_spec& t : a.tactors) {
+        b.low = {std::min(b.low.x_mm, t.position.x_mm), std::min(b.low.y_mm, t.position.y_mm)};
+        b.high = {std::max(b.high.x_mm, t.position.x_mm), std::max(b.high.y_mm, t.position.y_mm)};
+    }
+    return b;
+}
+
+// How strongly a tactor vibrates. Digits would say more, shades are seen while they change.
+const char* shade(double level, bool unicode)
+{
+    static constexpr std::array shades{"·", "░", "▒", "▓", "█"};
+    static constexpr std::array letters{".", ":", "+", "x", "#"};
+    const auto i = static_cast<std::size_t>(std::clamp(std::ceil(level * 4.0), 0.0, 4.0));
+    return unicode ? shades[i] : letters[i];
+}
+
+// Characters of about twice the height of their width.
+class grid {
+public:
+    grid(const bounds& b, unsigned columns, unsigned rows) : low_(b.low)
+    {
+        const double wide = b.high.x_mm - b.low.x_mm;
+        const double tall = b.high.y_mm - b.low.y_mm;
+        // A tactor takes three cells in a row, so that its level can be seen.
+        mm_ = std::max({natural_mm, wide / (columns - 3), rows > 1 ? tall / (2.0 * (rows - 1)) : 0.0});
+        columns_ = static_cast<unsigned>(std::lround(wide / mm_)) + 3;
+        rows_ = static_cast<unsigned>(std::lround(tall / (2.0 * mm_))) + 1;
+        levels_.assign(std::size_t{columns_} * rows_, -1.0);
+    }
+
+    void put_tactor(point p, double level)
+    {
+        const std::size_t at = cell_of(p);
+        // Tactors that share a cell in a small picture: the strongest is seen.
+        for (std::size_t i = at; i < at + 3; ++i)
+            levels_[i] = std::max(levels_[i], level);
+    }
+
+    void put_target(point p) { target_ = cell_of(p) + 1; }
+
+    std::vector<std::string> lines(bool unicode) const
+    {
+        std::vector<std::string> all;
+        for (unsigned r = 0; r < rows_; ++r) {
+            std::string line(margin, ' ');
+            for (std::size_t i = std::size_t{r} * columns_; i < std::size_t{r + 1} * columns_; ++i)
+                line += text_of(i, unicode);
+            line.erase(line.find_last_not_of(' ') + 1);
+            all.push_back(line);
+        }
+        return all;
+    }
+
+private:
+    std::size_t cell_of(point p) const
+    {
+        const auto whole = [](double v, unsigned most) {
+            return static_cast<unsigned>(std::clamp(std::round(v), 0.0, static_cast<double>(most)));
+        };
+        return std::size_t{whole((p.y_mm - low_.y_mm) / (2.0 * mm_), rows_ - 1)} * columns_ +
+               whole((p.x_mm - low_.x_mm) / mm_, columns_ - 3);
+    }
+
+    std::string text_of(std::size_t i, bool unicode) const
+    {
+        if (target_ == i)
+            return fmt::format("{}o{}", target_colour, no_colour);
+        if (levels_[i] > 0.0)
+            return fmt::format("{}{}{}", level_colour, shade(levels_[i], unicode), no_colour);
+        return levels_[i] == 0.0 ? shade(0.0, unicode) : " ";
+    }
+
+    point low_;
+    double mm_;
+    unsigned columns_;
+    unsigned rows_;
+    std::vector<double> levels_; // by cell; below 0: no tactor
+    std::optional<std::size_t> target_ = {};
+};
+
+// The fullest of these that fits.
+std::string status_line(const instant& now, double t_s, double total_s, unsigned columns)
+{
+    const double t = std::max(t_s, 0.0);
+    const std::string time = fmt::format("{:.2f} s", t);
+    const std::string times = fmt::format("{:.2f} / {:.2f} s", t, total_s);
+    const std::string place =
+        now.target ? fmt::format("   at {:.1f}, {:.1f} mm", now.target->x_mm, now.target->y_mm) : "";
+    // As if there always were a place of this length: a bar that changes its length says nothing.
+    const std::size_t beside = times.size() + std::string_view("   at -000.0, -000.0 mm").size() + margin + 3;
+    if (columns >= beside + 10) {
+        const std::size_t length = std::min<std::size_t>(30, columns - beside);
+        const double share = std::clamp(t / std::max(total_s, 1e-9), 0.0, 1.0);
+        const auto done = static_cast<std::size_t>(share * static_cast<double>(length));
+        const std::string bar = std::string(done, '=') + std::string(length - done, ' ');
+        return fmt::format("{}[{}] {}{}", std::string(margin, ' '), bar, times, place);
+    }
+    for (const std::string& line : {times + place, times, time})
+        if (line.size() <= columns)
+            return line;
+    return {};
+}
+
+} // namespace
+
+std::vector<std::string> picture_lines(const array& a, const instant& now, double t_s, double total_s,
+                                       terminal_size size, bool unicode)
+{
+    if (size.columns < 2 || size.rows < 2)
+        return {};
+    const unsigned columns = size.columns - 1;
+    const unsigned rows = size.rows - 1;
+    const unsigned gap = rows >= 6 ? 1 : 0; // between array and status
+    const bounds b = bounds_of(a);
+    // Rows of an array on one another would show touches where none are.
+    const unsigned least_rows = b.high.y_mm - b.low.y_mm > natural_mm ? 2 : 1;
+
+    std::vector<std::string> lines;
+    if (columns >= margin + least_array_columns && rows >= least_rows + gap + 1) {
+        grid g(b, columns - margin, rows - gap - 1);
+        for (std::size_t i = 0; i < a.tactors.size(); ++i)
+            g.put_tactor(a.tactors[i].position, now.levels[i]);
+        if (now.target)
+            g.put_target(*now.target);
+        lines = g.lines(unicode);
+        lines.resize(lines.size() + gap);
+    }
+    lines.push_back(status_line(now, t_s, total_s, columns));
+    return lines;
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include "cli/play/play_live.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "cli/commands.hpp"
+#include "cli/input.hpp"
+#include "cli/play/live_lines.hpp"
+#include "cli/play/play_report.hpp"
+#include "cli/play/play_session.hpp"
+#include "cli/play/sound_server.hpp"
+#include "cli/say.hpp"
+
+namespace tactor::cli {
+
+void check_live(const settings& s, const option_list& options, const play_options& o)
+{
+    if (s.strokes.size() != 1 || s.strokes.front() != "-" || s.path_data)
+        throw error(error_kind::bad_input, "--live", "it takes its points from standard input",
+                    "give - as the only STROKE: tactor play --live -");
+    for (const char* name :
+         {"duration", "speed", "timing", "fit", "fit-margin", "snap", "drop-points", "overlap"})
+        if (options.given(name))
+            throw error(error_kind::bad_input, fmt::format("--{}", name), "a live stroke does not know it",
+                        "its points say when it is where");
+    if (o.arm)
+        throw error(error_kind::bad_input, "--arm", "a live stroke starts with its first point",
+                    "leave it out");
+}
+
+int play_live(settings& s, option_list& options, const play_options& o)
+{
+    s.strokes.clear(); // standard input has its points, which come later
+    const environment e = read_environment(s, options);
+    const live_options usual;
+    live_options l;
+    l.plan = s.plan;
+    if (!options.given("algorithm"))
+        l.plan.algorithm = usual.plan.algorithm;
+    if (!options.given("outside"))
+        l.plan.outside = usual.plan.outside;
+    l.render = settle_render(s, e);
+    l.timeout_s = live_timeout_s;
+    l.smooth_s = o.smooth_s.value_or(l.smooth_s);
+    if (!names_device(s, e))
+        say(stderr, "tactor: no device is configured: playing to \"null\", which nobody feels (-D PCM plays "
+                    "on hardware)\n");
+    const alsa_options device = device_options(s, o, e, l.render.channels, l.render.rate);
+    const std::string between = settle_server(device.pcm);
+    if (!between.empty())
+        say(stderr, "tactor: warning: {} ({})\n", server_note(between), server_cure);
+    play_session session(device, o, e);
+    if (!o.json())
+        say(stdout, "{}\n", describe(session.setup()));
+    std::fflush(stdout);
+    live_lines lines(STDIN_FILENO);
+    run_report r;
+    r.strokes.push_back({"live"});
+    stroke_outcome& out = r.strokes.front();
+    out.report = session.live(l, lines);
+    out.length_frames = out.report->frames;
+    if (!o.json())
+        say(stdout, "{}\n", describe(out, session.setup().rate));
+    session.finish(r);
+    if (const auto status = tell_end(session, o, e, r))
+        return *status;
+    if (out.report->state == state_kind::interrupted)
+        throw error(error_kind::runtime, "live",
+                    describe(out, session.setup().rate).substr(out.name.size() + 2));
+    return status_ok;
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// --verbose and --log FILE: what the library says of its own doing, a line each.
+#pragma once
+
+#include <string>
+
+#include <tactor/log.hpp>
+
+namespace tactor::cli {
+
+/// "2026-03-01T09:30:00.125Z warning xrun 1: ...": UTC, kind, text. Outlives the player that writes to it.
+class play_log {
+public:
+    /// To standard error where `verbose`, in the journal with its level and time instead; appended to a file
+    /// unless its name is empty. \throws error: bad_input for a name that is a link, no regular file, or a
+    /// file that holds something else; runtime for what the system refuses.
+    play_log(bool verbose, std::string file);
+    ~play_log();
+    play_log(const play_log&) = delete;
+    play_log& operator=(const play_log&) = delete;
+
+    /// Empty where nobody wants to know.
+    log_function function();
+
+private:
+    void open();
+    void write(log_kind k, std::string_view text);
+
+    bool verbose_;
+    std::string file_;
+    int fd_ = -1;
+};
+
+} // namespace tactor::cli

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+#include "cli/play/play_options.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace tactor::cli {
+namespace {
+
+unsigned parse_whole(const std::string& option, const std::string& text, double lo, double hi,
+                     const std::string& unit)
+{
+    const double v = parse_number(option, text, lo, hi, unit);
+    if (v != std::floor(v))
+        throw error(error_kind::bad_input, option, fmt::format("{} is not a whole number", text));
+    return static_cast<unsigned>(v);
+}
+
+void add_latency(CLI::App& c, play_options& o)
+{
+    auto* latency = c.add_option_function<std::string>(
+        "--latency-ms",
+        [&o](const std::string& t) { o.latency_ms = parse_number("--latency-ms", t, 0.1, 10000, "ms"); },
+        "length of the device's buffer: periods x period");
+    latency->type_name("MS");
+    auto* period = c.add_option_function<std::string>(
+        "--period-frames",
+        [&o](const std::string& t) {
+            o.period_frames = parse_whole("--period-frames", t, 1, 1 << 20, "frames");
+        },
+        "instead: frames in a period (default: the configuration's, else 96)");
+    period->type_name("N");
+    latency->excludes(period);
+    c.add_option_function<std::string>(
+         "--periods",
+         [&o](const std::string& t) { o.periods = parse_whole("--periods", t, 2, 1024, "periods"); },
+         "periods in the buffer (default: the configuration's, else 3)")
+        ->type_name("N");
+}
+
+void add_lines(CLI::App& c, play_options& o)
+{
+    c.add_flag("--arm", o.arm, "each stroke waits for an edge on the [sync] in line");
+    c.add_option_function<std::string>(
+         "--sync-delay-ms",
+         [&o](const std::string& t) { o.sync_delay_ms = parse_number("--sync-delay-ms", t, 0, 10000, "ms"); },
+         "from the edge to the stroke's first sample at the DAC (default 50)")
+        ->type_name("MS");
+}
+
+void add_limits(CLI::App& c, play_options& o)
+{
+    const auto add = [&c](const std::string& name, std::optional<double>& into, double lo, double hi,
+                          const std::string& unit, const std::string& help) {
+        c.add_option_function<std::string>(
+             name,
+             [&into, name, lo, hi, unit](const std::string& t) {
+                 into = parse_number(name, t, lo, hi, unit);
+             },
+             help)
+            ->type_name(unit == "s" ? "S" : "DB");
+    };
+    add("--power-dbfs", o.power_dbfs, -120, 60, "dB",
+        "greatest power of all tactors together, above one channel's full scale (default 4.77)");
+    add("--max-drive-s", o.max_drive_s, 0.1, 3600, "s",
+        "longest time that one tactor is driven within the window (default 5)");
+    add("--drive-window-s", o.drive_window_s, 0.1, 3600, "s", "the window of --max-drive-s (default 10)");
+}
+
+// What others wrote into a file must not do more than say which device.
+std::string pcm_name(const settings& s, const output_settings& out)
+{
+    if (s.pcm || !out.pcm)
+        return s.pcm.value_or("null");
+    if (out.pcm_included) {
+        try {
+            require_device_name(*out.pcm);
+        } catch (const error& x) {
+            throw error(
+                x.kind(), out.pcm_at.text(), fmt::format("{}: {}", x.subject(), x.why()),
+                "an array file can only name a device, such as hw:CARD=Tactor; more is taken from -D PCM "
+                "and from your own configuration: tactor.toml(5), SECURITY CONSIDERATIONS");
+        }
+    }
+    return *out.pcm;
+}
+
+} // namespace
+
+void add_stream_options(CLI::App& c, play_options& o)
+{
+    add_latency(c, o);
+    c.add_flag("--require-realtime", o.require_realtime, "fail without real-time priority and locked memory");
+    c.add_flag("--no-gpio", o.no_gpio, "leave the lines of [amplifier] and [sync] alone");
+    add_limits(c, o);
+    c.add_flag("--verbose", o.verbose,
+               "tell on standard error what is agreed on, xruns, mutes, limits that act");
+    c.add_option_function<std::string>(
+         "--log",
+         [&o](const std::string& t) {
+             if (t.empty())
+                 throw error(error_kind::bad_input, "--log", "the name is empty", "name a file");
+             o.log = t;
+         },
+         "append the same to a file")
+        ->type_name("FILE");
+}
+
+void add_play_options(CLI::App& c, play_options& o)
+{
+    add_stream_options(c, o);
+    c.add_flag("--void-on-xrun", o.void_on_xrun,
+               "an xrun or a lost device in a stroke ends the run with status 1");
+    c.add_option_function<std::string>(
+         "--reopen-s",
+         [&o](const std::string& t) {
+             o.reopen_s = parse_number("--reopen-s", t, 0, 1e9, "s", "0 s or more");
+         },
+         "wait so long for a lost device to come back, then go on with the next stroke (default 0)")
+        ->type_name("S");
+    add_lines(c, o);
+    c.add_flag("--live", o.live, "lines \"x y [intensity]\" on standard input move a stroke; STROKE is -");
+    c.add_option_function<std::string>(
+         "--smooth",
+         [&o](const std::string& t) { o.smooth_s = parse_number("--smooth", t, 0, 1, "s", "0 to 1 s"); },
+         "with --live: move evenly, and be at each point so long after it came (default 0)")
+        ->type_name("S");
+    c.add_option("--socket", o.socket, "play through the server that listens there")->type_name("PATH");
+    add_format_option(c, o.format, {"text", "json"}, "what is told of the run (default text)");
+}
+
+bool names_device(const settings& s, const environment& e)
+{
+    return s.pcm || e.config.output.pcm;
+}
+
+alsa_options device_options(const settings& s, const play_options& p, const environment& e, unsigned channels,
+                            unsigned rate)
+{
+    alsa_options o;
+    const output_settings& out = e.config.output;
+    o.pcm = pcm_name(s, out);
+    o.channels = channels;
+    o.rate = rate;
+    o.format = s.format;
+    o.periods = p.periods.value_or(out.periods.value_or(o.periods));
+    o.period_frames = p.period_frames.value_or(out.period_frames.value_or(o.period_frames));
+    if (p.latency_ms) {
+        const double frames = *p.latency_ms * 1e-3 * o.rate / o.periods;
+        o.period_frames = std::max(1U, static_cast<unsigned>(std::lround(frames)));
+    }
+    return o;
+}
+
+drive_limits limits_of(const play_options& o, const environment& e)
+{
+    drive_limits l = settle_limits(e);
+    l.power_dbfs = o.power_dbfs.value_or(l.power_dbfs);
+    l.max_drive_s = o.max_drive_s.value_or(l.max_drive_s);
+    l.window_s = o.drive_window_s.value_or(l.window_s);
+    return l;
+}
+
+double latency_ms(const stream_setup& s)
+{
+    return 1e3 * s.buffer_frames / s.rate;
+}
+
+std::string latency_warning(const play_options& o, const stream_setup& made)
+{
+    // Rounding to whole frames is no news.
+    constexpr double tolerance = 1.05;
+    if (!o.latency_ms || latency_ms(made) <= *o.latency_ms * tolerance + 1e3 / made.rate)
+        return {};
+    return fmt::format("a latency of {} ms was asked for, the device makes it {:.1f} ms", *o.latency_ms,
+                       latency_ms(made));
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+#include "cli/play/play_report.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <tactor/words.hpp>
+
+#include "cli/play/play_options.hpp"
+
+namespace tactor::cli {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+double seconds(std::uint64_t frames, unsigned rate)
+{
+    return static_cast<double>(frames) / rate;
+}
+
+json to_json(const stroke_outcome& s, unsigned rate)
+{
+    const bool ended = s.report.has_value();
+    const std::uint64_t frames = ended ? s.report->frames : 0;
+    const bool has_reason = ended && !s.report->reason.empty();
+    return {{"stroke", s.name},
+            {"state", ended ? std::string(to_string(s.report->state)) : "not played"},
+            {"frames", frames},
+            {"length_frames", s.length_frames},
+            {"played_s", seconds(frames, rate)},
+            {"late_s", ended ? s.report->late_s : 0.0},
+            {"started_ns", ended && s.report->started_ns ? json(*s.report->started_ns) : json(nullptr)},
+            {"reason", has_reason ? json(s.report->reason) : json(nullptr)}};
+}
+
+json to_json(const stream_setup& d)
+{
+    return {{"pcm", d.name},
+            {"channels", d.channels},
+            {"rate_hz", d.rate},
+            {"format", std::string(to_string(d.format))},
+            {"period_frames", d.period_frames},
+            {"buffer_frames", d.buffer_frames},
+            {"latency_ms", latency_ms(d)},
+            {"batch", d.batch},
+            {"has_clock", d.has_clock}};
+}
+
+json counters(const run_report& r)
+{
+    const player_stats& s = r.stats;
+    return {{"periods", s.periods},
+            {"frames", s.frames},
+            {"xruns", s.xruns},
+            {"xrun_s", s.xrun_s},
+            {"latest_wakeup_s", s.latest_wakeup_s},
+            {"ring_low_water", s.ring_low_water},
+            {"minor_faults", s.minor_faults},
+            {"major_faults", s.major_faults},
+            {"limited_frames", s.limited_frames},
+            {"power_limited_frames", s.power_limited_frames},
+            {"drives_cut", s.drives_cut},
+            {"stalls", s.stalls},
+            {"off_failures", s.off_failures},
+            {"left_on", s.left_on},
+            {"sync_pulses", s.sync_pulses},
+            {"sync_missed", s.sync_missed},
+            {"sync_mean_late_s", s.sync_mean_late_s},
+            {"sync_worst_late_s", s.sync_worst_late_s},
+            {"reopened", r.reopened},
+            {"realtime", s.realtime},
+            {"locked_memory", r.locked_memory}};
+}
+
+std::string xruns_text(const player_stats& s)
+{
+    if (s.xruns == 0)
+        return "0";
+    const auto longest = std::max_element(s.xrun_s.begin(), s.xrun_s.end());
+    if (longest == s.xrun_s.end() || *longest <= 0.0)
+        return fmt::format("{}", s.xruns);
+    return fmt::format("{}, the longest {:.1f} ms", s.xruns, *longest * 1e3);
+}
+
+} // namespace
+
+void add_stats(player_stats& sum, const player_stats& more)
+{
+    const bool first = sum.periods == 0;
+    sum.ring_low_water = first ? more.ring_low_water : std::min(sum.ring_low_water, more.ring_low_water);
+    sum.realtime = more.realtime && (first || sum.realtime);
+    sum.periods += more.periods;
+    sum.frames += more.frames;
+    sum.xruns += more.xruns;
+    sum.limited_frames += more.limited_frames;
+    sum.power_limited_frames += more.power_limited_frames;
+    sum.drives_cut += more.drives_cut;
+    sum.stalls += more.stalls;
+    sum.off_failures += more.off_failures;
+    sum.left_on = more.left_on; // a later player may have switched it off
+    const auto pulses = static_cast<double>(sum.sync_pulses + more.sync_pulses);
+    if (pulses > 0.0)
+        sum.sync_mean_late_s = (sum.sync_mean_late_s * static_cast<double>(sum.sync_pulses) +
+                                more.sync_mean_late_s * static_cast<double>(more.sync_pulses)) /
+                               pulses;
+    sum.sync_pulses += more.sync_pulses;
+    sum.sync_missed += more.sync_missed;
+    sum.sync_worst_late_s = std::max(sum.sync_worst_late_s, more.sync_worst_late_s);
+    sum.minor_faults += more.minor_faults;
+    sum.major_faults += more.major_faults;
+    sum.latest_wakeup_s = std::max(sum.latest_wakeup_s, more.latest_wakeup_s);
+    sum.xrun_s.insert(sum.xrun_s.end(), more.xrun_s.begin(), more.xrun_s.end());
+}
+
+std::string describe(const stroke_outcome& s, unsigned rate)
+{
+    if (!s.report)
+        return fmt::format("{}: not played", s.name);
+    const double t = seconds(s.report->frames, rate);
+    if (s.report->state == state_kind::finished)
+        return fmt::format("{}: played {:.3f} s", s.name, t);
+    return fmt::format("{}: {} after {:.3f} s{}{}", s.name, to_string(s.report->state), t,
+                       s.report->reason.empty() ? "" : ": ", s.report->reason);
+}
+
+std::string describe(const stream_setup& d)
+{
+    return fmt::format("{}: {}, {} Hz, {}, period {} of {} frames, latency {:.1f} ms", d.name,
+                       counted(d.channels, "channel"), d.rate, to_string(d.format), d.period_frames,
+                       d.buffer_frames, latency_ms(d));
+}
+
+void warn_of_cuts(const drive_limits& l, const player_stats& s)
+{
+    if (s.drives_cut != 0)
+        fmt::print(stderr,
+                   "tactor: warning: tactors were driven for longer than {} s in {} s and faded out, {} "
+                   "([limits] max_drive_s in the array file or configuration)\n",
+                   l.max_drive_s, l.window_s, counted(s.drives_cut, "time"));
+}
+
+std::optional<error> left_on(const player_stats& s)
+{
+    if (!s.left_on)
+        return std::nullopt;
+    return error(error_kind::not_available, "amplifier",
+                 fmt::format("its line cannot be switched off, {} failed: it may be on",
+                             counted(s.off_failures, "try", "tries")),
+                 "cut the amplifier's supply; then see whether \"tactor off\" works, and what dmesg says");
+}
+
+void print_table(std::FILE* to, const run_report& r)
+{
+    const player_stats& s = r.stats;
+    fmt::print(to, "xruns           {}\n", xruns_text(s));
+    fmt::print(to, "latest wake-up  {:.3f} ms\n", s.latest_wakeup_s * 1e3);
+    fmt::print(to, "ring low water  {}\n", counted(s.ring_low_water, "drive"));
+    fmt::print(to, "page faults     {}, {} from disk\n", s.minor_faults + s.major_faults, s.major_faults);
+    fmt::print(to, "limited         {}, power in {}, {} cut\n", counted(s.limited_frames, "sample"),
+               counted(s.power_limited_frames, "frame"), counted(s.drives_cut, "drive"));
+    if (s.stalls != 0)
+        fmt::print(to, "stalls          {}, amplifier off in each\n", s.stalls);
+    if (s.off_failures != 0)
+        fmt::print(to, "off refused     {} by the amplifier's line{}\n", counted(s.off_failures, "time"),
+                   s.left_on ? "" : ", off in the end");
+    if (s.sync_pulses + s.sync_missed != 0)
+        fmt::print(to, "sync pulses     {}, {} missed, late by {:.3f} ms, at worst {:.3f} ms\n",
+                   s.sync_pulses, s.sync_missed, s.sync_mean_late_s * 1e3, s.sync_worst_late_s * 1e3);
+    if (r.reopened != 0)
+        fmt::print(to, "reopened        {}\n", r.reopened);
+    fmt::print(to, "real time       {}, memory {}\n", s.realtime ? "yes" : "no",
+               r.locked_memory ? "locked" : "not locked");
+}
+
+void print_json(std::FILE* to, const run_report& r)
+{
+    json strokes = json::array();
+    for (const stroke_outcome& s : r.strokes)
+        strokes.push_back(to_json(s, r.device.rate));
+    const json all{{"schema", "tactor-play/1"},
+                   {"device", to_json(r.device)},
+                   {"strokes", strokes},
+                   {"counters", counters(r)}};
+    fmt::print(to, "{}\n", all.dump(2, ' ', false, json::error_handler_t::replace));
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: MIT
+#include "cli/play/play_session.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include "cli/play/instant.hpp"
+#include "cli/play/own_memory.hpp"
+#include "cli/say.hpp"
+#include "rt/advice.hpp"
+
+namespace tactor::cli {
+namespace {
+
+constexpr int frame_ms = 40;   // of the picture: 25 a second
+constexpr int settled_ms = 10; // more than one turn of the audio thread takes
+
+} // namespace
+
+play_session::play_session(const alsa_options& device, const play_options& o, const environment& e,
+                           stream_source source)
+    : options_(o),
+      environment_(e),
+      source_(std::move(source)),
+      lines_(o.no_gpio ? tactor::setup{} : e.config, o.arm, o.sync_delay_ms * 1e-3),
+      log_(o.verbose, o.log),
+      device_(device)
+{
+    device_.log = log_.function();
+    std::unique_ptr<sink> s = source_.open(device_);
+    limit_runaway_threads();
+    const std::string refused = lock_own_memory();
+    locked_ = refused.empty();
+    const player_options defaults;
+    const auto advice = [&] { return rt::realtime_advice(probe_realtime_rights(), defaults.priority); };
+    if (!locked_ && o.require_realtime)
+        throw error(error_kind::not_available, "locked memory", refused, advice());
+    start(std::move(s));
+    const bool realtime = player_->stats().realtime;
+    if (!realtime || !locked_)
+        say(stderr, "tactor: warning: {}{}{}: xruns are likelier ({})\n",
+            realtime ? "" : "no real-time priority", realtime || locked_ ? "" : ", ",
+            locked_ ? "" : fmt::format("memory is not locked ({})", refused), advice());
+}
+
+void play_session::start(std::unique_ptr<sink> s)
+{
+    player_options o = source_.player;
+    o.limits = limits_of(options_, environment_);
+    o.require_realtime = options_.require_realtime;
+    o.driven = driven_;
+    o.log = device_.log;
+    player_ = std::make_unique<player>(std::move(s), environment_.tactors, o, lines_.lend());
+    player_->on_report([this](const stroke_report&) { ended_.signal(); });
+    setup_ = player_->setup();
+}
+
+bool play_session::sleep(int fd, int timeout_ms, int also)
+{
+    pollfd fds[] = {{stop_.descriptor(), POLLIN, 0}, {fd, POLLIN, 0}, {also, POLLIN, 0}};
+    ::poll(fds, 3, timeout_ms);
+    if (const int s = stop_.poll())
+        signal_ = s;
+    return signal_ == 0;
+}
+
+void play_session::cancel()
+{
+    if (player_ != nullptr)
+        player_->cancel(playing_);
+}
+
+player_position play_session::position() const
+{
+    return player_ != nullptr ? player_->position() : player_position{};
+}
+
+player_stats play_session::stats() const
+{
+    player_stats sum = before_;
+    if (player_ != nullptr)
+        add_stats(sum, player_->stats());
+    return sum;
+}
+
+stroke_report play_session::play(const piece& p, const score& s, const watcher& watch, start_at start)
+{
+    live_picture picture(environment_.tactors,
+                         !watch && !options_.json() && !options_.verbose); // whose lines would run through it
+    std::optional<piece_follower> follower;
+    if (picture.active())
+        follower.emplace(p, s, environment_.tactors);
+    const double total = static_cast<double>(s.frames()) / s.rate();
+    stroke_id id = {};
+    try {
+        id = player_->submit(s, options_.arm ? start_at::trigger() : start);
+        playing_ = id;
+    } catch (const error&) {
+        if (!lost())
+            throw;
+        return {.state = state_kind::interrupted, .reason = *player_->ended()};
+    }
+    if (options_.arm && !options_.json()) {
+        say(stdout, "{}: armed\n", p.name);
+        std::fflush(stdout);
+    }
+    double t = 0.0; // stays where it was while the report of the stroke's end is on its way
+    for (;;) {
+        if (const auto report = player_->wait(id, 0.0)) {
+            // That the device is gone is told after the strokes that it interrupted.
+            if (report->state == state_kind::interrupted)
+                sleep(-1, settled_ms);
+            return *report;
+        }
+        const player_position where = player_->position();
+        if (where.stroke == id) {
+            t = static_cast<double>(where.stroke_frame) / s.rate();
+            if (watch)
+                watch(where);
+        }
+        if (follower)
+            picture.draw(follower->at(t), t, total);
+        const bool go_on = sleep(ended_.fd(), picture.active() || watch ? frame_ms : -1);
+        ended_.consume();
+        if (!go_on) {
+            player_->stop();
+            return player_->wait(id).value_or(stroke_report{.id = id, .state = state_kind::cancelled});
+        }
+    }
+}
+
+stroke_report play_session::live(const live_options& o, live_lines& lines)
+{
+    live_stroke stroke = player_->begin(o);
+    bool ended = false;
+    for (;;) {
+        if (const auto report = player_->wait(stroke.id(), 0.0))
+            return *report;
+        try {
+            while (const auto p = lines.next())
+                stroke.to(p->position.x_mm, p->position.y_mm, p->intensity);
+        } catch (const error&) {
+            stroke.cancel();
+            player_->stop();
+            throw;
+        }
+        if (lines.over() && !std::exchange(ended, true))
+            stroke.end();
+        const bool go_on = sleep(ended_.fd(), -1, lines.over() ? -1 : lines.descriptor());
+        ended_.consume();
+        if (!go_on) {
+            player_->stop();
+            return player_->wait(stroke.id())
+                .value_or(stroke_report{.id = stroke.id(), .state = state_kind::cancelled});
+        }
+    }
+}
+
+bool play_session::reopen()
+{
+    using clock = std::chrono::steady_clock;
+    // With an amplifier that may be on there is nothing to wait for: the run ends, and says so.
+    if (!waits() || (player_ != nullptr && player_->stats().left_on))
+        return false;
+    say(stderr, "tactor: waiting for \"{}\" to come back (Ctrl-C ends)\n", device_.pcm);
+    if (player_ != nullptr) {
+        add_stats(before_, player_->stats());
+        player_->stop();
+        driven_ = player_->history();
+    }
+    const auto until = clock::now() + std::chrono::duration<double>(options_.reopen_s);
+    const auto pause = [&](double wait_s) {
+        const double left_s = std::chrono::duration<double>(until - clock::now()).count();
+        return left_s > 0.0 && sleep(-1, static_cast<int>(std::ceil(std::min(wait_s, left_s) * 1e3)));
+    };
+    // The old stream holds the device and borrows the lines.
+    player_.reset();
+    while (player_ == nullptr) {
+        std::unique_ptr<sink> s = reopen_alsa(device_, pause);
+        if (s == nullptr)
+            return false;
+        try {
+            start(std::move(s));
+        } catch (const error& e) {
+            if (e.kind() == error_kind::bad_input)
+                throw;
+        }
+    }
+    ++reopened_;
+    say(stderr, "tactor: \"{}\" is back\n", device_.pcm);
+    return true;
+}
+
+void play_session::finish(run_report& r)
+{
+    r.device = setup_;
+    r.stats = before_;
+    if (player_ != nullptr) {
+        player_->stop();
+        r.device = player_->setup();
+        add_stats(r.stats, player_->stats());
+    }
+    r.reopened = reopened_;
+    r.locked_memory = locked_;
+}
+
+std::optional<int> tell_end(const play_session& session, const play_options& o, const environment& e,
+                            const run_report& r)
+{
+    warn_of_cuts(limits_of(o, e), r.stats);
+    if (o.json())
+        print_json(stdout, r);
+    else
+        print_table(stdout, r);
+    if (const auto on = left_on(r.stats))
+        throw error(*on);
+    if (session.signal() != 0)
+        return interrupt::status(session.signal());
+    return std::nullopt;
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#include "cli/play/sound_server.hpp"
+
+#include <cstdlib>
+
+#include <fmt/format.h>
+#include <tactor/tactor.hpp>
+
+namespace tactor::cli {
+
+std::string settle_server(const std::string& pcm)
+{
+    std::string server = route_of(pcm).server;
+    // Channels have no places to PipeWire's ALSA plugin beyond those of loudspeakers: it would mix nine of
+    // them down to what it takes the card for, as a rule to two.
+    if (server == "PipeWire")
+        ::setenv("PIPEWIRE_ALSA", "{ stream.dont-remix = true }", 0);
+    return server;
+}
+
+std::string server_note(const std::string& server)
+{
+    return fmt::format("{} is in between: it may mix, resample and hide xruns", server);
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "cli/play/terminal.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstdlib>
+#include <string_view>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+namespace tactor::cli {
+namespace {
+
+constexpr int patience_ms = 200;
+
+std::string environment_or_empty(const char* name)
+{
+    const char* v = std::getenv(name);
+    return v == nullptr ? "" : v;
+}
+
+} // namespace
+
+bool can_draw()
+{
+    const std::string kind = environment_or_empty("TERM");
+    return isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr && !kind.empty() &&
+           kind != "dumb";
+}
+
+// From the environment: the program itself stays in the C locale, whatever it is called in.
+bool speaks_utf8()
+{
+    for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
+        std::string value = environment_or_empty(name);
+        if (value.empty())
+            continue;
+        std::transform(value.begin(), value.end(), value.begin(),
+                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        return value.find("utf-8") != std::string::npos || value.find("utf8") != std::string::npos;
+    }
+    return false;
+}
+
+// Opened anew: O_NONBLOCK on standard output itself would be there for all who share it, the shell included.
+terminal::terminal() : fd_(open("/proc/self/fd/1", O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC))
+{
+    if (fd_ < 0) // no /proc: waiting is better than nothing
+        fd_ = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
+}
+
+terminal::~terminal()
+{
+    if (fd_ >= 0)
+        close(fd_);
+}
+
+terminal_size terminal::size() const noexcept
+{
+    winsize w{};
+    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &w) != 0 || w.ws_col == 0 || w.ws_row == 0)
+        return {};
+    return {w.ws_col, w.ws_row};
+}
+
+bool terminal::idle()
+{
+    while (!left_.empty()) {
+        const ssize_t n = ::write(fd_, left_.data(), left_.size());
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK))
+            return false;
+        if (n < 0)
+            left_.clear(); // hung up: nobody looks any more
+        else
+            left_.erase(0, static_cast<std::size_t>(n));
+    }
+    return true;
+}
+
+void terminal::write(std::string text)
+{
+    left_ += text;
+    idle();
+}
+
+void terminal::finish()
+{
+    for (int waited = 0; !idle() && waited < patience_ms; waited += patience_ms / 10) {
+        pollfd p{.fd = fd_, .events = POLLOUT, .revents = 0};
+        ::poll(&p, 1, patience_ms / 10);
+    }
+}
+
+} // namespace tactor::cli

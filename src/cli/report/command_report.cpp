@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/analyze/study_options.hpp"
+#include "cli/commands.hpp"
+#include "cli/pipes.hpp"
+#include "cli/say.hpp"
+#include "study/report/methods.hpp"
+
+namespace tactor::cli {
+namespace {
+
+struct report_options {
+    std::string folder;
+    std::string file; // empty: standard output
+    study::selection who;
+};
+
+int run(const report_options& o)
+{
+    const study::dataset d = study::read_dataset(o.folder, o.who);
+    const study::study_facts f = study::read_facts(o.folder, d);
+    const study::analysis a = study::analyse(d);
+    const std::string text = study::methods_text(f, d, a);
+    if (o.file.empty())
+        fmt::print("{}", text);
+    else {
+        make_derivatives(o.folder, o.file);
+        tell_of_pipe_to_write(o.file);
+        study::write_report(o.file, text);
+    }
+    for (const std::string& w : a.warnings)
+        say(stderr, "tactor: warning: {}\n", w);
+    return status_ok;
+}
+
+} // namespace
+
+command add_report(CLI::App& app)
+{
+    CLI::App* c = app.add_subcommand("report", "Write what a paper's methods section must say of a study");
+    auto o = std::make_shared<report_options>();
+    add_study_options(*c, o->folder, o->who);
+    c->add_option_function<std::string>(
+         "-o,--output",
+         [o](const std::string& t) {
+             study::check_report_name(t);
+             o->file = t;
+         },
+         "the file to write, Markdown (default standard output)")
+        ->type_name("FILE.md");
+    c->footer("Example: tactor report study -o methods.md");
+    return [o] { return run(*o); };
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: MIT
+// tactor serve: other programs draw through it.
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <tactor/version.hpp>
+
+#include "cli/commands.hpp"
+#include "cli/input.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/plan/plan_output.hpp"
+#include "cli/play/own_memory.hpp"
+#include "cli/play/play_lines.hpp"
+#include "cli/play/play_log.hpp"
+#include "cli/play/play_options.hpp"
+#include "cli/play/sound_server.hpp"
+#include "cli/say.hpp"
+#include "cli/serve/owner.hpp"
+#include "cli/serve/plan_record.hpp"
+#include "rt/advice.hpp"
+#include "rt/clock.hpp"
+#include "server/server.hpp"
+
+namespace tactor::cli {
+namespace {
+
+// Options that clients may give too: here they are the configuration's alone.
+struct owners_defaults {
+    explicit owners_defaults(settings& s) : options(app, s)
+    {
+        options.add_stroke_options();
+        options.add_sound_options();
+        options.add_device_options();
+    }
+
+    CLI::App app;
+    option_list options;
+};
+
+server::planning planning_of(const settings& s, const environment& e, const serve_settings& serve,
+                             const server::service_limits& limits)
+{
+    server::planning p;
+    p.tactors = e.tactors;
+    p.owner.plan = s.plan;
+    p.owner.render = settle_render(s, e);
+    p.owner.speed_mm_s = s.speed_mm_s;
+    p.max_level_dbfs = serve.max_level_dbfs.value_or(p.owner.render.level_dbfs);
+    p.owner.render.level_dbfs = std::min(p.owner.render.level_dbfs, p.max_level_dbfs);
+    p.max_stroke_s = limits.max_stroke_s;
+    return p;
+}
+
+// What the channels get of all clients together: the ceiling, with what the owner adds to a tactor.
+array limited(array a, double max_level_dbfs)
+{
+    for (tactor_spec& t : a.tactors)
+        t.max_dbfs = std::min(t.max_dbfs, max_level_dbfs + std::max(t.gain_db, 0.0));
+    return a;
+}
+
+void settle_realtime(const play_options& o)
+{
+    limit_runaway_threads();
+    const std::string refused = lock_own_memory();
+    const player_options defaults;
+    const realtime_rights rights = probe_realtime_rights();
+    const std::string advice = rt::realtime_advice(rights, defaults.priority);
+    if (!refused.empty() && o.require_realtime)
+        throw error(error_kind::not_available, "locked memory", refused, advice);
+    if (rights.priority == 0 || !refused.empty())
+        say(stderr, "tactor: warning: {}{}{}: xruns are likelier ({})\n",
+            rights.priority != 0 ? "" : "no real-time priority",
+            rights.priority != 0 || refused.empty() ? "" : ", ",
+            refused.empty() ? "" : fmt::format("memory is not locked ({})", refused), advice);
+}
+
+void say_who_may(const server::endpoints& at, const std::string& token, bool has_peers)
+{
+    if (!at.osc_address.empty() && !has_peers && !net::is_loopback(at.osc.get()))
+        throw error(error_kind::bad_input, "osc " + at.osc_address,
+                    "it is reached from other machines, and nothing says which are heard",
+                    "say osc_peers under [serve] in the configuration, or listen on 127.0.0.1");
+    if (!at.osc_address.empty())
+        say(stderr, "tactor: warning: osc {}: every user of this machine may draw there{}\n", at.osc_address,
+            has_peers ? ", and whoever sends in the name of osc_peers" : "");
+    if (!token.empty())
+        return;
+    for (const auto& [kind, address, fd] :
+         {std::tuple("tcp", &at.tcp_address, &at.tcp), std::tuple("http", &at.http_address, &at.http)}) {
+        if (address->empty())
+            continue;
+        if (!net::is_loopback(fd->get()))
+            throw error(error_kind::bad_input, fmt::format("{} {}", kind, *address),
+                        "it is reached from other machines, and nobody needs a token",
+                        "say token_file under [serve] in the configuration, or listen on 127.0.0.1");
+        say(stderr,
+            "tactor: warning: {} {}: every user of this machine may draw there (token_file under [serve] "
+            "asks for a token)\n",
+            kind, *address);
+    }
+}
+
+void tell_listening(const server::endpoints& at, const std::string& format)
+{
+    using json = nlohmann::ordered_json;
+    const auto or_null = [](const std::string& s) { return s.empty() ? json(nullptr) : json(s); };
+    const std::string http = at.http_address.empty() ? "" : "http://" + at.http_address + "/";
+    if (format == "json") {
+        const json all{{"event", "listening"},
+                       {"socket", or_null(at.socket_path)},
+                       {"tcp", or_null(at.tcp_address)},
+                       {"osc", or_null(at.osc_address)},
+                       {"http", or_null(http)}};
+        fmt::print("{}\n", all.dump(-1, ' ', false, json::error_handler_t::replace));
+    } else {
+        say(stdout, "listening: socket {}\n", at.socket_path);
+        if (!at.tcp_address.empty())
+            say(stdout, "listening: tcp {}\n", at.tcp_address);
+        if (!at.osc_address.empty())
+            say(stdout, "listening: osc {}\n", at.osc_address);
+        if (!http.empty())
+            say(stdout, "listening: {}\n", http);
+    }
+    if (std::fflush(stdout) == 0)
+        return;
+    // Who waits for these lines waits in vain; who draws is served all the same.
+    say(stderr, "tactor: warning: standard output: {}: where it listens could not be said there\n",
+        std::strerror(errno));
+    std::clearerr(stdout);
+}
+
+server::stream_options stream_of(const alsa_options& device, const play_options& o, const environment& e,
+                                 const std::shared_ptr<play_lines>& lines)
+{
+    server::stream_options s;
+    s.open = [device] { return open_alsa(device); };
+    s.lines = [lines] { return lines->lend(); };
+    s.log = device.log;
+    s.player.limits = limits_of(o, e);
+    s.player.require_realtime = o.require_realtime;
+    s.wished.name = device.pcm;
+    s.wished.channels = device.channels;
+    s.wished.rate = device.rate;
+    s.wished.period_frames = device.period_frames;
+    s.wished.buffer_frames = device.period_frames * device.periods;
+    s.has_amplifier = e.config.amplifier.has_value() && !o.no_gpio;
+    return s;
+}
+
+// To whoever started it: a person, the journal, the line that systemctl status shows.
+std::function<void(server::stream_state, const std::string&)> tell_owner()
+{
+    return [lost = false](server::stream_state state, const std::string& reason) mutable {
+        if (state == server::stream_state::lost)
+            say(stderr, "tactor: warning: the stream is lost: {}\n", shown(reason));
+        if (state == server::stream_state::running && lost)
+            say(stderr, "tactor: the stream runs again\n");
+        lost = state == server::stream_state::lost || (lost && state != server::stream_state::running);
+        net::notify_manager(fmt::format("STATUS=stream: {}{}{}", server::name_of(state),
+                                        reason.empty() ? "" : ": ", shown(reason)));
+    };
+}
+
+int serve(settings& s, owners_defaults& defaults, const play_options& play, const serve_options& o)
+{
+    const environment e = read_environment(s, defaults.options);
+    const serve_settings serve = settle_serve(o, e.config);
+    const server::endpoint_options where = settle_endpoints(serve);
+    server::network_options network = settle_network(serve);
+    interrupt stop;
+
+    server::service_options service;
+    service.limits = settle_service_limits(serve);
+    service.token = read_token(serve);
+    service.version = version();
+    service.array = array_json(e.tactors);
+    service.plans = planning_of(s, e, serve, service.limits);
+    service.plan_text = [&e](const server::planned& p, std::size_t most) { return plan_record(p, e, most); };
+    service.now_ns = rt::monotonic_ns;
+    server::endpoints at = server::open_endpoints(where);
+    const std::shared_ptr<void> removed(nullptr, [&at](void*) { server::remove_socket(at); });
+    say_who_may(at, service.token, !network.osc_peers.empty());
+
+    // A service's owner does not watch it: what is otherwise asked for is there to be looked up.
+    play_log log(play.verbose || goes_to_journal(stderr), play.log);
+    const render_options& sound = service.plans.owner.render;
+    alsa_options device = device_options(s, play, e, sound.channels, sound.rate);
+    device.log = log.function();
+    if (!names_device(s, e))
+        say(stderr, "tactor: no device is configured: playing to \"null\", which nobody feels (-D PCM plays "
+                    "on hardware)\n");
+    const std::string between = settle_server(device.pcm);
+    if (!between.empty())
+        say(stderr, "tactor: warning: {} ({})\n", server_note(between), server_cure);
+    const bool armed = !play.no_gpio && e.config.sync && e.config.sync->in;
+    const auto lines = std::make_shared<play_lines>(play.no_gpio ? tactor::setup{} : e.config, armed,
+                                                    play.sync_delay_ms * 1e-3);
+    settle_realtime(play);
+    server::stream_options stream = stream_of(device, play, e, lines);
+    stream.tactors = limited(e.tactors, service.plans.max_level_dbfs);
+    stream.changed = tell_owner();
+    stream.idle_stop_s = serve.idle_stop_s.value_or(0.0);
+    server::serve(at, std::move(service), std::move(stream), std::move(network), stop.descriptor(),
+                  [&] { tell_listening(at, o.format); });
+    stop.poll(); // it is dealt with: it must not come again once signals do what they always do
+    return status_ok;
+}
+
+void add_serve_options(CLI::App& c, serve_options& o)
+{
+    c.add_option("--socket", o.socket,
+                 "Unix socket (default: tactor.sock in RUNTIME_DIRECTORY, else in XDG_RUNTIME_DIR)")
+        ->type_name("PATH");
+    c.add_option("--tcp", o.tcp, "listen there too; port 0 takes a free one")->type_name("[HOST:]PORT");
+    c.add_option("--osc", o.osc, "take OSC there, over UDP; port 0 takes a free one")
+        ->type_name("[HOST:]PORT");
+    c.add_option("--http", o.http, "serve a page to draw on, and WebSockets")->type_name("[HOST:]PORT");
+    c.add_option_function<std::string>(
+         "--idle-stop",
+         [&o](const std::string& t) { o.idle_stop_s = parse_number("--idle-stop", t, 0.001, 86400, "s"); },
+         "stop the stream after so long without a stroke (default: never)")
+        ->type_name("S");
+}
+
+} // namespace
+
+command add_serve(CLI::App& app)
+{
+    CLI::App* c = app.add_subcommand("serve", "Own the array; other programs draw through it");
+    auto s = std::make_shared<settings>();
+    auto play = std::make_shared<play_options>();
+    auto o = std::make_shared<serve_options>();
+    auto options = std::make_shared<option_list>(*c, *s);
+    add_serve_options(*c, *o);
+    options->add_array_options();
+    options->add_device_options();
+    add_stream_options(*c, *play);
+    add_format_option(*c, o->format, {"text", "json"}, "how it says where it listens (default text)");
+    c->footer("Example: tactor serve --tcp 4001 -D hw:CARD=Tactor");
+    return [s, play, o, options] {
+        owners_defaults defaults(*s);
+        return serve(*s, defaults, *play, *o);
+    };
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+// tactor status and tactor stop: what a server does, and an end to it.
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <poll.h>
+
+#include <tactor/words.hpp>
+
+#include "cli/commands.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/say.hpp"
+#include "cli/serve/rpc_client.hpp"
+#include "cli/settings.hpp"
+
+namespace tactor::cli {
+namespace {
+
+struct status_options {
+    std::optional<std::string> socket;
+    bool watch = false;
+    std::string format = "text";
+
+    bool json_lines() const { return format == "json"; }
+};
+
+void add_socket(CLI::App& c, std::optional<std::string>& into)
+{
+    c.add_option("--socket", into, "socket of the server (default: the user's, else the system's)")
+        ->type_name("PATH");
+}
+
+void print_status(const net::json& s)
+{
+    const net::json& stream = s["stream"];
+    const std::string reason = stream.value("reason", "");
+    say(stdout, "stream     {}{}\n", stream.value("state", ""), reason.empty() ? "" : ": " + reason);
+    say(stdout, "xruns      {}\n", stream.value("xruns", 0));
+    say(stdout, "uptime     {}\n", seconds_text(stream.value("uptime_s", 0.0)));
+    say(stdout, "real time  {}\n", stream.value("realtime", false) ? "yes" : "no");
+    say(stdout, "amplifier  {}\n", s.value("amplifier", ""));
+    say(stdout, "clients    {}\n", s.value("clients", 0));
+    say(stdout, "strokes    {}\n", s["strokes"].size());
+    for (const net::json& k : s["strokes"])
+        say(stdout, "  {} {}, client {}\n", k.value("stroke", 0), k.value("state", ""), k.value("client", 0));
+}
+
+void print_event(const net::json& n)
+{
+    const net::json& p = n["params"];
+    const std::string reason = p.value("reason", "");
+    const std::string who =
+        n["method"] == "stroke" ? fmt::format("stroke {}", p.value("stroke", 0)) : n.value("method", "");
+    say(stdout, "{}: {}{}\n", who, p.value("state", ""), reason.empty() ? "" : ": " + reason);
+}
+
+void print_json_line(const net::json& j)
+{
+    fmt::print("{}\n", j.dump(-1, ' ', false, net::json::error_handler_t::replace));
+}
+
+// Until a signal comes, or the server ends.
+int watch(rpc_client& server, const status_options& o, interrupt& stop)
+{
+    for (;;) {
+        while (const auto n = server.notification()) {
+            if (o.json_lines())
+                print_json_line(*n);
+            else
+                print_event(*n);
+            std::fflush(stdout);
+            if ((*n)["method"] == "stream" && (*n)["params"].value("state", "") == "closing")
+                return status_ok;
+        }
+        pollfd fds[] = {{stop.descriptor(), POLLIN, 0}, {server.descriptor(), POLLIN, 0}};
+        ::poll(fds, 2, -1);
+        if (const int s = stop.poll())
+            return interrupt::status(s);
+    }
+}
+
+int status(const status_options& o)
+{
+    interrupt stop;
+    rpc_client server(o.socket);
+    if (o.watch)
+        server.call("subscribe", {{"events", {"strokes", "stream"}}});
+    const net::json s = server.call("status");
+    if (o.json_lines())
+        print_json_line(s);
+    else
+        print_status(s);
+    std::fflush(stdout);
+    return o.watch ? watch(server, o, stop) : static_cast<int>(status_ok);
+}
+
+} // namespace
+
+command add_status(CLI::App& app)
+{
+    CLI::App* c = app.add_subcommand("status", "Say what the server does");
+    auto o = std::make_shared<status_options>();
+    add_socket(*c, o->socket);
+    c->add_flag("--watch", o->watch, "go on with what changes, line by line");
+    add_format_option(*c, o->format, {"text", "json"}, "how to print it (default text)");
+    c->footer("Example: tactor status --format json");
+    return [o] { return status(*o); };
+}
+
+command add_stop(CLI::App& app)
+{
+    CLI::App* c = app.add_subcommand("stop", "Fade out all strokes of the server");
+    auto o = std::make_shared<status_options>();
+    add_socket(*c, o->socket);
+    c->footer("Example: tactor stop");
+    return [o] {
+        rpc_client(o->socket).call("stop");
+        return static_cast<int>(status_ok);
+    };
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+#include "cli/serve/owner.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <grp.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "cli/say.hpp"
+
+namespace tactor::cli {
+namespace {
+
+constexpr const char* socket_name = "/tactor.sock";
+
+std::string variable(const char* name)
+{
+    const char* v = std::getenv(name);
+    return v == nullptr ? "" : v;
+}
+
+// systemd's may be several, in a list.
+std::string runtime_folder()
+{
+    const std::string all = variable("RUNTIME_DIRECTORY");
+    return all.substr(0, all.find(':'));
+}
+
+// Of the system, where a service manager gives a folder that is not below the user's own.
+bool is_systems()
+{
+    const std::string given = runtime_folder();
+    const std::string users = variable("XDG_RUNTIME_DIR");
+    return !given.empty() && (users.empty() || !given.starts_with(users + "/"));
+}
+
+std::string default_socket()
+{
+    for (const std::string& folder : {runtime_folder(), variable("XDG_RUNTIME_DIR")})
+        if (!folder.empty())
+            return folder + socket_name;
+    throw error(error_kind::bad_input, "socket",
+                "neither RUNTIME_DIRECTORY nor XDG_RUNTIME_DIR says in which folder",
+                "name one with --socket PATH, or under [serve] in the configuration");
+}
+
+} // namespace
+
+serve_settings settle_serve(const serve_options& o, const setup& config)
+{
+    serve_settings s = config.serve.value_or(serve_settings{});
+    const auto prefer = [](auto& ours, const auto& given) {
+        if (given)
+            ours = given;
+    };
+    prefer(s.socket, o.socket);
+    prefer(s.tcp, o.tcp);
+    prefer(s.osc, o.osc);
+    prefer(s.http, o.http);
+    prefer(s.idle_stop_s, o.idle_stop_s);
+    return s;
+}
+
+server::endpoint_options settle_endpoints(const serve_settings& s)
+{
+    server::endpoint_options e;
+    e.socket = [given = s.socket] { return given ? *given : default_socket(); };
+    if (is_systems()) {
+        e.mode = S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP;
+        if (const group* g = ::getgrnam("tactor"))
+            e.group = g->gr_gid;
+        else
+            say(stderr, "tactor: warning: there is no group tactor: only this user's group may draw\n");
+    }
+    if (s.tcp)
+        e.tcp = net::parse_host(*s.tcp, "--tcp");
+    if (s.http)
+        e.http = net::parse_host(*s.http, "--http");
+    if (s.osc)
+        e.osc = net::parse_host(*s.osc, "--osc");
+    return e;
+}
+
+server::network_options settle_network(const serve_settings& s)
+{
+    server::network_options n{.allow_hosts = s.allow_hosts};
+    for (const std::string& p : s.osc_peers)
+        n.osc_peers.push_back(net::parse_prefix(p, "osc_peers under [serve]"));
+    return n;
+}
+
+server::service_limits settle_service_limits(const serve_settings& s)
+{
+    server::service_limits l;
+    l.max_clients = s.max_clients.value_or(l.max_clients);
+    l.kept_clients = s.kept_clients.value_or(std::min(l.kept_clients, l.max_clients / 2));
+    l.max_strokes = s.max_strokes.value_or(l.max_strokes);
+    l.max_live_strokes = s.max_live_strokes.value_or(l.max_live_strokes);
+    if (s.max_points_per_s)
+        l.max_points_per_s = *s.max_points_per_s;
+    l.max_stroke_s = s.max_stroke_s.value_or(l.max_stroke_s);
+    l.max_message_bytes = s.max_message_bytes.value_or(l.max_message_bytes);
+    l.max_nesting = s.max_nesting.value_or(l.max_nesting);
+    l.max_message_s = s.max_message_s.value_or(l.max_message_s);
+    l.max_unread_bytes = s.max_unread_bytes.value_or(l.max_unread_bytes);
+    l.max_all_unread_bytes = s.max_all_unread_bytes.value_or(l.max_all_unread_bytes);
+    return l;
+}
+
+std::string read_token(const serve_settings& s)
+{
+    if (!s.token_file)
+        return {};
+    const std::string& file = *s.token_file;
+    const net::owned_fd fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+    struct stat is {};
+    if (!fd || ::fstat(fd.get(), &is) != 0)
+        throw error(error_kind::bad_input, "token_file " + file, std::strerror(errno),
+                    "a file with the token on its first line");
+    if (!S_ISREG(is.st_mode) || (is.st_mode & S_IRWXO) != 0)
+        throw error(error_kind::bad_input, "token_file " + file,
+                    S_ISREG(is.st_mode) ? "others may read it" : "it is no regular file",
+                    "chmod 600 it, and choose another token");
+    char bytes[4097];
+    const ssize_t n = ::read(fd.get(), bytes, sizeof bytes);
+    const std::string all(bytes, n > 0 ? static_cast<std::size_t>(n) : 0);
+    std::string token = all.substr(0, all.find_first_of("\r\n"));
+    if (token.empty() || token.size() == sizeof bytes)
+        throw error(error_kind::bad_input, "token_file " + file, "its first line is no token",
+                    "1 to 4096 bytes, e.g. of: openssl rand -hex 32");
+    return token;
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What the owner of the array allows: [serve], and the options of `tactor serve`.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/input.hpp"
+#include "server/server.hpp"
+
+namespace tactor::cli {
+
+struct serve_options {
+    std::optional<std::string> socket;
+    std::optional<std::string> tcp;
+    std::optional<std::string> osc;
+    std::optional<std::string> http;
+    std::optional<double> idle_stop_s;
+    std::string format = "text";
+};
+
+/// The options over the configuration.
+serve_settings settle_serve(const serve_options& o, const setup& config);
+
+/// Where to listen. \throws error (bad_input) where nothing says which socket, and for a network beyond
+/// loopback without a token.
+server::endpoint_options settle_endpoints(const serve_settings& s);
+
+/// Who else may come. \throws error (bad_input) for what is no prefix.
+server::network_options settle_network(const serve_settings& s);
+
+server::service_limits settle_service_limits(const serve_settings& s);
+
+/// The text of token_file without its line end; empty for none. \throws error (bad_input) for a file that
+/// others may read, and for an empty one.
+std::string read_token(const serve_settings& s);
+
+} // namespace tactor::cli

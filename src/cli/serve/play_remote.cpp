@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: MIT
+#include "cli/serve/play_remote.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <tactor/stroke.hpp>
+
+#include "cli/commands.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/pipes.hpp"
+#include "cli/plan/plan_file.hpp"
+#include "cli/play/live_lines.hpp"
+#include "cli/play/play_report.hpp"
+#include "cli/say.hpp"
+#include "cli/serve/rpc_client.hpp"
+#include "cli/serve/stroke_text.hpp"
+
+namespace tactor::cli {
+namespace {
+
+// What a server's owner decides, or the server does not do.
+constexpr std::array owners{"array", "config",     "device",  "rate",      "sample-format",
+                            "fit",   "fit-margin", "texture", "texture-mm"};
+
+void refuse_owners(const option_list& options)
+{
+    for (const char* name : owners)
+        if (options.given(name))
+            throw error(error_kind::bad_input, fmt::format("--{}", name),
+                        "it is not for strokes that a server plays", "leave it out with --socket");
+}
+
+/// Those that the command line gives; the server's owner has said the others.
+net::json options_of(const settings& s, const option_list& options)
+{
+    net::json o = net::json::object();
+    const auto put = [&](const char* name, const char* param, const net::json& value) {
+        if (options.given(name))
+            o[param] = value;
+    };
+    put("algorithm", "algorithm", to_string(s.plan.algorithm));
+    put("phantom", "phantom", to_string(s.plan.phantom));
+    put("duration", "duration", s.duration_s.value_or(0.0));
+    put("speed", "speed", s.speed_mm_s.value_or(0.0));
+    put("soa", "soa", s.plan.soa_s);
+    put("burst", "burst", s.plan.burst_s.value_or(0.0));
+    put("slope", "slope", s.slope.value_or(0.0));
+    put("intercept", "intercept", s.intercept_s.value_or(0.0));
+    put("timing", "timing", to_string(s.plan.timing));
+    put("outside", "outside", to_string(s.plan.outside));
+    put("snap", "snap", s.plan.snap);
+    put("drop-points", "drop_points", s.plan.drop_points);
+    put("overlap", "overlap", to_string(s.plan.overlap));
+    put("carrier", "carrier", s.plan.carrier_hz);
+    put("waveform", "waveform", waveform_text(s.plan.wave));
+    put("am", "am", fmt::format("{}:{}", s.plan.am.hz, s.plan.am.depth));
+    put("noise-seed", "noise_seed", s.plan.wave.seed);
+    put("envelope", "envelope", envelope_text(s.render.envelope));
+    put("attack", "attack", s.render.envelope.attack_s.value_or(0.0));
+    put("release", "release", s.render.envelope.release_s.value_or(0.0));
+    put("intensity-scale", "intensity_scale", to_string(s.plan.scale.kind));
+    put("stevens-exponent", "stevens_exponent", s.plan.scale.exponent);
+    put("phase", "phase", to_string(s.render.phase));
+    put("ramp", "ramp", s.render.ramp_s.value_or(0.0));
+    put("level-dbfs", "level_dbfs", s.render.level_dbfs);
+    put("sl", "sl", s.render.sl_db.value_or(0.0));
+    return o;
+}
+
+/// The server's words about a parameter, as the command line has it.
+error in_words_of_the_tool(const error& e, const std::string& argument)
+{
+    std::string what(e.subject());
+    if (what.starts_with("options.")) {
+        what = "--" + what.substr(std::string_view("options.").size());
+        std::replace(what.begin(), what.end(), '_', '-');
+    } else if (what == "stroke" || what == "path" || what == "toml" || what == "csv" || what == "svg") {
+        what = argument;
+    }
+    std::string hint(e.hint());
+    for (std::size_t at = hint.find("options."); at != std::string::npos; at = hint.find("options."))
+        hint.replace(at, std::string_view("options.").size(), "--");
+    return {e.kind(), what, e.why(), hint};
+}
+
+class remote_player {
+public:
+    remote_player(const settings& s, const option_list& options, const play_options& o)
+        : options_(o), server_(o.socket), asked_(options_of(s, options))
+    {
+        const net::json hello = server_.call("hello");
+        const net::json& d = hello["stream"];
+        report_.device.name = d.value("pcm", "");
+        report_.device.rate = d.value("rate", 48000U);
+        report_.device.channels = d.value("channels", 0U);
+        if (d["format"].is_string())
+            report_.device.format = from_string<format_kind>(d["format"].get<std::string>());
+        report_.device.period_frames = d.value("period_frames", 0U);
+        report_.device.buffer_frames =
+            static_cast<unsigned>(std::lround(d.value("latency_s", 0.0) * report_.device.rate));
+        xruns_ = server_.call("status")["stream"].value("xruns", std::uint64_t{0});
+    }
+
+    int play(const std::vector<std::pair<std::string, net::json>>& pieces)
+    {
+        if (!options_.json())
+            say(stdout, "{} through {}\n", describe(report_.device), server_.socket());
+        std::fflush(stdout);
+        for (const auto& [name, params] : pieces)
+            report_.strokes.push_back({name});
+        for (std::size_t i = 0; i < pieces.size() && signal_ == 0 && !broken_; ++i)
+            play_one(report_.strokes[i], pieces[i].second, i + 1 == pieces.size());
+        return finish();
+    }
+
+    int live(live_lines& lines)
+    {
+        report_.strokes.push_back({"live"});
+        stroke_outcome& out = report_.strokes.back();
+        net::json begin{{"options", asked_}, {"timeout_s", live_timeout_s}};
+        if (options_.smooth_s)
+            begin["smooth_s"] = *options_.smooth_s;
+        const net::json n = server_.call("begin", begin)["stroke"];
+        try {
+            while (!ended(n, out)) {
+                wait(lines.over() ? -1 : lines.descriptor());
+                if (signal_ != 0 && !cancelled_) {
+                    cancelled_ = true;
+                    server_.tell("cancel", {{"stroke", n}});
+                }
+                while (const auto p = cancelled_ ? std::nullopt : lines.next())
+                    server_.tell("to", {{"stroke", n},
+                                        {"x_mm", p->position.x_mm},
+                                        {"y_mm", p->position.y_mm},
+                                        {"intensity", p->intensity}});
+                if (lines.over() && !std::exchange(ended_, true) && !cancelled_)
+                    server_.tell("end", {{"stroke", n}});
+            }
+        } catch (const error&) {
+            try {
+                server_.tell("cancel", {{"stroke", n}});
+            } catch (const error&) { // NOLINT(bugprone-empty-catch): it is gone, and told already
+            }
+            throw;
+        }
+        tell(out);
+        judge(out, true);
+        return finish();
+    }
+
+private:
+    void play_one(stroke_outcome& out, net::json params, bool last)
+    {
+        params["options"] = asked_;
+        if (options_.arm)
+            params["start"] = "armed";
+        net::json r;
+        try {
+            r = server_.call("play", params);
+        } catch (const error& e) {
+            throw in_words_of_the_tool(e, out.name);
+        }
+        for (const net::json& w : r["warnings"])
+            say(stderr, "tactor: warning: {}\n", w.get<std::string>());
+        out.length_frames =
+            static_cast<std::uint64_t>(std::llround(r.value("total_s", 0.0) * report_.device.rate));
+        if (options_.arm && !options_.json())
+            say(stdout, "{}: armed\n", out.name);
+        std::fflush(stdout);
+        for (const net::json& n : r["strokes"])
+            while (!ended(n, out)) {
+                wait(-1);
+                if (signal_ != 0 && !std::exchange(cancelled_, true))
+                    for (const net::json& k : r["strokes"])
+                        cancel(k);
+            }
+        tell(out);
+        judge(out, last);
+    }
+
+    // It may have ended in between.
+    void cancel(const net::json& n)
+    {
+        try {
+            server_.call("cancel", {{"stroke", n}});
+        } catch (const error& e) {
+            if (e.kind() != error_kind::runtime)
+                throw;
+        }
+    }
+
+    // Whether the stroke has ended; what is left of a piece is the worst of its strokes.
+    bool ended(const net::json& n, stroke_outcome& out)
+    {
+        while (const auto m = server_.notification()) {
+            if ((*m)["method"] == "stroke" && (*m)["params"].value("state", "") != "started")
+                ends_.push_back((*m)["params"]);
+        }
+        const auto found =
+            std::find_if(ends_.begin(), ends_.end(), [&](const net::json& e) { return e["stroke"] == n; });
+        if (found == ends_.end())
+            return false;
+        stroke_report r{.state = from_string<state_kind>(found->value("state", "interrupted")),
+                        .frames = found->value("frames", std::uint64_t{0}),
+                        .reason = found->value("reason", ""),
+                        .late_s = found->value("late_s", 0.0)};
+        if ((*found)["started_s"].is_number())
+            r.started_ns = std::llround((*found)["started_s"].get<double>() * 1e9);
+        ends_.erase(found);
+        if (out.report) {
+            r.frames += out.report->frames;
+            r.started_ns = out.report->started_ns ? out.report->started_ns : r.started_ns;
+            r.late_s = std::max(r.late_s, out.report->late_s);
+            if (out.report->state != state_kind::finished) {
+                r.state = out.report->state;
+                r.reason = out.report->reason;
+            }
+        }
+        out.report = r;
+        return true;
+    }
+
+    void wait(int also)
+    {
+        pollfd fds[] = {
+            {stop_.descriptor(), POLLIN, 0}, {server_.descriptor(), POLLIN, 0}, {also, POLLIN, 0}};
+        ::poll(fds, 3, -1);
+        if (const int s = stop_.poll())
+            signal_ = s;
+    }
+
+    void tell(const stroke_outcome& out) const
+    {
+        if (options_.json() || !out.report)
+            return;
+        say(stdout, "{}\n", describe(out, report_.device.rate));
+        std::fflush(stdout);
+    }
+
+    void judge(const stroke_outcome& out, bool last)
+    {
+        if (signal_ != 0 || out.report->state == state_kind::finished)
+            return;
+        const bool cancelled = out.report->state == state_kind::cancelled;
+        const bool gone = server_.call("status")["stream"].value("state", "") == "lost";
+        const std::string fate = describe(out, report_.device.rate).substr(out.name.size() + 2);
+        if (cancelled || gone || options_.void_on_xrun)
+            broken_.emplace(error_kind::runtime, out.name, cancelled ? fate + " by somebody else" : fate,
+                            options_.void_on_xrun && !cancelled ? "the run is void: --void-on-xrun" : "");
+        else if (!last)
+            say(stderr, "tactor: warning: {}\n", describe(out, report_.device.rate));
+    }
+
+    int finish()
+    {
+        try {
+            const net::json s = server_.call("status")["stream"];
+            report_.stats.xruns = s.value("xruns", std::uint64_t{0}) - xruns_;
+            report_.stats.realtime = s.value("realtime", false);
+        } catch (const error& e) {
+            if (signal_ == 0 && !broken_)
+                broken_.emplace(e);
+        }
+        if (options_.json())
+            print_json(stdout, report_);
+        else
+            say(stdout, "xruns           {}\n", report_.stats.xruns);
+        if (signal_ != 0)
+            return interrupt::status(signal_);
+        if (broken_)
+            throw error(*broken_);
+        return status_ok;
+    }
+
+    const play_options& options_;
+    interrupt stop_;
+    rpc_client server_;
+    net::json asked_;
+    run_report report_;
+    std::vector<net::json> ends_;
+    std::optional<error> broken_;
+    std::uint64_t xruns_ = 0;
+    bool cancelled_ = false;
+    bool ended_ = false;
+    int signal_ = 0;
+};
+
+} // namespace
+
+int play_remote(const settings& s, const option_list& options, const play_options& o)
+{
+    refuse_owners(options);
+    if (o.live) {
+        remote_player player(s, options, o);
+        live_lines lines(STDIN_FILENO);
+        return player.live(lines);
+    }
+    const auto pieces = stroke_params(s);
+    remote_player player(s, options, o);
+    return player.play(pieces);
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+#include "cli/serve/rpc_client.hpp"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+namespace tactor::cli {
+namespace {
+
+std::vector<std::string> candidates(const std::optional<std::string>& named)
+{
+    if (named)
+        return {*named};
+    std::vector<std::string> all;
+    if (const char* folder = std::getenv("XDG_RUNTIME_DIR"); folder != nullptr && *folder != '\0')
+        all.push_back(std::string(folder) + "/tactor.sock");
+    all.emplace_back("/run/tactor.sock");
+    all.emplace_back("/run/tactor/tactor.sock");
+    return all;
+}
+
+// Zero, or an errno.
+int try_to_connect(const std::string& path, net::owned_fd& into)
+{
+    sockaddr_un a{};
+    a.sun_family = AF_UNIX;
+    if (path.size() >= sizeof a.sun_path)
+        return ENAMETOOLONG;
+    std::memcpy(static_cast<char*>(a.sun_path), path.c_str(), path.size() + 1);
+    net::owned_fd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): as sockets want it
+    if (!fd || ::connect(fd.get(), reinterpret_cast<const sockaddr*>(&a), sizeof a) != 0)
+        return errno;
+    into = std::move(fd);
+    return 0;
+}
+
+error error_of(const net::json& e)
+{
+    const int code = e.value("code", 0);
+    const error_kind kind = code == net::code_bad_params  ? error_kind::bad_input
+                            : code == net::code_no_stream ? error_kind::not_available
+                                                          : error_kind::runtime;
+    const net::json data = e.value("data", net::json::object());
+    if (!data.is_object() || !data.contains("why"))
+        return {kind, "server", e.value("message", "it refuses")};
+    return {kind, data.value("what", "server"), data.value("why", ""), data.value("hint", "")};
+}
+
+} // namespace
+
+rpc_client::rpc_client(const std::optional<std::string>& socket)
+{
+    const auto places = candidates(socket);
+    int code = ENOENT;
+    for (const std::string& p : places) {
+        const int failed = try_to_connect(p, fd_);
+        if (failed == 0) {
+            path_ = p;
+            return;
+        }
+        if (failed != ENOENT)
+            code = failed;
+    }
+    throw error(error_kind::not_available, fmt::format("server at {}", fmt::join(places, ", ")),
+                code == ENOENT ? "there is none" : std::strerror(code),
+                "start one with tactor serve, or name its socket with --socket PATH");
+}
+
+void rpc_client::send(const net::json& message)
+{
+    const std::string text = message.dump(-1, ' ', false, net::json::error_handler_t::replace) + "\n";
+    for (std::size_t sent = 0; sent < text.size();) {
+        const ssize_t n = ::send(fd_.get(), text.data() + sent, text.size() - sent, MSG_NOSIGNAL);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n < 0)
+            throw error(error_kind::runtime, "server", "it is gone", "see what it says");
+        sent += static_cast<std::size_t>(n);
+    }
+}
+
+void rpc_client::receive()
+{
+    char bytes[65536];
+    const ssize_t n = ::recv(fd_.get(), bytes, sizeof bytes, 0);
+    if (n < 0 && errno == EINTR)
+        return;
+    if (n <= 0)
+        throw error(error_kind::runtime, "server", "it is gone", "see what it says");
+    buffer_.append(bytes, static_cast<std::size_t>(n));
+}
+
+std::optional<net::json> rpc_client::message()
+{
+    const std::size_t end = buffer_.find('\n');
+    if (end == std::string::npos)
+        return std::nullopt;
+    net::json m = net::json::parse(buffer_.substr(0, end), nullptr, false);
+    buffer_.erase(0, end + 1);
+    if (!m.is_object())
+        throw error(error_kind::runtime, "server", "it does not speak this protocol", "is it tactor serve?");
+    return m;
+}
+
+net::json rpc_client::call(const std::string& method, const net::json& params)
+{
+    const int id = ++last_;
+    send({{"jsonrpc", "2.0"}, {"id", id}, {"method", method}, {"params", params}});
+    for (;;) {
+        for (auto m = message(); m; m = message()) {
+            if (m->contains("method")) {
+                told_.push_back(std::move(*m));
+                continue;
+            }
+            if (m->contains("error"))
+                throw error_of((*m)["error"]);
+            if (m->contains("id") && (*m)["id"] == id)
+                return m->value("result", net::json::object());
+        }
+        receive();
+    }
+}
+
+void rpc_client::tell(const std::string& method, const net::json& params)
+{
+    send({{"jsonrpc", "2.0"}, {"method", method}, {"params", params}});
+}
+
+std::optional<net::json> rpc_client::notification()
+{
+    if (told_.empty()) {
+        pollfd p{fd_.get(), POLLIN, 0};
+        if (::poll(&p, 1, 0) > 0)
+            receive();
+        for (auto m = message(); m; m = message()) {
+            if (m->contains("error"))
+                throw error_of((*m)["error"]);
+            told_.push_back(std::move(*m));
+        }
+    }
+    if (told_.empty())
+        return std::nullopt;
+    net::json first = std::move(told_.front());
+    told_.pop_front();
+    return first;
+}
+
+} // namespace tactor::cli

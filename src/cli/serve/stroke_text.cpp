@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#include "cli/serve/stroke_text.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <string_view>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <tactor/stroke.hpp>
+
+#include "cli/pipes.hpp"
+#include "cli/plan/plan_file.hpp"
+#include "net/listen.hpp"
+
+namespace tactor::cli {
+namespace {
+
+constexpr std::size_t most_bytes = 48U << 20;
+
+std::string read_all(int fd, const std::string& name)
+{
+    std::string all;
+    for (;;) {
+        char bytes[65536];
+        const ssize_t n = ::read(fd, bytes, sizeof bytes);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n < 0)
+            throw error(error_kind::bad_input, name, std::strerror(errno));
+        if (n == 0)
+            return all;
+        all.append(bytes, static_cast<std::size_t>(n));
+        if (all.size() > most_bytes)
+            throw error(error_kind::bad_input, name, "it is too large for a server",
+                        "play it without --socket");
+    }
+}
+
+// As the library guesses.
+const char* kind_of(std::string_view text)
+{
+    const auto first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+    if (first != std::string_view::npos && text[first] == '<')
+        return "svg";
+    return text.substr(0, text.find('\n')).find("t_s") != std::string_view::npos ? "csv" : "toml";
+}
+
+[[noreturn]] void refuse_plan(const std::string& name)
+{
+    throw error(error_kind::bad_input, name, "it is a plan, which a server does not take", "give the stroke");
+}
+
+net::json params_of(const std::string& argument)
+{
+    const auto& presets = stroke_presets();
+    std::error_code ignored;
+    const bool is_preset = std::find(presets.begin(), presets.end(), argument) != presets.end();
+    if (argument == "-") {
+        const std::string text = read_all(STDIN_FILENO, "standard input");
+        if (holds_plans(text))
+            refuse_plan("standard input");
+        return {{kind_of(text), text}};
+    }
+    if (is_preset ||
+        (!std::filesystem::exists(argument, ignored) && argument.find_first_of("./") == std::string::npos))
+        return {{"stroke", preset_stroke(argument).name}}; // its error lists the presets
+    if (is_plan_file(argument))
+        refuse_plan(argument);
+    check_readable(argument);
+    const net::owned_fd fd(::open(argument.c_str(), O_RDONLY | O_CLOEXEC));
+    if (!fd)
+        throw error(error_kind::bad_input, argument, std::strerror(errno));
+    const std::string text = read_all(fd.get(), argument);
+    const std::string extension = std::filesystem::path(argument).extension().string();
+    for (const char* kind : {"toml", "csv", "svg"})
+        if (extension == fmt::format(".{}", kind))
+            return {{kind, text}};
+    return {{kind_of(text), text}};
+}
+
+} // namespace
+
+std::vector<std::pair<std::string, net::json>> stroke_params(const settings& s)
+{
+    if (s.path_data && !s.strokes.empty())
+        throw error(error_kind::bad_input, "--path",
+                    fmt::format("there is also the stroke \"{}\"", s.strokes[0]), "give one of them");
+    if (s.path_data)
+        return {{"--path", {{"path", *s.path_data}}}};
+    if (s.strokes.empty())
+        throw error(error_kind::bad_input, "command line", "no stroke",
+                    "give a preset such as park2016-1, a stroke file, - or --path DATA");
+    std::vector<std::pair<std::string, net::json>> all;
+    for (const std::string& argument : s.strokes)
+        all.emplace_back(argument, params_of(argument));
+    return all;
+}
+
+} // namespace tactor::cli

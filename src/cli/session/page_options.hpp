@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What the participant sees: --display and --page of a command.
+#pragma once
+
+#include <optional>
+
+#include "net/listen.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace tactor::cli {
+
+struct page_options {
+    std::optional<bool> on_page = {};          ///< a page, or the terminal
+    std::optional<net::host_and_port> at = {}; ///< where the page is; a free port where it is not said
+
+    bool shown() const { return on_page.value_or(at.has_value()); }
+};
+
+/// `o` must live as long as the command.
+void add_page_options(CLI::App& command, page_options& o);
+
+/// What goes together. \throws error (bad_input).
+void check_page_options(const page_options& o, bool simulated);
+
+/// The socket of the participant's page, whose address is said; none where there is to be none. \throws
+/// error.
+net::owned_fd open_page(const page_options& o);
+
+} // namespace tactor::cli

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Where stimuli are given to somebody: the array, and the noise that hides its sound.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "cli/input.hpp"
+#include "cli/play/play_session.hpp"
+#include "study/masking/masker.hpp"
+
+namespace tactor::cli {
+
+/// How a stimulus was given.
+struct given_stimulus {
+    std::string flaw = {};                         ///< why it was not as planned; empty: it was
+    std::optional<std::uint64_t> first_frame = {}; ///< of the stream; none: it never sounded
+    std::uint64_t frames = 0;                      ///< of it that were played
+    std::int64_t started_ns = 0;                   ///< CLOCK_MONOTONIC of its first frame at the DAC
+    std::int64_t ended_ns = 0;                     ///< and of its last
+    unsigned xruns = 0;                            ///< since it was asked for
+    bool limited = false;                          ///< limits of the array changed it
+};
+
+/// One thread.
+class stage {
+public:
+    /// A signal came.
+    struct left {
+        int signal;
+    };
+
+    /// Opens the device. \throws error.
+    stage(const alsa_options& device, const play_options& o, const environment& e, stream_source source = {});
+
+    using sink_opener = std::function<std::unique_ptr<sink>()>;
+    /// Noise around each stimulus from now on. \throws error as masker, and what the opener throws.
+    void mask(sink_opener open, const study::masking_options& o);
+    /// On the PCM of this name, in stereo.
+    void mask(const std::string& pcm, const study::masking_options& o);
+
+    /// Told some 25 times a second at which of its frames the stimulus is.
+    using watcher = std::function<void(std::uint64_t stimulus_frame)>;
+    /// Plays a score, under noise where there is to be some, which goes on after it; the noise's begin is not
+    /// waited for where it is there already. \throws left; error where the noise's device cannot be opened
+    /// again.
+    given_stimulus give(const std::string& name, const score& s, double lead_s, const watcher& watch);
+    /// Cuts the stimulus off: for the watcher.
+    void cut() { session_.cancel(); }
+
+    /// Noise until fade_out(). False where it does not sound. \throws as give().
+    bool fade_in();
+    void fade_out() noexcept;
+
+    /// Lets so much of the stream's time pass; the watcher is told how much has, and returns false to end it
+    /// before. False where the stream has ended meanwhile. \throws left.
+    bool pass(double seconds, const std::function<bool(double passed_s)>& watch);
+    /// Waits for a descriptor. \throws left.
+    void wait_for(int descriptor);
+
+    const play_session& session() const noexcept { return session_; }
+    /// Whether the device is gone.
+    bool lost() const { return session_.lost(); }
+    /// Waits for it. False where it did not come back. \throws left.
+    bool reopen();
+    /// Ends the streams in silence. \throws error where the amplifier may be on.
+    void finish();
+
+private:
+    void check_signal() const;
+
+    const environment& environment_;
+    play_options options_;
+    play_session session_;
+    sink_opener open_masker_ = {};
+    study::masking_options masking_ = {};
+    std::unique_ptr<study::masker> masker_; ///< null: no noise
+};
+
+/// Ends the noise, whatever ends the trial.
+class noise_around {
+public:
+    explicit noise_around(stage& s) : stage_(s) {}
+    ~noise_around() { stage_.fade_out(); }
+    noise_around(const noise_around&) = delete;
+    noise_around& operator=(const noise_around&) = delete;
+
+private:
+    stage& stage_;
+};
+
+/// Runs what is held on a stage (or on somebody who has one) and ends its streams, whatever ends it. Returns
+/// the signal that came, or 0. \throws what `held` throws, but stage::left.
+template <typename Stage, typename Held>
+[[nodiscard]] int until_left(Stage& s, const Held& held)
+{
+    int signal = 0;
+    try {
+        held();
+    } catch (const stage::left& l) {
+        signal = l.signal;
+    } catch (const error&) {
+        s.finish();
+        throw;
+    }
+    s.finish();
+    return signal;
+}
+
+/// CLOCK_MONOTONIC.
+std::int64_t monotonic_ns() noexcept;
+
+} // namespace tactor::cli

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include <tactor/array.hpp>
+
+#include <algorithm>
+#include <climits>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/limits.hpp"
+
+namespace tactor {
+namespace {
+
+// Ascending, without those that are one line.
+std::vector<double> lines_of(std::vector<double> at)
+{
+    std::sort(at.begin(), at.end());
+    std::vector<double> lines;
+    for (const double v : at)
+        if (lines.empty() || v - lines.back() > same_place_mm)
+            lines.push_back(v);
+    return lines;
+}
+
+// The line that v was merged into.
+std::size_t line_of(const std::vector<double>& lines, double v)
+{
+    return static_cast<std::size_t>(std::upper_bound(lines.begin(), lines.end(), v) - lines.begin()) - 1;
+}
+
+} // namespace
+
+unsigned array::channels() const noexcept
+{
+    unsigned n = 0;
+    for (const tactor_spec& t : tactors)
+        n = std::max(n, t.channel == UINT_MAX ? t.channel : t.channel + 1);
+    return n;
+}
+
+std::optional<grid_lines> find_grid(const array& a)
+{
+    std::vector<double> xs;
+    std::vector<double> ys;
+    for (const tactor_spec& t : a.tactors) {
+        if (!std::isfinite(t.position.x_mm) || !std::isfinite(t.position.y_mm))
+            return std::nullopt;
+        xs.push_back(t.position.x_mm);
+        ys.push_back(t.position.y_mm);
+    }
+    grid_lines g{lines_of(std::move(xs)), lines_of(std::move(ys))};
+    if (g.x_mm.empty() || g.x_mm.size() * g.y_mm.size() != a.tactors.size())
+        return std::nullopt;
+
+    std::vector<bool> taken(a.tactors.size());
+    for (const tactor_spec& t : a.tactors) {
+        const std::size_t crossing =
+            line_of(g.y_mm, t.position.y_mm) * g.x_mm.size() + line_of(g.x_mm, t.position.x_mm);
+        if (taken[crossing])
+            return std::nullopt;
+        taken[crossing] = true;
+    }
+    return g;
+}
+
+array make_grid(std::string name, unsigned rows, unsigned columns, double pitch_x_mm, double pitch_y_mm)
+{
+    const std::size_t count = std::size_t{rows} * columns;
+    if (rows == 0 || columns == 0 || rows > detail::max_tactors || count > detail::max_tactors)
+        throw error(error_kind::bad_input, "grid", fmt::format("{} rows x {} columns", rows, columns),
+                    fmt::format("1 to {} tactors", detail::max_tactors));
+    for (const double pitch : {pitch_x_mm, pitch_y_mm})
+        if (!std::isfinite(pitch) || pitch <= 0.0)
+            throw error(error_kind::bad_input, "grid", fmt::format("the pitch is {} mm", pitch),
+                        "it must be more than 0");
+
+    array a;
+    a.name = std::move(name);
+    a.tactors.resize(count);
+    for (unsigned i = 0; i < count; ++i) {
+        const unsigned row = i / columns;
+        const unsigned column = i % columns;
+        a.tactors[i].position = {column * pitch_x_mm, row * pitch_y_mm};
+        a.tactors[i].channel = i;
+    }
+    return a;
+}
+
+} // namespace tactor

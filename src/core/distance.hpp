@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Lengths, computed where they are needed: a call of std::hypot takes as long as the rest of a phantom.
+#pragma once
+
+#include <cmath>
+
+#include <tactor/geometry.hpp>
+
+namespace tactor::detail {
+
+/// std::hypot as the C library computes it without fused multiplications since glibc 2.35, bit for bit
+/// (Borges 2019, algorithm "fused" without the fusing), on every machine.
+inline double hypot_of(double x, double y) noexcept
+{
+    const double u = std::abs(x);
+    const double v = std::abs(y);
+    const double a = u < v ? v : u;
+    const double b = u < v ? u : v;
+    if (!(b >= 0x1p-459 && a <= 0x1p511)) // what squaring would lose, and what is not finite
+        return std::hypot(x, y);
+    if (b <= a * 0x1p-54)
+        return a + b;
+    const double h = std::sqrt(a * a + b * b);
+    const bool near = h <= 2.0 * b;
+    const double d = h - (near ? b : a);
+    const double first = near ? a * (2.0 * d - a) : 2.0 * d * (a - 2.0 * b);
+    const double second = near ? (d - 2.0 * (a - b)) * d : (4.0 * d - b) * b + d * d;
+    return h - (first + second) / (2.0 * h);
+}
+
+/// As tactor::distance_mm().
+inline double length_mm(point a, point b) noexcept
+{
+    return hypot_of(a.x_mm - b.x_mm, a.y_mm - b.y_mm);
+}
+
+} // namespace tactor::detail

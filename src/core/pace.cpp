@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+#include "core/pace.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "core/limits.hpp"
+#include "core/profile.hpp"
+#include "core/trajectory/limits.hpp"
+
+namespace tactor::detail {
+namespace {
+
+/// Where g, which is convex and rises from 0 to 0.5 within 0 ... 0.5, is `way`: Newton's steps from the right
+/// only ever go left.
+template <typename G, typename Slope>
+double newton_from(double u, double way, G g, Slope slope) noexcept
+{
+    for (int i = 0; i < 64; ++i) {
+        const double next = u - (g(u) - way) / slope(u);
+        if (!(next < u))
+            break;
+        u = next;
+    }
+    return u;
+}
+
+double half_uneased(easing_kind k, double way) noexcept
+{
+    if (k == easing_kind::in_out)
+        return newton_from(
+            std::min(0.5, std::sqrt(way / 2.0)), way, [](double u) { return u * u * (3.0 - 2.0 * u); },
+            [](double u) { return 6.0 * u * (1.0 - u); });
+    return newton_from(
+        std::min(0.5, std::cbrt(way / 4.0)), way,
+        [](double u) { return u * u * u * (10.0 + u * (6.0 * u - 15.0)); },
+        [](double u) { return 30.0 * u * u * (1.0 - u) * (1.0 - u); });
+}
+
+/// log(1 + x) / x and (exp(x) - 1) / x, which are 1 at 0.
+double log_part(double x) noexcept
+{
+    return x == 0.0 ? 1.0 : std::log1p(x) / x;
+}
+
+double exp_part(double x) noexcept
+{
+    return x == 0.0 ? 1.0 : std::expm1(x) / x;
+}
+
+/// The speeds with one at either end of the path.
+std::vector<profile_point> whole(std::vector<profile_point> speeds)
+{
+    if (speeds.empty())
+        return {{0.0, 1.0}, {1.0, 1.0}};
+    if (speeds.front().part > 0.0)
+        speeds.insert(speeds.begin(), {0.0, speeds.front().value});
+    if (speeds.back().part < 1.0)
+        speeds.push_back({1.0, speeds.back().value});
+    return speeds;
+}
+
+} // namespace
+
+double eased(easing_kind k, double u) noexcept
+{
+    if (!(u > 0.0))
+        return 0.0;
+    if (u >= 1.0)
+        return 1.0;
+    switch (k) {
+    case easing_kind::in_out:
+        return u * u * (3.0 - 2.0 * u);
+    case easing_kind::minimum_jerk:
+        return u * u * u * (10.0 + u * (6.0 * u - 15.0));
+    case easing_kind::linear:
+        break;
+    }
+    return u;
+}
+
+double uneased(easing_kind k, double way) noexcept
+{
+    if (!(way > 0.0))
+        return 0.0;
+    if (way >= 1.0)
+        return 1.0;
+    if (k == easing_kind::linear)
+        return way;
+    return way <= 0.5 ? half_uneased(k, way) : 1.0 - half_uneased(k, 1.0 - way);
+}
+
+double time_at_speeds_s(const movement& m, double length_mm)
+{
+    const std::vector<profile_point> speeds = whole(m.speed_mm_s);
+    double sum = 0.0;
+    for (std::size_t i = 0; i + 1 < speeds.size(); ++i) {
+        const double v = speeds[i].value;
+        sum += (speeds[i + 1].part - speeds[i].part) / v * log_part((speeds[i + 1].value - v) / v);
+    }
+    return sum * length_mm;
+}
+
+void check_movement(const movement& m)
+{
+    check_profile_points("speed_mm_s", m.speed_mm_s, least_speed_mm_s, max_mm, false);
+    check_profile_points("intensity", m.intensity, 0.0, max_intensity, false);
+    std::vector<profile_point> times;
+    for (const rest& r : m.rests)
+        times.push_back({r.part, r.time_s});
+    check_profile_points("rests", times, 0.0, longest_stroke_s, true);
+    for (const rest& r : m.rests)
+        if (!(r.intensity >= 0.0 && r.intensity <= 1.0))
+            throw error(error_kind::bad_input, "rests", fmt::format("intensity {:g}", r.intensity),
+                        "it is a factor from 0 to 1");
+}
+
+pace::pace(movement m, double moving_s) : said_(std::move(m)), moving_s_(moving_s)
+{
+    lay_stretches();
+    lay_phases();
+}
+
+void pace::lay_stretches()
+{
+    const std::vector<profile_point> speeds = whole(said_.speed_mm_s);
+    const double scale = moving_s_ / time_at_speeds_s(said_, 1.0);
+    double begin = 0.0;
+    for (std::size_t i = 0; i + 1 < speeds.size(); ++i) {
+        const double v = speeds[i].value;
+        const double width = speeds[i + 1].part - speeds[i].part;
+        stretch s{speeds[i].part, width, (speeds[i + 1].value - v) / v, begin, scale * width / v};
+        begin += s.unit_s * log_part(s.change);
+        stretches_.push_back(s);
+    }
+}
+
+void pace::lay_phases()
+{
+    double part = 0.0;
+    double moved = 0.0;
+    const auto move_to = [&](double to, double until) {
+        if (!(to > part))
+            return;
+        phases_.push_back({total_s_, total_s_ + (until - moved), part, to, moved, until, 1.0});
+        total_s_ = phases_.back().end_s;
+        part = to;
+        moved = until;
+    };
+    for (const rest& r : said_.rests) {
+        move_to(r.part, r.part < 1.0 ? moving_until(r.part) : moving_s_);
+        phases_.push_back({total_s_, total_s_ + r.time_s, part, part, moved, moved, r.intensity});
+        total_s_ = phases_.back().end_s;
+    }
+    move_to(1.0, moving_s_);
+}
+
+double pace::part_after(double moving_s) const noexcept
+{
+    const auto after = std::upper_bound(stretches_.begin(), stretches_.end(), moving_s,
+                                        [](double v, const stretch& s) noexcept { return v < s.begin_s; });
+    const stretch& s = after == stretches_.begin() ? stretches_.front() : *(after - 1);
+    const double z = (moving_s - s.begin_s) / s.unit_s;
+    return s.part + s.width * std::min(1.0, z * exp_part(s.change * z));
+}
+
+double pace::moving_until(double part) const noexcept
+{
+    const auto after = std::upper_bound(stretches_.begin(), stretches_.end(), part,
+                                        [](double v, const stretch& s) noexcept { return v < s.part; });
+    const stretch& s = after == stretches_.begin() ? stretches_.front() : *(after - 1);
+    const double q = std::min(1.0, (part - s.part) / s.width);
+    return s.begin_s + s.unit_s * q * log_part(s.change * q);
+}
+
+const pace::phase& pace::at(double t_s) const noexcept
+{
+    const auto after = std::upper_bound(phases_.begin(), phases_.end(), t_s,
+                                        [](double v, const phase& p) noexcept { return v < p.begin_s; });
+    // What is no number is the start, as with all times.
+    return after == phases_.begin() || !(t_s > 0.0) ? phases_.front() : *(after - 1);
+}
+
+double pace::part_within(const phase& p, double t_s) const noexcept
+{
+    if (p.rests() || !(t_s > p.begin_s))
+        return p.from;
+    if (t_s >= p.end_s)
+        return p.to;
+    const double u = (t_s - p.begin_s) / (p.end_s - p.begin_s);
+    const double moved = p.begin_moving_s + eased(said_.easing, u) * (p.end_moving_s - p.begin_moving_s);
+    return std::clamp(part_after(moved), p.from, p.to);
+}
+
+double pace::part(double t_s) const noexcept
+{
+    return part_within(at(t_s), t_s);
+}
+
+double pace::intensity(double t_s) const noexcept
+{
+    const phase& p = at(t_s);
+    return p.intensity * profile_at(said_.intensity, part_within(p, t_s));
+}
+
+double pace::arrival_s(double part) const noexcept
+{
+    const auto there = std::lower_bound(phases_.begin(), phases_.end(), part,
+                                        [](const phase& p, double v) noexcept { return p.to < v; });
+    const phase& p = there == phases_.end() ? phases_.back() : *there;
+    if (p.rests() || !(part > p.from))
+        return p.begin_s;
+    if (part >= p.to)
+        return p.end_s;
+    const double way = (moving_until(part) - p.begin_moving_s) / (p.end_moving_s - p.begin_moving_s);
+    return std::min(p.begin_s + uneased(said_.easing, way) * (p.end_s - p.begin_s), p.end_s);
+}
+
+std::vector<double> pace::bends() const
+{
+    std::vector<double> times;
+    auto next = stretches_.begin();
+    for (const phase& p : phases_) {
+        times.push_back(p.begin_s);
+        for (; next != stretches_.end() && next->part < p.to; ++next)
+            if (next->part > p.from)
+                times.push_back(arrival_s(next->part));
+    }
+    times.push_back(total_s_);
+    return times;
+}
+
+double pace::greatest(double from_part, double to_part) const noexcept
+{
+    return greatest_between(said_.intensity, from_part, to_part);
+}
+
+} // namespace tactor::detail

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// Where on its path a target is when, and when it comes to a part of it: both ways in closed form.
+#pragma once
+
+#include <vector>
+
+#include <tactor/movement.hpp>
+
+namespace tactor::detail {
+
+/// The part of the way after a part u of the time (0 to 1), and its inverse to the last digits.
+double eased(easing_kind k, double u) noexcept;
+double uneased(easing_kind k, double way) noexcept;
+
+/// Time that a way takes at the speeds of a movement, s, without rests.
+double time_at_speeds_s(const movement& m, double length_mm);
+
+/// \throws error (bad_input) for what no target can do; durations apart, which depend on the path.
+void check_movement(const movement& m);
+
+/// A movement in its own time, whatever the path: seconds from 0 to total_s().
+class pace {
+public:
+    /// `m` as check_movement() takes it, with `moving_s` > 0 between its rests.
+    pace(movement m, double moving_s);
+
+    double total_s() const noexcept { return total_s_; }
+    double rests_s() const noexcept { return total_s_ - moving_s_; }
+    double moving_s() const noexcept { return moving_s_; }
+    const movement& said() const noexcept { return said_; }
+
+    /// Part of the path at a time, clamped. O(log n).
+    double part(double t_s) const noexcept;
+    /// Factor on the intensity at a time. O(log n).
+    double intensity(double t_s) const noexcept;
+    /// When the target comes to a part of the path. O(log n).
+    double arrival_s(double part) const noexcept;
+    /// When a rest or a stretch between two speeds begins or ends, from 0 to total_s(), ascending. Between
+    /// two of these times part() is smooth.
+    std::vector<double> bends() const;
+    /// Upper bound of the intensity from one part to another.
+    double greatest(double from_part, double to_part) const noexcept;
+
+private:
+    /// A stretch between two speeds.
+    struct stretch {
+        double part = 0.0;
+        double width = 0.0;
+        double change = 0.0; ///< of the speed, as a part of the first
+        double begin_s = 0.0;
+        double unit_s = 0.0; ///< in which it would be crossed at its first speed
+    };
+    /// From rest to rest, or a rest.
+    struct phase {
+        double begin_s = 0.0;
+        double end_s = 0.0;
+        double from = 0.0; ///< part of the path
+        double to = 0.0;
+        double begin_moving_s = 0.0; ///< as if there were no rests and no easing
+        double end_moving_s = 0.0;
+        double intensity = 1.0;
+
+        bool rests() const noexcept { return from == to; }
+    };
+
+    void lay_stretches();
+    void lay_phases();
+    const phase& at(double t_s) const noexcept;
+    double part_within(const phase& p, double t_s) const noexcept;
+    double part_after(double moving_s) const noexcept;
+    double moving_until(double part) const noexcept;
+
+    movement said_;
+    double moving_s_;
+    double total_s_ = 0.0;
+    std::vector<stretch> stretches_;
+    std::vector<phase> phases_;
+};
+
+} // namespace tactor::detail

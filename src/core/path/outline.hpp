@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// A path before it is measured. Straight segments are vertices only, so a million of them stay light.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <tactor/geometry.hpp>
+
+#include "core/limits.hpp"
+#include "core/path/number.hpp"
+#include "core/path/shape.hpp"
+
+namespace tactor::detail {
+
+/// Segment i goes from vertex i to vertex i + 1. It is straight unless `curves` has it.
+struct outline {
+    struct curve {
+        std::size_t segment = 0;
+        shape form;
+    };
+
+    std::vector<point> vertices;
+    std::vector<curve> curves; ///< by ascending segment
+
+    // Segments without length are left out.
+    void line(point to);
+    void bezier(point c1, point c2, point to);
+    void quadratic(point c, point to);
+    void arc(const elliptic& a, point to);
+
+    bool has_segments() const noexcept { return vertices.size() > 1; }
+};
+
+outline mapped(outline o, const affine& m);
+
+/// A coordinate that is not finite or beyond max_mm, if there is one.
+std::optional<double> absurd_coordinate(const outline& o);
+
+} // namespace tactor::detail

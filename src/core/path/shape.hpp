@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+// Curved pieces of a path: cubic Beziers and arcs of ellipses, by a parameter from 0 to 1.
+#pragma once
+
+#include <array>
+#include <variant>
+#include <vector>
+
+#include <tactor/geometry.hpp>
+
+namespace tactor::detail {
+
+enum class axis { x, y };
+
+inline double coordinate(point p, axis a) noexcept
+{
+    return a == axis::x ? p.x_mm : p.y_mm;
+}
+
+inline point operator+(point a, point b) noexcept
+{
+    return {a.x_mm + b.x_mm, a.y_mm + b.y_mm};
+}
+
+inline point operator-(point a, point b) noexcept
+{
+    return {a.x_mm - b.x_mm, a.y_mm - b.y_mm};
+}
+
+inline point operator*(double k, point a) noexcept
+{
+    return {k * a.x_mm, k * a.y_mm};
+}
+
+/// From a to b; exact at both ends and, for a whole binary fraction u, in between.
+inline point between(point a, point b, double u) noexcept
+{
+    return u < 1.0 ? a + u * (b - a) : b;
+}
+
+struct cubic {
+    std::array<point, 4> p;
+};
+
+/// centre + u cos(angle) + v sin(angle), angle = from + sweep * t in radians. u and v are conjugate radii, so
+/// that an affine map of an arc is an arc.
+struct elliptic {
+    point centre;
+    point u;
+    point v;
+    double from = 0.0;
+    double sweep = 0.0;
+};
+
+using shape = std::variant<cubic, elliptic>;
+
+point position(const shape& c, double t) noexcept;
+
+/// Length of the derivative, mm per unit of t.
+double speed(const shape& c, double t) noexcept;
+
+/// The speed at t, and how fast it changes there.
+struct speed_change {
+    double speed = 0.0;
+    double rate = 0.0; ///< no number where the speed is 0
+};
+speed_change speed_and_rate(const shape& c, double t) noexcept;
+
+/// Length of the piece from one parameter to another, by Gauss-Legendre quadrature on fifteen nodes.
+double length_between(const shape& c, double from, double to) noexcept;
+
+/// Whether the speed is the same everywhere, but for rounding: an arc of a circle.
+bool is_even(const shape& c) noexcept;
+
+/// Where inside (0, 1) a coordinate turns round; ascending. Between them it is monotone.
+std::vector<double> turns(const shape& c, axis a);
+
+/// Where inside (0, 1) the speed is least or greatest; ascending. A cusp is among them.
+std::vector<double> speed_turns(const shape& c);
+
+/// Upper bound of the length, for tolerances.
+double rough_length(const shape& c) noexcept;
+
+/// x' = a x + c y + e, y' = b x + d y + f: the six numbers of SVG's matrix().
+struct affine {
+    double a = 1.0;
+    double b = 0.0;
+    double c = 0.0;
+    double d = 1.0;
+    double e = 0.0;
+    double f = 0.0;
+
+    point operator()(point p) const noexcept
+    {
+        return {a * p.x_mm + c * p.y_mm + e, b * p.x_mm + d * p.y_mm + f};
+    }
+    double determinant() const noexcept { return a * d - b * c; }
+};
+
+/// First `inner`, then `outer`.
+affine operator*(const affine& outer, const affine& inner) noexcept;
+
+shape mapped(const shape& c, const affine& m) noexcept;
+
+} // namespace tactor::detail

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// What the commands of path data draw.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "core/path/outline.hpp"
+
+namespace tactor::detail {
+
+/// 'm' as 'M'. What is no letter gives no letter.
+constexpr char upper(char c) noexcept
+{
+    return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+}
+
+/// The arguments of one command, as many as it has; flags are 0 or 1.
+using path_arguments = std::array<double, 7>;
+
+class path_pen {
+public:
+    /// One of M L H V C S Q T A; in lower case from where the pen is.
+    void draw(char command, const path_arguments& v);
+
+    /// Z: a line to where the subpath began. What follows without a move begins there too.
+    void close();
+
+    /// The subpaths that were drawn; leaves none.
+    std::vector<outline> take();
+
+private:
+    void move(point to);
+    void line(point to);
+    void cubic(point c1, point c2, point to);
+    void quadratic(point c, point to);
+    void arc(const path_arguments& v, point to);
+    void arrive(point to);
+    void finish();
+
+    std::vector<outline> drawn_;
+    outline open_;
+    bool draws_ = false; ///< something was drawn since the last move
+    point start_;
+    point at_;
+    // The last handle mirrored, where the last command was of the kind that S or T goes on with.
+    point cubic_handle_;
+    point quadratic_handle_;
+};
+
+/// The arc of A: the ellipse with radii rx and ry (signs do not matter) whose x axis is turned by `turn_deg`,
+/// from point to point, the longer or the shorter way round. Radii that do not reach grow together until they
+/// do. Nothing where it is a straight line, which it is with a radius of 0.
+/// https://www.w3.org/TR/SVG2/implnote.html#ArcImplementationNotes
+std::optional<elliptic> svg_arc(point from, double rx, double ry, double turn_deg, bool longer,
+                                bool clockwise, point to);
+
+} // namespace tactor::detail

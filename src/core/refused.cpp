@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#include "core/refused.hpp"
+
+#include <cerrno>
+#include <exception>
+#include <system_error>
+#include <utility>
+
+namespace tactor::detail {
+
+void throw_caused(error e)
+{
+    if (std::current_exception() != nullptr)
+        std::throw_with_nested(std::move(e));
+    throw std::move(e);
+}
+
+void throw_caused(error e, int code)
+{
+    if (code == 0)
+        throw_caused(std::move(e));
+    try {
+        throw std::system_error(code, std::generic_category());
+    } catch (...) {
+        throw_caused(std::move(e));
+    }
+}
+
+std::string_view advice_for(int code) noexcept
+{
+    switch (code) {
+    case EMFILE:
+        return "this process has too many files open: close some, or raise the limit (ulimit -n)";
+    case ENFILE:
+        return "the whole system has too many files open: see fs.file-max";
+    case EAGAIN:
+        return "the limit on threads may be reached: ulimit -u";
+    case ENOMEM:
+        return "the system is short of memory";
+    default:
+        return {};
+    }
+}
+
+void refused_by_system(std::string_view what, int code, std::string_view why)
+{
+    throw_caused(error(error_kind::runtime, what, why, advice_for(code)), code);
+}
+
+} // namespace tactor::detail

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What the system does not give: descriptors, threads, memory in the kernel.
+#pragma once
+
+#include <string_view>
+
+#include <tactor/error.hpp>
+
+namespace tactor::detail {
+
+/// Throws it; the exception that is being handled, if there is one, is nested in it as its cause.
+[[noreturn]] void throw_caused(error e);
+/// Throws it; its cause is what the system said: a std::system_error of that errno, where it is not 0.
+[[noreturn]] void throw_caused(error e, int code);
+
+/// What to do about an errno of that kind; empty for others.
+std::string_view advice_for(int code) noexcept;
+
+/// `why` says what was asked for, and the errno in words.
+/// \throws error (runtime), always, with its cause.
+[[noreturn]] void refused_by_system(std::string_view what, int code, std::string_view why);
+
+} // namespace tactor::detail

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#include "core/suggest.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace tactor::detail {
+namespace {
+
+constexpr std::size_t longest = 32; // no name of ours is longer
+
+// Case, hyphen and underscore are not what tells names apart.
+char folded(char c) noexcept
+{
+    if (c == '-' || c == ' ')
+        return '_';
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+// Edits from a to b, a swap of neighbours counting as one (Damerau-Levenshtein, restricted).
+std::size_t edits(std::string_view a, std::string_view b)
+{
+    std::array<std::array<std::size_t, longest + 1>, longest + 1> d{};
+    for (std::size_t i = 0; i <= a.size(); ++i)
+        d[i][0] = i;
+    for (std::size_t j = 0; j <= b.size(); ++j)
+        d[0][j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const bool same = folded(a[i - 1]) == folded(b[j - 1]);
+            d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (same ? 0 : 1)});
+            if (i > 1 && j > 1 && folded(a[i - 1]) == folded(b[j - 2]) &&
+                folded(a[i - 2]) == folded(b[j - 1]))
+                d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+        }
+    }
+    return d[a.size()][b.size()];
+}
+
+// "pitch" for "pitch_mm", "gain" for "gain_db": the unit forgotten, or another one.
+bool same_stem(std::string_view a, std::string_view b)
+{
+    const std::size_t n = std::min(a.size(), b.size());
+    if (n == 0)
+        return false;
+    const bool agree = std::equal(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(n), b.begin(),
+                                  [](char x, char y) { return folded(x) == folded(y); });
+    const std::string_view rest = a.size() > b.size() ? a : b;
+    return agree && (rest.size() == n || folded(rest[n]) == '_' || n >= 4);
+}
+
+} // namespace
+
+std::string_view nearest_name(std::string_view name, std::span<const std::string_view> known)
+{
+    if (name.empty() || name.size() > longest)
+        return {};
+    std::string_view best;
+    std::size_t best_edits = std::max<std::size_t>(1, name.size() / 3) + 1;
+    for (const std::string_view k : known) {
+        if (k.size() > longest)
+            continue;
+        const std::size_t e = same_stem(name, k) ? 1 : edits(name, k);
+        // A one-letter name is one edit from every other.
+        if (e < best_edits && e < std::max(name.size(), k.size())) {
+            best = k;
+            best_edits = e;
+        }
+    }
+    return best;
+}
+
+std::string suggestion(std::string_view name, std::span<const std::string_view> known, std::string_view kind)
+{
+    if (const std::string_view n = nearest_name(name, known); !n.empty())
+        return fmt::format("did you mean '{}'?", n);
+    return fmt::format("known {}: {}", kind, fmt::join(known, ", "));
+}
+
+std::string quoted(std::string_view name)
+{
+    constexpr std::size_t shown = 40;
+    std::string t = "'";
+    for (const char c : name.substr(0, shown))
+        t += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+    if (name.size() > shown) {
+        // Not in the middle of a character of several bytes.
+        while (!t.empty() && (static_cast<unsigned char>(t.back()) & 0xc0) == 0x80)
+            t.pop_back();
+        if (!t.empty() && static_cast<unsigned char>(t.back()) >= 0xc0)
+            t.pop_back();
+        t += "...";
+    }
+    return t + "'";
+}
+
+} // namespace tactor::detail

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// What is inside a trajectory.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include <tactor/stroke.hpp>
+
+#include "core/pace.hpp"
+#include "core/path/shape.hpp"
+
+namespace tactor {
+
+namespace detail {
+
+struct drawn_path {
+    path way;
+    double intensity;
+    std::shared_ptr<const pace> moves = {}; ///< none: at constant speed
+};
+
+// Shared by all that with_duration() makes of it.
+struct timed_points {
+    std::shared_ptr<const std::vector<timed_point>> points;
+    double length_mm;
+
+    double duration_s() const noexcept { return points->back().t_s; }
+};
+
+/// \throws error (bad_input) for what no stroke can have; `what` stands for it in messages.
+void check_duration(double duration_s);
+void check_intensity(std::string_view what, double intensity);
+
+} // namespace detail
+
+struct trajectory::impl {
+    std::variant<detail::drawn_path, detail::timed_points> law;
+    double duration_s = 0.0;
+    double gain = 1.0;
+
+    /// Time of a timed law at time t of this trajectory.
+    double own_time(const detail::timed_points& l, double t_s) const noexcept
+    {
+        const double own = l.duration_s();
+        return own == duration_s ? t_s : t_s / duration_s * own;
+    }
+
+    /// Time of a pace at time t of this trajectory, and the way back.
+    double pace_time(const detail::pace& p, double t_s) const noexcept
+    {
+        return p.total_s() == duration_s ? t_s : t_s / duration_s * p.total_s();
+    }
+    double time_of_pace(const detail::pace& p, double pace_s) const noexcept
+    {
+        return p.total_s() == duration_s ? pace_s : std::min(pace_s / p.total_s() * duration_s, duration_s);
+    }
+
+    /// When the target comes to an arc length of its path.
+    double arrival_s(const detail::drawn_path& l, double s_mm) const noexcept
+    {
+        const double length = l.way.length_mm();
+        return l.moves ? time_of_pace(*l.moves, l.moves->arrival_s(s_mm / length))
+                       : s_mm / length * duration_s;
+    }
+
+    /// The points before and after a time, and how far it is from one to the other (0 to 1).
+    struct bracket {
+        const timed_point* before;
+        const timed_point* after;
+        double part;
+    };
+
+    bracket find(const detail::timed_points& l, double t_s) const noexcept;
+    std::vector<double> meets(detail::axis a, double line) const;
+};
+
+} // namespace tactor

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+#include <tactor/stroke.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "core/path/meets.hpp"
+#include "core/path/outline.hpp"
+#include "core/trajectory/impl.hpp"
+#include "core/trajectory/limits.hpp"
+
+namespace tactor {
+namespace {
+
+using detail::axis;
+using detail::check_duration;
+using detail::check_intensity;
+using detail::drawn_path;
+using detail::timed_points;
+
+void check_point(const std::vector<timed_point>& points, std::size_t i)
+{
+    const timed_point& p = points[i];
+    const auto refuse = [i](std::string_view why, std::string_view hint) {
+        throw error(error_kind::bad_input, fmt::format("point {}", i + 1), why, hint);
+    };
+    if (!(std::abs(p.t_s) <= detail::longest_stroke_s))
+        refuse(fmt::format("time {:g} s", p.t_s),
+               fmt::format("a stroke takes at most {:g} s", detail::longest_stroke_s));
+    for (const double v : {p.position.x_mm, p.position.y_mm}) {
+        if (!(std::abs(v) <= detail::max_mm))
+            refuse(fmt::format("coordinate {:g} mm", v),
+                   fmt::format("it is at most {:g} mm", detail::max_mm));
+    }
+    check_intensity(fmt::format("point {}", i + 1), p.intensity);
+    if (i == 0 && p.t_s != 0.0)
+        refuse(fmt::format("time {} s", p.t_s), "the first time is 0");
+    if (i > 0 && !(p.t_s > points[i - 1].t_s))
+        refuse(fmt::format("time {} s is not after {} s", p.t_s, points[i - 1].t_s), "times ascend");
+}
+
+// Points as nodes for line_meetings.
+class timed_nodes {
+public:
+    timed_nodes(const std::vector<timed_point>& points, axis a, double line)
+        : points_(points), axis_(a), line_(line)
+    {
+    }
+    std::size_t size() const { return points_.size(); }
+    double off(std::size_t i) const { return detail::coordinate(points_[i].position, axis_) - line_; }
+    double when(std::size_t i) const { return points_[i].t_s; }
+    double length(std::size_t i, std::size_t j) const
+    {
+        double sum = 0.0;
+        for (; i < j; ++i)
+            sum += distance_mm(points_[i].position, points_[i + 1].position);
+        return sum;
+    }
+    double root(std::size_t i) const
+    {
+        return when(i) + (when(i + 1) - when(i)) * (off(i) / (off(i) - off(i + 1)));
+    }
+
+private:
+    const std::vector<timed_point>& points_;
+    axis axis_;
+    double line_;
+};
+
+} // namespace
+
+void detail::check_duration(double duration_s)
+{
+    if (!(duration_s > 0.0 && duration_s <= longest_stroke_s))
+        throw error(error_kind::bad_input, "duration", fmt::format("{:g} s", duration_s),
+                    fmt::format("it is more than 0 and at most {:g} s", longest_stroke_s));
+}
+
+void detail::check_intensity(std::string_view what, double intensity)
+{
+    if (!(intensity >= 0.0 && intensity <= max_intensity))
+        throw error(error_kind::bad_input, what, fmt::format("intensity {:g}", intensity),
+                    fmt::format("it is a factor from 0 to {:g}", max_intensity));
+}
+
+trajectory::impl::bracket trajectory::impl::find(const detail::timed_points& l, double t_s) const noexcept
+{
+    const std::vector<timed_point>& p = *l.points;
+    const double t = own_time(l, t_s);
+    if (!(t > 0.0))
+        return {&p.front(), &p.front(), 0.0};
+    if (t >= p.back().t_s || t_s >= duration_s)
+        return {&p.back(), &p.back(), 0.0};
+    const auto after = std::upper_bound(p.begin(), p.end(), t,
+                                        [](double v, const timed_point& q) noexcept { return v < q.t_s; });
+    const timed_point& a = *(after - 1);
+    return {&a, &*after, (t - a.t_s) / (after->t_s - a.t_s)};
+}
+
+std::vector<double> trajectory::impl::meets(axis a, double line) const
+{
+    std::vector<double> times;
+    if (!std::isfinite(line))
+        return times;
+    if (const auto* c = std::get_if<drawn_path>(&law)) {
+        times = a == axis::x ? c->way.meets_x(line) : c->way.meets_y(line);
+        for (double& t : times)
+            t = arrival_s(*c, t);
+        return times;
+    }
+    const auto& l = std::get<timed_points>(law);
+    const timed_nodes nodes(*l.points, a, line);
+    times = detail::line_meetings(nodes).find();
+    if (l.duration_s() == duration_s)
+        return times;
+    for (double& t : times)
+        t = t / l.duration_s() * duration_s;
+    return times;
+}
+
+trajectory::trajectory(std::shared_ptr<const impl> p) noexcept : impl_(std::move(p))
+{
+}
+
+trajectory trajectory::along(path p, double duration_s, double intensity)
+{
+    check_duration(duration_s);
+    check_intensity("stroke", intensity);
+    return trajectory(std::make_shared<impl>(impl{drawn_path{p, intensity, {}}, duration_s, 1.0}));
+}
+
+trajectory trajectory::timed(std::vector<timed_point> points)
+{
+    if (points.size() < 2)
+        throw error(error_kind::bad_input, "timed points", fmt::format("{} of at least 2", points.size()),
+                    "give where it starts and where it ends");
+    double length = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        check_point(points, i);
+        if (i > 0)
+            length += distance_mm(points[i - 1].position, points[i].position);
+    }
+    const double duration = points.back().t_s;
+    auto shared = std::make_shared<const std::vector<timed_point>>(std::move(points));
+    return trajectory(std::make_shared<impl>(impl{timed_points{std::move(shared), length}, duration, 1.0}));
+}
+
+trajectory trajectory::with_duration(double duration_s) const
+{
+    check_duration(duration_s);
+    return trajectory(std::make_shared<impl>(impl{impl_->law, duration_s, impl_->gain}));
+}
+
+trajectory trajectory::with_intensity(double factor) const
+{
+    check_intensity("stroke", factor);
+    return trajectory(std::make_shared<impl>(impl{impl_->law, impl_->duration_s, impl_->gain * factor}));
+}
+
+double trajectory::duration_s() const noexcept
+{
+    return impl_->duration_s;
+}
+
+double trajectory::length_mm() const noexcept
+{
+    if (const auto* c = std::get_if<drawn_path>(&impl_->law))
+        return c->way.length_mm();
+    return std::get_if<timed_points>(&impl_->law)->length_mm;
+}
+
+point trajectory::position(double t_s) const noexcept
+{
+    if (const auto* c = std::get_if<drawn_path>(&impl_->law)) {
+        const double part =
+            c->moves ? c->moves->part(impl_->pace_time(*c->moves, t_s)) : t_s / impl_->duration_s;
+        return c->way.at(part * c->way.length_mm());
+    }
+    const auto b = impl_->find(*std::get_if<timed_points>(&impl_->law), t_s);
+    return detail::between(b.before->position, b.after->position, b.part);
+}
+
+double trajectory::intensity(double t_s) const noexcept
+{
+    if (const auto* c = std::get_if<drawn_path>(&impl_->law))
+        return impl_->gain * c->intensity *
+               (c->moves ? c->moves->intensity(impl_->pace_time(*c->moves, t_s)) : 1.0);
+    const auto b = impl_->find(*std::get_if<timed_points>(&impl_->law), t_s);
+    return impl_->gain * (b.before->intensity + b.part * (b.after->intensity - b.before->intensity));
+}
+
+std::vector<double> trajectory::meets_x(double x_mm) const
+{
+    return impl_->meets(axis::x, x_mm);
+}
+
+std::vector<double> trajectory::meets_y(double y_mm) const
+{
+    return impl_->meets(axis::y, y_mm);
+}
+
+} // namespace tactor

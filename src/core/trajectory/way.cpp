@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#include "core/trajectory/way.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <variant>
+
+#include "core/access.hpp"
+#include "core/trajectory/impl.hpp"
+
+namespace tactor::detail {
+namespace {
+
+/// Greatest error of a line between two points, as a part of the smooth piece that it lies in.
+constexpr double straight_enough = 5e-5;
+
+/// Below it differences of parts are the last digits.
+constexpr double last_digits = 1e-12;
+
+/// Pieces of a smooth piece are no shorter than this part of its time.
+constexpr unsigned finest = 4096;
+
+/// Points as near to each other as two numbers can be are one: a frequency is a difference by a time.
+void add(std::vector<way_point>& way, way_point p)
+{
+    if (way.empty() || p.t_s > way.back().t_s)
+        way.push_back(p);
+    else
+        way.back().part = p.part;
+}
+
+/// Points of a pace between two of its bends, the first excluded: as many as lines between them need.
+void add_smooth(std::vector<way_point>& way, const pace& p, double from_s, double to_s)
+{
+    const auto when = [&](unsigned i) { return std::lerp(from_s, to_s, static_cast<double>(i) / finest); };
+    const double error = std::max(straight_enough * (p.part(to_s) - p.part(from_s)), last_digits);
+    const auto is_straight = [&](double begin_s, double end_s) {
+        const double begin = p.part(begin_s);
+        const double end = p.part(end_s);
+        // In its middle an S is on the line, too.
+        for (const double along : {0.25, 0.5, 0.75})
+            if (std::abs(p.part(std::lerp(begin_s, end_s, along)) - std::lerp(begin, end, along)) > error)
+                return false;
+        return true;
+    };
+    unsigned step = finest;
+    for (unsigned i = 0; i < finest;) {
+        while (step > 1 && !is_straight(when(i), when(i + step)))
+            step /= 2;
+        i += step;
+        add(way, {when(i), p.part(when(i))});
+        step = std::min(2 * step, finest - i);
+    }
+}
+
+std::vector<way_point> way_of(const pace& p)
+{
+    const std::vector<double> bends = p.bends();
+    std::vector<way_point> way{{0.0, 0.0}};
+    for (std::size_t i = 0; i + 1 < bends.size(); ++i)
+        add_smooth(way, p, bends[i], bends[i + 1]);
+    way.back().part = 1.0;
+    return way;
+}
+
+std::vector<way_point> way_of(const std::vector<timed_point>& points)
+{
+    std::vector<way_point> way;
+    way.reserve(points.size());
+    double behind_mm = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (i > 0)
+            behind_mm += distance_mm(points[i - 1].position, points[i].position);
+        way.push_back({points[i].t_s, behind_mm});
+    }
+    for (way_point& w : way)
+        w.part = behind_mm > 0.0 ? w.part / behind_mm : 0.0;
+    return way;
+}
+
+} // namespace
+
+std::vector<way_point> way_over_time(const trajectory& t)
+{
+    const trajectory::impl& d = access::of(t);
+    const auto* drawn = std::get_if<drawn_path>(&d.law);
+    if (drawn != nullptr && !drawn->moves)
+        return {{0.0, 0.0}, {d.duration_s, 1.0}};
+    const std::vector<way_point> own =
+        drawn != nullptr ? way_of(*drawn->moves) : way_of(*std::get<timed_points>(d.law).points);
+    // Made for another duration, it is as much faster or slower everywhere.
+    const double own_s = own.back().t_s;
+    std::vector<way_point> way;
+    way.reserve(own.size());
+    for (const way_point& w : own)
+        add(way, {own_s == d.duration_s ? w.t_s : w.t_s / own_s * d.duration_s, w.part});
+    return way;
+}
+
+} // namespace tactor::detail

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <unordered_map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tactor/array.hpp>
+
+#include "core/limits.hpp"
+#include "core/suggest.hpp"
+
+namespace tactor {
+namespace {
+
+using detail::max_mm;
+
+[[noreturn]] void refuse(const array& a, std::size_t i, const std::string& why, std::string_view hint)
+{
+    const source_place& at = a.tactors[i].where;
+    const bool known = at.line != 0 || !at.file.empty();
+    throw error(error_kind::bad_input, known ? at.text() : "array " + detail::quoted(a.name),
+                fmt::format("tactor {} {}", i, why), hint);
+}
+
+// "tactor 3", with its line where that is another.
+std::string other(const array& a, std::size_t i)
+{
+    const source_place& at = a.tactors[i].where;
+    return at.line != 0 ? fmt::format("tactor {} ({})", i, at.text()) : fmt::format("tactor {}", i);
+}
+
+void check_values(const array& a, std::size_t i)
+{
+    const tactor_spec& t = a.tactors[i];
+    for (const double v : {t.position.x_mm, t.position.y_mm})
+        if (!(std::abs(v) <= max_mm))
+            refuse(a, i, fmt::format("is at ({}, {}) mm", t.position.x_mm, t.position.y_mm),
+                   "coordinates are millimetres, within 1000000 of 0");
+    if (t.channel >= detail::max_tactors)
+        refuse(a, i, fmt::format("is on channel {}", t.channel), "channels count from 0");
+    if (!(t.gain_db >= detail::min_db && t.gain_db <= detail::max_gain_db))
+        refuse(a, i, fmt::format("has a gain of {} dB", t.gain_db), "allowed: -200 to 60");
+    if (!(t.max_dbfs >= detail::min_db && t.max_dbfs <= 0.0))
+        refuse(a, i, fmt::format("has a limit of {} dBFS", t.max_dbfs),
+               "0 dBFS is full scale; allowed: -200 to 0");
+    for (std::size_t k = 0; k < t.thresholds.size(); ++k) {
+        const threshold_point& p = t.thresholds[k];
+        const bool ascends = p.hz > (k == 0 ? 0.0 : t.thresholds[k - 1].hz) && std::isfinite(p.hz);
+        if (!ascends || !(p.dbfs >= detail::min_db && p.dbfs <= 0.0))
+            refuse(a, i, fmt::format("has a threshold of {} dBFS at {} Hz", p.dbfs, p.hz),
+                   "allowed: -200 to 0, in order of frequency");
+    }
+    if (t.rise_s && !(*t.rise_s > 0.0 && *t.rise_s <= 1.0))
+        refuse(a, i, fmt::format("has a rise time of {} s", *t.rise_s), "allowed: above 0 to 1");
+    if (t.threshold_dbfs && !(*t.threshold_dbfs >= detail::min_db && *t.threshold_dbfs <= 0.0))
+        refuse(a, i, fmt::format("has a threshold of {} dBFS", *t.threshold_dbfs), "allowed: -200 to 0");
+    if (t.polarity != 1 && t.polarity != -1)
+        refuse(a, i, fmt::format("has a polarity of {}", t.polarity),
+               "1, or -1 where it is wired the other way round");
+}
+
+// Tactors by cells of the size of the tolerance: whoever is too near is in a cell beside.
+class places_seen {
+public:
+    // The tactor that is already at p, if any.
+    const std::size_t* at(const array& a, point p) const
+    {
+        const auto [cx, cy] = cell(p);
+        for (std::int64_t y = cy - 1; y <= cy + 1; ++y)
+            for (std::int64_t x = cx - 1; x <= cx + 1; ++x) {
+                const auto range = seen_.equal_range(key(x, y));
+                for (auto it = range.first; it != range.second; ++it)
+                    if (distance_mm(a.tactors[it->second].position, p) <= same_place_mm)
+                        return &it->second;
+            }
+        return nullptr;
+    }
+
+    void add(point p, std::size_t i)
+    {
+        const auto [cx, cy] = cell(p);
+        seen_.emplace(key(cx, cy), i);
+    }
+
+private:
+    static std::pair<std::int64_t, std::int64_t> cell(point p)
+    {
+        return {std::llround(p.x_mm / same_place_mm), std::llround(p.y_mm / same_place_mm)};
+    }
+
+    // Mixed well (constants of splitmix64), so that a regular grid does not fall into few buckets.
+    static std::uint64_t key(std::int64_t x, std::int64_t y) noexcept
+    {
+        std::uint64_t h = static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15u + static_cast<std::uint64_t>(y);
+        h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9u;
+        h = (h ^ (h >> 27)) * 0x94d049bb133111ebu;
+        return h ^ (h >> 31);
+    }
+
+    std::unordered_multimap<std::uint64_t, std::size_t> seen_;
+};
+
+} // namespace
+
+void validate(const array& a)
+{
+    if (a.tactors.empty() || a.tactors.size() > detail::max_tactors)
+        throw error(error_kind::bad_input,
+                    a.where.line != 0 ? a.where.text() : "array " + detail::quoted(a.name),
+                    fmt::format("{} tactors", a.tactors.size()),
+                    fmt::format("an array has 1 to {}", detail::max_tactors));
+
+    places_seen places;
+    std::unordered_map<unsigned, std::size_t> channels;
+    for (std::size_t i = 0; i < a.tactors.size(); ++i) {
+        const tactor_spec& t = a.tactors[i];
+        check_values(a, i);
+        if (const std::size_t* j = places.at(a, t.position))
+            refuse(a, i,
+                   fmt::format("is at ({}, {}) mm, the place of {}", t.position.x_mm, t.position.y_mm,
+                               other(a, *j)),
+                   "give each tactor a place of its own");
+        if (const auto [it, fresh] = channels.emplace(t.channel, i); !fresh)
+            refuse(a, i, fmt::format("is on channel {}, that of {}", t.channel, other(a, it->second)),
+                   "give each tactor a channel of its own");
+        places.add(t.position, i);
+    }
+}
+
+} // namespace tactor

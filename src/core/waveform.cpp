@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+#include <tactor/waveform.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+#include <tactor/words.hpp>
+
+#include "core/kind_table.hpp"
+#include "core/path/number.hpp"
+#include "core/recording_name.hpp"
+
+namespace tactor {
+namespace {
+
+constexpr detail::kind_table<waveform_kind, 6> waveforms("waveform",
+                                                         {{waveform_kind::sine, "sine"},
+                                                          {waveform_kind::square, "square"},
+                                                          {waveform_kind::triangle, "triangle"},
+                                                          {waveform_kind::sawtooth, "sawtooth"},
+                                                          {waveform_kind::noise, "noise"},
+                                                          {waveform_kind::recording, "recording"}});
+
+constexpr detail::kind_table<texture_kind, 3> textures("texture", {{texture_kind::cycle, "cycle"},
+                                                                   {texture_kind::time, "time"},
+                                                                   {texture_kind::length, "length"}});
+
+constexpr double highest_hz = 384000.0;
+constexpr double highest_modulation_hz = 20000.0;
+constexpr double longest_texture_mm = 1e6;
+
+void check_noise(const waveform& w)
+{
+    // Not a number fails, too.
+    if (!(w.low_hz >= least_noise_hz && w.high_hz >= w.low_hz + least_noise_hz && w.high_hz <= highest_hz))
+        throw error(
+            error_kind::bad_input, "waveform",
+            fmt::format("noise from {} to {} Hz cannot be made", w.low_hz, w.high_hz),
+            "give frequencies from 1 Hz up, the second 1 Hz above the first or more, as noise:50-500");
+}
+
+void check_samples(const recording& r)
+{
+    const std::string what = detail::name_of(r);
+    if (r.samples.size() < 2 || r.samples.size() > most_recording_samples)
+        throw error(error_kind::bad_input, what,
+                    fmt::format("it has {}", counted(r.samples.size(), "sample")),
+                    fmt::format("give 2 to {}", most_recording_samples));
+    if (!(r.rate_hz >= 1.0 && r.rate_hz <= 1e6))
+        throw error(error_kind::bad_input, what, fmt::format("its rate is {} Hz", r.rate_hz),
+                    "give 1 to 1000000 Hz");
+    if (!std::all_of(r.samples.begin(), r.samples.end(), [](float x) { return std::isfinite(x); }))
+        throw error(error_kind::bad_input, what, "a sample of it is no number");
+    if (std::adjacent_find(r.samples.begin(), r.samples.end(), std::not_equal_to<>()) == r.samples.end())
+        throw error(error_kind::bad_input, what, "it is silence: its samples are all the same",
+                    "give a recording of a vibration");
+}
+
+void check_recording(const waveform& w)
+{
+    if (!w.recorded)
+        throw error(error_kind::bad_input, "waveform", "there are no samples of the recording",
+                    "give them as recorded");
+    check_samples(*w.recorded);
+    if (w.texture != texture_kind::time && w.recorded->samples.size() > most_cycle_samples)
+        throw error(error_kind::bad_input, detail::name_of(*w.recorded),
+                    fmt::format("{} are too many for texture {}",
+                                counted(w.recorded->samples.size(), "sample"), to_string(w.texture)),
+                    fmt::format("at most {}, which is 8 s at 8 kHz; or texture time", most_cycle_samples));
+    if (!(w.texture_mm >= 0.0 && w.texture_mm <= longest_texture_mm))
+        throw error(error_kind::bad_input, "texture_mm", fmt::format("{} mm is not a length", w.texture_mm),
+                    "give above 0 to 1000000, or 0 for the whole path");
+}
+
+// A number that ends where the text does, or at `end`.
+std::optional<double> number_until(std::string_view text, std::size_t& at, char end)
+{
+    const auto v = detail::scan_number(text, at);
+    return v && (at == text.size() || text[at] == end) ? v : std::nullopt;
+}
+
+} // namespace
+
+std::string_view to_string(waveform_kind k) noexcept
+{
+    return waveforms.name(k);
+}
+
+template <>
+waveform_kind from_string<waveform_kind>(std::string_view name)
+{
+    return waveforms.kind(name);
+}
+
+template <>
+std::span<const waveform_kind> values_of<waveform_kind>() noexcept
+{
+    return waveforms.kinds();
+}
+
+std::string_view to_string(texture_kind k) noexcept
+{
+    return textures.name(k);
+}
+
+template <>
+texture_kind from_string<texture_kind>(std::string_view name)
+{
+    return textures.kind(name);
+}
+
+template <>
+std::span<const texture_kind> values_of<texture_kind>() noexcept
+{
+    return textures.kinds();
+}
+
+bool operator==(const waveform& a, const waveform& b)
+{
+    if (a.kind != b.kind)
+        return false;
+    if (a.kind == waveform_kind::noise)
+        return a.low_hz == b.low_hz && a.high_hz == b.high_hz && a.seed == b.seed;
+    if (a.kind != waveform_kind::recording)
+        return true;
+    const bool same = a.recorded == b.recorded || (a.recorded && b.recorded && *a.recorded == *b.recorded);
+    return same && a.texture == b.texture && a.texture_mm == b.texture_mm;
+}
+
+std::string waveform_text(const waveform& w)
+{
+    if (w.kind == waveform_kind::noise)
+        return fmt::format("noise:{}-{}", w.low_hz, w.high_hz);
+    if (w.kind == waveform_kind::recording)
+        return w.recorded ? w.recorded->file : "";
+    return std::string(to_string(w.kind));
+}
+
+modulation parse_modulation(std::string_view text)
+{
+    modulation m;
+    std::size_t at = 0;
+    const auto hz = number_until(text, at, ':');
+    std::optional<double> depth = m.depth;
+    if (hz && at < text.size())
+        depth = number_until(text, ++at, '\0');
+    if (!hz || !depth)
+        throw error(error_kind::bad_input, "am", fmt::format("\"{}\" is not HZ or HZ:DEPTH", text),
+                    "such as 30 or 30:0.5");
+    m.hz = *hz;
+    m.depth = *depth;
+    validate(m);
+    return m;
+}
+
+void validate(const waveform& w)
+{
+    if (w.kind == waveform_kind::noise)
+        check_noise(w);
+    if (w.kind == waveform_kind::recording)
+        check_recording(w);
+}
+
+void validate(const modulation& m)
+{
+    if (!(m.hz >= 0.0 && m.hz <= highest_modulation_hz))
+        throw error(error_kind::bad_input, "am", fmt::format("{} Hz cannot modulate", m.hz),
+                    "give 0 to 20000 Hz; 0 is none");
+    if (!(m.depth >= 0.0 && m.depth <= 1.0))
+        throw error(error_kind::bad_input, "am", fmt::format("{} is not a depth", m.depth),
+                    "give 0 to 1, which goes down to silence");
+}
+
+} // namespace tactor

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// How the stream ends, with an amplifier behind it.
+#include "engine/audio/audio_loop.hpp"
+
+namespace tactor::engine {
+
+void audio_loop::ask_to_stop() noexcept
+{
+    if (!stop_asked_)
+        stop_asked_ns_ = now_ns_;
+    stop_asked_ = true;
+}
+
+void audio_loop::finish_when_silent() noexcept
+{
+    if (!scores_.empty())
+        return;
+    if (stop_frame_ == 0)
+        stop_frame_ = played_ + setup_.period_frames; // beyond the delay of the DAC itself
+    if (played_ >= stop_frame_)
+        finish(stop_why_, 0, true);
+}
+
+// A DAC that stops under an amplifier that is on pops: the line goes off first, as far as that can be
+// helped. `runs`: the stream is in order, so zeros are written meanwhile.
+void audio_loop::finish(reason why, int code, bool runs) noexcept
+{
+    if (phase_ == phase::over)
+        return;
+    if (phase_ == phase::closing) {
+        end_runs_ = false;
+        return;
+    }
+    scores_.interrupt(why, code, played_, false);
+    end_why_ = why;
+    end_code_ = code;
+    end_runs_ = runs;
+    closing_ns_ = now_ns_;
+    phase_ = phase::closing;
+    // See amplifier_driver::switch_on().
+    link_.amplifier.ending.store(true, std::memory_order_seq_cst);
+    if (link_.amplifier.off.load(std::memory_order_seq_cst))
+        end();
+}
+
+void audio_loop::close_step(io_kind ready, std::int64_t now) noexcept
+{
+    if (link_.amplifier.off.load(std::memory_order_seq_cst) ||
+        link_.amplifier.stuck.load(std::memory_order_seq_cst) || now - closing_ns_ >= options_.off_ns)
+        return end();
+    if (!end_runs_)
+        return;
+    if (ready == io_kind::ok || (ready == io_kind::again && idle_steps_ > 2))
+        write_periods(now);
+    else if (ready != io_kind::again)
+        end_runs_ = false;
+}
+
+void audio_loop::end() noexcept
+{
+    sink_.drop();
+    tell_clock({});
+    phase_ = phase::over;
+    // Whatever else it was: this is what somebody has to do something about.
+    if (!link_.amplifier.off.load(std::memory_order_seq_cst)) {
+        link_.amplifier.stuck.store(true, std::memory_order_seq_cst);
+        end_why_ = reason::left_on;
+    }
+    link_.reports.push({.what = report::kind::stream_over, .why = end_why_, .code = end_code_});
+}
+
+void audio_loop::obey_amplifier() noexcept
+{
+    if (phase_ != phase::running && phase_ != phase::suspended)
+        return;
+    const std::uint32_t mutes = link_.amplifier.mutes.load(std::memory_order_acquire);
+    if (mutes != mutes_)
+        scores_.mute();
+    mutes_ = mutes;
+    if (link_.amplifier.failed.load(std::memory_order_acquire) && stop_why_ == reason::none) {
+        ask_to_stop();
+        stop_why_ = reason::amplifier;
+        scores_.stop(state_kind::interrupted, reason::amplifier);
+    }
+}
+
+} // namespace tactor::engine

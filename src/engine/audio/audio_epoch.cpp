@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+// How the stream starts, breaks, comes back and ends.
+#include <algorithm>
+#include <cerrno>
+
+#include "engine/audio/audio_loop.hpp"
+#include "rt/clock.hpp"
+
+namespace tactor::engine {
+namespace {
+
+// snd_pcm_resume() may say "not yet" for ever; a device needs some seconds at most.
+constexpr std::int64_t longest_resume = 10 * rt::ns_per_s;
+
+reason to_reason(io_kind s) noexcept
+{
+    switch (s) {
+    case io_kind::xrun:
+        return reason::xrun;
+    case io_kind::suspended:
+        return reason::suspended;
+    case io_kind::lost:
+        return reason::lost;
+    default:
+        return reason::failed;
+    }
+}
+
+} // namespace
+
+io_result audio_loop::start(std::int64_t now) noexcept
+{
+    now_ns_ = now;
+    const io_result r = begin_epoch();
+    if (r.status == io_kind::ok) {
+        phase_ = phase::running;
+        moved(now);
+        publish();
+    }
+    return r;
+}
+
+io_result audio_loop::begin_epoch() noexcept
+{
+    mixer_.reset();
+    pending_ = 0;
+    played_ = 0;
+    clock_.begin_epoch(offset_);
+    tell_clock(clock_.line());
+    if (const io_kind s = sink_.prepare(); s != io_kind::ok)
+        return {s, 0, 0};
+    std::size_t filled = 0;
+    while (filled < setup_.buffer_frames && pending_ == 0) {
+        mix_period();
+        const io_result r = write_pending();
+        if (r.status != io_kind::ok && r.status != io_kind::again)
+            return r;
+        filled += r.frames;
+    }
+    if (filled == 0)
+        return {io_kind::failed, 0, -EIO};
+    epoch_ns_ = now_ns_;
+    return {sink_.start(), filled, 0};
+}
+
+void audio_loop::broken(io_kind s, int code, std::int64_t now) noexcept
+{
+    if (phase_ == phase::closing) {
+        end_runs_ = end_runs_ && (s == io_kind::ok || s == io_kind::again);
+        return; // nothing sounds any more: it only waits for the amplifier
+    }
+    switch (s) {
+    case io_kind::ok:
+    case io_kind::again:
+        return;
+    case io_kind::xrun:
+        link_.count.count_xrun(sink_.xrun_ns());
+        // It stopped because it had played everything.
+        silence_all(reason::xrun, code, mixer_.position() - pending_);
+        return too_often(now) ? finish(reason::lost, -EPIPE) : restart(now);
+    case io_kind::suspended:
+        silence_all(reason::suspended, code, played_);
+        phase_ = phase::suspended;
+        suspended_ns_ = now;
+        return;
+    case io_kind::lost:
+    case io_kind::failed:
+        return finish(to_reason(s), code);
+    }
+}
+
+// Nothing resumes in mid-burst: what had begun ends here, what had not is handed over again later.
+void audio_loop::silence_all(reason why, int code, std::uint64_t played) noexcept
+{
+    note_starts(played);
+    scores_.interrupt(why, code, played, !stop_asked_);
+    offset_ += mixer_.position();
+    tell_clock({});
+    mixer_.reset();
+    pending_ = 0;
+    played_ = 0;
+}
+
+void audio_loop::try_resume(std::int64_t now) noexcept
+{
+    if (stop_asked_)
+        return finish(stop_why_, 0);
+    scores_.look_at_wishes(); // no mix does
+    if (sink_.resume() == io_kind::again && now - suspended_ns_ < longest_resume)
+        return;
+    // Resumed or not, a fresh epoch: what the buffer held belongs to strokes that were interrupted.
+    restart(now);
+}
+
+void audio_loop::restart(std::int64_t now) noexcept
+{
+    if (stop_asked_)
+        return finish(stop_why_, 0);
+    io_result r = begin_epoch();
+    while (r.status == io_kind::xrun) {
+        if (too_often(now))
+            return finish(reason::lost, -EPIPE);
+        r = begin_epoch();
+    }
+    if (r.status == io_kind::ok) {
+        phase_ = phase::running;
+        moved(now);
+    } else if (r.status == io_kind::suspended) {
+        phase_ = phase::suspended; // not awake yet: once more in the next period
+        suspended_ns_ = now;
+    } else {
+        finish(to_reason(r.status), r.code);
+    }
+}
+
+bool audio_loop::too_often(std::int64_t now) noexcept
+{
+    std::int64_t& oldest = recoveries_[recovered_ % recoveries_.size()];
+    if (recovered_ >= recoveries_.size() && now - oldest < rt::ns_per_s)
+        return true;
+    oldest = now;
+    ++recovered_;
+    return false;
+}
+
+} // namespace tactor::engine

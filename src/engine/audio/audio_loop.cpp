@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: MIT
+#include "engine/audio/audio_loop.hpp"
+
+#include <algorithm>
+#include <cerrno>
+
+namespace tactor::engine {
+namespace {
+
+// From the wish to stop: nobody waits longer for a fade.
+constexpr std::int64_t longest_stop_ns = 400'000'000;
+
+// From so many wake-ups in vain on, descriptors are not trusted: the loop sleeps instead of spinning.
+constexpr unsigned many_idle_steps = 16;
+
+// Drives of the mixer that scores may not use up.
+std::size_t live_reserve(const stream_setup& s) noexcept
+{
+    return live_voices * live_drives(s.channels, s.period_frames, s.rate);
+}
+
+template <typename T>
+void raise_to(std::atomic<T>& a, T value) noexcept
+{
+    if (value > a.load(std::memory_order_relaxed))
+        a.store(value, std::memory_order_relaxed);
+}
+
+template <typename T>
+void lower_to(std::atomic<T>& a, T value) noexcept
+{
+    if (value < a.load(std::memory_order_relaxed))
+        a.store(value, std::memory_order_relaxed);
+}
+
+} // namespace
+
+audio_loop::audio_loop(sink& s, link& l, std::span<const double> limits, const loop_options& o)
+    : sink_(s),
+      link_(l),
+      options_(o),
+      setup_(s.setup()),
+      mixer_(limits, setup_.format, o.drives + live_reserve(setup_), o.guards),
+      scores_(mixer_, l, o.fade_frames, live_reserve(setup_)),
+      clock_(setup_.rate, setup_.batch ? setup_.period_frames : 0),
+      frame_bytes_(setup_.channels * bytes_of(setup_.format)),
+      block_(setup_.period_frames * frame_bytes_)
+{
+    mixer_.resume(o.driven);
+    l.amplifier.ready.store(!o.amplifier, std::memory_order_relaxed);
+}
+
+void audio_loop::step(io_kind ready, std::int64_t now) noexcept TACTOR_NONBLOCKING
+{
+    ++idle_steps_;
+    now_ns_ = now;
+    take_requests();
+    obey_amplifier();
+    switch (phase_) {
+    case phase::idle:
+    case phase::over:
+        return;
+    case phase::closing:
+        close_step(ready, now);
+        break;
+    case phase::suspended:
+        try_resume(now);
+        break;
+    case phase::running:
+        take_commands();
+        // Twice in vain: perhaps a wake-up was lost, or the state changed without one.
+        if (ready == io_kind::ok || (ready == io_kind::again && idle_steps_ > 2))
+            write_periods(now);
+        else if (ready != io_kind::again)
+            broken(ready, 0, now);
+        break;
+    }
+    if (phase_ == phase::running) {
+        look_at_position(now);
+        scores_.update(played_);
+        if (stop_asked_)
+            finish_when_silent();
+    }
+    // In a long buffer the fade would be heard when all that was written before it is.
+    if (phase_ == phase::running && stop_asked_ && now - stop_asked_ns_ >= longest_stop_ns)
+        finish(stop_why_, 0, true);
+    // Both, so that a process that was stopped and goes on is not taken for a dead device.
+    if (phase_ == phase::running && idle_steps_ >= 4 && now - moved_ns_ > options_.stall_ns)
+        finish(reason::lost, -ETIMEDOUT);
+    publish();
+}
+
+bool audio_loop::polls_sink() const noexcept
+{
+    return (phase_ == phase::running || (phase_ == phase::closing && end_runs_)) &&
+           idle_steps_ < many_idle_steps;
+}
+
+std::int64_t audio_loop::timeout_ns() const noexcept
+{
+    const std::int64_t period =
+        std::int64_t{setup_.period_frames} * 1'000'000'000 / std::max<std::int64_t>(setup_.rate, 1);
+    const std::int64_t normal = polls_sink() ? 4 * period : period;
+    if (phase_ == phase::running && stop_asked_)
+        return std::min(normal, std::max<std::int64_t>(stop_asked_ns_ + longest_stop_ns - now_ns_, 0));
+    return phase_ == phase::closing ? std::min(normal, longest_stop_ns) : normal;
+}
+
+void audio_loop::take_requests() noexcept
+{
+    request r;
+    while (link_.requests.pop(r)) {
+        switch (r.what) {
+        case request::kind::cancel:
+            scores_.cancel(r.score);
+            break;
+        case request::kind::live:
+            scores_.begin_live(r);
+            break;
+        case request::kind::stop:
+            if (!stop_asked_)
+                scores_.stop(r.closing);
+            ask_to_stop();
+            break;
+        }
+    }
+}
+
+void audio_loop::take_commands() noexcept
+{
+    const std::size_t waiting = link_.commands.size();
+    std::size_t n = 0;
+    for (; n < waiting && take(*link_.commands.front()); ++n)
+        link_.commands.drop_front();
+    // The feeder is not woken for each bit of room: what it waits for is at most a quarter of the ring.
+    if (n == 0 || waiting - n > link_.commands.capacity() - link_.commands.capacity() / 4)
+        return;
+    // Either the feeder sees the room when it looks again, or this thread sees that it waits.
+    std::atomic_thread_fence(std::memory_order_seq_cst);
+    if (link_.feeder_waits.exchange(false, std::memory_order_seq_cst))
+        link_.to_control.signal();
+}
+
+bool audio_loop::take(const command& c) noexcept
+{
+    // Nothing begins before the amplifier is on and settled; the ring waits with it.
+    const bool held = !stop_asked_ && !link_.amplifier.ready.load(std::memory_order_acquire);
+    switch (c.what) {
+    case command::kind::begin:
+        if (scores_.called_off(c.score))
+            return true;
+        if (held)
+            return false;
+        scores_.begin(c, offset_);
+        return true;
+    case command::kind::drive:
+        return scores_.add(c);
+    case command::kind::end:
+        scores_.end(c.score);
+        return true;
+    case command::kind::fail:
+        scores_.fail(c.score, c.at);
+        return true;
+    }
+    return true;
+}
+
+void audio_loop::mix_period() noexcept
+{
+    scores_.render_live(setup_.period_frames, offset_);
+    scores_.fade_what_failed(setup_.period_frames);
+    // Drives that wait for room in the mixer are there in time.
+    if (link_.commands.size() == 0)
+        scores_.fade_what_runs_out(setup_.period_frames);
+    mixer_.process(setup_.period_frames, block_.data());
+    pending_ = setup_.period_frames;
+    pending_from_ = 0;
+    link_.count.periods.fetch_add(1, std::memory_order_relaxed);
+    link_.count.limited.store(mixer_.limited(), std::memory_order_relaxed);
+    link_.count.power_limited.store(mixer_.power_limited(), std::memory_order_relaxed);
+    link_.count.drives_cut.store(mixer_.drives_cut(), std::memory_order_relaxed);
+}
+
+io_result audio_loop::write_pending() noexcept
+{
+    const io_result r = sink_.write(block_.data() + pending_from_ * frame_bytes_, pending_);
+    const std::size_t taken = std::min(r.frames, pending_);
+    pending_ -= taken;
+    pending_from_ += taken;
+    link_.count.frames.fetch_add(taken, std::memory_order_relaxed);
+    return {r.status, taken, r.code};
+}
+
+void audio_loop::write_periods(std::int64_t now) noexcept
+{
+    const io_result room = sink_.room();
+    if (room.status != io_kind::ok)
+        return broken(room.status, room.code, now);
+    std::size_t left = room.frames;
+    if (left > setup_.period_frames)
+        raise_to<std::uint64_t>(link_.count.late_frames, left - setup_.period_frames);
+
+    // Bounded also where a device claims more room than it has buffer.
+    left = std::min<std::size_t>(left, setup_.buffer_frames);
+    while (left > 0) {
+        if (pending_ == 0) {
+            if (left < setup_.period_frames)
+                break;
+            take_commands();
+            if (scores_.being_fed())
+                lower_to<std::uint64_t>(link_.count.low_water, mixer_.size());
+            mix_period();
+        }
+        const io_result r = write_pending();
+        if (r.frames > 0)
+            moved(now);
+        if (r.status == io_kind::again || (r.status == io_kind::ok && r.frames == 0))
+            break;
+        if (r.status != io_kind::ok)
+            return broken(r.status, r.code, now);
+        left -= std::min(r.frames, left);
+    }
+}
+
+void audio_loop::look_at_position(std::int64_t now) noexcept
+{
+    const stream_position p = sink_.position();
+    if (!p.valid || p.played <= played_)
+        return;
+    played_ = p.played;
+    clock_.add(p.time_ns, offset_ + p.played);
+    tell_clock(clock_.line());
+    note_starts(played_);
+    moved(now);
+}
+
+void audio_loop::note_starts(std::uint64_t played) noexcept
+{
+    clock_line line = clock_.line();
+    if (!line.valid()) {
+        // An xrun before the first look: all that is known is when the DAC was started.
+        line.frame = offset_;
+        line.time_ns = epoch_ns_;
+        line.ns_per_frame = 1e9 / std::max(setup_.rate, 1U);
+    }
+    scores_.note_starts(played, offset_, line);
+}
+
+void audio_loop::moved(std::int64_t now) noexcept
+{
+    moved_ns_ = now;
+    idle_steps_ = 0;
+}
+
+// In this order: a pulse that the control side plans by the one is known to the sync thread by the other.
+void audio_loop::tell_clock(const clock_line& line) noexcept
+{
+    link_.sync_clock.store(line);
+    link_.clock.store(line);
+}
+
+void audio_loop::publish() noexcept
+{
+    stream_status s{.written = offset_ + mixer_.position(),
+                    .played = offset_ + played_,
+                    .running = phase_ == phase::running,
+                    .stage = static_cast<stream_stage>(phase_),
+                    .epoch = clock_.line().epoch,
+                    .epoch_played = played_};
+    scores_.describe(played_, s);
+    link_.status.store(s);
+    link_.amplifier.status.store(s);
+
+    const bool news = s.stage != told_stage_ || s.epoch != told_epoch_;
+    told_stage_ = s.stage;
+    told_epoch_ = s.epoch;
+    // Until strokes may sound, every frame that is played counts.
+    if (options_.amplifier && (news || !link_.amplifier.ready.load(std::memory_order_relaxed)))
+        link_.amplifier.wake.signal();
+
+    const bool hungry = s.written - told_ >= options_.horizon_frames / 8;
+    if (hungry)
+        told_ = s.written;
+    if (hungry || news || link_.reports.room() != link_.reports.capacity())
+        link_.to_control.signal();
+}
+
+} // namespace tactor::engine

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The audio thread's work, one step at a time: no threads and no clock of its own, so that tests can step
+/// it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <tactor/sink.hpp>
+
+#include "engine/audio/dac_clock.hpp"
+#include "engine/audio/device.hpp"
+#include "engine/audio/score_table.hpp"
+#include "engine/link.hpp"
+#include "rt/nonblocking.hpp"
+#include "synth/mix/mixer.hpp"
+
+namespace tactor::engine {
+
+struct loop_options {
+    std::uint32_t fade_frames = 480;
+    std::uint64_t horizon_frames = 24'000; ///< the control side is woken each eighth of it
+    std::int64_t stall_ns = 500'000'000;   ///< a device that stands still for so long is lost
+    std::size_t drives = 4096;             ///< capacity of the mixer
+    bool amplifier = false;                ///< somebody drives one after link::amplifier
+    /// How long the end waits for the amplifier to be off: a holder that hangs takes a second, and a line
+    /// that refuses is tried again for another.
+    std::int64_t off_ns = 2'000'000'000;
+    synth::guard_settings guards{};
+    synth::drive_history driven = {}; ///< what the array was given before, as of now
+};
+
+/// Owns the mixer and everything that happens to the stream. After the constructor no member but the
+/// destructor allocates, locks, throws or blocks. `now` is CLOCK_MONOTONIC in ns.
+class audio_loop {
+public:
+    audio_loop(sink& s, link& l, std::span<const double> limits, const loop_options& o);
+
+    /// First epoch: prepare, silence, start.
+    io_result start(std::int64_t now) noexcept;
+
+    /// One wake-up; `ready` is what the sink made of the descriptors, `again` when it was not asked.
+    void step(io_kind ready, std::int64_t now) noexcept TACTOR_NONBLOCKING;
+
+    /// Whether the stream has ended; the last report is in the ring then.
+    bool over() const noexcept { return phase_ == phase::over; }
+    /// Whether the sink's descriptors are worth polling now.
+    bool polls_sink() const noexcept;
+    /// What the array was given lately. Once the audio thread is through.
+    synth::drive_history driven() const { return mixer_.history(); }
+    /// Drives that wait or sound.
+    std::size_t drives() const noexcept { return mixer_.size(); }
+    /// When to wake up at the latest, ns from now.
+    std::int64_t timeout_ns() const noexcept;
+
+private:
+    enum class phase { idle, running, suspended, closing, over };
+
+    void take_requests() noexcept;
+    void take_commands() noexcept;
+    bool take(const command& c) noexcept;
+
+    io_result begin_epoch() noexcept;
+    io_result write_pending() noexcept;
+    void write_periods(std::int64_t now) noexcept;
+    void mix_period() noexcept;
+    void look_at_position(std::int64_t now) noexcept;
+    void note_starts(std::uint64_t played) noexcept;
+    void moved(std::int64_t now) noexcept;
+
+    void broken(io_kind s, int code, std::int64_t now) noexcept;
+    void silence_all(reason why, int code, std::uint64_t played) noexcept;
+    void try_resume(std::int64_t now) noexcept;
+    void restart(std::int64_t now) noexcept;
+    bool too_often(std::int64_t now) noexcept;
+    void finish(reason why, int code, bool runs = false) noexcept;
+    void close_step(io_kind ready, std::int64_t now) noexcept;
+    void end() noexcept;
+    void obey_amplifier() noexcept;
+    void ask_to_stop() noexcept;
+    void finish_when_silent() noexcept;
+    void tell_clock(const clock_line& line) noexcept;
+    void publish() noexcept;
+
+    device sink_;
+    link& link_;
+    loop_options options_;
+    stream_setup setup_;
+    synth::mixer mixer_;
+    score_table scores_;
+    dac_clock clock_;
+    std::size_t frame_bytes_;
+    std::vector<std::byte> block_; ///< one period
+    std::size_t pending_ = 0;      ///< frames of block_ that the sink has not taken yet
+    std::size_t pending_from_ = 0;
+
+    phase phase_ = phase::idle;
+    bool stop_asked_ = false;
+    std::int64_t stop_asked_ns_ = 0;
+    reason stop_why_ = reason::none;
+    std::uint32_t mutes_ = 0;       ///< link::amplifier's, as far as obeyed
+    bool end_runs_ = false;         ///< closing: the stream is fed with zeros meanwhile
+    reason end_why_ = reason::none; ///< closing
+    int end_code_ = 0;
+    std::int64_t now_ns_ = 0;
+    std::int64_t closing_ns_ = 0;
+    stream_stage told_stage_ = stream_stage::idle;
+    std::uint64_t told_epoch_ = 0;
+    std::uint64_t stop_frame_ = 0; ///< 0: not silent yet
+    std::uint64_t offset_ = 0;     ///< stream frame at which this epoch began
+    std::uint64_t played_ = 0;     ///< of this epoch
+    std::uint64_t told_ = 0;       ///< stream frame at which the control side was last woken
+    std::int64_t epoch_ns_ = 0;    ///< when the DAC was started
+    std::int64_t moved_ns_ = 0;    ///< when the stream last got on
+    unsigned idle_steps_ = 0;      ///< wake-ups since then
+    std::int64_t suspended_ns_ = 0;
+    std::array<std::int64_t, 3> recoveries_{};
+    std::size_t recovered_ = 0;
+};
+
+} // namespace tactor::engine

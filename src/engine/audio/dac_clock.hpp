@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// When which frame of the stream is at the DAC, in CLOCK_MONOTONIC. Pure: readings in, a line out.
+#pragma once
+
+#include <cstdint>
+
+namespace tactor::engine {
+
+/// Frames of the stream against time. Holds for its epoch only.
+struct clock_line {
+    std::uint64_t epoch = 0;   ///< number of the start of the DAC, from 1
+    std::uint64_t first = 0;   ///< stream frame at which the epoch began
+    std::uint64_t frame = 0;   ///< stream frame ...
+    std::int64_t time_ns = 0;  ///< ... that is at the DAC then
+    double ns_per_frame = 0.0; ///< 0: nothing is known yet
+    double error_ns = 0.0;     ///< standard deviation that the filter expects of time_ns
+
+    bool valid() const noexcept { return ns_per_frame > 0.0; }
+    /// CLOCK_MONOTONIC at which a frame is (was, will be) at the DAC. Only when valid.
+    std::int64_t time_of(std::uint64_t stream_frame) const noexcept;
+    /// The frame nearest to a time; 0 for times before the stream. Only when valid.
+    std::uint64_t frame_at(std::int64_t time) const noexcept;
+};
+
+/// Follows the DAC: a Kalman filter of two states (time, drift). At first it is a least-squares line, later a
+/// second-order DLL with a time constant of about a minute. The tests hold these bounds, with one reading a
+/// ms, errors of up to 1 ms either way and a drift of up to 1000 ppm: within 0.5 ms after 0.1 s, 0.1 ms after
+/// 5 s. Where the position moves by whole periods only, the first reading of each new position counts; the
+/// line is then late by the mean time between the device's interrupt and the reading.
+class dac_clock {
+public:
+    /// `batch_frames`: steps of the position; 0 where it moves frame by frame.
+    dac_clock(unsigned rate, unsigned batch_frames) noexcept;
+
+    /// The DAC starts again: what follows belongs to stream frames from `first` on.
+    void begin_epoch(std::uint64_t first) noexcept;
+    /// At `time_ns` the stream frame `frame` was at the DAC. A frame that is not beyond the latest is
+    /// ignored; a reading far off the line too, unless eight in a row are: then the line begins anew.
+    void add(std::int64_t time_ns, std::uint64_t frame) noexcept;
+
+    const clock_line& line() const noexcept { return line_; }
+    std::uint64_t rejected() const noexcept { return rejected_; }
+
+private:
+    void begin_line(std::int64_t time_ns, std::uint64_t frame) noexcept;
+
+    double nominal_; ///< ns per frame
+    double noise_;   ///< variance of a reading, ns^2
+    clock_line line_;
+    double fraction_ = 0.0; ///< of a ns, to line_.time_ns
+    double drift_ = 0.0;    ///< ns per ns
+    double p_time_ = 0.0;   ///< covariance
+    double p_cross_ = 0.0;
+    double p_drift_ = 0.0;
+    unsigned in_a_row_ = 0; ///< readings that were refused
+    std::uint64_t rejected_ = 0;
+};
+
+} // namespace tactor::engine

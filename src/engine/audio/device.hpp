@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The sink as the audio loop calls it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <tactor/sink.hpp>
+
+#include "rt/nonblocking.hpp"
+
+namespace tactor::engine {
+
+/// Its calls are the ones that may go to the kernel; ALSA locks a mutex of the handle's own, which only the
+/// audio thread has.
+class device {
+public:
+    explicit device(sink& s) noexcept : sink_(s) {}
+
+    io_kind prepare() noexcept
+    {
+        const rt::permitted_call here{};
+        return sink_.prepare();
+    }
+    io_kind start() noexcept
+    {
+        const rt::permitted_call here{};
+        return sink_.start();
+    }
+    io_kind resume() noexcept
+    {
+        const rt::permitted_call here{};
+        return sink_.resume();
+    }
+    std::int64_t xrun_ns() noexcept
+    {
+        const rt::permitted_call here{};
+        return sink_.xrun_ns();
+    }
+    io_result room() noexcept
+    {
+        const rt::permitted_call here{};
+        return sink_.room();
+    }
+    io_result write(const std::byte* data, std::size_t frames) noexcept
+    {
+        const rt::permitted_call here{};
+        return sink_.write(data, frames);
+    }
+    stream_position position() noexcept
+    {
+        const rt::permitted_call here{};
+        return sink_.position();
+    }
+    void drop() noexcept
+    {
+        const rt::permitted_call here{};
+        return sink_.drop();
+    }
+
+private:
+    sink& sink_;
+};
+
+} // namespace tactor::engine

@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: MIT
+#include "engine/audio/score_table.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+namespace tactor::engine {
+namespace {
+
+// Frames of a score that starts at `base` until frame `at`.
+std::uint64_t frames_until(std::uint64_t at, std::uint64_t base, std::uint64_t length) noexcept
+{
+    return at > base ? std::min(at - base, length) : 0;
+}
+
+} // namespace
+
+score_table::entry* score_table::find(ticket t) noexcept
+{
+    entry& e = entries_[place_of(t)];
+    return e.used && e.score == t ? &e : nullptr;
+}
+
+bool score_table::called_off(ticket t) noexcept
+{
+    std::uint32_t& waiting = called_off_[place_of(t)];
+    if (waiting == 0)
+        return false;
+    --waiting;
+    return true;
+}
+
+void score_table::begin(const command& c, std::uint64_t offset) noexcept
+{
+    entry& e = entries_[place_of(c.score)];
+    const std::uint64_t next = mixer_.position();
+    const std::uint64_t base = c.at > offset ? std::max(c.at - offset, next) : next;
+    e = {.score = c.score,
+         .id = c.id,
+         .base = base,
+         .length = c.length,
+         .finish = base + c.length,
+         .fade = fade_,
+         .used = true};
+    ++used_;
+    top_ = std::max(top_, place_of(c.score) + 1);
+    link_.reports.push({.what = report::kind::begun, .score = c.score, .frame = offset + base});
+    if (stopping_)
+        over(e, stop_state_, stop_reason_, 0, 0); // nothing is to begin any more
+}
+
+bool score_table::add(const command& c) noexcept
+{
+    entry* e = find(c.score);
+    if (e == nullptr || e->fading || e->fade_wanted)
+        return true;
+    synth::drive_event d = c.drive;
+    d.start += e->base;
+    if (d.start < mixer_.position()) {
+        // Half a burst would be a step on the skin.
+        want_fade(*e, state_kind::interrupted, why_late());
+        return true;
+    }
+    if (mixer_.room() <= reserve_ || !mixer_.add(d)) {
+        full_until_ = mixer_.position() + crowd_frames;
+        return false;
+    }
+    cover(*e, d);
+    return true;
+}
+
+reason score_table::why_late() const noexcept
+{
+    return mixer_.position() < full_until_ ? reason::crowded : reason::late;
+}
+
+// What ends before its window does is continued by another drive, unless it has come down to zero.
+void score_table::cover(entry& e, const synth::drive_event& d) noexcept
+{
+    const std::uint64_t end = d.start + d.length;
+    if (end < e.covered)
+        return;
+    const bool open = d.ramp_position + d.length < d.window &&
+                      std::any_of(d.drive.begin(), d.drive.begin() + d.drives,
+                                  [](const synth::channel_drive& c) { return c.to != 0.0; });
+    e.open = open || (e.open && end == e.covered);
+    e.covered = end;
+}
+
+void score_table::fade_what_runs_out(std::uint64_t period) noexcept
+{
+    const std::uint64_t next = mixer_.position();
+    for (std::uint32_t i = 0; i < top_; ++i) {
+        entry& e = entries_[i];
+        if (!e.used || !e.open || e.fed || e.fading || e.fade_wanted || e.broken != never)
+            continue;
+        if (e.covered >= next + 2 * period) {
+            e.ahead = true;
+        } else if (e.ahead && e.base < next) {
+            // Between one and two periods are left, as the last look found two; or none, and it is silent.
+            e.fade = static_cast<std::uint32_t>(std::min<std::uint64_t>(fade_, e.covered - next));
+            want_fade(e, state_kind::interrupted, why_late());
+        }
+    }
+}
+
+void score_table::end(ticket t) noexcept
+{
+    if (entry* e = find(t))
+        e->fed = true;
+}
+
+void score_table::fail(ticket t, std::uint64_t at) noexcept
+{
+    if (entry* e = find(t))
+        e->broken = e->base + at;
+}
+
+void score_table::fade_what_failed(std::uint64_t period) noexcept
+{
+    const std::uint64_t next = mixer_.position();
+    for (std::uint32_t i = 0; i < top_; ++i) {
+        entry& e = entries_[i];
+        if (!e.used || e.fading || e.fade_wanted || e.broken >= next + period + fade_)
+            continue;
+        e.fade = static_cast<std::uint32_t>(std::min<std::uint64_t>(fade_, std::max(e.broken, next) - next));
+        want_fade(e, state_kind::interrupted, reason::plan);
+    }
+}
+
+void score_table::cancel(ticket t) noexcept
+{
+    entry* e = find(t);
+    if (e == nullptr) {
+        // Over already, or still in the command ring: its place tells, for no ticket is used twice. The ring
+        // may stand still for seconds, so what is in it is reported here and dropped when it comes.
+        entry& place = entries_[place_of(t)];
+        if (place.score == t)
+            return;
+        place.score = t;
+        ++called_off_[place_of(t)];
+        link_.reports.push({.what = report::kind::over, .score = t, .state = state_kind::cancelled});
+        return;
+    }
+    want_fade(*e, state_kind::cancelled, reason::none);
+}
+
+void score_table::want_fade(entry& e, state_kind s, reason why) noexcept
+{
+    if (e.fading || e.fade_wanted)
+        return;
+    const std::uint64_t next = mixer_.position();
+    if (e.live != nullptr && e.base == never) {
+        over(e, s, why, 0, 0);
+        return;
+    }
+    if (e.live == nullptr && e.base >= next && e.length > 0 && mixer_.fade_out(e.score, 0)) {
+        over(e, s, why, 0, 0); // nothing of it has been mixed yet
+        return;
+    }
+    if (e.finish <= next && why != reason::late && why != reason::crowded && why != reason::plan)
+        return; // all of it is on its way to the DAC: it finishes
+    e.state = s;
+    e.why = why;
+    e.fade_wanted = true;
+    fade(e);
+}
+
+void score_table::fade(entry& e) noexcept
+{
+    // What follows its points has no drives beyond this period that the mixer could fade.
+    const bool follows = e.live != nullptr && !e.live->is_bursts();
+    if (follows)
+        e.live->fade(mixer_, e.fade);
+    else if (!mixer_.fade_out(e.score, e.fade))
+        return; // too many fades at once: again in the next period
+    close_live(e);
+    e.fading = true;
+    e.fade_wanted = false;
+    e.finish = mixer_.position() + e.fade;
+}
+
+void score_table::stop(bool closing) noexcept
+{
+    if (closing)
+        stop(state_kind::interrupted, reason::closed);
+    else
+        stop(state_kind::cancelled, reason::none);
+}
+
+void score_table::stop(state_kind s, reason why) noexcept
+{
+    stopping_ = true;
+    stop_state_ = s;
+    stop_reason_ = why;
+    for (std::uint32_t i = 0; i < top_; ++i) {
+        if (entries_[i].used)
+            want_fade(entries_[i], stop_state_, stop_reason_);
+    }
+}
+
+void score_table::mute() noexcept
+{
+    for (std::uint32_t i = 0; i < top_; ++i) {
+        entry& e = entries_[i];
+        if (!e.used || e.fading || e.fade_wanted || e.base == never)
+            continue;
+        if (e.base < mixer_.position() || e.live != nullptr || stopping_) {
+            want_fade(e, state_kind::interrupted, reason::muted);
+        } else if (mixer_.fade_out(e.score, 0)) {
+            link_.reports.push({.what = report::kind::returned, .score = e.score});
+            e.used = false;
+            --used_;
+        }
+    }
+}
+
+// The clock knows a frame best while it passes: before, it may not be known at all, and later the line may
+// be another one.
+void score_table::note_starts(std::uint64_t played, std::uint64_t offset, const clock_line& clock) noexcept
+{
+    for (std::uint32_t i = 0; i < top_ && used_ != 0; ++i) {
+        entry& e = entries_[i];
+        if (!e.used || e.started || e.base >= played)
+            continue;
+        e.started = true;
+        e.started_ns = clock.time_of(offset + e.base);
+    }
+}
+
+void score_table::update(std::uint64_t played) noexcept
+{
+    for (std::uint32_t i = 0; i < top_ && used_ != 0; ++i) {
+        entry& e = entries_[i];
+        if (!e.used)
+            continue;
+        if (e.fade_wanted)
+            fade(e);
+        if (e.fade_wanted || played < e.finish)
+            continue;
+        if (e.fading)
+            over(e, e.state, e.why, 0, frames_until(e.finish, e.base, e.length));
+        else if (e.fed)
+            over(e, state_kind::finished, reason::none, 0, e.length);
+    }
+}
+
+void score_table::interrupt(reason why, int code, std::uint64_t played, bool give_back) noexcept
+{
+    full_until_ = 0; // frames begin anew
+    for (std::uint32_t i = 0; i < top_; ++i) {
+        entry& e = entries_[i];
+        if (!e.used)
+            continue;
+        if (give_back && e.base == never)
+            continue; // a live stroke that waits for its first point goes on waiting
+        if (give_back && !e.fade_wanted && e.live == nullptr && e.base >= mixer_.position()) {
+            link_.reports.push({.what = report::kind::returned, .score = e.score});
+            e.used = false;
+            --used_;
+            continue;
+        }
+        const std::uint64_t frames = frames_until(played, e.base, e.length);
+        if (!e.fading && e.fed && frames == e.length)
+            over(e, state_kind::finished, reason::none, 0, frames);
+        else if ((e.fading || e.fade_wanted) && e.why == reason::none)
+            over(e, e.state, e.why, 0, frames); // it was cancelled, and it is silent now
+        else
+            over(e, state_kind::interrupted, why == reason::none ? e.why : why, code, frames);
+    }
+}
+
+void score_table::over(entry& e, state_kind s, reason why, int code, std::uint64_t frames) noexcept
+{
+    close_live(e);
+    if (e.sounds)
+        --live_sounding_;
+    e.sounds = false;
+    link_.reports.push({.what = report::kind::over,
+                        .score = e.score,
+                        .state = s,
+                        .why = why,
+                        .code = code,
+                        .frame = frames,
+                        .started = e.started && frames != 0,
+                        .started_ns = e.started_ns});
+    e.used = false;
+    --used_;
+}
+
+void score_table::describe(std::uint64_t played, stream_status& s) const noexcept
+{
+    const entry* newest = nullptr;
+    for (std::uint32_t i = 0; i < top_; ++i) {
+        const entry& e = entries_[i];
+        if (!e.used || played < e.base || played >= e.base + e.length)
+            continue;
+        if (newest == nullptr || std::tie(e.base, e.id) > std::tie(newest->base, newest->id))
+            newest = &e;
+    }
+    s.sounding = newest != nullptr;
+    s.stroke = newest != nullptr ? newest->id : stroke_id{};
+    s.stroke_frame = newest != nullptr ? played - newest->base : 0;
+}
+
+bool score_table::being_fed() const noexcept
+{
+    const std::uint64_t next = mixer_.position();
+    return std::any_of(entries_.begin(), entries_.begin() + top_, [next](const entry& e) {
+        return e.used && !e.fed && !e.fading && e.broken == never && e.base <= next;
+    });
+}
+
+} // namespace tactor::engine

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Drives the amplifier's line after what the audio thread says of the stream, and looks after that thread.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include <tactor/gpio.hpp>
+
+#include "amplifier/amplifier.hpp"
+#include "engine/link.hpp"
+
+namespace tactor::engine {
+
+struct driver_options {
+    amplifier_options amplifier{};
+    std::int64_t beat_ns = 40'000'000;       ///< the holder waits for 150 ms
+    std::int64_t watchdog_ns = 100'000'000;  ///< an audio thread that writes nothing for so long is stalled
+    std::int64_t retry_ns = 10'000'000;      ///< between two tries to switch off
+    std::int64_t persist_ns = 1'000'000'000; ///< an "off" that is refused is tried again for so long
+};
+
+/// One thread at a time, without one of its own. It may block in the line's set(), so this is neither the
+/// audio thread nor the one that runs the program's handlers, which could keep the holder waiting.
+class amplifier_driver {
+public:
+    /// `clock`: CLOCK_MONOTONIC, ns. The references must outlive it.
+    amplifier_driver(link& l, enable_line& line, const driver_options& o,
+                     std::function<std::int64_t()> clock);
+
+    /// After each wake-up, and next_ns() after the last one at the latest.
+    void update() noexcept;
+    std::int64_t next_ns() const noexcept;
+    /// Off at once, for good. What was refused is tried again by update(), while trying() is true.
+    void close() noexcept;
+    /// Whether an "off" was refused and is being tried again.
+    bool trying() const noexcept { return line_state_ == line_state::refused && !stuck_; }
+
+private:
+    void hear(const stream_status& s, std::int64_t now) noexcept;
+    void watch(const stream_status& s, std::int64_t now) noexcept;
+    void beat(std::int64_t now) noexcept;
+    void apply() noexcept;
+    void switch_on() noexcept;
+    void switch_off() noexcept;
+    void try_off() noexcept;
+    void fail() noexcept;
+
+    link& link_;
+    enable_line& line_;
+    driver_options options_;
+    std::function<std::int64_t()> clock_;
+    amplifier amplifier_;
+    enum class line_state { off, on, refused }; // refused: it was to go off, and may be on
+    line_state line_state_ = line_state::off;
+    bool stuck_ = false;          ///< refused for persist_ns
+    std::int64_t refused_ns_ = 0; ///< the first time
+    std::int64_t tried_ns_ = 0;   ///< the last time
+    stream_stage stage_ = stream_stage::idle;
+    std::uint64_t epoch_ = 0;
+    std::uint64_t xruns_ = 0;
+    std::uint64_t periods_ = 0;
+    std::int64_t idle_ns_ = 0; ///< for so long no period was written
+    std::int64_t updated_ns_ = 0;
+    std::int64_t beaten_ns_ = 0;
+    bool stalled_ = false;
+};
+
+} // namespace tactor::engine

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: MIT
+#include "engine/control/feeder.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <functional>
+#include <span>
+#include <utility>
+
+namespace tactor::engine {
+namespace {
+
+// Drives that strokes which begin together are given at once: the mixer has room for twice as many.
+constexpr std::size_t drives_ahead = 2048;
+
+} // namespace
+
+feeder::feeder(link& l, std::uint64_t horizon_frames) : link_(l), horizon_(horizon_frames)
+{
+    in_use_.reserve(voices);
+    next_.reserve(voices);
+    batch_.reserve(std::min(l.commands.capacity(), 2 + l.commands.capacity() / 8));
+}
+
+bool feeder::cancel(stroke_id id)
+{
+    if (cancel_waiting(id))
+        return true;
+    for (const std::uint32_t place : in_use_) {
+        slot& s = slots_[place];
+        if (s.use->id != id || s.use->cancelled)
+            continue;
+        s.use->cancelled = true;
+        s.use->fed = true;
+        link_.requests.push({.what = request::kind::cancel, .score = ticket_of(place), .closing = false});
+        return true;
+    }
+    return false;
+}
+
+void feeder::pump(std::uint64_t written, const clock_line& clock)
+{
+    clock_ = clock;
+    if (stream_over_)
+        return;
+    find_due(written);
+    look_at_waiting_live(written);
+    admit_live();
+    // While a score waits for room, the others may not use up what becomes free.
+    feed(written, admit(written) ? horizon_ : horizon_ / 2);
+}
+
+// Begins what is due within the horizon, the earliest first; false when the ring had too little room.
+bool feeder::admit(std::uint64_t written)
+{
+    const auto due = waiting_.upper_bound(written + horizon_);
+    std::size_t beginning = 0;
+    for (auto w = waiting_.begin(); w != due && in_use_.size() + beginning < voices; ++w)
+        ++beginning;
+    const std::size_t share = drives_ahead / std::max<std::size_t>(in_use_.size() + beginning, 1);
+    while (!waiting_.empty() && waiting_.begin()->first <= written + horizon_ && in_use_.size() < voices) {
+        if (!has_room(batch_.capacity()))
+            return false;
+        const auto& [at, t] = *waiting_.begin();
+        const bool soon = at <= written + horizon_ / 8;
+        const std::uint32_t place = take_slot({.id = t.id,
+                                               .music = t.music,
+                                               .due_ns = t.due_ns,
+                                               .at = at,
+                                               .source = synth::event_source(t.music)});
+        // What begins later is fed in time, in the order of all.
+        hand_over_beginning(*slots_[place].use, ticket_of(place), soon ? std::max<std::size_t>(share, 1) : 0);
+        waiting_.erase(waiting_.begin());
+    }
+    return true;
+}
+
+std::uint32_t feeder::take_slot(active a)
+{
+    const auto free = std::find_if(slots_.begin(), slots_.end(), [](const slot& s) { return !s.use; });
+    free->use = std::move(a);
+    const auto place = static_cast<std::uint32_t>(free - slots_.begin());
+    in_use_.push_back(place);
+    return place;
+}
+
+// The begin and its first drives become visible together: the audio thread starts the score as soon as it
+// sees the begin, and this thread may lose its processor at any point.
+void feeder::hand_over_beginning(active& a, ticket t, std::size_t drives)
+{
+    batch_.clear();
+    batch_.push_back(
+        {.what = command::kind::begin, .score = t, .id = a.id, .at = a.at, .length = a.music->frames()});
+    const std::size_t most = std::min(batch_.capacity(), 1 + drives);
+    while (batch_.size() < most && !a.fed) {
+        const synth::drive_event* e = a.source->peek();
+        if (e != nullptr && e->start > horizon_ / 8)
+            break;
+        batch_.push_back(next_command(a, t));
+    }
+    link_.commands.push(std::span<const command>(batch_));
+    urgent_ = true;
+}
+
+// Takes the next drive from the source, or its end.
+command feeder::next_command(active& a, ticket t)
+{
+    const synth::drive_event* e = a.source->peek();
+    if (e == nullptr) {
+        a.failure = a.source->failure(); // the first to be done: there may be no memory for it
+        a.fed = true;
+        if (!a.failure.empty())
+            return {.what = command::kind::fail, .score = t, .at = a.source->failed_at()};
+        return {.what = command::kind::end, .score = t};
+    }
+    command c{.what = command::kind::drive, .score = t, .drive = *e};
+    c.drive.score = t;
+    a.source->pop();
+    return c;
+}
+
+std::uint64_t feeder::next_start(active& a, std::uint64_t written) noexcept
+{
+    const synth::drive_event* e = a.source->peek();
+    // Until the audio thread says where it begins, what is certain is: not before this.
+    const std::uint64_t base = a.begun ? a.base : std::max(a.at, written);
+    return e != nullptr ? base + e->start : 0;
+}
+
+// Hands over drives, the one that starts first first, until there is none within the horizon, or no room.
+void feeder::feed(std::uint64_t written, std::uint64_t horizon)
+{
+    next_.clear();
+    for (std::uint32_t i = 0; i < in_use_.size(); ++i) {
+        active& a = *slots_[in_use_[i]].use;
+        if (!a.fed)
+            next_.push_back({next_start(a, written), i});
+    }
+    std::make_heap(next_.begin(), next_.end(), std::greater<>{});
+    while (!next_.empty() && next_.front().start <= written + horizon && has_room(1)) {
+        std::pop_heap(next_.begin(), next_.end(), std::greater<>{});
+        next_drive& n = next_.back();
+        const std::uint32_t place = in_use_[n.order];
+        active& a = *slots_[place].use;
+        link_.commands.push(next_command(a, ticket_of(place)));
+        if (a.fed) {
+            next_.pop_back();
+        } else {
+            n.start = next_start(a, written);
+            std::push_heap(next_.begin(), next_.end(), std::greater<>{});
+        }
+    }
+}
+
+bool feeder::has_room(std::size_t n)
+{
+    if (link_.commands.room() >= n)
+        return true;
+    // The audio thread either sees this flag after it made room, or the room is there already.
+    link_.feeder_waits.store(true, std::memory_order_seq_cst);
+    std::atomic_thread_fence(std::memory_order_seq_cst);
+    return link_.commands.room() >= n;
+}
+
+feeder::slot* feeder::slot_of(ticket t) noexcept
+{
+    slot& s = slots_[place_of(t)];
+    return s.use && s.generation == t / voices ? &s : nullptr;
+}
+
+void feeder::release(slot& s) noexcept
+{
+    const auto place = static_cast<std::uint32_t>(&s - slots_.data());
+    in_use_.erase(std::find(in_use_.begin(), in_use_.end(), place));
+    if (s.use->voice)
+        --live_in_use_;
+    s.use.reset();
+    // Wraps after 16 million uses of one place; 0 stays out.
+    s.generation = s.generation + 1 < UINT32_MAX / voices ? s.generation + 1 : 1;
+}
+
+void feeder::handle(const report& r)
+{
+    if (r.what == report::kind::stream_over)
+        return end_all(r);
+    slot* s = slot_of(r.score);
+    if (s == nullptr)
+        return;
+    active& a = *s->use;
+    if (r.what != report::kind::begun && ended_)
+        ended_(a.id);
+    switch (r.what) {
+    case report::kind::begun:
+        return begun(a, r.frame);
+    case report::kind::over:
+        over(a, r);
+        break;
+    case report::kind::returned:
+        if (a.cancelled)
+            tell({.id = a.id, .state = state_kind::cancelled, .frames = 0, .reason = {}});
+        else if (a.due_ns)
+            timed_.emplace(*a.due_ns, task{a.id, *a.music, a.due_ns});
+        else
+            waiting_.emplace(a.at, task{a.id, *a.music});
+        break;
+    case report::kind::stream_over:
+        return;
+    }
+    release(*s);
+}
+
+void feeder::end_all(const report& r)
+{
+    stream_reason_ = text(r.why, r.code);
+    const bool cut = r.why != reason::none || closing_;
+    const std::string why = r.why != reason::none ? stream_reason_ : cut ? text(reason::closed, 0) : "";
+    const auto end = [&](stroke_id id, bool cancelled) {
+        const auto state = cut && !cancelled ? state_kind::interrupted : state_kind::cancelled;
+        tell({.id = id, .state = state, .frames = 0, .reason = cancelled ? std::string() : why});
+    };
+    while (!in_use_.empty()) {
+        slot& s = slots_[in_use_.front()];
+        end(s.use->id, s.use->cancelled);
+        if (s.use->voice)
+            s.use->voice->close();
+        release(s);
+    }
+    // One by one, so that it can be called again where memory has run out.
+    const auto end_tasks = [&](auto& tasks) {
+        for (auto t = tasks.begin(); t != tasks.end(); t = tasks.erase(t))
+            end(t->second.id, false);
+    };
+    end_tasks(armed_);
+    end_tasks(waiting_);
+    end_tasks(timed_);
+    for (auto w = waiting_live_.begin(); w != waiting_live_.end(); w = waiting_live_.erase(w)) {
+        end(w->first, false);
+        w->second->close();
+    }
+    stream_over_ = true;
+}
+
+std::list<stroke_report> feeder::take_reports()
+{
+    return std::exchange(reports_, {});
+}
+
+bool feeder::knows(stroke_id id) const
+{
+    return waits(id) ||
+           std::any_of(in_use_.begin(), in_use_.end(),
+                       [&](std::uint32_t place) { return slots_[place].use->id == id; }) ||
+           std::any_of(reports_.begin(), reports_.end(), [id](const auto& r) { return r.id == id; });
+}
+
+} // namespace tactor::engine

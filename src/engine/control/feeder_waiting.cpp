@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+// What waits on the control side: for its frame, its time, a trigger or a free place.
+#include <algorithm>
+#include <utility>
+
+#include "engine/control/feeder.hpp"
+
+namespace tactor::engine {
+namespace {
+
+template <typename Tasks>
+auto find_task(Tasks& tasks, stroke_id id)
+{
+    return std::find_if(tasks.begin(), tasks.end(),
+                        [id](const auto& entry) { return entry.second.id == id; });
+}
+
+template <typename Tasks>
+bool erase_task(Tasks& tasks, stroke_id id)
+{
+    const auto found = find_task(tasks, id);
+    if (found == tasks.end())
+        return false;
+    tasks.erase(found);
+    return true;
+}
+
+// Seconds; within a frame is as good as it gets. The time that was asked for can be any number.
+double late(std::int64_t started_ns, std::int64_t due_ns, double ns_per_frame)
+{
+    std::int64_t d = 0;
+    const double ns = __builtin_sub_overflow(started_ns, due_ns, &d)
+                          ? static_cast<double>(started_ns) - static_cast<double>(due_ns)
+                          : static_cast<double>(d);
+    return ns > ns_per_frame ? ns * 1e-9 : 0.0;
+}
+
+} // namespace
+
+void feeder::submit(stroke_id id, const score& s, start_at start)
+{
+    switch (start.what()) {
+    case start_kind::frame:
+        waiting_.emplace(start.stream_frame(), task{id, s});
+        return;
+    case start_kind::time:
+        timed_.emplace(start.time_ns(), task{id, s, start.time_ns()});
+        return;
+    case start_kind::trigger:
+        armed_.emplace(id, task{id, s});
+        return;
+    }
+}
+
+void feeder::submit(stroke_id id, std::shared_ptr<live_voice> voice)
+{
+    waiting_live_.emplace(id, std::move(voice));
+}
+
+std::size_t feeder::fire(std::int64_t time_ns)
+{
+    const std::size_t n = armed_.size();
+    decltype(timed_) fired; // all or none, should memory run out
+    for (const auto& [id, t] : armed_)
+        fired.emplace(time_ns, task{t.id, t.music, time_ns});
+    timed_.merge(fired);
+    armed_.clear();
+    return n;
+}
+
+// Times become frames as late as that may be, when the clock knows best.
+void feeder::find_due(std::uint64_t written)
+{
+    while (!timed_.empty() && clock_.valid()) {
+        const auto next = timed_.begin();
+        const std::uint64_t at = clock_.frame_at(next->first);
+        if (at > written + horizon_)
+            return;
+        waiting_.emplace(at, std::move(next->second));
+        timed_.erase(next);
+    }
+}
+
+// As the audio thread does for those that it has.
+void feeder::look_at_waiting_live(std::uint64_t written)
+{
+    const std::uint64_t frames = written - std::exchange(seen_written_, written);
+    for (auto next = waiting_live_.begin(); next != waiting_live_.end();) {
+        live_voice& v = *next->second;
+        v.wait(frames);
+        const live_voice::wish asked = v.asked();
+        if (asked == live_voice::wish::cancel)
+            tell({.id = next->first, .state = state_kind::cancelled});
+        else if (asked == live_voice::wish::end && !v.has_point())
+            tell({.id = next->first, .state = state_kind::finished});
+        else if (v.starved())
+            tell({.id = next->first, .state = state_kind::interrupted, .reason = text(reason::starved, 0)});
+        else {
+            ++next;
+            continue;
+        }
+        v.close();
+        next = waiting_live_.erase(next);
+    }
+}
+
+void feeder::admit_live()
+{
+    while (!waiting_live_.empty() && live_in_use_ < live_places && in_use_.size() < voices) {
+        const auto next = waiting_live_.begin();
+        live_voice* const voice = next->second.get();
+        const std::uint32_t place =
+            take_slot({.id = next->first, .voice = std::move(next->second), .fed = true});
+        ++live_in_use_;
+        link_.requests.push(
+            {.what = request::kind::live, .score = ticket_of(place), .id = next->first, .voice = voice});
+        urgent_ = true;
+        waiting_live_.erase(next);
+    }
+}
+
+bool feeder::cancel_waiting(stroke_id id)
+{
+    if (!waits(id))
+        return false;
+    // Before it is forgotten: there may be no memory for it.
+    tell({.id = id, .state = state_kind::cancelled, .frames = 0, .reason = {}});
+    const auto live = waiting_live_.find(id);
+    if (live != waiting_live_.end()) {
+        live->second->close();
+        waiting_live_.erase(live);
+        return true;
+    }
+    return erase_task(waiting_, id) || erase_task(timed_, id) || erase_task(armed_, id);
+}
+
+bool feeder::waits(stroke_id id) const
+{
+    return armed_.contains(id) || waiting_live_.contains(id) || find_task(waiting_, id) != waiting_.end() ||
+           find_task(timed_, id) != timed_.end();
+}
+
+void feeder::begun(active& a, std::uint64_t frame)
+{
+    a.begun = true;
+    a.base = frame;
+    if (keeps_beginnings_)
+        beginnings_.push_back({a.id, frame});
+    if (begins_ && a.music) {
+        for (const std::uint64_t start : a.music->starts())
+            begins_(a.id, frame + start);
+    } else if (begins_) {
+        begins_(a.id, frame);
+    }
+    if (a.due_ns && clock_.valid() && frame >= clock_.first)
+        a.late_s = late(clock_.time_of(frame), *a.due_ns, clock_.ns_per_frame);
+    else if (!a.due_ns && a.at != 0 && frame > a.at && a.music)
+        a.late_s = static_cast<double>(frame - a.at) / a.music->rate();
+    else if (!a.due_ns)
+        a.late_s = 0.0;
+}
+
+void feeder::over(const active& a, const report& r)
+{
+    stroke_report told{.id = a.id,
+                       .state = r.state,
+                       .frames = r.frame,
+                       .reason = r.why == reason::plan ? a.failure : text(r.why, r.code),
+                       .late_s = a.late_s.value_or(0.0),
+                       .started_ns = {}};
+    if (r.started)
+        told.started_ns = r.started_ns;
+    if (r.started && a.due_ns && !a.late_s) // the clock was not known when it began
+        told.late_s = late(r.started_ns, *a.due_ns, 1e9 / a.music->rate());
+    tell(std::move(told));
+}
+
+void feeder::tell(stroke_report r)
+{
+    reports_.push_back(std::move(r));
+}
+
+} // namespace tactor::engine

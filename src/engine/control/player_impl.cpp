@@ -1,0 +1,423 @@
+// SPDX-License-Identifier: MIT
+#include "engine/control/player_impl.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <new>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+#include <poll.h>
+
+#include <tactor/error.hpp>
+#include <tactor/realtime.hpp>
+#include <tactor/words.hpp>
+
+#include "core/log.hpp"
+#include "core/refused.hpp"
+#include "rt/advice.hpp"
+#include "rt/clock.hpp"
+
+namespace tactor {
+namespace {
+
+// Reports that nobody asked for are kept for so long; a program that only uses the handler must not grow.
+constexpr std::size_t most_unread_reports = 4096;
+
+// At most ten minutes of any rate; also for what is not a number.
+std::uint32_t frames_of(double seconds, unsigned rate, const char* name)
+{
+    if (!(seconds >= 0.0 && seconds <= 600.0))
+        throw error(error_kind::bad_input, name, fmt::format("{} s", seconds), "give 0 to 600 s");
+    return static_cast<std::uint32_t>(std::lround(seconds * rate));
+}
+
+// What is handed over later than this would be late.
+std::uint64_t horizon_frames(const player_options& o, const stream_setup& s)
+{
+    const std::uint64_t least = 2 * std::uint64_t{s.buffer_frames} + 4 * std::uint64_t{s.period_frames};
+    return std::max<std::uint64_t>(frames_of(o.horizon_s, s.rate, "horizon"), least);
+}
+
+// As of now: what went by since counts as silence.
+synth::drive_history as_of_now(const drive_history::impl* h)
+{
+    if (h == nullptr)
+        return {};
+    synth::drive_history driven = h->channels;
+    driven.pass(static_cast<double>(rt::monotonic_ns() - h->taken_ns) * 1e-9);
+    return driven;
+}
+
+engine::loop_options loop_options(const player_options& o, const drive_history::impl* before,
+                                  const stream_setup& s, bool amplifier)
+{
+    engine::loop_options l;
+    l.fade_frames = frames_of(o.fade_s, s.rate, "fade");
+    l.horizon_frames = horizon_frames(o, s);
+    // Long periods make long pauses.
+    const std::int64_t periods = 16LL * s.period_frames * 1'000'000'000 / s.rate;
+    const auto asked = std::int64_t{frames_of(o.stall_s, 1'000'000, "stall")} * 1000;
+    l.stall_ns = std::max(periods, asked);
+    l.amplifier = amplifier;
+    l.guards = synth::guards_of(o.limits, s.rate);
+    l.driven = as_of_now(before);
+    return l;
+}
+
+// Of SCHED_FIFO, as far as there are any.
+int priority(const player_options& o, int higher)
+{
+    return std::clamp(std::clamp(o.priority, 1, 99) + higher, 1, 99);
+}
+
+rt::thread_options thread_options(const player_options& o)
+{
+    return {.name = "tactor-audio",
+            .fifo = o.realtime || o.require_realtime,
+            .priority = priority(o, 0),
+            .audio = true};
+}
+
+engine::driver_options driver_options(const player_lines& l, const stream_setup& s)
+{
+    const std::int64_t four_periods = 4LL * s.period_frames * 1'000'000'000 / s.rate;
+    engine::driver_options d;
+    d.amplifier.settle_ns = std::int64_t{frames_of(l.settle_s, 1'000'000, "settle")} * 1000;
+    d.amplifier.proof_frames = 2ULL * s.period_frames;
+    d.watchdog_ns = std::max(d.watchdog_ns, four_periods);
+    return d;
+}
+
+// Below the audio thread, which it looks after, but not behind everything else: the line's holder waits for
+// 150 ms only.
+rt::thread_options amplifier_thread_options(const player_options& o)
+{
+    return {.name = "tactor-amp", .fifo = o.realtime || o.require_realtime, .priority = priority(o, -5)};
+}
+
+// Before there are threads that an error would have to stop.
+player_lines checked(player_lines l, unsigned rate)
+{
+    frames_of(l.trigger_delay_s, rate, "trigger delay");
+    frames_of(l.settle_s, rate, "settle");
+    frames_of(l.pulse_s, rate, "pulse");
+    return l;
+}
+
+// A wait of a century is one without end: the clock must not run over.
+std::chrono::steady_clock::time_point deadline(double timeout_s)
+{
+    constexpr double century_s = 100.0 * 365.0 * 86400.0;
+    const double wait_s = timeout_s > 0.0 ? std::min(timeout_s, century_s) : 0.0;
+    return std::chrono::steady_clock::now() + std::chrono::nanoseconds(std::llround(wait_s * 1e9));
+}
+
+std::unique_ptr<sink> not_null(std::unique_ptr<sink> s)
+{
+    if (s == nullptr)
+        throw error(error_kind::bad_input, "player", "no sink", "open one with open_alsa()");
+    return s;
+}
+
+// Frames for channels that the stream does not have would be left out, and nobody would feel why.
+const array& fitting(const array& a, const stream_setup& s)
+{
+    for (std::size_t i = 0; i < a.tactors.size(); ++i)
+        if (a.tactors[i].channel >= s.channels)
+            throw error(error_kind::bad_input, "player",
+                        fmt::format("tactor {} of {} is on channel {}, but the stream has {} channel{}", i,
+                                    a.name, a.tactors[i].channel, s.channels, s.channels == 1 ? "" : "s"),
+                        fmt::format("open it with {}; they count from 0", counted(a.channels(), "channel")));
+    return a;
+}
+
+} // namespace
+
+player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines l)
+    : out(not_null(std::move(s))),
+      lines(checked(std::move(l), out->setup().rate)),
+      feed(link, horizon_frames(o, out->setup())),
+      tactors(fitting(a, out->setup())),
+      log(o.log, link, o.limits),
+      loop(*out, link, synth::channel_limits(a, out->setup().channels),
+           loop_options(o, o.driven.impl_.get(), out->setup(), lines.amplifier != nullptr)),
+      audio(loop, *out, link, thread_options(o))
+{
+}
+
+void player::impl::start(const player_options& o)
+{
+    try {
+        check_start(o);
+        log_start(o);
+        start_lines(o);
+        control = std::make_unique<engine::control_thread>(link.to_control, [weak = weak_from_this()] {
+            if (const auto alive = weak.lock())
+                alive->woken();
+        });
+        if (lines.trigger != nullptr)
+            listen();
+    } catch (...) {
+        link.requests.push({.what = engine::request::kind::stop, .closing = true});
+        link.to_audio.signal();
+        audio.join();
+        control.reset();
+        amplifier.reset();
+        throw;
+    }
+}
+
+void player::impl::listen()
+{
+    const int fd = lines.trigger->descriptor();
+    try {
+        control->watch(fd, [this] { return edges(); });
+    } catch (const std::system_error& e) {
+        if (e.code() != std::errc::bad_file_descriptor && e.code() != std::errc::operation_not_permitted)
+            throw;
+        detail::throw_caused(error(
+            error_kind::bad_input, "trigger", fmt::format("its descriptor {}: {}", fd, e.code().message()),
+            "edge_input::descriptor() is one that can be polled, and open as long as the input"));
+    }
+}
+
+void player::impl::start_lines(const player_options& o)
+{
+    if (lines.amplifier != nullptr)
+        amplifier = std::make_unique<engine::amplifier_thread>(
+            link, *lines.amplifier, driver_options(lines, out->setup()), amplifier_thread_options(o));
+    if (lines.sync_out == nullptr)
+        return;
+    // Above the audio thread: it sleeps nearly always, and what it does takes microseconds.
+    const rt::thread_options t{.name = "tactor-sync",
+                               .fifo = o.realtime || o.require_realtime,
+                               .priority = priority(o, 1),
+                               .audio = true};
+    pulses = std::make_unique<engine::trigger_thread>(
+        link, *lines.sync_out, std::int64_t{frames_of(lines.pulse_s, 1'000'000, "pulse")} * 1000, t);
+    feed.on_first_frames(
+        [this](stroke_id id, std::uint64_t frame) { pulses->add(id, frame, link.clock.load()); },
+        [this](stroke_id id) { pulses->forget(id); });
+}
+
+void player::impl::check_start(const player_options& o)
+{
+    const std::string what = fmt::format("stream on \"{}\"", out->setup().name);
+    const io_result& r = audio.started();
+    if (r.status == io_kind::lost)
+        throw error(error_kind::not_available, what, "the device is gone", "plug it in again");
+    if (r.status != io_kind::ok)
+        throw error(error_kind::runtime, what,
+                    fmt::format("it does not start ({})", engine::text(engine::reason::failed, r.code)),
+                    "try another PCM, or a longer period");
+    if (o.require_realtime && audio.fifo_error() != 0)
+        detail::throw_caused(error(error_kind::not_available, "real-time priority",
+                                   std::error_code(audio.fifo_error(), std::generic_category()).message(),
+                                   rt::realtime_advice(probe_realtime_rights(), o.priority)),
+                             audio.fifo_error());
+}
+
+void player::impl::log_start(const player_options& o) const
+{
+    const stream_setup& s = out->setup();
+    detail::log(log.function(), log_kind::info, "stream on \"{}\" runs: {} at {} Hz, {} of {} frames{}",
+                s.name, counted(s.channels, "channel"), s.rate, s.buffer_frames / s.period_frames,
+                s.period_frames, s.has_clock ? "" : ", timed by us");
+    if (!o.realtime && !o.require_realtime)
+        return;
+    const int refused = audio.fifo_error();
+    if (refused == 0)
+        detail::log(log.function(), log_kind::info, "the audio thread has real-time priority");
+    else
+        detail::log(log.function(), log_kind::warning, "the audio thread has no real-time priority: {}",
+                    std::error_code(refused, std::generic_category()).message());
+}
+
+void player::impl::close()
+{
+    stop(true);
+    if (control->is_current()) {
+        // A handler destroys the player: this thread has to do here what it would do after the handler.
+        if (telling != nullptr)
+            tell_watchers(*telling);
+        for (woken(); !all_delivered; woken()) {
+            pollfd fd{.fd = link.to_control.fd(), .events = POLLIN, .revents = 0};
+            if (::poll(&fd, 1, -1) > 0)
+                link.to_control.consume();
+        }
+    }
+    audio.join();
+    pulses.reset();
+    amplifier.reset();
+    control.reset();
+    lines = {};
+    out.reset();
+}
+
+std::shared_ptr<const drive_history::impl> player::impl::history()
+{
+    const std::lock_guard lock(mutex);
+    if (!feed.stream_over())
+        throw error(error_kind::runtime, "drive history", "the stream goes on", "stop() it first");
+    // The last that it says comes a little before its end; it never waits for this mutex.
+    audio.join();
+    return std::make_shared<drive_history::impl>(drive_history::impl{loop.driven(), rt::monotonic_ns()});
+}
+
+stroke_id player::impl::submit(const score& s, start_at start)
+{
+    const stream_setup& d = out->setup();
+    if (s.rate() != d.rate || s.channels() != d.channels)
+        throw error(error_kind::bad_input, "stroke",
+                    fmt::format("made for {} at {} Hz, the stream has {} at {} Hz",
+                                counted(s.channels(), "channel"), s.rate(), d.channels, d.rate),
+                    "render it with the stream's rate and channels");
+    const std::lock_guard lock(mutex);
+    check_open();
+    const stroke_id id = next_id();
+    feed.submit(id, s, start);
+    pump(); // without memory for that the control thread does it later
+    return id;
+}
+
+void player::impl::check_open() const
+{
+    if (stopping || feed.stream_over())
+        throw error(error_kind::runtime, fmt::format("stream on \"{}\"", out->setup().name),
+                    why_ended().empty() ? "it was stopped" : why_ended(), "open a new player");
+}
+
+std::string player::impl::why_ended() const
+{
+    if (!handler_failed.empty())
+        return handler_failed;
+    return feed.stream_reason();
+}
+
+bool player::impl::cancel(stroke_id id)
+{
+    const std::lock_guard lock(mutex);
+    const bool known = feed.cancel(id);
+    if (known) {
+        link.to_audio.signal();
+        link.to_control.signal(); // one that had not been handed over is reported at once
+    }
+    return known;
+}
+
+// Under the mutex. False when there was no memory to go on: nothing is lost, and the control thread tries
+// again.
+bool player::impl::pump()
+{
+    bool done = true;
+    try {
+        feed.pump(link.status.load().written, link.clock.load());
+        if (pulses)
+            pulses->hand_over();
+        if (feed.has_reports())
+            link.to_control.signal();
+    } catch (const std::bad_alloc&) {
+        done = false;
+        link.to_control.signal();
+    }
+    if (feed.take_urgent())
+        link.to_audio.signal();
+    return done;
+}
+
+std::optional<stroke_report> player::impl::wait(stroke_id id, std::optional<double> timeout_s)
+{
+    std::unique_lock lock(mutex);
+    const auto settled = [&] { return ended.contains(id) || !feed.knows(id); };
+    // The control thread would wait for itself.
+    if (!control->is_current()) {
+        if (timeout_s)
+            news.wait_until(lock, deadline(*timeout_s), settled);
+        else
+            news.wait(lock, settled);
+    }
+    const auto found = ended.find(id);
+    if (found == ended.end())
+        return std::nullopt;
+    std::optional<stroke_report> r(std::move(found->second));
+    ended.erase(found);
+    return r;
+}
+
+void player::impl::stop(bool closing)
+{
+    std::unique_lock lock(mutex);
+    if (!stopping) {
+        stopping = true;
+        if (closing)
+            feed.set_closing();
+        link.requests.push({.what = engine::request::kind::stop, .closing = closing});
+        link.to_audio.signal();
+    }
+    if (!control->is_current())
+        news.wait(lock, [this] { return all_delivered; });
+}
+
+void player::impl::woken()
+{
+    std::unique_lock lock(mutex);
+    const bool done = take_reports() && (feed.stream_over() || pump());
+    const bool last = done && feed.stream_over();
+    if (log.on())
+        log.look(link.status.load(), rt::monotonic_ns());
+    if (last)
+        log.end(why_ended());
+    lock.unlock();
+    news.notify_all();
+    log.tell();
+    tell();
+    if (!done) {
+        constexpr timespec soon{.tv_sec = 0, .tv_nsec = 10'000'000};
+        ::nanosleep(&soon, nullptr); // somebody may give memory back
+        link.to_control.signal();
+    }
+    if (!last)
+        return;
+    lock.lock();
+    all_delivered = true;
+    lock.unlock();
+    news.notify_all();
+}
+
+// What the audio thread has said. False when there was no memory for all of it: the rest stays where it is.
+bool player::impl::take_reports()
+{
+    try {
+        for (const engine::report* r = link.reports.front(); r != nullptr; r = link.reports.front()) {
+            feed.handle(*r);
+            link.reports.drop_front();
+        }
+        if (unfired)
+            feed.fire(*unfired);
+        unfired.reset();
+        const engine::clock_line clock = link.clock.load();
+        for (auto& first = feed.beginnings(); !first.empty(); first.pop_front()) {
+            const std::uint64_t frame = first.front().frame;
+            const bool known = clock.valid() && frame >= clock.first;
+            begun.emplace_back(first.front().id, known ? std::optional(clock.time_of(frame)) : std::nullopt);
+        }
+        std::list<stroke_report>& news_of_strokes = feed.reports();
+        for (stroke_report& r : news_of_strokes) {
+            if (!handler_failed.empty() && r.reason == engine::text(engine::reason::closed, 0))
+                r.reason = handler_failed;
+            ended.insert_or_assign(r.id, r);
+        }
+        untold.splice(untold.end(), news_of_strokes);
+    } catch (const std::bad_alloc&) {
+        return false;
+    }
+    while (ended.size() > most_unread_reports)
+        ended.erase(ended.begin());
+    return true;
+}
+
+} // namespace tactor

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Sync pulses that are to come, between who plans them and the thread that sends them.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include <tactor/live.hpp>
+
+#include "engine/audio/dac_clock.hpp"
+
+namespace tactor::engine {
+
+/// A pulse that is to come: a stream frame of one epoch. After an xrun the frame is never heard.
+struct pulse {
+    std::uint64_t epoch = 0;
+    std::uint64_t frame = 0;
+    stroke_id id = {};
+    auto operator<=>(const pulse&) const = default;
+};
+
+/// A few places for pulses. The sending thread stands above all others, the audio thread too: it takes no
+/// mutex and no memory from anyone, and neither side waits for the other. A place's turn is odd while a pulse
+/// waits there; both sides may take it away, and who brings the turn on has done so.
+class pulse_board {
+public:
+    static constexpr std::size_t places = 256;
+
+    /// A pulse that was seen waiting.
+    struct seen {
+        pulse what;
+        std::size_t place = 0;
+        std::uint32_t turn = 0;
+    };
+
+    // Who plans: one caller at a time.
+
+    /// Puts a pulse where it can be sent. Gives back what found no place: nothing, a later pulse that made
+    /// way, or `p` itself.
+    std::optional<pulse> offer(const pulse& p) noexcept;
+    void forget(stroke_id id) noexcept;
+    void forget_other_epochs(std::uint64_t epoch) noexcept;
+
+    // Who sends.
+
+    /// The first that waits, of the clock's epoch.
+    std::optional<seen> next(const clock_line& line) const noexcept;
+    /// Takes it, to be sent at once; false where it has been called off, or made way, since it was seen.
+    bool take(const seen& s) noexcept { return end_turn(s.place, s.turn); }
+
+private:
+    struct place {
+        std::atomic<std::uint32_t> turn{0};
+        // Atomic because a place may change hands while the sender reads it; the turn tells, and what was
+        // read is thrown away.
+        std::atomic<stroke_id> id{};
+        std::atomic<std::uint64_t> epoch{0};
+        std::atomic<std::uint64_t> frame{0};
+    };
+
+    static pulse read(const place& p) noexcept;
+    static void fill(place& p, const pulse& what, std::uint32_t turn) noexcept;
+    bool end_turn(std::size_t n, std::uint32_t turn) noexcept;
+    template <typename Unwanted>
+    void remove(Unwanted unwanted) noexcept;
+
+    std::array<place, places> places_{};
+};
+
+} // namespace tactor::engine

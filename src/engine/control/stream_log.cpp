@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+#include "engine/control/stream_log.hpp"
+
+#include <fmt/format.h>
+
+#include <tactor/words.hpp>
+
+#include "rt/clock.hpp"
+
+namespace tactor::engine {
+namespace {
+
+// How much a counter has grown since the last look.
+std::uint64_t grown(const std::atomic<std::uint64_t>& counter, std::uint64_t& seen) noexcept
+{
+    const std::uint64_t now = counter.load(std::memory_order_relaxed);
+    return now - std::exchange(seen, now);
+}
+
+} // namespace
+
+void stream_log::add(log_kind k, std::string text)
+{
+    lines_.emplace_back(k, std::move(text));
+}
+
+void stream_log::look(const stream_status& s, std::int64_t now_ns) noexcept
+{
+    if (!on())
+        return;
+    try {
+        look_at_stream(s);
+        look_at_amplifier(s);
+        // They act in each period: one line a second says enough.
+        if (now_ns - limits_told_ns_ < rt::ns_per_s && limits_told_ns_ != 0)
+            return;
+        const std::size_t before = lines_.size();
+        look_at_limits();
+        if (lines_.size() != before)
+            limits_told_ns_ = now_ns;
+    } catch (...) { // NOLINT(bugprone-empty-catch): no memory, and no line
+    }
+}
+
+void stream_log::look_at_stream(const stream_status& s)
+{
+    const std::uint64_t xruns = link_.count.xruns.load(std::memory_order_acquire);
+    for (; xruns_ < xruns; ++xruns_) {
+        const auto& lengths = link_.count.xrun_ns;
+        const auto ns = xruns - xruns_ > lengths.size()
+                            ? 0
+                            : lengths[xruns_ % lengths.size()].load(std::memory_order_relaxed);
+        add(log_kind::warning,
+            fmt::format("xrun {}: the device ran dry{}", xruns_ + 1,
+                        ns == 0 ? ""
+                                : fmt::format(" for {}", seconds_text(static_cast<double>(ns) * 1e-9, 3))));
+    }
+    const bool asleep = s.stage == stream_stage::suspended;
+    if (asleep && !asleep_)
+        add(log_kind::warning, "the system sleeps: the stream stands still");
+    asleep_ = asleep;
+    if (s.running && s.epoch > epoch_) {
+        epoch_ = s.epoch;
+        add(log_kind::info, fmt::format("the stream runs again, started {} times by now", s.epoch));
+    }
+}
+
+void stream_log::look_at_amplifier(const stream_status& s)
+{
+    const amplifier_link& a = link_.amplifier;
+    if (const std::uint64_t n = grown(link_.count.stalls, stalls_); n != 0)
+        add(log_kind::warning, "the audio thread, or the whole process, stood still: the amplifier goes off");
+    if (a.mutes.load(std::memory_order_acquire) != mutes_) {
+        mutes_ = a.mutes.load(std::memory_order_relaxed);
+        add(log_kind::warning, "the amplifier was muted: what sounded is not felt");
+    }
+    if (grown(link_.count.off_failures, off_failures_) != 0)
+        add(log_kind::error, "the amplifier's line refuses to be switched off: it is tried again");
+    if (a.stuck.load(std::memory_order_seq_cst) && !stuck_) {
+        stuck_ = true;
+        add(log_kind::error, "the amplifier may be on: its line was given up");
+    }
+    const bool ready = a.ready.load(std::memory_order_acquire) && s.running;
+    if (ready && !ready_)
+        add(log_kind::info, "strokes may sound");
+    ready_ = ready;
+}
+
+void stream_log::look_at_limits()
+{
+    if (const std::uint64_t n = grown(link_.count.drives_cut, cut_); n != 0)
+        add(log_kind::warning,
+            fmt::format("{} faded out: driven for longer than {} in {}", counted(n, "tactor"),
+                        seconds_text(limits_.max_drive_s), seconds_text(limits_.window_s)));
+    if (const std::uint64_t n = grown(link_.count.power_limited, power_limited_); n != 0)
+        add(log_kind::warning, fmt::format("the power of all tactors was held at {} dBFS in {}",
+                                           plain_number(limits_.power_dbfs), counted(n, "frame")));
+    if (const std::uint64_t n = grown(link_.count.limited, limited_); n != 0)
+        add(log_kind::warning, fmt::format("{} held at a channel's own limit", counted(n, "sample")));
+}
+
+void stream_log::end(const std::string& why) noexcept
+{
+    if (!on() || std::exchange(over_, true))
+        return;
+    try {
+        look_at_limits();
+        add(why.empty() ? log_kind::info : log_kind::error,
+            why.empty() ? "the stream has ended" : fmt::format("the stream has ended: {}", why));
+    } catch (...) { // NOLINT(bugprone-empty-catch): no memory, and no line
+    }
+}
+
+// What is called may destroy the player, which looks and tells a last time.
+void stream_log::tell() noexcept
+{
+    const auto lines = std::exchange(lines_, {});
+    for (const auto& [kind, text] : lines) {
+        try {
+            to_(kind, text);
+        } catch (...) { // NOLINT(bugprone-empty-catch): a log is no reason to end the stream
+        }
+    }
+}
+
+} // namespace tactor::engine

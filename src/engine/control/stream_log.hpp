@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Tells the program's log what the counters of the stream say: the audio thread itself tells nobody.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <tactor/log.hpp>
+#include <tactor/render.hpp>
+
+#include "engine/link.hpp"
+
+namespace tactor::engine {
+
+/// The control thread's. look() gathers under the player's mutex, tell() calls without it.
+class stream_log {
+public:
+    stream_log(log_function to, const link& l, const drive_limits& limits)
+        : to_(std::move(to)), link_(l), limits_(limits)
+    {
+    }
+
+    /// Whether anybody listens: the rest does nothing otherwise.
+    bool on() const noexcept { return static_cast<bool>(to_); }
+    const log_function& function() const noexcept { return to_; }
+
+    /// What has changed since the last look, at a CLOCK_MONOTONIC.
+    void look(const stream_status& s, std::int64_t now_ns) noexcept;
+    /// That the stream is over, once; empty: it was stopped in order.
+    void end(const std::string& why) noexcept;
+    void tell() noexcept;
+
+private:
+    void add(log_kind k, std::string text);
+    void look_at_stream(const stream_status& s);
+    void look_at_amplifier(const stream_status& s);
+    void look_at_limits();
+
+    log_function to_;
+    const link& link_;
+    drive_limits limits_;
+    std::vector<std::pair<log_kind, std::string>> lines_;
+
+    std::uint64_t xruns_ = 0;
+    std::uint64_t epoch_ = 1;
+    bool asleep_ = false;
+    bool ready_ = false;
+    std::uint32_t mutes_ = 0;
+    std::uint64_t stalls_ = 0;
+    std::uint64_t off_failures_ = 0;
+    bool stuck_ = false;
+    std::uint64_t cut_ = 0;
+    std::uint64_t limited_ = 0;
+    std::uint64_t power_limited_ = 0;
+    std::int64_t limits_told_ns_ = 0;
+    bool over_ = false;
+};
+
+} // namespace tactor::engine

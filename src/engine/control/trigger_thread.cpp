@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#include "engine/control/trigger_thread.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <ctime>
+#include <optional>
+
+#include <poll.h>
+
+#include "rt/clock.hpp"
+
+namespace tactor::engine {
+namespace {
+
+constexpr std::int64_t idle_ns = 60 * rt::ns_per_s;
+// The clock's line gets better as time goes by, and an xrun ends it.
+constexpr std::int64_t longest_wait_ns = 100'000'000;
+constexpr std::int64_t no_clock_ns = 2'000'000;
+
+class system_time final : public pulse_time {
+public:
+    std::int64_t now() noexcept override { return rt::monotonic_ns(); }
+    void sleep_until(std::int64_t time_ns) noexcept override
+    {
+        const timespec t = rt::to_timespec(time_ns);
+        while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
+        }
+    }
+};
+
+system_time& real_time() noexcept
+{
+    static system_time t;
+    return t;
+}
+
+} // namespace
+
+trigger_thread::trigger_thread(link& l, enable_line& line, std::int64_t pulse_ns, const rt::thread_options& t)
+    : link_(l), line_(line), emitter_(line, pulse_ns, real_time()), thread_(t, [this] { run(); })
+{
+}
+
+trigger_thread::~trigger_thread()
+{
+    over_.store(true, std::memory_order_release);
+    wake_.signal();
+    thread_.join();
+}
+
+void trigger_thread::add(stroke_id id, std::uint64_t frame, const clock_line& clock)
+{
+    if (plan_.add(id, frame, clock))
+        wake_.signal();
+}
+
+void trigger_thread::hand_over()
+{
+    if (plan_.hand_over())
+        wake_.signal();
+}
+
+void trigger_thread::run() noexcept
+{
+    while (!over_.load(std::memory_order_acquire))
+        wait(step());
+    line_.set(false);
+}
+
+// How long nothing is to be done.
+std::int64_t trigger_thread::step() noexcept
+{
+    const clock_line line = link_.sync_clock.load();
+    const std::optional<pulse_board::seen> p = line.epoch != 0 ? board_.next(line) : std::nullopt;
+    if (!p)
+        return line.epoch != 0 ? idle_ns : longest_wait_ns;
+    if (!line.valid())
+        return no_clock_ns;
+    const std::int64_t due = line.time_of(p->what.frame);
+    const std::int64_t left = due - real_time().now() - pulse_lead_ns;
+    if (left > 0)
+        return std::min(left, longest_wait_ns);
+    // It may have been called off meanwhile, and an xrun may have ended its epoch.
+    const bool in_time = emitter_.await(due);
+    if (board_.take(*p) && in_time && link_.sync_clock.load().epoch == p->what.epoch)
+        emitter_.send(due);
+    stats_.store(emitter_.stats());
+    link_.to_control.signal();
+    return 0;
+}
+
+void trigger_thread::wait(std::int64_t ns) noexcept
+{
+    const timespec timeout = rt::to_timespec(ns);
+    pollfd fd{.fd = wake_.fd(), .events = POLLIN, .revents = 0};
+    if (::ppoll(&fd, 1, &timeout, nullptr) > 0)
+        wake_.consume();
+}
+
+} // namespace tactor::engine

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+#include "engine/live/live_stroke.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "plan/job.hpp"
+#include "synth/mix/mixer.hpp"
+#include "synth/score/frames.hpp"
+#include "synth/score/levels.hpp"
+#include "synth/tone/make_timbre.hpp"
+
+namespace tactor {
+namespace {
+
+using engine::least_live_soa_s;
+
+void check(const live_options& o, unsigned rate)
+{
+    if (o.plan.algorithm == algorithm_kind::tactile_brush)
+        throw error(error_kind::bad_input, "live stroke", "Tactile Brush must know the whole path beforehand",
+                    "use continuous or park2016");
+    if (!(o.plan.carrier_hz > 0.0 && o.plan.carrier_hz < 0.5 * rate))
+        throw error(
+            error_kind::bad_input, "live stroke",
+            fmt::format("a carrier of {} Hz cannot be rendered at a rate of {} Hz", o.plan.carrier_hz, rate),
+            "250 is usual");
+    if (!(o.timeout_s >= 0.001 && o.timeout_s <= 86400.0))
+        throw error(error_kind::bad_input, "live stroke", fmt::format("a time-out of {} s", o.timeout_s),
+                    "give 0.001 to 86400 s");
+    if (o.longest_s && !(*o.longest_s >= 0.001 && *o.longest_s <= 86400.0))
+        throw error(error_kind::bad_input, "live stroke", fmt::format("at most {} s of it", *o.longest_s),
+                    "give 0.001 to 86400 s");
+    if (!(o.smooth_s >= 0.0 && o.smooth_s <= 1.0))
+        throw error(error_kind::bad_input, "live stroke",
+                    fmt::format("points smoothed over {} s", o.smooth_s), "give 0 (off) to 1 s");
+    if (o.render.ramp_s && !(*o.render.ramp_s >= 0.0 && *o.render.ramp_s <= 1.0))
+        throw error(error_kind::bad_input, "live stroke", fmt::format("a ramp of {} s", *o.render.ramp_s),
+                    "give 0 to 1 s");
+}
+
+/// What of a plan says how it sounds.
+plan heard_of(const plan_options& o)
+{
+    if (o.wave.kind == waveform_kind::recording && o.wave.texture == texture_kind::length)
+        throw error(error_kind::bad_input, "live stroke", "the length of its path is not known beforehand",
+                    "lay the recording along it with texture time or cycle");
+    plan p;
+    p.carrier_hz = o.carrier_hz;
+    p.wave = o.wave;
+    p.am = o.am;
+    return p;
+}
+
+engine::live_setup live_setup(const stream_setup& s, const live_options& o)
+{
+    check(o, s.rate);
+    engine::live_setup l;
+    l.channels = s.channels;
+    l.cycles_per_frame = o.plan.carrier_hz / s.rate;
+    const plan heard = heard_of(o.plan);
+    l.sound = synth::make_timbre(heard, s.rate);
+    l.envelope = o.render.envelope;
+    l.rate = s.rate;
+    l.step = std::max<std::uint64_t>(synth::frame_at(continuous_step_s, s.rate), 1);
+    l.timeout = synth::frame_at(o.timeout_s, s.rate);
+    if (o.longest_s)
+        l.longest = synth::frame_at(*o.longest_s, s.rate);
+    l.window = synth::frame_at(o.smooth_s, s.rate);
+    l.bursts = o.plan.algorithm == algorithm_kind::park2016;
+    if (!l.bursts)
+        return l;
+    const double duration_s = burst_duration_s(o.plan);
+    if (o.plan.soa_s < least_live_soa_s)
+        throw error(error_kind::bad_input, "live stroke", fmt::format("an SOA of {} s", o.plan.soa_s),
+                    fmt::format("{} s or more", least_live_soa_s));
+    l.soa = synth::frame_at(o.plan.soa_s, s.rate);
+    l.duration = std::min(synth::frame_at(duration_s, s.rate), l.soa);
+    l.restart = o.render.phase == phase_kind::burst;
+    const auto ramp = [&](std::optional<double> ramp_s) {
+        return synth::attack_frames(synth::ramp_seconds(ramp_s, 0.0, duration_s, o.plan.carrier_hz),
+                                    l.envelope, s.rate, l.duration);
+    };
+    // With a restart all bursts are alike; else each has its place on the carrier.
+    if (synth::crosses_zero(heard))
+        l.ramp = ramp(l.restart ? o.render.ramp_s : o.render.ramp_s.value_or(0.0));
+    else
+        l.ramp = ramp(o.render.ramp_s.value_or(synth::default_ramp_s));
+    l.cut_ramp = l.restart ? l.ramp : ramp(o.render.ramp_s.value_or(synth::default_ramp_s));
+    return l;
+}
+
+} // namespace
+
+live_stroke::impl::impl(stroke_id number, const array& a, const layout& l, const stream_setup& s,
+                        const live_options& o)
+    : id(number),
+      faces(l),
+      model(o.plan.custom_phantom ? o.plan.custom_phantom : make_phantom(o.plan.phantom, l)),
+      outside(o.plan.outside),
+      scale(o.plan.scale),
+      levels(synth::tactor_levels(a, o.render)),
+      limits(synth::channel_limits(a, s.channels)),
+      voice(live_setup(s, o)),
+      window(voice.setup().window),
+      smooth(window),
+      most_knots(std::clamp<std::size_t>(window / voice.setup().step, 1, engine::live_knots - 1) + 1)
+{
+    drives.reserve(a.tactors.size());
+    for (std::size_t i = 0; o.render.sl_db && i < levels.size(); ++i)
+        levels[i].gain *= synth::threshold_factor(a.tactors[i], o.plan.carrier_hz);
+}
+
+bool live_stroke::impl::to(point p, double intensity)
+{
+    if (!std::isfinite(p.x_mm) || !std::isfinite(p.y_mm))
+        throw error(error_kind::bad_input, "live stroke", fmt::format("the point ({}, {})", p.x_mm, p.y_mm),
+                    "finite millimetres");
+    const std::lock_guard lock(mutex);
+    if (voice.closed() || voice.asked() != engine::live_voice::wish::go_on)
+        return false;
+    const bool inside = faces.contains(p);
+    if (!inside && outside == outside_kind::error)
+        throw error(error_kind::bad_input, "live stroke",
+                    fmt::format("({:.6g}, {:.6g}) is outside the array", p.x_mm, p.y_mm),
+                    "outside_kind::clamp plays the nearest point of the array");
+    const bool limited = course_to({inside ? p : faces.nearest(p), intensity}, voice.draft());
+    voice.publish();
+    points.fetch_add(1, std::memory_order_relaxed);
+    outside_points.fetch_add(inside ? 0 : 1, std::memory_order_relaxed);
+    limited_points.fetch_add(limited ? 1 : 0, std::memory_order_relaxed);
+    return true;
+}
+
+bool live_stroke::impl::course_to(const engine::smoothing::place& p, engine::live_course& course)
+{
+    course.start = voice.rendered();
+    course.length = 0;
+    course.knots = 1;
+    const std::span<double> all(course.amplitudes);
+    if (window == 0)
+        return amplitudes_at(p.at, p.intensity, all);
+    engine::smoothing next = smooth; // where it stays should a model throw
+    next.to(course.start, p);
+    course.length = next.settles_in();
+    if (course.length != 0)
+        course.knots = most_knots;
+    bool limited = false;
+    const std::size_t channels = limits.size();
+    // From the end, which has the intensity that was given: it is named should it be wrong.
+    for (std::size_t k = course.knots; k-- > 0;) {
+        const std::uint64_t after = course.knots == 1 ? 0 : course.length * k / (course.knots - 1);
+        const auto there = next.at(course.start + after);
+        const point q = faces.contains(there.at) ? there.at : faces.nearest(there.at);
+        const bool held = amplitudes_at(q, there.intensity, all.subspan(k * channels, channels));
+        limited = limited || held;
+    }
+    smooth = std::move(next);
+    return limited;
+}
+
+bool live_stroke::impl::amplitudes_at(point p, double intensity, std::span<double> by_channel)
+{
+    detail::drives_at(*model, faces, p, scale.amplitude(intensity), drives);
+    std::fill(by_channel.begin(), by_channel.end(), 0.0);
+    bool limited = false;
+    for (const drive& d : drives) {
+        const synth::tactor_level& t = levels[d.tactor];
+        if (t.channel >= by_channel.size())
+            continue;
+        const double asked = t.gain * d.amplitude;
+        const double limit = limits[t.channel];
+        by_channel[t.channel] = std::clamp(asked, -limit, limit);
+        limited = limited || std::abs(asked) > limit;
+    }
+    return limited;
+}
+
+live_stroke::live_stroke(std::shared_ptr<impl> p) noexcept : impl_(std::move(p))
+{
+}
+
+stroke_id live_stroke::id() const noexcept
+{
+    return impl_->id;
+}
+
+bool live_stroke::to(double x_mm, double y_mm, double intensity)
+{
+    return impl_->to({x_mm, y_mm}, intensity);
+}
+
+void live_stroke::end() noexcept
+{
+    impl_->voice.ask(engine::live_voice::wish::end);
+}
+
+void live_stroke::cancel() noexcept
+{
+    impl_->voice.ask(engine::live_voice::wish::cancel);
+}
+
+bool live_stroke::open() const noexcept
+{
+    return !impl_->voice.closed() && impl_->voice.asked() == engine::live_voice::wish::go_on;
+}
+
+live_counts live_stroke::counts() const noexcept
+{
+    return {.points = impl_->points.load(std::memory_order_relaxed),
+            .outside = impl_->outside_points.load(std::memory_order_relaxed),
+            .limited = impl_->limited_points.load(std::memory_order_relaxed)};
+}
+
+} // namespace tactor

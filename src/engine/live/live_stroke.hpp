@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The producer's side of a live stroke: from points to amplitudes.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include <tactor/array.hpp>
+#include <tactor/live.hpp>
+#include <tactor/phantom.hpp>
+#include <tactor/sink.hpp>
+
+#include "engine/live/live_voice.hpp"
+#include "engine/live/smoothing.hpp"
+#include "synth/score/score.hpp"
+
+namespace tactor {
+
+struct live_stroke::impl {
+    /// \throws error (bad_input) for options that cannot be.
+    impl(stroke_id number, const array& a, const layout& l, const stream_setup& s, const live_options& o);
+
+    bool to(point p, double intensity);
+    /// The amplitudes of a place into one set, by channel; whether a limit held one.
+    bool amplitudes_at(point p, double intensity, std::span<double> by_channel);
+    /// Those on the way to a place.
+    bool course_to(const engine::smoothing::place& p, engine::live_course& course);
+
+    stroke_id id;
+    layout faces;
+    std::shared_ptr<const phantom_model> model;
+    outside_kind outside;
+    intensity_scale scale;
+    std::vector<synth::tactor_level> levels; ///< by tactor
+    std::vector<double> limits;              ///< by channel
+    engine::live_voice voice;
+
+    std::uint64_t window; ///< frames; 0: places are not smoothed
+
+    std::mutex mutex; ///< between producers
+    engine::smoothing smooth;
+    std::size_t most_knots;
+    std::vector<drive> drives;
+    std::atomic<std::uint64_t> points{0};
+    std::atomic<std::uint64_t> outside_points{0};
+    std::atomic<std::uint64_t> limited_points{0};
+};
+
+} // namespace tactor

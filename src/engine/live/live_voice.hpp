@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// A live stroke between its producer and the audio thread.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "engine/messages.hpp"
+#include "rt/triple_buffer.hpp"
+#include "synth/mix/mixer.hpp"
+#include "synth/tone/timbre.hpp"
+
+namespace tactor::engine {
+
+/// Live strokes that the audio thread renders at once.
+inline constexpr std::size_t live_voices = 16;
+/// Those, and what waits for its first point or for one of them to end. More wait on the control side.
+inline constexpr std::size_t live_places = voices / 2;
+
+struct live_setup {
+    std::size_t channels = 0;
+    double cycles_per_frame = 0.0;
+    std::uint64_t step = 48; ///< continuous: frames from one set of weights to the next, at least
+    std::uint64_t timeout = 24'000;
+    std::uint64_t longest = UINT64_MAX; ///< frames that it may sound
+    std::uint64_t window = 0;           ///< frames that places are smoothed over; 0: not at all
+    bool bursts = false;
+    std::uint64_t soa = 0;
+    std::uint64_t duration = 0;
+    std::uint32_t ramp = 0;     ///< frames, of bursts at whose begin and end the carrier crosses zero
+    std::uint32_t cut_ramp = 0; ///< of the others
+    bool restart = false;       ///< bursts: each has a carrier of its own, instead of the stroke's
+    std::shared_ptr<const synth::timbre> sound = {}; ///< none: a sine
+    burst_envelope envelope = {};                    ///< of bursts
+    unsigned rate = 48000;
+};
+
+/// What the producer hands over: amplitudes now, and as far ahead as they are known.
+struct live_course {
+    std::uint64_t start = 0;        ///< frame of the stroke that they begin at
+    std::uint64_t length = 0;       ///< frames until the last of them holds; 0: at once
+    std::size_t knots = 1;          ///< at even distances over the length
+    std::vector<double> amplitudes; ///< by knot and channel; room for all that there may be
+};
+
+/// Most knots of a course.
+inline constexpr std::size_t live_knots = 33;
+
+/// Shortest SOA of live bursts.
+inline constexpr double least_live_soa_s = 0.01;
+
+/// Drives of the mixer that one live stroke has at most.
+std::size_t live_drives(std::size_t channels, unsigned period_frames, unsigned rate) noexcept;
+
+/// The producer writes amplitudes by channel; the audio thread makes drives of them, period by period, so
+/// that no point waits for a plan. What the producer asks for besides is a flag.
+class live_voice {
+public:
+    enum class wish : std::uint32_t { go_on, end, cancel };
+
+    explicit live_voice(const live_setup& s);
+
+    // The producer, one thread at a time.
+    live_course& draft() noexcept { return points_.draft(); }
+    void publish() noexcept { points_.publish(); }
+    /// Frames of the stroke that are rendered: the next is where a point that comes now begins to count.
+    std::uint64_t rendered() const noexcept { return rendered_.load(std::memory_order_relaxed); }
+
+    // Any thread.
+    void ask(wish w) noexcept;
+    bool closed() const noexcept { return closed_.load(std::memory_order_acquire); }
+    /// It has ended, or will without further points.
+    void close() noexcept { closed_.store(true, std::memory_order_release); }
+
+    // The audio thread.
+    wish asked() const noexcept { return asked_.load(std::memory_order_acquire); }
+    const live_setup& setup() const noexcept { return setup_; }
+    bool is_bursts() const noexcept { return setup_.bursts; }
+    /// Whether a point waits.
+    bool has_news() const noexcept { return points_.has_news(); }
+    /// Whether it is still on its way to the newest point, at this frame of the mixer.
+    bool moves(std::uint64_t position) const noexcept
+    {
+        const live_course& c = points_.value();
+        return has_begun_ && c.length != 0 && c.start + c.length > position - base_;
+    }
+    /// Before it begins: so many frames more have gone by. Then in the hands of the one who keeps it waiting.
+    void wait(std::uint64_t frames) noexcept;
+    /// Whether wait() has seen a point.
+    bool has_point() const noexcept { return has_point_; }
+    /// Takes the newest point, if one has come; the stroke begins with the mixer's next frame.
+    bool try_begin(ticket t, std::uint64_t next) noexcept;
+    /// Adds the drives of the next frames. False when the mixer had no room for them.
+    bool render(synth::mixer& m, std::uint64_t frames) noexcept;
+    bool starved() const noexcept { return idle_ > setup_.timeout; }
+    /// Whether it has sounded as long as it may by this frame of the mixer.
+    bool lasted(std::uint64_t position) const noexcept
+    {
+        return has_begun_ && position - base_ >= setup_.longest;
+    }
+    /// Continuous: falls to zero in `frames`. False when the mixer had no room.
+    bool fade(synth::mixer& m, std::uint32_t frames) noexcept;
+    /// Frame at which what has been added is over.
+    std::uint64_t end() const noexcept { return end_; }
+
+private:
+    bool follow(synth::mixer& m, std::uint64_t frames) noexcept;
+    bool burst(synth::mixer& m, std::uint64_t at) noexcept;
+    void aim(std::uint64_t frame) noexcept;
+    double amplitude(std::size_t channel) const noexcept;
+    template <typename Part>
+    bool add(synth::mixer& m, synth::drive_event e, Part part) noexcept;
+
+    live_setup setup_;
+    rt::triple_buffer<live_course> points_;
+    std::atomic<std::uint64_t> rendered_{0};
+    std::atomic<wish> asked_{wish::go_on};
+    std::atomic<bool> closed_{false};
+
+    ticket ticket_ = 0;
+    std::uint64_t base_ = 0;
+    std::uint64_t end_ = 0;
+    std::uint64_t next_burst_ = 0;
+    bool has_point_ = false;
+    bool has_begun_ = false;
+    std::uint64_t idle_ = 0;   ///< frames since a point came, or since the beginning of the wait
+    std::uint64_t length_ = 1; ///< of the line between two sets of amplitudes
+    std::uint64_t place_ = 1;  ///< on it
+    std::vector<double> from_; ///< by channel
+    std::vector<double> to_;   ///< of bursts: the next one's
+};
+
+} // namespace tactor::engine

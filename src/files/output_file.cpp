@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: MIT
+#include "files/output_file.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <climits>
+#include <random>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "core/refused.hpp"
+namespace tactor::detail {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int attempts = 100;
+/// Between two questions whether to go on waiting.
+constexpr int moment_ms = 20;
+/// Room for the suffix within the 255 bytes of a name.
+constexpr std::size_t longest_stem = 200;
+
+fs::path folder_of(const fs::path& p)
+{
+    return p.parent_path().empty() ? fs::path(".") : p.parent_path();
+}
+
+/// N of /dev/fd/N or /proc/self/fd/N, or -1.
+int descriptor_in(const fs::path& p)
+{
+    const std::string folder = folder_of(p).string();
+    const std::string name = p.filename().string();
+    int n = -1;
+    if (folder == "/dev/fd" || folder == "/proc/self/fd") {
+        const auto [end, failed] = std::from_chars(name.data(), name.data() + name.size(), n);
+        if (failed != std::errc{} || end != name.data() + name.size()) {
+            return -1;
+        }
+    }
+    return n;
+}
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& why, std::string_view hint)
+{
+    throw error(error_kind::bad_input, file.string(), why, hint);
+}
+
+/// So that the new name survives a power cut, too; not every file system can.
+void sync_folder(const fs::path& folder) noexcept
+{
+    const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd >= 0) {
+        ::fsync(fd);
+        ::close(fd);
+    }
+}
+
+/// Where anybody may put a link, what it points to is not what the user meant.
+bool is_shared(const fs::path& folder)
+{
+    struct stat s {};
+    return ::stat(folder.c_str(), &s) == 0 && (s.st_mode & S_ISVTX) != 0 &&
+           (s.st_mode & (S_IWOTH | S_IWGRP)) != 0;
+}
+
+/// The file that a chain of links names, so that the link stays and what it points to is replaced; a
+/// descriptor's name is not followed any further.
+fs::path follow_links(const fs::path& asked)
+{
+    std::error_code ignored;
+    fs::path p = asked;
+    for (int i = 0; i < 40 && descriptor_in(p) < 0 && fs::is_symlink(fs::symlink_status(p, ignored)); ++i) {
+        if (is_shared(folder_of(p))) {
+            refuse(asked, fmt::format("{} is a link in a folder that others can write to", p.string()),
+                   "name the file that you mean");
+        }
+        const fs::path next = fs::read_symlink(p, ignored);
+        p = next.is_absolute() ? next : p.parent_path() / next;
+    }
+    return p;
+}
+
+} // namespace
+
+output_file::output_file(const fs::path& file, patience go_on) : asked_(file), go_on_(std::move(go_on))
+{
+    if (file.empty()) {
+        throw error(error_kind::bad_input, "file", "its name is empty", "name a file");
+    }
+    target_ = follow_links(file);
+    if (const int n = descriptor_in(target_); n >= 0) {
+        open_descriptor(n);
+        return;
+    }
+    std::error_code failed;
+    const fs::file_status there = fs::status(target_, failed);
+    if (fs::is_directory(there) || !target_.has_filename()) {
+        refuse(asked_, "is a folder", "name a file in it");
+    }
+    if (fs::exists(there) && !fs::is_regular_file(there)) {
+        open_directly();
+        return;
+    }
+    const fs::path folder = folder_of(target_);
+    if (!fs::is_directory(folder, failed)) {
+        refuse(asked_, fmt::format("the folder \"{}\" does not exist", folder.string()),
+               "make it first, or name another");
+    }
+    if (fs::exists(there) && ::access(target_.c_str(), W_OK) != 0) {
+        fail(errno);
+    }
+    open_beside();
+}
+
+// A pipe's other end may be anybody's: it is waited for with poll(), not with O_NONBLOCK, which they would
+// share.
+void output_file::open_descriptor(int descriptor)
+{
+    directly_ = true;
+    fd_ = ::fcntl(descriptor, F_DUPFD_CLOEXEC, 3);
+    if (fd_ < 0) {
+        fail(errno);
+    }
+}
+
+// Non-blocking: a pipe that nobody reads would keep the program for ever.
+void output_file::open_directly()
+{
+    directly_ = true;
+    for (;;) {
+        fd_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
+        if (fd_ >= 0) {
+            return;
+        }
+        if (errno != ENXIO || !fs::is_fifo(target_)) {
+            fail(errno);
+        }
+        ::poll(nullptr, 0, moment_ms);
+        if (!still_wanted()) {
+            return;
+        }
+    }
+}
+
+bool output_file::still_wanted()
+{
+    given_up_ = given_up_ || (go_on_ && !go_on_());
+    return !given_up_;
+}
+
+bool output_file::wait_for_room()
+{
+    pollfd p{.fd = fd_, .events = POLLOUT, .revents = 0};
+    while (::poll(&p, 1, moment_ms) == 0) {
+        if (!still_wanted()) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void output_file::open_beside()
+{
+    const std::string stem = target_.filename().string().substr(0, longest_stem);
+    std::random_device seed;
+    for (int i = 0; i < attempts; ++i) {
+        temporary_ = folder_of(target_) / fmt::format(".{}.{:08x}.part", stem, seed());
+        fd_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (fd_ >= 0) {
+            keep_owner_and_rights();
+            return;
+        }
+        if (errno != EEXIST) {
+            break;
+        }
+    }
+    const int code = errno;
+    temporary_.clear();
+    fail(code);
+}
+
+// As far as the system allows: only root may give files away. The owner first, since that may take rights
+// away.
+void output_file::keep_owner_and_rights() noexcept
+{
+    constexpr mode_t rights = 0777;
+    struct stat there {};
+    if (::stat(target_.c_str(), &there) != 0) {
+        return;
+    }
+    struct stat ours {};
+    if (::fstat(fd_, &ours) == 0 && (ours.st_uid != there.st_uid || ours.st_gid != there.st_gid) &&
+        ::fchown(fd_, there.st_uid, there.st_gid) != 0 && ::fchown(fd_, uid_t(-1), there.st_gid) != 0) {
+        // Another group's members may then read no more than anybody.
+        there.st_mode &= ~mode_t{S_IRWXG} | ((there.st_mode & S_IRWXO) << 3U);
+    }
+    (void)::fchmod(fd_, there.st_mode & rights);
+}
+
+output_file::~output_file()
+{
+    if (fd_ >= 0) {
+        ::close(fd_);
+    }
+    if (!temporary_.empty()) {
+        ::unlink(temporary_.c_str());
+    }
+}
+
+void output_file::fail(int code) const
+{
+    const std::string why = std::error_code(code, std::generic_category()).message();
+    std::string_view hint = "check the folder's rights and space";
+    if (code == ENOSPC || code == EDQUOT) {
+        hint = directly_ ? "free some space, or write to another disk; what was written is cut short"
+                         : "free some space, or name a file on another disk; nothing was left behind";
+    } else if (code == EPIPE) {
+        hint = "the program that reads it ended before all was written";
+    } else if (code == EFBIG) {
+        hint = "the file system or a limit (ulimit -f) does not allow a file of this size";
+    } else if (code == EACCES || code == EPERM || code == EROFS) {
+        hint = "name a file where you may write";
+    }
+    throw_caused(error(error_kind::runtime, asked_.string(), fmt::format("cannot be written: {}", why), hint),
+                 code);
+}
+
+std::int64_t output_file::write(const void* data, std::int64_t bytes)
+{
+    const auto* from = static_cast<const char*>(data);
+    std::int64_t done = 0;
+    // A pipe takes PIPE_BUF bytes without waiting once it has room.
+    while (done < bytes && good() && (!directly_ || wait_for_room())) {
+        const std::int64_t now = directly_ ? std::min<std::int64_t>(bytes - done, PIPE_BUF) : bytes - done;
+        const ssize_t n = ::write(fd_, from + done, static_cast<std::size_t>(now));
+        if (n > 0) {
+            done += n;
+        } else if (n == 0 || (errno != EINTR && errno != EAGAIN)) {
+            failure_ = n == 0 ? ENOSPC : errno;
+        }
+    }
+    return done;
+}
+
+void output_file::commit()
+{
+    if (failure_ != 0) {
+        fail(failure_);
+    }
+    if (given_up_) {
+        fail(ECANCELED);
+    }
+    // Else a power cut could leave an empty file under the name.
+    if (!temporary_.empty() && ::fsync(fd_) != 0) {
+        fail(errno);
+    }
+    // A network file system may tell of a full disk only now.
+    const int closed = ::close(fd_);
+    fd_ = -1;
+    if (closed != 0 && errno != EINTR) {
+        fail(errno);
+    }
+    if (temporary_.empty()) {
+        return;
+    }
+    if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
+        fail(errno);
+    }
+    temporary_.clear();
+    sync_folder(folder_of(target_));
+}
+
+} // namespace tactor::detail

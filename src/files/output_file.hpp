@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// A file that appears under its name only when it is complete.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+
+namespace tactor::detail {
+
+/// Opens a new file beside `file`; commit() gives it that name, the destructor removes it otherwise: whoever
+/// looks finds the old file, whole, or the new one, which keeps the old one's owner and rights. Of a link
+/// what it points to is replaced, but no link is followed in a folder where anybody may put one (sticky, as
+/// /tmp). What exists under the name and is no regular file (a device, a pipe), and names of descriptors
+/// (/dev/stdout, /dev/fd/N), are written to directly, in order. One thread at a time; all but a pipe's
+/// members may block on the file system.
+class output_file {
+public:
+    /// Asked some 50 times a second while a pipe has no reader or is full; false gives up.
+    using patience = std::function<bool()>;
+
+    /// Waits for a reader where `file` is a pipe without one.
+    /// \throws error: bad_input for an empty name, one that is a folder's, a folder that is missing, or a
+    /// link in a
+    ///         sticky folder; runtime for what the system refuses.
+    explicit output_file(const std::filesystem::path& file, patience go_on = {});
+    ~output_file();
+    output_file(const output_file&) = delete;
+    output_file& operator=(const output_file&) = delete;
+
+    /// Appends all of it, or less and an error that stays: failure() or given_up() tells. Returns the bytes
+    /// written.
+    std::int64_t write(const void* data, std::int64_t bytes);
+
+    /// errno of the first write that failed, or 0.
+    int failure() const noexcept { return failure_; }
+    /// Whether `go_on` said false.
+    bool given_up() const noexcept { return given_up_; }
+    /// Nothing failed, and nobody gave up.
+    bool good() const noexcept { return failure_ == 0 && !given_up_; }
+    /// Brings the file to the disk and gives it its name. \throws error (runtime): a write failed before,
+    /// this did, or it was given up.
+    void commit();
+    /// \throws error (runtime) with the file's name, for an errno.
+    [[noreturn]] void fail(int code) const;
+
+private:
+    void open_descriptor(int descriptor);
+    void open_directly();
+    void open_beside();
+    void keep_owner_and_rights() noexcept;
+    bool still_wanted();
+    bool wait_for_room();
+
+    std::filesystem::path asked_;     ///< as the user named it, for messages
+    std::filesystem::path target_;    ///< links followed
+    std::filesystem::path temporary_; ///< beside the target, until that is replaced by it
+    bool directly_ = false;           ///< no other file is there: a pipe, a device, a descriptor
+    patience go_on_;
+    int fd_ = -1;
+    int failure_ = 0;
+    bool given_up_ = false;
+};
+
+} // namespace tactor::detail

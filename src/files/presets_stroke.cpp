@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// The four target motions of Park et al. 2016 on its palm-3x3: the figure that shows them is not in the text;
+// these agree with all that the text says of them. And two for palm-2x4, which is too low for the paper's
+// circles.
+#include <tactor/stroke.hpp>
+
+#include <array>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <tactor/error.hpp>
+
+#include "core/suggest.hpp"
+
+namespace tactor {
+namespace {
+
+// y points down: from -90 degrees (above the centre), a negative sweep goes over the left side.
+struct motion {
+    std::string_view name;
+    point centre;
+    double from_deg;
+    double sweep_deg;
+};
+
+constexpr double radius_mm = 16.0;
+constexpr double quarter_turn_s = 0.7;
+
+constexpr std::array motions{
+    motion{"park2016-1", {20.0, 20.0}, -90.0, -180.0},
+    motion{"park2016-2", {0.0, 20.0}, -90.0, 180.0},
+    motion{"park2016-3", {20.0, 20.0}, 90.0, 270.0},
+    motion{"park2016-4", {20.0, 20.0}, 0.0, -270.0},
+};
+
+// Within 0 ... 60 by 0 ... 20 mm, in whole numbers of bursts of 0.07 s.
+struct drawing {
+    std::string_view name;
+    std::string_view path;
+    double duration_s;
+};
+
+constexpr std::array drawings{
+    drawing{"wave-2x4", "M 0 10 C 5 -2 15 -2 20 10 S 35 22 40 10 S 55 -2 60 10", 2.1},
+    drawing{"round-2x4", "M 58 10 A 28 8 0 0 1 2 10 A 28 8 0 0 1 58 10", 2.8},
+};
+
+double duration_s(const motion& m)
+{
+    return (m.sweep_deg < 0.0 ? -m.sweep_deg : m.sweep_deg) / 90.0 * quarter_turn_s;
+}
+
+} // namespace
+
+const std::vector<std::string>& stroke_presets()
+{
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all;
+        for (const motion& m : motions)
+            all.emplace_back(m.name);
+        for (const drawing& d : drawings)
+            all.emplace_back(d.name);
+        return all;
+    }();
+    return names;
+}
+
+stroke preset_stroke(std::string_view name)
+{
+    for (const motion& m : motions) {
+        if (m.name == name)
+            return {std::string(name),
+                    trajectory::along(path::arc(m.centre, radius_mm, m.from_deg, m.sweep_deg), duration_s(m)),
+                    {},
+                    {},
+                    note_kind::reconstructed};
+    }
+    for (const drawing& d : drawings) {
+        if (d.name == name)
+            return {std::string(name), trajectory::along(path::from_svg(d.path), d.duration_s), {}, {}, {}};
+    }
+    throw error(error_kind::bad_input, "stroke", fmt::format("no preset {}", detail::quoted(name)),
+                fmt::format("presets: {}", fmt::join(stroke_presets(), ", ")));
+}
+
+} // namespace tactor

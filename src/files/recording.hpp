@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// WAV files that are in memory.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include <tactor/waveform.hpp>
+
+namespace tactor::detail {
+
+/// The bytes of a WAV file; `name` stands for it in messages. \throws error (bad_input).
+recording parse_recording(std::string_view bytes, const std::string& name);
+
+} // namespace tactor::detail

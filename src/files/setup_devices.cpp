@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// [output], [amplifier], [sync] and [limits].
+#include <fmt/format.h>
+
+#include "files/setup_parts.hpp"
+
+namespace tactor::detail {
+namespace {
+
+gpio_line_name read_line(const toml_table& t)
+{
+    gpio_line_name line;
+    line.where = t.where();
+    if (t.one_of({"chip", "name"}) == "name") {
+        if (t.has("offset"))
+            t.fail("offset", fmt::format("{} has both name and offset", t.title()), "a name is enough");
+        line.name = *t.text("name");
+        return line;
+    }
+    line.chip = *t.text("chip");
+    line.offset = t.need(t.whole("offset", 0, 65535), "offset");
+    return line;
+}
+
+std::optional<double> seconds(std::optional<double> ms)
+{
+    return ms ? std::optional(*ms * 1e-3) : std::nullopt;
+}
+
+} // namespace
+
+void read_output(const toml_table& root, located_setup& out)
+{
+    const auto t = root.table("output", "[output]", "[output]");
+    if (!t)
+        return;
+    t->only({"pcm", "rate", "channels", "period_frames", "periods"});
+    output_settings& o = out.said.output;
+    if (t->has("pcm")) {
+        o.pcm = t->text("pcm");
+        o.pcm_at = t->where("pcm");
+        o.pcm_included = false;
+    }
+    if (t->has("rate"))
+        o.rate = t->whole("rate", 8000, 768000);
+    if (t->has("channels")) {
+        o.channels = t->whole("channels", 1, max_channels);
+        out.channels_at = t->where("channels");
+    }
+    if (t->has("period_frames"))
+        o.period_frames = t->whole("period_frames", 1, 1u << 20);
+    if (t->has("periods"))
+        o.periods = t->whole("periods", 2, 1024);
+}
+
+void read_amplifier(const toml_table& root, located_setup& out)
+{
+    const auto t = root.table("amplifier", "[amplifier]", "[amplifier]");
+    if (!t)
+        return;
+    t->only({"line", "active_low", "settle_ms"});
+    const toml_table line = t->need(t->table("line", "line", "line = { chip, offset } or { name }"), "line");
+    amplifier_settings a;
+    line.only({"chip", "offset", "name"});
+    a.line = read_line(line);
+    a.active_low = t->boolean("active_low").value_or(a.active_low);
+    a.settle_s = seconds(t->number("settle_ms", {0.0, 10000.0})).value_or(a.settle_s);
+    out.said.amplifier = a;
+}
+
+void read_sync(const toml_table& root, located_setup& out)
+{
+    const auto t = root.table("sync", "[sync]", "[sync]");
+    if (!t)
+        return;
+    t->only({"out", "channel", "in"});
+    sync_settings s;
+    if (const auto pulse = t->table("out", "out", "out = { chip, offset, pulse_ms }")) {
+        pulse->only({"chip", "offset", "name", "pulse_ms"});
+        s.out = read_line(*pulse);
+        s.pulse_s = seconds(pulse->number("pulse_ms", {0.0, 10000.0, true})).value_or(s.pulse_s);
+    }
+    if (const auto edge = t->table("in", "in", "in = { chip, offset, edge }")) {
+        edge->only({"chip", "offset", "name", "edge", "debounce_ms", "pull"});
+        s.in = read_line(*edge);
+        s.edge = edge->kind<edge_kind>("edge").value_or(s.edge);
+        s.debounce_s = seconds(edge->number("debounce_ms", {0.0, 10000.0})).value_or(s.debounce_s);
+        if (const auto word = edge->choice("pull", {"up", "down", "none", "as-is"}))
+            s.pull = from_string<pull_kind>(*word);
+    }
+    s.channel = t->whole("channel", 0, max_channels - 1);
+    out.sync_channel_at = t->where("channel");
+    out.said.sync = s;
+}
+
+void read_limits(const toml_table& root, located_setup& out)
+{
+    const auto t = root.table("limits", "[limits]", "[limits]");
+    if (!t)
+        return;
+    t->only({"power_dbfs", "max_drive_s", "window_s"});
+    limit_settings l;
+    l.power_dbfs = t->number("power_dbfs", {-120.0, 60.0});
+    l.max_drive_s = t->number("max_drive_s", {0.1, 3600.0});
+    l.window_s = t->number("window_s", {0.1, 3600.0});
+    out.said.limits = l;
+}
+
+} // namespace tactor::detail

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// [serve].
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "files/setup_parts.hpp"
+
+namespace tactor::detail {
+namespace {
+
+constexpr unsigned most = std::numeric_limits<int>::max();
+
+std::vector<std::string> texts(const toml_table& t, std::string_view key)
+{
+    std::vector<std::string> all;
+    if (!t.has(key))
+        return all;
+    for (const toml::node& entry : *t.list(key, "texts")) {
+        const auto* text = entry.as_string();
+        if (text == nullptr || text->get().empty())
+            fail_at(t.where(entry), fmt::format("an entry of {} is {}", key, shown(entry)), "give a text");
+        all.push_back(text->get());
+    }
+    return all;
+}
+
+// "127.0.0.1:4001", or a bare 4001.
+std::optional<std::string> address(const toml_table& t, std::string_view key)
+{
+    if (const toml::node* n = t.node(key); n != nullptr && n->is_integer())
+        return std::to_string(*t.whole(key, 0, 65535));
+    return t.text(key);
+}
+
+void read_serve_limits(const toml_table& t, serve_settings& s)
+{
+    s.max_clients = t.whole("max_clients", 1, 100'000);
+    s.kept_clients = t.whole("kept_clients", 0, 100'000);
+    s.max_strokes = t.whole("max_strokes", 1, 100'000);
+    s.max_live_strokes = t.whole("max_live_strokes", 0, 100'000);
+    s.max_points_per_s = t.whole("max_points_per_s", 1, 10'000'000);
+    s.max_stroke_s = t.number("max_stroke_s", {0.001, 86400.0});
+    s.max_message_bytes = t.whole("max_message_bytes", 1024, most);
+    s.max_nesting = t.whole("max_nesting", 4, 10'000);
+    s.max_message_s = t.number("max_message_s", {0.001, 86400.0});
+    s.max_unread_bytes = t.whole("max_unread_bytes", 1024, most);
+    s.max_all_unread_bytes = t.whole("max_all_unread_bytes", 1024, most);
+    if (s.kept_clients && *s.kept_clients >= s.max_clients.value_or(128))
+        t.fail("kept_clients",
+               fmt::format("{} places are kept of {}", *s.kept_clients, s.max_clients.value_or(128)),
+               "keep fewer than max_clients");
+}
+
+} // namespace
+
+void read_serve(const toml_table& root, located_setup& out)
+{
+    const auto t = root.table("serve", "[serve]", "[serve]");
+    if (!t)
+        return;
+    t->only({"socket",
+             "tcp",
+             "osc",
+             "http",
+             "token_file",
+             "allow_hosts",
+             "osc_peers",
+             "max_level_dbfs",
+             "idle_stop_s",
+             "max_clients",
+             "kept_clients",
+             "max_strokes",
+             "max_live_strokes",
+             "max_points_per_s",
+             "max_stroke_s",
+             "max_message_bytes",
+             "max_nesting",
+             "max_message_s",
+             "max_unread_bytes",
+             "max_all_unread_bytes"});
+    serve_settings s;
+    s.socket = t->text("socket");
+    s.tcp = address(*t, "tcp");
+    s.osc = address(*t, "osc");
+    s.http = address(*t, "http");
+    s.token_file = t->text("token_file");
+    s.allow_hosts = texts(*t, "allow_hosts");
+    s.osc_peers = texts(*t, "osc_peers");
+    s.max_level_dbfs = t->number("max_level_dbfs", {min_db, 0.0});
+    s.idle_stop_s = t->number("idle_stop_s", {0.001, 86400.0});
+    read_serve_limits(*t, s);
+    out.said.serve = s;
+}
+
+} // namespace tactor::detail

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include <tactor/stroke.hpp>
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/path/number.hpp"
+#include "files/stroke/sound.hpp"
+#include "files/stroke/text.hpp"
+#include "files/text_file.hpp"
+
+namespace tactor {
+namespace {
+
+// The first line with something on it that is not a comment.
+std::string_view first_line(std::string_view text)
+{
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        std::string_view line = text.substr(0, end);
+        std::size_t at = 0;
+        detail::skip_blanks(line, at);
+        line.remove_prefix(at);
+        if (!line.empty() && line.front() != '#')
+            return line;
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return {};
+}
+
+// A header that forgets t_s is still one: TOML has no line with a comma and without '=' at its top.
+bool looks_like_csv(std::string_view line)
+{
+    return line.find_first_of("=[{") == std::string_view::npos &&
+           (line.find("t_s") != std::string_view::npos || line.find(',') != std::string_view::npos);
+}
+
+} // namespace
+
+void detail::check_size(std::string_view text, const std::string& name, std::size_t max_bytes,
+                        std::string_view hint)
+{
+    if (text.size() > max_bytes)
+        throw error(error_kind::bad_input, name, fmt::format("longer than {} MB", max_bytes >> 20), hint);
+}
+
+std::string_view detail::without_mark(std::string_view text) noexcept
+{
+    constexpr std::string_view mark = "\xEF\xBB\xBF";
+    if (text.substr(0, mark.size()) == mark)
+        text.remove_prefix(mark.size());
+    return text;
+}
+
+std::string detail::stem(const std::string& name)
+{
+    return std::filesystem::path(name).stem().string();
+}
+
+source_place detail::place_of(std::string_view text, std::size_t offset, const std::string& name)
+{
+    const std::string_view before = text.substr(0, std::min(offset, text.size()));
+    const std::size_t line_start = before.rfind('\n') + 1; // 0 where there is none
+    return {name, static_cast<unsigned>(1 + std::count(before.begin(), before.end(), '\n')),
+            static_cast<unsigned>(before.size() - line_start + 1)};
+}
+
+std::vector<stroke> parse_strokes(std::string_view text, const std::string& name)
+{
+    const std::string_view line = first_line(detail::without_mark(text));
+    if (!line.empty() && line.front() == '<')
+        return parse_strokes_svg(text, name);
+    return looks_like_csv(line) ? parse_strokes_csv(text, name) : parse_strokes_toml(text, name);
+}
+
+std::vector<stroke> load_strokes(const std::filesystem::path& file)
+{
+    const detail::whole_text text = detail::read_text_file(file, detail::max_stroke_bytes);
+    const std::string name = file.string();
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    if (extension == ".csv")
+        return parse_strokes_csv(text, name);
+    if (extension == ".svg")
+        return parse_strokes_svg(text, name);
+    if (extension == ".toml")
+        return detail::strokes_of_toml_file(text, name);
+    return parse_strokes(text, name);
+}
+
+std::vector<stroke> load_strokes(int descriptor, const std::string& name)
+{
+    return parse_strokes(detail::read_text(descriptor, name, detail::max_stroke_bytes), name);
+}
+
+} // namespace tactor

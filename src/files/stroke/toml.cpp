@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: MIT
+// Stroke files in TOML: [stroke] or [[stroke]].
+#include <array>
+#include <filesystem>
+#include <iterator>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <tactor/stroke.hpp>
+
+#include "core/access.hpp"
+#include "core/profile.hpp"
+#include "core/suggest.hpp"
+#include "core/trajectory/impl.hpp"
+#include "core/trajectory/limits.hpp"
+#include "files/stroke/choices.hpp"
+#include "files/stroke/movement.hpp"
+#include "files/stroke/order.hpp"
+#include "files/stroke/placing.hpp"
+#include "files/stroke/sound.hpp"
+#include "files/stroke/text.hpp"
+#include "files/toml_reader.hpp"
+
+namespace tactor {
+namespace {
+
+/// Where a file's recordings are looked for; nothing for text that is no file's.
+using folder_of_file = const std::filesystem::path*;
+
+using detail::bounds;
+using detail::max_mm;
+using detail::told_pace;
+using detail::toml_table;
+
+constexpr double day_s = detail::longest_stroke_s;
+constexpr bounds anywhere{-max_mm, max_mm};
+constexpr unsigned deepest_group = 8;
+
+// What geometry refuses, with the place in the file.
+template <class F>
+auto at_key(const toml_table& t, std::string_view key, F make)
+{
+    try {
+        return make();
+    } catch (const error& e) {
+        t.fail(key, e.what(), {});
+    }
+}
+
+path read_points(const toml_table& t)
+{
+    std::vector<point> points;
+    std::vector<double> xy;
+    const toml::array& list = *t.list("points", "[x, y]");
+    points.reserve(list.size());
+    for (const toml::node& entry : list) {
+        t.numbers(entry, "a point", 2, 2, xy);
+        points.push_back({xy[0], xy[1]});
+    }
+    return at_key(t, "points", [&] { return path::polyline(points); });
+}
+
+path read_arc(const toml_table& t)
+{
+    const toml_table a = *t.table("arc", "arc", "arc = { centre, radius_mm, from_deg, sweep_deg }");
+    a.only({"centre", "radius_mm", "from_deg", "sweep_deg"});
+    const point centre = a.need(a.place("centre"), "centre");
+    const double radius = a.need(a.number("radius_mm", {0.0, max_mm, true}), "radius_mm");
+    const double from = a.need(a.number("from_deg", {-3600.0, 3600.0}), "from_deg");
+    const double sweep = a.need(a.number("sweep_deg", {-360.0, 360.0}), "sweep_deg");
+    return at_key(t, "arc", [&] { return path::arc(centre, radius, from, sweep); });
+}
+
+timed_point read_timed_point(const toml_table& t, const toml::node& entry, double intensity)
+{
+    const toml::array* a = entry.as_array();
+    if (!a || a->size() < 3 || a->size() > 4)
+        detail::fail_at(t.where(entry), fmt::format("a timed point is {}", detail::shown(entry)),
+                        "give [t_s, x_mm, y_mm] or [t_s, x_mm, y_mm, intensity]");
+    timed_point p;
+    p.t_s = t.number_of((*a)[0], "t_s", {0.0, day_s});
+    p.position = {t.number_of((*a)[1], "x_mm", anywhere), t.number_of((*a)[2], "y_mm", anywhere)};
+    p.intensity =
+        intensity * (a->size() == 4 ? t.number_of((*a)[3], "intensity", {0.0, detail::max_intensity}) : 1.0);
+    return p;
+}
+
+trajectory read_timed(const toml_table& t, double intensity)
+{
+    std::vector<timed_point> points;
+    const toml::array& list = *t.list("timed", "[t_s, x_mm, y_mm]");
+    points.reserve(list.size());
+    for (const toml::node& entry : list) {
+        const timed_point p = read_timed_point(t, entry, intensity);
+        if (points.empty() && p.t_s != 0.0)
+            detail::fail_at(t.where(entry), fmt::format("the first time is {} s", p.t_s),
+                            "times count from 0 at the start of the stroke; start_s moves all of it");
+        if (!points.empty() && p.t_s <= points.back().t_s)
+            detail::fail_at(t.where(entry),
+                            fmt::format("the time {} s does not come after {} s", p.t_s, points.back().t_s),
+                            "put the points in order of time, each time once");
+        points.push_back(p);
+    }
+    return at_key(t, "timed", [&] { return trajectory::timed(std::move(points)); });
+}
+
+// A movement that has its own time, in the time that the file asks for.
+trajectory paced(const toml_table& t, const told_pace& p, trajectory own)
+{
+    const auto seconds = p.time_for(own.length_mm());
+    if (!seconds)
+        return own;
+    const char* key = p.speed_mm_s ? "speed_mm_s" : "duration_s";
+    return at_key(t, key, [&] { return own.with_duration(*seconds); });
+}
+
+// Timed points are where they are when they are.
+void refuse_uneven(const toml_table& t, const told_pace& p)
+{
+    if (!p.key.empty())
+        t.fail(
+            p.key,
+            fmt::format("timed points have times and intensities of their own, and {} is for a path", p.key),
+            "leave it out, or give the path as points");
+}
+
+// A preset's path, if the file moves along it in another way.
+trajectory preset_as_told(const toml_table& t, const told_pace& p, const trajectory& own)
+{
+    if (p.key.empty())
+        return paced(t, p, own.with_intensity(p.intensity));
+    const path& way = std::get<detail::drawn_path>(detail::access::of(own).law).way;
+    return detail::along_as_told(t, "preset", way, p, own.duration_s());
+}
+
+template <class... Lists>
+std::vector<std::string_view> keys_of(const Lists&... lists)
+{
+    std::vector<std::string_view> all;
+    (all.insert(all.end(), std::begin(lists), std::end(lists)), ...);
+    return all;
+}
+
+constexpr std::array<std::string_view, 9> drawing_keys{
+    "path", "points", "timed", "arc", "preset", "duration_s", "speed_mm_s", "intensity", "carrier_hz"};
+constexpr std::array<std::string_view, 7> placed_keys{"name",         "start_s", "scale",   "rotate_deg",
+                                                      "translate_mm", "mirror",  "about_mm"};
+
+// The stroke where it is drawn.
+stroke read_drawn(const toml_table& t, std::string name)
+{
+    const std::string_view kind =
+        t.has("stroke") ? t.one_of({"path", "points", "timed", "arc", "preset", "stroke"}) // says it has two
+                        : t.one_of({"path", "points", "timed", "arc", "preset"});
+    const told_pace asked = detail::read_pace(t);
+    const auto carrier = t.number("carrier_hz", {1.0, 384000.0});
+
+    const auto described = [&](trajectory motion, note_kind note = note_kind::none) {
+        stroke s{t.text("name").value_or(name), motion, {}, carrier, note};
+        s.speed_mm_s = asked.speed_mm_s;
+        return s;
+    };
+    if (kind == "timed") {
+        refuse_uneven(t, asked);
+        return described(paced(t, asked, read_timed(t, asked.intensity)));
+    }
+    if (kind == "preset") {
+        const std::string preset = *t.text("preset");
+        stroke s = at_key(t, kind, [&] { return preset_stroke(preset); });
+        name = s.name;
+        s = described(preset_as_told(t, asked, s.motion), s.note);
+        if (!asked.moves.speed_mm_s.empty())
+            s.speed_mm_s = detail::kept_speed(asked, s.motion.length_mm());
+        return s;
+    }
+    const path way = kind == "points" ? read_points(t)
+                     : kind == "arc"
+                         ? read_arc(t)
+                         : at_key(t, kind, [&, data = *t.text("path")] { return path::from_svg(data); });
+    stroke s = described(detail::along_as_told(t, kind, way, asked, {}));
+    s.speed_mm_s = detail::kept_speed(asked, way.length_mm());
+    if (!asked.duration_s && !s.speed_mm_s)
+        s.speed_mm_s = default_speed_mm_s;
+    return s;
+}
+
+detail::entry read_one(const toml_table& t, std::string name, folder_of_file folder)
+{
+    t.only(keys_of(drawing_keys, placed_keys, detail::movement_keys, detail::order_keys, detail::choice_keys,
+                   detail::sound_keys, std::array<std::string_view, 2>{"stroke", "reverse"}));
+    stroke s = detail::levelled(t, detail::chosen(t, read_drawn(t, std::move(name))));
+    detail::read_sound(t, folder, s);
+    if (t.boolean("reverse").value_or(false)) {
+        s.motion = at_key(t, "reverse", [&] { return s.motion.reversed(); });
+        s.carrier_profile = detail::from_the_end(s.carrier_profile);
+    }
+    detail::entry e;
+    e.strokes.push_back(detail::placed(t, std::move(s)));
+    return detail::repeated(t, std::move(e));
+}
+
+detail::entry read_entry(const toml_table& t, const std::string& name, folder_of_file folder, unsigned depth);
+
+detail::entry read_all(const std::vector<toml_table>& tables, detail::sequence::of what,
+                       const std::string& name, folder_of_file folder, unsigned depth)
+{
+    detail::sequence all(what);
+    std::size_t number = 0;
+    for (const toml_table& t : tables)
+        all.add(t, read_entry(t, fmt::format("{}-{}", name, ++number), folder, depth));
+    return std::move(all).take();
+}
+
+// Strokes that are placed, made weaker and repeated as one.
+detail::entry read_group(const toml_table& t, const std::string& name, folder_of_file folder, unsigned depth)
+{
+    t.only(keys_of(placed_keys, detail::order_keys,
+                   std::array<std::string_view, 4>{"stroke", "level_db", "fit", "fit_margin_mm"}));
+    if (depth == deepest_group)
+        t.fail("stroke", "groups in groups too deep", fmt::format("at most {}", deepest_group));
+    const std::vector<toml_table> inside = t.tables("stroke");
+    if (inside.empty())
+        t.fail("stroke", "a group without a stroke", "add [[stroke.stroke]]");
+    detail::entry e =
+        read_all(inside, detail::sequence::of::group, t.text("name").value_or(name), folder, depth + 1);
+    const auto margin_mm = detail::read_fit(t);
+    for (stroke& s : e.strokes) {
+        s = detail::placed(t, detail::levelled(t, std::move(s)));
+        if (!margin_mm)
+            continue;
+        if (s.fit_margin_mm)
+            t.fail("fit", fmt::format("{} is fitted already", detail::quoted(s.name)),
+                   "fit the group, or what is in it");
+        s.fit_margin_mm = margin_mm;
+        s.fit_group = t.where().line; // no other group of the file begins there
+    }
+    return detail::repeated(t, std::move(e));
+}
+
+detail::entry read_entry(const toml_table& t, const std::string& name, folder_of_file folder, unsigned depth)
+{
+    const bool group = t.has("stroke") && !t.has("path") && !t.has("points") && !t.has("timed") &&
+                       !t.has("arc") && !t.has("preset");
+    return group ? read_group(t, name, folder, depth) : read_one(t, name, folder);
+}
+
+std::vector<stroke> read_strokes(std::string_view text, const std::string& name,
+                                 const std::filesystem::path* folder)
+{
+    detail::check_size(text, name, detail::max_tree_bytes,
+                       "timed points by the million belong in a CSV file");
+    const toml::table document = detail::parse_toml(text, name);
+    const toml_table root(document, "a stroke file", name);
+    for (const char* key : {"array", "output", "defaults"})
+        if (root.has(key))
+            root.fail(key, "this is an array or configuration file, not a stroke",
+                      "give it as array = FILE or config = FILE");
+    root.only({"stroke"});
+    if (!root.has("stroke"))
+        detail::fail_at({name, 0, 0}, "there is no stroke in it", "add [stroke] or [[stroke]]");
+
+    const std::string stem = detail::stem(name);
+    if (root.node("stroke")->is_table()) {
+        detail::sequence one(detail::sequence::of::piece);
+        const toml_table t = *root.table("stroke", "[stroke]", "[stroke]");
+        one.add(t, read_entry(t, stem, folder, 0));
+        return std::move(one).take().strokes;
+    }
+    const std::vector<toml_table> tables = root.tables("stroke");
+    if (tables.empty())
+        root.fail("stroke", "there is no stroke in it", "add [stroke] or [[stroke]]");
+    return read_all(tables, detail::sequence::of::piece, stem, folder, 0).strokes;
+}
+
+} // namespace
+
+std::vector<stroke> parse_strokes_toml(std::string_view text, const std::string& name)
+{
+    return read_strokes(text, name, nullptr);
+}
+
+std::vector<stroke> detail::strokes_of_toml_file(std::string_view text, const std::string& name)
+{
+    const std::filesystem::path folder = std::filesystem::path(name).parent_path();
+    return read_strokes(text, name, &folder);
+}
+
+} // namespace tactor

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#include "files/svg/document.hpp"
+
+#include <functional>
+
+#include <fmt/format.h>
+
+#include "core/suggest.hpp"
+#include "files/stroke/text.hpp"
+
+namespace tactor::detail {
+
+svg_document::svg_document(std::string_view text, const std::string& name)
+    : text_(without_mark(text)), name_(name), buffer_(text_)
+{
+    const pugi::xml_parse_result r = tree_.load_buffer_inplace(buffer_.data(), buffer_.size());
+    if (!r) {
+        const auto offset = static_cast<std::size_t>(r.offset > 0 ? r.offset : 0);
+        throw error(error_kind::bad_input, place_of(text_, offset, name_).text(), r.description(),
+                    "the file is not well-formed XML");
+    }
+    if (svg_tag(root()) != "svg")
+        fail(root(), fmt::format("{} is not <svg>", called(root())), "is it an SVG file?");
+    // A search that finds nothing visits all, and not by recursion. Of two with one id the first counts.
+    tree_.find_node([this](pugi::xml_node n) {
+        if (const std::string_view id = n.attribute("id").value(); !id.empty())
+            ids_.try_emplace(id, n);
+        return false;
+    });
+}
+
+std::string_view svg_tag(pugi::xml_node n)
+{
+    std::string_view tag = n.name();
+    if (tag.substr(0, 4) == "svg:")
+        tag.remove_prefix(4);
+    return tag;
+}
+
+pugi::xml_node svg_document::by_id(std::string_view id) const
+{
+    const auto found = ids_.find(id);
+    return found == ids_.end() ? pugi::xml_node() : found->second;
+}
+
+source_place svg_document::where(pugi::xml_node n) const
+{
+    const auto offset = n.offset_debug();
+    if (offset < 0)
+        return {name_, 0, 0};
+    return place_of(text_, static_cast<std::size_t>(offset), name_);
+}
+
+std::string svg_document::called(pugi::xml_node n)
+{
+    const std::string_view id = n.attribute("id").value();
+    const std::string tag = quoted(n.name());
+    return fmt::format("<{}>{}", std::string_view(tag).substr(1, tag.size() - 2),
+                       id.empty() ? std::string() : fmt::format(" {}", quoted(id)));
+}
+
+void svg_document::fail(pugi::xml_node n, std::string_view why, std::string_view hint) const
+{
+    throw error(error_kind::bad_input, where(n).text(), why, hint);
+}
+
+void svg_document::fail(pugi::xml_node n, pugi::xml_attribute a, const value_fault& f) const
+{
+    // Values are decoded in place, so their begin is where it was in the text. (Text in other encodings than
+    // UTF-8 is converted elsewhere.)
+    const char* value = a.value();
+    const bool here =
+        std::less_equal<>{}(buffer_.data(), value) && std::less<>{}(value, buffer_.data() + buffer_.size());
+    const source_place at =
+        here ? place_of(text_, static_cast<std::size_t>(value - buffer_.data()) + f.offset, name_) : where(n);
+    throw error(error_kind::bad_input, at.text(), fmt::format("{} of {}: {}", a.name(), called(n), f.why),
+                f.hint);
+}
+
+double svg_document::length(pugi::xml_node n, const char* attribute, const svg_viewport& v, svg_extent e,
+                            double otherwise) const
+{
+    const auto l = read(n, attribute, parse_svg_length);
+    return l ? l->user_units(v, e) : otherwise;
+}
+
+std::optional<double> svg_document::number(pugi::xml_node n, const char* attribute, double low,
+                                           double high) const
+{
+    return read(n, attribute, [low, high](std::string_view text) {
+        const double v = svg_number(text);
+        if (!(v >= low && v <= high))
+            throw value_fault{0, fmt::format("{:g}", v),
+                              fmt::format("it is between {:g} and {:g}", low, high)};
+        return v;
+    });
+}
+
+} // namespace tactor::detail

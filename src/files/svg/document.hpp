@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// An SVG document whose complaints have a line and a column.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+
+#include <pugixml.hpp>
+
+#include <tactor/error.hpp>
+
+#include "core/path/number.hpp"
+#include "files/svg/values.hpp"
+
+namespace tactor::detail {
+
+class svg_document {
+public:
+    /// Entities of the document's own are not expanded and nothing outside it is read.
+    /// \throws error (bad_input) for what is not well-formed.
+    svg_document(std::string_view text, const std::string& name);
+
+    pugi::xml_node root() const { return tree_.document_element(); }
+    pugi::xml_node by_id(std::string_view id) const;
+    const std::string& name() const noexcept { return name_; }
+
+    source_place where(pugi::xml_node n) const;
+
+    /// "<path> 'left'".
+    static std::string called(pugi::xml_node n);
+
+    [[noreturn]] void fail(pugi::xml_node n, std::string_view why, std::string_view hint) const;
+
+    /// What `parse` makes of an attribute's text; nothing where it is missing.
+    template <class F>
+    auto read(pugi::xml_node n, const char* attribute, F parse) const
+        -> std::optional<decltype(parse(std::string_view{}))>
+    {
+        const pugi::xml_attribute a = n.attribute(attribute);
+        if (!a)
+            return std::nullopt;
+        try {
+            return parse(std::string_view(a.value()));
+        } catch (const value_fault& f) {
+            fail(n, a, f);
+        }
+    }
+
+    /// A length in user units.
+    double length(pugi::xml_node n, const char* attribute, const svg_viewport& v, svg_extent e,
+                  double otherwise = 0.0) const;
+
+    /// A number from low to high.
+    std::optional<double> number(pugi::xml_node n, const char* attribute, double low, double high) const;
+
+private:
+    [[noreturn]] void fail(pugi::xml_node n, pugi::xml_attribute a, const value_fault& f) const;
+
+    std::string_view text_;
+    const std::string& name_;
+    std::string buffer_; ///< the tree lives in it
+    pugi::xml_document tree_;
+    std::unordered_map<std::string_view, pugi::xml_node> ids_;
+};
+
+/// Element name without the prefix "svg:".
+std::string_view svg_tag(pugi::xml_node n);
+
+} // namespace tactor::detail

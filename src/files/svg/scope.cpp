@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "files/svg/scope.hpp"
+
+#include <fmt/format.h>
+
+#include "core/limits.hpp"
+#include "core/suggest.hpp"
+#include "core/trajectory/limits.hpp"
+
+namespace tactor::detail {
+
+using pugi::xml_node;
+
+namespace {
+
+constexpr double highest_carrier_hz = 20000.0;
+
+easing_kind easing_of(const svg_document& doc, xml_node n, std::string_view name)
+{
+    for (const easing_kind k : values_of<easing_kind>())
+        if (to_string(k) == name)
+            return k;
+    doc.fail(n, fmt::format("data-easing of {}: {}", svg_document::called(n), quoted(name)),
+             "linear, in-out or minimum-jerk");
+}
+
+} // namespace
+
+svg_scope svg_root_scope(const svg_document& doc)
+{
+    const xml_node n = doc.root();
+    const auto width = doc.read(n, "width", parse_svg_length);
+    const auto height = doc.read(n, "height", parse_svg_length);
+    const auto box = doc.read(n, "viewBox", parse_svg_view_box);
+    using unit = svg_length::unit;
+    const auto has = [](const auto& l, unit u) { return l && l->in == u; };
+    svg_scope s;
+    if (!has(width, unit::mm) && !has(height, unit::mm)) {
+        s.viewport.width = box ? box->width : has(width, unit::none) ? width->value : 100.0;
+        s.viewport.height = box ? box->height : has(height, unit::none) ? height->value : 100.0;
+        return s;
+    }
+    const auto px = [&](const auto& l) -> std::optional<double> {
+        if (!l || l->in == unit::percent)
+            return std::nullopt;
+        if (!(l->value > 0.0))
+            doc.fail(n, fmt::format("{} has no size", doc.called(n)), "width and height are more than 0");
+        return l->in == unit::mm ? l->value / mm_per_px : l->value;
+    };
+    auto w = px(width);
+    auto h = px(height);
+    const double ratio = box ? box->width / box->height : 1.0;
+    if (!w)
+        w = *h * ratio;
+    if (!h)
+        h = *w / ratio;
+    s.to_mm = {mm_per_px, 0.0, 0.0, mm_per_px, 0.0, 0.0};
+    s.viewport = {*w, *h, 1.0 / mm_per_px};
+    if (box)
+        enter_svg_box(doc, n, s, *box, {}, *w, *h);
+    return s;
+}
+
+void enter_svg_box(const svg_document& doc, xml_node n, svg_scope& s, const svg_view_box& box, point corner,
+                   double width, double height)
+{
+    const auto aspect = doc.read(n, "preserveAspectRatio", parse_svg_aspect);
+    s.to_mm = s.to_mm * fit(box, corner, width, height, aspect.value_or(svg_aspect{}));
+    s.viewport.width = box.width;
+    s.viewport.height = box.height;
+}
+
+void inherit_svg(const svg_document& doc, xml_node n, svg_scope& s)
+{
+    if (const auto t = doc.read(n, "transform", parse_svg_transform))
+        s.to_mm = s.to_mm * *t;
+    const std::string_view visibility = svg_property(n, "visibility");
+    if (visibility == "visible")
+        s.visible = true;
+    else if (visibility == "hidden" || visibility == "collapse")
+        s.visible = false;
+    if (const auto v = doc.number(n, "data-speed-mm-s", 1e-6, max_mm))
+        s.speed_mm_s = v;
+    if (const auto v = doc.number(n, "data-intensity", 0.0, max_intensity))
+        s.intensity = *v;
+    if (const auto easing = n.attribute("data-easing"))
+        s.easing = easing_of(doc, n, easing.value());
+    inherit_svg_look(doc, n, s.viewport, s.look);
+    if (const auto v = doc.number(n, "data-carrier-hz", 1.0, highest_carrier_hz))
+        s.carrier_hz = v;
+}
+
+bool svg_hidden(xml_node n)
+{
+    return svg_property(n, "display") == "none";
+}
+
+} // namespace tactor::detail

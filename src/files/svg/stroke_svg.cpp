@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT
+// The shapes of an SVG document as strokes.
+#include <tactor/stroke.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "core/limits.hpp"
+#include "core/path/impl.hpp"
+#include "core/trajectory/limits.hpp"
+#include "files/stroke/text.hpp"
+#include "files/svg/document.hpp"
+#include "files/svg/scope.hpp"
+#include "files/svg/shapes.hpp"
+
+namespace tactor {
+namespace {
+
+using detail::affine;
+using detail::enter_svg_box;
+using detail::inherit_svg;
+using detail::outline;
+using detail::svg_extent;
+using detail::svg_hidden;
+using detail::svg_strength;
+using detail::svg_tag;
+using scope = detail::svg_scope;
+using pugi::xml_node;
+
+// <use> can multiply a small file without end.
+constexpr unsigned deepest = 100;
+constexpr unsigned most_uses_inside = 16;
+constexpr std::size_t most_elements = 1'000'000;
+constexpr std::size_t most_vertices = 20'000'000;
+
+class svg_reader {
+public:
+    svg_reader(std::string_view text, const std::string& name) : doc_(text, name) {}
+
+    std::vector<stroke> read()
+    {
+        const xml_node root = doc_.root();
+        scope s = detail::svg_root_scope(doc_);
+        inherit_svg(doc_, root, s);
+        if (svg_hidden(root))
+            hidden_ = root;
+        else
+            children(root, s);
+        weigh_widths();
+        if (!strokes_.empty())
+            return std::move(strokes_);
+        if (undrawn_)
+            doc_.fail(undrawn_, fmt::format("{} draws nothing", doc_.called(undrawn_)),
+                      "it needs a size, or path data that draws");
+        if (hidden_)
+            doc_.fail(hidden_, fmt::format("{} is hidden, and nothing else draws", doc_.called(hidden_)),
+                      "take out display or visibility");
+        throw error(
+            error_kind::bad_input, doc_.name(), "no shape in it",
+            "strokes are path, line, polyline, polygon, rect, circle and ellipse; make paths of text");
+    }
+
+private:
+    void children(xml_node n, const scope& s)
+    {
+        for (const xml_node c : n.children()) {
+            if (c.type() == pugi::node_element)
+                visit(c, s);
+        }
+    }
+
+    // What is not named here draws nothing by itself: defs, symbol, clipPath, mask, marker, pattern, text ...
+    void visit(xml_node n, scope s)
+    {
+        if (++elements_ > most_elements || ++s.depth > deepest)
+            doc_.fail(n, elements_ > most_elements ? "too many elements" : "nested too deep",
+                      "simplify the drawing");
+        const std::string_view tag = svg_tag(n);
+        const bool group = tag == "g" || tag == "a" || tag == "switch";
+        if (!(group || tag == "svg" || tag == "use" || detail::is_svg_shape(tag)))
+            return;
+        if (svg_hidden(n))
+            return note_hidden(n);
+        inherit_svg(doc_, n, s);
+        if (group)
+            children(n, s);
+        else if (tag == "svg")
+            frame(n, n, s,
+                  {doc_.length(n, "x", s.viewport, svg_extent::width),
+                   doc_.length(n, "y", s.viewport, svg_extent::height)});
+        else if (tag == "use")
+            use(n, s);
+        else if (s.visible)
+            shape(n, s);
+        else
+            note_hidden(n);
+    }
+
+    // The first: named where nothing draws.
+    void note_hidden(xml_node n)
+    {
+        if (!hidden_)
+            hidden_ = n;
+    }
+
+    // A nested svg, or a symbol that `sized` uses.
+    void frame(xml_node n, xml_node sized, scope s, point corner)
+    {
+        const auto side = [&](const char* attribute, svg_extent e, double whole) {
+            const xml_node from = sized.attribute(attribute) ? sized : n;
+            const double v = doc_.length(from, attribute, s.viewport, e, whole);
+            if (!(v > 0.0))
+                doc_.fail(from, fmt::format("{} has no size", doc_.called(from)),
+                          "width and height are more than 0");
+            return v;
+        };
+        const double width = side("width", svg_extent::width, s.viewport.width);
+        const double height = side("height", svg_extent::height, s.viewport.height);
+        if (const auto box = doc_.read(n, "viewBox", detail::parse_svg_view_box)) {
+            enter_svg_box(doc_, n, s, *box, corner, width, height);
+        } else {
+            s.to_mm = s.to_mm * affine{1.0, 0.0, 0.0, 1.0, corner.x_mm, corner.y_mm};
+            s.viewport.width = width;
+            s.viewport.height = height;
+        }
+        children(n, s);
+    }
+
+    void use(xml_node n, scope s)
+    {
+        std::string_view href = n.attribute("href").value();
+        if (href.empty())
+            href = n.attribute("xlink:href").value();
+        if (href.size() < 2 || href.front() != '#')
+            doc_.fail(n, fmt::format("{} refers to nothing in this file", doc_.called(n)), "href=\"#id\"");
+        const xml_node target = doc_.by_id(href.substr(1));
+        if (!target)
+            doc_.fail(n, fmt::format("{} refers to {}, which is not in this file", doc_.called(n), href),
+                      "correct the id");
+        if (++s.uses > most_uses_inside)
+            doc_.fail(n, fmt::format("{} refers to itself, or too deep", doc_.called(n)),
+                      "take the loop out");
+        const point corner{doc_.length(n, "x", s.viewport, svg_extent::width),
+                           doc_.length(n, "y", s.viewport, svg_extent::height)};
+        s.to_mm = s.to_mm * affine{1.0, 0.0, 0.0, 1.0, corner.x_mm, corner.y_mm};
+        const std::string_view tag = svg_tag(target);
+        if (tag != "symbol" && tag != "svg")
+            return visit(target, s);
+        ++s.depth;
+        inherit_svg(doc_, target, s);
+        frame(target, n, s, {});
+    }
+
+    void shape(xml_node n, const scope& s)
+    {
+        std::vector<outline> outlines = svg_shape(doc_, n, s.viewport);
+        if (outlines.empty() && !undrawn_)
+            undrawn_ = n;
+        if (outlines.empty())
+            return;
+        const double scale = std::hypot(s.to_mm.a, s.to_mm.b) * std::hypot(s.to_mm.c, s.to_mm.d);
+        if (!(std::abs(s.to_mm.determinant()) > 1e-9 * scale))
+            doc_.fail(n, fmt::format("{} is flattened by its transform", doc_.called(n)),
+                      "a scale of 0 or a skew of 90 degrees leaves no drawing");
+        std::vector<path> paths;
+        for (outline& o : outlines) {
+            vertices_ += o.vertices.size();
+            if (vertices_ > most_vertices)
+                doc_.fail(n, "too many points", "simplify the drawing");
+            // Where it stands in the file is looked up for complaints only: that reads all before it.
+            const auto what = [&] { return fmt::format("{}: {}", doc_.where(n).text(), doc_.called(n)); };
+            paths.push_back(detail::make_path(mapped(std::move(o), s.to_mm), what));
+        }
+        add(n, s, paths);
+    }
+
+    static trajectory eased(const path& p, double duration_s, const scope& s)
+    {
+        const double intensity =
+            s.look.asked == svg_strength::opacity ? s.intensity * s.look.shown() : s.intensity;
+        if (s.easing == easing_kind::linear)
+            return trajectory::along(p, duration_s, intensity);
+        return trajectory::along(p, movement{.duration_s = duration_s, .easing = s.easing}, intensity);
+    }
+
+    // Of the lines that ask for it the widest has intensity 1.
+    void weigh_widths()
+    {
+        double widest = 0.0;
+        for (const auto& [stroke, width] : widths_)
+            widest = std::max(widest, width);
+        for (const auto& [stroke, width] : widths_)
+            if (width != widest)
+                strokes_[stroke].motion = strokes_[stroke].motion.with_intensity(width / widest);
+    }
+
+    // A duration is that of the whole shape: its subpaths share it by their lengths.
+    void add(xml_node n, const scope& s, const std::vector<path>& paths)
+    {
+        const auto duration = doc_.number(n, "data-duration-s", 1e-6, detail::longest_stroke_s);
+        auto start = doc_.number(n, "data-start-s", 0.0, detail::longest_stroke_s);
+        if (duration && n.attribute("data-speed-mm-s"))
+            doc_.fail(n, fmt::format("{} has data-duration-s and data-speed-mm-s", doc_.called(n)),
+                      "give one of the two");
+        detail::check_svg_look(doc_, n, s.look);
+        const double width = s.look.width * std::sqrt(std::abs(s.to_mm.determinant()));
+        double all = 0.0;
+        for (const path& p : paths)
+            all += p.length_mm();
+        const std::string_view id = n.attribute("id").value();
+        const std::string name(id.empty() ? svg_tag(n) : id);
+        for (std::size_t i = 0; i < paths.size(); ++i) {
+            const double length = paths[i].length_mm();
+            const double speed = s.speed_mm_s.value_or(default_speed_mm_s);
+            const double time = duration ? *duration * (length / all) : length / speed;
+            if (time > detail::longest_stroke_s)
+                doc_.fail(n, fmt::format("{} takes {:g} s", doc_.called(n), time),
+                          "a stroke takes at most a day");
+            if (s.look.asked == svg_strength::stroke_width)
+                widths_.emplace_back(strokes_.size(), width);
+            strokes_.push_back({paths.size() == 1 ? name : fmt::format("{}-{}", name, i + 1),
+                                eased(paths[i], time, s),
+                                start,
+                                s.carrier_hz,
+                                {},
+                                {},
+                                duration ? std::nullopt : std::optional(speed)});
+            start.reset();
+        }
+    }
+
+    detail::svg_document doc_;
+    std::vector<stroke> strokes_;
+    std::vector<std::pair<std::size_t, double>> widths_; ///< in mm, of those strokes that ask for it
+    xml_node undrawn_;
+    xml_node hidden_;
+    std::size_t elements_ = 0;
+    std::size_t vertices_ = 0;
+};
+
+} // namespace
+
+std::vector<stroke> parse_strokes_svg(std::string_view text, const std::string& name)
+{
+    detail::check_size(text, name, detail::max_tree_bytes, "simplify the drawing");
+    return svg_reader(text, name).read();
+}
+
+} // namespace tactor

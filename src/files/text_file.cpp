@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "files/text_file.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <new>
+#include <string>
+#include <system_error>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <tactor/error.hpp>
+
+#include "core/refused.hpp"
+namespace tactor::detail {
+namespace {
+
+struct open_file {
+    explicit open_file(const std::filesystem::path& file) : fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {}
+    ~open_file()
+    {
+        if (fd >= 0)
+            ::close(fd);
+    }
+    open_file(const open_file&) = delete;
+    open_file& operator=(const open_file&) = delete;
+
+    int fd;
+};
+
+[[noreturn]] void refuse(std::string_view name, int code)
+{
+    const char* hint = code == ENOENT ? "check the name" : code == EACCES ? "check the permissions" : "";
+    throw_caused(error(error_kind::bad_input, name, std::generic_category().message(code), hint), code);
+}
+
+} // namespace
+
+whole_text read_text(int descriptor, std::string_view name, std::size_t max_bytes)
+{
+    constexpr std::size_t first_bytes = std::size_t{1} << 16;
+    whole_text text;
+    std::size_t room = 0;
+    for (;;) {
+        if (text.size_ == room) {
+            // Large ones are moved by mapping their pages elsewhere, not by a copy beside them.
+            room = std::min(std::max(room * 2, first_bytes), max_bytes + 1);
+            void* moved = std::realloc(text.bytes_.get(), room);
+            if (moved == nullptr)
+                throw std::bad_alloc();
+            static_cast<void>(text.bytes_.release());
+            text.bytes_.reset(static_cast<char*>(moved));
+        }
+        const ssize_t got = ::read(descriptor, text.bytes_.get() + text.size_, room - text.size_);
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got < 0)
+            refuse(name, errno);
+        if (got == 0)
+            return text;
+        text.size_ += static_cast<std::size_t>(got);
+        if (text.size_ > max_bytes)
+            throw error(error_kind::bad_input, name, fmt::format("longer than {} MB", max_bytes >> 20),
+                        "is it the right file?");
+    }
+}
+
+whole_text read_text_file(const std::filesystem::path& file, std::size_t max_bytes)
+{
+    std::error_code ignored;
+    if (std::filesystem::is_directory(file, ignored))
+        throw error(error_kind::bad_input, file.string(), "is a directory", "name a file in it");
+    const open_file in(file);
+    if (in.fd < 0)
+        refuse(file.string(), errno);
+    return read_text(in.fd, file.string(), max_bytes);
+}
+
+void refuse_utf16(std::string_view text, const std::string& name)
+{
+    const std::string_view mark = text.substr(0, 2);
+    const bool marked = mark == "\xFF\xFE" || mark == "\xFE\xFF";
+    // Without a mark, every other byte of plain letters is 0.
+    const bool bare = mark.size() == 2 && (mark[0] == '\0') != (mark[1] == '\0');
+    if (marked || bare)
+        throw error(error_kind::bad_input, name, "is UTF-16, not UTF-8",
+                    "save it as UTF-8 in the editor, or convert it: iconv -f UTF-16 -t UTF-8 OLD > NEW");
+}
+
+} // namespace tactor::detail

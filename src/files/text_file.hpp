@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// Reading a whole text that a user named.
+#pragma once
+
+#include <cstddef>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "core/deleter.hpp"
+
+namespace tactor::detail {
+
+/// Array and configuration files are written by hand.
+inline constexpr std::size_t max_setup_bytes = std::size_t{16} << 20;
+
+/// The bytes of a file. Not a std::string: that copies itself as it grows, and texts may have 512 MB.
+class whole_text {
+public:
+    operator std::string_view() const noexcept { return {bytes_.get(), size_}; }
+
+private:
+    friend whole_text read_text(int descriptor, std::string_view name, std::size_t max_bytes);
+
+    std::unique_ptr<char, detail::deleter<std::free>> bytes_;
+    std::size_t size_ = 0;
+};
+
+/// All that a descriptor gives, up to its end. Needs little more memory than what it returns.
+/// \throws error (bad_input) with `name` when it cannot be read or gives more than `max_bytes`.
+whole_text read_text(int descriptor, std::string_view name, std::size_t max_bytes);
+
+/// The bytes of a file; pipes and devices are read up to `max_bytes` as well.
+/// \throws error (bad_input) naming the file when it is missing, a directory, not readable or longer.
+whole_text read_text_file(const std::filesystem::path& file, std::size_t max_bytes);
+
+/// \throws error (bad_input) where the text is UTF-16, as some editors save it: it would be refused anyway,
+/// at its first character and in words about bytes.
+void refuse_utf16(std::string_view text, const std::string& name);
+
+} // namespace tactor::detail

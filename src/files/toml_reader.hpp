@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+// TOML with types, ranges and known keys checked; every complaint has its line and column.
+#pragma once
+
+#include <cstddef>
+#include <initializer_list>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <toml++/toml.h>
+
+#include <tactor/error.hpp>
+#include <tactor/geometry.hpp>
+#include <tactor/kinds.hpp>
+
+#include "core/limits.hpp"
+
+namespace tactor::detail {
+
+/// What a number may be.
+struct bounds {
+    double low = 0.0;
+    double high = 0.0;
+    bool above_low = false; ///< low itself is not allowed
+};
+
+/// Parses a document. `name` stands for the file in messages.
+/// \throws error (bad_input) with file, line and column.
+toml::table parse_toml(std::string_view text, const std::string& name);
+
+/// One table of a document. Refers to the document and to the name: both must outlive it.
+class toml_table {
+public:
+    /// `title` is how messages call the table, e.g. "[output]".
+    toml_table(const toml::table& t, std::string title, const std::string& file);
+
+    /// \throws error for a key that is not among these, naming the nearest.
+    void only(std::span<const std::string_view> known) const;
+    void only(std::initializer_list<std::string_view> known) const { only({known.begin(), known.size()}); }
+
+    bool has(std::string_view key) const;
+    const std::string& title() const noexcept { return title_; }
+    const std::string& file() const noexcept { return *file_; }
+
+    source_place where() const;                     ///< where the table begins
+    source_place where(std::string_view key) const; ///< where the value of a key begins
+    source_place where(const toml::node& n) const;
+
+    /// Values; nothing where the key is missing. All throw error for a wrong type or range.
+    std::optional<double> number(std::string_view key, bounds b) const;
+    std::optional<unsigned> whole(std::string_view key, unsigned low, unsigned high) const;
+    std::optional<bool> boolean(std::string_view key) const;
+    std::optional<std::string> text(std::string_view key) const; ///< not empty
+    std::optional<std::string> choice(std::string_view key, std::span<const std::string_view> of) const;
+    std::optional<std::string> choice(std::string_view key, std::initializer_list<std::string_view> of) const
+    {
+        return choice(key, std::span(of.begin(), of.size()));
+    }
+    /// A value of a closed set, by its name.
+    template <class Kind>
+    std::optional<Kind> kind(std::string_view key) const
+    {
+        std::vector<std::string_view> names;
+        for (const Kind k : values_of<Kind>())
+            names.push_back(to_string(k));
+        const auto name = choice(key, names);
+        return name ? std::optional(from_string<Kind>(*name)) : std::nullopt;
+    }
+    /// `shape` shows a wrong value's author how it is written.
+    std::optional<toml_table> table(std::string_view key, std::string title, std::string_view shape) const;
+    /// An array of tables, [[key]]; none is an empty list.
+    std::vector<toml_table> tables(std::string_view key) const;
+    const toml::array* list(std::string_view key, std::string_view of_what) const;
+    const toml::node* node(std::string_view key) const;
+
+    /// [x, y] in mm within max_mm.
+    std::optional<point> place(std::string_view key) const;
+    /// The numbers of one list entry, into `out`; how many must be in least ... most.
+    void numbers(const toml::node& entry, std::string_view called, std::size_t least, std::size_t most,
+                 std::vector<double>& out) const;
+    double number_of(const toml::node& n, std::string_view called, bounds b) const;
+    /// v, which stands at n, if it is within b.
+    double within(const toml::node& n, std::string_view called, double v, bounds b) const;
+
+    /// What must be there. \throws error saying that the key is missing.
+    template <class T>
+    T need(std::optional<T> value, std::string_view key) const
+    {
+        if (!value)
+            missing(key);
+        return *std::move(value);
+    }
+
+    /// The one of `keys` that is there. \throws error for none or more than one.
+    std::string_view one_of(std::initializer_list<std::string_view> keys) const;
+
+    [[noreturn]] void fail(std::string_view why, std::string_view hint = {}) const;
+    [[noreturn]] void fail(std::string_view key, std::string_view why, std::string_view hint) const;
+
+private:
+    [[noreturn]] void missing(std::string_view key) const;
+    [[noreturn]] void wrong_type(std::string_view called, const toml::node& n, std::string_view want) const;
+
+    const toml::table* table_;
+    std::string title_;
+    const std::string* file_;
+};
+
+/// A value as a message shows it: 12.5, 'text', "a list".
+std::string shown(const toml::node& n);
+
+[[noreturn]] void fail_at(const source_place& at, std::string_view why, std::string_view hint = {});
+
+} // namespace tactor::detail

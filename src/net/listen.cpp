@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: MIT
+#include "net/listen.hpp"
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+#include <memory>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <sys/file.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <tactor/error.hpp>
+
+namespace tactor::net {
+namespace {
+
+[[noreturn]] void refused(const std::string& what, int code)
+{
+    const auto kind = code == EADDRINUSE || code == EACCES || code == EADDRNOTAVAIL
+                          ? error_kind::not_available
+                          : error_kind::runtime;
+    throw error(kind, what, std::strerror(code));
+}
+
+sockaddr_un unix_address(const std::string& path)
+{
+    sockaddr_un a{};
+    a.sun_family = AF_UNIX;
+    if (path.empty() || path.size() >= sizeof a.sun_path)
+        throw error(error_kind::bad_input, "socket " + path,
+                    fmt::format("its name has {} bytes", path.size()),
+                    fmt::format("1 to {}", sizeof a.sun_path - 1));
+    std::memcpy(static_cast<char*>(a.sun_path), path.c_str(), path.size() + 1);
+    return a;
+}
+
+const sockaddr* generic(const sockaddr_un& a)
+{
+    return reinterpret_cast<const sockaddr*>(&a); // NOLINT(cppcoreguidelines-pro-type-reinterpret-cast)
+}
+
+std::string process_name(pid_t pid)
+{
+    std::string name;
+    std::getline(std::ifstream(fmt::format("/proc/{}/comm", pid)), name);
+    return name.empty() ? fmt::format("process {}", pid) : fmt::format("{}, process {}", name, pid);
+}
+
+// Nobody listens there any more, or there is nothing: then the name may be used. Else an error.
+void make_free(const std::string& path)
+{
+    struct stat s {};
+    if (::lstat(path.c_str(), &s) != 0) {
+        if (errno == ENOENT)
+            return;
+        refused("socket " + path, errno);
+    }
+    if (!S_ISSOCK(s.st_mode))
+        throw error(error_kind::bad_input, "socket " + path, "there is something else that is no socket",
+                    "choose another name, or remove it");
+    const owned_fd probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+    const sockaddr_un a = unix_address(path);
+    // EAGAIN: its queue is full, so somebody has it.
+    if (::connect(probe.get(), generic(a), sizeof a) == 0 || errno == EAGAIN) {
+        ucred who{};
+        socklen_t n = sizeof who;
+        const bool known = ::getsockopt(probe.get(), SOL_SOCKET, SO_PEERCRED, &who, &n) == 0 && who.pid > 0;
+        throw error(error_kind::not_available, "socket " + path,
+                    fmt::format("{} listens there already", known ? process_name(who.pid) : "somebody"),
+                    "draw through that one, end it, or name another socket");
+    }
+    if (errno != ECONNREFUSED)
+        refused("socket " + path, errno);
+    if (::unlink(path.c_str()) != 0 && errno != ENOENT)
+        refused("socket " + path, errno);
+}
+
+int option(int fd, int name)
+{
+    int v = 0;
+    socklen_t n = sizeof v;
+    return ::getsockopt(fd, SOL_SOCKET, name, &v, &n) == 0 ? v : -1;
+}
+
+bool listens(int fd)
+{
+    return option(fd, SO_TYPE) == SOCK_STREAM && option(fd, SO_ACCEPTCONN) == 1;
+}
+
+struct bound_to {
+    sockaddr_storage at{};
+    socklen_t size = sizeof(sockaddr_storage);
+};
+
+bound_to local(int fd)
+{
+    bound_to b;
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): as sockets want it
+    if (::getsockname(fd, reinterpret_cast<sockaddr*>(&b.at), &b.size) != 0)
+        b.at.ss_family = AF_UNSPEC;
+    return b;
+}
+
+// A stream listens.
+owned_fd bind_internet(const host_and_port& at, const std::string& what, int type)
+{
+    addrinfo hints{};
+    hints.ai_socktype = type;
+    hints.ai_flags = AI_PASSIVE | AI_NUMERICSERV;
+    addrinfo* found = nullptr;
+    const int failed = ::getaddrinfo(at.host.c_str(), std::to_string(at.port).c_str(), &hints, &found);
+    const std::string where = fmt::format("{} {}:{}", what, at.host, at.port);
+    if (failed != 0)
+        throw error(error_kind::bad_input, where, ::gai_strerror(failed), "give an address of this machine");
+    const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> freed(found, ::freeaddrinfo);
+    owned_fd fd(::socket(found->ai_family, type | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+    const int yes = 1;
+    const bool stream = type == SOCK_STREAM;
+    // Two that take datagrams at one port would take each other's.
+    if (!fd || (stream && ::setsockopt(fd.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) != 0) ||
+        ::bind(fd.get(), found->ai_addr, found->ai_addrlen) != 0 ||
+        (stream && ::listen(fd.get(), SOMAXCONN) != 0))
+        refused(where, errno);
+    return fd;
+}
+
+} // namespace
+
+owned_fd::~owned_fd()
+{
+    if (fd_ >= 0)
+        ::close(fd_);
+}
+
+host_and_port parse_host(std::string_view text, const std::string& what)
+{
+    host_and_port at;
+    const std::string all(text);
+    std::string_view port = text;
+    if (const auto colon = text.rfind(':'); colon != std::string_view::npos) {
+        std::string_view host = text.substr(0, colon);
+        if (host.size() >= 2 && host.front() == '[' && host.back() == ']')
+            host = host.substr(1, host.size() - 2);
+        else if (host.find(':') != std::string_view::npos)
+            host = {}; // ::1 needs brackets
+        at.host = host;
+        port = text.substr(colon + 1);
+    }
+    const auto r = std::from_chars(port.data(), port.data() + port.size(), at.port);
+    if (at.host.empty() || port.empty() || r.ec != std::errc() || r.ptr != port.data() + port.size())
+        throw error(error_kind::bad_input, what, fmt::format("\"{}\" is no address", all),
+                    "[HOST:]PORT, such as 4001, 0.0.0.0:4001 or [::1]:4001; port 0 takes a free one");
+    return at;
+}
+
+owned_fd listen_unix(const std::string& path, mode_t mode, std::optional<gid_t> group)
+{
+    const std::string what = "socket " + path;
+    const sockaddr_un a = unix_address(path);
+    const auto slash = path.rfind('/');
+    const std::string folder = slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
+    // Two servers that start at once look and bind one after the other.
+    const owned_fd lock(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (!lock)
+        throw error(error_kind::bad_input, what, std::strerror(errno), "its folder must be there");
+    ::flock(lock.get(), LOCK_EX);
+    make_free(path);
+    owned_fd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+    // The name gets the socket's own mode, less what the umask takes: never more than this, not for a moment.
+    if (!fd || ::fchmod(fd.get(), S_IRUSR | S_IWUSR) != 0 || ::bind(fd.get(), generic(a), sizeof a) != 0)
+        refused(what, errno);
+    const bool given = !group || ::lchown(path.c_str(), static_cast<uid_t>(-1), *group) == 0;
+    if (!given || ::chmod(path.c_str(), mode) != 0 || ::listen(fd.get(), SOMAXCONN) != 0) {
+        const int code = errno;
+        ::unlink(path.c_str());
+        refused(what, code);
+    }
+    return fd;
+}
+
+owned_fd listen_tcp(const host_and_port& at, const std::string& what)
+{
+    return bind_internet(at, what, SOCK_STREAM);
+}
+
+owned_fd bind_udp(const host_and_port& at, const std::string& what)
+{
+    return bind_internet(at, what, SOCK_DGRAM);
+}
+
+std::string local_address(int fd)
+{
+    const bound_to b = local(fd);
+    char host[NI_MAXHOST];
+    char port[NI_MAXSERV];
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast)
+    if (::getnameinfo(reinterpret_cast<const sockaddr*>(&b.at), b.size, host, sizeof host, port, sizeof port,
+                      NI_NUMERICHOST | NI_NUMERICSERV) != 0)
+        return {};
+    return b.at.ss_family == AF_INET6 ? fmt::format("[{}]:{}", &host[0], &port[0])
+                                      : fmt::format("{}:{}", &host[0], &port[0]);
+}
+
+bool is_loopback(int fd)
+{
+    const bound_to b = local(fd);
+    if (b.at.ss_family == AF_INET) {
+        sockaddr_in four{};
+        std::memcpy(&four, &b.at, sizeof four);
+        return (ntohl(four.sin_addr.s_addr) >> 24U) == 127U;
+    }
+    if (b.at.ss_family != AF_INET6)
+        return false;
+    sockaddr_in6 six{};
+    std::memcpy(&six, &b.at, sizeof six);
+    return std::memcmp(&six.sin6_addr, &in6addr_loopback, sizeof six.sin6_addr) == 0;
+}
+
+bool is_unix_listener(int fd)
+{
+    return local(fd).at.ss_family == AF_UNIX && listens(fd);
+}
+
+bool is_tcp_listener(int fd)
+{
+    const auto family = local(fd).at.ss_family;
+    return (family == AF_INET || family == AF_INET6) && listens(fd);
+}
+
+bool is_bound_udp(int fd)
+{
+    const bound_to b = local(fd);
+    sockaddr_in four{}; // the port stands at the same place in both families
+    std::memcpy(&four, &b.at, sizeof four);
+    const bool internet = b.at.ss_family == AF_INET || b.at.ss_family == AF_INET6;
+    return internet && option(fd, SO_TYPE) == SOCK_DGRAM && four.sin_port != 0;
+}
+
+std::string bound_path(int fd)
+{
+    const bound_to b = local(fd);
+    sockaddr_un a{};
+    if (b.at.ss_family != AF_UNIX)
+        return {};
+    std::memcpy(&a, &b.at, sizeof a);
+    return static_cast<const char*>(a.sun_path);
+}
+
+std::vector<std::pair<std::string, owned_fd>> inherited_sockets()
+{
+    constexpr int first = 3;
+    std::vector<std::pair<std::string, owned_fd>> found;
+    const char* pid = std::getenv("LISTEN_PID");
+    const char* count = std::getenv("LISTEN_FDS");
+    const char* names = std::getenv("LISTEN_FDNAMES");
+    if (pid == nullptr || count == nullptr || std::to_string(::getpid()) != pid)
+        return found;
+    int n = 0;
+    std::from_chars(count, count + std::strlen(count), n);
+    std::string left = names == nullptr ? "" : names;
+    for (int fd = first; fd < first + n && fd < first + 64; ++fd) {
+        const auto colon = left.find(':');
+        std::string name = left.substr(0, colon);
+        left = colon == std::string::npos ? "" : left.substr(colon + 1);
+        ::fcntl(fd, F_SETFD, FD_CLOEXEC);
+        ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) | O_NONBLOCK);
+        found.emplace_back(std::move(name), owned_fd(fd));
+    }
+    for (const char* v : {"LISTEN_PID", "LISTEN_FDS", "LISTEN_FDNAMES"})
+        ::unsetenv(v);
+    return found;
+}
+
+void notify_manager(std::string_view text) noexcept
+{
+    const char* to = std::getenv("NOTIFY_SOCKET");
+    sockaddr_un a{};
+    a.sun_family = AF_UNIX;
+    if (to == nullptr || std::strlen(to) < 2 || std::strlen(to) >= sizeof a.sun_path)
+        return;
+    std::memcpy(static_cast<char*>(a.sun_path), to, std::strlen(to));
+    if (a.sun_path[0] == '@')
+        a.sun_path[0] = '\0';
+    const owned_fd fd(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+    const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + std::strlen(to));
+    [[maybe_unused]] const ssize_t sent =
+        ::sendto(fd.get(), text.data(), text.size(), MSG_NOSIGNAL, generic(a), size);
+}
+
+} // namespace tactor::net

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Sockets to listen on: bound here, or inherited from whoever started the process.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace tactor::net {
+
+/// A descriptor that is closed with this.
+class owned_fd {
+public:
+    owned_fd() noexcept = default;
+    explicit owned_fd(int fd) noexcept : fd_(fd) {}
+    owned_fd(owned_fd&& o) noexcept : fd_(std::exchange(o.fd_, -1)) {}
+    owned_fd& operator=(owned_fd&& o) noexcept
+    {
+        std::swap(fd_, o.fd_);
+        return *this;
+    }
+    ~owned_fd();
+
+    int get() const noexcept { return fd_; }
+    int release() noexcept { return std::exchange(fd_, -1); }
+    explicit operator bool() const noexcept { return fd_ >= 0; }
+
+private:
+    int fd_ = -1;
+};
+
+struct host_and_port {
+    std::string host = "127.0.0.1";
+    std::uint16_t port = 0;
+};
+
+/// "[HOST:]PORT", the HOST of IPv6 in brackets. \throws error (bad_input) that names `what`.
+host_and_port parse_host(std::string_view text, const std::string& what);
+
+/// A socket that listens at `path`, which only its user (and with `group` that group, where it exists) can
+/// connect to from the first moment on, under any umask. What a process that is gone left there is replaced.
+/// \throws error: not_available when somebody listens there (who), bad_input for what is no socket and for
+///         names that are too long, runtime for what the system refuses.
+owned_fd listen_unix(const std::string& path, mode_t mode, std::optional<gid_t> group);
+
+/// A socket that listens at each address of a host. \throws error like listen_unix().
+owned_fd listen_tcp(const host_and_port& at, const std::string& what);
+
+/// A socket for datagrams to an address of a host. \throws error like listen_unix().
+owned_fd bind_udp(const host_and_port& at, const std::string& what);
+
+/// "127.0.0.1:4001", "[::1]:4001" of what a TCP socket is bound to.
+std::string local_address(int fd);
+/// The same of its host alone.
+bool is_loopback(int fd);
+/// Whether it is of the family AF_UNIX, a stream, and listens.
+bool is_unix_listener(int fd);
+bool is_tcp_listener(int fd);
+/// Whether it takes datagrams of IP at a port of its own.
+bool is_bound_udp(int fd);
+/// The path that a Unix socket is bound to; empty for none.
+std::string bound_path(int fd);
+
+/// What systemd handed over, by FileDescriptorName; taken from the environment once, so that children get
+/// none.
+std::vector<std::pair<std::string, owned_fd>> inherited_sockets();
+
+/// Sends one datagram such as "READY=1" to NOTIFY_SOCKET; nothing where there is none.
+void notify_manager(std::string_view text) noexcept;
+
+} // namespace tactor::net

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#include "net/listener.hpp"
+
+#include <cerrno>
+#include <chrono>
+#include <utility>
+
+#include <fcntl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace tactor::net {
+namespace {
+
+namespace asio = boost::asio;
+
+constexpr auto accept_pause = std::chrono::milliseconds(100);
+
+} // namespace
+
+listener::listener(asio::io_context& io, int fd, std::string no_room, std::function<void(socket_type)> taken)
+    : io_(io), fd_(io, fd), pause_(io), no_room_(std::move(no_room)), taken_(std::move(taken))
+{
+    keep_spare();
+}
+
+listener::~listener()
+{
+    fd_.release();
+    if (spare_ >= 0)
+        ::close(spare_);
+}
+
+void listener::keep_spare() noexcept
+{
+    if (spare_ < 0)
+        spare_ = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+}
+
+void listener::start()
+{
+    fd_.async_wait(asio::posix::descriptor_base::wait_read, [this](const boost::system::error_code& e) {
+        if (e)
+            return;
+        take();
+    });
+}
+
+void listener::stop()
+{
+    boost::system::error_code ignored;
+    fd_.cancel(ignored);
+    pause_.cancel();
+}
+
+void listener::take()
+{
+    sockaddr address{};
+    socklen_t size = sizeof address;
+    const int fd = ::accept4(fd_.native_handle(), &address, &size, SOCK_CLOEXEC | SOCK_NONBLOCK);
+    if (fd >= 0) {
+        boost::system::error_code failed;
+        socket_type s(io_);
+        s.assign(asio::generic::stream_protocol(address.sa_family, 0), fd, failed);
+        if (failed)
+            ::close(fd);
+        else
+            taken_(std::move(s));
+        return start();
+    }
+    if (errno == EAGAIN || errno == EINTR || errno == ECONNABORTED)
+        return start();
+    if ((errno == EMFILE || errno == ENFILE) && turn_away())
+        return start();
+    // Out of memory, or somebody took the spare one: asking again at once would only take all time.
+    pause_.expires_after(accept_pause);
+    pause_.async_wait([this](const boost::system::error_code& e) {
+        if (!e)
+            start();
+    });
+}
+
+// Tells the next one why, as far as its socket takes it.
+bool listener::turn_away() noexcept
+{
+    keep_spare();
+    if (spare_ < 0)
+        return false;
+    ::close(std::exchange(spare_, -1));
+    const int fd = ::accept4(fd_.native_handle(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+    if (fd >= 0) {
+        static_cast<void>(::send(fd, no_room_.data(), no_room_.size(), MSG_DONTWAIT | MSG_NOSIGNAL));
+        ::close(fd);
+    }
+    keep_spare();
+    return fd >= 0;
+}
+
+} // namespace tactor::net

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Accepts connections.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include <boost/asio/generic/stream_protocol.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+namespace tactor::net {
+
+/// A listening socket. Accepts one after the other. Whoever comes when no descriptors are left is told so,
+/// over one that is kept for that, and closed.
+class listener {
+public:
+    using socket_type = boost::asio::generic::stream_protocol::socket;
+
+    /// `fd` stays its owner's; `no_room` is what is said for want of descriptors.
+    listener(boost::asio::io_context& io, int fd, std::string no_room,
+             std::function<void(socket_type)> taken);
+    ~listener();
+    listener(const listener&) = delete;
+    listener& operator=(const listener&) = delete;
+
+    void start();
+    void stop();
+
+private:
+    void take();
+    bool turn_away() noexcept;
+    void keep_spare() noexcept;
+
+    boost::asio::io_context& io_;
+    boost::asio::posix::stream_descriptor fd_;
+    boost::asio::steady_timer pause_;
+    std::string no_room_;
+    std::function<void(socket_type)> taken_;
+    int spare_ = -1;
+};
+
+} // namespace tactor::net

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// Without liblo.
+#include <tactor/error.hpp>
+
+#include "net/osc.hpp"
+
+namespace tactor::net {
+
+bool osc_is_built() noexcept
+{
+    return false;
+}
+
+osc_message parse_osc_message(std::string_view)
+{
+    throw error(error_kind::bad_input, "OSC", "this build was made without it");
+}
+
+std::string osc_packet(const std::string&, const std::vector<osc_value>&)
+{
+    return {};
+}
+
+} // namespace tactor::net

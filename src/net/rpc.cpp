@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+#include "net/rpc.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace tactor::net {
+namespace {
+
+// Counted in the text, so that nothing is built of what is too deep.
+bool nests_deeper(std::string_view text, std::size_t most)
+{
+    std::size_t depth = 0;
+    bool quoted = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (quoted) {
+            if (c == '\\')
+                ++i;
+            else if (c == '"')
+                quoted = false;
+        } else if (c == '"') {
+            quoted = true;
+        } else if (c == '[' || c == '{') {
+            if (++depth > most)
+                return true;
+        } else if ((c == ']' || c == '}') && depth != 0) {
+            --depth;
+        }
+    }
+    return false;
+}
+
+rpc_refusal invalid(json id, std::string why)
+{
+    return {{code_invalid_request, "bad-input", "request", std::move(why),
+             R"(an object such as {"jsonrpc":"2.0","id":1,"method":"status"})"},
+            std::move(id)};
+}
+
+std::variant<rpc_request, rpc_refusal> read_request(json& j)
+{
+    if (!j.is_object())
+        return invalid(nullptr, "it is no object");
+    rpc_request r;
+    if (const auto id = j.find("id"); id == j.end())
+        r.wants_reply = false;
+    else if (id->is_string() || id->is_number() || id->is_null())
+        r.id = *id;
+    else
+        return invalid(nullptr, "its id is neither a text nor a number");
+    if (const auto version = j.find("jsonrpc"); version == j.end() || *version != "2.0")
+        return invalid(r.id, R"(its "jsonrpc" is not "2.0")");
+    const auto method = j.find("method");
+    if (method == j.end() || !method->is_string())
+        return invalid(r.id, R"(its "method" is no text)");
+    r.method = method->get<std::string>();
+    if (const auto params = j.find("params"); params != j.end()) {
+        if (!params->is_structured())
+            return invalid(r.id, R"(its "params" are no object)");
+        r.params = std::move(*params);
+    }
+    return r;
+}
+
+rpc_message alone(rpc_refusal r)
+{
+    rpc_message m;
+    m.parts.emplace_back(std::move(r));
+    return m;
+}
+
+rpc_refusal over(std::string what, std::string why, std::string hint)
+{
+    return {{code_limit, "limit", std::move(what), std::move(why), std::move(hint)}, nullptr};
+}
+
+} // namespace
+
+rpc_message parse_rpc(std::string_view text, const rpc_limits& l)
+{
+    if (nests_deeper(text, l.nesting))
+        return alone(over("message", fmt::format("it nests deeper than {} levels", l.nesting), ""));
+    json j;
+    try {
+        j = json::parse(text);
+    } catch (const json::exception& e) {
+        // Without the library's own name and number, which help nobody.
+        std::string_view why = e.what();
+        why.remove_prefix(std::min(why.find("] ") + 2, why.size()));
+        std::string plain;
+        for (const char c : why)
+            plain += static_cast<unsigned char>(c) < 0x80U ? c : '?';
+        return alone(
+            {{code_parse_error, "bad-input", "message", plain, "one JSON value a line, in UTF-8"}, nullptr});
+    }
+    if (!j.is_array()) {
+        rpc_message m;
+        m.parts.push_back(read_request(j));
+        return m;
+    }
+    if (j.empty())
+        return alone(invalid(nullptr, "the batch is empty"));
+    if (j.size() > l.batch)
+        return alone(over("batch", fmt::format("{} requests in a batch of at most {}", j.size(), l.batch),
+                          "send several"));
+    rpc_message m;
+    m.batch = true;
+    for (json& one : j)
+        m.parts.push_back(read_request(one));
+    return m;
+}
+
+reply_json result_reply(const json& id, reply_json result)
+{
+    return {{"jsonrpc", "2.0"}, {"id", id}, {"result", std::move(result)}};
+}
+
+std::string words_of(const rpc_fault& f)
+{
+    return f.hint.empty() ? fmt::format("{}: {}", f.what, f.why)
+                          : fmt::format("{}: {} ({})", f.what, f.why, f.hint);
+}
+
+reply_json error_reply(const json& id, const rpc_fault& f)
+{
+    reply_json data{{"kind", f.kind}, {"what", f.what}, {"why", f.why}, {"hint", f.hint}};
+    return {{"jsonrpc", "2.0"},
+            {"id", id},
+            {"error", {{"code", f.code}, {"message", words_of(f)}, {"data", std::move(data)}}}};
+}
+
+reply_json notification(std::string_view method, reply_json params)
+{
+    return {{"jsonrpc", "2.0"}, {"method", method}, {"params", std::move(params)}};
+}
+
+std::string text_of(const reply_json& j)
+{
+    return j.dump(-1, ' ', false, reply_json::error_handler_t::replace);
+}
+
+} // namespace tactor::net

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// JSON-RPC 2.0: text to requests, and answers to text. Pure functions of their arguments.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace tactor::net {
+
+/// What was received: objects are maps, so that a message of many keys takes no quadratic time.
+using json = nlohmann::json;
+/// What is sent: in the order in which it is written.
+using reply_json = nlohmann::ordered_json;
+
+/// Those of the standard, and ours.
+enum rpc_code : int {
+    code_parse_error = -32700,
+    code_invalid_request = -32600,
+    code_no_method = -32601,
+    code_bad_params = -32602,
+    code_internal = -32603,
+    code_no_stream = -32000,
+    code_limit = -32001,
+    code_no_stroke = -32002,
+    code_no_token = -32003,
+};
+
+/// What becomes an error object, with data {kind what why hint}.
+struct rpc_fault {
+    int code = code_internal;
+    std::string kind = {};
+    std::string what = {}; ///< the parameter that it is about
+    std::string why = {};
+    std::string hint = {};
+};
+
+struct rpc_request {
+    std::string method;
+    json params = json::object();
+    json id = nullptr;
+    bool wants_reply = true; ///< false: a notification
+};
+
+/// One element of a message that is no request, and the id that its error goes to.
+struct rpc_refusal {
+    rpc_fault why;
+    json id = nullptr;
+};
+
+struct rpc_message {
+    std::vector<std::variant<rpc_request, rpc_refusal>> parts;
+    bool batch = false;
+};
+
+struct rpc_limits {
+    std::size_t nesting = 64; ///< levels of arrays and objects
+    std::size_t batch = 64;   ///< requests in one message
+};
+
+/// Never throws for what the text says: what is wrong is in the parts.
+rpc_message parse_rpc(std::string_view text, const rpc_limits& l);
+
+reply_json result_reply(const json& id, reply_json result);
+/// "what: why (hint)".
+std::string words_of(const rpc_fault& f);
+reply_json error_reply(const json& id, const rpc_fault& f);
+reply_json notification(std::string_view method, reply_json params);
+
+/// On one line, without its end; what is no UTF-8 is replaced.
+std::string text_of(const reply_json& j);
+
+} // namespace tactor::net

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include "net/web_access.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+#include <boost/asio/ip/address.hpp>
+
+namespace tactor::net {
+namespace {
+
+bool same_name(std::string_view a, std::string_view b)
+{
+    const auto lower = [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); };
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [&](char x, char y) { return lower(x) == lower(y); });
+}
+
+// "[::1]:4003" as "::1" and "4003"; the port is empty where none is said.
+std::pair<std::string_view, std::string_view> split(std::string_view host)
+{
+    if (host.starts_with('[')) {
+        const std::size_t end = host.find(']');
+        if (end == std::string_view::npos)
+            return {};
+        const std::string_view rest = host.substr(end + 1);
+        if (!rest.empty() && rest.front() != ':')
+            return {};
+        return {host.substr(1, end - 1), rest.empty() ? rest : rest.substr(1)};
+    }
+    const std::size_t colon = host.find(':');
+    if (colon == std::string_view::npos)
+        return {host, {}};
+    return {host.substr(0, colon), host.substr(colon + 1)};
+}
+
+bool same_address(std::string_view a, std::string_view b)
+{
+    // An address would be read up to a zero, and what follows be anything.
+    if (a.find('\0') != std::string_view::npos)
+        return false;
+    boost::system::error_code none;
+    const auto x = boost::asio::ip::make_address(std::string(a), none);
+    if (none)
+        return false;
+    const auto y = boost::asio::ip::make_address(std::string(b), none);
+    return !none && x == y;
+}
+
+// Browsers leave out the port of their scheme.
+constexpr std::string_view usual_port = "80";
+
+bool listed(std::string_view host, std::string_view port, const std::vector<std::string>& allowed)
+{
+    return std::any_of(allowed.begin(), allowed.end(), [&](const std::string& a) {
+        const auto [name, its_port] = split(a);
+        return !name.empty() && same_name(name, host) && (its_port.empty() || its_port == port);
+    });
+}
+
+} // namespace
+
+bool host_is_ours(std::string_view host, std::string_view local, const std::vector<std::string>& allowed)
+{
+    const auto [name, said_port] = split(host);
+    const std::string_view port = said_port.empty() ? usual_port : said_port;
+    const auto [address, local_port] = split(local);
+    if (name.empty())
+        return false;
+    if (port == local_port && (same_name(name, "localhost") || same_address(name, address)))
+        return true;
+    return listed(name, port, allowed);
+}
+
+bool origin_is_ours(std::string_view origin, std::string_view host, const std::vector<std::string>& allowed)
+{
+    constexpr std::string_view http = "http://";
+    constexpr std::string_view https = "https://";
+    if (origin.starts_with(http) && same_name(origin.substr(http.size()), host))
+        return true;
+    const bool secure = origin.starts_with(https);
+    if (!secure && !origin.starts_with(http))
+        return false;
+    const auto [name, port] = split(origin.substr(secure ? https.size() : http.size()));
+    return listed(name, port.empty() ? (secure ? "443" : usual_port) : port, allowed);
+}
+
+std::string_view bearer_of(std::string_view authorization)
+{
+    constexpr std::string_view scheme = "Bearer ";
+    if (authorization.size() <= scheme.size() || !same_name(authorization.substr(0, scheme.size()), scheme))
+        return {};
+    return authorization.substr(scheme.size());
+}
+
+} // namespace tactor::net

@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: MIT
+#include "net/web_connection.hpp"
+
+#include <chrono>
+#include <deque>
+#include <optional>
+#include <utility>
+
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "net/listen.hpp"
+#include "net/web_access.hpp"
+
+namespace tactor::net {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+
+constexpr std::size_t most_header_bytes = 8U << 10;
+constexpr std::chrono::seconds to_hang_up{1};
+
+std::string_view view(boost::string_view s)
+{
+    return {s.data(), s.size()};
+}
+
+} // namespace
+
+struct web_connection::session : std::enable_shared_from_this<session> {
+    session(socket_type s, const line_limits& l, write_budget& budget, std::vector<std::string> hosts)
+        : limits(l),
+          all(budget),
+          allowed(std::move(hosts)),
+          local(local_address(s.native_handle())),
+          socket(std::move(s)),
+          deadline(socket.get_executor()),
+          lingering(socket.get_executor())
+    {
+        parser.header_limit(most_header_bytes);
+        parser.body_limit(0);
+    }
+    ~session() { all.waiting -= waiting; }
+    session(const session&) = delete;
+    session& operator=(const session&) = delete;
+
+    void read_request();
+    void answer_request();
+    void respond(web_reply r);
+    void upgrade();
+    void read();
+    void received();
+    void send(std::string text);
+    void write();
+    void finish(websocket::close_code code);
+    void hang_up_soon();
+    void arm(double seconds);
+    void close();
+
+    line_limits limits;
+    write_budget& all;
+    std::vector<std::string> allowed;
+    std::string local;
+    handlers calls;
+    socket_type socket;
+    std::optional<websocket::stream<socket_type&>> ws;
+    beast::flat_buffer buffer;
+    http::request_parser<http::empty_body> parser;
+    http::response<http::string_body> response;
+    asio::steady_timer deadline;
+    asio::steady_timer lingering;
+    std::deque<std::string> queue;
+    std::size_t waiting = 0;
+    websocket::close_code code = websocket::close_code::normal;
+    bool armed = false;
+    bool accepted = false;
+    bool writing = false;
+    bool reading = true;
+    bool finishing = false;
+    bool closing = false;
+    bool closed = false;
+};
+
+void web_connection::session::read_request()
+{
+    arm(limits.message_s);
+    http::async_read(socket, buffer, parser,
+                     [self = shared_from_this()](const beast::error_code& e, std::size_t) {
+                         if (self->closed)
+                             return;
+                         self->armed = false;
+                         self->deadline.cancel();
+                         if (e == http::error::body_limit || e == http::error::header_limit)
+                             self->respond({413, "text/plain", "too much\n", ""});
+                         else if (e && e.category() == make_error_code(http::error::bad_target).category() &&
+                                  e != http::error::end_of_stream && e != http::error::partial_message)
+                             self->respond({400, "text/plain", "no request of HTTP\n", ""});
+                         else if (e)
+                             self->close();
+                         else
+                             self->answer_request();
+                     });
+}
+
+void web_connection::session::answer_request()
+{
+    const auto& request = parser.get();
+    const std::string host(view(request[http::field::host]));
+    const auto origins = request.equal_range(http::field::origin);
+    const bool one_host = request.count(http::field::host) == 1;
+    bool ours = one_host && host_is_ours(host, local, allowed);
+    for (auto o = origins.first; o != origins.second; ++o)
+        ours = ours && origin_is_ours(view(o->value()), host, allowed);
+    if (!ours)
+        return respond({403, "text/plain", "another name or another page than this server's\n", ""});
+    if (request.method() != http::verb::get)
+        return respond({405, "text/plain", "GET only\n", ""});
+    if (view(request.target()) == "/rpc" && websocket::is_upgrade(request))
+        return upgrade();
+    if (view(request.target()) == "/rpc")
+        return respond({426, "text/plain", "a WebSocket\n", ""});
+    respond(calls.get(view(request.target()), host, bearer_of(view(request[http::field::authorization]))));
+}
+
+// One request a connection: a page asks for little.
+void web_connection::session::respond(web_reply r)
+{
+    response.result(r.status);
+    response.version(11);
+    response.set(http::field::server, "tactor");
+    response.set(http::field::content_type, r.type);
+    response.set(http::field::cache_control, "no-store");
+    response.set("X-Content-Type-Options", "nosniff");
+    response.set("Referrer-Policy", "no-referrer");
+    response.set("Content-Security-Policy",
+                 r.policy.empty() ? "default-src 'none'; frame-ancestors 'none'" : r.policy);
+    if (r.status == 405)
+        response.set(http::field::allow, "GET");
+    if (r.status == 426) {
+        response.set(http::field::upgrade, "websocket");
+        response.set(http::field::connection, "upgrade, close");
+    }
+    response.body() = std::move(r.body);
+    if (r.status != 426)
+        response.keep_alive(false);
+    response.prepare_payload();
+    arm(limits.message_s);
+    http::async_write(socket, response,
+                      [self = shared_from_this()](const beast::error_code&, std::size_t) { self->close(); });
+}
+
+void web_connection::session::upgrade()
+{
+    if (!calls.upgrade())
+        return respond({503, "text/plain", "there is no place, try again later\n", ""});
+    accepted = true;
+    ws.emplace(socket);
+    websocket::stream_base::timeout t{};
+    t.handshake_timeout = steady_seconds(limits.message_s);
+    // A browser that is gone without a word is found by pings.
+    t.idle_timeout = std::chrono::seconds(60);
+    t.keep_alive_pings = true;
+    ws->set_option(t);
+    ws->read_message_max(limits.message_bytes);
+    ws->auto_fragment(false);
+    ws->set_option(websocket::stream_base::decorator(
+        [](websocket::response_type& r) { r.set(http::field::server, "tactor"); }));
+    // Whoever says goodbye has a second to hang up.
+    ws->control_callback([this](websocket::frame_type kind, boost::string_view) {
+        if (kind == websocket::frame_type::close)
+            hang_up_soon();
+    });
+    ws->async_accept(parser.get(), [self = shared_from_this()](const beast::error_code& e) {
+        if (self->closed)
+            return;
+        if (e)
+            return self->close();
+        self->buffer.consume(self->buffer.size());
+        self->arm(self->limits.message_s);
+        self->read();
+        if (!self->queue.empty())
+            self->write();
+        else if (self->finishing)
+            self->finish(self->code);
+    });
+}
+
+void web_connection::session::read()
+{
+    if (!reading || closed)
+        return;
+    ws->async_read_some(buffer, 16U << 10,
+                        [self = shared_from_this()](const beast::error_code& e, std::size_t) {
+                            if (self->closed)
+                                return;
+                            if (e)
+                                return self->close(); // Beast has said why, where somebody is there
+                            self->received();
+                        });
+}
+
+void web_connection::session::received()
+{
+    if (!ws->is_message_done()) {
+        if (!armed)
+            arm(limits.message_s);
+        return read();
+    }
+    armed = false;
+    deadline.cancel();
+    const std::string text(static_cast<const char*>(buffer.data().data()), buffer.size());
+    buffer.consume(buffer.size());
+    if (!ws->got_text())
+        return finish(websocket::close_code::unknown_data);
+    if (!text.empty() && !calls.text(text))
+        return finish(websocket::close_code::policy_error);
+    read();
+}
+
+void web_connection::session::send(std::string text)
+{
+    if (closed || finishing || !accepted)
+        return;
+    const std::size_t n = text.size();
+    if (waiting + n > limits.waiting_bytes || all.waiting + n > all.most) {
+        // Not here: whoever sends may be in the middle of going through all peers.
+        finishing = true;
+        asio::post(socket.get_executor(), [self = shared_from_this()] { self->close(); });
+        return;
+    }
+    waiting += n;
+    all.waiting += n;
+    queue.push_back(std::move(text));
+    if (!writing && ws && ws->is_open())
+        write();
+}
+
+void web_connection::session::write()
+{
+    writing = true;
+    ws->text(true);
+    ws->async_write(asio::buffer(queue.front()),
+                    [self = shared_from_this()](const beast::error_code& e, std::size_t) {
+                        self->writing = false;
+                        if (self->closed)
+                            return;
+                        if (e)
+                            return self->close();
+                        self->waiting -= self->queue.front().size();
+                        self->all.waiting -= self->queue.front().size();
+                        self->queue.pop_front();
+                        if (!self->queue.empty())
+                            self->write();
+                        else if (self->finishing)
+                            self->finish(self->code);
+                    });
+}
+
+void web_connection::session::finish(websocket::close_code c)
+{
+    if (closed || closing)
+        return;
+    if (!finishing)
+        code = c;
+    finishing = true;
+    reading = false;
+    deadline.cancel();
+    hang_up_soon();
+    if (!accepted)
+        return close();
+    if (!queue.empty() || !ws->is_open())
+        return;
+    closing = true;
+    ws->async_close(code, [self = shared_from_this()](const beast::error_code&) { self->close(); });
+}
+
+void web_connection::session::hang_up_soon()
+{
+    lingering.expires_after(to_hang_up);
+    lingering.async_wait([self = shared_from_this()](const boost::system::error_code& e) {
+        if (!e)
+            self->close();
+    });
+}
+
+void web_connection::session::arm(double seconds)
+{
+    armed = true;
+    deadline.expires_after(steady_seconds(seconds));
+    deadline.async_wait([self = shared_from_this()](const boost::system::error_code& e) {
+        if (e || !self->armed || self->closed)
+            return;
+        if (self->accepted && self->ws->is_open())
+            self->finish(websocket::close_code::policy_error);
+        else
+            self->close();
+    });
+}
+
+void web_connection::session::close()
+{
+    if (closed)
+        return;
+    closed = true;
+    deadline.cancel();
+    lingering.cancel();
+    boost::system::error_code ignored;
+    socket.shutdown(asio::socket_base::shutdown_send, ignored);
+    socket.close(ignored);
+    if (calls.closed)
+        asio::post(deadline.get_executor(), [self = shared_from_this()] {
+            const auto h = std::exchange(self->calls, {});
+            h.closed();
+        });
+}
+
+std::optional<asio::ip::tcp::socket> web_socket(asio::io_context& io, line_connection::socket_type taken)
+{
+    boost::system::error_code failed;
+    const bool old = taken.local_endpoint(failed).protocol().family() == AF_INET;
+    if (failed)
+        return {};
+    asio::ip::tcp::socket stream(io);
+    const int fd = taken.release();
+    stream.assign(old ? asio::ip::tcp::v4() : asio::ip::tcp::v6(), fd, failed);
+    if (failed) {
+        ::close(fd);
+        return {};
+    }
+    stream.set_option(asio::ip::tcp::no_delay(true), failed);
+    return stream;
+}
+
+web_connection::web_connection(socket_type s, const line_limits& l, write_budget& all,
+                               std::vector<std::string> allowed_hosts)
+    : session_(std::make_shared<session>(std::move(s), l, all, std::move(allowed_hosts)))
+{
+}
+
+web_connection::~web_connection() = default;
+
+void web_connection::start(handlers h)
+{
+    session_->calls = std::move(h);
+    session_->read_request();
+}
+
+void web_connection::send(std::string text)
+{
+    session_->send(std::move(text));
+}
+
+void web_connection::finish()
+{
+    session_->finish(websocket::close_code::going_away);
+}
+
+std::size_t web_connection::waiting() const noexcept
+{
+    return session_->waiting;
+}
+
+} // namespace tactor::net

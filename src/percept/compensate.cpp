@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tactor/observer.hpp>
+#include <tactor/words.hpp>
+
+#include "core/access.hpp"
+#include "percept/hull_fit.hpp"
+#include "percept/low_speed.hpp"
+#include "plan/faces/layout_impl.hpp"
+#include "plan/faces/sides.hpp"
+#include "plan/job.hpp"
+
+namespace tactor {
+namespace {
+
+constexpr double on_edge_mm = 1e-6;
+// Beyond, sixteen digits do not tell a place from its neighbours'.
+constexpr double least_give = 1e-7;
+
+point middle_of(const std::vector<point>& corners)
+{
+    point sum;
+    for (const point& p : corners)
+        sum = {sum.x_mm + p.x_mm, sum.y_mm + p.y_mm};
+    const double n = static_cast<double>(corners.size());
+    return {sum.x_mm / n, sum.y_mm / n};
+}
+
+// What keeps taps on the array. Where all tactors are in one line its two ends; nothing for a single one.
+std::vector<detail::beyond> ends_or_sides(const layout::impl& l)
+{
+    if (!l.hull.empty())
+        return detail::sides_of(l);
+    const auto [first, last] = detail::ends_of(l.points);
+    const double length = distance_mm(first, last);
+    if (!(length > 0.0))
+        return {};
+    const point along{(last.x_mm - first.x_mm) / length, (last.y_mm - first.y_mm) / length};
+    const point back{-along.x_mm, -along.y_mm};
+    return {{along, detail::dot(along, last)}, {back, detail::dot(back, first)}};
+}
+
+// Across a line there is nothing to choose.
+std::vector<point> onto_line(const layout::impl& l, std::vector<point> targets)
+{
+    const auto [first, last] = detail::ends_of(l.points);
+    const double length = distance_mm(first, last);
+    const point along{(last.x_mm - first.x_mm) / length, (last.y_mm - first.y_mm) / length};
+    for (point& p : targets) {
+        const double t = detail::dot(along, {p.x_mm - first.x_mm, p.y_mm - first.y_mm});
+        p = {first.x_mm + t * along.x_mm, first.y_mm + t * along.y_mm};
+    }
+    return targets;
+}
+
+void fit(const layout& l, std::span<const double> give, std::span<const point> targets, compensated_places& r)
+{
+    const layout::impl& in = detail::access::of(l);
+    const std::vector<detail::beyond> sides = ends_or_sides(in);
+    if (sides.empty()) {
+        r.played.assign(targets.size(), in.points.front());
+        r.at_edge = targets.size();
+        return;
+    }
+    std::vector<point> x(targets.begin(), targets.end());
+    if (in.hull.empty())
+        x = onto_line(in, std::move(x));
+    r.played = detail::fit_inside(give, x, sides, middle_of(in.hull.empty() ? in.points : in.hull));
+    const auto on_edge = [&](point p) {
+        return std::any_of(sides.begin(), sides.end(), [p](const detail::beyond& e) {
+            return detail::dot(e.out, p) > e.reach - on_edge_mm;
+        });
+    };
+    r.at_edge = static_cast<std::size_t>(std::count_if(r.played.begin(), r.played.end(), on_edge));
+    for (point& p : r.played)
+        p = l.nearest(p); // rounding
+}
+
+// What every command that plans says of it.
+std::string notice(const compensated_plan& p)
+{
+    const tap_summary felt = summarise(p.taps);
+    std::string text = fmt::format("bursts are moved for {}; it is predicted to feel them {:.3f} mm RMS and "
+                                   "at most {:.3f} mm from the target",
+                                   describe(p.observer), felt.rms_error_mm.value_or(0.0),
+                                   felt.largest_error_mm.value_or(0.0));
+    if (p.at_edge != 0)
+        text += fmt::format(
+            "; {} of {} cannot be moved far enough on this array, which alone leaves {:.3f} mm RMS "
+            "and at most {:.3f} mm",
+            p.at_edge, counted(p.taps.size(), "burst"), p.residual_rms_mm, p.residual_largest_mm);
+    if (p.schedule.algorithm == to_string(algorithm_kind::tactile_brush))
+        text += "; off the lines of the grid they are no longer the Tactile Brush's";
+    return text;
+}
+
+} // namespace
+
+compensated_places compensate(const layout& l, const low_speed_observer& o, std::span<const double> onsets_s,
+                              std::span<const point> targets)
+{
+    compensated_places r;
+    static_cast<void>(felt_places(o, onsets_s, targets)); // checks them
+    const std::vector<double> give = detail::give_of(o, onsets_s);
+    if (std::any_of(give.begin(), give.end(), [](double g) { return g < least_give; }))
+        throw error(error_kind::bad_input, "compensation",
+                    "bursts that begin together, or nearly so for this observer, cannot be felt apart",
+                    "a smaller sigma_mm, a larger sigma_v_mm_s or a longer SOA");
+    r.played = detail::pushed(give, targets);
+    if (!std::all_of(r.played.begin(), r.played.end(), [&](point p) { return l.contains(p); }))
+        fit(l, give, targets, r);
+    r.felt = detail::pulled(give, r.played);
+    return r;
+}
+
+compensated_plan make_compensated_plan(const array& a, const layout& l, const stroke& s,
+                                       const plan_options& o, const low_speed_observer& m)
+{
+    if (s.choices.algorithm.value_or(o.algorithm) == algorithm_kind::continuous)
+        throw error(error_kind::bad_input, "algorithm",
+                    "continuous has no bursts that could be moved for the low-speed observer",
+                    "algorithm = park2016, or no compensation");
+    compensated_plan r;
+    r.schedule = make_plan(a, l, s, o);
+    r.observer = m;
+    std::vector<burst*> felt;
+    std::vector<double> onsets_s;
+    std::vector<point> targets;
+    for (burst& b : r.schedule.bursts)
+        if (detail::centre_of(a, b)) {
+            felt.push_back(&b);
+            onsets_s.push_back(b.onset_s);
+            targets.push_back(s.motion.position(b.onset_s));
+        }
+    const compensated_places places = compensate(l, m, onsets_s, targets);
+    const std::shared_ptr<const phantom_model> model =
+        o.custom_phantom ? o.custom_phantom : make_phantom(o.phantom, l);
+    for (std::size_t i = 0; i < felt.size(); ++i) {
+        burst& b = *felt[i];
+        b.position = places.played[i];
+        detail::drives_at(*model, l, b.position, b.intensity, b.drives);
+    }
+    r.schedule.conflicts = detail::find_conflicts(r.schedule.bursts);
+    r.taps = predict_taps(a, s, r.schedule, m);
+    r.at_edge = places.at_edge;
+    double squares = 0.0;
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+        const double e = distance_mm(places.felt[i], targets[i]);
+        squares += e * e;
+        r.residual_largest_mm = std::max(r.residual_largest_mm, e);
+    }
+    if (!targets.empty())
+        r.residual_rms_mm = std::sqrt(squares / static_cast<double>(targets.size()));
+    r.schedule.warnings.push_back(notice(r));
+    return r;
+}
+
+} // namespace tactor

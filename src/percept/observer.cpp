@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include <tactor/observer.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include <fmt/format.h>
+
+#include <tactor/words.hpp>
+
+#include "core/kind_table.hpp"
+#include "percept/low_speed.hpp"
+#include "percept/person.hpp"
+
+namespace tactor {
+namespace {
+
+constexpr detail::kind_table<observer_kind, 2>
+    observers("observer", {{observer_kind::centroid, "centroid"}, {observer_kind::low_speed, "low-speed"}});
+
+} // namespace
+
+std::string_view to_string(observer_kind k) noexcept
+{
+    return observers.name(k);
+}
+
+template <>
+observer_kind from_string<observer_kind>(std::string_view name)
+{
+    return observers.kind(name);
+}
+
+template <>
+std::span<const observer_kind> values_of<observer_kind>() noexcept
+{
+    return observers.kinds();
+}
+
+std::string describe(const low_speed_observer& o)
+{
+    return fmt::format(
+        "the low-speed observer (Goldreich 2007) with sigma {} mm and sigma_v {} mm/s, built for "
+        "taps on the forearm; nobody has fitted it to a palm or to bursts that touch",
+        plain_number(o.sigma_mm), plain_number(o.sigma_v_mm_s));
+}
+
+std::vector<tap> predict_taps(const array& a, const stroke& s, const plan& p, const low_speed_observer& o)
+{
+    return predict_taps(a, s, p, o, person{});
+}
+
+std::vector<tap> predict_taps(const array& a, const stroke& s, const plan& p, const low_speed_observer& o,
+                              const person& who)
+{
+    detail::check_has_taps(p);
+    const array felt_at = detail::felt_array(a, who);
+    const std::vector<double> gains = detail::gains_of(a, who);
+    std::vector<tap> taps;
+    std::vector<double> onsets_s;
+    std::vector<point> alone;
+    taps.reserve(p.bursts.size());
+    for (const burst& b : p.bursts) {
+        const std::optional<point> centre = detail::centre_of(felt_at, b, gains);
+        if (!centre)
+            continue;
+        taps.push_back({b.onset_s, s.motion.position(b.onset_s), *centre});
+        onsets_s.push_back(b.onset_s);
+        alone.push_back(*centre);
+    }
+    const std::vector<point> felt = felt_places(o, onsets_s, alone);
+    for (std::size_t i = 0; i < taps.size(); ++i)
+        taps[i].felt = felt[i];
+    return taps;
+}
+
+tap_summary summarise(const std::vector<tap>& taps)
+{
+    tap_summary r;
+    double squares = 0.0;
+    for (std::size_t i = 0; i < taps.size(); ++i) {
+        const double error = distance_mm(taps[i].felt, taps[i].target);
+        squares += error * error;
+        r.largest_error_mm = std::max(r.largest_error_mm.value_or(0.0), error);
+        if (i == 0)
+            continue;
+        r.felt_length_mm += distance_mm(taps[i].felt, taps[i - 1].felt);
+        r.target_length_mm += distance_mm(taps[i].target, taps[i - 1].target);
+    }
+    if (!taps.empty())
+        r.rms_error_mm = std::sqrt(squares / static_cast<double>(taps.size()));
+    if (r.target_length_mm > 0.0)
+        r.length_ratio = r.felt_length_mm / r.target_length_mm;
+    return r;
+}
+
+} // namespace tactor

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include <tactor/percept.hpp>
+
+#include <fmt/format.h>
+
+#include <tactor/words.hpp>
+
+#include "percept/percept_sounding.hpp"
+#include "percept/person.hpp"
+#include "percept/running_speed.hpp"
+#include "percept/summaries.hpp"
+#include "percept/summing.hpp"
+#include "plan/numbers.hpp"
+
+namespace tactor {
+namespace {
+
+std::size_t count_samples(double duration_s)
+{
+    if (!(duration_s <= longest_percept_s))
+        throw error(error_kind::bad_input, "stroke",
+                    fmt::format("lasts {}, too long to predict what is felt", seconds_text(duration_s)),
+                    fmt::format("at most {} s", longest_percept_s));
+    return static_cast<std::size_t>((duration_s + detail::same_time_s) / percept_step_s) + 1;
+}
+
+percept_sample target_at(const stroke& s, std::size_t i)
+{
+    percept_sample x;
+    x.t_s = static_cast<double>(i) * percept_step_s;
+    x.target = s.motion.position(x.t_s);
+    x.target_intensity = s.motion.intensity(x.t_s);
+    return x;
+}
+
+/// One plan, summed up while it is followed.
+struct followed_plan {
+    detail::sounding now;
+    detail::running_speed speed = {};
+    detail::summing sums = {};
+};
+
+} // namespace
+
+std::vector<percept_sample> predict_percept(const array& a, const stroke& s, const plan& p)
+{
+    return predict_percept(a, s, p, person{});
+}
+
+std::vector<percept_sample> predict_percept(const array& a, const stroke& s, const plan& p, const person& who)
+{
+    std::vector<percept_sample> samples(count_samples(s.motion.duration_s()));
+    const array felt = detail::felt_array(a, who);
+    detail::sounding now(felt, p, s.motion.duration_s(), detail::gains_of(a, who));
+    detail::running_speed speed;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        percept_sample& x = samples[i];
+        x = target_at(s, i);
+        now.at(x.t_s, x);
+        if (const auto v = speed.next(x.felt))
+            samples[i - detail::running_speed::delay].speed_mm_s = v;
+    }
+    return samples;
+}
+
+std::vector<percept_summary> detail::predict_summaries(const array& a, const stroke& s,
+                                                       std::span<const plan* const> plans)
+{
+    const std::size_t count = count_samples(s.motion.duration_s());
+    std::vector<followed_plan> all;
+    all.reserve(plans.size());
+    for (const plan* p : plans)
+        all.push_back({detail::sounding(a, *p, s.motion.duration_s(), {})});
+    for (std::size_t i = 0; i < count; ++i) {
+        percept_sample x = target_at(s, i);
+        for (followed_plan& f : all) {
+            f.now.at(x.t_s, x);
+            f.sums.add(x);
+            const auto v = f.speed.next(x.felt);
+            if (v && f.speed.was_felt())
+                f.sums.add_speed(*v);
+        }
+    }
+    std::vector<percept_summary> summaries;
+    for (const followed_plan& f : all)
+        summaries.push_back(f.sums.result());
+    return summaries;
+}
+
+} // namespace tactor

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+#include <tactor/curve.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+#include <tactor/words.hpp>
+
+#include "core/trajectory/limits.hpp"
+#include "plan/curve_impl.hpp"
+#include "plan/numbers.hpp"
+
+namespace tactor {
+namespace {
+
+// A sample counts as being at times so near to it.
+constexpr double same_step = detail::same_time_s / continuous_step_s;
+
+class sampled final : public curve::impl {
+public:
+    sampled(double duration, curve_samples all) : impl(duration), all_(std::move(all)) {}
+
+    void fill(std::uint64_t k, burst& out) const override
+    {
+        detail::read(all_, static_cast<std::size_t>(k), out);
+    }
+
+private:
+    curve_samples all_;
+};
+
+[[noreturn]] void refuse_sample(std::size_t sample, const std::string& why)
+{
+    throw error(error_kind::bad_input, fmt::format("curve: sample {}", sample), why);
+}
+
+void check_sample(const curve_samples& s, std::size_t i, std::size_t first)
+{
+    for (const double v : {s.positions[i].x_mm, s.positions[i].y_mm, s.intensities[i]}) {
+        if (!std::isfinite(v))
+            refuse_sample(i, fmt::format("{} is no finite number", v));
+    }
+    if (s.ends[i] < first || s.ends[i] > s.drives.size())
+        refuse_sample(i, fmt::format("its drives end at {} of {}", s.ends[i], s.drives.size()));
+    for (std::size_t k = first; k < s.ends[i]; ++k) {
+        const drive& d = s.drives[k];
+        if (!std::isfinite(d.amplitude))
+            refuse_sample(i, fmt::format("tactor {} at amplitude {}", d.tactor, d.amplitude));
+        if (k > first && s.drives[k - 1].tactor >= d.tactor)
+            refuse_sample(i, fmt::format("tactor {} after tactor {}", d.tactor, s.drives[k - 1].tactor));
+    }
+}
+
+std::shared_ptr<const curve::impl> checked(double duration_s, curve_samples s)
+{
+    if (!(duration_s > 0.0 && duration_s <= detail::longest_stroke_s))
+        throw error(error_kind::bad_input, "curve", fmt::format("it lasts {:g} s", duration_s),
+                    fmt::format("more than 0 and at most {:g} s", detail::longest_stroke_s));
+    const std::uint64_t size = detail::samples_of(duration_s);
+    if (s.positions.size() != size || s.intensities.size() != size || s.ends.size() != size)
+        throw error(error_kind::bad_input, "curve",
+                    fmt::format("{} positions, {} intensities and {} ends of drives", s.positions.size(),
+                                s.intensities.size(), s.ends.size()),
+                    fmt::format("{} has {} samples", seconds_text(duration_s), size));
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < s.ends.size(); ++i) {
+        check_sample(s, i, first);
+        first = s.ends[i];
+    }
+    return std::make_shared<sampled>(duration_s, std::move(s));
+}
+
+// Towards `next` by a part of the way; a tactor that is in one of them only comes from 0 or goes there.
+void mix(burst& here, const burst& next, double part)
+{
+    std::vector<drive> drives;
+    auto a = here.drives.cbegin();
+    auto b = next.drives.cbegin();
+    while (a != here.drives.cend() || b != next.drives.cend()) {
+        if (b == next.drives.cend() || (a != here.drives.cend() && a->tactor < b->tactor)) {
+            drives.push_back({a->tactor, a->amplitude * (1.0 - part)});
+            ++a;
+        } else if (a == here.drives.cend() || b->tactor < a->tactor) {
+            drives.push_back({b->tactor, b->amplitude * part});
+            ++b;
+        } else {
+            drives.push_back({a->tactor, std::lerp(a->amplitude, b->amplitude, part)});
+            ++a;
+            ++b;
+        }
+    }
+    here.drives = std::move(drives);
+    here.position = {std::lerp(here.position.x_mm, next.position.x_mm, part),
+                     std::lerp(here.position.y_mm, next.position.y_mm, part)};
+    here.intensity = std::lerp(here.intensity, next.intensity, part);
+}
+
+} // namespace
+
+void curve_samples::add(const burst& b)
+{
+    positions.push_back(b.position);
+    intensities.push_back(b.intensity);
+    drives.insert(drives.end(), b.drives.begin(), b.drives.end());
+    ends.push_back(drives.size());
+}
+
+std::uint64_t detail::samples_of(double duration_s) noexcept
+{
+    return static_cast<std::uint64_t>(std::ceil(duration_s / continuous_step_s - same_step)) + 1;
+}
+
+curve::impl::impl(double duration) : duration_s(duration), size(detail::samples_of(duration))
+{
+}
+
+double detail::sample_time_s(std::uint64_t k, double duration_s) noexcept
+{
+    return std::min(static_cast<double>(k) * continuous_step_s, duration_s);
+}
+
+void detail::read(const curve_samples& all, std::size_t i, burst& out)
+{
+    const drive* first = all.drives.data() + (i == 0 ? 0 : all.ends[i - 1]);
+    out.position = all.positions[i];
+    out.intensity = all.intensities[i];
+    out.drives.assign(first, all.drives.data() + all.ends[i]);
+}
+
+curve::curve(double duration_s, curve_samples samples) : impl_(checked(duration_s, std::move(samples)))
+{
+}
+
+curve::curve(std::shared_ptr<const impl> p) noexcept : impl_(std::move(p))
+{
+}
+
+double curve::duration_s() const noexcept
+{
+    return impl_->duration_s;
+}
+
+std::uint64_t curve::size() const noexcept
+{
+    return impl_->size;
+}
+
+double curve::time_s(std::uint64_t k) const noexcept
+{
+    return detail::sample_time_s(k, impl_->duration_s);
+}
+
+void curve::sample(std::uint64_t k, burst& out) const
+{
+    const std::uint64_t i = std::min(k, impl_->size - 1);
+    impl_->fill(i, out);
+    out.onset_s = detail::sample_time_s(i, impl_->duration_s);
+    out.duration_s = 0.0;
+    out.tau_s.reset();
+}
+
+void curve::at(double t_s, burst& out) const
+{
+    const double t = t_s > 0.0 ? std::min(t_s, impl_->duration_s) : 0.0;
+    const auto k = static_cast<std::uint64_t>(t / continuous_step_s + same_step);
+    sample(k, out);
+    const double here = detail::sample_time_s(k, impl_->duration_s);
+    if (t - here <= detail::same_time_s || k + 1 >= impl_->size)
+        return;
+    burst next;
+    sample(k + 1, next);
+    mix(out, next, (t - here) / (next.onset_s - here));
+    out.onset_s = t;
+}
+
+bool operator==(const curve& a, const curve& b)
+{
+    if (a.impl_ == b.impl_)
+        return true;
+    if (a.duration_s() != b.duration_s())
+        return false;
+    burst x;
+    burst y;
+    for (std::uint64_t k = 0; k < a.size(); ++k) {
+        a.sample(k, x);
+        b.sample(k, y);
+        if (x != y)
+            return false;
+    }
+    return true;
+}
+
+} // namespace tactor

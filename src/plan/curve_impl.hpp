@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What is behind a curve: samples, or the stroke that they are computed from.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+#include <tactor/curve.hpp>
+#include <tactor/plan.hpp>
+
+namespace tactor {
+
+struct curve::impl {
+    explicit impl(double duration_s);
+    virtual ~impl() = default;
+    impl(const impl&) = delete;
+    impl& operator=(const impl&) = delete;
+
+    /// Position, intensity and drives of sample k, which is there.
+    virtual void fill(std::uint64_t k, burst& out) const = 0;
+    /// The movement that bounds what the tactors get: none is given more than its intensity, which is linear
+    /// between the trajectory's points. Null where that is not known.
+    virtual const trajectory* bounds() const noexcept { return nullptr; }
+
+    const double duration_s;
+    const std::uint64_t size;
+};
+
+struct curve_access {
+    static curve make(std::shared_ptr<const curve::impl> p) { return curve(std::move(p)); }
+    static const curve::impl& of(const curve& c) { return *c.impl_; }
+};
+
+namespace detail {
+
+/// So many samples belong to a stroke.
+std::uint64_t samples_of(double duration_s) noexcept;
+double sample_time_s(std::uint64_t k, double duration_s) noexcept;
+
+/// Position, intensity and drives of one of them.
+void read(const curve_samples& all, std::size_t i, burst& out);
+
+} // namespace detail
+} // namespace tactor

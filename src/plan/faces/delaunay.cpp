@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+#include "plan/faces/delaunay.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include <boost/polygon/point_data.hpp>
+#include <boost/polygon/voronoi.hpp>
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "plan/faces/box_index.hpp"
+#include "plan/faces/plane.hpp"
+
+namespace tactor::detail {
+namespace {
+
+using site = boost::polygon::point_data<std::int32_t>;
+
+// Boost.Polygon is exact for 32-bit sites. A power of two as scale keeps a grid of whole
+// millimetres exactly rectangular; the grain of a 1 m array is 5e-7 mm.
+std::vector<site> quantise(const std::vector<point>& points)
+{
+    const box b = bounds(points);
+    const point centre{std::midpoint(b.low.x_mm, b.high.x_mm), std::midpoint(b.low.y_mm, b.high.y_mm)};
+    const double half = std::max(b.high.x_mm - b.low.x_mm, b.high.y_mm - b.low.y_mm) / 2.0;
+    const double scale = std::exp2(29 - std::ilogb(half));
+    std::vector<site> sites;
+    sites.reserve(points.size());
+    for (const point& p : points)
+        sites.emplace_back(static_cast<std::int32_t>(std::lround((p.x_mm - centre.x_mm) * scale)),
+                           static_cast<std::int32_t>(std::lround((p.y_mm - centre.y_mm) * scale)));
+    return sites;
+}
+
+void check_distinct(const std::vector<point>& points, const std::vector<site>& sites)
+{
+    std::vector<unsigned> order(sites.size());
+    std::iota(order.begin(), order.end(), 0U);
+    const auto place = [&](unsigned i) { return std::tuple(sites[i].x(), sites[i].y(), i); };
+    std::sort(order.begin(), order.end(), [&](unsigned a, unsigned b) { return place(a) < place(b); });
+    const auto twin = std::adjacent_find(order.begin(), order.end(),
+                                         [&](unsigned a, unsigned b) { return sites[a] == sites[b]; });
+    if (twin == order.end())
+        return;
+    const point p = points[*twin];
+    throw error(
+        error_kind::bad_input, "array",
+        fmt::format(
+            "two tactors at ({:.9g}, {:.9g}) mm are too near to each other for an array of this extent",
+            p.x_mm, p.y_mm),
+        "check the unit: places are in millimetres");
+}
+
+std::vector<triangle> triangulate(const std::vector<site>& sites)
+{
+    boost::polygon::voronoi_diagram<double> diagram;
+    boost::polygon::construct_voronoi(sites.begin(), sites.end(), &diagram);
+    std::vector<triangle> triangles;
+    std::vector<unsigned> ring;
+    for (const auto& vertex : diagram.vertices()) {
+        ring.clear();
+        const auto* edge = vertex.incident_edge();
+        do {
+            ring.push_back(static_cast<unsigned>(edge->cell()->source_index()));
+            edge = edge->rot_next();
+        } while (edge != vertex.incident_edge());
+        // Sites on exactly one circle share one Voronoi vertex; join_cocircular() joins them again.
+        for (std::size_t i = 2; i < ring.size(); ++i)
+            triangles.push_back({ring[0], ring[i - 1], ring[i]});
+    }
+    return triangles;
+}
+
+void orient(const std::vector<point>& points, std::vector<triangle>& triangles)
+{
+    for (triangle& t : triangles)
+        if (turn(points[t[0]], points[t[1]], points[t[2]]) < 0.0)
+            std::swap(t[1], t[2]);
+}
+
+/// Drops, from the hull inwards, triangles that are flat against the hull.
+class sliver_filter {
+public:
+    sliver_filter(const std::vector<point>& points, std::vector<triangle>& triangles)
+        : points_(points),
+          triangles_(triangles),
+          edges_(borders(triangles)),
+          dropped_(triangles.size(), false)
+    {
+    }
+
+    void run()
+    {
+        std::vector<unsigned> work(triangles_.size());
+        std::iota(work.rbegin(), work.rend(), 0U);
+        while (!work.empty()) {
+            const unsigned t = work.back();
+            work.pop_back();
+            if (flat(t) && drop(t))
+                for (unsigned i = 0; i < 3; ++i)
+                    for (const bordering& b : sides(ordered(triangles_[t][i], triangles_[t][(i + 1) % 3])))
+                        work.push_back(b.triangle);
+        }
+        std::vector<triangle> kept;
+        for (unsigned t = 0; t < triangles_.size(); ++t)
+            if (!dropped_[t])
+                kept.push_back(triangles_[t]);
+        triangles_.swap(kept);
+    }
+
+private:
+    using edge = std::pair<unsigned, unsigned>;
+
+    static edge ordered(unsigned a, unsigned b) { return {std::min(a, b), std::max(a, b)}; }
+
+    edge longest(const triangle& t) const
+    {
+        const auto length = [&](unsigned i) { return distance_mm(points_[t[i]], points_[t[(i + 1) % 3]]); };
+        unsigned best = 0;
+        for (unsigned i = 1; i < 3; ++i)
+            if (length(i) > length(best))
+                best = i;
+        return ordered(t[best], t[(best + 1) % 3]);
+    }
+
+    bool flat(unsigned index) const
+    {
+        const triangle& t = triangles_[index];
+        const auto [a, b] = longest(t);
+        const double base = distance_mm(points_[a], points_[b]);
+        return std::abs(turn(points_[t[0]], points_[t[1]], points_[t[2]])) < same_place_mm * base;
+    }
+
+    std::span<const bordering> sides(edge e) const
+    {
+        const auto [first, last] =
+            std::equal_range(edges_.begin(), edges_.end(), bordering{e.first, e.second, 0},
+                             [](const bordering& x, const bordering& y) {
+                                 return std::tie(x.low, x.high) < std::tie(y.low, y.high);
+                             });
+        return {first, last};
+    }
+
+    bool on_hull(edge e) const
+    {
+        const auto s = sides(e);
+        return std::count_if(s.begin(), s.end(), [&](const bordering& b) { return !dropped_[b.triangle]; }) ==
+               1;
+    }
+
+    bool drop(unsigned index)
+    {
+        const triangle& t = triangles_[index];
+        if (dropped_[index] || !on_hull(longest(t)))
+            return false;
+        // Its other two edges must stay edges of other triangles, or there would be a gap.
+        int outer = 0;
+        for (unsigned i = 0; i < 3; ++i)
+            outer += on_hull(ordered(t[i], t[(i + 1) % 3])) ? 1 : 0;
+        dropped_[index] = outer == 1;
+        return dropped_[index];
+    }
+
+    const std::vector<point>& points_;
+    std::vector<triangle>& triangles_;
+    std::vector<bordering> edges_;
+    std::vector<bool> dropped_;
+};
+
+} // namespace
+
+std::vector<bordering> borders(const std::vector<triangle>& triangles)
+{
+    std::vector<bordering> edges;
+    edges.reserve(3 * triangles.size());
+    for (unsigned t = 0; t < triangles.size(); ++t)
+        for (unsigned i = 0; i < 3; ++i) {
+            const unsigned a = triangles[t][i];
+            const unsigned b = triangles[t][(i + 1) % 3];
+            edges.push_back({std::min(a, b), std::max(a, b), t});
+        }
+    std::sort(edges.begin(), edges.end(), [](const bordering& a, const bordering& b) {
+        return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+    });
+    return edges;
+}
+
+std::vector<triangle> delaunay(const std::vector<point>& points)
+{
+    const std::vector<site> sites = quantise(points);
+    check_distinct(points, sites);
+    std::vector<triangle> triangles = triangulate(sites);
+    orient(points, triangles);
+    sliver_filter(points, triangles).run();
+    return triangles;
+}
+
+} // namespace tactor::detail

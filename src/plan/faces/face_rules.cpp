@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT
+#include "plan/faces/face_rules.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+
+#include "plan/faces/plane.hpp"
+
+namespace tactor::detail {
+namespace {
+
+struct found_segment {
+    double length_mm;
+    rank_pair ends;
+};
+
+/// From a corner of a convex ring, the other corners are in order of direction. So the segments from that
+/// corner that pass p are neighbours, and bisection finds the first.
+void segments_through(const layout::impl& l, const std::vector<unsigned>& ring, point p,
+                      std::vector<found_segment>& out)
+{
+    const std::size_t k = ring.size();
+    for (std::size_t i = 0; i < k; ++i) {
+        const point a = l.points[ring[i]];
+        const auto other = [&](std::size_t step) { return ring[(i + step) % k]; };
+        std::size_t low = 1;
+        std::size_t high = k;
+        while (low < high) {
+            const std::size_t middle = low + (high - low) / 2;
+            if (turn(a, p, l.points[other(middle)]) < 0.0)
+                low = middle + 1;
+            else
+                high = middle;
+        }
+        const auto take = [&](std::size_t step) {
+            const point b = l.points[other(step)];
+            if (segment_distance_mm(a, b, p) > same_place_mm)
+                return false;
+            out.push_back({distance_mm(a, b), std::minmax(ring[i], other(step))});
+            return true;
+        };
+        for (std::size_t step = low; step < k && take(step);)
+            ++step;
+        for (std::size_t step = low; step > 1 && take(step - 1);)
+            --step;
+    }
+}
+
+/// A tactor of a ring as seen from p.
+struct seen_tactor {
+    unsigned rank;
+    double far_mm;
+    double side = 0.0; ///< of the line from the closest one through p; > 0: left
+};
+
+/// The ring as seen from p, without an allocation where it is small.
+class seen_ring {
+public:
+    seen_ring(const layout::impl& l, const std::vector<unsigned>& ring, point p) : size_(ring.size())
+    {
+        if (size_ > few_.size())
+            many_.resize(size_);
+        for (std::size_t i = 0; i < size_; ++i)
+            begin()[i] = {ring[i], length_mm(p, l.points[ring[i]])};
+    }
+
+    seen_tactor* begin() noexcept { return many_.empty() ? few_.data() : many_.data(); }
+    seen_tactor* end() noexcept { return begin() + size_; }
+
+    /// The closest tactor for which `allowed` holds, of ties the lowest; null if there is none.
+    template <class Allowed>
+    const seen_tactor* closest(const Allowed& allowed)
+    {
+        double least = std::numeric_limits<double>::infinity();
+        for (const seen_tactor& v : *this)
+            if (allowed(v))
+                least = std::min(least, v.far_mm);
+        const seen_tactor* best = nullptr;
+        for (const seen_tactor& v : *this)
+            if (allowed(v) && v.far_mm <= least + same_place_mm && (best == nullptr || v.rank < best->rank))
+                best = &v;
+        return best;
+    }
+
+private:
+    std::array<seen_tactor, 8> few_{};
+    std::vector<seen_tactor> many_;
+    std::size_t size_;
+};
+
+} // namespace
+
+std::optional<unsigned> tactor_at(const layout::impl& l, const std::vector<unsigned>& faces, point p)
+{
+    std::optional<unsigned> best;
+    double least = same_place_mm;
+    for (const unsigned f : faces)
+        for (const unsigned v : l.faces[f]) {
+            const double d = length_mm(p, l.points[v]);
+            if (d < least || (d == least && (!best || v < *best))) {
+                least = d;
+                best = v;
+            }
+        }
+    return best;
+}
+
+std::optional<rank_pair> segment_at(const layout::impl& l, const std::vector<unsigned>& faces, point p)
+{
+    std::vector<found_segment> found;
+    for (const unsigned f : faces)
+        segments_through(l, l.faces[f], p, found);
+    if (found.empty())
+        return std::nullopt;
+    const double shortest = std::min_element(found.begin(), found.end(), [](const auto& a, const auto& b) {
+                                return a.length_mm < b.length_mm;
+                            })->length_mm;
+    rank_pair best{std::numeric_limits<unsigned>::max(), 0};
+    for (const found_segment& s : found)
+        if (s.length_mm <= shortest + same_place_mm)
+            best = std::min(best, s.ends);
+    return best;
+}
+
+std::optional<near_triple> triangle_at(const layout::impl& l, unsigned face, point p)
+{
+    seen_ring ring(l, l.faces[face], p);
+    const seen_tactor* first = ring.closest([](const seen_tactor&) { return true; });
+    const auto place = [&](const seen_tactor* v) { return l.points[v->rank]; };
+    for (seen_tactor& v : ring)
+        v.side = turn(place(first), p, place(&v));
+
+    // Two tactors on either side of the line from the closest one through p hold p with it if they
+    // pass p on its far side. On each side the one that is nearest to that line there reaches farthest.
+    const seen_tactor* left = nullptr;
+    const seen_tactor* right = nullptr;
+    for (const seen_tactor& v : ring) {
+        if (&v == first)
+            continue;
+        if (v.side > 0.0 && (left == nullptr || turn(p, place(left), place(&v)) < 0.0))
+            left = &v;
+        if (v.side < 0.0 && (right == nullptr || turn(p, place(right), place(&v)) > 0.0))
+            right = &v;
+    }
+    if (left == nullptr || right == nullptr)
+        return std::nullopt;
+    const auto holds = [&](const seen_tactor* l_side, const seen_tactor* r_side) {
+        return turn(p, place(r_side), place(l_side)) >= 0.0;
+    };
+    const seen_tactor* second = ring.closest([&](const seen_tactor& v) {
+        return &v != first && ((v.side > 0.0 && holds(&v, right)) || (v.side < 0.0 && holds(left, &v)));
+    });
+    if (second == nullptr)
+        return std::nullopt;
+    const seen_tactor* third = ring.closest([&](const seen_tactor& v) {
+        return second->side > 0.0 ? v.side < 0.0 && holds(second, &v) : v.side > 0.0 && holds(&v, second);
+    });
+    if (third == nullptr)
+        return std::nullopt;
+    return near_triple{{first->rank, second->rank, third->rank},
+                       {first->far_mm, second->far_mm, third->far_mm}};
+}
+
+rank_pair nearest_edge(const layout::impl& l, unsigned face, point p)
+{
+    const std::vector<unsigned>& ring = l.faces[face];
+    rank_pair best{ring[0], ring[1]};
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const rank_pair ends = std::minmax(ring[i], ring[(i + 1) % ring.size()]);
+        const double d = segment_distance_mm(l.points[ends.first], l.points[ends.second], p);
+        if (d < least) {
+            least = d;
+            best = ends;
+        }
+    }
+    return best;
+}
+
+rank_triple fan_triangle(const layout::impl& l, unsigned face, point p)
+{
+    const std::vector<unsigned>& ring = l.faces[face];
+    rank_triple best{};
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 2; i < ring.size(); ++i) {
+        const point a = l.points[ring[0]];
+        const point b = l.points[ring[i - 1]];
+        const point c = l.points[ring[i]];
+        const bool inside = turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
+        // No bisection: in very thin faces rounding breaks the order of directions.
+        const double off = inside ? 0.0
+                                  : std::min({segment_distance_mm(a, b, p), segment_distance_mm(b, c, p),
+                                              segment_distance_mm(c, a, p)});
+        if (off < least) {
+            least = off;
+            best = {ring[0], ring[i - 1], ring[i]};
+        }
+    }
+    return best;
+}
+
+} // namespace tactor::detail

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "plan/faces/delaunay.hpp"
+#include "plan/faces/hull.hpp"
+#include "plan/faces/layout_impl.hpp"
+#include "plan/faces/plane.hpp"
+
+namespace tactor {
+namespace {
+
+using detail::box;
+using detail::box_index;
+using rings = std::vector<std::vector<unsigned>>;
+
+/// Indices by row, then by column; rows nearer than same_place_mm are one row.
+std::vector<unsigned> ranked(const std::vector<point>& places)
+{
+    std::vector<unsigned> order(places.size());
+    std::iota(order.begin(), order.end(), 0U);
+    const auto by_row = [&](unsigned i) { return std::tuple(places[i].y_mm, places[i].x_mm); };
+    const auto by_column = [&](unsigned i) { return std::tuple(places[i].x_mm, places[i].y_mm); };
+    std::sort(order.begin(), order.end(), [&](unsigned a, unsigned b) { return by_row(a) < by_row(b); });
+    for (auto row = order.begin(); row != order.end();) {
+        auto end = row + 1;
+        while (end != order.end() && places[*end].y_mm - places[*(end - 1)].y_mm <= same_place_mm)
+            ++end;
+        std::sort(row, end, [&](unsigned a, unsigned b) { return by_column(a) < by_column(b); });
+        row = end;
+    }
+    return order;
+}
+
+/// Ranks along the line on which all tactors lie; empty where they do not.
+std::vector<unsigned> in_line(const std::vector<point>& points)
+{
+    const auto farthest = [&](point from) {
+        return *std::max_element(points.begin(), points.end(), [&](point a, point b) {
+            return distance_mm(from, a) < distance_mm(from, b);
+        });
+    };
+    const point b = farthest(points.front());
+    const point a = farthest(b);
+    const double length = distance_mm(a, b);
+    std::vector<unsigned> order(points.size());
+    std::iota(order.begin(), order.end(), 0U);
+    if (std::any_of(points.begin(), points.end(),
+                    [&](point p) { return std::abs(detail::turn(a, b, p)) > same_place_mm * length; }))
+        return {};
+    std::sort(order.begin(), order.end(),
+              [&](unsigned i, unsigned j) { return distance_mm(a, points[i]) < distance_mm(a, points[j]); });
+    return order;
+}
+
+rings segments(const std::vector<unsigned>& order)
+{
+    if (order.size() == 1)
+        return rings(1, order); // not {order}: gcc 14 sees an overflow there that is none
+    rings s;
+    for (std::size_t i = 1; i < order.size(); ++i)
+        s.push_back({std::min(order[i - 1], order[i]), std::max(order[i - 1], order[i])});
+    return s;
+}
+
+std::vector<box> boxes_of(const rings& faces, const std::vector<point>& points)
+{
+    std::vector<box> boxes;
+    std::vector<point> corners;
+    for (const auto& f : faces) {
+        corners.clear();
+        for (const unsigned v : f)
+            corners.push_back(points[v]);
+        boxes.push_back(detail::bounds(corners));
+    }
+    return boxes;
+}
+
+std::vector<box> boxes_of(const std::vector<std::pair<point, point>>& edges)
+{
+    std::vector<box> boxes;
+    for (const auto& [a, b] : edges)
+        boxes.push_back(detail::bounds({a, b}));
+    return boxes;
+}
+
+std::vector<box> boxes_of(const std::vector<point>& points)
+{
+    std::vector<box> boxes;
+    for (const point& p : points)
+        boxes.push_back({p, p});
+    return boxes;
+}
+
+/// A tactor's nearest neighbour is always next to it on the ring of one of its faces.
+double median_pitch(const rings& faces, const std::vector<point>& points)
+{
+    if (points.size() < 2)
+        return 0.0;
+    std::vector<double> d(points.size(), HUGE_VAL);
+    for (const auto& f : faces)
+        for (std::size_t i = 0; i < f.size(); ++i) {
+            const unsigned a = f[i];
+            const unsigned b = f[(i + 1) % f.size()];
+            const double length = distance_mm(points[a], points[b]);
+            d[a] = std::min(d[a], length);
+            d[b] = std::min(d[b], length);
+        }
+    const auto middle = d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2);
+    std::nth_element(d.begin(), middle, d.end());
+    return d.size() % 2 == 1 ? *middle : std::midpoint(*middle, *std::max_element(d.begin(), middle));
+}
+
+} // namespace
+
+layout::impl layout::impl::build(const array& a)
+{
+    validate(a);
+    std::vector<point> places;
+    for (const tactor_spec& t : a.tactors)
+        places.push_back(t.position);
+    std::vector<unsigned> order = ranked(places);
+    std::vector<point> points;
+    for (const unsigned i : order)
+        points.push_back(places[i]);
+
+    const std::vector<unsigned> line = in_line(points);
+    rings faces = line.empty() ? detail::join_cocircular(points, detail::delaunay(points)) : segments(line);
+    std::vector<point> hull = line.empty() ? detail::convex_hull(points) : std::vector<point>{};
+    std::vector<std::pair<point, point>> rim;
+    if (line.empty())
+        for (std::size_t i = 0; i < hull.size(); ++i)
+            rim.emplace_back(hull[i], hull[(i + 1) % hull.size()]);
+    else
+        for (const auto& f : faces)
+            rim.emplace_back(points[f.front()], points[f.back()]);
+
+    rings by_index;
+    if (line.empty())
+        for (const auto& f : faces) {
+            by_index.emplace_back();
+            for (const unsigned v : f)
+                by_index.back().push_back(order[v]);
+        }
+    box_index face_index(boxes_of(faces, points));
+    box_index rim_index(boxes_of(rim));
+    box_index tactor_index(boxes_of(points));
+    const double pitch = median_pitch(faces, points);
+    const box all = detail::bounds(points);
+    // Faces may lap over each other by the grain of the sites from which they were made.
+    const double clear = 1e-4 + 1e-7 * distance_mm(all.low, all.high);
+    return {std::move(places),     std::move(by_index),  std::move(points),       std::move(order),
+            std::move(faces),      std::move(hull),      std::move(rim),          pitch,
+            std::move(face_index), std::move(rim_index), std::move(tactor_index), clear};
+}
+
+layout::layout(const array& a) : impl_(std::make_shared<const impl>(impl::build(a)))
+{
+}
+
+const std::vector<point>& layout::places() const noexcept
+{
+    return impl_->places;
+}
+
+const std::vector<std::vector<unsigned>>& layout::faces() const noexcept
+{
+    return impl_->by_index;
+}
+
+bool layout::contains(point p) const
+{
+    return impl_->in_hull(p);
+}
+
+point layout::nearest(point p) const
+{
+    return impl_->nearest_in_hull(p);
+}
+
+double layout::pitch_mm() const noexcept
+{
+    return impl_->pitch_mm;
+}
+
+} // namespace tactor

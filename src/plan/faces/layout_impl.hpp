@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What a layout knows. Inside, tactors go by rank, their order by row and then by column, so that
+/// nothing depends on the order in which a file lists them.
+#pragma once
+
+#include <atomic>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <tactor/phantom.hpp>
+
+#include "plan/faces/box_index.hpp"
+
+namespace tactor {
+
+namespace detail {
+
+/// A guess that threads share: a wrong one costs time and nothing else.
+class guess {
+public:
+    guess() = default;
+    guess(guess&& other) noexcept : face_(other.get()) {}
+    unsigned get() const noexcept { return face_.load(std::memory_order_relaxed); }
+    void set(unsigned face) noexcept
+    {
+        if (get() != face)
+            face_.store(face, std::memory_order_relaxed);
+    }
+
+private:
+    std::atomic<unsigned> face_{0};
+};
+
+} // namespace detail
+
+struct layout::impl {
+    std::vector<point> places;                   ///< by index
+    std::vector<std::vector<unsigned>> by_index; ///< faces for the public
+
+    std::vector<point> points;      ///< by rank
+    std::vector<unsigned> index_of; ///< rank to index
+    /// Rings of ranks with positive turn, each from its lowest rank. Where all tactors are in one line:
+    /// pairs of neighbours, or the one tactor.
+    std::vector<std::vector<unsigned>> faces;
+    std::vector<point> hull;                  ///< corners with positive turn; none for a line
+    std::vector<std::pair<point, point>> rim; ///< edges of the hull, or the line's segments
+    double pitch_mm = 0.0;
+
+    detail::box_index face_index;
+    detail::box_index rim_index;
+    detail::box_index tactor_index;
+
+    double clear_mm = 0.0;             ///< farther from an edge than any rounding reaches
+    mutable detail::guess latest = {}; ///< face of the point before: mostly the next one's too
+
+    static impl build(const array& a);
+
+    /// Replaces `out` by the faces that hold p within same_place_mm; never none. p must be in the hull.
+    void faces_at(point p, std::vector<unsigned>& out) const;
+    /// The one face that holds p, where p keeps clear of its edges. Looks only where the point before was:
+    /// none means that faces_at() will find out.
+    std::optional<unsigned> clear_face(point p) const noexcept;
+    /// Whether p keeps clear of all segments between the tactors of a face too.
+    bool clear_of_diagonals(unsigned face, point p) const noexcept;
+    bool face_holds(unsigned face, point p, double margin_mm) const;
+
+    /// Rank of the tactor nearest to p.
+    unsigned nearest_tactor(point p) const;
+    bool in_hull(point p) const;
+    point nearest_in_hull(point p) const;
+};
+
+} // namespace tactor

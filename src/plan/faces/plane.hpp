@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Small plane geometry on points in millimetres.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include <tactor/geometry.hpp>
+
+#include "core/distance.hpp"
+
+namespace tactor::detail {
+
+/// Twice the signed area of the triangle a, b, c: > 0 where c lies to the side of y from x.
+inline double turn(point a, point b, point c) noexcept
+{
+    return (b.x_mm - a.x_mm) * (c.y_mm - a.y_mm) - (b.y_mm - a.y_mm) * (c.x_mm - a.x_mm);
+}
+
+/// The point of the segment a, b that is nearest to p.
+inline point nearest_on_segment(point a, point b, point p) noexcept
+{
+    const double dx = b.x_mm - a.x_mm;
+    const double dy = b.y_mm - a.y_mm;
+    const double square = dx * dx + dy * dy;
+    if (!(square > 0.0))
+        return a;
+    const double u = ((p.x_mm - a.x_mm) * dx + (p.y_mm - a.y_mm) * dy) / square;
+    if (u <= 0.0)
+        return a;
+    if (u >= 1.0)
+        return b;
+    return {a.x_mm + u * dx, a.y_mm + u * dy};
+}
+
+inline double segment_distance_mm(point a, point b, point p) noexcept
+{
+    return length_mm(p, nearest_on_segment(a, b, p));
+}
+
+inline bool finite(point p) noexcept
+{
+    return std::isfinite(p.x_mm) && std::isfinite(p.y_mm);
+}
+
+} // namespace tactor::detail

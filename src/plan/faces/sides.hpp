@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The array's edge as seen from outside: what lies beyond it, and how far curves go there.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/path/shape.hpp"
+#include "plan/faces/layout_impl.hpp"
+
+namespace tactor::detail {
+
+inline double dot(point a, point b) noexcept
+{
+    return a.x_mm * b.x_mm + a.y_mm * b.y_mm;
+}
+
+/// What lies beyond an edge of the hull: more than `reach` in the direction `out`, which has length 1.
+struct beyond {
+    point out;
+    double reach = 0.0;
+};
+
+/// The sides of the hull. Where all tactors are in one line that is a line: its two sides and its two ends.
+std::vector<beyond> sides_of(const layout::impl& l);
+
+/// Two tactors as far apart as any in a line, and nearly so elsewhere.
+std::pair<point, point> ends_of(const std::vector<point>& points);
+
+/// Corners of a convex figure round a curve.
+std::array<point, 4> frame_of(const shape& form);
+
+/// Parameters, ascending, at which a curve turns round as seen from a side.
+std::vector<double> turns_towards(const shape& form, point out);
+
+} // namespace tactor::detail

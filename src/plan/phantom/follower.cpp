@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <tactor/words.hpp>
+
+#include "plan/job.hpp"
+#include "plan/numbers.hpp"
+
+namespace tactor::detail {
+
+point follower::at(double t_s)
+{
+    const point p = job_.motion.motion.position(t_s);
+    if (job_.faces.contains(p)) {
+        inside_s_ = t_s;
+        return p;
+    }
+    if (job_.options.outside == outside_kind::error)
+        refuse(t_s);
+    return job_.faces.nearest(p);
+}
+
+void follower::refuse(double t_s) const
+{
+    const trajectory& motion = job_.motion.motion;
+    constexpr std::string_view hint =
+        "fit_strokes() scales it to the array, outside = clamp plays the nearest point of the array";
+    if (inside_s_ < 0.0)
+        throw error(error_kind::bad_input, job_.name(),
+                    fmt::format("starts outside the array, at {}", place(motion.position(t_s))), hint);
+    double in = inside_s_;
+    double out = t_s;
+    // Until no double is left between, which is well within a micrometre.
+    for (double middle = in + (out - in) / 2.0; in < middle && middle < out; middle = in + (out - in) / 2.0)
+        (job_.faces.contains(motion.position(middle)) ? in : out) = middle;
+    throw error(error_kind::bad_input, job_.name(),
+                fmt::format("leaves the array at {} after {}", place(motion.position(in)), seconds_text(in)),
+                hint);
+}
+
+} // namespace tactor::detail

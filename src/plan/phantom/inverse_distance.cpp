@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include <array>
+#include <cmath>
+
+#include "core/access.hpp"
+#include "core/distance.hpp"
+#include "plan/faces/face_rules.hpp"
+#include "plan/phantom/phantom_models.hpp"
+
+namespace tactor::detail {
+namespace {
+
+// Segments of so few tactors are looked at one by one.
+constexpr std::size_t few = 8;
+
+/// Park et al. 2016: Eq. (2) on a segment, Eq. (10) in a triangle.
+class inverse_distance final : public phantom_model {
+public:
+    explicit inverse_distance(const layout& l) : layout_(l) {}
+
+    std::string_view name() const noexcept override { return to_string(phantom_kind::inverse_distance); }
+
+    void weights(point asked, double a_v, std::vector<drive>& out) const override
+    {
+        out.clear();
+        const point p = check_request(layout_, asked, a_v);
+        const layout::impl& l = detail::access::of(layout_);
+        const auto clear = l.clear_face(p);
+        if (clear && l.faces[*clear].size() <= few && l.clear_of_diagonals(*clear, p) &&
+            in_face(*clear, p, a_v, out)) {
+            sort_drives(out);
+            return;
+        }
+        std::vector<unsigned> faces;
+        l.faces_at(p, faces);
+        if (const auto on = tactor_at(l, faces, p))
+            add_drive(layout_, *on, a_v, out);
+        else if (const auto segment = segment_at(l, faces, p))
+            on_segment(*segment, p, a_v, out);
+        else
+            in_faces(faces, p, a_v, out);
+        sort_drives(out);
+    }
+
+private:
+    double distance(unsigned rank, point p) const
+    {
+        return length_mm(p, detail::access::of(layout_).points[rank]);
+    }
+
+    void on_segment(rank_pair ends, point p, double a_v, std::vector<drive>& out) const
+    {
+        const double d1 = distance(ends.first, p);
+        const double d2 = distance(ends.second, p);
+        add_drive(layout_, ends.first, std::sqrt(d2 / (d1 + d2)) * a_v, out);
+        add_drive(layout_, ends.second, std::sqrt(d1 / (d1 + d2)) * a_v, out);
+    }
+
+    bool in_face(unsigned face, point p, double a_v, std::vector<drive>& out) const
+    {
+        const auto three = triangle_at(detail::access::of(layout_), face, p);
+        if (!three)
+            return false;
+        std::array<double, 3> parts{};
+        double sum = 0.0;
+        for (std::size_t i = 0; i < 3; ++i)
+            sum += parts[i] = 1.0 / three->distances[i];
+        for (std::size_t i = 0; i < 3; ++i)
+            add_drive(layout_, three->tactors[i], std::sqrt(parts[i] / sum) * a_v, out);
+        return true;
+    }
+
+    void in_faces(const std::vector<unsigned>& faces, point p, double a_v, std::vector<drive>& out) const
+    {
+        for (const unsigned f : faces)
+            if (in_face(f, p, a_v, out))
+                return;
+        // Beside a face by more than the tolerance, where rounding opened a gap.
+        on_segment(nearest_edge(detail::access::of(layout_), faces.front(), p), p, a_v, out);
+    }
+
+    layout layout_;
+};
+
+} // namespace
+
+std::shared_ptr<const phantom_model> make_inverse_distance(const layout& l)
+{
+    return std::make_shared<inverse_distance>(l);
+}
+
+} // namespace tactor::detail

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "core/access.hpp"
+#include "plan/faces/face_rules.hpp"
+#include "plan/faces/plane.hpp"
+#include "plan/phantom/phantom_models.hpp"
+
+namespace tactor::detail {
+namespace {
+
+constexpr double least_weight = 1e-9;
+
+struct weight {
+    unsigned rank = 0;
+    double b = 0.0;
+};
+
+using weights_of_three = std::array<weight, 3>;
+
+weights_of_three on_segment(const layout::impl& l, unsigned i, unsigned j, point p)
+{
+    const point a = l.points[i];
+    const point b = l.points[j];
+    const double u = length_mm(a, nearest_on_segment(a, b, p)) / length_mm(a, b);
+    return {{{i, 1.0 - u}, {j, u}, {j, 0.0}}};
+}
+
+weights_of_three in_triangle(const layout::impl& l, const rank_triple& t, point p)
+{
+    const auto at = [&](std::size_t i) { return l.points[t[i % 3]]; };
+    weights_of_three w;
+    for (std::size_t i = 0; i < 3; ++i)
+        w[i] = {t[i], turn(at(i + 1), at(i + 2), p)};
+    if (std::all_of(w.begin(), w.end(), [](const weight& x) { return x.b >= 0.0; }) &&
+        turn(at(0), at(1), at(2)) > 0.0)
+        return w;
+    // Beside the triangle within the tolerance: on its nearest edge.
+    const auto off = [&](std::size_t i) { return segment_distance_mm(at(i), at(i + 1), p); };
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < 3; ++i)
+        if (off(i) < off(best))
+            best = i;
+    return on_segment(l, t[best], t[(best + 1) % 3], p);
+}
+
+/// Barycentric coordinates in the Delaunay triangle of p, and what is made of them.
+class on_triangle final : public phantom_model {
+public:
+    on_triangle(phantom_kind k, const layout& l) : kind_(k), layout_(l) {}
+
+    std::string_view name() const noexcept override { return to_string(kind_); }
+
+    void weights(point asked, double a_v, std::vector<drive>& out) const override
+    {
+        out.clear();
+        const point p = check_request(layout_, asked, a_v);
+        const layout::impl& l = detail::access::of(layout_);
+        auto face = l.clear_face(p);
+        if (!face) {
+            std::vector<unsigned> faces;
+            l.faces_at(p, faces);
+            if (const auto on = tactor_at(l, faces, p)) {
+                add_drive(layout_, *on, a_v, out);
+                return;
+            }
+            face = faces.front();
+        }
+        for (const weight& w : coordinates(*face, p))
+            add_drive(layout_, w.rank, amplitude(w.b) * a_v, out);
+        sort_drives(out);
+    }
+
+private:
+    /// Sum 1, the least ones zero.
+    weights_of_three coordinates(unsigned face, point p) const
+    {
+        const layout::impl& l = detail::access::of(layout_);
+        const std::vector<unsigned>& ring = l.faces[face];
+        weights_of_three w = ring.size() < 3 ? on_segment(l, ring.front(), ring.back(), p)
+                                             : in_triangle(l, fan_triangle(l, face, p), p);
+        normalise(w);
+        for (weight& x : w)
+            x.b = x.b < least_weight ? 0.0 : x.b;
+        normalise(w);
+        return w;
+    }
+
+    static void normalise(weights_of_three& w)
+    {
+        double sum = 0.0;
+        for (weight& x : w)
+            sum += x.b;
+        for (weight& x : w)
+            x.b /= sum;
+    }
+
+    double amplitude(double b) const
+    {
+        switch (kind_) {
+        case phantom_kind::linear:
+            return b;
+        case phantom_kind::log:
+            return std::log2(1.0 + b);
+        default:
+            return std::sqrt(b);
+        }
+    }
+
+    phantom_kind kind_;
+    layout layout_;
+};
+
+} // namespace
+
+std::shared_ptr<const phantom_model> make_on_triangle(phantom_kind k, const layout& l)
+{
+    return std::make_shared<on_triangle>(k, l);
+}
+
+} // namespace tactor::detail

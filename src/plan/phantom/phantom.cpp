@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include <tactor/phantom.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/access.hpp"
+#include "plan/faces/layout_impl.hpp"
+#include "plan/phantom/phantom_models.hpp"
+
+namespace tactor {
+namespace {
+
+} // namespace
+
+phantom_model::~phantom_model() = default;
+
+std::shared_ptr<const phantom_model> make_phantom(phantom_kind k, const layout& l)
+{
+    switch (k) {
+    case phantom_kind::inverse_distance:
+        return detail::make_inverse_distance(l);
+    case phantom_kind::barycentric:
+    case phantom_kind::linear:
+    case phantom_kind::log:
+        return detail::make_on_triangle(k, l);
+    case phantom_kind::gaussian:
+        return detail::make_gaussian(l);
+    }
+    throw error(error_kind::bad_input, "phantom", fmt::format("no model has number {}", static_cast<int>(k)));
+}
+
+namespace detail {
+
+point check_request(const layout& l, point p, double a_v)
+{
+    if (!std::isfinite(a_v) || a_v < 0.0)
+        throw error(error_kind::bad_input, "intensity", fmt::format("{} is not a number from 0 up", a_v));
+    return l.contains(p) ? p : l.nearest(p);
+}
+
+void add_drive(const layout& l, unsigned rank, double amplitude, std::vector<drive>& out)
+{
+    if (amplitude > 0.0)
+        out.push_back({detail::access::of(l).index_of[rank], amplitude});
+}
+
+void sort_drives(std::vector<drive>& out)
+{
+    // A sort is a call; there are three of them nearly always.
+    const auto by_tactor = [](const drive& a, const drive& b) { return a.tactor < b.tactor; };
+    if (out.size() == 3) {
+        if (by_tactor(out[1], out[0]))
+            std::swap(out[0], out[1]);
+        if (by_tactor(out[2], out[1]))
+            std::swap(out[1], out[2]);
+        if (by_tactor(out[1], out[0]))
+            std::swap(out[0], out[1]);
+        return;
+    }
+    std::sort(out.begin(), out.end(), by_tactor);
+}
+
+} // namespace detail
+} // namespace tactor

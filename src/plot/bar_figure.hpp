@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Bars with error bars in panels, as figures 8 and 9 of Park et al. 2016.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "plot/paint/canvas.hpp"
+
+namespace tactor::plot {
+
+/// One bar; without a height there is a gap.
+struct bar {
+    std::optional<double> height = {};
+    std::optional<double> error = {}; ///< half the length of the error bar
+};
+
+/// Bars of one look, one in each group.
+struct bar_series {
+    std::string name = {}; ///< empty: it has no place in the legend
+    std::vector<bar> bars = {};
+};
+
+struct bar_panel {
+    std::string title = {};
+    std::string y_title = {};
+    double y_from = 0.0;
+    double y_to = 1.0;                ///< above y_from; bars end here
+    std::optional<double> level = {}; ///< a dashed line, as of chance
+    std::vector<std::string> groups = {};
+    std::vector<bar_series> series = {}; ///< each with as many bars as there are groups
+};
+
+struct bar_figure {
+    std::string title = {};
+    std::string note = {};   ///< under the picture
+    std::string across = {}; ///< written across each panel, as "simulated"
+    std::vector<bar_panel> panels = {};
+};
+
+/// 170 mm wide, two panels beside each other. Each panel is an SVG group of kind "bars" with data-title,
+/// data-y0 and data-y-scale: page = y0 + scale * value; each bar is of kind "bar", its error bar of kind
+/// "error".
+canvas draw_bars_of(const bar_figure& f);
+
+} // namespace tactor::plot

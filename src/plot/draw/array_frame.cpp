@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: MIT
+#include "plot/draw/array_frame.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include <tactor/phantom.hpp>
+
+#include "plot/draw/axes.hpp"
+#include "plot/paint/text.hpp"
+
+namespace tactor::plot {
+namespace {
+
+constexpr double largest_pitch = 100.0; // pt: neighbours are not farther apart on the page
+constexpr double lone_tactor_mm = 20.0; // shown round a tactor without neighbours
+constexpr std::size_t most_path_points = 20000;
+constexpr std::array<double, 3> number_sizes{7.0, 6.0, 5.2}; // pt
+constexpr double largest_radius = 7.0;
+constexpr double largest_share = 0.28; // of the distance of neighbours, for a circle's radius
+constexpr std::size_t most_listed = 8;
+constexpr double beside = 3.0;          // pt: farther away a label has lost its tactor
+constexpr std::size_t most_told = 1024; // tactors that get a group with a title of their own
+
+double pitch_mm(const array& a)
+{
+    const double p = layout(a).pitch_mm();
+    return p > 0.0 ? p : lone_tactor_mm;
+}
+
+extent tactors_extent(const array& a)
+{
+    const point first = a.tactors.front().position;
+    extent e{first.x_mm, first.y_mm, first.x_mm, first.y_mm};
+    for (const tactor_spec& t : a.tactors)
+        e.add(t.position);
+    return e;
+}
+
+std::vector<point> sample(const trajectory& motion)
+{
+    constexpr double step_mm = 0.1;
+    const double wished = std::max(64.0, motion.length_mm() / step_mm);
+    const auto n = static_cast<std::size_t>(std::min(wished, static_cast<double>(most_path_points)));
+    std::vector<point> points;
+    for (std::size_t i = 0; i <= n; ++i)
+        points.push_back(
+            motion.position(motion.duration_s() * static_cast<double>(i) / static_cast<double>(n)));
+    return points;
+}
+
+// Shortest way between two tactors, pt: circles must not touch. Only looked for where each is told.
+double closest_pt(const array& a, double scale)
+{
+    double least = std::numeric_limits<double>::infinity();
+    if (a.tactors.size() <= most_told)
+        for (std::size_t i = 0; i < a.tactors.size(); ++i)
+            for (std::size_t k = 0; k < i; ++k)
+                least = std::min(least, distance_mm(a.tactors[i].position, a.tactors[k].position));
+    return least * scale;
+}
+
+// Circles in which the largest number fits, if there is room for them.
+void size_tactors(array_frame& f, const array& a)
+{
+    const double room = std::min(f.pitch, closest_pt(a, f.scale));
+    f.radius = std::clamp(0.2 * room, 0.3, largest_radius);
+    const std::string longest(fmt::format("{}", a.tactors.size() - 1).size(), '8');
+    f.number = 0.0;
+    for (const double size : number_sizes) {
+        const double need = std::hypot(text_width(longest, size), cap_height(size)) / 2.0 + 0.4;
+        if (need > std::max(f.radius, std::min(largest_share * room, largest_radius)))
+            continue;
+        f.number = size;
+        f.radius = std::max(f.radius, need);
+        return;
+    }
+}
+
+// Tactors that had no room for something.
+struct missing {
+    std::vector<unsigned> tactors = {};
+
+    void add(unsigned i) { tactors.push_back(i); }
+    std::string text(const std::string& what, const array& a) const
+    {
+        if (tactors.empty())
+            return {};
+        const std::string plural = tactors.size() == 1 ? "" : "s";
+        if (tactors.size() == a.tactors.size())
+            return fmt::format("no room for the {}{} of the tactors", what, plural);
+        std::string list;
+        for (std::size_t i = 0; i < std::min(tactors.size(), most_listed); ++i)
+            list += fmt::format("{}{}", i == 0 ? "" : ", ", tactors[i]);
+        if (tactors.size() > most_listed)
+            list = fmt::format("{} tactors", tactors.size());
+        else
+            list = fmt::format("tactor{} {}", plural, list);
+        return fmt::format("no room for the {}{} of {}", what, plural, list);
+    }
+};
+
+std::string joined(const std::string& a, const std::string& b)
+{
+    return a.empty() || b.empty() ? a + b : a + "; " + b;
+}
+
+} // namespace
+
+void extent::add(point p) noexcept
+{
+    x0 = std::min(x0, p.x_mm);
+    y0 = std::min(y0, p.y_mm);
+    x1 = std::max(x1, p.x_mm);
+    y1 = std::max(y1, p.y_mm);
+}
+
+extent shown_extent(const array& a, const std::vector<stroke>& strokes)
+{
+    extent e = tactors_extent(a);
+    const double room = std::max({pitch_mm(a), 0.5 * (e.x1 - e.x0), 0.5 * (e.y1 - e.y0)});
+    const extent most{e.x0 - room, e.y0 - room, e.x1 + room, e.y1 + room};
+    for (const stroke& s : strokes)
+        for (const point& p : sample(s.motion))
+            e.add({std::clamp(p.x_mm, most.x0, most.x1), std::clamp(p.y_mm, most.y0, most.y1)});
+    if (e.x1 - e.x0 < 0.3 * pitch_mm(a) && e.y1 - e.y0 < 0.3 * pitch_mm(a)) // a lone tactor
+        e = {e.x0 - 0.2 * room, e.y0 - 0.2 * room, e.x1 + 0.2 * room, e.y1 + 0.2 * room};
+    return e;
+}
+
+array_frame fit_array(const array& a, const extent& shown, box at_most, surround room)
+{
+    const double w = shown.x1 - shown.x0;
+    const double h = shown.y1 - shown.y0;
+    const double pitch = pitch_mm(a);
+    array_frame f;
+    f.scale = std::min({(at_most.width - 2.0 * room.x) / std::max(w, 1e-3),
+                        (at_most.height - 2.0 * room.y) / std::max(h, 1e-3), largest_pitch / pitch});
+    f.pitch = pitch * f.scale;
+    size_tactors(f, a);
+    f.area.width = f.scale * w + 2.0 * room.x;
+    f.area.height = f.scale * h + 2.0 * room.y;
+    f.area.x = at_most.x + (at_most.width - f.area.width) / 2.0;
+    f.area.y = at_most.y;
+    f.origin = {f.area.x + room.x - f.scale * shown.x0, f.area.y + room.y - f.scale * shown.y0};
+    return f;
+}
+
+std::vector<std::vector<spot>> path_on_page(const array_frame& f, const trajectory& motion)
+{
+    std::vector<spot> line;
+    for (const point& p : sample(motion))
+        line.push_back(f(p));
+    std::vector<std::vector<spot>> parts = clip(line, f.area);
+    for (std::vector<spot>& p : parts)
+        p = simplify(p, 0.04);
+    return parts;
+}
+
+bool channels_are_numbers(const array& a)
+{
+    for (unsigned i = 0; i < a.tactors.size(); ++i)
+        if (a.tactors[i].channel != i)
+            return false;
+    return true;
+}
+
+void draw_tactors(canvas& c, const array_frame& f, const array& a, const tactor_looks& looks,
+                  label_placer& taken)
+{
+    const group all(c, {.id = "tactors"});
+    for (unsigned i = 0; i < a.tactors.size(); ++i) {
+        const tactor_spec& t = a.tactors[i];
+        const spot at = f(t.position);
+        const colour rim = looks.plays[i] ? ink : grey;
+        const style look =
+            f.radius < 1.5 ? style{.fill = rim} : style{.fill = white, .stroke = rim, .width = 0.7};
+        if (a.tactors.size() > most_told) {
+            c.circle(at, f.radius, look, {.kind = "tactor"});
+            continue;
+        }
+        taken.forbid_disc(at, f.radius);
+        const group one(c, {.id = fmt::format("tactor-{}", i),
+                            .kind = "tactor",
+                            .title = fmt::format("tactor {}, channel {}, at {}, {} mm", i, t.channel,
+                                                 number(t.position.x_mm), number(t.position.y_mm)),
+                            .data = {{"tactor", fmt::format("{}", i)}}});
+        c.circle(at, f.radius, look);
+        if (looks.inside[i])
+            c.text({at.x, at.y + cap_height(f.number) / 2.0}, fmt::format("{}", i),
+                   {.size = f.number, .anchor = align::middle, .ink = looks.plays[i] ? ink : dark_grey},
+                   {.kind = "number"});
+    }
+}
+
+std::string draw_tactor_labels(canvas& c, const array_frame& f, const array& a, const tactor_looks& looks,
+                               label_placer& taken)
+{
+    if (a.tactors.size() > most_told)
+        return "too many tactors to number each";
+    const group all(c, {.id = "tactor-labels"});
+    const bool channels = !channels_are_numbers(a);
+    std::vector<spot> sites;
+    for (const tactor_spec& t : a.tactors)
+        sites.push_back(f(t.position));
+    missing without_number;
+    missing without_channel;
+    for (unsigned i = 0; i < a.tactors.size(); ++i) {
+        const std::string channel = fmt::format("ch {}", a.tactors[i].channel);
+        std::vector<std::string> wished; // the first that has room
+        if (!looks.inside[i] && channels)
+            wished = {fmt::format("{} ({})", i, channel), fmt::format("{}", i)};
+        else if (!looks.inside[i])
+            wished = {fmt::format("{}", i)};
+        else if (channels)
+            wished = {channel};
+        std::optional<spot> at;
+        for (std::size_t k = 0; k < wished.size() && !at; ++k) {
+            const double size = small_text;
+            at = taken.place_at(wished[k], size, sites, i, f.radius + 1.2, beside);
+            if (at)
+                c.text(*at, wished[k], {.size = size, .ink = looks.plays[i] ? ink : dark_grey, .halo = true},
+                       {.kind = "tactor-label", .data = {{"tactor", fmt::format("{}", i)}}});
+            if (at && channels && k > 0)
+                without_channel.add(i);
+        }
+        if (!at && !looks.inside[i])
+            without_number.add(i);
+        else if (!at && !wished.empty())
+            without_channel.add(i);
+    }
+    return joined(without_number.text("number", a), without_channel.text("channel", a));
+}
+
+void draw_scale_bar(canvas& c, const array_frame& f, spot at)
+{
+    constexpr double longest = 60.0; // pt
+    const double mm = nice_ticks(0.0, longest / f.scale, 3).step;
+    const double length = mm * f.scale;
+    const std::string text = fmt::format("{} mm", number(mm, 6));
+    const group g(c, {.id = "scale-bar",
+                      .title = fmt::format("scale: this bar is {}", text),
+                      .data = {{"mm", fmt::format("{:.9g}", mm)}}});
+    const style look{.stroke = ink, .width = 1.0};
+    c.line(at, {at.x + length, at.y}, look, {.kind = "bar"});
+    for (const double x : {at.x, at.x + length})
+        c.line({x, at.y - 2.0}, {x, at.y + 2.0}, {.stroke = ink, .width = 0.7});
+    c.text({at.x + length + 4.0, at.y + cap_height(small_text) / 2.0}, text, {.size = small_text});
+}
+
+} // namespace tactor::plot

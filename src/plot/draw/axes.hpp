@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Axes and line charts.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "plot/paint/canvas.hpp"
+
+namespace tactor::plot {
+
+/// Maps values to the page, linearly.
+struct scale {
+    double from = 0.0; ///< value at page_from
+    double to = 1.0;   ///< value at page_to; not equal to `from`
+    double page_from = 0.0;
+    double page_to = 1.0;
+
+    double per_unit() const noexcept { return (page_to - page_from) / (to - from); }
+    double operator()(double v) const noexcept { return page_from + (v - from) * per_unit(); }
+};
+
+/// Round numbers (1, 2 or 5 times a power of ten apart) in lo ... hi, at most `most` of them, at least one
+/// where lo <= 0 <= hi.
+struct ticks {
+    double step = 1.0;
+    std::vector<double> at = {};
+
+    /// As many decimals as the step needs.
+    std::string label(double v) const;
+};
+ticks nice_ticks(double lo, double hi, std::size_t most);
+
+/// Ticks whose labels do not touch along a horizontal axis.
+ticks horizontal_ticks(const scale& x, double text_size);
+
+inline constexpr double small_text = 6.0; ///< pt, the least at one print column
+inline constexpr double label_text = 6.5;
+inline constexpr double title_text = 7.0;
+
+/// Height that draw_time_axis() needs under the line, pt.
+inline constexpr double axis_height = 19.0;
+
+/// A line at y with ticks and labels under it, `title` under these, and light lines from `grid_top` down to
+/// it.
+void draw_horizontal_axis(canvas& c, const scale& x, double y, double grid_top, const std::string& title);
+
+/// A line at the left of `inside` with these ticks and their labels beside it, light lines across, and
+/// `title` upwards with its foot at title_x.
+void draw_vertical_axis(canvas& c, const scale& y, const ticks& t, box inside, const std::string& title,
+                        double title_x);
+
+/// One line of a chart; a value that is not finite interrupts it.
+struct series {
+    std::string name = {};
+    std::vector<spot> values = {}; ///< in units of the axes
+    style look = {.stroke = ink, .width = 0.8};
+};
+
+/// What lies between two lines of a chart.
+struct chart_band {
+    std::string name = {};
+    std::vector<spot> low = {}; ///< in units of the axes, by x
+    std::vector<spot> high = {};
+    style look = {};
+};
+
+struct chart {
+    std::string id = {};
+    box where = {};          ///< of the whole chart, its labels and legend included
+    double left_column = 30; ///< for the labels of y, pt: the same in charts that share a time axis
+    double x_from = 0.0;
+    double x_to = 1.0;
+    double y_from = 0.0;
+    double y_to = 1.0;
+    std::string x_title = {};
+    std::string y_title = {};
+    std::vector<series> lines = {};
+    std::vector<chart_band> bands = {}; ///< under the lines, within the axes
+};
+
+/// Draws the chart with its legend above; lines are clipped to the axes. The cost on the page is bounded by
+/// its width, however many values there are. Returns the box inside the axes. Its SVG group has data-x0,
+/// data-x-scale, data-y0 and data-y-scale: page = 0 + scale * value.
+box draw_chart(canvas& c, const chart& ch);
+
+/// Draws names behind samples of their lines, in rows up to `width`, from (x, y) down; returns the height,
+/// also without a canvas.
+double draw_line_legend(canvas* c, const std::vector<series>& lines, double x, double y, double width);
+
+/// Parts of a line inside a box.
+std::vector<std::vector<spot>> clip(const std::vector<spot>& line, box b);
+
+/// The line with fewer points, nowhere more than `tolerance` pt away (Douglas and Peucker).
+std::vector<spot> simplify(const std::vector<spot>& line, double tolerance);
+
+} // namespace tactor::plot

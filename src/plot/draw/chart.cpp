@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "plot/draw/axes.hpp"
+#include "plot/paint/text.hpp"
+
+namespace tactor::plot {
+namespace {
+
+constexpr double legend_row = 9.0;
+constexpr double sample_length = 14.0;
+constexpr double column = 0.25; // pt: values nearer than this along x are one
+
+// Of the values that fall on one column of the page the first, the least, the largest and the last remain.
+std::vector<spot> thin_out(const std::vector<spot>& line)
+{
+    std::vector<spot> out;
+    for (std::size_t i = 0; i < line.size();) {
+        std::size_t end = i;
+        std::size_t low = i;
+        std::size_t high = i;
+        while (end < line.size() && std::isfinite(line[end].y) &&
+               std::floor(line[end].x / column) == std::floor(line[i].x / column)) {
+            low = line[end].y < line[low].y ? end : low;
+            high = line[end].y > line[high].y ? end : high;
+            ++end;
+        }
+        if (end - i <= 4) {
+            end = std::max(end, i + 1);
+            out.insert(out.end(), line.begin() + static_cast<std::ptrdiff_t>(i),
+                       line.begin() + static_cast<std::ptrdiff_t>(end));
+        } else {
+            for (const std::size_t k : {i, std::min(low, high), std::max(low, high), end - 1})
+                out.push_back(line[k]);
+        }
+        i = end;
+    }
+    return out;
+}
+
+} // namespace
+
+double draw_line_legend(canvas* c, const std::vector<series>& lines, double x, double y, double width)
+{
+    double at = x;
+    double row = y;
+    for (const series& s : lines) {
+        if (s.name.empty())
+            continue;
+        const double need = sample_length + 3.0 + text_width(s.name, small_text);
+        if (at > x && at + need > x + width) {
+            at = x;
+            row += legend_row;
+        }
+        if (c != nullptr) {
+            const double middle = row + legend_row / 2.0;
+            c->line({at, middle}, {at + sample_length, middle}, s.look, {.kind = "legend"});
+            c->text({at + sample_length + 3.0, middle + cap_height(small_text) / 2.0},
+                    shorten(s.name, small_text, width - sample_length - 3.0), {.size = small_text},
+                    {.kind = "legend"});
+        }
+        at += need + 8.0;
+    }
+    return at > x ? row + legend_row - y : 0.0;
+}
+
+box draw_chart(canvas& c, const chart& ch)
+{
+    const double legend = draw_line_legend(nullptr, ch.lines, 0.0, 0.0, ch.where.width - ch.left_column);
+    const double top = legend + 3.0;
+    const box inside{ch.where.x + ch.left_column, ch.where.y + top, ch.where.width - ch.left_column - 5.0,
+                     ch.where.height - top - axis_height};
+    const scale x{ch.x_from, ch.x_to, inside.x, inside.right()};
+    const scale y{ch.y_from, ch.y_to, inside.bottom(), inside.y};
+    const group g(c, {.id = ch.id,
+                      .kind = "chart",
+                      .data = {{"x0", fmt::format("{:.9g}", x(0.0))},
+                               {"x-scale", fmt::format("{:.9g}", x.per_unit())},
+                               {"y0", fmt::format("{:.9g}", y(0.0))},
+                               {"y-scale", fmt::format("{:.9g}", y.per_unit())}}});
+    const auto most = static_cast<std::size_t>(std::max(2.0, inside.height / 12.0));
+    draw_vertical_axis(c, y, nice_ticks(y.from, y.to, most), inside, ch.y_title,
+                       ch.where.x + cap_height(label_text));
+    draw_horizontal_axis(c, x, inside.bottom(), inside.y, ch.x_title);
+    for (const chart_band& b : ch.bands) {
+        std::array<std::vector<spot>, 2> edge;
+        for (const spot& v : b.low)
+            edge[0].push_back({x(v.x), y(v.y)});
+        for (const spot& v : b.high)
+            edge[1].push_back({x(v.x), y(v.y)});
+        std::vector<spot> round = simplify(thin_out(edge[0]), 0.05);
+        const std::vector<spot> back = simplify(thin_out(edge[1]), 0.05);
+        round.insert(round.end(), back.rbegin(), back.rend());
+        c.poly(std::move(round), true, b.look, {.kind = "band", .data = {{"name", b.name}}});
+    }
+    for (const series& s : ch.lines) {
+        const group one(c, {.kind = "series", .data = {{"name", s.name}}});
+        std::vector<spot> line;
+        line.reserve(s.values.size());
+        for (const spot& v : s.values)
+            line.push_back({x(v.x), y(v.y)});
+        for (std::vector<spot>& part : clip(thin_out(line), inside))
+            c.poly(simplify(part, 0.02), false, s.look, {.kind = "curve"});
+    }
+    draw_line_legend(&c, ch.lines, inside.x, ch.where.y, inside.width);
+    return inside;
+}
+
+} // namespace tactor::plot

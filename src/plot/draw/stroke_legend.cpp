@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include "plot/draw/stroke_legend.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+
+#include <fmt/format.h>
+
+#include <tactor/words.hpp>
+
+#include "plot/draw/axes.hpp"
+#include "plot/paint/text.hpp"
+
+namespace tactor::plot {
+namespace {
+
+constexpr double row_height = 8.5;
+constexpr double swatch = 8.0;
+constexpr double gap = 3.0;           // between swatch and name
+constexpr double column_gap = 10.0;   // at least, between columns
+constexpr double most_of_width = 0.5; // for one entry, where there are several
+constexpr std::size_t most_rows = 12;
+constexpr std::size_t most_starts = 60; // more say nothing
+
+std::vector<std::string> entries(const scene& s)
+{
+    std::vector<std::string> all;
+    for (std::size_t i = 0; i < s.strokes.size(); ++i)
+        all.push_back(s.strokes[i].name.empty() ? fmt::format("{}", i + 1)
+                                                : fmt::format("{} {}", i + 1, clean(s.strokes[i].name)));
+    return all;
+}
+
+} // namespace
+
+double draw_stroke_legend(canvas& c, const scene& s, box where, bool colours)
+{
+    if (s.strokes.size() < 2)
+        return 0.0;
+    const group g(c, {.id = "strokes"});
+    const double lead = colours ? swatch + gap : 0.0;
+    double widest = 0.0;
+    std::vector<std::string> names = entries(s);
+    for (std::string& n : names) {
+        n = shorten(n, small_text, most_of_width * where.width - lead - column_gap);
+        widest = std::max(widest, text_width(n, small_text));
+    }
+    const double entry_width = lead + widest + column_gap;
+    const auto columns =
+        std::max<std::size_t>(1, static_cast<std::size_t>((where.width + column_gap) / entry_width));
+    const std::size_t shown = std::min(names.size(), columns * most_rows);
+    const std::size_t rows = (shown + columns - 1) / columns;
+    for (std::size_t i = 0; i < shown; ++i) {
+        const std::size_t in_column = i / rows;
+        const double x = where.x + entry_width * static_cast<double>(in_column);
+        const double middle = where.y + row_height * (static_cast<double>(i % rows) + 0.5);
+        if (colours)
+            c.rect({x, middle - 2.5, swatch, 5.0}, {.fill = of_stroke(i), .stroke = ink, .width = 0.3},
+                   {.kind = "stroke-colour"});
+        c.text({x + lead, middle + cap_height(small_text) / 2.0}, names[i], {.size = small_text},
+               {.kind = "stroke-name", .data = {{"stroke", fmt::format("{}", i)}}});
+    }
+    double height = row_height * static_cast<double>(rows);
+    std::vector<std::string> notes;
+    if (shown < names.size())
+        notes.push_back("and " + counted(names.size() - shown, "stroke more", "strokes more"));
+    if (colours && names.size() > stroke_colours)
+        notes.push_back(fmt::format("colours repeat after {} strokes", stroke_colours));
+    for (const std::string& line : wrap(notes, "; ", small_text, where.width, 2)) {
+        c.text({where.x, where.y + height + cap_height(small_text) + 1.0}, line,
+               {.size = small_text, .ink = dark_grey}, {.kind = "note"});
+        height += row_height;
+    }
+    return height + 2.0;
+}
+
+double starts_height(const timeline& t) noexcept
+{
+    return t.several() && t.starts_s.size() <= most_starts ? 7.0 : 0.0;
+}
+
+void draw_stroke_starts(canvas& c, const timeline& t, const scale& x, double top, double bottom)
+{
+    if (starts_height(t) == 0.0)
+        return;
+    const group g(c, {.id = "stroke-starts"});
+    std::map<double, std::string> numbers;
+    for (std::size_t i = 0; i < t.starts_s.size(); ++i) {
+        std::string& s = numbers[std::round(x(t.starts_s[i]) * 10.0) / 10.0];
+        s += (s.empty() ? "" : ", ") + fmt::format("{}", i + 1);
+    }
+    std::string word = "stroke "; // for the first
+    double free = 0.0;
+    for (auto i = numbers.begin(); i != numbers.end(); ++i) {
+        const double at = i->first;
+        const double next = std::next(i) != numbers.end() ? std::next(i)->first : x.page_to;
+        c.line({at, top - 8.0}, {at, bottom}, {.stroke = dark_grey, .width = 0.5, .dash = 2.0},
+               {.kind = "stroke-start"});
+        const std::string label =
+            at + 2.0 + text_width(word + i->second, small_text) < next ? word + i->second : i->second;
+        word.clear();
+        if (at < free)
+            continue;
+        c.text({at + 2.0, top - 3.0}, label, {.size = small_text, .ink = dark_grey, .halo = true});
+        free = at + 2.0 + text_width(label, small_text);
+    }
+}
+
+} // namespace tactor::plot

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "plot/draw/timeline.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "plot/draw/axes.hpp"
+
+namespace tactor::plot {
+namespace {
+
+constexpr std::size_t most_instants = 24; // of `continuous`, that are shown as positions
+constexpr std::size_t looked_at = 4000;   // instants of `continuous` at which who plays is looked up
+
+class maker {
+public:
+    explicit maker(const scene& s) : scene_(s), plays_(s.tactors.tactors.size(), false) {}
+
+    timeline make()
+    {
+        place();
+        for (std::size_t i = 0; i < scene_.plans.size(); ++i) {
+            const plan& p = scene_.plans[i].schedule;
+            if (p.curve)
+                add_instants(i, p);
+            else
+                add_bursts(i, p);
+        }
+        for (unsigned i = 0; i < plays_.size(); ++i)
+            if (plays_[i])
+                t_.playing.push_back(i);
+        return std::move(t_);
+    }
+
+private:
+    void place()
+    {
+        t_.starts_s = starts_of(scene_.plans);
+        for (std::size_t i = 0; i < scene_.plans.size(); ++i) {
+            const plan& p = scene_.plans[i].schedule;
+            t_.total_s = std::max(t_.total_s, t_.starts_s[i] + p.total_s);
+            t_.sampled = t_.sampled || p.curve.has_value();
+        }
+        t_.sample_s = nice_ticks(0.0, std::max(t_.total_s, 1e-6), most_instants + 1).step;
+    }
+
+    void note(const burst& b)
+    {
+        for (const drive& d : b.drives) {
+            plays_[d.tactor] = true;
+            t_.peak = std::max(t_.peak, d.amplitude);
+        }
+    }
+
+    void add_bursts(std::size_t stroke, const plan& p)
+    {
+        const double start = t_.starts_s[stroke];
+        for (const burst& b : p.bursts) {
+            note(b);
+            t_.bursts.push_back({t_.bursts.size(), stroke, start + b.onset_s,
+                                 start + b.onset_s + b.duration_s, start + b.tau_s.value_or(b.onset_s), &b});
+        }
+    }
+
+    void add_instants(std::size_t stroke, const plan& p)
+    {
+        const double start = t_.starts_s[stroke];
+        for (double k = 0.0; k * t_.sample_s <= p.stroke_duration_s + 1e-9; k += 1.0) {
+            const double at = std::min(k * t_.sample_s, p.stroke_duration_s);
+            burst& b = t_.instants.emplace_back();
+            p.curve->at(at, b);
+            t_.bursts.push_back({t_.bursts.size(), stroke, start + at, start + at, start + at, &b});
+        }
+        burst b;
+        const auto n = static_cast<std::size_t>(
+            std::clamp(p.stroke_duration_s / continuous_step_s, 1.0, static_cast<double>(looked_at)));
+        for (std::size_t i = 0; i <= n; ++i) {
+            p.curve->at(p.stroke_duration_s * static_cast<double>(i) / static_cast<double>(n), b);
+            note(b);
+        }
+    }
+
+    const scene& scene_;
+    timeline t_;
+    std::vector<bool> plays_;
+};
+
+} // namespace
+
+timeline make_timeline(const scene& s)
+{
+    return maker(s).make();
+}
+
+} // namespace tactor::plot

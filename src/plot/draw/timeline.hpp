@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What is drawn: an array, strokes and their plans in one time.
+#pragma once
+
+#include <deque>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <tactor/array.hpp>
+#include <tactor/observer.hpp>
+#include <tactor/plan.hpp>
+#include <tactor/render.hpp>
+#include <tactor/stroke.hpp>
+
+namespace tactor::plot {
+
+/// The matter of a picture. It refers to what it is made of.
+struct scene {
+    const array& tactors;
+    std::string name; ///< of the piece
+    const std::vector<stroke>& strokes;
+    const std::vector<placed_plan>& plans; ///< one for each stroke
+    const score* sound = nullptr;          ///< for the waveform
+    /// Where bursts that were moved for an observer are felt; none, or one for each stroke.
+    std::span<const compensated_plan> moved = {};
+};
+
+/// A burst in the time of the piece; for `continuous`, an instant.
+struct shown_burst {
+    std::size_t number = 0; ///< in the piece, from 0
+    std::size_t stroke = 0;
+    double from_s = 0.0;
+    double to_s = 0.0;
+    double target_s = 0.0; ///< when the target is at the burst's position
+    const burst* what = nullptr;
+};
+
+/// All bursts of a scene in one time. It refers to the scene's plans.
+struct timeline {
+    std::vector<double> starts_s = {}; ///< of each stroke
+    double total_s = 0.0;
+    std::vector<shown_burst> bursts = {};
+    std::vector<unsigned> playing = {}; ///< tactors that play, ascending
+    double peak = 1.0;                  ///< largest amplitude, at least 1
+    bool sampled = false;               ///< some plan is continuous: its "bursts" are instants
+    double sample_s = 0.0;              ///< interval of the instants
+    std::deque<burst> instants = {};    ///< what they refer to
+
+    /// Then colours tell strokes apart, not times.
+    bool several() const noexcept { return starts_s.size() > 1; }
+
+    timeline() = default;
+    timeline(timeline&&) = default;
+    timeline& operator=(timeline&&) = default;
+};
+
+timeline make_timeline(const scene& s);
+
+} // namespace tactor::plot

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// to_png() and to_pdf() of the tool: by the module, which is loaded when the first picture needs it.
+#include <array>
+#include <filesystem>
+#include <string>
+#include <system_error>
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "plot/paint/output.hpp"
+#include "plot/paint/painter_module.hpp"
+
+namespace tactor::plot {
+namespace {
+
+// From the tool's folder: where Meson installs it or built it, and nowhere else. The environment has no say.
+constexpr std::array places{TACTOR_PAINTER_INSTALLED, TACTOR_PAINTER_BUILT};
+
+// Not by $ORIGIN, which a sanitizer's dlopen() takes for its own.
+std::filesystem::path own_folder()
+{
+    std::error_code none;
+    return std::filesystem::read_symlink("/proc/self/exe", none).parent_path();
+}
+
+// It stays loaded: fonts and libraries below it keep what they have begun.
+const painter_module& load()
+{
+    if (TACTOR_HAS_PAINTER == 0)
+        throw error(error_kind::runtime, "picture", "tactor was built without what paints PNG and PDF",
+                    "write SVG, or build it anew with -Dplots=enabled, where Cairo is");
+    const std::filesystem::path folder = own_folder();
+    std::string why = folder.empty() ? "/proc/self/exe, which says where the tool is, cannot be read" : "";
+    for (const char* place : places) {
+        if (folder.empty())
+            break;
+        const std::string file = (folder / place).lexically_normal().string();
+        void* const module = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+        if (module == nullptr) {
+            const char* const said = dlerror();
+            why += fmt::format("{}{}", why.empty() ? "" : "; ", said != nullptr ? said : file);
+            continue;
+        }
+        if (const void* entry = dlsym(module, "tactor_painter"))
+            return *static_cast<const painter_module*>(entry);
+    }
+    throw error(error_kind::runtime, "picture",
+                fmt::format("what paints PNG and PDF cannot be loaded: {}", why),
+                "write SVG, or install tactor anew");
+}
+
+const painter_module& painter()
+{
+    static const painter_module& loaded = load();
+    return loaded;
+}
+
+} // namespace
+
+std::string to_png(const canvas& c, unsigned dpi)
+{
+    return bytes_of(painter().to_png(c, dpi));
+}
+
+std::string to_pdf(const canvas& c)
+{
+    return bytes_of(painter().to_pdf(c));
+}
+
+} // namespace tactor::plot

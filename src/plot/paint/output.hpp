@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Pictures as files: SVG, PNG and PDF. The same picture gives the same bytes, in every locale and at any
+/// time.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "plot/paint/canvas.hpp"
+
+namespace tactor::plot {
+
+enum class file_format { svg, png, pdf };
+
+/// By the extension, in upper or lower case. \throws error (bad_input) that lists the three.
+file_format format_of(const std::filesystem::path& file);
+
+inline constexpr unsigned least_dpi = 30;
+inline constexpr unsigned most_dpi = 2400;
+
+/// An SVG document: real text, a group with an id for each thing that has one, title and desc.
+std::string to_svg(const canvas& c);
+
+/// 8-bit RGB on white that says its resolution. \throws error: bad_input for more pixels than an image may
+/// have,
+///         runtime for a failure of the drawing library.
+std::string to_png(const canvas& c, unsigned dpi);
+
+/// One page of the picture's size. \throws error (runtime).
+std::string to_pdf(const canvas& c);
+
+/// Writes a picture in the format of the name; `dpi` is for PNG. It is written under a temporary name in the
+/// same folder, then renamed: nothing incomplete is left. Blocks on the file system. \throws error: bad_input
+/// for the extension or a folder that does not exist, runtime for what the file system
+///         refuses.
+void save(const canvas& c, const std::filesystem::path& file, unsigned dpi);
+
+} // namespace tactor::plot

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cstdint>
+#include <string>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "files/output_file.hpp"
+#include "plot/paint/output.hpp"
+
+namespace tactor::plot {
+
+namespace fs = std::filesystem;
+
+file_format format_of(const fs::path& file)
+{
+    std::string e = file.extension().string();
+    std::transform(e.begin(), e.end(), e.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    if (e == ".svg")
+        return file_format::svg;
+    if (e == ".png")
+        return file_format::png;
+    if (e == ".pdf")
+        return file_format::pdf;
+    throw error(error_kind::bad_input, file.string(),
+                e.empty() ? "has no extension, so it is not said which format the picture has"
+                          : fmt::format("\"{}\" is no format for a picture", e),
+                e.empty() && file.string().starts_with("/dev/")
+                    ? "its name says which: write FILE.svg, .png or .pdf, and pass that on"
+                    : "end the name in .svg, .png or .pdf");
+}
+
+void save(const canvas& c, const fs::path& file, unsigned dpi)
+{
+    const file_format format = format_of(file);
+    const std::string bytes = format == file_format::svg   ? to_svg(c)
+                              : format == file_format::png ? to_png(c, dpi)
+                                                           : to_pdf(c);
+    detail::output_file to(file);
+    to.write(bytes.data(), static_cast<std::int64_t>(bytes.size()));
+    to.commit();
+}
+
+} // namespace tactor::plot

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "plot/paint/output.hpp"
+#include "plot/paint/text.hpp"
+
+namespace tactor::plot {
+namespace {
+
+// Readers fall back to their own font; ours was only measured.
+constexpr std::string_view fonts = "Helvetica, Arial, 'DejaVu Sans', sans-serif";
+
+std::string escaped(std::string_view text)
+{
+    std::string out;
+    for (const char c : clean(text)) {
+        switch (c) {
+        case '&':
+            out += "&amp;";
+            break;
+        case '<':
+            out += "&lt;";
+            break;
+        case '>':
+            out += "&gt;";
+            break;
+        case '"':
+            out += "&quot;";
+            break;
+        default:
+            out += c;
+        }
+    }
+    return out;
+}
+
+// A thousandth of a point is finer than any printer.
+std::string coordinate(double v)
+{
+    std::string s = fmt::format("{:.3f}", std::isfinite(v) ? v : 0.0);
+    s.erase(s.find_last_not_of('0') + 1);
+    if (s.back() == '.')
+        s.pop_back();
+    return s == "-0" ? "0" : s;
+}
+
+class writer {
+public:
+    std::string write(const canvas& c)
+    {
+        add("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {} {}\" "
+            "role=\"img\" aria-labelledby=\"title desc\" font-family=\"{}\">\n",
+            coordinate(c.width / pt_per_mm), coordinate(c.height / pt_per_mm), coordinate(c.width),
+            coordinate(c.height), fonts);
+        add("<title id=\"title\">{}</title>\n<desc id=\"desc\">{}</desc>\n", escaped(c.title),
+            escaped(c.description));
+        add("<rect width=\"{}\" height=\"{}\" fill=\"#fff\"/>\n", coordinate(c.width), coordinate(c.height));
+        for (const canvas::element& e : c.elements)
+            std::visit(*this, e);
+        return out_ + "</svg>\n";
+    }
+
+    void operator()(const item::group_begin& g) { add("<g{}>{}\n", marks(g.m), title(g.m)); }
+    void operator()(const item::group_end&) { out_ += "</g>\n"; }
+    void operator()(const item::line& l)
+    {
+        add("<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\"{}{}", coordinate(l.from.x), coordinate(l.from.y),
+            coordinate(l.to.x), coordinate(l.to.y), paint(l.s), marks(l.m));
+        close("line", l.m);
+    }
+    void operator()(const item::poly& p)
+    {
+        add("<{} points=\"", name(p));
+        for (std::size_t i = 0; i < p.points.size(); ++i)
+            add("{}{},{}", i == 0 ? "" : " ", coordinate(p.points[i].x), coordinate(p.points[i].y));
+        add("\"{}{}", paint(p.s), marks(p.m));
+        close(name(p), p.m);
+    }
+    void operator()(const item::rect& r)
+    {
+        add("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"{}{}", coordinate(r.b.x), coordinate(r.b.y),
+            coordinate(r.b.width), coordinate(r.b.height), paint(r.s), marks(r.m));
+        close("rect", r.m);
+    }
+    void operator()(const item::circle& o)
+    {
+        add("<circle cx=\"{}\" cy=\"{}\" r=\"{}\"{}{}", coordinate(o.centre.x), coordinate(o.centre.y),
+            coordinate(o.radius), paint(o.s), marks(o.m));
+        close("circle", o.m);
+    }
+    void operator()(const item::text& t)
+    {
+        add("<text x=\"{}\" y=\"{}\" font-size=\"{}\"", coordinate(t.at.x), coordinate(t.at.y),
+            coordinate(t.s.size));
+        if (t.s.upwards)
+            add(" transform=\"rotate(-90 {} {})\"", coordinate(t.at.x), coordinate(t.at.y));
+        if (t.s.anchor != align::start)
+            add(" text-anchor=\"{}\"", t.s.anchor == align::middle ? "middle" : "end");
+        if (t.s.bold)
+            out_ += " font-weight=\"bold\"";
+        if (t.s.halo)
+            out_ += " stroke=\"#fff\" stroke-width=\"1.6\" stroke-linejoin=\"round\" paint-order=\"stroke\"";
+        add("{}{}>{}</text>\n", colour_of("fill", t.s.ink), marks(t.m), escaped(t.string));
+    }
+
+private:
+    template <class... Args>
+    void add(fmt::format_string<Args...> text, Args&&... args)
+    {
+        fmt::format_to(std::back_inserter(out_), text, std::forward<Args>(args)...);
+    }
+
+    void close(std::string_view element, const mark& m)
+    {
+        if (m.title.empty())
+            out_ += "/>\n";
+        else
+            add(">{}</{}>\n", title(m), element);
+    }
+
+    static std::string_view name(const item::poly& p) { return p.closed ? "polygon" : "polyline"; }
+
+    static std::string title(const mark& m)
+    {
+        return m.title.empty() ? "" : fmt::format("<title>{}</title>", escaped(m.title));
+    }
+
+    static std::string marks(const mark& m)
+    {
+        std::string s;
+        if (!m.id.empty())
+            s += fmt::format(" id=\"{}\"", escaped(m.id));
+        if (!m.kind.empty())
+            s += fmt::format(" class=\"{}\"", escaped(m.kind));
+        for (const auto& [key, value] : m.data)
+            s += fmt::format(" data-{}=\"{}\"", key, escaped(value));
+        return s;
+    }
+
+    static std::string colour_of(std::string_view what, colour c)
+    {
+        std::string s = fmt::format(" {}=\"#{:02x}{:02x}{:02x}\"", what, c.r, c.g, c.b);
+        return c.alpha < 1.0 ? s + fmt::format(" {}-opacity=\"{}\"", what, coordinate(c.alpha)) : s;
+    }
+
+    static std::string paint(const style& s)
+    {
+        std::string p = s.fill ? colour_of("fill", *s.fill) : " fill=\"none\"";
+        if (!s.stroke)
+            return p;
+        p += colour_of("stroke", *s.stroke) + fmt::format(" stroke-width=\"{}\"", coordinate(s.width));
+        p += " stroke-linejoin=\"round\"";
+        if (s.dash > 0.0)
+            p += fmt::format(" stroke-dasharray=\"{}\"", coordinate(s.dash));
+        return p;
+    }
+
+    std::string out_;
+};
+
+} // namespace
+
+std::string to_svg(const canvas& c)
+{
+    return writer().write(c);
+}
+
+} // namespace tactor::plot

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include "plot/paint/text.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include <fmt/format.h>
+
+namespace tactor::plot {
+namespace {
+
+// Advances of ' ' ... '~' in 1/1000 of the size.
+constexpr std::array<std::uint16_t, 95> advances{
+    318, 401, 460, 838, 636, 950, 780, 275, 390, 390, 500, 838, 318, 361,  318, 337, 636, 636, 636,
+    636, 636, 636, 636, 636, 636, 636, 337, 337, 838, 838, 838, 531, 1000, 684, 686, 698, 770, 632,
+    575, 775, 752, 295, 295, 656, 557, 863, 748, 787, 603, 787, 695, 635,  611, 732, 684, 989, 685,
+    611, 685, 390, 337, 390, 838, 500, 500, 613, 635, 550, 635, 615, 352,  635, 634, 278, 278, 579,
+    278, 974, 634, 612, 635, 635, 411, 521, 392, 634, 592, 818, 592, 592,  525, 636, 337, 636, 838};
+constexpr double other_advance = 1.0; // of one em: wide enough for ideographs
+constexpr double bold_factor = 1.13;
+constexpr std::string_view replacement = "\xEF\xBF\xBD";
+constexpr std::string_view ellipsis = "\xE2\x80\xA6";
+
+struct sequence {
+    std::size_t bytes = 0; // 0: not UTF-8
+    char32_t value = 0;
+};
+
+sequence decode(std::string_view s) noexcept
+{
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(s[i]); };
+    const unsigned first = byte(0);
+    if (first < 0x80)
+        return {1, first};
+    const std::size_t n = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
+    if (first < 0xC2 || first > 0xF4 || s.size() < n)
+        return {};
+    char32_t v = first & (0x7FU >> n);
+    for (std::size_t i = 1; i < n; ++i) {
+        if ((byte(i) & 0xC0U) != 0x80U)
+            return {};
+        v = (v << 6U) | (byte(i) & 0x3FU);
+    }
+    const bool too_long = (n == 3 && v < 0x800) || (n == 4 && v < 0x10000);
+    if (too_long || v > 0x10FFFF || (v >= 0xD800 && v <= 0xDFFF))
+        return {};
+    return {n, v};
+}
+
+bool printable(char32_t v) noexcept
+{
+    return v >= 0x20 && v != 0x7F && !(v >= 0x80 && v < 0xA0) && v != 0xFFFE && v != 0xFFFF;
+}
+
+} // namespace
+
+double text_width(std::string_view utf8, double size, bool bold) noexcept
+{
+    double em = 0.0;
+    for (const char c : utf8) {
+        const auto u = static_cast<unsigned char>(c);
+        if (u >= 0x20 && u < 0x7F)
+            em += advances[u - 0x20U] / 1000.0;
+        else if ((u & 0xC0U) != 0x80U) // counts each sequence once
+            em += other_advance;
+    }
+    return em * size * (bold ? bold_factor : 1.0);
+}
+
+std::string clean(std::string_view text)
+{
+    std::string out;
+    while (!text.empty()) {
+        const sequence q = decode(text);
+        if (q.bytes == 0 || !printable(q.value))
+            out += q.value == '\t' || q.value == '\n' ? " " : replacement;
+        else
+            out += text.substr(0, q.bytes);
+        text.remove_prefix(q.bytes == 0 ? 1 : q.bytes);
+    }
+    return out;
+}
+
+std::string shorten(std::string_view text, double size, double width, bool bold)
+{
+    std::string all = clean(text.substr(0, 4096));
+    if (text.size() <= 4096 && text_width(all, size, bold) <= width)
+        return all;
+    const double room = width - text_width(ellipsis, size, bold);
+    std::string out;
+    double used = 0.0;
+    for (std::string_view rest = all; !rest.empty();) {
+        const std::size_t n = decode(rest).bytes;
+        used += text_width(rest.substr(0, n), size, bold);
+        if (used > room)
+            break;
+        out += rest.substr(0, n);
+        rest.remove_prefix(n);
+    }
+    return out.append(ellipsis);
+}
+
+std::vector<std::string> wrap(const std::vector<std::string>& parts, std::string_view separator, double size,
+                              double width, std::size_t max_lines)
+{
+    const std::string_view tail = separator.substr(0, separator.find_last_not_of(' ') + 1);
+    const double room = width - text_width(tail, size);
+    std::vector<std::string> lines;
+    for (const std::string& p : parts) {
+        if (p.empty())
+            continue;
+        const std::string longer = lines.empty() ? p : fmt::format("{}{}{}", lines.back(), separator, p);
+        if (lines.empty()) {
+            lines.push_back(p);
+        } else if (text_width(longer, size) <= room || lines.size() == max_lines) {
+            lines.back() = longer;
+        } else {
+            lines.back() += tail;
+            lines.push_back(p);
+        }
+    }
+    for (std::string& l : lines)
+        l = shorten(l, size, width);
+    return lines;
+}
+
+std::string number(double v, int digits)
+{
+    if (v == 0.0 || !std::isfinite(v))
+        return v == 0.0 ? "0" : "-";
+    return fmt::format("{:.{}g}", v, digits);
+}
+
+} // namespace tactor::plot

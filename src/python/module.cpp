@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include "python/binding.hpp"
+
+#include <exception>
+#include <string_view>
+
+namespace tactor::python {
+
+py::array_t<double> given(std::vector<double> values, std::size_t columns)
+{
+    auto kept = std::make_unique<std::vector<double>>(std::move(values));
+    const auto size = static_cast<py::ssize_t>(kept->size());
+    const double* const first = kept->data();
+    const auto width = static_cast<py::ssize_t>(columns);
+    constexpr auto bytes = static_cast<py::ssize_t>(sizeof(double));
+    const py::capsule owner(kept.release(), [](void* p) { delete static_cast<std::vector<double>*>(p); });
+    if (columns == 0)
+        return view_of({size}, {bytes}, first, owner);
+    return view_of({size / width, width}, {width * bytes, bytes}, first, owner);
+}
+
+void check_signals()
+{
+    const py::gil_scoped_acquire lock;
+    if (PyErr_CheckSignals() != 0)
+        throw py::error_already_set();
+}
+
+namespace {
+
+// Names of files may be anything but UTF-8.
+py::str text(std::string_view t)
+{
+    return py::reinterpret_steal<py::str>(
+        PyUnicode_DecodeUTF8(t.data(), static_cast<Py_ssize_t>(t.size()), "surrogateescape"));
+}
+
+// The classes are Python's, and so is what makes one of them.
+void translate(std::exception_ptr p)
+{
+    try {
+        if (p)
+            std::rethrow_exception(p);
+    } catch (const error& e) {
+        try {
+            const py::object x = py::module_::import("tactor._errors")
+                                     .attr("made")(std::string(to_string(e.kind())), text(e.subject()),
+                                                   text(e.why()), text(e.hint()));
+            PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(x.ptr())), x.ptr());
+        } catch (py::error_already_set& raised) {
+            raised.restore();
+        }
+    }
+}
+
+} // namespace
+} // namespace tactor::python
+
+PYBIND11_MODULE(_tactor, m)
+{
+    using namespace tactor::python;
+    m.doc() = "The C++ library as the package's modules need it. Not an interface.";
+    py::register_exception_translator(&translate);
+    m.def("version", &tactor::version);
+    m.def("build_facts", &tactor::build_facts);
+    bind_values(m);
+    bind_plan(m);
+    bind_score(m);
+    bind_tool(m);
+    bind_player(m);
+}

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "python/plan_handle.hpp"
+
+namespace tactor::python {
+namespace {
+
+plan_handle planned(const std::shared_ptr<array_handle>& on, const stroke& given_stroke,
+                    const py::dict& options)
+{
+    wishes w;
+    take_options(w, options, on->value().tactors.size());
+    const layout& faces = on->faces();
+    plan_handle p{on, fit_as_asked({given_stroke}, faces).front(), {}};
+    // As the tool does it: times count where the stroke ends up.
+    if (w.fit) {
+        fitted_strokes f = fit_strokes({p.drawn}, faces, w.fit_margin_mm);
+        p.drawn = std::move(f.strokes.front());
+        p.fit = f.placed;
+    }
+    if (w.duration_s)
+        p.drawn.motion = p.drawn.motion.with_duration(*w.duration_s);
+    else if (w.speed_mm_s)
+        p.drawn.motion = p.drawn.motion.with_speed(*w.speed_mm_s);
+    p.sound = w.sound;
+    p.placed.start_s = p.drawn.start_s;
+    p.placed.anchor = p.drawn.anchor;
+    const auto work = [&] {
+        if (!w.compensate) {
+            p.placed.schedule = make_plan(on->value(), faces, p.drawn, w.plan);
+            return;
+        }
+        p.moved = make_compensated_plan(on->value(), faces, p.drawn, w.plan, w.low_speed);
+        p.placed.schedule = std::move(p.moved->schedule);
+    };
+    if (w.plan.custom_phantom) { // which takes the lock for each point
+        work();
+        return p;
+    }
+    const py::gil_scoped_release free;
+    work();
+    return p;
+}
+
+// A column of the bursts as they lie in memory.
+template <class Member>
+py::array_t<double> column(const py::object& self, const Member& of)
+{
+    const auto& bursts = self.cast<const plan_handle&>().schedule().bursts;
+    if (bursts.empty())
+        return given({});
+    return view_of({static_cast<py::ssize_t>(bursts.size())}, {sizeof(burst)}, of(bursts.front()), self);
+}
+
+py::array_t<double> positions(const py::object& self)
+{
+    const auto& bursts = self.cast<const plan_handle&>().schedule().bursts;
+    if (bursts.empty())
+        return given({}, 2);
+    return view_of({static_cast<py::ssize_t>(bursts.size()), 2}, {sizeof(burst), sizeof(double)},
+                   &bursts.front().position.x_mm, self);
+}
+
+py::array_t<double> amplitudes(const plan_handle& p)
+{
+    const std::size_t tactors = p.on->value().tactors.size();
+    const auto& bursts = p.schedule().bursts;
+    std::vector<double> all(bursts.size() * tactors);
+    for (std::size_t i = 0; i < bursts.size(); ++i)
+        for (const drive& d : bursts[i].drives)
+            all[i * tactors + d.tactor] = d.amplitude;
+    return given(std::move(all), tactors);
+}
+
+py::array_t<double> taus(const plan_handle& p)
+{
+    std::vector<double> all;
+    for (const burst& b : p.schedule().bursts)
+        all.push_back(b.tau_s.value_or(std::numeric_limits<double>::quiet_NaN()));
+    return given(std::move(all));
+}
+
+py::list drives_of(const burst& b)
+{
+    py::list drives;
+    for (const drive& d : b.drives)
+        drives.append(py::make_tuple(d.tactor, d.amplitude));
+    return drives;
+}
+
+py::list rows(const plan_handle& p)
+{
+    py::list all;
+    for (const burst& b : p.schedule().bursts)
+        all.append(py::make_tuple(b.onset_s, b.duration_s, py::make_tuple(b.position.x_mm, b.position.y_mm),
+                                  b.intensity, drives_of(b)));
+    return all;
+}
+
+// t, positions, intensities and amplitudes of all samples; None where there is no curve.
+py::object samples(const plan_handle& p)
+{
+    if (!p.schedule().curve)
+        return py::none();
+    const curve& c = *p.schedule().curve;
+    const std::size_t tactors = p.on->value().tactors.size();
+    std::vector<double> t, places, intensities, all;
+    {
+        const py::gil_scoped_release free;
+        all.resize(c.size() * tactors);
+        burst b;
+        for (std::uint64_t k = 0; k < c.size(); ++k) {
+            c.sample(k, b);
+            t.push_back(b.onset_s);
+            places.insert(places.end(), {b.position.x_mm, b.position.y_mm});
+            intensities.push_back(b.intensity);
+            for (const drive& d : b.drives)
+                all[k * tactors + d.tactor] = d.amplitude;
+        }
+    }
+    return py::make_tuple(given(std::move(t)), given(std::move(places), 2), given(std::move(intensities)),
+                          given(std::move(all), tactors));
+}
+
+py::list felt(const plan_handle& p)
+{
+    std::vector<percept_sample> all;
+    {
+        const py::gil_scoped_release free;
+        all = predict_percept(p.on->value(), p.drawn, p.schedule());
+    }
+    py::list rows;
+    for (const percept_sample& s : all) {
+        const py::object where =
+            s.felt ? py::object(py::make_tuple(s.felt->x_mm, s.felt->y_mm)) : py::object(py::none());
+        rows.append(py::make_tuple(s.t_s, py::make_tuple(s.target.x_mm, s.target.y_mm), where, s.intensity,
+                                   s.target_intensity, s.shared, s.speed_mm_s));
+    }
+    return rows;
+}
+
+py::dict summary(const plan_handle& p)
+{
+    percept_summary s;
+    {
+        const py::gil_scoped_release free;
+        s = summarise(predict_percept(p.on->value(), p.drawn, p.schedule()));
+    }
+    using namespace py::literals;
+    return py::dict("rms_error_mm"_a = s.rms_error_mm, "largest_error_mm"_a = s.largest_error_mm,
+                    "speed_cv"_a = s.speed_cv, "intensity_cv"_a = s.intensity_cv,
+                    "silent_share"_a = s.silent_share, "shared_share"_a = s.shared_share);
+}
+
+} // namespace
+
+void bind_plan(py::module_& m)
+{
+    m.def("option_names", &option_names);
+    m.def("burst_duration", [](const py::dict& options) {
+        wishes w;
+        take_options(w, options, 0);
+        return burst_duration_s(w.plan);
+    });
+    m.def("phantom_weights",
+          [](const std::string& kind, const array_handle& on, double x, double y, double intensity) {
+              burst b;
+              make_phantom(from_string<phantom_kind>(kind), on.faces())->weights({x, y}, intensity, b.drives);
+              return drives_of(b);
+          });
+    py::class_<plan_handle>(m, "Plan")
+        .def(py::init(&planned))
+        .def_static("from_json", &plan_from_json)
+        .def_static(
+            "from_parts",
+            [](const std::string& text, const stroke& drawn, const std::shared_ptr<array_handle>& on) {
+                plan_handle p = plan_from_json(text);
+                check_same_array(p, on->value());
+                p.drawn = drawn;
+                p.on = on;
+                return p;
+            })
+        .def("json", &json_of)
+        .def("same", [](const plan_handle& a, const plan_handle& b) { return a.schedule() == b.schedule(); })
+        .def_property_readonly("array", [](const plan_handle& p) { return p.on; })
+        .def_property_readonly("stroke", [](const plan_handle& p) { return p.drawn; })
+        .def_property_readonly("algorithm", [](const plan_handle& p) { return p.schedule().algorithm; })
+        .def_property_readonly("phantom", [](const plan_handle& p) { return p.schedule().phantom; })
+        .def_property_readonly(
+            "overlap", [](const plan_handle& p) { return std::string(to_string(p.schedule().overlap)); })
+        .def_property_readonly("start_s", [](const plan_handle& p) { return p.placed.start_s; })
+        .def_property_readonly("stroke_duration_s",
+                               [](const plan_handle& p) { return p.schedule().stroke_duration_s; })
+        .def_property_readonly("stroke_length_mm",
+                               [](const plan_handle& p) { return p.schedule().stroke_length_mm; })
+        .def_property_readonly("carrier_hz", [](const plan_handle& p) { return p.schedule().carrier_hz; })
+        .def_property_readonly("soa_s", [](const plan_handle& p) { return p.schedule().soa_s; })
+        .def_property_readonly("total_s", [](const plan_handle& p) { return p.schedule().total_s; })
+        .def_property_readonly("warnings", [](const plan_handle& p) { return p.schedule().warnings; })
+        .def_property_readonly("conflicts",
+                               [](const plan_handle& p) {
+                                   std::vector<std::tuple<unsigned, double, double>> all;
+                                   for (const conflict& c : p.schedule().conflicts)
+                                       all.emplace_back(c.tactor, c.from_s, c.to_s);
+                                   return all;
+                               })
+        .def_property_readonly("dropped",
+                               [](const plan_handle& p) {
+                                   std::vector<std::tuple<double, double, double>> all;
+                                   for (const meeting& d : p.schedule().dropped)
+                                       all.emplace_back(d.t_s, d.position.x_mm, d.position.y_mm);
+                                   return all;
+                               })
+        .def_property_readonly("size", [](const plan_handle& p) { return p.schedule().bursts.size(); })
+        .def_property_readonly("continuous",
+                               [](const plan_handle& p) { return p.schedule().curve.has_value(); })
+        .def("onsets",
+             [](const py::object& s) { return column(s, [](const burst& b) { return &b.onset_s; }); })
+        .def("durations",
+             [](const py::object& s) { return column(s, [](const burst& b) { return &b.duration_s; }); })
+        .def("intensities",
+             [](const py::object& s) { return column(s, [](const burst& b) { return &b.intensity; }); })
+        .def("positions", &positions)
+        .def("taus", &taus)
+        .def("amplitudes", &amplitudes)
+        .def("rows", &rows)
+        .def("samples", &samples)
+        .def("felt", &felt)
+        .def("summary", &summary);
+}
+
+} // namespace tactor::python

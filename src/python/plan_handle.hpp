@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// A plan with what it was made of and for, so that it can be recorded, drawn and rendered.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "python/binding.hpp"
+#include "python/options.hpp"
+
+namespace tactor::python {
+
+struct plan_handle {
+    std::shared_ptr<array_handle> on;
+    stroke drawn;
+    placed_plan placed;
+    std::optional<fitting> fit = {};
+    std::optional<compensated_plan> moved = {}; ///< without its schedule, which is in `placed`
+    render_options sound = {};                  ///< how it sounds where nobody says otherwise
+
+    /// As it is placed at `start_s`: its own start counts from where its stroke says.
+    placed_plan at(std::optional<double> start_s) const
+    {
+        return {placed.schedule, start_s, start_s == placed.start_s ? placed.anchor : start_anchor{}};
+    }
+    const plan& schedule() const noexcept { return placed.schedule; }
+};
+
+/// The tool's tactor-plan/1 object as text, and back. \throws error.
+std::string json_of(const plan_handle& p);
+plan_handle plan_from_json(const std::string& text);
+
+/// As many channels as the array and the marker need, where nobody says how many.
+render_options settled(const array& a, render_options o);
+
+/// \throws error (bad_input) where the plan is for tactors elsewhere or on other channels.
+void check_same_array(const plan_handle& p, const array& in_use);
+
+} // namespace tactor::python

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "python/options.hpp"
+#include "python/player_handle.hpp"
+
+namespace tactor::python {
+namespace {
+
+using namespace py::literals;
+using free_call = py::call_guard<py::gil_scoped_release>;
+
+// A number or nothing, of the keyword arguments that were given.
+template <class T>
+void take(const py::dict& given, const char* name, std::optional<T>& into)
+{
+    if (given.contains(name) && !given[name].is_none())
+        into = given[name].cast<T>();
+}
+
+std::shared_ptr<player_handle> open(const std::shared_ptr<array_handle>& on, const std::string& pcm,
+                                    const py::dict& given, const drive_history& driven)
+{
+    player_wishes w;
+    w.pcm = pcm;
+    w.driven = driven;
+    take(given, "config", w.config);
+    take(given, "array_file", w.array_file);
+    take(given, "rate", w.rate);
+    take(given, "channels", w.channels);
+    take(given, "sample_format", w.format);
+    take(given, "period_frames", w.play.period_frames);
+    take(given, "periods", w.play.periods);
+    take(given, "power_dbfs", w.play.power_dbfs);
+    take(given, "max_drive_s", w.play.max_drive_s);
+    take(given, "drive_window_s", w.play.drive_window_s);
+    std::optional<double> latency_s;
+    take(given, "latency", latency_s);
+    if (latency_s)
+        w.play.latency_ms = *latency_s * 1e3;
+    w.play.require_realtime = given["require_realtime"].cast<bool>();
+    w.play.no_gpio = given["no_gpio"].cast<bool>();
+    w.sync_delay_s = given["sync_delay"].cast<double>();
+    w.wants_log = given["log"].cast<bool>();
+    const py::gil_scoped_release free;
+    return std::make_shared<player_handle>(on->value(), w);
+}
+
+py::tuple tuple_of(const stroke_report& r)
+{
+    const py::object started = r.started_ns
+                                   ? py::object(py::float_(static_cast<double>(*r.started_ns) * 1e-9))
+                                   : py::object(py::none());
+    return py::make_tuple(r.id.number, std::string(to_string(r.state)), r.reason, r.frames, started,
+                          r.late_s);
+}
+
+py::object next_event(player_handle& h)
+{
+    std::optional<event> e;
+    {
+        const py::gil_scoped_release free;
+        e = h.events().next();
+    }
+    if (!e)
+        return py::none();
+    if (const auto* r = std::get_if<stroke_report>(&*e))
+        return tuple_of(*r);
+    const auto& l = std::get<log_line>(*e);
+    return py::make_tuple(l.kind, l.text);
+}
+
+std::int64_t nanoseconds(double s)
+{
+    constexpr double most = 9e9; // s: 285 years
+    if (!(std::abs(s) <= most))
+        throw error(error_kind::bad_input, "at_s", "it is no time of CLOCK_MONOTONIC",
+                    "give seconds as time.monotonic() does");
+    return static_cast<std::int64_t>(std::llround(s * 1e9));
+}
+
+std::uint32_t submit(const player_handle& h, const score& s, const std::string& what, double at_s,
+                     std::int64_t frame)
+{
+    const start_at start = what == "armed"   ? start_at::trigger()
+                           : what == "time"  ? start_at::time(nanoseconds(at_s))
+                           : what == "frame" ? start_at::frame(frame)
+                                             : start_at::now();
+    return h.use([&](player& p) { return p.submit(s, start).number; });
+}
+
+py::dict stats_of(const player_handle& h)
+{
+    player_stats s;
+    {
+        const py::gil_scoped_release free;
+        s = h.use([](player& p) { return p.stats(); });
+    }
+    return py::dict("periods"_a = s.periods, "frames"_a = s.frames, "xruns"_a = s.xruns,
+                    "limited_frames"_a = s.limited_frames, "power_limited_frames"_a = s.power_limited_frames,
+                    "drives_cut"_a = s.drives_cut, "stalls"_a = s.stalls, "off_failures"_a = s.off_failures,
+                    "left_on"_a = s.left_on, "sync_pulses"_a = s.sync_pulses, "sync_missed"_a = s.sync_missed,
+                    "sync_mean_late_s"_a = s.sync_mean_late_s, "sync_worst_late_s"_a = s.sync_worst_late_s,
+                    "ring_low_water"_a = s.ring_low_water, "latest_wakeup_s"_a = s.latest_wakeup_s,
+                    "minor_faults"_a = s.minor_faults, "major_faults"_a = s.major_faults,
+                    "realtime"_a = s.realtime, "xrun_s"_a = s.xrun_s);
+}
+
+py::dict setup_of(const player_handle& h)
+{
+    const stream_setup& s = h.setup();
+    return py::dict("name"_a = s.name, "channels"_a = s.channels, "rate"_a = s.rate,
+                    "format"_a = std::string(to_string(s.format)), "period_frames"_a = s.period_frames,
+                    "buffer_frames"_a = s.buffer_frames, "batch"_a = s.batch, "has_clock"_a = s.has_clock);
+}
+
+py::dict position_of(const player_handle& h)
+{
+    const player_position p = h.use([](player& q) { return q.position(); });
+    const py::object which = p.stroke ? py::object(py::int_(p.stroke->number)) : py::object(py::none());
+    return py::dict("running"_a = p.running, "played"_a = p.played, "stroke"_a = which,
+                    "stroke_frame"_a = p.stroke_frame);
+}
+
+// A live stroke with the player that it must not outlive in a forked process.
+struct live_handle {
+    live_handle(std::shared_ptr<player_handle> p, live_stroke s)
+        : of(std::move(p)), stroke(std::make_unique<live_stroke>(std::move(s)))
+    {
+    }
+    ~live_handle()
+    {
+        if (of != nullptr && of->forked())
+            static_cast<void>(stroke.release());
+    }
+    live_handle(live_handle&&) noexcept = default;
+    live_handle& operator=(live_handle&&) = delete;
+
+    std::shared_ptr<player_handle> of;
+    std::unique_ptr<live_stroke> stroke;
+};
+
+live_handle begin(const std::shared_ptr<player_handle>& h, const array_handle& on, const py::dict& options,
+                  double timeout_s, std::optional<double> longest_s, double smooth_s)
+{
+    wishes w;
+    w.plan = live_options{}.plan;
+    take_options(w, options, on.value().tactors.size());
+    const py::gil_scoped_release free;
+    return {h, h->use([&](player& p) {
+                return p.begin({.plan = w.plan,
+                                .render = w.sound,
+                                .timeout_s = timeout_s,
+                                .longest_s = longest_s,
+                                .smooth_s = smooth_s});
+            })};
+}
+
+void bind_live(py::module_& m)
+{
+    py::class_<live_handle>(m, "Live")
+        .def_property_readonly("id", [](const live_handle& l) { return l.stroke->id().number; })
+        .def(
+            "to",
+            [](live_handle& l, double x, double y, double intensity) {
+                l.of->refuse_child();
+                return l.stroke->to(x, y, intensity);
+            },
+            free_call())
+        .def(
+            "end",
+            [](live_handle& l) {
+                l.of->refuse_child();
+                l.stroke->end();
+            },
+            free_call())
+        .def(
+            "cancel",
+            [](live_handle& l) {
+                l.of->refuse_child();
+                l.stroke->cancel();
+            },
+            free_call())
+        .def_property_readonly("open", [](const live_handle& l) { return l.stroke->open(); })
+        .def("counts", [](const live_handle& l) {
+            const live_counts c = l.stroke->counts();
+            return py::dict("points"_a = c.points, "outside"_a = c.outside, "limited"_a = c.limited);
+        });
+}
+
+} // namespace
+
+void bind_player(py::module_& m)
+{
+    py::class_<drive_history>(m, "DriveHistory").def(py::init<>());
+    py::class_<player_handle, std::shared_ptr<player_handle>>(m, "Player")
+        .def(py::init(&open))
+        .def("next", &next_event)
+        .def("submit", &submit, free_call())
+        .def("live", &begin)
+        .def(
+            "cancel",
+            [](const player_handle& h, std::uint32_t id) {
+                return h.use([id](player& p) { return p.cancel(stroke_id{id}); });
+            },
+            free_call())
+        .def(
+            "fire",
+            [](const player_handle& h, double at_s) {
+                return h.use([t = nanoseconds(at_s)](player& p) { return p.fire(t); });
+            },
+            free_call())
+        .def(
+            "stop", [](const player_handle& h) { h.use([](player& p) { p.stop(); }); }, free_call())
+        .def(
+            "ended", [](const player_handle& h) { return h.use([](player& p) { return p.ended(); }); },
+            free_call())
+        .def(
+            "history", [](const player_handle& h) { return h.use([](player& p) { return p.history(); }); },
+            free_call())
+        .def("close", &player_handle::close, free_call())
+        .def("refuse_child", &player_handle::refuse_child)
+        .def_property_readonly("closed", &player_handle::closed)
+        .def_property_readonly("forked", &player_handle::forked)
+        .def("stats", &stats_of)
+        .def("setup", &setup_of)
+        .def("position", &position_of);
+    bind_live(m);
+}
+
+} // namespace tactor::python

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include "python/player_handle.hpp"
+
+#include <mutex>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <unistd.h>
+
+#include "cli/play/sound_server.hpp"
+
+namespace tactor::python {
+namespace {
+
+cli::settings settings_of(const player_wishes& w)
+{
+    cli::settings s;
+    s.pcm = w.pcm;
+    s.config_file = w.config;
+    s.array_name = w.array_file;
+    s.rate = w.rate;
+    if (w.format)
+        s.format = from_string<format_kind>(*w.format);
+    return s;
+}
+
+bool same_map(const array& a, const array& b)
+{
+    if (a.tactors.size() != b.tactors.size())
+        return false;
+    for (std::size_t i = 0; i < a.tactors.size(); ++i)
+        if (a.tactors[i].channel != b.tactors[i].channel)
+            return false;
+    return true;
+}
+
+} // namespace
+
+cli::environment environment_of(cli::settings& s, const array* a)
+{
+    CLI::App none;
+    cli::option_list options(none, s);
+    cli::environment e = cli::read_environment(s, options);
+    if (a == nullptr)
+        return e;
+    // A channel count belongs to its map.
+    if (!same_map(e.tactors, *a))
+        e.config.output.channels.reset();
+    e.tactors = *a;
+    return e;
+}
+
+player_handle::player_handle(const array& a, const player_wishes& w)
+    : owner_(::getpid()), events_(std::make_shared<event_queue>()), open_(std::make_unique<open_state>())
+{
+    cli::settings s = settings_of(w);
+    const cli::environment e = environment_of(s, &a);
+    const render_options sound = cli::settle_render(s, e);
+    alsa_options device = cli::device_options(s, w.play, e, w.channels.value_or(sound.channels), sound.rate);
+    const auto events = events_;
+    if (w.wants_log)
+        device.log = [events](log_kind k, std::string_view text) {
+            events->put(log_line{std::string(to_string(k)), std::string(text)});
+        };
+    cli::settle_server(device.pcm);
+    const bool waits_for_edges = !w.play.no_gpio && e.config.sync && e.config.sync->in;
+    // Before threads: it forks the holder of the amplifier's line.
+    open_->lines =
+        cli::play_lines(w.play.no_gpio ? tactor::setup{} : e.config, waits_for_edges, w.sync_delay_s);
+    player_options o;
+    o.limits = cli::limits_of(w.play, e);
+    o.require_realtime = w.play.require_realtime;
+    o.driven = w.driven;
+    o.log = device.log;
+    open_->stream = std::make_unique<player>(open_alsa(device), a, o, open_->lines.lend());
+    open_->stream->on_report([events](const stroke_report& r) { events->put(r); });
+    setup_ = open_->stream->setup();
+}
+
+player_handle::~player_handle()
+{
+    if (forked()) { // the parent's: not even the memory is given back, for that would end things
+        static_cast<void>(open_.release());
+        return;
+    }
+    // Its threads may be waiting for the interpreter, to drop what is Python's.
+    if (PyGILState_Check() != 0) {
+        const py::gil_scoped_release free;
+        close();
+    } else {
+        close();
+    }
+}
+
+bool player_handle::forked() const noexcept
+{
+    return ::getpid() != owner_;
+}
+
+void player_handle::refuse_child() const
+{
+    if (forked())
+        throw error(error_kind::runtime, "player", "this process was forked from the one that has it",
+                    "make one of its own, or play in the parent");
+}
+
+bool player_handle::closed() const
+{
+    if (forked())
+        return false;
+    const std::shared_lock lock(open_->mutex);
+    return open_->stream == nullptr;
+}
+
+void player_handle::close()
+{
+    refuse_child();
+    std::unique_ptr<player> ended;
+    {
+        const std::unique_lock lock(open_->mutex);
+        ended = std::move(open_->stream);
+    }
+    if (ended != nullptr)
+        ended->stop();
+    ended.reset();
+    {
+        const std::unique_lock lock(open_->mutex);
+        open_->lines = cli::play_lines();
+    }
+    events_->close();
+}
+
+} // namespace tactor::python

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// A player as the tool's `play` opens it: configuration, lines and limits included.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <shared_mutex>
+#include <string>
+
+#include <sys/types.h>
+
+#include "cli/input.hpp"
+#include "cli/play/play_lines.hpp"
+#include "cli/play/play_options.hpp"
+#include "python/binding.hpp"
+#include "python/events.hpp"
+
+namespace tactor::python {
+
+/// What Player() was asked for. Nothing given: the configuration's, then the tool's defaults.
+struct player_wishes {
+    std::string pcm = {};
+    std::optional<std::string> config = {};
+    std::optional<std::string> array_file = {};
+    std::optional<unsigned> rate = {};
+    std::optional<unsigned> channels = {};
+    std::optional<std::string> format = {};
+    cli::play_options play = {};
+    double sync_delay_s = 0.05;
+    drive_history driven = {};
+    bool wants_log = false;
+};
+
+/// The configuration that applies, for this array instead of its own; none: for its own. \throws error.
+cli::environment environment_of(cli::settings& s, const array* a);
+
+/// Calls may come from any thread, but not from a process that was forked: there they are errors, and nothing
+/// of the parent's is touched when it ends.
+class player_handle {
+public:
+    /// Without the interpreter's lock. \throws error.
+    player_handle(const array& a, const player_wishes& w);
+    ~player_handle();
+    player_handle(const player_handle&) = delete;
+    player_handle& operator=(const player_handle&) = delete;
+
+    const stream_setup& setup() const noexcept { return setup_; }
+    event_queue& events() noexcept { return *events_; }
+    bool forked() const noexcept;
+
+    /// Calls `f` with the player. \throws error (runtime) once it is closed, and in a forked process.
+    template <class F>
+    auto use(F&& f) const
+    {
+        refuse_child();
+        const std::shared_lock lock(open_->mutex);
+        if (open_->stream == nullptr)
+            throw error(error_kind::runtime, "player", "it is closed", "make a new one");
+        return std::forward<F>(f)(*open_->stream);
+    }
+
+    /// Fades out, stops and closes; all strokes have been reported then. Once more: nothing.
+    void close();
+    bool closed() const;
+
+    void refuse_child() const;
+
+private:
+    // All that a forked process must not touch, not even to destroy it.
+    struct open_state {
+        mutable std::shared_mutex mutex;
+        cli::play_lines lines;
+        std::unique_ptr<player> stream;
+    };
+
+    pid_t owner_;
+    stream_setup setup_;
+    std::shared_ptr<event_queue> events_;
+    std::unique_ptr<open_state> open_;
+};
+
+} // namespace tactor::python

@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: MIT
+#include "python/state.hpp"
+
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/access.hpp"
+#include "core/path/impl.hpp"
+#include "core/path/outline.hpp"
+#include "core/trajectory/impl.hpp"
+
+namespace tactor::python {
+namespace {
+
+[[noreturn]] void refuse()
+{
+    throw error(error_kind::bad_input, "pickle", "its bytes are not those of a path or stroke",
+                "make it anew with this version of tactor");
+}
+
+class writer {
+public:
+    template <class T>
+    void put(const T& v)
+    {
+        static_assert(std::is_trivially_copyable_v<T>);
+        const std::size_t at = bytes_.size();
+        bytes_.resize(at + sizeof v);
+        std::memcpy(bytes_.data() + at, &v, sizeof v);
+    }
+    void text(std::string_view t)
+    {
+        put(std::uint64_t{t.size()});
+        bytes_ += t;
+    }
+    void maybe(const std::optional<double>& v)
+    {
+        put(v.has_value());
+        put(v.value_or(0.0));
+    }
+    std::string take() { return std::move(bytes_); }
+
+private:
+    std::string bytes_;
+};
+
+class reader {
+public:
+    explicit reader(std::string_view bytes) : left_(bytes) {}
+
+    template <class T>
+    T get()
+    {
+        T v{};
+        if (left_.size() < sizeof v)
+            refuse();
+        std::memcpy(&v, left_.data(), sizeof v);
+        left_.remove_prefix(sizeof v);
+        return v;
+    }
+    // Of things that take so many bytes each.
+    std::size_t count(std::size_t bytes_each)
+    {
+        const auto n = get<std::uint64_t>();
+        if (n > left_.size() / bytes_each)
+            refuse();
+        return static_cast<std::size_t>(n);
+    }
+    std::string text()
+    {
+        const std::string_view t = left_.substr(0, count(1));
+        left_.remove_prefix(t.size());
+        return std::string(t);
+    }
+    std::optional<double> maybe()
+    {
+        const bool there = get<char>() != 0;
+        const double v = get<double>();
+        return there ? std::optional(v) : std::nullopt;
+    }
+    void end() const
+    {
+        if (!left_.empty())
+            refuse();
+    }
+
+private:
+    std::string_view left_;
+};
+
+void put(writer& w, const path& p)
+{
+    const path::impl& i = detail::access::of(p);
+    w.put(std::uint64_t{i.vertices.size()});
+    for (const point v : i.vertices)
+        w.put(v);
+    w.put(std::uint64_t{i.curves.size()});
+    for (const auto& c : i.curves) {
+        w.put(std::uint64_t{c.segment});
+        w.put(static_cast<char>(c.form.index()));
+        std::visit([&w](const auto& form) { w.put(form); }, c.form);
+    }
+}
+
+void put(writer& w, const waveform& v)
+{
+    w.put(static_cast<char>(v.kind));
+    w.put(v.low_hz);
+    w.put(v.high_hz);
+    w.put(v.seed);
+    w.put(static_cast<char>(v.texture));
+    w.put(v.texture_mm);
+    w.put(v.recorded != nullptr);
+    if (v.recorded) {
+        w.text(v.recorded->file);
+        w.put(v.recorded->rate_hz);
+        w.put(std::uint64_t{v.recorded->samples.size()});
+        for (const float x : v.recorded->samples)
+            w.put(x);
+    }
+}
+
+waveform get_waveform(reader& r)
+{
+    const auto kind_of = [&r](auto values) {
+        const auto i = static_cast<std::size_t>(r.get<unsigned char>());
+        if (i >= values.size())
+            refuse();
+        return values[i];
+    };
+    waveform v;
+    v.kind = kind_of(values_of<waveform_kind>());
+    v.low_hz = r.get<double>();
+    v.high_hz = r.get<double>();
+    v.seed = r.get<std::uint64_t>();
+    v.texture = kind_of(values_of<texture_kind>());
+    v.texture_mm = r.get<double>();
+    if (r.get<char>() != 0) {
+        recording samples;
+        samples.file = r.text();
+        samples.rate_hz = r.get<double>();
+        for (std::size_t n = r.count(sizeof(float)); n > 0; --n)
+            samples.samples.push_back(r.get<float>());
+        v.recorded = std::make_shared<const recording>(std::move(samples));
+    }
+    validate(v);
+    return v;
+}
+
+path get_path(reader& r)
+{
+    detail::outline o;
+    for (std::size_t n = r.count(sizeof(point)); n > 0; --n)
+        o.vertices.push_back(r.get<point>());
+    if (o.vertices.size() < 2)
+        refuse();
+    for (std::size_t n = r.count(sizeof(detail::elliptic)); n > 0; --n) {
+        const auto segment = r.get<std::uint64_t>();
+        const bool ascends = o.curves.empty() || segment > o.curves.back().segment;
+        if (segment + 1 >= o.vertices.size() || !ascends)
+            refuse();
+        const bool is_cubic = r.get<char>() == 0;
+        o.curves.push_back(
+            {static_cast<std::size_t>(segment),
+             is_cubic ? detail::shape(r.get<detail::cubic>()) : detail::shape(r.get<detail::elliptic>())});
+    }
+    return detail::make_path(std::move(o), [] { return "pickle"; });
+}
+
+void put(writer& w, const std::vector<profile_point>& points)
+{
+    w.put(std::uint64_t{points.size()});
+    for (const profile_point& p : points)
+        w.put(p);
+}
+
+void put(writer& w, const movement& m, double moving_s)
+{
+    w.put(moving_s);
+    w.text(to_string(m.easing));
+    put(w, m.speed_mm_s);
+    put(w, m.intensity);
+    w.put(std::uint64_t{m.rests.size()});
+    for (const rest& p : m.rests)
+        w.put(p);
+}
+
+std::vector<profile_point> get_profile(reader& r)
+{
+    std::vector<profile_point> points;
+    for (std::size_t n = r.count(sizeof(profile_point)); n > 0; --n)
+        points.push_back(r.get<profile_point>());
+    return points;
+}
+
+std::shared_ptr<const detail::pace> get_pace(reader& r)
+{
+    const double moving_s = r.get<double>();
+    movement m;
+    m.easing = from_string<easing_kind>(r.text());
+    m.speed_mm_s = get_profile(r);
+    m.intensity = get_profile(r);
+    for (std::size_t n = r.count(sizeof(rest)); n > 0; --n)
+        m.rests.push_back(r.get<rest>());
+    detail::check_movement(m);
+    detail::check_duration(moving_s);
+    return std::make_shared<const detail::pace>(std::move(m), moving_s);
+}
+
+void put(writer& w, const trajectory& m)
+{
+    const trajectory::impl& i = detail::access::of(m);
+    w.put(static_cast<char>(i.law.index()));
+    w.put(i.duration_s);
+    w.put(i.gain);
+    if (const auto* drawn = std::get_if<detail::drawn_path>(&i.law)) {
+        w.put(drawn->intensity);
+        put(w, drawn->way);
+        w.put(drawn->moves != nullptr);
+        if (drawn->moves)
+            put(w, drawn->moves->said(), drawn->moves->moving_s());
+        return;
+    }
+    const auto& points = *std::get<detail::timed_points>(i.law).points;
+    w.put(std::uint64_t{points.size()});
+    for (const timed_point& p : points)
+        w.put(p);
+}
+
+trajectory get_trajectory(reader& r)
+{
+    const bool even = r.get<char>() == 0;
+    const double duration_s = r.get<double>();
+    const double gain = r.get<double>();
+    const auto made = [&] {
+        if (even) {
+            const double intensity = r.get<double>();
+            detail::check_intensity("pickle", intensity);
+            const path way = get_path(r);
+            if (r.get<char>() == 0)
+                return trajectory::along(way, duration_s, intensity);
+            detail::check_duration(duration_s);
+            detail::drawn_path law{way, intensity, get_pace(r)};
+            return detail::access::make<trajectory>(
+                std::make_shared<const trajectory::impl>(trajectory::impl{std::move(law), duration_s, 1.0}));
+        }
+        std::vector<timed_point> points;
+        for (std::size_t n = r.count(sizeof(timed_point)); n > 0; --n)
+            points.push_back(r.get<timed_point>());
+        const trajectory own = trajectory::timed(std::move(points));
+        return own.duration_s() == duration_s ? own : own.with_duration(duration_s);
+    }();
+    // Times a factor: one, unless it was taken several times.
+    return gain == 1.0 ? made : made.with_intensity(gain);
+}
+
+} // namespace
+
+std::string state_of(const path& p)
+{
+    writer w;
+    put(w, p);
+    return w.take();
+}
+
+std::string state_of(const stroke& s)
+{
+    writer w;
+    w.text(s.name);
+    put(w, s.motion);
+    w.maybe(s.start_s);
+    w.maybe(s.carrier_hz);
+    w.maybe(s.speed_mm_s);
+    w.text(to_string(s.anchor.from));
+    w.put(s.anchor.back);
+    w.text(s.choices.algorithm ? to_string(*s.choices.algorithm) : "");
+    w.text(s.choices.phantom ? to_string(*s.choices.phantom) : "");
+    w.maybe(s.choices.soa_s);
+    w.maybe(s.choices.burst_s);
+    w.maybe(s.fit_margin_mm);
+    w.put(s.fit_group);
+    w.put(s.wave.has_value());
+    if (s.wave)
+        put(w, *s.wave);
+    w.put(s.am.has_value());
+    w.put(s.am.value_or(modulation{}));
+    w.put(std::uint64_t{s.carrier_profile.size()});
+    for (const carrier_part& p : s.carrier_profile)
+        w.put(p);
+    w.text(to_string(s.note));
+    w.put(std::uint64_t{s.warnings.size()});
+    for (const std::string& t : s.warnings)
+        w.text(t);
+    return w.take();
+}
+
+path path_from(std::string_view state)
+{
+    reader r(state);
+    path p = get_path(r);
+    r.end();
+    return p;
+}
+
+stroke stroke_from(std::string_view state)
+{
+    reader r(state);
+    std::string name = r.text();
+    stroke s{std::move(name), get_trajectory(r)};
+    s.start_s = r.maybe();
+    s.carrier_hz = r.maybe();
+    s.speed_mm_s = r.maybe();
+    s.anchor.from = from_string<start_from_kind>(r.text());
+    s.anchor.back = r.get<unsigned>();
+    if (const std::string name = r.text(); !name.empty())
+        s.choices.algorithm = from_string<algorithm_kind>(name);
+    if (const std::string name = r.text(); !name.empty())
+        s.choices.phantom = from_string<phantom_kind>(name);
+    s.choices.soa_s = r.maybe();
+    s.choices.burst_s = r.maybe();
+    s.fit_margin_mm = r.maybe();
+    s.fit_group = r.get<unsigned>();
+    if (r.get<char>() != 0)
+        s.wave = get_waveform(r);
+    const bool modulated = r.get<char>() != 0;
+    const auto am = r.get<modulation>();
+    if (modulated)
+        s.am = am;
+    for (std::size_t n = r.count(sizeof(carrier_part)); n > 0; --n)
+        s.carrier_profile.push_back(r.get<carrier_part>());
+    s.note = from_string<note_kind>(r.text());
+    for (std::size_t n = r.count(1); n > 0; --n)
+        s.warnings.push_back(r.text());
+    r.end();
+    return s;
+}
+
+} // namespace tactor::python

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: MIT
+"""Draws on skin: moving tactile strokes over sparse arrays of vibrating actuators::
+
+    palm = tactor.Array.preset("palm-3x3")
+    stroke = tactor.Stroke.along(tactor.Path.svg("M 0 10 C 20 -5 20 45 40 30"), duration=1.2)
+    score = tactor.Score(palm, tactor.plan(palm, stroke))
+    score.write("curve.wav")
+
+Times are seconds, lengths mm, angles degrees, levels dB.
+"""
+import typing as _t
+
+from tactor import _tactor
+from tactor._array import Array, Point, Tactor, array_presets
+from tactor._errors import DeviceError, Error, InputError, StreamError
+from tactor._parts import Burst, Conflict, Curve, Drive, Meeting, PerceptSample, PhantomModel
+from tactor._path import Path
+from tactor._plan import Plan
+from tactor._planning import burst_duration, plan
+from tactor._score import Score
+from tactor._stroke import Fitting, Stroke, fit_strokes, load, parse, stroke_presets
+
+if _t.TYPE_CHECKING:
+    from tactor._player import Player
+    from tactor._ticket import LiveStroke, Report, Ticket
+    from tactor._tool import Comparison, compare, devices, plot
+
+__version__: str = _tactor.version()
+
+__all__ = [
+    "Array", "Burst", "Comparison", "Conflict", "Curve", "DeviceError", "Drive", "Error", "Fitting", "InputError", "LiveStroke", "Meeting",
+    "Path", "PerceptSample", "PhantomModel", "Plan", "Player", "Point", "Report", "Score", "StreamError", "Stroke", "Tactor", "Ticket",
+    "array_presets", "build_facts", "burst_duration", "compare", "devices", "fit_strokes", "load", "parse", "plan", "plot", "stroke_presets",
+]
+
+
+def build_facts() -> str:
+    """What a bug report should say of this library: how and with what it was built."""
+    return _tactor.build_facts()  # type: ignore[no-any-return]
+
+
+# What not every script needs is loaded when it is first named: a fifth of the time that the import takes.
+_LATER = {
+    "Player": "_player", "LiveStroke": "_ticket", "Report": "_ticket", "Ticket": "_ticket",
+    "Comparison": "_tool", "compare": "_tool", "devices": "_tool", "plot": "_tool",
+}
+
+
+def __getattr__(name: str) -> _t.Any:
+    if name not in _LATER:
+        raise AttributeError(f"module 'tactor' has no attribute {name!r}")
+    import importlib
+    value = getattr(importlib.import_module("tactor." + _LATER[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: MIT
+"""Arrays: where the tactors are."""
+from __future__ import annotations
+
+import os
+import typing as _t
+
+from tactor import _tactor
+from tactor._checks import _counted, _need
+from tactor._errors import InputError
+from tactor._files import reading
+
+if _t.TYPE_CHECKING:
+    import numpy as _np
+    from numpy.typing import ArrayLike as _ArrayLike, NDArray as _NDArray
+    _Actuator = _t.Literal["unknown", "piezo", "voice-coil", "lra", "erm"]
+
+
+class Point(_t.NamedTuple):
+    """A place on the skin in millimetres: x to the right, y down, as on a screen."""
+
+    x: float
+    y: float
+
+
+class Tactor(_t.NamedTuple):
+    """One vibrating actuator of an array.
+
+    Parameters
+    ----------
+    position : Point
+        Centre, mm.
+    channel : int
+        Channel of the device, from 0.
+    gain_db : float
+        Added to levels in dBFS; not to those in dB SL.
+    max_dbfs : float
+        Hard limit of the channel, at most 0 dBFS.
+    threshold_dbfs : float or None
+        Measured detection threshold.
+    polarity : int
+        1, or -1 where it is wired the other way round.
+    actuator : str
+        How it works.
+    """
+
+    position: Point
+    channel: int
+    gain_db: float = 0.0
+    max_dbfs: float = 0.0
+    threshold_dbfs: float | None = None
+    polarity: int = 1
+    actuator: _Actuator = "unknown"
+
+
+class Array:
+    """Where the tactors are and how each is driven. Immutable.
+
+    Made by `preset`, `from_file`, `grid`, `from_points` or of a name and a sequence of `Tactor`.
+
+    Raises
+    ------
+    InputError
+        For no tactors, two on one place or channel, and numbers out of range.
+    """
+
+    __slots__ = ("_core", "_file", "_setup", "_tactors")
+
+    _core: _t.Any
+    _file: str | None
+    _setup: _t.Any
+    _tactors: tuple[Tactor, ...]
+
+    def __init__(self, name: str, tactors: _t.Iterable[Tactor]) -> None:
+        tactors = tuple(tactors)
+        for t in tactors:
+            _need(t, Tactor, "tactors")
+            if not 0 <= t.channel < 16384:
+                raise InputError("channel", f"{t.channel!r} is out of range", "0 to 16383")
+        rows = [(float(t.position[0]), float(t.position[1]), t.channel, t.gain_db, t.max_dbfs, t.threshold_dbfs, t.polarity, t.actuator)
+                for t in tactors]
+        self._take(_tactor.Array(name, rows))
+
+    def _take(self, core: _t.Any, file: str | None = None, setup: _t.Any = None) -> None:
+        self._core = core
+        self._file = file
+        self._setup = setup
+        self._tactors = tuple(Tactor(Point(x, y), *rest) for x, y, *rest in core.rows)
+
+    @classmethod
+    def _of(cls, core: _t.Any, file: str | None = None, setup: _t.Any = None) -> Array:
+        made = cls.__new__(cls)
+        made._take(core, file, setup)
+        return made
+
+    @classmethod
+    def preset(cls, name: str) -> Array:
+        """A built-in array: "palm-3x3" or "palm-2x4" (`array_presets`)."""
+        return cls._of(_tactor.Array.preset(name))
+
+    @classmethod
+    def from_file(cls, path: str | os.PathLike[str]) -> Array:
+        """Reads an array file, see tactor.toml(5).
+
+        What else the file says belongs to the array, as in the tool: [defaults] for what nobody says, the rate and channels of
+        [output], the marker of [sync], and for a `Player` on it also amplifier and limits.
+
+        Raises
+        ------
+        InputError
+            With file, line and column.
+        """
+        with reading(path) as name:
+            setup = _tactor.Setup.load(name)
+            if setup.array is None:
+                raise InputError(os.fspath(path), "says no [array]", "see tactor.toml(5)")
+        return cls._of(setup.array, os.path.abspath(path), setup)
+
+    @classmethod
+    def grid(cls, name: str, rows: int, columns: int, pitch_mm: float | tuple[float, float]) -> Array:
+        """A rectangular grid; tactor and channel `row * columns + column`, the first at (0, 0).
+
+        Parameters
+        ----------
+        name : str
+        rows, columns : int
+        pitch_mm : float or tuple of float
+            Distance of neighbours, or that of columns (x) and that of rows (y).
+        """
+        x, y = pitch_mm if isinstance(pitch_mm, (tuple, list)) else (pitch_mm, pitch_mm)
+        for what, n in (("rows", rows), ("columns", columns)):
+            if not 0 <= n < 1 << 32:
+                raise InputError(what, f"{n} is out of range", "1 to 16384 tactors")
+        return cls._of(_tactor.Array.grid(name, rows, columns, float(x), float(y)))
+
+    @classmethod
+    def from_points(cls, points: _ArrayLike, name: str = "points") -> Array:
+        """An array of places [(x_mm, y_mm), ...]; channels are counted from 0 in this order."""
+        import numpy as np
+        places: _t.Any = np.asarray(points, dtype=np.float64)
+        if places.ndim != 2 or places.shape[1] != 2:
+            raise InputError("points", f"they have the shape {places.shape}", "give [(x_mm, y_mm), ...]")
+        return cls(name, [Tactor(Point(x, y), i) for i, (x, y) in enumerate(places.tolist())])
+
+    @property
+    def name(self) -> str:
+        """Name, for plans and pictures."""
+        return self._core.name  # type: ignore[no-any-return]
+
+    @property
+    def positions(self) -> _NDArray[_np.float64]:
+        """Places, shape (n, 2), mm; a view that cannot be written."""
+        return self._core.positions  # type: ignore[no-any-return]
+
+    @property
+    def channels(self) -> int:
+        """Channels that the map needs, the highest and one."""
+        return self._core.channels  # type: ignore[no-any-return]
+
+    @property
+    def tactors(self) -> tuple[Tactor, ...]:
+        """The tactors by number."""
+        return self._tactors
+
+    @property
+    def faces(self) -> list[list[int]]:
+        """Delaunay faces as numbers of tactors in order round each; none where all are in one line."""
+        return self._core.faces  # type: ignore[no-any-return]
+
+    @property
+    def pitch_mm(self) -> float:
+        """Median distance from a tactor to its nearest neighbour; 0 for a single one."""
+        return self._core.pitch_mm  # type: ignore[no-any-return]
+
+    @property
+    def grid_lines(self) -> tuple[list[float], list[float]] | None:
+        """The x of the columns and the y of the rows, mm, where the tactors form a rectangular grid; else None."""
+        return self._core.grid_lines()  # type: ignore[no-any-return]
+
+    def contains(self, point: _t.Sequence[float]) -> bool:
+        """Whether a place is in the hull of the tactors, its edge included."""
+        return self._core.contains(*point)  # type: ignore[no-any-return]
+
+    def nearest(self, point: _t.Sequence[float]) -> Point:
+        """The place of the hull that is nearest to one."""
+        return Point(*self._core.nearest(*point))
+
+    def weights(self, point: _t.Sequence[float], phantom: str = "inverse-distance", intensity: float = 1.0) -> dict[int, float]:
+        """Which tactors make a phantom at a place, and how strongly: amplitudes by number."""
+        return dict(_tactor.phantom_weights(phantom, self._core, point[0], point[1], intensity))
+
+    def _settings(self) -> _t.Any:
+        """What its file says beside the array; None without a file. A pickle knows the name only."""
+        if self._setup is None and self._file is not None:
+            with reading(self._file) as name:
+                self._setup = _tactor.Setup.load(name)
+        return self._setup
+
+    def __len__(self) -> int:
+        return len(self._tactors)
+
+    @_t.overload
+    def __getitem__(self, i: int) -> Tactor: ...
+    @_t.overload
+    def __getitem__(self, i: slice) -> tuple[Tactor, ...]: ...
+    def __getitem__(self, i: int | slice) -> Tactor | tuple[Tactor, ...]:
+        return self._tactors[i]
+
+    def __iter__(self) -> _t.Iterator[Tactor]:
+        return iter(self._tactors)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Array):
+            return NotImplemented
+        return self.name == other.name and self._tactors == other._tactors
+
+    def __hash__(self) -> int:
+        return hash((self.name, self._tactors))
+
+    def __repr__(self) -> str:
+        return f"<tactor.Array {self.name!r}: {_counted(len(self), 'tactor')}, {_counted(self.channels, 'channel')}>"
+
+    def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
+        return _array_again, (self.name, self._tactors, self._file)
+
+
+def _array_again(name: str, tactors: tuple[Tactor, ...], file: str | None) -> Array:
+    made = Array(name, tactors)
+    made._file = file
+    return made
+
+
+def array_presets() -> list[str]:
+    """Names of the built-in arrays."""
+    return _tactor.array_presets()  # type: ignore[no-any-return]

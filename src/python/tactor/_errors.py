@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: MIT
+"""What goes wrong, as exceptions."""
+from __future__ import annotations
+
+import typing as _t
+
+# Compiled when something goes wrong: that would be a good part of the time that the package's import takes.
+_PLACE = r"(?s)(?P<file>.+?):(?P<line>\d+)(?::(?P<column>\d+))?(?=$|: )"
+
+# The library speaks of its fields; here options have the names of the tool's.
+_NAMES = {
+    "soa_s": "soa", "burst_s": "burst", "carrier_hz": "carrier", "ramp_s": "ramp", "sl_db": "sl", "margin_mm": "fit_margin",
+    "duration of a burst": "burst", "fit_strokes()": "fit=True", "snap = true": "snap=True", "drop_points = true": "drop_points=True",
+}
+_CHOICE = r"(?<![\w.-])(timing|outside|algorithm) = ([\w-]+)"
+
+
+class Error(Exception):
+    """Base of what the library raises.
+
+    Attributes
+    ----------
+    what : str
+        What it is about: an option, a field, a device, a file with line and column.
+    why : str
+        What is wrong with it.
+    hint : str
+        What to do about it; may be empty.
+    file : str or None
+        The file, where it is about one.
+    line, column : int or None
+        Place in the file, counting from 1.
+    """
+
+    what: str
+    why: str
+    hint: str
+    file: str | None
+    line: int | None
+    column: int | None
+
+    def __init__(self, what: str = "", why: str = "", hint: str = "", *, file: str | None = None,
+                 line: int | None = None, column: int | None = None) -> None:
+        super().__init__(what, why, hint)
+        self.what = what
+        self.why = why
+        self.hint = hint
+        self.file = file
+        self.line = line
+        self.column = column
+
+    def __str__(self) -> str:
+        text = f"{self.what}: {self.why}" if self.why else self.what
+        return f"{text} ({self.hint})" if self.hint else text
+
+    def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
+        return _again, (type(self), self.what, self.why, self.hint, self.file, self.line, self.column)
+
+
+class InputError(Error, ValueError):
+    """Wrong input: a number, a name, a file."""
+
+
+class DeviceError(Error, OSError):
+    """A device or a line that is missing, busy, or cannot do what is asked."""
+
+
+class StreamError(Error, RuntimeError):
+    """What failed while it ran: the stream, a disk that is full."""
+
+
+_KINDS: dict[str, type[Error]] = {"bad-input": InputError, "not-available": DeviceError, "runtime": StreamError}
+
+
+def _again(kind: type[Error], what: str, why: str, hint: str, file: str | None, line: int | None,
+           column: int | None) -> Error:
+    return kind(what, why, hint, file=file, line=line, column=column)
+
+
+def _in_python(text: str) -> str:
+    import re
+    fields = "|".join(map(re.escape, _NAMES))
+    text = re.sub(rf"(?<![\w.-])(?:{fields})(?![\w.-])", lambda m: _NAMES[m[0]], text)
+    return re.sub(_CHOICE, r'\1="\2"', text)
+
+
+def made(kind: str, what: str, why: str, hint: str) -> Error:
+    """Makes the exception of a library's error; called by the extension."""
+    import re
+    place = re.match(_PLACE, what)
+    if place is None:
+        return _KINDS[kind](_in_python(what), why, _in_python(hint))
+    column = place["column"]
+    return _KINDS[kind](what, why, _in_python(hint), file=place["file"], line=int(place["line"]),
+                        column=int(column) if column else None)

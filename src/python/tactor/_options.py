@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: MIT
+"""What a plan and its sound can be asked for."""
+from __future__ import annotations
+
+import typing as _t
+
+from tactor._array import Array
+from tactor._errors import InputError
+
+if _t.TYPE_CHECKING:
+    _Algorithm = _t.Literal["park2016", "tactile-brush", "continuous"]
+    _Phantom = _t.Literal["inverse-distance", "barycentric", "linear", "log", "gaussian"]
+    _Timing = _t.Literal["fixed", "fit"]
+    _Outside = _t.Literal["error", "clamp"]
+    _Overlap = _t.Literal["energy", "max", "sum"]
+    _Phase = _t.Literal["stroke", "burst"]
+    _Compensate = _t.Literal["none", "low-speed"]
+    _Scale = _t.Literal["linear", "sl", "stevens"]
+    _Texture = _t.Literal["cycle", "time", "length"]
+    _Envelope = _t.Literal["raised-cosine", "linear", "exponential", "tukey"]
+
+
+# What a plan asks for beside how it sounds; the rest is a score's.
+_PLANNING = frozenset(("algorithm", "phantom", "soa", "burst", "slope", "intercept", "duration", "speed", "timing", "outside", "fit",
+                       "fit_margin", "snap", "drop_points", "overlap", "carrier", "compensate", "sigma_mm", "sigma_v_mm_s",
+                       "waveform", "am", "noise_seed", "texture", "texture_mm", "intensity_scale", "stevens_exponent"))
+_SOUNDING = frozenset(("phase", "ramp", "envelope", "attack", "release", "tukey_part", "level_dbfs", "sl", "rate"))
+_PLANNING_AND_SOUNDING = _PLANNING | _SOUNDING
+
+
+def settled(array: Array, given: dict[str, _t.Any], known: frozenset[str]) -> dict[str, _t.Any]:
+    """Options, and for what they do not say the [defaults] and [output] of the array's file, as the tool has it.
+
+    None says nothing. An observer's numbers that nothing would use are refused; in a file they may stand for other strokes.
+    """
+    setup = array._settings()
+    options = given if setup is None else _completed(setup, given, known)
+    for name in ("sigma_mm", "sigma_v_mm_s"):
+        if given.get(name) is not None and options.get("compensate") != "low-speed" and options.get("observer") != "low-speed":
+            raise InputError(name, "nothing here uses it", 'say compensate="low-speed", too; of a comparison also observer="low-speed"')
+    return options
+
+
+def _completed(setup: _t.Any, given: dict[str, _t.Any], known: frozenset[str]) -> dict[str, _t.Any]:
+    options = dict(given)
+
+    def says(name: str) -> bool:
+        return options.get(name) is not None
+
+    for option, text in setup.defaults.items():
+        name = option.replace("-", "_")
+        rival = {"speed": "duration", "sl": "level_dbfs", "level_dbfs": "sl"}.get(name)
+        if name in known and not says(name) and not (rival is not None and given.get(rival) is not None):
+            options[name] = _value(text)
+    kind, _, part = str(options.get("envelope") or "").partition(":")
+    if part and given.get("envelope") is None:  # tukey:PART, as the tool takes it
+        options["envelope"] = kind
+        if not says("tukey_part"):
+            options["tukey_part"] = _value(part)
+    if "rate" in known:
+        if setup.rate is not None and not says("rate"):
+            options["rate"] = setup.rate
+        if setup.channels is not None and not says("channels"):
+            options["channels"] = setup.channels
+        if setup.marker is not None and not says("marker_channel"):
+            options["marker_channel"], options["marker_s"] = setup.marker
+    return options
+
+
+def _value(text: str) -> _t.Any:
+    if text in ("true", "false"):
+        return text == "true"
+    try:
+        return float(text)
+    except ValueError:
+        return text

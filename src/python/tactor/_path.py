@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: MIT
+"""Paths: curves on the skin."""
+from __future__ import annotations
+
+import typing as _t
+
+from tactor import _tactor
+from tactor._array import Point
+from tactor._checks import _floats
+
+if _t.TYPE_CHECKING:
+    import numpy as _np
+    from numpy.typing import ArrayLike as _ArrayLike, NDArray as _NDArray
+
+
+class Path:
+    """A curve on the skin, by arc length. Immutable.
+
+    Made by `svg`, `polyline` or `arc`.
+
+    Raises
+    ------
+    InputError
+        For what is not path data (with its column), for numbers that are not finite or beyond 1e6 mm, and for no length.
+    """
+
+    __slots__ = ("_core",)
+
+    _core: _t.Any
+
+    def __init__(self) -> None:
+        raise TypeError("use Path.svg(), Path.polyline() or Path.arc()")
+
+    @classmethod
+    def _of(cls, core: _t.Any) -> Path:
+        made = cls.__new__(cls)
+        made._core = core
+        return made
+
+    @classmethod
+    def svg(cls, data: str) -> Path:
+        """SVG path data in millimetres: "M 0 10 C 20 -5 20 45 40 30"."""
+        return cls._of(_tactor.Path.svg(data))
+
+    @classmethod
+    def polyline(cls, points: _ArrayLike) -> Path:
+        """Straight lines from point to point, shape (n, 2), mm."""
+        return cls._of(_tactor.Path.polyline(_floats("points", points)))
+
+    @classmethod
+    def arc(cls, centre: _t.Sequence[float], radius_mm: float, from_deg: float, sweep_deg: float) -> Path:
+        """A circular arc; angles from the x axis towards the y axis (clockwise on a screen), a sweep of at most 360 degrees."""
+        return cls._of(_tactor.Path.arc(float(centre[0]), float(centre[1]), radius_mm, from_deg, sweep_deg))
+
+    @property
+    def length_mm(self) -> float:
+        """Length, to a micrometre."""
+        return self._core.length_mm  # type: ignore[no-any-return]
+
+    @property
+    def data(self) -> str:
+        """SVG path data of the curve."""
+        return self._core.data()  # type: ignore[no-any-return]
+
+    @_t.overload
+    def at(self, s_mm: float) -> Point: ...
+    @_t.overload
+    def at(self, s_mm: _t.Sequence[float] | _NDArray[_np.float64]) -> _NDArray[_np.float64]: ...
+    def at(self, s_mm: _t.Any) -> _t.Any:
+        """The point at an arc length, clamped to 0 ... length; of an array of lengths the points, shape (n, 2)."""
+        if isinstance(s_mm, (int, float)):
+            return Point(*self._core.at(s_mm))
+        lengths = _floats("s_mm", s_mm)
+        if lengths.ndim == 0:
+            return Point(*self._core.at(float(lengths)))
+        return self._core.at_all(lengths.ravel())
+
+    def meets_x(self, x_mm: float) -> list[float]:
+        """Arc lengths, ascending, at which the path meets the line x = x_mm, touching included."""
+        return self._core.meets_x(x_mm)  # type: ignore[no-any-return]
+
+    def meets_y(self, y_mm: float) -> list[float]:
+        """The same for the line y = y_mm."""
+        return self._core.meets_y(y_mm)  # type: ignore[no-any-return]
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Path):
+            return NotImplemented
+        return bool(self._core.state() == other._core.state())
+
+    def __hash__(self) -> int:
+        return hash(self._core.state())
+
+    def __repr__(self) -> str:
+        data = self.data
+        return f"<tactor.Path {data if len(data) <= 60 else data[:57] + '...'!r}: {self.length_mm:.6g} mm>"
+
+    def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
+        return _path_again, (self._core.state(),)
+
+
+def _path_again(state: bytes) -> Path:
+    return Path._of(_tactor.Path.from_state(state))

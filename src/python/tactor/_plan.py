@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: MIT
+"""Plans: who plays, when, and how strongly."""
+from __future__ import annotations
+
+import typing as _t
+
+from tactor import _tactor
+from tactor._array import Array, Point
+from tactor._errors import InputError
+from tactor._parts import Burst, Conflict, Curve, Drive, Meeting, PerceptSample
+from tactor._stroke import Stroke
+
+if _t.TYPE_CHECKING:
+    import numpy as _np
+    from numpy.typing import NDArray as _NDArray
+    from tactor._options import _Overlap
+
+
+class Plan:
+    """Who plays, when, and how strongly: bursts or, of a continuous stroke, a curve. Immutable.
+
+    Made by `tactor.plan` or `from_dict`. Arrays are looks at the plan's memory, which cannot be written; those of other shapes than
+    it has are made when they are first asked for.
+    """
+
+    __slots__ = ("_core", "_array", "_kept")
+
+    _core: _t.Any
+    _array: Array
+    _kept: dict[str, _t.Any]
+
+    def __init__(self) -> None:
+        raise TypeError("use tactor.plan() or Plan.from_dict()")
+
+    @classmethod
+    def _of(cls, core: _t.Any, array: Array | None = None) -> Plan:
+        made = cls.__new__(cls)
+        made._core = core
+        made._array = array if array is not None else Array._of(core.array)
+        made._kept = {}
+        return made
+
+    @classmethod
+    def from_dict(cls, d: _t.Mapping[str, _t.Any]) -> Plan:
+        """A plan of a tactor-plan/1 object, as `to_dict` or `tactor plan --format json` gives it.
+
+        Raises
+        ------
+        InputError
+            That names the field.
+        """
+        import json
+        try:
+            text = json.dumps(d, allow_nan=False)
+        except (TypeError, ValueError) as e:
+            raise InputError("plan", f"it is no JSON: {e}", "see tactor-json(5)") from None
+        return cls._of(_tactor.Plan.from_json(text))
+
+    def to_dict(self) -> dict[str, _t.Any]:
+        """The tactor-plan/1 object, as `tactor plan --format json` prints it: a record of every sample.
+
+        Raises
+        ------
+        InputError
+            For a level that a tactor may not have.
+        """
+        import json
+        return json.loads(self._core.json())  # type: ignore[no-any-return]
+
+    @property
+    def array(self) -> Array:
+        """The array that it is for."""
+        return self._array
+
+    @property
+    def stroke(self) -> Stroke:
+        """The stroke as it was planned, fitted and timed."""
+        return Stroke._of(self._core.stroke)
+
+    @property
+    def algorithm(self) -> str:
+        """Name of the planner."""
+        return self._core.algorithm  # type: ignore[no-any-return]
+
+    @property
+    def phantom(self) -> str:
+        """Name of the phantom model."""
+        return self._core.phantom  # type: ignore[no-any-return]
+
+    @property
+    def overlap(self) -> _Overlap:
+        """How bursts that overlap on one tactor are joined."""
+        return self._core.overlap  # type: ignore[no-any-return]
+
+    @property
+    def start(self) -> float | None:
+        """Seconds from the start of a piece; None is when the plan before it has ended."""
+        return self._core.start_s  # type: ignore[no-any-return]
+
+    @property
+    def stroke_duration(self) -> float:
+        """Time of the stroke, s."""
+        return self._core.stroke_duration_s  # type: ignore[no-any-return]
+
+    @property
+    def stroke_length_mm(self) -> float:
+        """Length of the stroke."""
+        return self._core.stroke_length_mm  # type: ignore[no-any-return]
+
+    @property
+    def carrier(self) -> float:
+        """Frequency of the vibration, Hz."""
+        return self._core.carrier_hz  # type: ignore[no-any-return]
+
+    @property
+    def soa(self) -> float | None:
+        """Onset to onset of two bursts, s; None where they have none in common."""
+        return self._core.soa_s  # type: ignore[no-any-return]
+
+    @property
+    def total(self) -> float:
+        """End of the last sound, s."""
+        return self._core.total_s  # type: ignore[no-any-return]
+
+    @property
+    def warnings(self) -> list[str]:
+        """What was odd and taken nevertheless."""
+        return self._core.warnings  # type: ignore[no-any-return]
+
+    @property
+    def conflicts(self) -> list[Conflict]:
+        """Where bursts overlap on one tactor."""
+        return [Conflict(*c) for c in self._core.conflicts]
+
+    @property
+    def dropped(self) -> list[Meeting]:
+        """Crossings of the Tactile Brush that were left out."""
+        return [Meeting(t, Point(x, y)) for t, x, y in self._core.dropped]
+
+    @property
+    def bursts(self) -> list[Burst]:
+        """Bursts by onset; empty for a continuous stroke."""
+        return [Burst(onset, duration, Point(*at), intensity, tuple(Drive(*d) for d in drives))
+                for onset, duration, at, intensity, drives in self._core.rows()]
+
+    @property
+    def curve(self) -> Curve | None:
+        """The samples of a continuous stroke; None for bursts."""
+        return self._keep("curve", lambda: Curve(*self._core.samples()) if self._core.continuous else None)  # type: ignore[no-any-return]
+
+    @property
+    def amplitudes(self) -> _NDArray[_np.float64]:
+        """Shape (bursts, tactors), linear; 0 where a tactor does not sound."""
+        return self._keep("amplitudes", self._core.amplitudes)  # type: ignore[no-any-return]
+
+    @property
+    def onsets(self) -> _NDArray[_np.float64]:
+        """Shape (bursts,), s."""
+        return self._core.onsets()  # type: ignore[no-any-return]
+
+    @property
+    def durations(self) -> _NDArray[_np.float64]:
+        """Shape (bursts,), s."""
+        return self._core.durations()  # type: ignore[no-any-return]
+
+    @property
+    def positions(self) -> _NDArray[_np.float64]:
+        """Shape (bursts, 2), mm."""
+        return self._core.positions()  # type: ignore[no-any-return]
+
+    @property
+    def intensities(self) -> _NDArray[_np.float64]:
+        """Shape (bursts,), linear."""
+        return self._core.intensities()  # type: ignore[no-any-return]
+
+    @property
+    def taus(self) -> _NDArray[_np.float64]:
+        """Shape (bursts,), s, when the target is at the burst's position, of the Tactile Brush; NaN of others."""
+        return self._keep("taus", self._core.taus)  # type: ignore[no-any-return]
+
+    @property
+    def compensation(self) -> dict[str, _t.Any] | None:
+        """What `compensate` did, as in the record (observer, residuals and taps); None without it."""
+        return self.to_dict().get("compensation")
+
+    def percept(self) -> list[PerceptSample]:
+        """What is predicted to be felt at 0, 1, 2 ... ms: a model, never a measurement."""
+        return [PerceptSample(t, Point(*target), None if felt is None else Point(*felt), *rest)
+                for t, target, felt, *rest in self._core.felt()]
+
+    def percept_summary(self) -> dict[str, float | None]:
+        """How far the prediction is from the target: rms_error_mm, largest_error_mm, speed_cv, intensity_cv, silent_share, shared_share."""
+        return self._core.summary()  # type: ignore[no-any-return]
+
+    def to_pandas(self) -> _t.Any:
+        """A pandas DataFrame with a row for each burst (or sample) and a column `tactor_N` for each tactor's amplitude."""
+        import pandas  # type: ignore
+        c = self.curve
+        columns: dict[str, _t.Any]
+        if c is None:
+            columns = {"onset_s": self.onsets, "duration_s": self.durations, "x_mm": self.positions[:, 0], "y_mm": self.positions[:, 1],
+                       "intensity": self.intensities}
+            amplitudes = self.amplitudes
+        else:
+            columns = {"t_s": c.t, "x_mm": c.positions[:, 0], "y_mm": c.positions[:, 1], "intensity": c.intensities}
+            amplitudes = c.amplitudes
+        columns |= {f"tactor_{i}": amplitudes[:, i] for i in range(amplitudes.shape[1])}
+        return pandas.DataFrame(columns)
+
+    def _keep(self, name: str, make: _t.Callable[[], _t.Any]) -> _t.Any:
+        if name not in self._kept:
+            self._kept[name] = make()
+        return self._kept[name]
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Plan):
+            return NotImplemented
+        return bool(self._core.same(other._core)) and self.start == other.start and self._array == other._array
+
+    def __hash__(self) -> int:
+        return hash((self.algorithm, self.phantom, self.total, self._core.size, self._array))
+
+    def __repr__(self) -> str:
+        what = "continuous" if self._core.continuous else f"{self._core.size} burst{'s' if self._core.size != 1 else ''}"
+        return f"<tactor.Plan of {self.stroke.name!r}: {self.algorithm}, {self.phantom}, {what}, {self.total:.6g} s on {self._array.name!r}>"
+
+    def _repr_svg_(self) -> str:
+        from tactor._tool import svg_of_plans
+        return svg_of_plans([self])
+
+    def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
+        return _plan_again, (self._core.json(), self._core.stroke.state(), self._array)
+
+
+def _plan_again(text: str, stroke: bytes, array: Array) -> Plan:
+    return Plan._of(_tactor.Plan.from_parts(text, _tactor.Stroke.from_state(stroke), array._core), array)

@@ -1,0 +1,304 @@
+# SPDX-License-Identifier: MIT
+"""Playing on a device in real time."""
+from __future__ import annotations
+
+import atexit
+import os
+import threading
+import time
+import typing as _t
+import warnings
+import weakref
+
+from tactor import _tactor
+from tactor._array import Array
+from tactor._checks import _need
+from tactor._errors import InputError
+from tactor._parts import PhantomModel
+from tactor._score import Score
+from tactor._ticket import LiveStroke, Report, Ticket, _call, _Shared
+
+if _t.TYPE_CHECKING:
+    from types import TracebackType as _TracebackType
+    from tactor._options import _Algorithm, _Envelope, _Outside, _Phantom, _Phase
+    from tactor._score import _SampleFormat
+    from tactor._ticket import _LogKind
+    _At = _t.Literal["now", "armed"]
+
+
+class Player:
+    """Plays scores on a device in real time.
+
+    Parameters
+    ----------
+    device : str
+        An ALSA name as `tactor play -D` takes it: "hw:CARD=Tactor", "null", "file:...".
+    array : Array
+        Gives each channel's limit; one from a file brings what that says of amplifier, lines and limits.
+    rate, period_frames, periods : int, optional
+        Default: the configuration's, else 48000 Hz, 96 frames, 3 periods.
+    channels : int, optional
+        Default: as many as the array needs, or its file says.
+    sample_format : str, optional
+        Default: what the device takes.
+    latency : float, optional
+        Length of the device's buffer, s, instead of `period_frames`.
+    config : path-like, optional
+        Configuration; default: the tool's ($TACTOR_CONFIG, the user's, the system's), amplifier and limits included. os.devnull: none.
+    power_dbfs, max_drive_s, drive_window_s : float, optional
+        Limits instead of the configuration's, see tactor.toml(5).
+    no_gpio : bool
+        Leaves the lines of amplifier and triggers alone.
+    require_realtime : bool
+        Fails without real-time priority.
+    sync_delay : float
+        From an edge that triggers to the first sample at the DAC, s.
+    log : callable, optional
+        `log(kind, text)` is told of xruns, recovery, mutes and limits that act, in the player's thread of Python.
+    after : Player, optional
+        The player before on the same array, closed or stopped: what it gave each tactor lately counts.
+
+    Raises
+    ------
+    DeviceError
+        When the device is missing, busy or cannot do what is asked.
+    InputError
+        For numbers that cannot be.
+
+    Notes
+    -----
+    The interpreter's lock is released in all calls, and no thread that plays ever takes it. A player that is forgotten is closed when it is
+    collected or the program ends. In a process that was forked every call raises `StreamError`, and its end leaves stream and amplifier alone.
+    """
+
+    def __init__(self, device: str, array: Array, *, rate: int | None = None, period_frames: int | None = None, periods: int | None = None,
+                 channels: int | None = None, sample_format: _SampleFormat | None = None, latency: float | None = None,
+                 config: _t.Union[str, os.PathLike[str], None] = None, power_dbfs: float | None = None, max_drive_s: float | None = None,
+                 drive_window_s: float | None = None, no_gpio: bool = False, require_realtime: bool = False, sync_delay: float = 0.05,
+                 log: _t.Callable[[_LogKind, str], object] | None = None, after: Player | None = None) -> None:
+        self._shared: _Shared | None = None
+        self._array = array
+        _need(array, Array, "array")
+        _need(device, str, "device")
+        for what, seconds in (("latency", latency), ("sync_delay", sync_delay)):
+            if seconds is not None and not 0.0 <= float(seconds) <= 10.0:
+                raise InputError(what, f"{seconds!r} is out of range", "0 to 10 s")
+        if latency is not None and latency < 0.0001:
+            raise InputError("latency", f"{latency!r} s is too short", "0.0001 s or more")
+        for what, number, least in (("rate", rate, 8000), ("period_frames", period_frames, 1), ("periods", periods, 2), ("channels", channels, 1)):
+            if number is not None and (not least <= number < 1 << 31 or number != int(number)):
+                raise InputError(what, f"{number!r} is out of range", f"a whole number from {least} on")
+        given = {
+            "config": None if config is None else os.fsencode(config), "array_file": None if array._file is None else os.fsencode(array._file),
+            "rate": rate, "channels": channels, "sample_format": sample_format, "period_frames": period_frames, "periods": periods,
+            "power_dbfs": power_dbfs, "max_drive_s": max_drive_s, "drive_window_s": drive_window_s, "latency": None if latency is None else float(latency),
+            "require_realtime": bool(require_realtime), "no_gpio": bool(no_gpio), "sync_delay": float(sync_delay), "log": log is not None,
+        }
+        driven = _tactor.DriveHistory() if after is None else after._history()
+        core = _tactor.Player(array._core, device, given, driven)
+        self._setup: dict[str, _t.Any] = core.setup()
+        self._driven: _t.Any = None
+        self._shared = _Shared(core, log)
+        _open.add(self)
+
+    @property
+    def array(self) -> Array:
+        """The array that it plays on."""
+        return self._array
+
+    @property
+    def setup(self) -> dict[str, _t.Any]:
+        """What was agreed on with the device (name, channels, rate, format, period_frames, buffer_frames, batch, has_clock)."""
+        return dict(self._setup)
+
+    @property
+    def rate(self) -> int:
+        """Hz."""
+        return self._setup["rate"]  # type: ignore[no-any-return]
+
+    @property
+    def channels(self) -> int:
+        """Channels of the stream."""
+        return self._setup["channels"]  # type: ignore[no-any-return]
+
+    @property
+    def closed(self) -> bool:
+        """Whether it was closed."""
+        return self._get().core.closed  # type: ignore[no-any-return]
+
+    def play(self, score: Score, at: _At = "now", *, at_s: float | None = None, delay: float | None = None) -> Report:
+        """Plays a score and waits until it has ended; Ctrl-C fades it out. See `submit`."""
+        return self.submit(score, at, at_s=at_s, delay=delay).wait()
+
+    def submit(self, score: Score, at: _At = "now", *, at_s: float | None = None, delay: float | None = None,
+               frame: int | None = None) -> Ticket:
+        """Plays a score without waiting for it. Several may sound at once.
+
+        Parameters
+        ----------
+        score : Score
+            At the stream's rate; one of fewer channels gets as many as the stream has.
+        at : str
+            "now": with the next period that is written; "armed": waits for an edge at the trigger's line or for `fire`.
+        at_s : float, optional
+            Time at which the first sample is to be at the DAC, s of CLOCK_MONOTONIC: `time.monotonic() + 0.5`.
+        delay : float, optional
+            The same, counted from this call.
+        frame : int, optional
+            Or the frame of the stream.
+
+        Returns
+        -------
+        Ticket
+
+        Raises
+        ------
+        InputError
+            When rate or channels differ from the stream's.
+        StreamError
+            When the stream has ended.
+        """
+        shared = self._get()
+        if not isinstance(score, Score):
+            raise TypeError(f"a Score is wanted, not {type(score).__name__}")
+        if at not in ("now", "armed"):
+            raise InputError("at", f"{at!r} is not known", 'one of "now", "armed", or at_s=, delay= or frame=')
+        if frame is not None and not 0 <= frame < 1 << 63:
+            raise InputError("frame", f"{frame!r} is out of range", "frames of the stream count from 0")
+        times = [t for t in (at_s, delay, frame) if t is not None]
+        if len(times) > 1 or (times and at != "now"):
+            raise InputError("at", "there are several starts", "give one of at, at_s, delay and frame")
+        what = at if not times else "frame" if frame is not None else "time"
+        when = 0.0
+        if at_s is not None:
+            when = float(at_s)
+        elif delay is not None:
+            when = time.monotonic() + float(delay)
+        core = self._fitting(score)
+        with shared.lock:
+            number = shared.core.submit(core, what, when, 0 if frame is None else frame)
+            ticket = shared.tickets[number] = Ticket(shared, number)
+        return ticket
+
+    def _fitting(self, score: Score) -> _t.Any:
+        if score.channels < self.channels and score.rate == self.rate:
+            options: dict[str, _t.Any] = {**score._options, "channels": self.channels}
+            return Score(score._array, score._plans, **options)._core
+        return score._core
+
+    def live(self, *, algorithm: _Algorithm | None = None, phantom: _t.Union[_Phantom, PhantomModel, None] = None, soa: float | None = None,
+             slope: float | None = None, intercept: float | None = None, outside: _Outside | None = None, carrier: float | None = None,
+             waveform: str | None = None, am: _t.Union[float, str, None] = None, noise_seed: int | None = None, phase: _Phase | None = None,
+             ramp: float | None = None, envelope: _Envelope | None = None, attack: float | None = None, release: float | None = None,
+             level_dbfs: float | None = None, sl: float | None = None, timeout: float = 0.5,
+             longest: float | None = None, smooth: float = 0.0) -> LiveStroke:
+        """Begins a stroke that is fed point by point; silent until the first.
+
+        Parameters
+        ----------
+        algorithm : str
+            "continuous" (default), or "park2016": bursts, each SOA one at the newest position.
+        phantom, soa, slope, intercept, carrier, waveform, am, noise_seed, phase, ramp, envelope, attack, release, level_dbfs, sl
+            As in `plan`.
+        outside : str
+            "clamp" (default) or "error".
+        timeout : float
+            A producer that gives no point for so long, s, has failed: it fades out, interrupted.
+        longest : float
+            A stroke that has sounded for so long, s, fades out, interrupted; None: it may go on for ever.
+        smooth : float
+            For points that come in bursts, s, 0 (off) to 1: it moves evenly, and is at each point so long after that came.
+
+        Returns
+        -------
+        LiveStroke
+
+        Raises
+        ------
+        InputError
+            For options that cannot be.
+        StreamError
+            When the stream has ended.
+        """
+        shared = self._get()
+        options = {name: value for name, value in dict(
+            algorithm=algorithm, phantom=phantom, soa=soa, slope=slope, intercept=intercept, outside=outside, carrier=carrier,
+            waveform=waveform, am=am, noise_seed=noise_seed, phase=phase, ramp=ramp, envelope=envelope, attack=attack, release=release,
+            level_dbfs=level_dbfs, sl=sl).items() if value is not None}
+        with shared.lock:
+            core = shared.core.live(self._array._core, options, float(timeout), None if longest is None else float(longest), float(smooth))
+            stroke = LiveStroke(shared, core)
+            shared.tickets[stroke.id] = stroke
+        return stroke
+
+    def fire(self, at_s: float | None = None) -> int:
+        """Starts all armed strokes, now or at a time of CLOCK_MONOTONIC; how many there were."""
+        return self._get().core.fire(time.monotonic() if at_s is None else float(at_s))  # type: ignore[no-any-return]
+
+    def stop(self) -> None:
+        """Fades everything out and stops the stream. What that ends counts as cancelled."""
+        self._get().core.stop()
+
+    @property
+    def ended(self) -> str | None:
+        """Why the stream has ended; empty where `stop` ended it in order, None while it goes on."""
+        return self._get().core.ended()  # type: ignore[no-any-return]
+
+    def stats(self) -> dict[str, _t.Any]:
+        """Counters since it was opened: periods, frames, xruns, limited_frames, power_limited_frames, drives_cut, stalls, realtime, ..."""
+        return self._get().core.stats()  # type: ignore[no-any-return]
+
+    def position(self) -> dict[str, _t.Any]:
+        """Where the stream is: running, played (frame at the DAC), stroke (number of the newest that sounds, or None), stroke_frame."""
+        return self._get().core.position()  # type: ignore[no-any-return]
+
+    def close(self) -> None:
+        """Stops, closes the device and leaves the amplifier off. All strokes have been reported then, and their callbacks called."""
+        shared = self._get()
+        shared.core.refuse_child()
+        if not shared.core.closed:
+            shared.core.stop()
+            self._driven = shared.core.history()
+        shared.core.close()
+        _open.discard(self)
+        if threading.current_thread() is not shared.thread:
+            shared.thread.join()
+
+    def _history(self) -> _t.Any:
+        return self._driven if self._driven is not None else self._get().core.history()
+
+    def _get(self) -> _Shared:
+        if self._shared is None:
+            raise RuntimeError("the player was never opened")
+        self._shared.core.refuse_child()
+        return self._shared
+
+    def __enter__(self) -> Player:
+        self._get()
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, trace: _TracebackType | None) -> None:
+        if self._shared is not None and not self._shared.core.forked:
+            self.close()
+
+    def __del__(self) -> None:
+        shared = getattr(self, "_shared", None)
+        if shared is None or shared.core.forked or shared.core.closed:
+            return
+        warnings.warn(f"unclosed {self!r}", ResourceWarning, source=self)
+        self.close()
+
+    def __repr__(self) -> str:
+        s = self._setup
+        return f"<tactor.Player {s['name']!r}: {s['channels']} channels, {s['rate']} Hz, {s['format']}, {s['period_frames']} of {s['buffer_frames']} frames>"
+
+
+_open: weakref.WeakSet[Player] = weakref.WeakSet()
+
+
+@atexit.register
+def _close_all() -> None:
+    """A forgotten player is closed, and its amplifier off, while Python can still say so."""
+    for player in list(_open):
+        if player._shared is not None and not player._shared.core.forked:
+            _call(player.close)

@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: MIT
+"""Scores: plans as frames and channels."""
+from __future__ import annotations
+
+import collections.abc as _abc
+import os
+import typing as _t
+
+from tactor import _tactor
+from tactor._array import Array
+from tactor._checks import _counted, _need
+from tactor._errors import InputError
+from tactor._files import reading
+from tactor._options import _SOUNDING, settled
+from tactor._plan import Plan
+
+if _t.TYPE_CHECKING:
+    import numpy as _np
+    from numpy.typing import DTypeLike as _DTypeLike, NDArray as _NDArray
+    from tactor._options import _Envelope, _Phase
+    _SampleFormat = _t.Literal["float", "s16", "s24", "s32"]
+    _Plans = _t.Union[Plan, _t.Iterable[_t.Union[Plan, "tuple[float | None, Plan]"]]]
+
+
+_FORMATS = {"float32": "float", "int16": "s16", "int32": "s32"}
+_dtypes: dict[str, _t.Any] = {}  # of these names, for NumPy takes its time for each
+
+
+def placed(plans: _Plans) -> list[tuple[float | None, Plan]]:
+    """Plans with the times at which they start."""
+    if isinstance(plans, Plan):
+        return [(plans.start, plans)]
+    if not isinstance(plans, _abc.Iterable):
+        raise TypeError(f"plans: a Plan or several are wanted, not {type(plans).__name__}")
+    all_of_them = []
+    for p in plans:
+        pair = (p.start, p) if isinstance(p, Plan) else p
+        if not (isinstance(pair, tuple) and len(pair) == 2 and isinstance(pair[1], Plan)):
+            raise TypeError(f"a plan or (start_s, plan) is wanted, not {p!r}")
+        all_of_them.append((None if pair[0] is None else float(pair[0]), pair[1]))
+    return all_of_them
+
+
+class Score:
+    """Plans at a sample rate and at levels: what can be rendered, written and played. Immutable.
+
+    Parameters
+    ----------
+    array : Array
+    plans : Plan, or iterable of Plan or of (float, Plan)
+        A number is the start in seconds; a plan without one starts at its stroke's, or when the plan before it has ended.
+    level_dbfs : float
+        Peak for amplitude 1 (-12), at most 0; a tactor's gain is added.
+    sl : float
+        Instead: dB above each tactor's threshold.
+    rate : int
+        Hz (48000).
+    phase : str
+        The carrier starts with the "stroke" (default) or again with each "burst".
+    ramp : float
+        Raised-cosine ramp inside each burst, s; default: 0 between zero crossings, else 0.002.
+    envelope : str
+        How bursts rise and fall: "raised-cosine" (default), "linear", "exponential", or "tukey", whose ramps are a part of the burst.
+    attack, release : float
+        Times in which each burst rises (default: `ramp`) and falls (default: as it rises), s.
+    tukey_part : float
+        "tukey": both ramps together, of the burst, 0 to 1 (0.5).
+    channels : int
+        Default: as many as the array needs.
+    marker_channel : int
+        A spare channel on which the first frames of each stroke are marked, at full scale.
+    marker_s : float
+        For how long (0.005).
+    power_dbfs, max_drive_s, drive_window_s : float
+        Limits of what the array may be given, as `tactor play` has them; none of them: the piece as it was designed. A player has its own.
+
+    Raises
+    ------
+    InputError
+        A carrier at or above half the rate, a level that a tactor may not have, too few channels, plans for another array.
+
+    Notes
+    -----
+    What nobody says is as the first plan was to sound, and then as the array's file says.
+    """
+
+    __slots__ = ("_core", "_array", "_plans", "_options")
+
+    def __init__(self, array: Array, plans: _Plans, *, level_dbfs: float | None = None, sl: float | None = None, rate: int | None = None,
+                 phase: _Phase | None = None, ramp: float | None = None, envelope: _Envelope | None = None, attack: float | None = None,
+                 release: float | None = None, tukey_part: float | None = None, channels: int | None = None,
+                 marker_channel: int | None = None, marker_s: float | None = None, power_dbfs: float | None = None,
+                 max_drive_s: float | None = None, drive_window_s: float | None = None) -> None:
+        given = {
+            "level_dbfs": level_dbfs, "sl": sl, "rate": rate, "phase": phase, "ramp": ramp, "envelope": envelope,
+            "attack": attack, "release": release, "tukey_part": tukey_part, "channels": channels, "marker_channel": marker_channel,
+            "marker_s": marker_s, "power_dbfs": power_dbfs, "max_drive_s": max_drive_s, "drive_window_s": drive_window_s,
+        }
+        _need(array, Array, "array")
+        self._array = array
+        self._plans = tuple(placed(plans))
+        # A plan has taken over what its array's file says.
+        own = bool(self._plans) and self._plans[0][1].array is array
+        self._options = given if own else settled(array, given, _SOUNDING)
+        self._core = _tactor.Score(array._core, [(start, p._core) for start, p in self._plans], self._options)
+
+    @property
+    def array(self) -> Array:
+        """The array that it is for."""
+        return self._array
+
+    @property
+    def plans(self) -> tuple[Plan, ...]:
+        """The plans, in the order given."""
+        return tuple(p for _, p in self._plans)
+
+    @property
+    def frames(self) -> int:
+        """Length."""
+        return self._core.frames  # type: ignore[no-any-return]
+
+    @property
+    def channels(self) -> int:
+        """Samples of a frame."""
+        return self._core.channels  # type: ignore[no-any-return]
+
+    @property
+    def rate(self) -> int:
+        """Hz."""
+        return self._core.rate  # type: ignore[no-any-return]
+
+    @property
+    def duration(self) -> float:
+        """Length, s."""
+        return self.frames / self.rate
+
+    @property
+    def starts(self) -> list[int]:
+        """First frame of each plan."""
+        return self._core.starts  # type: ignore[no-any-return]
+
+    def render(self, dtype: _DTypeLike = "float32") -> _NDArray[_t.Any]:
+        """The samples, the same as `tactor render` writes.
+
+        Parameters
+        ----------
+        dtype : data-type
+            "float32" (full scale is 1.0), "int16" or "int32".
+
+        Returns
+        -------
+        ndarray, shape (frames, channels)
+
+        Raises
+        ------
+        InputError
+            For another type.
+        """
+        name = dtype if isinstance(dtype, str) else ""
+        if name not in _dtypes:
+            import numpy as np
+            try:
+                wanted = np.dtype(dtype)
+            except TypeError:
+                wanted = None
+            if wanted is None or wanted.name not in _FORMATS or not wanted.isnative:
+                raise InputError("dtype", f"{dtype!r} is not known", 'one of "float32", "int16", "int32"')
+            name = wanted.name
+            _dtypes[name] = wanted
+        return self._core.render(_FORMATS[name], _dtypes[name])  # type: ignore[no-any-return]
+
+    def to_numpy(self) -> _NDArray[_np.float32]:
+        """The same as `render()`."""
+        return self.render()
+
+    def write(self, file: str | os.PathLike[str], sample_format: _SampleFormat = "float") -> None:
+        """Writes a WAV file, one channel per tactor, the same bytes as `tactor render` does.
+
+        Complete or not at all: an existing file is replaced at the end.
+
+        Raises
+        ------
+        InputError
+            For a folder that does not exist.
+        StreamError
+            For what the file system refuses.
+        """
+        with reading(file) as name:
+            self._core.write(name, sample_format)
+
+    def __len__(self) -> int:
+        return self.frames
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Score):
+            return NotImplemented
+        return (self._array, self._plans, self._options) == (other._array, other._plans, other._options)
+
+    def __hash__(self) -> int:
+        return hash((self._array, self._plans))
+
+    def __repr__(self) -> str:
+        return (f"<tactor.Score: {_counted(len(self._plans), 'plan')}, {_counted(self.channels, 'channel')}, {self.rate} Hz, "
+                f"{self.duration:.6g} s>")
+
+    def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
+        return _score_again, (self._array, self._plans, self._options)
+
+
+def _score_again(array: Array, plans: tuple[tuple[float | None, Plan], ...], options: dict[str, _t.Any]) -> Score:
+    return Score(array, plans, **options)

@@ -1,0 +1,300 @@
+# SPDX-License-Identifier: MIT
+"""Strokes: movements, made and read."""
+from __future__ import annotations
+
+import os
+import typing as _t
+
+from tactor import _tactor
+from tactor._array import Array, Point
+from tactor._checks import _floats, _need
+from tactor._errors import InputError
+from tactor._files import reading
+from tactor._path import Path
+
+if _t.TYPE_CHECKING:
+    from numpy.typing import ArrayLike as _ArrayLike
+    _Note = _t.Literal["none", "reconstructed"]
+    _StartFrom = _t.Literal["piece", "start", "end"]
+    _Easing = _t.Literal["linear", "in-out", "minimum-jerk"]
+    _Profile = float | _t.Sequence[_t.Sequence[float]]
+
+
+def _profile(name: str, points: _t.Any) -> _t.Any:
+    """(part, value) as a table of two columns."""
+    table = _floats(name, points)
+    if table.size == 0:
+        return table.reshape(-1, 2)
+    if table.ndim != 2 or table.shape[1] != 2:
+        raise InputError(name, "it is no list of (part, value)", "parts from 0, the path's start, to 1, its end")
+    return table
+
+
+def _pauses(pauses: _t.Any) -> _t.Any:
+    """(part, seconds) or (part, seconds, intensity) as a table of three columns."""
+    rows = []
+    for row in pauses:
+        if len(row) not in (2, 3):
+            raise InputError("pauses", f"one has {len(row)} values", "(part, seconds) or (part, seconds, intensity)")
+        rows.append((*row, 1.0)[:3])
+    return _floats("pauses", rows).reshape(-1, 3)
+
+
+class Stroke:
+    """A movement: where the target is at which time, and how strongly. Immutable.
+
+    Made by `along`, `timed`, `preset` or `tactor.load`.
+    """
+
+    __slots__ = ("_core",)
+
+    _core: _t.Any
+
+    def __init__(self) -> None:
+        raise TypeError("use Stroke.along(), Stroke.timed(), Stroke.preset() or tactor.load()")
+
+    @classmethod
+    def _of(cls, core: _t.Any) -> Stroke:
+        made = cls.__new__(cls)
+        made._core = core
+        return made
+
+    @classmethod
+    def along(cls, path: Path, duration: float | None = None, *, speed: _Profile | None = None, intensity: _Profile = 1.0,
+              easing: _Easing = "linear", pauses: _t.Sequence[_t.Sequence[float]] = (),
+              name: str = "path", start: float | None = None, carrier: float | None = None) -> Stroke:
+        """Along a path, at constant speed unless easing, a list of speeds or pauses say otherwise.
+
+        Lists are over the part of the path's length, 0 at its start and 1 at its end; parts ascend, and between them all is linear.
+
+        Parameters
+        ----------
+        path : Path
+        duration : float, optional
+            Time of the stroke in seconds, pauses included, more than 0 and at most a day.
+        speed : float or [(part, mm/s), ...], optional
+            Instead of it; 60 where neither is given. With a duration only the ratios of a list count.
+        intensity : float or [(part, factor), ...]
+            Linear; 1 is the level that is asked for.
+        easing : str
+            How it gets from rest to rest: "linear", "in-out" or "minimum-jerk" (Flash and Hogan 1985).
+        pauses : [(part, seconds), ...] or [(part, seconds, intensity), ...]
+            Where it stays for a while, in silence with an intensity of 0.
+        name : str
+        start : float, optional
+            Seconds from the start of a piece; None: when the stroke before it has ended.
+        carrier : float, optional
+            Hz, instead of the plan's.
+        """
+        one_speed = not hasattr(speed, "__len__")
+        one_intensity = not hasattr(intensity, "__len__")
+        if duration is not None and speed is not None and one_speed:
+            raise InputError("duration", "there is also speed", "give one of them")
+        _need(path, Path, "path")
+        if one_speed and one_intensity and easing == "linear" and len(pauses) == 0:
+            core = _tactor.Stroke.along(name, path._core, duration, speed, intensity)
+        else:
+            core = _tactor.Stroke.moving(
+                name, path._core, duration, speed if one_speed else None, intensity if one_intensity else 1.0, easing,
+                _profile("speed", () if one_speed else speed), _profile("intensity", () if one_intensity else intensity), _pauses(pauses))
+        return cls._of(core.same_as(name, start, carrier))
+
+    @classmethod
+    def timed(cls, t: _ArrayLike, x: _ArrayLike, y: _ArrayLike, intensity: _ArrayLike | None = None, *, name: str = "timed",
+              start: float | None = None, carrier: float | None = None) -> Stroke:
+        """Linear between points of a time, a place and an intensity.
+
+        Parameters
+        ----------
+        t : array_like
+            Seconds, strictly ascending from 0; at least two.
+        x, y : array_like
+            Places, mm.
+        intensity : array_like, optional
+            Linear, one for each point or one for all; 1 without.
+        name, start, carrier
+            See `along`.
+        """
+        import numpy as np
+        columns = [np.atleast_1d(_floats(n, v)) for n, v in (("t", t), ("x", x), ("y", y), ("intensity", 1.0 if intensity is None else intensity))]
+        count = columns[0].size
+        for what, column in zip(("t", "x", "y"), columns):
+            if column.ndim != 1 or column.size != count:
+                raise InputError(what, f"it has the shape {column.shape}, not ({count},)", "t, x and y are equally long")
+        if columns[3].size not in (1, count) or columns[3].ndim != 1:
+            raise InputError("intensity", f"it has the shape {columns[3].shape}, not ({count},)", "one for each point, or one for all")
+        columns[3] = np.broadcast_to(columns[3], (count,))
+        return cls._of(_tactor.Stroke.timed(name, np.column_stack(columns)).same_as(name, start, carrier))
+
+    @classmethod
+    def preset(cls, name: str) -> Stroke:
+        """A built-in stroke: "park2016-1" ... "park2016-4", "wave-2x4", "round-2x4" (`stroke_presets`)."""
+        return cls._of(_tactor.Stroke.preset(name))
+
+    @property
+    def name(self) -> str:
+        """Name; may be empty."""
+        return self._core.name  # type: ignore[no-any-return]
+
+    @property
+    def duration(self) -> float:
+        """Time from start to end, s."""
+        return self._core.duration_s  # type: ignore[no-any-return]
+
+    @property
+    def length_mm(self) -> float:
+        """Length of the way."""
+        return self._core.length_mm  # type: ignore[no-any-return]
+
+    @property
+    def start(self) -> float | None:
+        """Seconds from where `start_from` says; None is when the stroke before it has ended."""
+        return self._core.start_s  # type: ignore[no-any-return]
+
+    @property
+    def start_from(self) -> _StartFrom:
+        """From where `start` counts, as a file says it. The start of the "piece", or the "start" or "end" of strokes before."""
+        return self._core.start_from  # type: ignore[no-any-return]
+
+    @property
+    def choices(self) -> dict[str, str | float]:
+        """Options of `plan` that a file gives this stroke (algorithm, phantom, soa, burst), which win over those of the call."""
+        return self._core.choices  # type: ignore[no-any-return]
+
+    @property
+    def carrier(self) -> float | None:
+        """Its own carrier, Hz; None is the plan's."""
+        return self._core.carrier_hz  # type: ignore[no-any-return]
+
+    @property
+    def speed(self) -> float | None:
+        """The speed, mm/s, from which its time follows; None where a time was given."""
+        return self._core.speed_mm_s  # type: ignore[no-any-return]
+
+    @property
+    def note(self) -> _Note:
+        """What must be said of it."""
+        return self._core.note  # type: ignore[no-any-return]
+
+    @property
+    def warnings(self) -> list[str]:
+        """What was odd about the input and taken nevertheless."""
+        return self._core.warnings  # type: ignore[no-any-return]
+
+    def position(self, t: float) -> Point:
+        """Where the target is at a time in seconds, clamped to 0 ... duration."""
+        return Point(*self._core.position(t))
+
+    def intensity(self, t: float) -> float:
+        """How strong the target is at a time in seconds, clamped to 0 ... duration."""
+        return self._core.intensity(t)  # type: ignore[no-any-return]
+
+    def meets_x(self, x_mm: float) -> list[float]:
+        """Times, ascending, at which the target meets the line x = x_mm."""
+        return self._core.meets_x(x_mm)  # type: ignore[no-any-return]
+
+    def meets_y(self, y_mm: float) -> list[float]:
+        """The same for the line y = y_mm."""
+        return self._core.meets_y(y_mm)  # type: ignore[no-any-return]
+
+    def with_duration(self, duration: float) -> Stroke:
+        """The same movement in another time, s, pauses included."""
+        return self._of(self._core.with_duration(duration))
+
+    def with_speed(self, speed: float) -> Stroke:
+        """The same movement at another mean speed, mm/s; pauses along a path stay as long as they are."""
+        return self._of(self._core.with_speed(speed))
+
+    def reversed(self) -> Stroke:
+        """The same movement played backwards."""
+        return self._of(self._core.reversed())
+
+    def with_intensity(self, factor: float) -> Stroke:
+        """The same movement with every intensity times a factor."""
+        return self._of(self._core.with_intensity(factor))
+
+    def fitted(self, array: Array, margin_mm: float = 0.0) -> Stroke:
+        """The same shape, as large as the array has room for and in its middle; see `fit_strokes`."""
+        return fit_strokes([self], array, margin_mm)[0][0]
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Stroke):
+            return NotImplemented
+        return bool(self._core.state() == other._core.state())
+
+    def __hash__(self) -> int:
+        return hash(self._core.state())
+
+    def __repr__(self) -> str:
+        return f"<tactor.Stroke {self.name!r}: {self.length_mm:.6g} mm in {self.duration:.6g} s>"
+
+    def _repr_svg_(self) -> str:
+        from tactor._tool import picture_of_stroke
+        return picture_of_stroke(self)
+
+    def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
+        return _stroke_again, (self._core.state(),)
+
+
+def _stroke_again(state: bytes) -> Stroke:
+    return Stroke._of(_tactor.Stroke.from_state(state))
+
+
+class Fitting(_t.NamedTuple):
+    """Where a picture was put: `origin` became `to`, and all distances are `scale` times what they were."""
+
+    origin: Point
+    to: Point
+    scale: float
+
+
+def fit_strokes(strokes: _t.Sequence[Stroke], array: Array, margin_mm: float = 0.0) -> tuple[list[Stroke], Fitting]:
+    """Moves and scales strokes, all alike as one picture, so that it is as large as the array has room for.
+
+    Parameters
+    ----------
+    strokes : sequence of Stroke
+    array : Array
+    margin_mm : float
+        Distance kept from the array's edge.
+
+    Returns
+    -------
+    tuple
+        The strokes, and where the picture was put.
+
+    Raises
+    ------
+    InputError
+        For a margin that leaves no room.
+    """
+    _need(array, Array, "array")
+    fitted, origin, to, scale = _tactor.fit_strokes([s._core for s in strokes], array._core, margin_mm)
+    return [Stroke._of(s) for s in fitted], Fitting(Point(*origin), Point(*to), scale)
+
+
+def load(file: str | os.PathLike[str]) -> list[Stroke]:
+    """Reads a stroke file by its extension: .toml, .csv or .svg, see tactor.toml(5).
+
+    Returns
+    -------
+    list of Stroke
+        One or more; those of one piece have their `start`.
+
+    Raises
+    ------
+    InputError
+        With file, line and column.
+    """
+    with reading(file) as name:
+        return [Stroke._of(s) for s in _tactor.Stroke.load(name)]
+
+
+def parse(text: str, name: str = "text") -> list[Stroke]:
+    """Strokes of what a stroke file would say: SVG, CSV or TOML, told apart by how it begins."""
+    return [Stroke._of(s) for s in _tactor.Stroke.parse(text, name)]
+
+
+def stroke_presets() -> list[str]:
+    """Names of the built-in strokes."""
+    return _tactor.stroke_presets()  # type: ignore[no-any-return]

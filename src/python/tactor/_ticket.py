@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: MIT
+"""Strokes that a player was given: tickets, live strokes and reports."""
+from __future__ import annotations
+
+import sys
+import threading
+import time
+import typing as _t
+
+if _t.TYPE_CHECKING:
+    import asyncio
+    from types import TracebackType as _TracebackType
+    _State = _t.Literal["finished", "cancelled", "interrupted"]
+    _LogKind = _t.Literal["debug", "info", "warning", "error"]
+
+_LOOK_S = 0.1  # so late Ctrl-C may be noticed
+
+
+class Report(_t.NamedTuple):
+    """How a stroke ended.
+
+    Attributes
+    ----------
+    state : str
+        "finished": its last frame reached the DAC; "cancelled": faded out because it was asked for; "interrupted": an xrun, the loss
+        of the device, a failure or a live stroke's silent producer cut it.
+    reason : str
+        Why it was interrupted; else empty.
+    frames : int
+        Frames of it that were played.
+    started_s : float or None
+        Time of its first sample at the DAC, s of CLOCK_MONOTONIC, which is Python's `time.monotonic()`; None when it never sounded.
+    late_s : float
+        How much later than asked for that was; 0 when in time.
+    """
+
+    state: _State
+    reason: str
+    frames: int
+    started_s: float | None
+    late_s: float
+
+
+class Ticket:
+    """A stroke that a player was given. Can be awaited, which gives the report; who cancels the waiting cancels the stroke.
+
+    Callbacks run in the player's own thread of Python.
+    """
+
+    def __init__(self, player: _Shared, number: int) -> None:
+        self._player = player
+        self._number = number
+        self._ended = threading.Event()
+        self._report: Report | None = None
+        self._lock = threading.Lock()
+        self._callbacks: list[_t.Callable[[_t.Any], object]] = []
+
+    @property
+    def id(self) -> int:
+        """Number, unique in one player."""
+        return self._number
+
+    @property
+    def rate(self) -> int:
+        """Sample rate of the stream, Hz."""
+        return self._player.rate
+
+    @property
+    def report(self) -> Report | None:
+        """How it ended; None as long as it has not."""
+        return self._report
+
+    def done(self) -> bool:
+        """Whether it has ended."""
+        return self._ended.is_set()
+
+    def wait(self, timeout: float | None = None) -> Report:
+        """Waits until it has ended. Ctrl-C fades it out.
+
+        Parameters
+        ----------
+        timeout : float, optional
+            Seconds.
+
+        Returns
+        -------
+        Report
+
+        Raises
+        ------
+        TimeoutError
+            When it goes on after that.
+        StreamError
+            In a process that was forked.
+        RuntimeError
+            In a callback, for a stroke that has not ended: its thread would have to bring the report.
+        """
+        if self._report is None:
+            self._player.core.refuse_child()
+            if threading.current_thread() is self._player.thread:
+                raise RuntimeError("a callback cannot wait for a stroke that goes on")
+            try:
+                ended = self._wait(timeout)
+            except KeyboardInterrupt:
+                self.cancel()
+                self._ended.wait(1.0)
+                raise
+            if not ended:
+                raise TimeoutError(f"stroke {self._number} goes on after {timeout:g} s")
+        assert self._report is not None
+        return self._report
+
+    def _wait(self, timeout: float | None) -> bool:
+        # Where the kernel gives a signal to another thread, nothing wakes one that waits: it looks for itself.
+        until = None if timeout is None else time.monotonic() + timeout
+        while not self._ended.is_set():
+            left = _LOOK_S if until is None else until - time.monotonic()
+            if left <= 0.0:
+                return False
+            self._ended.wait(min(left, _LOOK_S))
+        return True
+
+    def cancel(self) -> bool:
+        """Fades it out. False when it has ended."""
+        return self._player.core.cancel(self._number)  # type: ignore[no-any-return]
+
+    def add_done_callback(self, callback: _t.Callable[[_t.Any], object]) -> None:
+        """Calls `callback(ticket)` once it has ended: in the player's thread of Python, or at once and here when it has already."""
+        with self._lock:
+            if self._report is None:
+                self._callbacks.append(callback)
+                return
+        callback(self)
+
+    def __await__(self) -> _t.Generator[_t.Any, None, Report]:
+        import asyncio
+        loop = asyncio.get_running_loop()
+        future: asyncio.Future[Report] = loop.create_future()
+
+        def tell(ticket: Ticket) -> None:
+            def set_result() -> None:
+                if not future.done():
+                    future.set_result(ticket._report)  # type: ignore[arg-type]
+            try:
+                loop.call_soon_threadsafe(set_result)
+            except RuntimeError:
+                pass  # the loop was closed meanwhile: nobody waits
+        self.add_done_callback(tell)
+        try:
+            report = yield from future.__await__()
+        except asyncio.CancelledError:
+            self.cancel()
+            raise
+        return report
+
+    def _end(self, report: Report) -> None:
+        with self._lock:
+            self._report = report
+            callbacks, self._callbacks = self._callbacks, []
+        self._ended.set()
+        for callback in callbacks:
+            _call(callback, self)
+
+    def __repr__(self) -> str:
+        how = "goes on" if self._report is None else self._report.state
+        return f"<tactor.{type(self).__name__} {self._number}: {how}>"
+
+
+class LiveStroke(Ticket):
+    """A stroke that is fed point by point. Leaving its block ends it, and waits for that; with an exception it fades out."""
+
+    def __init__(self, player: _Shared, core: _t.Any) -> None:
+        super().__init__(player, core.id)
+        self._core = core
+
+    def to(self, x_mm: float, y_mm: float, intensity: float = 1.0) -> bool:
+        """Moves it to a place.
+
+        Parameters
+        ----------
+        x_mm, y_mm : float
+        intensity : float
+            Linear; 1 is the level that was asked for.
+
+        Returns
+        -------
+        bool
+            False when it has ended; the report says why.
+
+        Raises
+        ------
+        InputError
+            For what is not finite, and with outside="error" for a place outside the array; it goes on where it was.
+        """
+        return self._core.to(x_mm, y_mm, intensity)  # type: ignore[no-any-return]
+
+    def end(self) -> None:
+        """No more points come: fades out, or plays its last burst to the end."""
+        self._core.end()
+
+    @property
+    def open(self) -> bool:
+        """Whether it can still be fed."""
+        return self._core.open  # type: ignore[no-any-return]
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How many `points` were taken, of these moved from `outside`, and `limited` at a channel's limit."""
+        return self._core.counts()  # type: ignore[no-any-return]
+
+    def __enter__(self) -> LiveStroke:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, trace: _TracebackType | None) -> None:
+        if self._player.core.forked:
+            return
+        if kind is None:
+            self.end()
+        else:
+            self._core.cancel()
+        if threading.current_thread() is not self._player.thread:
+            self.wait()
+
+
+class _Shared:
+    """What a player and its thread have in common: not the player, so that a forgotten one can be collected."""
+
+    def __init__(self, core: _t.Any, log: _t.Callable[[_LogKind, str], object] | None) -> None:
+        self.core = core
+        self.log = log
+        self.rate: int = core.setup()["rate"]
+        self.lock = threading.Lock()
+        self.tickets: dict[int, Ticket] = {}
+        self.thread = threading.Thread(target=self._run, name="tactor", daemon=True)
+        self.thread.start()
+
+    def _run(self) -> None:
+        while (event := self.core.next()) is not None:
+            if len(event) == 2:
+                if self.log is not None:
+                    _call(self.log, *event)
+                continue
+            number, *rest = event
+            with self.lock:  # whoever submitted it has its ticket in there first
+                ticket = self.tickets.pop(number, None)
+            if ticket is not None:
+                ticket._end(Report(*rest))
+
+
+def _call(function: _t.Callable[..., object], *arguments: _t.Any) -> None:
+    """A callback's exception is shown, as other threads' are; the player goes on."""
+    try:
+        function(*arguments)
+    except Exception:
+        sys.excepthook(*sys.exc_info())

@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: MIT
+"""What the tool computes, draws and lists."""
+from __future__ import annotations
+
+import os
+import typing as _t
+
+from tactor import _tactor
+from tactor._array import Array
+from tactor._checks import _need
+from tactor._errors import InputError
+from tactor._files import reading
+from tactor._options import _PLANNING, settled
+from tactor._plan import Plan
+from tactor._score import Score, placed
+from tactor._stroke import Stroke
+
+if _t.TYPE_CHECKING:
+    from tactor._options import _Algorithm, _Compensate, _Outside, _Overlap, _Phantom, _Timing
+    from tactor._score import _Plans
+    _Observer = _t.Literal["centroid", "low-speed"]
+    _View = _t.Literal["array", "timing", "wave", "both"]
+
+
+class Comparison(list[dict[str, _t.Any]]):
+    """What algorithms are predicted to feel like: a dict for each algorithm with each phantom model, as the `results` of
+    `tactor compare --format json`.
+
+    Attributes
+    ----------
+    record : dict
+        The whole tactor-compare/1 object.
+    """
+
+    record: dict[str, _t.Any]
+
+    def __init__(self, core: _t.Any) -> None:
+        import json
+        self.record = json.loads(core.json())
+        self._core = core
+        super().__init__(self.record["results"])
+
+    def plot(self, file: str | os.PathLike[str], *, width: float = 85.0, dpi: int = 300) -> None:
+        """Draws it, as `tactor compare -o` does: .svg, .png or .pdf, `width` in mm."""
+        _check_dpi(dpi)
+        with reading(file) as name:
+            self._core.save(name, width, dpi)
+
+    def _repr_svg_(self) -> str:
+        return self._core.svg(85.0)  # type: ignore[no-any-return]
+
+    def __reduce__(self) -> _t.Any:
+        return list, (list(self),)
+
+
+def _check_dpi(dpi: int) -> None:
+    if not 30 <= dpi <= 2400 or dpi != int(dpi):
+        raise InputError("dpi", f"{dpi!r} is out of range", "a whole number from 30 to 2400")
+
+
+def _names(value: str | _t.Iterable[str] | None) -> list[str]:
+    if value is None:
+        return []
+    return value.split(",") if isinstance(value, str) else list(value)
+
+
+def compare(array: Array, stroke: Stroke, *, algorithms: _t.Union[str, _t.Iterable[_Algorithm], None] = None,
+            phantoms: _t.Union[str, _t.Iterable[_Phantom], None] = None, algorithm: _Algorithm | None = None, phantom: _Phantom | None = None,
+            soa: float | None = None, burst: float | None = None, slope: float | None = None, intercept: float | None = None,
+            duration: float | None = None, speed: float | None = None, timing: _Timing | None = None, outside: _Outside | None = None,
+            fit: bool | None = None, fit_margin: float | None = None, snap: bool | None = None, drop_points: bool | None = None,
+            overlap: _Overlap | None = None, carrier: float | None = None, compensate: _Compensate | None = None,
+            observer: _Observer | None = None, sigma_mm: float | None = None, sigma_v_mm_s: float | None = None, spread: int | None = None,
+            spread_seed: int | None = None, spread_sigma: float | None = None, spread_threshold_db: float | None = None,
+            spread_place_mm: float | None = None) -> Comparison:
+    """What algorithms are predicted to feel like on the same stroke: a model, never a measurement.
+
+    Parameters
+    ----------
+    array : Array
+    stroke : Stroke
+    algorithms : iterable of str
+        What to compare; default: all three.
+    phantoms : iterable of str
+        With which phantom models; default: that of `phantom`.
+    algorithm : str
+        Only this one.
+    phantom, soa, burst, slope, intercept, duration, speed, timing, outside, fit, fit_margin, snap, drop_points, overlap, carrier, compensate
+        As in `plan`.
+    observer : str
+        Who is predicted to feel it: "centroid" (default) or "low-speed", who feels quick taps nearer together than they are.
+    sigma_mm, sigma_v_mm_s : float
+        The second one: how well places are known (5 mm), and which speeds are expected (100 mm/s).
+    spread : int
+        What would be felt by so many people, 2 to 100000, who are drawn at random: intervals from 5 to 95 % of them.
+    spread_seed : int
+        Of that draw (1): the same seed draws the same people.
+    spread_sigma : float
+        "low-speed": sigma of each is up to this factor less or more (2).
+    spread_threshold_db, spread_place_mm : float
+        Each tactor's threshold, give or take (6 dB); each tactor is felt within that distance of its place (2 mm).
+
+    Returns
+    -------
+    Comparison
+        A list of dicts. An algorithm that cannot play the stroke says why under "refused".
+
+    Raises
+    ------
+    InputError
+        Where none can play it.
+    """
+    given = {name: value for name, value in dict(
+        algorithm=algorithm, phantom=phantom, soa=soa, burst=burst, slope=slope, intercept=intercept, duration=duration, speed=speed,
+        timing=timing, outside=outside, fit=fit, fit_margin=fit_margin, snap=snap, drop_points=drop_points, overlap=overlap,
+        carrier=carrier, compensate=compensate, observer=observer, sigma_mm=sigma_mm, sigma_v_mm_s=sigma_v_mm_s, spread=spread, spread_seed=spread_seed,
+        spread_sigma=spread_sigma, spread_threshold_db=spread_threshold_db, spread_place_mm=spread_place_mm).items() if value is not None}
+    _need(array, Array, "array")
+    _need(stroke, Stroke, "stroke")
+    all_of_them = _names(algorithms)
+    if not all_of_them:
+        all_of_them = ["park2016", "tactile-brush", "continuous"] if algorithm is None else [algorithm]
+    options = settled(array, given, _PLANNING | {"observer"})
+    return Comparison(_tactor.Compared(array._core, stroke._core, options, all_of_them, _names(phantoms)))
+
+
+def _picture(plans: _Plans, view: str) -> tuple[_t.Any, list[tuple[float | None, _t.Any]], str, _t.Any]:
+    all_of_them = placed(plans)
+    if not all_of_them:
+        raise InputError("plans", "there are none", "give at least one")
+    first = all_of_them[0][1]
+    score = Score(first.array, all_of_them)._core if view == "wave" else None
+    name = first.stroke.name if len(all_of_them) == 1 else f"{len(all_of_them)} strokes"
+    return first.array._core, [(start, p._core) for start, p in all_of_them], name, score
+
+
+def plot(plans: _Plans, file: str | os.PathLike[str], *, view: _View = "both", width: float = 85.0, dpi: int = 300,
+         name: str | None = None) -> None:
+    """Draws the array, the path, the bursts and who plays when, as `tactor plot` does.
+
+    Parameters
+    ----------
+    plans : Plan or iterable of Plan or of (float, Plan)
+    file : path-like
+        Ends in .svg, .png or .pdf.
+    view : str
+        What is shown: "array", "timing", "wave" or "both" (the first two).
+    width : float
+        mm (85, one print column).
+    dpi : int
+        Of a PNG.
+    name : str, optional
+        The title; default: the stroke's name.
+
+    Raises
+    ------
+    InputError
+        For another extension or a width out of range.
+    """
+    array, all_of_them, own_name, score = _picture(plans, view)
+    _check_dpi(dpi)
+    with reading(file) as to:
+        _tactor.save_picture(array, all_of_them, own_name if name is None else name, score, view, width, to, dpi)
+
+
+def svg_of_plans(plans: _t.Sequence[Plan]) -> str:
+    """An SVG document of plans."""
+    array, all_of_them, name, score = _picture(plans, "both")
+    return _tactor.svg(array, all_of_them, name, score, "both", 85.0)  # type: ignore[no-any-return]
+
+
+def picture_of_stroke(stroke: Stroke) -> str:
+    """The way of a stroke on the array that it fits: palm-3x3, where it lies within; else what it needs."""
+    from tactor._planning import plan
+    palm = Array.preset("palm-3x3")
+    return _tactor.svg(*_stroke_on(plan(palm, stroke, algorithm="continuous", outside="clamp")))  # type: ignore[no-any-return]
+
+
+def _stroke_on(p: Plan) -> tuple[_t.Any, ...]:
+    array, all_of_them, name, score = _picture(p, "array")
+    return array, all_of_them, name, score, "array", 85.0
+
+
+def devices(array: Array | None = None, *, device: str | None = None, rate: int | None = None,
+            config: str | os.PathLike[str] | None = None) -> dict[str, _t.Any]:
+    """PCMs, what they can do, and GPIO lines, as `tactor devices --format json` prints them: a tactor-devices/1 object.
+
+    Parameters
+    ----------
+    array : Array, optional
+        For which array; default: the configuration's, else palm-3x3.
+    device : str, optional
+        The PCM that is asked about; default: the configuration's.
+    rate : int, optional
+        Hz.
+    config : path-like, optional
+        Configuration; default: the tool's. os.devnull: none.
+    """
+    core, file = (None, None) if array is None else (array._core, array._file)
+    import json
+    text = _tactor.devices(core, None if file is None else os.fsencode(file), device, rate, None if config is None else os.fsencode(config))
+    return json.loads(text)  # type: ignore[no-any-return]

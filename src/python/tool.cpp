@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+// What the tool computes, draws and lists, by its own code.
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "cli/compare/compare_picture.hpp"
+#include "cli/compare/compare_rows.hpp"
+#include "cli/devices/devices_output.hpp"
+#include "plot/figure.hpp"
+#include "plot/paint/output.hpp"
+#include "python/plan_handle.hpp"
+#include "python/player_handle.hpp"
+#include "python/written.hpp"
+
+namespace tactor::python {
+namespace {
+
+using plans = std::vector<std::pair<std::optional<double>, const plan_handle*>>;
+
+struct compared {
+    std::shared_ptr<array_handle> on;
+    cli::comparison result;
+};
+
+template <class Enum>
+std::vector<Enum> kinds_of(const std::vector<std::string>& names, Enum only)
+{
+    std::vector<Enum> kinds;
+    for (const std::string& n : names)
+        kinds.push_back(from_string<Enum>(n));
+    return kinds.empty() ? std::vector{only} : kinds;
+}
+
+compared compare(const std::shared_ptr<array_handle>& on, const stroke& s, const py::dict& options,
+                 const std::vector<std::string>& algorithms, const std::vector<std::string>& phantoms)
+{
+    wishes w;
+    take_options(w, options, on->value().tactors.size());
+    stroke target = s;
+    const layout& faces = on->faces();
+    if (w.fit)
+        target = fit_strokes({s}, faces, w.fit_margin_mm).strokes.front();
+    if (w.duration_s)
+        target.motion = target.motion.with_duration(*w.duration_s);
+    else if (w.speed_mm_s && target.motion.length_mm() > 0.0)
+        target.motion = target.motion.with_duration(target.motion.length_mm() / *w.speed_mm_s);
+    const py::gil_scoped_release free;
+    static_cast<void>(burst_duration_s(w.plan)); // what nobody may ask for is no row
+    const cli::comparison_choice choice{kinds_of(algorithms, w.plan.algorithm),
+                                        kinds_of(phantoms, w.plan.phantom),
+                                        {w.observer, w.low_speed},
+                                        w.compensate,
+                                        true,
+                                        w.spread};
+    compared c{on, cli::compare(target, on->value(), faces, w.plan, choice)};
+    if (!c.result.playable())
+        throw error(*c.result.rows.back().refused);
+    return c;
+}
+
+std::string svg_of_comparison(const compared& c, double width_mm)
+{
+    const py::gil_scoped_release free;
+    return plot::to_svg(cli::picture_of(c.result, c.on->value(), width_mm));
+}
+
+void check_dpi(unsigned dpi)
+{
+    if (dpi < plot::least_dpi || dpi > plot::most_dpi)
+        throw error(error_kind::bad_input, "dpi", std::to_string(dpi) + " is out of range",
+                    std::to_string(plot::least_dpi) + " to " + std::to_string(plot::most_dpi));
+}
+
+plot::figure_view view_from(const std::string& name)
+{
+    using enum plot::figure_view;
+    for (const auto& [known, view] :
+         {std::pair{"array", array}, {"timing", timing}, {"wave", wave}, {"both", both}})
+        if (name == known)
+            return view;
+    throw error(error_kind::bad_input, "view", "\"" + name + "\" is not known",
+                "one of array, timing, wave, both");
+}
+
+plot::canvas draw(const array_handle& on, const plans& all, const std::string& name, const score* sound,
+                  const std::string& view, double width_mm)
+{
+    if (!(width_mm >= plot::least_width_mm && width_mm <= plot::most_width_mm))
+        throw error(error_kind::bad_input, "width", plain_number(width_mm) + " mm is out of range",
+                    plain_number(plot::least_width_mm) + " to " + plain_number(plot::most_width_mm) + " mm");
+    std::vector<stroke> strokes;
+    std::vector<placed_plan> placed;
+    std::vector<compensated_plan> moved;
+    for (const auto& [start_s, p] : all) {
+        check_same_array(*p, on.value());
+        strokes.push_back(p->drawn);
+        placed.push_back(p->at(start_s));
+        if (p->moved)
+            moved.push_back(*p->moved);
+    }
+    if (moved.size() != placed.size()) // some were moved, some were not: all are shown as they are played
+        moved.clear();
+    return plot::draw_figure({on.value(), name, strokes, placed, sound, moved}, {view_from(view), width_mm});
+}
+
+std::string devices(const array_handle* on, const std::optional<std::string>& array_file,
+                    const std::optional<std::string>& pcm, std::optional<unsigned> rate,
+                    const std::optional<std::string>& config)
+{
+    const py::gil_scoped_release free;
+    cli::settings s;
+    s.pcm = pcm;
+    s.rate = rate;
+    s.config_file = config;
+    s.array_name = array_file;
+    const cli::environment e = environment_of(s, on != nullptr ? &on->value() : nullptr);
+    const render_options render = cli::settle_render(s, e);
+    cli::device_list d;
+    d.array_name = e.tactors.name;
+    d.pcm_is_configured = cli::names_device(s, e);
+    d.wanted = cli::device_options(s, {}, e, render.channels, render.rate);
+    d.pcms = list_pcms(d.wanted);
+    d.chips = list_gpio();
+    return cli::devices_json(d);
+}
+
+} // namespace
+
+void bind_tool(py::module_& m)
+{
+    py::class_<compared>(m, "Compared")
+        .def(py::init(&compare))
+        .def("json",
+             [](const compared& c) {
+                 const py::gil_scoped_release free;
+                 return written([&](std::FILE* out) { cli::print_json(out, {c.result}, c.on->value()); });
+             })
+        .def("svg", &svg_of_comparison)
+        .def("save", [](const compared& c, const std::string& file, double width_mm, unsigned dpi) {
+            const py::gil_scoped_release free;
+            check_dpi(dpi);
+            plot::save(cli::picture_of(c.result, c.on->value(), width_mm), file, dpi);
+        });
+    m.def("svg", [](const array_handle& on, const plans& all, const std::string& name, const score* sound,
+                    const std::string& view, double width_mm) {
+        const py::gil_scoped_release free;
+        return plot::to_svg(draw(on, all, name, sound, view, width_mm));
+    });
+    m.def("save_picture",
+          [](const array_handle& on, const plans& all, const std::string& name, const score* sound,
+             const std::string& view, double width_mm, const std::string& file, unsigned dpi) {
+              const py::gil_scoped_release free;
+              plot::format_of(file);
+              check_dpi(dpi);
+              plot::save(draw(on, all, name, sound, view, width_mm), file, dpi);
+          });
+    m.def("devices", &devices);
+}
+
+} // namespace tactor::python

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <optional>
+#include <tuple>
+
+#include "core/profile.hpp"
+#include "python/binding.hpp"
+#include "python/state.hpp"
+
+namespace tactor::python {
+namespace {
+
+using tactor_row =
+    std::tuple<double, double, unsigned, double, double, std::optional<double>, int, std::string>;
+
+array_handle make_array(const std::string& name, const std::vector<tactor_row>& rows)
+{
+    array a;
+    a.name = name;
+    for (const auto& [x, y, channel, gain, most, threshold, polarity, actuator] : rows)
+        a.tactors.push_back(
+            {{x, y}, channel, gain, most, threshold, polarity, from_string<actuator_kind>(actuator)});
+    return array_handle(std::move(a));
+}
+
+std::vector<tactor_row> rows_of(const array_handle& h)
+{
+    std::vector<tactor_row> rows;
+    for (const tactor_spec& t : h.value().tactors)
+        rows.emplace_back(t.position.x_mm, t.position.y_mm, t.channel, t.gain_db, t.max_dbfs,
+                          t.threshold_dbfs, t.polarity, to_string(t.actuator));
+    return rows;
+}
+
+// Places from an (n, 2) array.
+std::vector<point> points_of(const py::array_t<double, py::array::c_style | py::array::forcecast>& a)
+{
+    if (a.ndim() != 2 || a.shape(1) != 2)
+        throw error(error_kind::bad_input, "points", "they are no list of (x, y)",
+                    "give [(x_mm, y_mm), ...] or an array of shape (n, 2)");
+    const auto v = a.unchecked<2>();
+    std::vector<point> points;
+    for (py::ssize_t i = 0; i < a.shape(0); ++i)
+        points.push_back({v(i, 0), v(i, 1)});
+    return points;
+}
+
+py::tuple pair(point p)
+{
+    return py::make_tuple(p.x_mm, p.y_mm);
+}
+
+void bind_array(py::module_& m)
+{
+    py::class_<array_handle, std::shared_ptr<array_handle>>(m, "Array")
+        .def(py::init(&make_array))
+        .def_static("preset", [](const std::string& name) { return array_handle(preset_array(name)); })
+        .def_static("grid",
+                    [](std::string name, unsigned rows, unsigned columns, double x, double y) {
+                        return array_handle(make_grid(std::move(name), rows, columns, x, y));
+                    })
+        .def_property_readonly("name", [](const array_handle& h) { return h.value().name; })
+        .def_property_readonly("channels", [](const array_handle& h) { return h.value().channels(); })
+        .def_property_readonly("rows", &rows_of)
+        .def_property_readonly("positions",
+                               [](const py::object& self) {
+                                   const auto& t = self.cast<const array_handle&>().value().tactors;
+                                   constexpr auto bytes = static_cast<py::ssize_t>(sizeof(double));
+                                   return view_of({static_cast<py::ssize_t>(t.size()), 2},
+                                                  {sizeof(tactor_spec), bytes}, &t.front().position.x_mm,
+                                                  self);
+                               })
+        .def_property_readonly("faces", [](const array_handle& h) { return h.faces().faces(); })
+        .def_property_readonly("pitch_mm", [](const array_handle& h) { return h.faces().pitch_mm(); })
+        .def("grid_lines",
+             [](const array_handle& h) -> std::optional<std::pair<std::vector<double>, std::vector<double>>> {
+                 if (auto g = find_grid(h.value()))
+                     return std::pair(std::move(g->x_mm), std::move(g->y_mm));
+                 return {};
+             })
+        .def("contains",
+             [](const array_handle& h, double x, double y) {
+                 return h.faces().contains({x, y});
+             })
+        .def("nearest", [](const array_handle& h, double x, double y) {
+            return pair(h.faces().nearest({x, y}));
+        });
+    m.def("array_presets", [] { return array_presets(); });
+
+    py::class_<setup>(m, "Setup")
+        .def_static("load", [](const std::string& file) { return load_setup(file); })
+        .def_property_readonly("array",
+                               [](const setup& s) -> std::optional<array_handle> {
+                                   return s.array ? std::optional<array_handle>(std::in_place, *s.array)
+                                                  : std::nullopt;
+                               })
+        .def_readonly("defaults", &setup::defaults)
+        .def_property_readonly("rate", [](const setup& s) { return s.output.rate; })
+        .def_property_readonly("channels", [](const setup& s) { return s.output.channels; })
+        .def_property_readonly("marker", [](const setup& s) -> std::optional<std::pair<unsigned, double>> {
+            if (s.sync && s.sync->channel)
+                return std::pair(*s.sync->channel, s.sync->pulse_s);
+            return {};
+        });
+}
+
+void bind_path(py::module_& m)
+{
+    py::class_<path>(m, "Path")
+        .def_static("svg", [](const std::string& data) { return path::from_svg(data); })
+        .def_static("polyline",
+                    [](const py::array_t<double, py::array::c_style | py::array::forcecast>& a) {
+                        return path::polyline(points_of(a));
+                    })
+        .def_static("arc",
+                    [](double x, double y, double radius, double from, double sweep) {
+                        return path::arc({x, y}, radius, from, sweep);
+                    })
+        .def_static("from_state", [](const py::bytes& b) { return path_from(std::string(b)); })
+        .def("state", [](const path& p) { return py::bytes(state_of(p)); })
+        .def("data", &path::svg)
+        .def_property_readonly("length_mm", &path::length_mm)
+        .def("at", [](const path& p, double s) { return pair(p.at(s)); })
+        .def("at_all",
+             [](const path& p, const py::array_t<double, py::array::c_style | py::array::forcecast>& s) {
+                 std::vector<double> out;
+                 for (py::ssize_t i = 0; i < s.size(); ++i) {
+                     const point q = p.at(s.data()[i]);
+                     out.insert(out.end(), {q.x_mm, q.y_mm});
+                 }
+                 return given(std::move(out), 2);
+             })
+        .def("meets_x", &path::meets_x)
+        .def("meets_y", &path::meets_y);
+}
+
+stroke timed(const std::string& name,
+             const py::array_t<double, py::array::c_style | py::array::forcecast>& rows)
+{
+    const auto v = rows.unchecked<2>();
+    std::vector<timed_point> points;
+    for (py::ssize_t i = 0; i < rows.shape(0); ++i)
+        points.push_back({v(i, 0), {v(i, 1), v(i, 2)}, v(i, 3)});
+    return {name, trajectory::timed(std::move(points))};
+}
+
+stroke along(const std::string& name, const path& p, std::optional<double> duration_s,
+             std::optional<double> speed_mm_s, double intensity)
+{
+    const double speed = speed_mm_s.value_or(default_speed_mm_s);
+    if (!duration_s && !(speed > 0.0 && std::isfinite(speed)))
+        throw error(error_kind::bad_input, "speed", "it is not above 0", "give mm/s");
+    stroke s{name, trajectory::along(p, duration_s.value_or(p.length_mm() / speed), intensity)};
+    if (!duration_s)
+        s.speed_mm_s = speed;
+    return s;
+}
+
+using number_rows = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+std::vector<profile_point> profile_of(const number_rows& r)
+{
+    const auto v = r.unchecked<2>();
+    std::vector<profile_point> points;
+    for (py::ssize_t i = 0; i < r.shape(0); ++i)
+        points.push_back({v(i, 0), v(i, 1)});
+    return points;
+}
+
+// Tables of two columns, of the rests of three; those of speed and intensity without rows: even.
+stroke moving(const std::string& name, const path& p, std::optional<double> duration_s,
+              std::optional<double> speed_mm_s, double intensity, const std::string& easing,
+              const number_rows& speeds, const number_rows& intensities, const number_rows& rests)
+{
+    movement m{duration_s, from_string<easing_kind>(easing), profile_of(speeds), profile_of(intensities), {}};
+    const auto v = rests.unchecked<2>();
+    double resting_s = 0.0;
+    for (py::ssize_t i = 0; i < rests.shape(0); ++i) {
+        m.rests.push_back({v(i, 0), v(i, 1), v(i, 2)});
+        resting_s += v(i, 1);
+    }
+    if (m.speed_mm_s.empty() && speed_mm_s)
+        m.speed_mm_s = {{0.0, *speed_mm_s}};
+    stroke s{name, trajectory::along(p, m, intensity)};
+    if (!duration_s)
+        s.speed_mm_s = p.length_mm() / (s.motion.duration_s() - resting_s);
+    return s;
+}
+
+// Named as the options of a plan.
+py::dict choices_of(const stroke& s)
+{
+    py::dict d;
+    if (s.choices.algorithm)
+        d["algorithm"] = std::string(to_string(*s.choices.algorithm));
+    if (s.choices.phantom)
+        d["phantom"] = std::string(to_string(*s.choices.phantom));
+    if (s.choices.soa_s)
+        d["soa"] = *s.choices.soa_s;
+    if (s.choices.burst_s)
+        d["burst"] = *s.choices.burst_s;
+    return d;
+}
+
+void bind_stroke(py::module_& m)
+{
+    py::class_<stroke>(m, "Stroke")
+        .def_static("along", &along)
+        .def_static("moving", &moving)
+        .def_static("timed", &timed)
+        .def_static("preset", [](const std::string& name) { return preset_stroke(name); })
+        .def_static("load", [](const std::string& file) { return load_strokes(file); })
+        .def_static("parse", [](const std::string& text,
+                                const std::string& name) { return parse_strokes(text, name); })
+        .def_static("from_state", [](const py::bytes& b) { return stroke_from(std::string(b)); })
+        .def("state", [](const stroke& s) { return py::bytes(state_of(s)); })
+        .def("same_as",
+             [](const stroke& s, const std::string& name, std::optional<double> start_s,
+                std::optional<double> carrier_hz) {
+                 stroke t = s;
+                 t.name = name;
+                 t.start_s = start_s;
+                 t.carrier_hz = carrier_hz;
+                 return t;
+             })
+        .def("with_duration",
+             [](const stroke& s, double duration_s) {
+                 stroke t = s;
+                 t.motion = s.motion.with_duration(duration_s);
+                 t.speed_mm_s.reset();
+                 return t;
+             })
+        .def("with_speed",
+             [](const stroke& s, double speed_mm_s) {
+                 stroke t = s;
+                 t.motion = s.motion.with_speed(speed_mm_s);
+                 t.speed_mm_s = speed_mm_s;
+                 return t;
+             })
+        .def("reversed",
+             [](const stroke& s) {
+                 stroke t = s;
+                 t.motion = s.motion.reversed();
+                 t.carrier_profile = detail::from_the_end(s.carrier_profile);
+                 return t;
+             })
+        .def("with_intensity",
+             [](const stroke& s, double factor) {
+                 stroke t = s;
+                 t.motion = s.motion.with_intensity(factor);
+                 return t;
+             })
+        .def_readonly("name", &stroke::name)
+        .def_readonly("start_s", &stroke::start_s)
+        .def_property_readonly("start_from",
+                               [](const stroke& s) { return std::string(to_string(s.anchor.from)); })
+        .def_property_readonly("start_back", [](const stroke& s) { return s.anchor.back; })
+        .def_property_readonly("choices", &choices_of)
+        .def_readonly("carrier_hz", &stroke::carrier_hz)
+        .def_readonly("speed_mm_s", &stroke::speed_mm_s)
+        .def_readonly("warnings", &stroke::warnings)
+        .def_property_readonly("note", [](const stroke& s) { return std::string(to_string(s.note)); })
+        .def_property_readonly("duration_s", [](const stroke& s) { return s.motion.duration_s(); })
+        .def_property_readonly("length_mm", [](const stroke& s) { return s.motion.length_mm(); })
+        .def("position", [](const stroke& s, double t) { return pair(s.motion.position(t)); })
+        .def("intensity", [](const stroke& s, double t) { return s.motion.intensity(t); })
+        .def("meets_x", [](const stroke& s, double x) { return s.motion.meets_x(x); })
+        .def("meets_y", [](const stroke& s, double y) { return s.motion.meets_y(y); });
+    m.def("stroke_presets", [] { return stroke_presets(); });
+    m.def("fit_strokes", [](const std::vector<stroke>& strokes, const array_handle& on, double margin_mm) {
+        const fitted_strokes f = fit_strokes(strokes, on.faces(), margin_mm);
+        return py::make_tuple(f.strokes, pair(f.placed.from), pair(f.placed.to), f.placed.scale);
+    });
+}
+
+} // namespace
+
+void bind_values(py::module_& m)
+{
+    bind_array(m);
+    bind_path(m);
+    bind_stroke(m);
+}
+
+} // namespace tactor::python

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// What the service listens on: bound here, or handed over by whoever started it.
+#include "server/server.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include <unistd.h>
+
+#include <tactor/error.hpp>
+
+#include "net/osc.hpp"
+
+namespace tactor::server {
+namespace {
+
+// What may be inherited by which name.
+struct inheritable {
+    std::string_view name;
+    net::owned_fd endpoints::*place;
+    bool (*fits)(int fd);
+    const char* otherwise;
+};
+
+constexpr std::array known{
+    inheritable{"socket", &endpoints::socket, net::is_unix_listener, "it is no Unix socket that listens"},
+    inheritable{"tcp", &endpoints::tcp, net::is_tcp_listener, "it is no TCP socket that listens"},
+    inheritable{"http", &endpoints::http, net::is_tcp_listener, "it is no TCP socket that listens"},
+    inheritable{"osc", &endpoints::osc, net::is_bound_udp, "it is no UDP socket with a port"},
+};
+
+[[noreturn]] void no_osc(const char* what)
+{
+    throw error(error_kind::bad_input, what, "this build has no OSC", "build it with liblo (-Dosc=enabled)");
+}
+
+} // namespace
+
+endpoints open_endpoints(const endpoint_options& o)
+{
+    endpoints e;
+    for (auto& [name, fd] : net::inherited_sockets()) {
+        const auto k =
+            std::find_if(known.begin(), known.end(), [&n = name](const auto& x) { return x.name == n; });
+        if (k == known.end())
+            throw error(error_kind::bad_input, "inherited socket \"" + name + "\"", "it is not known",
+                        "FileDescriptorName=socket, tcp, http or osc");
+        if (!k->fits(fd.get()))
+            throw error(error_kind::bad_input, "inherited socket \"" + name + "\"", k->otherwise,
+                        "see the .socket unit");
+        if (name == "osc" && !net::osc_is_built())
+            no_osc("inherited socket \"osc\"");
+        e.*k->place = std::move(fd);
+    }
+    if (e.socket)
+        e.socket_path = net::bound_path(e.socket.get());
+    if (!e.socket) {
+        e.socket_path = o.socket();
+        e.socket = net::listen_unix(e.socket_path, o.mode, o.group);
+        e.own_socket = true;
+    }
+    try {
+        if (!e.tcp && o.tcp)
+            e.tcp = net::listen_tcp(*o.tcp, "tcp");
+        if (!e.http && o.http)
+            e.http = net::listen_tcp(*o.http, "http");
+        if (!e.osc && o.osc) {
+            if (!net::osc_is_built())
+                no_osc("osc");
+            e.osc = net::bind_udp(*o.osc, "osc");
+        }
+    } catch (...) {
+        if (e.own_socket)
+            ::unlink(e.socket_path.c_str());
+        throw;
+    }
+    for (const auto& [fd, address] : {std::pair(&e.tcp, &e.tcp_address), std::pair(&e.http, &e.http_address),
+                                      std::pair(&e.osc, &e.osc_address)})
+        if (*fd)
+            *address = net::local_address(fd->get());
+    return e;
+}
+
+void remove_socket(const endpoints& at) noexcept
+{
+    if (at.own_socket)
+        ::unlink(at.socket_path.c_str());
+}
+
+} // namespace tactor::server

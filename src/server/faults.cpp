@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+#include "server/faults.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <new>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <tactor/words.hpp>
+
+namespace tactor::server {
+namespace {
+
+using net::json;
+using net::rpc_fault;
+
+struct translation {
+    std::string_view field;
+    std::string_view param;
+};
+
+// What the library calls its fields, in advice.
+constexpr std::array<translation, 13> in_advice{{{"fit_strokes() scales it to the array, ", ""},
+                                                 {"soa_s", "options.soa"},
+                                                 {"burst_s", "options.burst"},
+                                                 {"carrier_hz", "options.carrier"},
+                                                 {"ramp_s", "options.ramp"},
+                                                 {"sl_db", "options.sl"},
+                                                 {"level_dbfs", "options.level_dbfs"},
+                                                 {"timing = ", "options.timing "},
+                                                 {"outside = ", "options.outside "},
+                                                 {"algorithm = ", "options.algorithm "},
+                                                 {"snap = true", "options.snap true"},
+                                                 {"drop_points = true", "options.drop_points true"},
+                                                 {"array = FILE", "another array of the server"}}};
+
+// What it is about, by how it begins.
+constexpr std::array<translation, 19> subjects{{{"soa_s", "options.soa"},
+                                                {"burst_s", "options.burst"},
+                                                {"duration of a burst", "options.burst"},
+                                                {"carrier_hz", "options.carrier"},
+                                                {"ramp_s", "options.ramp"},
+                                                {"sl_db", "options.sl"},
+                                                {"level_dbfs", "options.level_dbfs"},
+                                                {"timing profile", "options.slope"},
+                                                {"timing = ", "options.timing"},
+                                                {"phantom", "options.phantom"},
+                                                {"array ", "options.algorithm"},
+                                                {"tactor ", "options.level_dbfs"},
+                                                {"waveform", "options.waveform"},
+                                                {"am", "options.am"},
+                                                {"attack_s", "options.attack"},
+                                                {"release_s", "options.release"},
+                                                {"intensity_scale", "options.intensity_scale"},
+                                                {"stevens_exponent", "options.stevens_exponent"},
+                                                {"live_options", "options"}}};
+
+std::string in_params(std::string text)
+{
+    for (const translation& t : in_advice)
+        for (std::size_t at = text.find(t.field); at != std::string::npos;
+             at = text.find(t.field, at + t.param.size())) {
+            const bool begins = at == 0 || (text[at - 1] != '.' && text[at - 1] != '_');
+            if (begins)
+                text.replace(at, t.field.size(), t.param);
+        }
+    return text;
+}
+
+} // namespace
+
+void bad_param(std::string what, std::string why, std::string hint)
+{
+    throw fault_error({net::code_bad_params, "bad-input", std::move(what), std::move(why), std::move(hint)});
+}
+
+void limit_reached(std::string what, std::string why, std::string hint)
+{
+    throw fault_error({net::code_limit, "limit", std::move(what), std::move(why), std::move(hint)});
+}
+
+void no_such_stroke(std::uint32_t number, std::string why)
+{
+    throw fault_error({net::code_no_stroke, "no-stroke", "stroke", fmt::format("{}: {}", number, why), ""});
+}
+
+void no_stream(const std::string& why)
+{
+    throw fault_error({net::code_no_stream, "not-available", "stream", why, "try again when it is back"});
+}
+
+rpc_fault fault_of(const error& e, const std::string& source)
+{
+    const std::string_view subject = e.subject();
+    rpc_fault f{net::code_bad_params, std::string(to_string(e.kind())), source,
+                in_params(std::string(e.why())), in_params(std::string(e.hint()))};
+    if (e.kind() == error_kind::runtime)
+        f.code = net::code_internal;
+    if (e.kind() == error_kind::not_available)
+        f.code = net::code_no_stream;
+    const auto known = std::find_if(subjects.begin(), subjects.end(),
+                                    [&](const translation& t) { return subject.starts_with(t.field); });
+    if (known != subjects.end())
+        f.what = known->param;
+    // "toml:3:5" says where in the text; "stroke" and the like say no more than the parameter does.
+    if (subject.starts_with(source + ":"))
+        f.why = fmt::format("{}: {}", subject.substr(source.size() + 1), f.why);
+    else if (subject != source && subject != "stroke" && subject != fmt::format("stroke \"{}\"", source) &&
+             subject != "path data" && !subject.starts_with("soa_s"))
+        f.why = fmt::format("{}: {}", in_params(std::string(subject)), f.why);
+    return f;
+}
+
+rpc_fault current_fault(const std::string& source)
+{
+    try {
+        throw;
+    } catch (const fault_error& e) {
+        return e.fault();
+    } catch (const error& e) {
+        return fault_of(e, source);
+    } catch (const std::bad_alloc&) {
+        return {net::code_limit, "limit", source, "there is not enough memory for it", "make it smaller"};
+    } catch (const std::exception& e) {
+        return {net::code_internal, "runtime", source, e.what(), ""};
+    }
+}
+
+void only(const json& params, std::initializer_list<std::string_view> known)
+{
+    if (!params.is_object())
+        bad_param("params", "they are a list", "name them: an object");
+    for (const auto& [name, value] : params.items())
+        if (std::find(known.begin(), known.end(), name) == known.end())
+            bad_param(name, "there is no such parameter",
+                      known.size() == 0 ? "it takes none" : fmt::format("one of {}", fmt::join(known, ", ")));
+}
+
+const json* member(const json& params, const char* name)
+{
+    const auto found = params.find(name);
+    return found == params.end() ? nullptr : &*found;
+}
+
+double number(const json& v, const std::string& what, double low, double high)
+{
+    if (!v.is_number())
+        bad_param(what, "it is no number", fmt::format("{} to {}", plain_number(low), plain_number(high)));
+    const auto n = v.get<double>();
+    if (!std::isfinite(n) || n < low || n > high)
+        bad_param(what, fmt::format("{} is out of range", n),
+                  fmt::format("{} to {}", plain_number(low), plain_number(high)));
+    return n;
+}
+
+double need_number(const json& params, const char* name, double low, double high)
+{
+    const json* v = member(params, name);
+    if (v == nullptr)
+        bad_param(name, "it is missing", "give a number");
+    return number(*v, name, low, high);
+}
+
+std::uint32_t need_stroke(const json& params)
+{
+    const double n = need_number(params, "stroke", 0, 4294967295.0);
+    if (n != std::floor(n))
+        bad_param("stroke", fmt::format("{} is no whole number", n));
+    return static_cast<std::uint32_t>(n);
+}
+
+const std::string& text(const json& v, const std::string& what)
+{
+    if (!v.is_string())
+        bad_param(what, "it is no text", "put it in quotes");
+    return v.get_ref<const std::string&>();
+}
+
+} // namespace tactor::server

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What is refused, in words of the protocol: parameters, never fields of the library or options of the tool.
+#pragma once
+
+#include <cstdint>
+#include <exception>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <tactor/error.hpp>
+
+#include "net/rpc.hpp"
+
+namespace tactor::server {
+
+/// An answer that is an error.
+class fault_error : public std::exception {
+public:
+    explicit fault_error(net::rpc_fault f) : fault_(std::move(f)) {}
+    const net::rpc_fault& fault() const noexcept { return fault_; }
+    const char* what() const noexcept override { return fault_.why.c_str(); }
+
+private:
+    net::rpc_fault fault_;
+};
+
+[[noreturn]] void bad_param(std::string what, std::string why, std::string hint = {});
+[[noreturn]] void limit_reached(std::string what, std::string why, std::string hint = "try again later");
+[[noreturn]] void no_such_stroke(std::uint32_t number, std::string why = "no such stroke of yours goes on");
+[[noreturn]] void no_stream(const std::string& why);
+
+/// An error of the library about the parameter `source`, or about the option that it names.
+net::rpc_fault fault_of(const error& e, const std::string& source);
+/// The fault of whatever is being handled: for catch (...).
+net::rpc_fault current_fault(const std::string& source);
+
+/// Refuses parameters that are not among these, and lists (params are an array).
+void only(const net::json& params, std::initializer_list<std::string_view> known);
+/// A member, or null where there is none.
+const net::json* member(const net::json& params, const char* name);
+/// A number within bounds. \throws fault_error.
+double number(const net::json& v, const std::string& what, double low, double high);
+/// A required one.
+double need_number(const net::json& params, const char* name, double low, double high);
+std::uint32_t need_stroke(const net::json& params);
+const std::string& text(const net::json& v, const std::string& what);
+
+} // namespace tactor::server

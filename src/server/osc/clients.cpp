@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+// What comes in: at once, or when it is due.
+#include "server/osc/clients.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "server/clock.hpp"
+#include "server/faults.hpp"
+#include "server/osc/senders.hpp"
+
+namespace tactor::server {
+
+using net::osc_message;
+
+osc_clients::osc_clients(boost::asio::io_context& io, service& s, outside o)
+    : io_(io), service_(s), outside_(std::move(o))
+{
+    service_.on_stop([this] { drop_held([](const held&) { return true; }); });
+}
+
+osc_clients::~osc_clients()
+{
+    service_.on_stop({});
+    for (const auto& [from, s] : senders_)
+        service_.disconnect(s->client);
+}
+
+void osc_clients::receive(std::string_view packet, const endpoint& from)
+{
+    try {
+        if (packet.size() > outside_.most_bytes)
+            throw error(error_kind::bad_input, "packet", fmt::format("it has {} bytes", packet.size()),
+                        fmt::format("at most {}", outside_.most_bytes));
+        for (const osc_message& m : net::parse_osc(packet))
+            take(m, from);
+    } catch (const error& e) {
+        refuse(from, "", e.what());
+    }
+    act();
+    look_at(from);
+}
+
+void osc_clients::take(const osc_message& m, const endpoint& from)
+{
+    if (is_servers_own(m.address))
+        return;
+    try {
+        handle(read_osc(m), time_of(m), from);
+    } catch (...) {
+        refuse(from, m.address, current_fault("values"));
+    }
+}
+
+// By the clock that the service goes by; none: at once, which the past is too.
+std::optional<std::int64_t> osc_clients::time_of(const osc_message& m) const
+{
+    if (!m.unix_ns)
+        return {};
+    const std::int64_t ahead_ns = *m.unix_ns - outside_.unix_ns();
+    if (ahead_ns > std::llround(farthest_s * 1e9))
+        bad_param("time tag", fmt::format("it is {:.1f} s ahead", seconds(ahead_ns)),
+                  fmt::format("at most {:.0f}; do the clocks agree?", farthest_s));
+    if (ahead_ns <= 0)
+        return {};
+    return outside_.now_ns() + ahead_ns;
+}
+
+// How long before its first sample is at the DAC a live stroke must be fed.
+std::int64_t osc_clients::lead_ns()
+{
+    const stream_setup& s = service_.output().setup();
+    const double frames = static_cast<double>(s.buffer_frames) + 0.5 * static_cast<double>(s.period_frames);
+    return s.rate == 0 ? 0 : std::llround(1e9 * frames / s.rate);
+}
+
+void osc_clients::handle(osc_request r, std::optional<std::int64_t> at_ns, const endpoint& from)
+{
+    if (r.method == "stop")
+        return stop(std::move(r), from);
+    if (r.method == "subscribe")
+        return subscribe(r, from);
+    if (r.method == "to" || r.method == "end" || r.method == "cancel")
+        return move(std::move(r), at_ns, from);
+    draw(std::move(r), at_ns, from);
+}
+
+// Also of somebody who is not known, and where there is no place for more.
+void osc_clients::stop(osc_request r, const endpoint& from)
+{
+    if (sender* s = find(from))
+        return ask(*s, r);
+    class nowhere final : public client_link {
+        void send(std::string) override {}
+        std::size_t waiting() const override { return 0; }
+        void finish() override {}
+    };
+    const client_number n = service_.connect(std::make_shared<nowhere>(), client_kind::datagram);
+    service_.receive(n, R"({"jsonrpc":"2.0","method":"stop"})");
+    service_.disconnect(n);
+}
+
+void osc_clients::subscribe(const osc_request& r, const endpoint& from)
+{
+    sender& s = admit(from);
+    s.port = r.port;
+    if (s.unsubscribes)
+        held_.erase(*std::exchange(s.unsubscribes, {}));
+    ask(s, r);
+    if (r.params["events"].empty())
+        return;
+    osc_request end{.address = r.address, .method = r.method};
+    end.params["events"] = net::json::array();
+    s.unsubscribes = held_.emplace(outside_.now_ns() + std::llround(subscription_s * 1e9), held{from, end});
+}
+
+// to, end and cancel act at their time.
+void osc_clients::move(osc_request r, std::optional<std::int64_t> at_ns, const endpoint& from)
+{
+    sender* s = find(from);
+    const auto found = s == nullptr ? decltype(s->drawn_as.begin()){} : s->drawn_as.find(r.number);
+    if (s == nullptr || found == s->drawn_as.end())
+        bad_param("number", fmt::format("no stroke {} of this sender goes on", r.number),
+                  "it is the one that play or begin gave, from this address and port");
+    drawn& d = found->second;
+    if (d.held && !at_ns && r.method == "cancel")
+        return drop_held([&](const held& h) { return h.from == from && h.request.number == r.number; });
+    if (!at_ns)
+        return ask_of(*s, d, std::move(r));
+    // What begins a live stroke is at the DAC at its time, as the stroke is.
+    const bool first = d.begins_unix_ns == r.unix_ns && r.method == "to";
+    hold(*s, first ? *at_ns - lead_ns() : *at_ns, {from, std::move(r)});
+}
+
+// play, begin, drive: their first sample is at the DAC at the time.
+void osc_clients::draw(osc_request r, std::optional<std::int64_t> at_ns, const endpoint& from)
+{
+    sender& s = admit(from);
+    if (r.number != 0 && s.drawn_as.contains(r.number))
+        bad_param("number", fmt::format("stroke {} goes on", r.number), "choose another, or cancel it first");
+    const bool waits = at_ns && r.method == "begin";
+    if (waits)
+        hold(s, *at_ns - lead_ns(), {from, r});
+    if (r.number != 0)
+        s.drawn_as[r.number] = {.begins_unix_ns = waits ? r.unix_ns : std::nullopt, .held = waits};
+    if (waits)
+        return;
+    if (at_ns)
+        r.params["start"] = {{"monotonic_s", seconds(*at_ns)}};
+    ask(s, r);
+}
+
+void osc_clients::hold(sender& s, std::int64_t due_ns, held h)
+{
+    if (s.held >= most_held || held_.size() >= most_held_of_all)
+        limit_reached("messages", "too many wait for their time", "send them later");
+    ++s.held;
+    held_.emplace(due_ns, std::move(h));
+}
+
+std::optional<std::int64_t> osc_clients::next_ns() const
+{
+    if (held_.empty())
+        return {};
+    return held_.begin()->first;
+}
+
+void osc_clients::act()
+{
+    while (!held_.empty() && held_.begin()->first <= outside_.now_ns()) {
+        const held h = std::move(held_.extract(held_.begin()).mapped());
+        try {
+            do_held(h);
+        } catch (...) {
+            refuse(h.from, h.request.address, current_fault("values"));
+        }
+        look_at(h.from);
+    }
+}
+
+void osc_clients::do_held(const held& h)
+{
+    sender& s = *senders_.at(h.from);
+    const osc_request& r = h.request;
+    if (r.method == "subscribe") {
+        s.unsubscribes.reset();
+        return ask(s, r);
+    }
+    --s.held;
+    const auto d = s.drawn_as.find(r.number);
+    if (d == s.drawn_as.end())
+        no_such_stroke(r.number, "it has ended before this was due");
+    if (r.method != "begin")
+        return ask_of(s, d->second, r);
+    d->second.held = false;
+    ask(s, r);
+}
+
+// Somebody stopped everything, or a sender its own: what has not begun does not begin.
+void osc_clients::drop_held(const std::function<bool(const held&)>& which)
+{
+    for (auto h = held_.begin(); h != held_.end();) {
+        const auto at = h++;
+        if (at->second.request.method == "subscribe" || !which(at->second))
+            continue;
+        const held gone = std::move(held_.extract(at).mapped());
+        sender& s = *senders_.at(gone.from);
+        --s.held;
+        if (gone.request.method == "begin") {
+            s.drawn_as.erase(gone.request.number);
+            say_stroke(gone.from, gone.request.number, "cancelled");
+        }
+        look_at(gone.from);
+    }
+}
+
+} // namespace tactor::server

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Senders of OSC as clients of the service. Knows no socket: packets come in and go out by functions.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/udp.hpp>
+
+#include "net/osc.hpp"
+#include "server/error_allowance.hpp"
+#include "server/osc/request.hpp"
+#include "server/service.hpp"
+
+namespace tactor::server {
+
+/// Each address and port is a client of its own for as long as something of it goes on: strokes, answers that
+/// are owed, messages for later, a subscription. Then it is forgotten.
+/// All members are called by the context's thread.
+class osc_clients {
+public:
+    using endpoint = boost::asio::ip::udp::endpoint;
+
+    struct outside {
+        std::function<void(const endpoint& to, const std::string& packet)> send;
+        std::function<std::int64_t()> now_ns;  ///< CLOCK_MONOTONIC
+        std::function<std::int64_t()> unix_ns; ///< the system's clock, which time tags go by
+        std::size_t most_bytes = 65536;        ///< of a packet
+    };
+
+    /// Messages that wait for their time: of one sender, and of all.
+    static constexpr std::size_t most_held = 2048;
+    static constexpr std::size_t most_held_of_all = 16384;
+    /// That wait for the number of a stroke that is being planned or begun.
+    static constexpr std::size_t most_waiting = 256;
+    static constexpr double farthest_s = 60.0;     ///< that a time tag may be ahead
+    static constexpr double subscription_s = 10.0; ///< then it is to be renewed
+
+    osc_clients(boost::asio::io_context& io, service& s, outside o);
+    ~osc_clients();
+    osc_clients(const osc_clients&) = delete;
+    osc_clients& operator=(const osc_clients&) = delete;
+
+    void receive(std::string_view packet, const endpoint& from);
+    /// When act() has something to do, CLOCK_MONOTONIC.
+    std::optional<std::int64_t> next_ns() const;
+    /// Does what is due.
+    void act();
+    /// Senders that are known.
+    std::size_t count() const noexcept { return senders_.size(); }
+
+private:
+    class link;
+    struct asked_for;
+    struct drawn;
+    struct sender;
+    struct held {
+        endpoint from;
+        osc_request request; ///< "subscribe": the end of a subscription
+    };
+    using held_messages = std::multimap<std::int64_t, held>; ///< by when they are due
+
+    // osc_clients.cpp
+    void take(const net::osc_message& m, const endpoint& from);
+    void handle(osc_request r, std::optional<std::int64_t> at_ns, const endpoint& from);
+    void stop(osc_request r, const endpoint& from);
+    void subscribe(const osc_request& r, const endpoint& from);
+    void move(osc_request r, std::optional<std::int64_t> at_ns, const endpoint& from);
+    void draw(osc_request r, std::optional<std::int64_t> at_ns, const endpoint& from);
+    void hold(sender& s, std::int64_t due_ns, held h);
+    void drop_held(const std::function<bool(const held&)>& which);
+    void do_held(const held& h);
+    std::optional<std::int64_t> time_of(const net::osc_message& m) const;
+    std::int64_t lead_ns();
+
+    // osc_answers.cpp
+    sender* find(const endpoint& from);
+    sender& admit(const endpoint& from);
+    void ask(sender& s, const osc_request& r);
+    void ask_of(sender& s, drawn& d, osc_request r);
+    void told(const endpoint& to, const std::string& text);
+    void told_answer(sender& s, const endpoint& to, const net::json& m);
+    void told_news(sender& s, const endpoint& to, const net::json& m);
+    void flush(const endpoint& from, std::int32_t number);
+    void say_stroke(const endpoint& to, std::int32_t number, const std::string& state);
+    void refuse(const endpoint& to, const std::string& address, const std::string& why);
+    void refuse(const endpoint& to, const std::string& address, const net::rpc_fault& f);
+    void look_at(const endpoint& e);
+    void forget_idle();
+    template <typename F>
+    void later(F f);
+
+    boost::asio::io_context& io_;
+    service& service_;
+    outside outside_;
+    std::map<endpoint, std::unique_ptr<sender>> senders_;
+    held_messages held_;
+    std::set<endpoint> looked_at_; ///< that may be idle
+    error_allowance errors_;
+    std::shared_ptr<const int> alive_ = std::make_shared<const int>();
+};
+
+} // namespace tactor::server

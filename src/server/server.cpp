@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: MIT
+#include "server/server.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/generic/stream_protocol.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/socket_base.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <fmt/format.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <tactor/error.hpp>
+
+#include "net/line_connection.hpp"
+#include "net/listener.hpp"
+#include "net/web_connection.hpp"
+#include "net/web_page.hpp"
+#include "server/osc/endpoint.hpp"
+#include "server/page/drawing_page.hpp"
+
+namespace tactor::server {
+namespace {
+
+namespace asio = boost::asio;
+using net::line_connection;
+using net::line_fault;
+using net::listener;
+using socket_type = line_connection::socket_type;
+
+constexpr auto farewell = std::chrono::seconds(2); // for what the last words take
+constexpr std::size_t short_visits = 32;           // of browsers at once, beside those that stay as clients
+
+/// A client's way back over a connection of either kind.
+template <class Connection>
+class link_over final : public client_link {
+public:
+    explicit link_over(std::shared_ptr<Connection> c) : connection_(std::move(c)) {}
+    void send(std::string message) override { connection_->send(std::move(message)); }
+    std::size_t waiting() const override { return connection_->waiting(); }
+    void finish() override { connection_->finish(); }
+
+private:
+    std::shared_ptr<Connection> connection_;
+};
+
+std::string refusal(std::string what, std::string why, std::string hint)
+{
+    return net::text_of(net::error_reply(
+        nullptr, {net::code_limit, "limit", std::move(what), std::move(why), std::move(hint)}));
+}
+
+// What those are told for whom no descriptor is left.
+std::string no_descriptors()
+{
+    return refusal("descriptors", "the server has as many files open as it may", "try again later") + "\n";
+}
+
+class server {
+public:
+    server(asio::io_context& io, const endpoints& at, service_options o, stream_options s, network_options w)
+        : io_(io),
+          limits_(o.limits),
+          allow_hosts_(std::move(w.allow_hosts)),
+          service_(io, std::move(o), std::move(s)),
+          farewell_(io),
+          watchdog_(io)
+    {
+        budget_.most = limits_.max_all_unread_bytes;
+        if (at.socket)
+            listeners_.push_back(
+                std::make_unique<listener>(io, at.socket.get(), no_descriptors(), [this](socket_type c) {
+                    take(std::move(c), client_kind::local);
+                }));
+        if (at.tcp)
+            listeners_.push_back(
+                std::make_unique<listener>(io, at.tcp.get(), no_descriptors(), [this](socket_type c) {
+                    take(std::move(c), client_kind::network);
+                }));
+        if (at.http)
+            listeners_.push_back(
+                std::make_unique<listener>(io, at.http.get(), net::no_descriptors_for_browsers(),
+                                           [this](socket_type c) { take_browser(std::move(c)); }));
+        if (at.osc)
+            osc_.emplace(io, at.osc.get(), service_, std::move(w.osc_peers),
+                         std::min(limits_.max_message_bytes, osc_endpoint::largest_packet));
+        service_.on_told_all([this](client_number n) { finish(n); });
+    }
+
+    void start(std::function<void()> ready)
+    {
+        service_.start();
+        service_.output().when_ready(std::move(ready));
+        for (const auto& l : listeners_)
+            l->start();
+        if (osc_)
+            osc_->start();
+        feed_watchdog();
+    }
+
+    void stop()
+    {
+        net::notify_manager("STOPPING=1");
+        for (const auto& l : listeners_)
+            l->stop();
+        if (osc_)
+            osc_->stop();
+        watchdog_.cancel();
+        service_.close([this] {
+            for (const auto& [number, link] : std::map(links_))
+                link->finish();
+            for (const auto& c : std::set(visitors_))
+                c->finish();
+            closing_ = true;
+            if (open_ == 0)
+                return io_.stop();
+            farewell_.expires_after(farewell);
+            farewell_.async_wait([this](const boost::system::error_code& e) {
+                if (!e)
+                    io_.stop();
+            });
+        });
+    }
+
+private:
+    void take(socket_type s, client_kind kind)
+    {
+        boost::system::error_code ignored;
+        const int yes = 1;
+        if (kind == client_kind::network)
+            ::setsockopt(s.native_handle(), IPPROTO_TCP, 1 /* TCP_NODELAY */, &yes, sizeof yes);
+        const auto c = std::make_shared<line_connection>(
+            std::move(s),
+            net::line_limits{limits_.max_message_bytes, limits_.max_message_s, limits_.max_unread_bytes},
+            budget_);
+        ++open_;
+        if (!service_.has_place(kind)) {
+            c->start(
+                {[](std::string_view) { return false; }, [] {}, [](line_fault) {}, [this] { closed(0); }});
+            c->send(refusal("max_clients",
+                            fmt::format("there is no place: {} clients are the most", limits_.max_clients),
+                            "try again later"));
+            return c->finish();
+        }
+        const auto link = std::make_shared<link_over<line_connection>>(c);
+        const client_number n = service_.connect(link, kind);
+        links_.emplace(n, link);
+        std::weak_ptr<line_connection> weak = c;
+        c->start({[this, n, weak](std::string_view line) {
+                      if (service_.receive(n, line))
+                          return true;
+                      if (const auto self = weak.lock())
+                          self->finish();
+                      return false;
+                  },
+                  [this, n] {
+                      if (service_.input_ended(n))
+                          finish(n);
+                  },
+                  [this, weak](line_fault f) {
+                      if (const auto self = weak.lock())
+                          say_why(*self, f);
+                  },
+                  [this, n] { closed(n); }});
+    }
+
+    void finish(client_number n)
+    {
+        if (const auto found = links_.find(n); found != links_.end())
+            found->second->finish();
+    }
+
+    // Whoever only asks for a page is no client: a WebSocket is one.
+    void take_browser(socket_type s)
+    {
+        if (visitors_.size() >= limits_.max_clients + short_visits)
+            return; // the socket closes
+        auto stream = net::web_socket(io_, std::move(s));
+        if (!stream)
+            return;
+        const auto c = std::make_shared<net::web_connection>(
+            *std::move(stream),
+            net::line_limits{limits_.max_message_bytes, limits_.max_message_s, limits_.max_unread_bytes},
+            budget_, allow_hosts_);
+        ++open_;
+        visitors_.insert(c);
+        // Number of the client that it becomes.
+        const auto n = std::make_shared<client_number>(0);
+        c->start({[this](std::string_view path, std::string_view host, std::string_view token) {
+                      return page(path, host, token);
+                  },
+                  [this, n, weak = std::weak_ptr(c)] {
+                      if (!service_.has_place(client_kind::web))
+                          return false;
+                      const auto link = std::make_shared<link_over<net::web_connection>>(weak.lock());
+                      *n = service_.connect(link, client_kind::web);
+                      links_.emplace(*n, link);
+                      return true;
+                  },
+                  [this, n](std::string_view text) { return service_.receive(*n, text); },
+                  [this, n, weak = std::weak_ptr(c)] {
+                      visitors_.erase(weak.lock());
+                      closed(*n);
+                  }});
+    }
+
+    net::web_reply page(std::string_view path, std::string_view host, std::string_view token)
+    {
+        if (path == "/")
+            return drawing_page(host);
+        if (path != "/status")
+            return {404, "text/plain", "there are / and /rpc and /status\n", ""};
+        if (!service_.admits(token))
+            return {401, "text/plain", "the token is owed: Authorization: Bearer TOKEN\n", ""};
+        return {200, "application/json", net::text_of(service_.status_now()) + "\n", ""};
+    }
+
+    void say_why(line_connection& c, line_fault f) const
+    {
+        if (f == line_fault::too_long)
+            c.send(refusal("max_message_bytes",
+                           fmt::format("a message of more than {} bytes", limits_.max_message_bytes),
+                           "send smaller ones"));
+        if (f == line_fault::too_slow)
+            c.send(refusal("max_message_s", fmt::format("no whole message in {} s", limits_.max_message_s),
+                           "send what is complete"));
+    }
+
+    void closed(client_number n)
+    {
+        --open_;
+        service_.disconnect(n);
+        links_.erase(n);
+        if (closing_ && open_ == 0)
+            io_.stop();
+    }
+
+    // Twice in the time that the manager gives, as long as the audio thread goes on.
+    void feed_watchdog()
+    {
+        const char* us = std::getenv("WATCHDOG_USEC");
+        const double seconds =
+            us == nullptr ? 0.0 : static_cast<double>(std::strtoll(us, nullptr, 10)) * 1e-6;
+        if (seconds <= 0.0)
+            return;
+        if (service_.output().progresses())
+            net::notify_manager("WATCHDOG=1");
+        watchdog_.expires_after(std::chrono::microseconds(static_cast<long long>(seconds * 0.4e6)));
+        watchdog_.async_wait([this](const boost::system::error_code& e) {
+            if (!e)
+                feed_watchdog();
+        });
+    }
+
+    asio::io_context& io_;
+    service_limits limits_;
+    std::vector<std::string> allow_hosts_;
+    net::write_budget budget_;
+    service service_;
+    std::optional<osc_endpoint> osc_;
+    std::vector<std::unique_ptr<listener>> listeners_;
+    std::map<client_number, std::shared_ptr<client_link>> links_;
+    std::set<std::shared_ptr<net::web_connection>> visitors_;
+    asio::steady_timer farewell_;
+    asio::steady_timer watchdog_;
+    std::size_t open_ = 0;
+    bool closing_ = false;
+};
+
+} // namespace
+
+void serve(const endpoints& at, service_options o, stream_options s, network_options w, int signals,
+           const std::function<void()>& listening)
+{
+    asio::io_context io(1);
+    // Also while nobody is connected and the stream fades out: it ends by stop().
+    const auto until_stopped = asio::make_work_guard(io);
+    server all(io, at, std::move(o), std::move(s), std::move(w));
+    asio::posix::stream_descriptor told(io, ::dup(signals));
+    told.async_wait(asio::posix::descriptor_base::wait_read, [&](const boost::system::error_code& e) {
+        if (!e)
+            all.stop();
+    });
+    // Told when the device was tried: who connects then is not told that it is missing when it is not.
+    all.start([&] {
+        listening();
+        net::notify_manager("READY=1");
+    });
+    io.run();
+}
+
+} // namespace tactor::server

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The service with its sockets, signals and whoever started it.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+#include "net/listen.hpp"
+#include "net/peers.hpp"
+#include "server/service.hpp"
+
+namespace tactor::server {
+
+struct endpoint_options {
+    std::function<std::string()> socket; ///< gives the path, where none was inherited
+    mode_t mode = 0600;
+    std::optional<gid_t> group = {};
+    std::optional<net::host_and_port> tcp = {};
+    std::optional<net::host_and_port> http = {};
+    std::optional<net::host_and_port> osc = {};
+};
+
+/// What is listened on.
+struct endpoints {
+    net::owned_fd socket;
+    std::string socket_path;
+    bool own_socket = false; ///< bound here, and removed at the end
+    net::owned_fd tcp;
+    std::string tcp_address; ///< empty: off
+    net::owned_fd http;
+    std::string http_address; ///< empty: off
+    net::owned_fd osc;
+    std::string osc_address; ///< empty: off
+};
+
+/// Who else may come to the endpoints of the network.
+struct network_options {
+    std::vector<std::string> allow_hosts =
+        {}; ///< HTTP: other names of this server, and pages that may use it
+    std::vector<net::address_prefix> osc_peers = {}; ///< OSC: other machines that are heard
+};
+
+/// Binds, or takes what was inherited. \throws error: see net/listen.hpp; bad_input for inherited sockets
+/// that are not what their names say.
+endpoints open_endpoints(const endpoint_options& o);
+
+/// Removes what was bound here.
+void remove_socket(const endpoints& at) noexcept;
+
+/// Serves until `signals` is readable; then fades out and tells everybody.
+/// `listening` is called once when all accept.
+void serve(const endpoints& at, service_options o, stream_options s, network_options w, int signals,
+           const std::function<void()>& listening);
+
+} // namespace tactor::server

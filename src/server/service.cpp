@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+#include "server/service.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "server/service_impl.hpp"
+
+namespace tactor::server {
+
+using net::json;
+using net::reply_json;
+
+void service::pending::give(std::size_t at, std::string reply, const std::vector<std::uint32_t>& strokes)
+{
+    place& p = places[at];
+    if (p.given)
+        return;
+    p.given = true;
+    p.reply = std::move(reply);
+    numbers.insert(numbers.end(), strokes.begin(), strokes.end());
+    if (--open != 0)
+        return;
+    client* c = owner.find(to);
+    if (c != nullptr) {
+        --c->unanswered;
+        std::string all;
+        for (const place& one : places)
+            if (one.wanted)
+                all += (all.empty() ? "" : ",") + one.reply;
+        if (!all.empty())
+            c->link->send(batch ? "[" + all + "]" : all);
+    }
+    owner.release(numbers);
+    owner.check_told_all(to);
+}
+
+void service::answer::result(reply_json r, const std::vector<std::uint32_t>& strokes) const
+{
+    all->give(at, net::text_of(net::result_reply(all->places[at].id, std::move(r))), strokes);
+}
+
+void service::answer::result_text(const std::string& r) const
+{
+    all->give(at,
+              fmt::format(R"({{"jsonrpc":"2.0","id":{},"result":{}}})",
+                          net::text_of(reply_json(all->places[at].id)), r),
+              {});
+}
+
+void service::answer::fault(const net::rpc_fault& f) const
+{
+    all->give(at, net::text_of(net::error_reply(all->places[at].id, f)), {});
+}
+
+service::service(boost::asio::io_context& io, service_options o, stream_options s)
+    : io_(io),
+      options_(std::move(o)),
+      faces_(options_.plans.tactors),
+      stream_(io, std::move(s),
+              {[this](std::uint64_t p, stroke_id id, std::optional<std::int64_t> at) { begun(p, id, at); },
+               [this](std::uint64_t p, const stroke_report& r) { ended(p, r); },
+               [this](stream_state state, const std::string& why) { tell_stream(state, why); }})
+{
+}
+
+service::~service()
+{
+    planner_.join();
+}
+
+bool service::has_place(client_kind k) const
+{
+    const std::size_t places = k == client_kind::local
+                                   ? options_.limits.max_clients
+                                   : options_.limits.max_clients - options_.limits.kept_clients;
+    return clients_.size() < places;
+}
+
+client_number service::connect(std::shared_ptr<client_link> link, client_kind k)
+{
+    auto c = std::make_unique<client>(io_, ++last_client_, std::move(link), k);
+    c->admitted = k == client_kind::local || k == client_kind::datagram || options_.token.empty();
+    // A browser's WebSocket has shown where it comes from, and of datagrams only those that may be are heard.
+    c->greeted = k != client_kind::network;
+    c->points = options_.limits.max_points_per_s;
+    c->points_ns = options_.now_ns();
+    clients_.emplace(last_client_, std::move(c));
+    return last_client_;
+}
+
+service::client* service::find(client_number c)
+{
+    const auto found = clients_.find(c);
+    return found == clients_.end() ? nullptr : found->second.get();
+}
+
+void service::send(client& c, const reply_json& message)
+{
+    c.link->send(net::text_of(message));
+}
+
+// What comes over a network begins with hello: a browser's POST does not.
+bool service::admitted(client& c, const net::rpc_message& m)
+{
+    if (c.greeted)
+        return true;
+    const auto* first = m.batch ? nullptr : std::get_if<net::rpc_request>(&m.parts.front());
+    c.greeted = first != nullptr && first->method == "hello";
+    return c.greeted;
+}
+
+bool service::receive(client_number number, std::string_view text)
+{
+    client* c = find(number);
+    if (c == nullptr)
+        return false;
+    net::rpc_message m = net::parse_rpc(text, {.nesting = options_.limits.max_nesting});
+    if (!admitted(*c, m))
+        return false;
+    const auto all = std::make_shared<pending>(*this, number);
+    all->batch = m.batch;
+    all->open = m.parts.size();
+    for (const auto& part : m.parts) {
+        const auto* r = std::get_if<net::rpc_request>(&part);
+        all->places.push_back(
+            {r != nullptr ? r->id : std::get<net::rpc_refusal>(part).id, r == nullptr || r->wants_reply});
+    }
+    ++c->unanswered;
+    const std::size_t bytes = text.size() / m.parts.size();
+    for (std::size_t i = 0; i < m.parts.size(); ++i) {
+        const answer to{all, i};
+        c = find(number);
+        if (c == nullptr)
+            return false;
+        if (auto* r = std::get_if<net::rpc_request>(&m.parts[i]); r == nullptr)
+            to.fault(std::get<net::rpc_refusal>(m.parts[i]).why);
+        else
+            try {
+                handle(*c, *r, to, bytes);
+            } catch (...) {
+                to.fault(current_fault(r->method));
+            }
+    }
+    return true;
+}
+
+void service::handle(client& c, net::rpc_request& r, const answer& to, std::size_t bytes)
+{
+    const std::string& m = r.method;
+    if (m == "hello")
+        return hello(c, r.params, to);
+    if (!c.admitted)
+        throw fault_error({net::code_no_token, "token", "token", "hello with the token comes first", ""});
+    if (m == "to")
+        return this->to(c, r.params, to);
+    if (m == "play" || m == "plan")
+        return plan_or_play(c, r.params, to, m == "play", bytes);
+    if (m == "cancel")
+        return cancel(c, r.params, to);
+    if (m == "stop")
+        return stop(r.params, to);
+    if (m == "fire")
+        return fire(r.params, to);
+    if (m == "begin")
+        return begin(c, r.params, to);
+    if (m == "end")
+        return end(c, r.params, to);
+    if (m == "drive")
+        return drive(c, r.params, to);
+    if (m == "status")
+        return status(r.params, to);
+    if (m == "subscribe")
+        return subscribe(c, r.params, to);
+    throw fault_error({net::code_no_method, "bad-input", "method", fmt::format("there is no \"{}\"", m),
+                       "one of hello, play, plan, cancel, stop, fire, begin, to, end, drive, status, "
+                       "subscribe"});
+}
+
+bool service::input_ended(client_number number)
+{
+    client* c = find(number);
+    if (c == nullptr)
+        return true;
+    c->input_over = true;
+    for (const std::uint32_t n : c->strokes)
+        if (const auto& r = strokes_.at(n); r->live)
+            r->live->end();
+    return c->unanswered == 0 && c->strokes.empty();
+}
+
+void service::check_told_all(client_number number)
+{
+    const client* c = find(number);
+    if (c != nullptr && c->input_over && c->unanswered == 0 && c->strokes.empty() && told_all_)
+        told_all_(number);
+}
+
+void service::disconnect(client_number number)
+{
+    const auto found = clients_.find(number);
+    if (found == clients_.end())
+        return;
+    input_ended(number);
+    client& c = *found->second;
+    c.levels_timer.cancel();
+    // What it asked for is played, whoever hears of it.
+    for (plan_job& j : c.jobs)
+        post_job(number, std::move(j));
+    const auto kept = std::move(found->second); // its answers look for it, and find nobody
+    clients_.erase(found);
+    gather_levels();
+    note_busy();
+}
+
+void service::tell_stream(stream_state s, const std::string& reason)
+{
+    const reply_json n = net::notification("stream", {{"state", name_of(s)}, {"reason", reason}});
+    for (const auto& [number, c] : clients_)
+        if (c->admitted && c->greeted && (c->events.contains("stream") || s == stream_state::closing))
+            send(*c, n);
+}
+
+void service::close(std::function<void()> done)
+{
+    closing_ = true;
+    for (const auto& [number, c] : clients_) {
+        for (const plan_job& j : c->jobs) {
+            planning_bytes_ -= j.bytes;
+            j.to.fault({net::code_no_stream, "not-available", "stream", "the server ends", ""});
+        }
+        jobs_ -= c->jobs.size();
+        c->jobs.clear();
+        if (c->planning)
+            c->planning->fault({net::code_no_stream, "not-available", "stream", "the server ends", ""});
+    }
+    stream_.close(std::move(done));
+}
+
+} // namespace tactor::server

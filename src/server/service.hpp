@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The service without its sockets: clients, their strokes, who is told what.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/thread_pool.hpp>
+
+#include <tactor/live.hpp>
+#include <tactor/phantom.hpp>
+#include <tactor/player.hpp>
+
+#include "net/rpc.hpp"
+#include "server/limits.hpp"
+#include "server/stream.hpp"
+#include "server/stroke_source.hpp"
+
+namespace tactor::server {
+
+using client_number = std::uint64_t;
+
+/// A client's way back. The context's thread calls it.
+class client_link {
+public:
+    client_link() = default;
+    client_link(const client_link&) = delete;
+    client_link& operator=(const client_link&) = delete;
+    virtual ~client_link() = default;
+
+    /// Queues one message.
+    virtual void send(std::string message) = 0;
+    /// Bytes that it has not taken yet.
+    virtual std::size_t waiting() const = 0;
+    /// Closes when all is written. Not from within: the service may be in the middle of something.
+    virtual void finish() = 0;
+};
+
+struct service_options {
+    planning plans = {};
+    service_limits limits = {};
+    std::string version = {};
+    std::string token = {}; ///< that TCP needs; empty: none
+    net::reply_json array = {};
+    /// The tactor-plan/1 text of a plan; throws std::bad_alloc beyond so many bytes.
+    std::function<std::string(const planned&, std::size_t most_bytes)> plan_text = {};
+    /// CLOCK_MONOTONIC, ns.
+    std::function<std::int64_t()> now_ns = {};
+};
+
+/// Where a client comes from.
+enum class client_kind { local, network, web, datagram };
+
+/// All members are called by the context's thread.
+class service {
+public:
+    service(boost::asio::io_context& io, service_options o, stream_options s);
+    ~service();
+    service(const service&) = delete;
+    service& operator=(const service&) = delete;
+
+    void start() { stream_.start(); }
+    /// Whether there is a place for one more.
+    bool has_place(client_kind k) const;
+    client_number connect(std::shared_ptr<client_link> link, client_kind k);
+    /// One message. False when the connection is to be closed unanswered.
+    bool receive(client_number number, std::string_view text);
+    /// The client sends no more: its live strokes end. True when nothing is left to tell it.
+    bool input_ended(client_number number);
+    /// Called when that has become so.
+    void on_told_all(std::function<void(client_number)> f) { told_all_ = std::move(f); }
+    /// The client is gone: its live strokes end, the others play on.
+    void disconnect(client_number number);
+    /// Called when somebody stops everything.
+    void on_stop(std::function<void()> f) { stopped_ = std::move(f); }
+    /// Fades everything out and tells everybody; `done` when all ends were sent.
+    void close(std::function<void()> done);
+
+    stream& output() noexcept { return stream_; }
+    /// The result of `status`.
+    net::reply_json status_now();
+    /// Whether a token is the one that is needed; any, where none is.
+    bool admits(std::string_view token) const;
+
+private:
+    using reply_json = net::reply_json;
+    struct client;
+    struct stroke_record;
+    struct pending;
+
+    /// Where a result goes: a reply, a place in a batch, or nowhere.
+    struct answer {
+        std::shared_ptr<pending> all;
+        std::size_t at = 0;
+
+        /// `strokes`: new ones, of which notifications may come from now on.
+        void result(reply_json r, const std::vector<std::uint32_t>& strokes = {}) const;
+        /// One that is JSON text already, on one line.
+        void result_text(const std::string& r) const;
+        void fault(const net::rpc_fault& f) const;
+    };
+
+    struct plan_job {
+        answer to;
+        net::json params;
+        std::size_t bytes = 0;
+        bool play = false;
+        std::uint64_t stops = 0; ///< how often stop had been asked for when it came
+    };
+
+    // service.cpp
+    void handle(client& c, net::rpc_request& r, const answer& to, std::size_t bytes);
+    bool admitted(client& c, const net::rpc_message& m);
+    client* find(client_number c);
+    void send(client& c, const reply_json& message);
+    void tell_stream(stream_state s, const std::string& reason);
+    void check_told_all(client_number number);
+
+    // service_methods.cpp
+    void hello(client& c, const net::json& params, const answer& to);
+    void status(const net::json& params, const answer& to);
+    void subscribe(client& c, const net::json& params, const answer& to);
+    void send_levels(client_number number);
+    void gather_levels();
+    reply_json hello_result();
+    reply_json limits_json() const;
+
+    // service_strokes.cpp
+    void plan_or_play(client& c, const net::json& params, const answer& to, bool play, std::size_t bytes);
+    void drive(client& c, const net::json& params, const answer& to);
+    void next_job(client& c);
+    void post_job(client_number number, plan_job j);
+    void job_done(client_number number, const plan_job& job, std::shared_ptr<planned> p,
+                  std::vector<score> scores, std::string text, std::optional<net::rpc_fault> fault);
+    void submit_all(const plan_job& job, const std::shared_ptr<planned>& p, const std::vector<score>& scores);
+    std::vector<std::uint32_t> submit(client_number owner, const net::json& start, const planned& p,
+                                      const std::vector<score>& scores, bool stopped);
+    void check_room(const client& c) const;
+    void cancel(client& c, const net::json& params, const answer& to);
+    void stop(const net::json& params, const answer& to);
+    void fire(const net::json& params, const answer& to);
+    void release(const std::vector<std::uint32_t>& numbers);
+
+    // service_live.cpp
+    void begin(client& c, const net::json& params, const answer& to);
+    void begin_now(client& c, const live_options& o, const answer& to, bool stopped);
+    void to(client& c, const net::json& params, const answer& to);
+    void end(client& c, const net::json& params, const answer& to);
+    bool take_point(client& c);
+    stroke_record& own_live(client& c, std::uint32_t number);
+
+    // service_ends.cpp
+    stroke_record& add_record(client_number owner);
+    void begun(std::uint64_t player, stroke_id id, std::optional<std::int64_t> at_ns);
+    void ended(std::uint64_t player, const stroke_report& r);
+    void start_followers(stroke_record& first, std::int64_t at_ns);
+    void finish(stroke_record& r, const stroke_report& how);
+    void tell_stroke(stroke_record& r, std::string_view state, const stroke_report& how);
+    void send_to_listeners(const stroke_record& r, const net::reply_json& message);
+    void note_busy();
+
+    boost::asio::io_context& io_;
+    service_options options_;
+    layout faces_;
+    stream stream_;
+    std::map<client_number, std::unique_ptr<client>> clients_;
+    client_number last_client_ = 0;
+    std::map<std::uint32_t, std::unique_ptr<stroke_record>> strokes_;
+    std::map<std::pair<std::uint64_t, stroke_id>, std::uint32_t> by_player_;
+    std::uint32_t last_stroke_ = 0;
+    std::uint64_t stops_ = 0;
+    std::size_t planning_bytes_ = 0;
+    std::size_t jobs_ = 0;
+    bool closing_ = false;
+    std::function<void(client_number)> told_all_;
+    std::function<void()> stopped_;
+    boost::asio::thread_pool planner_{1};
+};
+
+} // namespace tactor::server

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+// What becomes of strokes, and who is told: each number has exactly one end.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "server/clock.hpp"
+#include "server/service_impl.hpp"
+
+namespace tactor::server {
+
+using net::reply_json;
+
+service::stroke_record& service::add_record(client_number owner)
+{
+    auto r = std::make_unique<stroke_record>();
+    r->number = ++last_stroke_;
+    r->owner = owner;
+    if (client* c = find(owner))
+        c->strokes.insert(r->number);
+    return *strokes_.emplace(r->number, std::move(r)).first->second;
+}
+
+void service::begun(std::uint64_t player, stroke_id id, std::optional<std::int64_t> at_ns)
+{
+    const auto found = by_player_.find({player, id});
+    if (found == by_player_.end())
+        return;
+    stroke_record& r = *strokes_.at(found->second);
+    if (r.state == "started")
+        return; // an xrun made it begin again
+    r.state = "started";
+    const std::int64_t now = options_.now_ns();
+    r.started_ns = at_ns.value_or(now);
+    stroke_report how;
+    if (r.asked_ns)
+        how.late_s = std::max(0.0, static_cast<double>(*r.started_ns - *r.asked_ns) * 1e-9);
+    tell_stroke(r, "started", how);
+    start_followers(r, *r.started_ns);
+}
+
+// The others of an armed file: their time is known only now.
+void service::start_followers(stroke_record& first, std::int64_t at_ns)
+{
+    tactor::player* out = stream_.number() == first.player ? stream_.current() : nullptr;
+    for (const auto& [number, after_s] : std::exchange(first.followers, {})) {
+        const auto found = strokes_.find(number);
+        if (found == strokes_.end() || !found->second->music)
+            continue;
+        stroke_record& r = *found->second;
+        const score music = *std::exchange(r.music, {});
+        try {
+            if (out == nullptr)
+                no_stream("");
+            r.id = out->submit(music, start_at::time(at_ns + std::llround(after_s * 1e9)));
+            r.state = "waiting";
+            by_player_[{r.player, r.id}] = r.number;
+        } catch (...) {
+            finish(r, {.state = state_kind::interrupted, .reason = "the stream has ended"});
+        }
+    }
+}
+
+void service::ended(std::uint64_t player, const stroke_report& report)
+{
+    const auto found = by_player_.find({player, report.id});
+    if (found == by_player_.end())
+        return;
+    stroke_record& r = *strokes_.at(found->second);
+    by_player_.erase(found);
+    // What did not begin takes with it what was to follow.
+    for (const auto& [number, after_s] : std::exchange(r.followers, {}))
+        if (const auto f = strokes_.find(number); f != strokes_.end() && f->second->music) {
+            stroke_report same = report;
+            same.frames = 0;
+            same.started_ns.reset();
+            finish(*f->second, same);
+        }
+    if (report.started_ns && r.state != "started" && report.frames != 0) {
+        r.started_ns = report.started_ns;
+        tell_stroke(r, "started", {});
+    }
+    finish(r, report);
+    note_busy();
+}
+
+void service::finish(stroke_record& r, const stroke_report& how)
+{
+    if (how.started_ns)
+        r.started_ns = how.started_ns;
+    r.music.reset();
+    const client_number owner = r.owner;
+    if (client* c = find(owner)) {
+        c->strokes.erase(r.number);
+        if (r.live)
+            --c->live;
+    }
+    r.state = "ended";
+    tell_stroke(r, to_string(how.state), how);
+    if (r.released)
+        strokes_.erase(r.number);
+    check_told_all(owner);
+}
+
+void service::tell_stroke(stroke_record& r, std::string_view state, const stroke_report& how)
+{
+    const bool sounded = r.started_ns && (state == "started" || how.frames != 0 || how.started_ns);
+    const std::int64_t at_ns = r.started_ns.value_or(0);
+    const auto from = [&](std::int64_t origin_ns) {
+        return sounded ? reply_json(seconds(at_ns + origin_ns)) : reply_json(nullptr);
+    };
+    reply_json n = net::notification("stroke", {{"stroke", r.number},
+                                                {"state", state},
+                                                {"reason", how.reason},
+                                                {"frames", how.frames},
+                                                {"started_s", from(0)},
+                                                {"started_unix_s", from(unix_ns() - options_.now_ns())},
+                                                {"late_s", how.late_s}});
+    if (!r.released) {
+        r.held.push_back(std::move(n));
+        return;
+    }
+    send_to_listeners(r, n);
+}
+
+void service::send_to_listeners(const stroke_record& r, const reply_json& message)
+{
+    for (const auto& [number, c] : clients_)
+        if (number == r.owner || (c->admitted && c->events.contains("strokes")))
+            send(*c, message);
+}
+
+void service::note_busy()
+{
+    const bool coming = jobs_ != 0 || std::any_of(clients_.begin(), clients_.end(),
+                                                  [](const auto& c) { return c.second->coming != 0; });
+    stream_.busy(coming || std::any_of(strokes_.begin(), strokes_.end(),
+                                       [](const auto& r) { return r.second->state != "ended"; }));
+}
+
+} // namespace tactor::server

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What the service keeps of clients, strokes and answers.
+#pragma once
+
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/faults.hpp"
+#include "server/service.hpp"
+
+namespace tactor::server {
+
+struct service::client {
+    client(boost::asio::io_context& io, client_number n, std::shared_ptr<client_link> l, client_kind k)
+        : number(n), link(std::move(l)), kind(k), levels_timer(io)
+    {
+    }
+
+    client_number number;
+    std::shared_ptr<client_link> link;
+    client_kind kind;
+    bool greeted = false;  ///< network: hello was the first
+    bool admitted = false; ///< its token was right, or none is owed
+    bool input_over = false;
+    unsigned wrong_tokens = 0;
+    std::set<std::string> events;
+    double levels_hz = 30.0;
+    boost::asio::steady_timer levels_timer;
+    std::vector<float> levels; ///< by channel, since the last notification
+    std::deque<plan_job> jobs;
+    std::optional<answer> planning; ///< where the result of the one that is being planned goes
+    std::size_t coming = 0;         ///< plays whose strokes have no number yet
+    std::size_t unanswered = 0;
+    std::set<std::uint32_t> strokes; ///< that have not ended
+    std::size_t live = 0;
+    double points = 0.0; ///< that it may give at once
+    std::int64_t points_ns = 0;
+};
+
+struct service::stroke_record {
+    std::uint32_t number = 0;
+    client_number owner = 0;
+    std::uint64_t player = 0;
+    stroke_id id = {};
+    std::string state = "waiting"; ///< "armed", "started"
+    std::optional<live_stroke> live = {};
+    bool released = false; ///< its number was told
+    std::vector<reply_json> held = {};
+    std::optional<std::int64_t> asked_ns = {};
+    std::optional<std::int64_t> started_ns = {};
+    /// Of an armed file: strokes that start so long after this one.
+    std::vector<std::pair<std::uint32_t, double>> followers = {};
+    std::optional<score> music = {}; ///< of a follower, until it is submitted
+};
+
+/// The replies to one message.
+struct service::pending {
+    struct place {
+        net::json id = nullptr;
+        bool wanted = false;
+        bool given = false;
+        std::string reply = {};
+    };
+
+    pending(service& s, client_number c) : owner(s), to(c) {}
+    void give(std::size_t at, std::string reply, const std::vector<std::uint32_t>& strokes);
+
+    service& owner;
+    client_number to;
+    bool batch = false;
+    std::vector<place> places;
+    std::size_t open = 0;
+    std::vector<std::uint32_t> numbers = {}; ///< to be released when it is sent
+};
+
+} // namespace tactor::server

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+// begin, to, end.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "server/service_impl.hpp"
+
+namespace tactor::server {
+namespace {
+
+using net::json;
+using net::reply_json;
+
+// Places beyond this are nonsense, and clamped or refused by the stroke.
+constexpr double farthest_mm = 1e6;
+constexpr double most_intensity = 1e6;
+
+} // namespace
+
+void service::begin(client& c, const json& params, const answer& to)
+{
+    only(params, {"options", "timeout_s", "smooth_s"});
+    const live_options usual;
+    stroke_settings s = options_.plans.owner;
+    s.plan.algorithm = usual.plan.algorithm;
+    s.plan.outside = usual.plan.outside;
+    if (const json* o = member(params, "options"))
+        s = with_options(s, *o, options_for::live);
+    check_level(options_.plans, s, 1.0);
+    live_options o;
+    o.plan = s.plan;
+    o.render = s.render;
+    o.longest_s = options_.limits.max_stroke_s;
+    if (const json* t = member(params, "timeout_s"))
+        o.timeout_s = number(*t, "timeout_s", 0.001, 86400);
+    if (const json* t = member(params, "smooth_s"))
+        o.smooth_s = number(*t, "smooth_s", 0.0, 1.0);
+    check_room(c);
+    if (c.live >= options_.limits.max_live_strokes)
+        limit_reached("max_live_strokes",
+                      fmt::format("{} live strokes of yours go on", options_.limits.max_live_strokes),
+                      "end one of them first");
+    if (closing_ || stream_.is_out())
+        no_stream(stream_.reason());
+    ++c.coming;
+    ++c.live;
+    note_busy();
+    stream_.when_ready([this, number = c.number, o, to, stops = stops_] {
+        client* then = find(number);
+        if (then == nullptr)
+            return note_busy();
+        --then->coming;
+        --then->live;
+        try {
+            begin_now(*then, o, to, stops != stops_);
+        } catch (...) {
+            to.fault(current_fault("options"));
+        }
+        note_busy();
+    });
+}
+
+void service::begin_now(client& c, const live_options& o, const answer& to, bool stopped)
+{
+    player* out = stream_.current();
+    if (closing_ || out == nullptr || out->ended())
+        no_stream(closing_ ? "the server ends" : stream_.reason());
+    if (stopped) {
+        // While the stream was being started: as with what was being planned then.
+        stroke_record& r = add_record(c.number);
+        finish(r, {.state = state_kind::cancelled, .reason = "stopped"});
+        to.result({{"stroke", r.number}}, {r.number});
+        return;
+    }
+    live_stroke live = out->begin(o);
+    stroke_record& r = add_record(c.number);
+    r.player = stream_.number();
+    r.id = live.id();
+    r.live = live;
+    by_player_[{r.player, r.id}] = r.number;
+    ++c.live;
+    if (c.input_over)
+        live.end();
+    to.result({{"stroke", r.number}}, {r.number});
+}
+
+service::stroke_record& service::own_live(client& c, std::uint32_t number)
+{
+    if (!c.strokes.contains(number))
+        no_such_stroke(number);
+    stroke_record& r = *strokes_.at(number);
+    if (!r.live)
+        no_such_stroke(number, "it is no live stroke");
+    return r;
+}
+
+// As many at once as in a second, then as they come back.
+bool service::take_point(client& c)
+{
+    const double most = options_.limits.max_points_per_s;
+    const std::int64_t now = options_.now_ns();
+    c.points = std::min(most, c.points + static_cast<double>(now - c.points_ns) * 1e-9 * most);
+    c.points_ns = now;
+    if (c.points < 1.0)
+        return false;
+    c.points -= 1.0;
+    return true;
+}
+
+void service::to(client& c, const json& params, const answer& to)
+{
+    only(params, {"stroke", "x_mm", "y_mm", "intensity"});
+    if (!take_point(c))
+        limit_reached("max_points_per_s",
+                      fmt::format("{} points in a second are the most", options_.limits.max_points_per_s));
+    const std::uint32_t n = need_stroke(params);
+    const double x = need_number(params, "x_mm", -farthest_mm, farthest_mm);
+    const double y = need_number(params, "y_mm", -farthest_mm, farthest_mm);
+    const json* given = member(params, "intensity");
+    const double intensity = given == nullptr ? 1.0 : number(*given, "intensity", 0.0, most_intensity);
+    stroke_record& r = own_live(c, n);
+    try {
+        if (!r.live->to(x, y, intensity))
+            no_such_stroke(n, "it has ended");
+    } catch (const error& e) {
+        throw fault_error(fault_of(e, "x_mm"));
+    }
+    to.result(reply_json::object());
+}
+
+void service::end(client& c, const json& params, const answer& to)
+{
+    only(params, {"stroke"});
+    own_live(c, need_stroke(params)).live->end();
+    to.result(reply_json::object());
+}
+
+} // namespace tactor::server

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+// hello, status, subscribe and what follows from it.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <tactor/stroke.hpp>
+
+#include "server/clock.hpp"
+#include "server/service_impl.hpp"
+
+namespace tactor::server {
+namespace {
+
+using net::json;
+using net::reply_json;
+
+constexpr unsigned most_wrong_tokens = 3;
+constexpr double most_levels_hz = 100.0;
+// A client that is so far behind gets levels when it has caught up.
+constexpr std::size_t enough_waiting = 64U << 10;
+
+// In a time that does not tell how much of it is right.
+bool same_secret(const std::string& a, const std::string& b)
+{
+    unsigned char differs = a.size() == b.size() ? 0 : 1;
+    for (std::size_t i = 0; i < b.size(); ++i)
+        differs |= static_cast<unsigned char>(b[i] ^ (i < a.size() ? a[i] : 0));
+    return differs == 0;
+}
+
+} // namespace
+
+reply_json service::hello_result()
+{
+    const stream_setup& s = stream_.setup();
+    const bool seen = s.buffer_frames != 0 && stream_.number() != 0;
+    reply_json presets = reply_json::array();
+    for (const std::string& p : stroke_presets())
+        presets.push_back(p);
+    return {{"protocol", "tactor/1"},
+            {"version", options_.version},
+            {"array", options_.array},
+            {"stream",
+             {{"rate", s.rate},
+              {"channels", s.channels},
+              {"format", seen ? reply_json(std::string(to_string(s.format))) : reply_json(nullptr)},
+              {"period_frames", s.period_frames},
+              {"latency_s", static_cast<double>(s.buffer_frames) / s.rate},
+              {"pcm", s.name}}},
+            {"presets", presets},
+            {"clock", {{"monotonic_s", seconds(options_.now_ns())}, {"unix_s", seconds(unix_ns())}}},
+            {"max_level_dbfs", options_.plans.max_level_dbfs}};
+}
+
+void service::hello(client& c, const json& params, const answer& to)
+{
+    only(params, {"token"});
+    const json* token = member(params, "token");
+    if (token != nullptr)
+        static_cast<void>(text(*token, "token"));
+    if (!c.admitted) {
+        if (token == nullptr || !same_secret(token->get<std::string>(), options_.token)) {
+            to.fault({net::code_no_token, "token", "token", token == nullptr ? "it is owed" : "it is wrong",
+                      "give what the server's token_file holds"});
+            if (++c.wrong_tokens >= most_wrong_tokens)
+                c.link->finish();
+            return;
+        }
+        c.admitted = true;
+    }
+    to.result(hello_result());
+}
+
+reply_json service::limits_json() const
+{
+    const service_limits& l = options_.limits;
+    return {{"max_clients", l.max_clients},
+            {"kept_clients", l.kept_clients},
+            {"max_strokes", l.max_strokes},
+            {"max_live_strokes", l.max_live_strokes},
+            {"max_points_per_s", l.max_points_per_s},
+            {"max_stroke_s", l.max_stroke_s},
+            {"max_message_bytes", l.max_message_bytes},
+            {"max_nesting", l.max_nesting},
+            {"max_message_s", l.max_message_s},
+            {"max_unread_bytes", l.max_unread_bytes},
+            {"max_all_unread_bytes", l.max_all_unread_bytes}};
+}
+
+void service::status(const json& params, const answer& to)
+{
+    only(params, {});
+    to.result(status_now());
+}
+
+bool service::admits(std::string_view token) const
+{
+    return options_.token.empty() || same_secret(std::string(token), options_.token);
+}
+
+reply_json service::status_now()
+{
+    const player_stats s = stream_.stats();
+    reply_json strokes = reply_json::array();
+    for (const auto& [number, r] : strokes_)
+        strokes.push_back({{"stroke", number}, {"state", r->state}, {"client", r->owner}});
+    const double rate = stream_.setup().rate;
+    return {{"version", options_.version},
+            {"stream",
+             {{"state", name_of(stream_.state())},
+              {"reason", stream_.reason()},
+              {"xruns", s.xruns},
+              {"uptime_s", rate > 0.0 ? static_cast<double>(s.frames) / rate : 0.0},
+              {"realtime", s.realtime}}},
+            {"amplifier", stream_.amplifier()},
+            {"clients", clients_.size()},
+            {"strokes", strokes},
+            {"limits", limits_json()}};
+}
+
+void service::subscribe(client& c, const json& params, const answer& to)
+{
+    only(params, {"events", "levels_hz"});
+    const json* events = member(params, "events");
+    if (events == nullptr || !events->is_array())
+        bad_param("events", events == nullptr ? "they are missing" : "they are no list",
+                  R"(any of "strokes", "levels", "stream"; [] ends it)");
+    std::set<std::string> wanted;
+    for (const json& e : *events) {
+        const std::string name = text(e, "events");
+        if (name != "strokes" && name != "levels" && name != "stream")
+            bad_param("events", fmt::format("there are no \"{}\"", name), "any of strokes, levels, stream");
+        wanted.insert(name);
+    }
+    const json* hz = member(params, "levels_hz");
+    constexpr double usual_hz = 30.0;
+    const double rate = hz == nullptr ? usual_hz : number(*hz, "levels_hz", 0.01, most_levels_hz);
+    c.events = std::move(wanted);
+    c.levels_hz = rate;
+    to.result(reply_json::object());
+    c.levels.assign(stream_.peaks().size(), 0.0F);
+    c.levels_timer.cancel();
+    gather_levels();
+    if (!c.events.contains("levels"))
+        return;
+    c.levels_timer.expires_after(std::chrono::nanoseconds(std::llround(1e9 / c.levels_hz)));
+    send_levels(c.number);
+}
+
+// All that asked share the one meter: what it gives goes to each of them.
+void service::gather_levels()
+{
+    level_peaks& peaks = stream_.peaks();
+    const bool any = std::any_of(clients_.begin(), clients_.end(),
+                                 [](const auto& c) { return c.second->events.contains("levels"); });
+    peaks.listen(any);
+    for (std::size_t ch = 0; any && ch < peaks.size(); ++ch) {
+        const float peak = peaks.take(ch);
+        for (const auto& [number, c] : clients_)
+            if (ch < c->levels.size())
+                c->levels[ch] = std::max(c->levels[ch], peak);
+    }
+}
+
+void service::send_levels(client_number number)
+{
+    client* waiting = find(number);
+    waiting->levels_timer.async_wait([this, number](const boost::system::error_code& e) {
+        client* c = find(number);
+        if (e || c == nullptr || !c->events.contains("levels"))
+            return;
+        gather_levels();
+        if (c->link->waiting() < enough_waiting) {
+            reply_json dbfs = reply_json::array();
+            for (const tactor_spec& t : options_.plans.tactors.tactors) {
+                const float v = t.channel < c->levels.size() ? c->levels[t.channel] : 0.0F;
+                dbfs.push_back(v > 0.0F ? reply_json(20.0 * std::log10(static_cast<double>(v)))
+                                        : reply_json(nullptr));
+            }
+            std::fill(c->levels.begin(), c->levels.end(), 0.0F);
+            send(*c, net::notification("levels", {{"t_s", seconds(options_.now_ns())}, {"dbfs", dbfs}}));
+        }
+        const auto step = std::chrono::nanoseconds(std::llround(1e9 / c->levels_hz));
+        const auto next = c->levels_timer.expiry() + step;
+        // A process that stood still does not make up for what it missed.
+        c->levels_timer.expires_at(std::max(next, std::chrono::steady_clock::now()));
+        send_levels(number);
+    });
+}
+
+} // namespace tactor::server

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+#include "server/stroke_source.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tactor/fit.hpp>
+#include <tactor/words.hpp>
+
+#include "server/faults.hpp"
+
+namespace tactor::server {
+namespace {
+
+using net::json;
+
+constexpr double rounding_db = 1e-9;
+
+timed_point read_point(const json& p, std::size_t i)
+{
+    const auto what = [&] { return fmt::format("point {}", i + 1); };
+    if (!p.is_array() || p.size() < 3 || p.size() > 4)
+        bad_param("points", what() + " is not [t, x, y] or [t, x, y, intensity]");
+    for (const json& v : p)
+        if (!v.is_number())
+            bad_param("points", what() + " has something that is no number");
+    return {p[0].get<double>(),
+            {p[1].get<double>(), p[2].get<double>()},
+            p.size() == 4 ? p[3].get<double>() : 1.0};
+}
+
+std::vector<stroke> read_points(const json& list)
+{
+    if (!list.is_array())
+        bad_param("points", "they are no list", "[[t,x,y], ...]");
+    std::vector<timed_point> points;
+    points.reserve(list.size());
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        points.push_back(read_point(list[i], i));
+        points.back().t_s -= i == 0 ? 0.0 : points.front().t_s;
+    }
+    if (!points.empty())
+        points.front().t_s = 0.0;
+    return {stroke{.name = "points", .motion = trajectory::timed(std::move(points))}};
+}
+
+stroke stroke_of_path(const std::string& data, const stroke_settings& s)
+{
+    const path p = path::from_svg(data);
+    const double speed = s.speed_mm_s.value_or(default_speed_mm_s);
+    stroke k{.name = "path", .motion = trajectory::along(p, s.duration_s.value_or(p.length_mm() / speed))};
+    k.speed_mm_s = speed;
+    return k;
+}
+
+std::vector<stroke> read_strokes(const std::string& source, const json& v, const stroke_settings& s)
+{
+    if (source == "points")
+        return read_points(v);
+    const std::string& t = text(v, source);
+    if (source == "stroke")
+        return {preset_stroke(t)};
+    if (source == "path")
+        return {stroke_of_path(t, s)};
+    if (source == "toml")
+        return parse_strokes_toml(t, source);
+    if (source == "csv")
+        return parse_strokes_csv(t, source);
+    return parse_strokes_svg(t, source);
+}
+
+void in_time(const planning& with, double seconds)
+{
+    if (seconds > with.max_stroke_s)
+        limit_reached("max_stroke_s",
+                      fmt::format("it lasts {}, and a stroke at most {}", seconds_text(seconds),
+                                  seconds_text(with.max_stroke_s)),
+                      "draw less, or faster");
+}
+
+// As the plan samples it.
+double loudest(const stroke& k, const plan& p)
+{
+    double most = 0.0;
+    for (const burst& b : p.bursts)
+        most = std::max(most, b.intensity);
+    if (!p.curve)
+        return most;
+    for (std::uint64_t i = 0; i < p.curve->size(); ++i)
+        most = std::max(most, k.motion.intensity(p.curve->time_s(i)));
+    return most;
+}
+
+} // namespace
+
+const char* source_of(const json& params)
+{
+    const char* found = nullptr;
+    for (const char* name : {"stroke", "path", "points", "toml", "csv", "svg"}) {
+        if (!params.contains(name))
+            continue;
+        if (found != nullptr)
+            bad_param(name, fmt::format("there is also \"{}\"", found), "give one of them");
+        found = name;
+    }
+    if (found == nullptr)
+        bad_param("stroke", "nothing says what to draw", "one of stroke, path, points, toml, csv, svg");
+    return found;
+}
+
+// At whatever carrier; very low where none was measured.
+double highest_threshold(const tactor_spec& t)
+{
+    double highest = t.thresholds.empty() ? t.threshold_dbfs.value_or(-1e9) : -1e9;
+    for (const threshold_point& p : t.thresholds)
+        highest = std::max(highest, p.dbfs);
+    return highest;
+}
+
+void check_level(const planning& with, const stroke_settings& s, double intensity)
+{
+    if (intensity <= 0.0)
+        return;
+    const double over_db = 20.0 * std::log10(intensity);
+    double level = s.render.level_dbfs;
+    if (s.render.sl_db) {
+        level = -1e9;
+        for (const tactor_spec& t : with.tactors.tactors)
+            level = std::max(level, highest_threshold(t) + *s.render.sl_db);
+    }
+    if (level + over_db <= with.max_level_dbfs + rounding_db)
+        return;
+    bad_param(s.render.sl_db ? "options.sl" : "options.level_dbfs",
+              fmt::format("{} dBFS{} is more than {} dBFS, which the owner allows", plain_number(level, 4),
+                          over_db == 0.0 ? "" : fmt::format(" and intensity {}", plain_number(intensity, 4)),
+                          plain_number(with.max_level_dbfs, 4)),
+              "ask for less");
+}
+
+std::vector<double> planned::starts_s() const
+{
+    return starts_of(plans);
+}
+
+double planned::total_s() const
+{
+    double end = 0.0;
+    const auto starts = starts_s();
+    for (std::size_t i = 0; i < plans.size(); ++i)
+        end = std::max(end, starts[i] + plans[i].schedule.total_s);
+    return end;
+}
+
+std::vector<std::string> planned::warnings() const
+{
+    std::vector<std::string> all;
+    for (const placed_plan& p : plans)
+        all.insert(all.end(), p.schedule.warnings.begin(), p.schedule.warnings.end());
+    return all;
+}
+
+score planned::score_of(const array& a, std::size_t i) const
+{
+    return {a, plans[i].schedule, render};
+}
+
+planned make_planned(const planning& with, const layout& faces, const json& params)
+{
+    const std::string source = source_of(params);
+    const json* options = member(params, "options");
+    const stroke_settings s =
+        options == nullptr ? with.owner : with_options(with.owner, *options, options_for::planned);
+    try {
+        planned p{source, read_strokes(source, params[source], s), {}, s.render};
+        if (source == "stroke")
+            p.name = p.strokes.front().name;
+        p.strokes = fit_as_asked(std::move(p.strokes), faces);
+        std::vector<double> starts_s;
+        std::vector<double> ends_s;
+        for (stroke& k : p.strokes) {
+            if (s.duration_s)
+                k.motion = k.motion.with_duration(*s.duration_s);
+            else if (s.speed_mm_s && k.motion.length_mm() > 0.0)
+                k.motion = k.motion.with_speed(*s.speed_mm_s);
+            starts_s.push_back(resolve_start_s(k.start_s, k.anchor, starts_s, ends_s));
+            ends_s.push_back(starts_s.back() + k.motion.duration_s());
+            in_time(with, ends_s.back());
+        }
+        for (const stroke& k : p.strokes) {
+            p.plans.push_back({make_plan(with.tactors, faces, k, s.plan), k.start_s, k.anchor});
+            check_level(with, s, s.plan.scale.amplitude(loudest(k, p.plans.back().schedule)));
+        }
+        in_time(with, p.total_s());
+        static_cast<void>(score(with.tactors, p.plans, p.render)); // levels and carriers
+        return p;
+    } catch (const fault_error&) {
+        throw;
+    } catch (...) {
+        net::rpc_fault f = current_fault(source);
+        if (s.render.sl_db && f.what == "options.level_dbfs")
+            f.what = "options.sl"; // a tactor's level is either
+        throw fault_error(f);
+    }
+}
+
+planned make_drive(const planning& with, const json& params)
+{
+    only(params, {"tactor", "intensity", "duration_s", "start"});
+    const auto count = static_cast<double>(with.tactors.tactors.size());
+    const double tactor = need_number(params, "tactor", 0, count - 1);
+    if (tactor != std::floor(tactor))
+        bad_param("tactor", fmt::format("{} is no whole number", tactor), "they count from 0");
+    const json* given = member(params, "intensity");
+    const double intensity = given == nullptr ? 1.0 : number(*given, "intensity", 0, 1);
+    given = member(params, "duration_s");
+    constexpr double usual_s = 0.5;
+    const double seconds = given == nullptr ? usual_s : number(*given, "duration_s", 0.001, 86400);
+    in_time(with, seconds);
+    check_level(with, with.owner, intensity);
+    planned p{"drive", {}, {}, with.owner.render};
+    const point where = with.tactors.tactors[static_cast<std::size_t>(tactor)].position;
+    plan schedule{.algorithm = "drive", .phantom = "none"};
+    schedule.stroke_duration_s = seconds;
+    schedule.total_s = seconds;
+    schedule.carrier_hz = with.owner.plan.carrier_hz;
+    burst b{.duration_s = seconds, .position = where, .intensity = intensity};
+    if (intensity > 0.0)
+        b.drives.push_back({static_cast<unsigned>(tactor), intensity});
+    schedule.bursts.push_back(std::move(b));
+    p.plans.push_back({std::move(schedule), {}});
+    try {
+        static_cast<void>(p.score_of(with.tactors, 0));
+    } catch (...) {
+        throw fault_error(current_fault("tactor"));
+    }
+    return p;
+}
+
+} // namespace tactor::server

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// From the parameters of `play` and `plan` to plans and scores. Pure; runs off the thread of the sockets.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tactor/array.hpp>
+#include <tactor/phantom.hpp>
+#include <tactor/plan.hpp>
+#include <tactor/render.hpp>
+#include <tactor/stroke.hpp>
+
+#include "net/rpc.hpp"
+#include "server/stroke_options.hpp"
+
+namespace tactor::server {
+
+/// What all plans share.
+struct planning {
+    array tactors;
+    stroke_settings owner; ///< with the stream's rate and channels
+    double max_level_dbfs = -12.0;
+    double max_stroke_s = 600.0;
+};
+
+/// One request's strokes, planned.
+struct planned {
+    std::string name;
+    std::vector<stroke> strokes;
+    std::vector<placed_plan> plans;
+    render_options render;
+
+    /// Start of each plan, s from the start of all.
+    std::vector<double> starts_s() const;
+    double total_s() const;
+    std::vector<std::string> warnings() const;
+    /// One of each plan, to be submitted by itself.
+    score score_of(const array& a, std::size_t i) const;
+};
+
+/// The one parameter of these that says what is drawn: "stroke", "path", "points", "toml", "csv" or "svg".
+/// \throws fault_error for none or several.
+const char* source_of(const net::json& params);
+
+/// Reads and plans. \throws fault_error.
+planned make_planned(const planning& with, const layout& faces, const net::json& params);
+
+/// One tactor for a while. \throws fault_error.
+planned make_drive(const planning& with, const net::json& params);
+
+/// \throws fault_error where the settings are louder at this intensity than the owner allows.
+void check_level(const planning& with, const stroke_settings& s, double intensity);
+
+} // namespace tactor::server

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include <tactor/alsa.hpp>
+
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+#include <tactor/words.hpp>
+
+#include "core/log.hpp"
+#include "core/refused.hpp"
+#include "sink/alsa/adopt.hpp"
+#include "sink/alsa/handle.hpp"
+#include "sink/alsa/library_messages.hpp"
+#include "sink/alsa/negotiate.hpp"
+#include "sink/alsa/pcm_sink.hpp"
+
+namespace tactor {
+namespace pcm {
+namespace {
+
+std::unique_ptr<sink> configure(handle h, const alsa_options& o)
+try {
+    const library_messages silent;
+    stream_setup s = negotiate(h.get(), o);
+    set_software(h.get(), s);
+    detail::log(o.log, log_kind::info, "PCM \"{}\": {}, {} Hz, {}, {} of {} frames{}", o.pcm,
+                counted(s.channels, "channel"), s.rate, to_string(s.format),
+                s.buffer_frames / s.period_frames, s.period_frames,
+                s.period_frames == o.period_frames && s.buffer_frames == o.periods * s.period_frames
+                    ? ""
+                    : fmt::format("; {} of {} were wished", o.periods, o.period_frames));
+    if (s.batch)
+        detail::log(o.log, log_kind::debug, "PCM \"{}\": its position moves by whole periods", o.pcm);
+    return std::make_unique<pcm_sink>(std::move(h), std::move(s));
+} catch (const error&) {
+    throw;
+} catch (const std::system_error& e) {
+    detail::refused_by_system(fmt::format("PCM \"{}\"", o.pcm), e.code().value(), e.what());
+}
+
+} // namespace
+
+std::unique_ptr<sink> adopt(snd_pcm_t* p, const alsa_options& o)
+{
+    handle h(p);
+    check(o);
+    return configure(std::move(h), o);
+}
+
+} // namespace pcm
+
+std::unique_ptr<sink> open_alsa(const alsa_options& o)
+{
+    pcm::check(o);
+    return pcm::configure(pcm::open(o), o);
+}
+
+} // namespace tactor

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+#include "sink/alsa/devices/devices.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/suggest.hpp"
+#include "sink/alsa/devices/abilities.hpp"
+#include "sink/alsa/devices/names.hpp"
+#include "sink/alsa/devices/plain_name.hpp"
+#include "sink/alsa/devices/route.hpp"
+#include "sink/alsa/error_text.hpp"
+#include "sink/alsa/handle.hpp"
+#include "sink/alsa/library_messages.hpp"
+#include "sink/alsa/negotiate.hpp"
+
+namespace tactor::pcm {
+namespace {
+
+std::string joined(const std::string& a, const std::string& b)
+{
+    return a.empty() || b.empty() || a == b ? (a.empty() ? b : a) : fmt::format("{}, {}", a, b);
+}
+
+std::vector<pcm_info> card_devices(const system_root& root)
+{
+    std::vector<pcm_info> all;
+    for (const card& c : sound_cards(root)) {
+        for (const unsigned device : playback_devices(root, c.index)) {
+            pcm_info p;
+            p.name = fmt::format("hw:CARD={},DEV={}", c.id, device);
+            p.description = joined(c.name, playback_device_name(root, c.index, device));
+            p.hardware = true;
+            p.holders = processes(playback_holders(root, {c.index, device}));
+            all.push_back(std::move(p));
+        }
+    }
+    return all;
+}
+
+// The name that a card's own device has in the list, however it is said: hw:1, hw:Tactor, hw:CARD=1,DEV=0.
+std::string listed_name(const system_root& root, const std::string& name)
+{
+    if (const auto d = named_device(name); d && name.rfind("hw:", 0) == 0)
+        if (const auto c = find_card(sound_cards(root), d->card))
+            return fmt::format("hw:CARD={},DEV={}", c->id, d->device);
+    return name;
+}
+
+bool is_listed(const std::vector<pcm_info>& all, const std::string& name)
+{
+    return std::any_of(all.begin(), all.end(), [&](const pcm_info& p) { return p.name == name; });
+}
+
+// The list says the name already.
+std::string without_name(std::string text, const std::string& name)
+{
+    const std::string prefix = fmt::format("PCM \"{}\": ", name);
+    return text.rfind(prefix, 0) == 0 ? text.substr(prefix.size()) : text;
+}
+
+// Empty: it can be opened just to look at it. One that was asked for may start what it needs.
+std::string why_not_tried(const std::vector<std::string>& route, bool wanted)
+{
+    if (writes(route))
+        return "not tried: opening a PCM of type file empties its file or starts its command";
+    if (std::find(route.begin(), route.end(), endless) != route.end())
+        return "not tried: its definition leads to itself, or to too many others";
+    const std::string lasting = wanted ? "" : lasting_type(route);
+    return lasting.empty()
+               ? ""
+               : fmt::format("not tried: opening a PCM of type {} may start a card or a server", lasting);
+}
+
+void probe(const std::optional<alsa_options>& wanted, pcm_info& p)
+{
+    p.error = p.hardware ? "" : why_not_tried(find_route(p.name), p.wanted);
+    p.tried = p.error.empty();
+    if (!p.tried)
+        return;
+    alsa_options o = p.wanted ? *wanted : alsa_options{};
+    if (!p.wanted || p.hardware)
+        o.pcm = p.name;
+    try {
+        const handle h = open(o);
+        look_at(h.get(), wanted, p);
+    } catch (const error& e) {
+        p.error = without_name(e.what(), o.pcm);
+    }
+}
+
+} // namespace
+
+std::vector<process_info> processes(const std::vector<holder>& holders)
+{
+    std::vector<process_info> all;
+    for (const holder& h : holders)
+        all.push_back({h.pid, h.program});
+    return all;
+}
+
+void look_at(snd_pcm_t* pcm, const std::optional<alsa_options>& wanted, pcm_info& into)
+{
+    const library_messages silent;
+    const hw_params space = configuration_space(pcm, into.name);
+    into.can = abilities_of(pcm, space);
+    into.opened = true;
+    if (wanted)
+        into.misfit = misfit(pcm, space, *wanted);
+}
+
+std::vector<pcm_info> list(const system_root& root, const std::optional<alsa_options>& wanted)
+{
+    std::vector<pcm_info> all = card_devices(root);
+    for (const known_name& n : known_names())
+        if (!is_listed(all, listed_name(root, n.name)))
+            all.push_back({.name = n.name, .description = n.description});
+    if (wanted) {
+        const std::string name = listed_name(root, wanted->pcm);
+        if (!is_listed(all, name))
+            all.push_back({.name = name});
+        for (pcm_info& p : all)
+            p.wanted = p.name == name;
+    }
+    for (pcm_info& p : all)
+        probe(wanted, p);
+    return all;
+}
+
+} // namespace tactor::pcm
+
+std::vector<tactor::pcm_info> tactor::list_pcms(const std::optional<alsa_options>& wanted)
+{
+    if (wanted)
+        pcm::check(*wanted);
+    return pcm::list("/", wanted);
+}
+
+tactor::pcm_route tactor::route_of(const std::string& pcm)
+{
+    pcm_route r;
+    r.types = pcm::find_route(pcm);
+    r.writes = pcm::writes(r.types);
+    r.server = pcm::server_of(r.types);
+    return r;
+}
+
+void tactor::require_device_name(const std::string& pcm)
+{
+    constexpr const char* hint = "give the name of a device, such as hw:CARD=Tactor";
+    const auto thing = [&pcm] { return fmt::format("PCM {}", detail::quoted(pcm)); };
+    if (const std::string why = pcm::not_plain(pcm); !why.empty())
+        throw error(error_kind::bad_input, thing(), fmt::format("more than the name of a device: {}", why),
+                    hint);
+    const std::vector<std::string> route = pcm::find_route(pcm);
+    if (pcm::writes(route))
+        throw error(error_kind::bad_input, thing(), "it writes a file or starts a command", hint);
+    if (const std::string type = pcm::unsafe_type(route); !type.empty())
+        throw error(error_kind::bad_input, thing(),
+                    fmt::format("ALSA's configuration defines it as more than a device: type {}", type),
+                    hint);
+}
+
+std::optional<tactor::card_info> tactor::card_of(const std::string& pcm)
+{
+    const auto d = pcm::named_device(pcm);
+    const auto c = d ? pcm::find_card(pcm::sound_cards("/"), d->card) : std::nullopt;
+    return c ? std::optional(card_info{c->index, c->id, c->name}) : std::nullopt;
+}
+
+std::vector<tactor::process_info> tactor::card_holders(unsigned card_index)
+{
+    return pcm::processes(pcm::playback_holders("/", {card_index, {}}));
+}

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "sink/alsa/devices/plain_name.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace tactor::pcm {
+namespace {
+
+constexpr std::size_t longest = 200; // bytes; a card's id has 15
+
+// Not std::isalnum(), which asks the locale.
+bool is_word(char c)
+{
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+}
+
+bool is_value(char c)
+{
+    return is_word(c) || c == '.';
+}
+
+// The text is all of such characters, and not empty; else what is in the way.
+std::string all_of(std::string_view text, bool (*may)(char))
+{
+    if (text.empty())
+        return "a part of it is empty";
+    const auto bad = std::find_if_not(text.begin(), text.end(), may);
+    if (bad == text.end())
+        return {};
+    const auto c = static_cast<unsigned char>(*bad);
+    return c > 0x20 && c < 0x7f ? fmt::format("{} may not stand in it", *bad)
+                                : fmt::format("the byte 0x{:02x} may not stand in it", c);
+}
+
+std::string argument(std::string_view text)
+{
+    const auto equals = text.find('=');
+    if (equals == text.npos)
+        return all_of(text, is_value);
+    std::string why = all_of(text.substr(0, equals), is_word);
+    return why.empty() ? all_of(text.substr(equals + 1), is_value) : why;
+}
+
+std::string simple_name(std::string_view name)
+{
+    const auto colon = name.find(':');
+    if (std::string why = all_of(name.substr(0, colon), is_word); !why.empty() || colon == name.npos)
+        return why;
+    if (name.substr(0, colon) == "plug")
+        return "plug over plug";
+    for (std::string_view rest = name.substr(colon + 1);;) {
+        const auto comma = rest.find(',');
+        if (std::string why = argument(rest.substr(0, comma)); !why.empty() || comma == rest.npos)
+            return why;
+        rest.remove_prefix(comma + 1);
+    }
+}
+
+// What ALSA takes for the argument SLAVE of plug.
+std::string slave_name(std::string_view text)
+{
+    constexpr std::string_view key = "SLAVE=";
+    if (text.substr(0, key.size()) == key)
+        text.remove_prefix(key.size());
+    if (text.size() >= 2 && text.front() == '\'' && text.back() == '\'')
+        return simple_name(text.substr(1, text.size() - 2));
+    if (text.find(',') != text.npos)
+        return "a name with a comma within plug: needs single quotes";
+    return simple_name(text);
+}
+
+} // namespace
+
+std::string not_plain(std::string_view name)
+{
+    constexpr std::string_view plug = "plug:";
+    if (name.size() > longest)
+        return fmt::format("it is longer than {} bytes", longest);
+    return name.substr(0, plug.size()) == plug ? slave_name(name.substr(plug.size())) : simple_name(name);
+}
+
+} // namespace tactor::pcm

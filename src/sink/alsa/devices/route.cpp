@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include "sink/alsa/devices/route.hpp"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <string_view>
+#include <utility>
+
+#include "sink/alsa/handle.hpp"
+#include "sink/alsa/library_messages.hpp"
+
+namespace tactor::pcm {
+namespace {
+
+using types = std::vector<std::string>;
+
+constexpr int deepest = 8;             // of plugins on plugins; a definition may name itself
+constexpr std::size_t most_types = 64; // of one PCM: definitions that double at each step end, too
+
+// They touch nothing beyond the device that they end in.
+constexpr std::array harmless{"hw",    "null",  "plug", "linear", "lfloat", "copy",  "route", "rate",
+                              "multi", "empty", "asym", "mulaw",  "alaw",   "adpcm", "iec958"};
+// These start or set a card's mixer ("ctl_elems" is what hooks do), or talk to a server.
+constexpr std::array lasting{"dmix", "dshare", "softvol", "hooks", "ctl_elems", "pulse", "pipewire", "jack"};
+
+template <typename Names>
+bool among(const Names& names, const std::string& type)
+{
+    return std::find(names.begin(), names.end(), type) != names.end();
+}
+
+class walker {
+public:
+    explicit walker(snd_config_t* top) : top_(top) {}
+
+    void name(const char* base, const std::string& name, int depth)
+    {
+        snd_config_t* definition = nullptr;
+        if (full(depth) || snd_config_search_definition(top_, base, name.c_str(), &definition) < 0)
+            return;
+        const std::unique_ptr<snd_config_t, deleter<snd_config_delete>> owned(definition);
+        const char* other = nullptr;
+        if (snd_config_get_string(definition, &other) >= 0 && other != nullptr)
+            this->name(base, other, depth + 1);
+        else
+            definition_of(definition, depth + 1, false);
+    }
+
+    types found() && { return std::move(found_); }
+
+private:
+    bool full(int depth)
+    {
+        if (depth <= deepest && found_.size() < most_types)
+            return false;
+        if (found_.empty() || found_.back() != endless)
+            found_.emplace_back(endless);
+        return true;
+    }
+
+    // `slaves`: each member is a slave by a name of its own.
+    void definition_of(snd_config_t* definition, int depth, bool slaves)
+    {
+        each_member(definition, [&](const std::string& id, snd_config_t* member) {
+            const char* said = nullptr;
+            if (id == "capture" || id == "hint")
+                return;
+            if (snd_config_get_type(member) == SND_CONFIG_TYPE_COMPOUND) {
+                if (!full(depth))
+                    definition_of(member, depth, id == "slaves");
+            } else if (snd_config_get_string(member, &said) < 0 || said == nullptr)
+                return;
+            else if (id == "type")
+                found_.emplace_back(said);
+            else if (id == "pcm")
+                name("pcm", said, depth);
+            else if (slaves || id == "slave" || id == "playback")
+                name("pcm_slave", said, depth);
+        });
+    }
+
+    snd_config_t* top_;
+    types found_ = {};
+};
+
+} // namespace
+
+std::vector<std::string> find_route(snd_config_t* top, const std::string& name)
+{
+    const library_messages silent;
+    if (top == nullptr)
+        return {};
+    walker w(top);
+    w.name("pcm", name, 0);
+    return std::move(w).found();
+}
+
+std::vector<std::string> find_route(const std::string& name)
+{
+    const library_messages silent;
+    return find_route(system_configuration().get(), name);
+}
+
+std::string unsafe_type(const std::vector<std::string>& route)
+{
+    const auto bad = std::find_if_not(route.begin(), route.end(), [](const std::string& t) {
+        return among(harmless, t) || among(lasting, t);
+    });
+    return bad == route.end() ? "" : *bad;
+}
+
+std::string lasting_type(const std::vector<std::string>& route)
+{
+    const auto bad =
+        std::find_if_not(route.begin(), route.end(), [](const std::string& t) { return among(harmless, t); });
+    return bad == route.end() ? "" : *bad;
+}
+
+bool writes(const std::vector<std::string>& route)
+{
+    return std::find(route.begin(), route.end(), "file") != route.end();
+}
+
+std::string server_of(const std::vector<std::string>& route)
+{
+    constexpr std::array<std::pair<std::string_view, const char*>, 3> servers{
+        {{"pipewire", "PipeWire"}, {"pulse", "PulseAudio"}, {"jack", "JACK"}}};
+    for (const auto& [type, server] : servers)
+        if (std::find(route.begin(), route.end(), type) != route.end())
+            return server;
+    return {};
+}
+
+} // namespace tactor::pcm

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+#include "sink/alsa/error_text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <string_view>
+
+#include <alsa/asoundlib.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/refused.hpp"
+#include "core/suggest.hpp"
+
+namespace tactor::pcm {
+namespace {
+
+constexpr std::size_t most_names = 12; // of PCMs in one message
+constexpr const char* no_card_hint =
+    "load the card's driver or overlay, or plug it in; tactor devices lists what "
+    "there is; the PCM null needs no card";
+
+std::string thing(const std::string& name)
+{
+    return fmt::format("PCM \"{}\"", name);
+}
+
+std::string near(const std::string& name, const std::vector<std::string>& known)
+{
+    const std::vector<std::string_view> views(known.begin(), known.end());
+    const std::string_view like = detail::nearest_name(name, views);
+    return like.empty() ? "" : fmt::format("did you mean {}? ", like);
+}
+
+std::vector<std::string> ids(const std::vector<card>& cards)
+{
+    std::vector<std::string> all;
+    for (const card& c : cards)
+        all.push_back(c.id);
+    return all;
+}
+
+error no_card(const std::string& name, const device_name& d, const std::vector<card>& cards)
+{
+    if (cards.empty())
+        return {error_kind::not_available, thing(name), "there is no sound card", no_card_hint};
+    return {error_kind::not_available, thing(name), fmt::format("there is no card {}", d.card),
+            fmt::format("{}cards: {}; tactor devices lists all", near(d.card, ids(cards)),
+                        fmt::join(ids(cards), ", "))};
+}
+
+error no_device(const std::string& name, unsigned device, const card& c, const surroundings& s)
+{
+    const auto devices = playback_devices(s.root, c.index);
+    const std::string why = fmt::format("card {} has no playback device {}", c.id, device);
+    if (devices.empty())
+        return {error_kind::not_available, thing(name), why, "it has none at all: take another card"};
+    return {error_kind::not_available, thing(name), why,
+            fmt::format("its playback devices: {}", fmt::join(devices, ", "))};
+}
+
+error no_pcm(const std::string& name, const std::string& detail, const surroundings& s)
+{
+    const auto cards = sound_cards(s.root);
+    if (const auto d = named_device(name)) {
+        const auto c = find_card(cards, d->card);
+        if (!c)
+            return no_card(name, *d, cards);
+        const auto devices = playback_devices(s.root, c->index);
+        if (std::find(devices.begin(), devices.end(), d->device) == devices.end())
+            return no_device(name, d->device, *c, s);
+    }
+    const std::string plain = name.substr(0, name.find(':'));
+    const bool defined = std::find(s.pcms.begin(), s.pcms.end(), plain) != s.pcms.end();
+    if (defined && cards.empty())
+        return {error_kind::not_available, thing(name), with_detail("there is no sound card", detail),
+                no_card_hint};
+    std::string hint = near(plain, s.pcms);
+    if (hint.empty() && !s.pcms.empty() && s.pcms.size() <= most_names)
+        hint = fmt::format("known: {}; ", fmt::join(s.pcms, ", "));
+    if (!cards.empty())
+        hint += fmt::format("cards: {}; ", fmt::join(ids(cards), ", "));
+    return {error_kind::not_available, thing(name), with_detail("no such PCM", detail),
+            hint + "tactor devices lists all"};
+}
+
+bool is_sound_server(const std::string& program)
+{
+    constexpr std::array servers{"pipewire", "pipewire-pulse", "wireplumber", "pulseaudio", "jackd"};
+    return std::find(servers.begin(), servers.end(), program) != servers.end();
+}
+
+error busy(const std::string& name, const surroundings& s)
+{
+    which_device which;
+    if (const auto d = named_device(name))
+        if (const auto c = find_card(sound_cards(s.root), d->card))
+            which.card = c->index;
+    const auto holders = playback_holders(s.root, which);
+    if (holders.empty())
+        return {error_kind::not_available, thing(name), "it is busy: another program plays on it",
+                "stop that program; sudo fuser -v /dev/snd/* names it"};
+    std::string who;
+    bool server = false;
+    for (const holder& h : holders) {
+        who += fmt::format("{}{} (process {})", who.empty() ? "" : ", ",
+                           h.program.empty() ? "a program" : h.program, h.pid);
+        server = server || is_sound_server(h.program);
+    }
+    return {error_kind::not_available, thing(name), fmt::format("it is busy: {} plays on it", who),
+            server ? "a sound server has it: the udev rules keep those off the card Tactor"
+                   : fmt::format("stop it, e.g. kill {}", holders.front().pid)};
+}
+
+error forbidden(const std::string& name, const surroundings& s)
+{
+    const std::string group = playback_group(s.root);
+    if (group == "root")
+        return {error_kind::not_available, thing(name), "no permission to open it",
+                "/dev/snd is root's alone: run as root, or let udev give it to the group audio"};
+    return {error_kind::not_available, thing(name), "no permission to open it",
+            fmt::format("join the group {0}: sudo usermod -aG {0} $USER, then log in again",
+                        group.empty() ? "audio" : group)};
+}
+
+// "default" leads to a sound server where its plugin is installed; its refusal comes as an errno that says
+// nothing to people ("Host is down").
+error no_server(const std::string& name, const std::string& detail, const surroundings& s)
+{
+    std::string hint = "start it, as the user who is logged in: systemctl --user start pipewire-pulse, or "
+                       "pulseaudio --start; root and services have none of their own. Or play on a card: ";
+    const auto cards = sound_cards(s.root);
+    hint += cards.empty() ? "-D hw:CARD=NAME" : fmt::format("-D hw:CARD={}", cards.front().id);
+    return {error_kind::not_available, thing(name),
+            with_detail("it leads to a sound server (PipeWire, PulseAudio), which is not there", detail),
+            hint + "; tactor devices lists all"};
+}
+
+} // namespace
+
+std::string with_detail(const std::string& text, const std::string& detail)
+{
+    return detail.empty() ? text : fmt::format("{}: {}", text, detail);
+}
+
+error open_error(const std::string& name, int code, const std::string& detail, const surroundings& s)
+{
+    switch (-code) {
+    case ENOENT:
+    case ENODEV:
+    case ENXIO:
+        return no_pcm(name, detail, s);
+    case EBUSY:
+        return busy(name, s);
+    case EACCES:
+    case EPERM:
+        return forbidden(name, s);
+    case EHOSTDOWN:
+    case EHOSTUNREACH:
+    case ECONNREFUSED:
+    case ECONNRESET:
+    case ENOTCONN:
+        return no_server(name, detail, s);
+    case EMFILE:
+    case ENFILE:
+        return {error_kind::runtime, thing(name), with_detail(snd_strerror(code), detail),
+                tactor::detail::advice_for(-code)};
+    default:
+        return {error_kind::not_available, thing(name), with_detail(snd_strerror(code), detail),
+                "tactor devices lists the PCMs"};
+    }
+}
+
+error call_error(const std::string& name, const char* call, int code)
+{
+    return {error_kind::not_available, thing(name), fmt::format("{} failed: {}", call, snd_strerror(code))};
+}
+
+} // namespace tactor::pcm

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Sample formats in ALSA's terms.
+#pragma once
+
+#include <array>
+
+#include <alsa/asoundlib.h>
+
+#include <tactor/sample_format.hpp>
+
+namespace tactor::pcm {
+
+/// In the order in which they are tried: what I2S and USB devices carry without loss first.
+inline constexpr std::array format_preference{format_kind::s32, format_kind::float32, format_kind::s24_3,
+                                              format_kind::s24_4, format_kind::s16};
+
+constexpr snd_pcm_format_t to_alsa(format_kind f) noexcept
+{
+    switch (f) {
+    case format_kind::float32:
+        return SND_PCM_FORMAT_FLOAT_LE;
+    case format_kind::s16:
+        return SND_PCM_FORMAT_S16_LE;
+    case format_kind::s24_3:
+        return SND_PCM_FORMAT_S24_3LE;
+    case format_kind::s24_4:
+        return SND_PCM_FORMAT_S24_LE;
+    case format_kind::s32:
+        return SND_PCM_FORMAT_S32_LE;
+    }
+    return SND_PCM_FORMAT_UNKNOWN;
+}
+
+} // namespace tactor::pcm

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "sink/alsa/handle.hpp"
+
+#include <new>
+#include <string>
+
+#include "core/refused.hpp"
+#include "sink/alsa/devices/names.hpp"
+#include "sink/alsa/error_text.hpp"
+#include "sink/alsa/library_messages.hpp"
+
+namespace tactor::pcm {
+namespace {
+
+// Non-blocking makes a busy device an error at once instead of a wait without end.
+constexpr int mode =
+    SND_PCM_NONBLOCK | SND_PCM_NO_AUTO_RESAMPLE | SND_PCM_NO_AUTO_CHANNELS | SND_PCM_NO_AUTO_FORMAT;
+
+using configuration = std::unique_ptr<snd_config_t, deleter<snd_config_delete>>;
+
+template <typename T, typename Make>
+T* made(Make make)
+{
+    T* p = nullptr;
+    if (make(&p) < 0)
+        throw std::bad_alloc();
+    return p;
+}
+
+configuration parse(const std::string& text, const library_messages& said)
+{
+    snd_config_t* c = nullptr;
+    const int code = snd_config_load_string(&c, text.c_str(), text.size());
+    if (code < 0)
+        throw error(error_kind::bad_input, "ALSA configuration text",
+                    with_detail(snd_strerror(code), said.first()), "see the ALSA documentation of .asoundrc");
+    return configuration(c);
+}
+
+} // namespace
+
+hw_params make_hw_params()
+{
+    return hw_params(made<snd_pcm_hw_params_t>(snd_pcm_hw_params_malloc));
+}
+
+hw_params copy(const hw_params& p)
+{
+    hw_params q = make_hw_params();
+    snd_pcm_hw_params_copy(q.get(), p.get());
+    return q;
+}
+
+sw_params make_sw_params()
+{
+    return sw_params(made<snd_pcm_sw_params_t>(snd_pcm_sw_params_malloc));
+}
+
+status make_status()
+{
+    return status(made<snd_pcm_status_t>(snd_pcm_status_malloc));
+}
+
+handle open(const alsa_options& o)
+{
+    const library_messages said;
+    snd_pcm_t* p = nullptr;
+    int code = 0;
+    surroundings there;
+    if (o.config_text.empty()) {
+        code = snd_pcm_open(&p, o.pcm.c_str(), SND_PCM_STREAM_PLAYBACK, mode);
+        if (code < 0)
+            there.pcms = defined_pcms();
+    } else {
+        const configuration c = parse(o.config_text, said);
+        code = snd_pcm_open_lconf(&p, o.pcm.c_str(), SND_PCM_STREAM_PLAYBACK, mode, c.get());
+        if (code < 0)
+            there.pcms = defined_pcms(c.get());
+    }
+    if (code < 0)
+        tactor::detail::throw_caused(open_error(o.pcm, code, said.first(), there), -code);
+    handle h(p);
+    // Plugins made from other plugins do not always take the flag of open().
+    if (code = snd_pcm_nonblock(h.get(), 1); code < 0)
+        tactor::detail::throw_caused(open_error(o.pcm, code, said.first()), -code);
+    return h;
+}
+
+} // namespace tactor::pcm

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Owners of ALSA's objects, and the opening of a PCM by name.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <alsa/asoundlib.h>
+
+#include <tactor/alsa.hpp>
+
+#include "core/deleter.hpp"
+#include "sink/alsa/library_messages.hpp"
+
+namespace tactor::pcm {
+
+/// More than any PCM has.
+inline constexpr unsigned most_channels = 1024;
+
+using detail::deleter;
+
+/// What a plugin has to say of its end is not for standard error.
+struct closer {
+    void operator()(snd_pcm_t* p) const noexcept
+    {
+        const quiet silent;
+        snd_pcm_close(p);
+    }
+};
+
+using handle = std::unique_ptr<snd_pcm_t, closer>;
+using hw_params = std::unique_ptr<snd_pcm_hw_params_t, deleter<snd_pcm_hw_params_free>>;
+using sw_params = std::unique_ptr<snd_pcm_sw_params_t, deleter<snd_pcm_sw_params_free>>;
+using status = std::unique_ptr<snd_pcm_status_t, deleter<snd_pcm_status_free>>;
+
+hw_params make_hw_params();
+hw_params copy(const hw_params& p);
+sw_params make_sw_params();
+status make_status();
+
+/// Opens for playback: non-blocking, nothing converted behind the user's back.
+/// \throws error as open_alsa() does.
+handle open(const alsa_options& o);
+
+} // namespace tactor::pcm

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+#include "sink/alsa/negotiate.hpp"
+
+#include <cerrno>
+#include <optional>
+#include <span>
+
+#include <fmt/format.h>
+
+#include <tactor/words.hpp>
+
+#include "core/refused.hpp"
+#include "sink/alsa/error_text.hpp"
+#include "sink/alsa/format.hpp"
+#include "sink/alsa/handle.hpp"
+#include "sink/alsa/ranges.hpp"
+
+namespace tactor::pcm {
+namespace {
+
+// What a device can have at most without a mistake in the request: alsa-lib's own arithmetic is 32 bit.
+constexpr unsigned most_rate = 768'000;
+constexpr unsigned most_period_frames = 1U << 20;
+constexpr unsigned most_periods = 1024;
+
+std::string asked(const alsa_options& o)
+{
+    std::string formats;
+    if (o.format) {
+        formats = to_string(*o.format);
+    } else {
+        for (const format_kind f : format_preference)
+            formats += fmt::format("{}{}", formats.empty() ? "" : " or ", to_string(f));
+    }
+    return fmt::format("{} channel{} at {} Hz in {}", o.channels, o.channels == 1 ? "" : "s", o.rate,
+                       formats);
+}
+
+std::span<const format_kind> wanted_formats(const alsa_options& o)
+{
+    return o.format ? std::span<const format_kind>(&*o.format, 1) : std::span(format_preference);
+}
+
+// Whether one setting alone is within what the device can do.
+bool takes_format(snd_pcm_t* p, const hw_params& space, std::span<const format_kind> formats)
+{
+    for (const format_kind f : formats) {
+        if (snd_pcm_hw_params_test_format(p, space.get(), to_alsa(f)) == 0)
+            return true;
+    }
+    return false;
+}
+
+// Names what the device does not take; of what it takes one by one only the combination fails.
+std::string refused(snd_pcm_t* p, const hw_params& space, const alsa_options& o,
+                    std::span<const format_kind> formats)
+{
+    std::string s;
+    const auto add = [&s](std::string_view word) { s += fmt::format("{}{}", s.empty() ? "" : ", ", word); };
+    if (snd_pcm_hw_params_test_channels(p, space.get(), o.channels) != 0)
+        add("channels");
+    if (snd_pcm_hw_params_test_rate(p, space.get(), o.rate, 0) != 0)
+        add("rate");
+    if (!takes_format(p, space, formats))
+        add("format");
+    return s.empty() ? "each alone would do, but not together" : fmt::format("refused: {}", s);
+}
+
+// Channels, rate and format are tied together on some devices, so each format gets a fresh start.
+std::optional<hw_params> fix(snd_pcm_t* p, const hw_params& space, const alsa_options& o, format_kind f)
+{
+    hw_params h = copy(space);
+    if (snd_pcm_hw_params_set_format(p, h.get(), to_alsa(f)) < 0)
+        return std::nullopt;
+    // Exactly: a stroke on fewer tactors, or at another rate, is another stimulus.
+    if (snd_pcm_hw_params_set_channels(p, h.get(), o.channels) < 0)
+        return std::nullopt;
+    if (snd_pcm_hw_params_set_rate(p, h.get(), o.rate, 0) < 0)
+        return std::nullopt;
+    return h;
+}
+
+void set_sizes(snd_pcm_t* p, const hw_params& h, const alsa_options& o)
+{
+    snd_pcm_hw_params_set_periods_integer(p, h.get()); // odd devices refuse, and work without
+    int direction = 0;
+    snd_pcm_uframes_t period = o.period_frames;
+    if (const int code = snd_pcm_hw_params_set_period_size_near(p, h.get(), &period, &direction); code < 0)
+        tactor::detail::throw_caused(call_error(o.pcm, "snd_pcm_hw_params_set_period_size_near", code),
+                                     -code);
+    // The buffer as well: left free, a software PCM takes hours of frames.
+    unsigned periods = o.periods;
+    direction = 0;
+    if (snd_pcm_hw_params_set_periods_near(p, h.get(), &periods, &direction) == 0)
+        return;
+    snd_pcm_uframes_t buffer = period * o.periods;
+    if (const int code = snd_pcm_hw_params_set_buffer_size_near(p, h.get(), &buffer); code < 0)
+        tactor::detail::throw_caused(call_error(o.pcm, "snd_pcm_hw_params_set_buffer_size_near", code),
+                                     -code);
+}
+
+stream_setup read_back(const hw_params& h, const alsa_options& o, format_kind f)
+{
+    stream_setup s{.name = o.pcm, .format = f};
+    int direction = 0;
+    snd_pcm_uframes_t period = 0;
+    snd_pcm_uframes_t buffer = 0;
+    snd_pcm_hw_params_get_channels(h.get(), &s.channels);
+    snd_pcm_hw_params_get_rate(h.get(), &s.rate, &direction);
+    snd_pcm_hw_params_get_period_size(h.get(), &period, &direction);
+    snd_pcm_hw_params_get_buffer_size(h.get(), &buffer);
+    s.period_frames = static_cast<unsigned>(period);
+    s.buffer_frames = static_cast<unsigned>(buffer);
+    s.batch = snd_pcm_hw_params_is_batch(h.get()) != 0;
+    if (s.channels != o.channels || s.rate != o.rate || period == 0 || buffer < period)
+        throw error(error_kind::not_available, fmt::format("PCM \"{}\"", o.pcm),
+                    fmt::format("asked for {}, it made {} at {} Hz with {} of {} frames of it", asked(o),
+                                counted(s.channels, "channel"), s.rate, s.period_frames, s.buffer_frames),
+                    "use the PCM without plugins, e.g. hw:CARD=NAME");
+    return s;
+}
+
+} // namespace
+
+void check(const alsa_options& o)
+{
+    const auto within = [&o](const char* thing, unsigned value, unsigned least, unsigned most) {
+        if (value < least || value > most)
+            throw error(error_kind::bad_input, fmt::format("PCM \"{}\"", o.pcm),
+                        fmt::format("{} {} out of range", value, thing),
+                        fmt::format("give {} to {}", least, most));
+    };
+    within("channels", o.channels, 1, most_channels);
+    within("Hz", o.rate, 1, most_rate);
+    within("frames a period", o.period_frames, 1, most_period_frames);
+    within("periods", o.periods, 2, most_periods);
+}
+
+hw_params configuration_space(snd_pcm_t* p, const std::string& name)
+{
+    hw_params h = make_hw_params();
+    if (const int code = snd_pcm_hw_params_any(p, h.get()); code < 0)
+        tactor::detail::throw_caused(call_error(name, "snd_pcm_hw_params_any", code), -code);
+    // Nothing is resampled silently. Not every plugin knows the setting; open() said so already.
+    snd_pcm_hw_params_set_rate_resample(p, h.get(), 0);
+    if (const int code = snd_pcm_hw_params_set_access(p, h.get(), SND_PCM_ACCESS_RW_INTERLEAVED); code < 0)
+        tactor::detail::throw_caused(call_error(name, "snd_pcm_hw_params_set_access (interleaved)", code),
+                                     -code);
+    return h;
+}
+
+std::string misfit(snd_pcm_t* p, const hw_params& space, const alsa_options& o)
+{
+    const auto formats = wanted_formats(o);
+    for (const format_kind f : formats)
+        if (fix(p, space, o, f))
+            return {};
+    return fmt::format("cannot play {}; {}", asked(o), refused(p, space, o, formats));
+}
+
+stream_setup negotiate(snd_pcm_t* p, const alsa_options& o)
+{
+    const hw_params space = configuration_space(p, o.pcm);
+    for (const format_kind f : wanted_formats(o)) {
+        const std::optional<hw_params> h = fix(p, space, o, f);
+        if (!h)
+            continue;
+        set_sizes(p, *h, o);
+        if (const int code = snd_pcm_hw_params(p, h->get()); code < 0)
+            tactor::detail::throw_caused(call_error(o.pcm, "snd_pcm_hw_params", code), -code);
+        return read_back(*h, o, f);
+    }
+    throw error(error_kind::not_available, fmt::format("PCM \"{}\"", o.pcm), misfit(p, space, o),
+                fmt::format("it can do {}", describe(space)));
+}
+
+} // namespace tactor::pcm

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+#include "sink/alsa/pcm_sink.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <utility>
+
+#include "rt/clock.hpp"
+#include "sink/alsa/classify.hpp"
+
+namespace tactor::pcm {
+
+pcm_sink::pcm_sink(handle h, stream_setup s)
+    : handle_(std::move(h)),
+      setup_(std::move(s)),
+      status_(make_status()),
+      pacer_(setup_.rate, setup_.buffer_frames, setup_.period_frames),
+      max_descriptors_(static_cast<std::size_t>(std::max(1, snd_pcm_poll_descriptors_count(handle_.get()))))
+{
+}
+
+io_kind pcm_sink::prepare() noexcept
+{
+    const quiet silent;
+    // The kernel does not prepare a stream that runs, as it may after a resume.
+    if (state() == SND_PCM_STATE_RUNNING)
+        snd_pcm_drop(handle_.get());
+    written_ = 0;
+    played_ = 0;
+    const int code = snd_pcm_prepare(handle_.get());
+    return code < 0 ? of_error(code, state()) : io_kind::ok;
+}
+
+io_kind pcm_sink::start() noexcept
+{
+    const quiet silent;
+    const int code = snd_pcm_start(handle_.get());
+    if (code < 0)
+        return of_error(code, state());
+    if (!paced_ && runs_without_clock()) {
+        paced_ = true;
+        setup_.has_clock = false;
+    }
+    if (paced_)
+        pacer_.start(written_);
+    return io_kind::ok;
+}
+
+// A DAC cannot have played all of a full buffer and still run: that would have been an xrun.
+bool pcm_sink::runs_without_clock() noexcept
+{
+    return written_ > 0 && snd_pcm_status(handle_.get(), status_.get()) == 0 &&
+           snd_pcm_status_get_state(status_.get()) == SND_PCM_STATE_RUNNING &&
+           snd_pcm_status_get_delay(status_.get()) <= 0 &&
+           snd_pcm_avail_update(handle_.get()) >= static_cast<snd_pcm_sframes_t>(setup_.buffer_frames);
+}
+
+// Never snd_pcm_recover(), which sleeps in steps of a second.
+io_kind pcm_sink::resume() noexcept
+{
+    const quiet silent;
+    const int code = snd_pcm_resume(handle_.get());
+    if (code >= 0)
+        return io_kind::ok;
+    return code == -EAGAIN ? io_kind::again : io_kind::failed;
+}
+
+// Drivers stamp the stop; plugins leave the stamp of the start, and there the last position tells.
+std::int64_t pcm_sink::xrun_ns() noexcept
+{
+    const quiet silent;
+    const std::int64_t now = rt::monotonic_ns();
+    if (snd_pcm_status(handle_.get(), status_.get()) == 0) {
+        snd_htimestamp_t stamp{};
+        snd_pcm_status_get_trigger_htstamp(status_.get(), &stamp);
+        const std::int64_t stopped = rt::to_ns(stamp);
+        if (stopped > seen_ns_ && stopped <= now)
+            return now - stopped;
+    }
+    return dry_ns_ == 0 ? 0 : std::max<std::int64_t>(now - dry_ns_, 0);
+}
+
+std::size_t pcm_sink::descriptors(std::span<pollfd> fds) noexcept
+{
+    const quiet silent;
+    if (paced_) {
+        pacer_.arm();
+        fds[0] = {.fd = pacer_.fd(), .events = POLLIN, .revents = 0};
+        return 1;
+    }
+    const int n = snd_pcm_poll_descriptors(handle_.get(), fds.data(), static_cast<unsigned>(fds.size()));
+    poll_error_ = n < 0 ? n : 0; // dmix has nothing to poll while it stands in an xrun
+    return n < 0 ? 0 : static_cast<std::size_t>(n);
+}
+
+io_kind pcm_sink::ready(std::span<pollfd> fds) noexcept
+{
+    const quiet silent;
+    if (paced_)
+        return pacer_.due() ? io_kind::ok : io_kind::again;
+    if (fds.empty())
+        return poll_error_ < 0 ? of_error(poll_error_, state()) : of_state(state());
+    unsigned short events = 0;
+    const int code = snd_pcm_poll_descriptors_revents(handle_.get(), fds.data(),
+                                                      static_cast<unsigned>(fds.size()), &events);
+    if (code < 0)
+        return of_error(code, state());
+    if ((events & POLLNVAL) != 0)
+        return io_kind::lost;
+    if ((events & POLLERR) != 0) {
+        const io_kind s = of_state(state());
+        if (s != io_kind::ok)
+            return s;
+    }
+    return (events & POLLOUT) != 0 ? io_kind::ok : io_kind::again;
+}
+
+io_result pcm_sink::room() noexcept
+{
+    const quiet silent;
+    if (paced_)
+        return {io_kind::ok, static_cast<std::size_t>(pacer_.room()), 0};
+    const snd_pcm_sframes_t n = snd_pcm_avail_update(handle_.get());
+    if (n < 0)
+        return {of_error(n, state()), 0, static_cast<int>(n)};
+    return {io_kind::ok, static_cast<std::size_t>(n), 0};
+}
+
+// A multi of nulls fills up before its start and breaks after it; a fresh one takes frames again.
+long pcm_sink::write_paced(const std::byte* data, std::size_t frames) noexcept
+{
+    const long n = snd_pcm_writei(handle_.get(), data, frames);
+    if (n > 0 || (n != 0 && n != -EAGAIN && n != -EPIPE))
+        return n;
+    snd_pcm_drop(handle_.get());
+    snd_pcm_prepare(handle_.get());
+    return snd_pcm_writei(handle_.get(), data, frames);
+}
+
+io_result pcm_sink::write(const std::byte* data, std::size_t frames) noexcept
+{
+    const quiet silent;
+    if (paced_)
+        frames = std::min<std::size_t>(frames, pacer_.room());
+    if (frames == 0)
+        return {io_kind::again, 0, 0};
+    const long n = paced_ ? write_paced(data, frames) : snd_pcm_writei(handle_.get(), data, frames);
+    if (n < 0)
+        return {of_error(n, state()), 0, static_cast<int>(n)};
+    const auto taken = static_cast<std::size_t>(n);
+    written_ += taken;
+    if (paced_)
+        pacer_.wrote(taken);
+    // A plugin that is full before its start says 0, not EAGAIN.
+    return {taken == 0 ? io_kind::again : io_kind::ok, taken, 0};
+}
+
+stream_position pcm_sink::position() noexcept
+{
+    const quiet silent;
+    const std::int64_t now = rt::monotonic_ns();
+    if (paced_) {
+        played_ = pacer_.played(now);
+        return {written_, played_, now, true};
+    }
+    if (snd_pcm_status(handle_.get(), status_.get()) < 0 ||
+        snd_pcm_status_get_state(status_.get()) != SND_PCM_STATE_RUNNING)
+        return {written_, played_, now, false};
+    const auto queued =
+        static_cast<std::uint64_t>(std::max<snd_pcm_sframes_t>(snd_pcm_status_get_delay(status_.get()), 0));
+    // The delay may include the DAC's own, which at the start is more than was written.
+    if (queued <= written_)
+        played_ = std::max(played_, written_ - queued);
+    snd_htimestamp_t stamp{};
+    snd_pcm_status_get_htstamp(status_.get(), &stamp);
+    const std::int64_t at = rt::to_ns(stamp);
+    // Plugins may leave the stamp empty or in another clock.
+    const bool sane = at <= now && now - at < 1'000'000'000;
+    seen_ns_ = sane ? at : now;
+    dry_ns_ = seen_ns_ + static_cast<std::int64_t>(queued * 1'000'000'000 / setup_.rate);
+    return {written_, played_, seen_ns_, true};
+}
+
+void pcm_sink::drop() noexcept
+{
+    const quiet silent;
+    snd_pcm_drop(handle_.get());
+}
+
+} // namespace tactor::pcm

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// A configured PCM as a sink.
+#pragma once
+
+#include <optional>
+
+#include <tactor/alsa.hpp>
+
+#include "sink/alsa/handle.hpp"
+#include "sink/pacer.hpp"
+
+namespace tactor::pcm {
+
+/// Frames go to snd_pcm_writei(). A device that turns out at start() to have no clock is paced by a timer.
+class pcm_sink final : public sink {
+public:
+    pcm_sink(handle h, stream_setup s);
+
+    const stream_setup& setup() const noexcept override { return setup_; }
+    io_kind prepare() noexcept override;
+    io_kind start() noexcept override;
+    io_kind resume() noexcept override;
+    std::int64_t xrun_ns() noexcept override;
+    std::size_t max_descriptors() const noexcept override { return max_descriptors_; }
+    std::size_t descriptors(std::span<pollfd> fds) noexcept override;
+    io_kind ready(std::span<pollfd> fds) noexcept override;
+    io_result room() noexcept override;
+    io_result write(const std::byte* data, std::size_t frames) noexcept override;
+    stream_position position() noexcept override;
+    void drop() noexcept override;
+
+private:
+    int state() noexcept { return static_cast<int>(snd_pcm_state(handle_.get())); }
+    long write_paced(const std::byte* data, std::size_t frames) noexcept;
+    bool runs_without_clock() noexcept;
+
+    handle handle_;
+    stream_setup setup_;
+    status status_;
+    rt::pacer pacer_;
+    std::size_t max_descriptors_;
+    std::uint64_t written_ = 0;
+    std::uint64_t played_ = 0;
+    std::int64_t seen_ns_ = 0; ///< when the stream was last seen running
+    std::int64_t dry_ns_ = 0;  ///< when it runs dry, as seen then
+    bool paced_ = false;
+    int poll_error_ = 0; ///< of the latest descriptors()
+};
+
+} // namespace tactor::pcm

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// The public functions of this folder in a library that was built without ALSA (-Dalsa=disabled).
+#include <fmt/format.h>
+
+#include <tactor/alsa.hpp>
+#include <tactor/devices.hpp>
+#include <tactor/error.hpp>
+
+#include "sink/alsa/devices/plain_name.hpp"
+
+namespace tactor {
+namespace {
+
+error without(std::string_view what)
+{
+    return {error_kind::not_available, what, "tactor was built without ALSA",
+            "build it anew with -Dalsa=enabled, where libasound is"};
+}
+
+} // namespace
+
+std::unique_ptr<sink> open_alsa(const alsa_options& o)
+{
+    throw without(fmt::format("PCM \"{}\"", o.pcm));
+}
+
+std::unique_ptr<sink> reopen_alsa(const alsa_options& o, const std::function<bool(double)>&)
+{
+    throw without(fmt::format("PCM \"{}\"", o.pcm));
+}
+
+std::vector<pcm_info> list_pcms(const std::optional<alsa_options>&)
+{
+    throw without("devices");
+}
+
+pcm_route route_of(const std::string&)
+{
+    return {};
+}
+
+// No name leads to a device, so that only its form is left to look at.
+void require_device_name(const std::string& pcm)
+{
+    if (const std::string why = pcm::not_plain(pcm); !why.empty())
+        throw error(error_kind::bad_input, fmt::format("PCM \"{}\"", pcm), why,
+                    "an array file can only name a device, such as hw:CARD=Tactor");
+}
+
+std::optional<card_info> card_of(const std::string&)
+{
+    return {};
+}
+
+std::vector<process_info> card_holders(unsigned)
+{
+    return {};
+}
+
+} // namespace tactor

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+#include <tactor/sink.hpp>
+
+#include "core/refused.hpp"
+#include "sink/pacer.hpp"
+
+namespace tactor {
+namespace {
+
+void check(const char* what, unsigned value, unsigned lo, unsigned hi)
+{
+    if (value < lo || value > hi)
+        throw error(error_kind::bad_input, "paced_sink", fmt::format("{} {} is out of range", value, what),
+                    fmt::format("{} to {}", lo, hi));
+}
+
+stream_setup checked(stream_setup s)
+{
+    constexpr unsigned most_frames = 1U << 24;
+    if (s.period_frames == 0)
+        s.period_frames = 96;
+    if (s.buffer_frames == 0)
+        s.buffer_frames = 3 * s.period_frames;
+    check("channels", s.channels, 1, 16384);
+    check("Hz", s.rate, 8000, 768000);
+    check("frames in a period", s.period_frames, 1, most_frames / 2);
+    check("frames in the buffer", s.buffer_frames, 2 * s.period_frames, most_frames);
+    s.has_clock = false;
+    return s;
+}
+
+rt::pacer make_pacer(const stream_setup& s)
+try {
+    return rt::pacer(s.rate, s.buffer_frames, s.period_frames);
+} catch (const std::system_error& e) {
+    detail::refused_by_system(s.name, e.code().value(), e.what());
+}
+
+} // namespace
+
+struct paced_sink::impl {
+    explicit impl(stream_setup s)
+        : setup(checked(std::move(s))),
+          frame_bytes(setup.channels * bytes_of(setup.format)),
+          pacer(make_pacer(setup))
+    {
+    }
+
+    std::size_t room() noexcept
+    {
+        return running ? static_cast<std::size_t>(pacer.room())
+                       : setup.buffer_frames - static_cast<std::size_t>(written);
+    }
+
+    stream_setup setup;
+    std::size_t frame_bytes;
+    rt::pacer pacer;
+    std::uint64_t written = 0; // in this epoch
+    bool running = false;
+};
+
+paced_sink::paced_sink(stream_setup s) : impl_(std::make_unique<impl>(std::move(s)))
+{
+}
+
+paced_sink::~paced_sink() = default;
+
+const stream_setup& paced_sink::setup() const noexcept
+{
+    return impl_->setup;
+}
+
+io_kind paced_sink::prepare() noexcept
+{
+    impl_->running = false;
+    impl_->written = 0;
+    return io_kind::ok;
+}
+
+io_kind paced_sink::start() noexcept
+{
+    impl_->pacer.start(impl_->written);
+    impl_->running = true;
+    return io_kind::ok;
+}
+
+io_kind paced_sink::resume() noexcept
+{
+    return io_kind::ok;
+}
+
+std::size_t paced_sink::max_descriptors() const noexcept
+{
+    return 1;
+}
+
+std::size_t paced_sink::descriptors(std::span<pollfd> fds) noexcept
+{
+    impl_->pacer.arm();
+    fds[0] = {.fd = impl_->pacer.fd(), .events = POLLIN, .revents = 0};
+    return 1;
+}
+
+io_kind paced_sink::ready(std::span<pollfd>) noexcept
+{
+    return impl_->pacer.due() ? io_kind::ok : io_kind::again;
+}
+
+io_result paced_sink::room() noexcept
+{
+    return {io_kind::ok, impl_->room(), 0};
+}
+
+io_result paced_sink::write(const std::byte* data, std::size_t frames) noexcept
+{
+    const std::size_t all = std::min(frames, impl_->room());
+    for (std::size_t done = 0; done < all;) {
+        const std::size_t n = std::min<std::size_t>(all - done, impl_->setup.period_frames);
+        const io_kind s = take(impl_->written, data + done * impl_->frame_bytes, n);
+        if (s != io_kind::ok)
+            return {s, done, 0};
+        done += n;
+        impl_->written += n;
+        if (impl_->running)
+            impl_->pacer.wrote(n);
+    }
+    return {all == 0 ? io_kind::again : io_kind::ok, all, 0};
+}
+
+stream_position paced_sink::position() noexcept
+{
+    const std::int64_t now = rt::monotonic_ns();
+    const std::uint64_t played = impl_->running ? impl_->pacer.played(now) : 0;
+    return {impl_->written, played, now, impl_->running};
+}
+
+void paced_sink::drop() noexcept
+{
+    impl_->running = false;
+}
+
+} // namespace tactor

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Real time for devices without a clock: null, file over null, and what is built on them.
+#pragma once
+
+#include <cstdint>
+
+#include "rt/clock.hpp"
+#include "sink/virtual_queue.hpp"
+
+namespace tactor::rt {
+
+/// A virtual queue and a timerfd that is readable when a period fits into it.
+class pacer {
+public:
+    /// \throws std::system_error when there is no timer to be had.
+    pacer(unsigned rate, unsigned buffer_frames, unsigned period_frames);
+    ~pacer();
+    pacer(const pacer&) = delete;
+    pacer& operator=(const pacer&) = delete;
+
+    int fd() const noexcept { return fd_; }
+
+    void start(std::uint64_t written) noexcept;
+    void wrote(std::uint64_t frames) noexcept { queue_.wrote(frames); }
+    std::uint64_t played(std::int64_t now) noexcept { return queue_.played(now); }
+    std::uint64_t room() noexcept { return queue_.room(monotonic_ns()); }
+
+    /// Sets the timer to when a period fits; a time in the past makes it readable at once. It stays readable
+    /// until it is set again.
+    void arm() noexcept;
+    /// Whether a period fits.
+    bool due() noexcept { return room() >= period_; }
+
+private:
+    virtual_queue queue_;
+    unsigned period_;
+    int fd_;
+};
+
+} // namespace tactor::rt

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "sink/wav/header.hpp"
+
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+namespace tactor::wav {
+
+namespace {
+
+constexpr std::uint64_t elsewhere = 0xFFFFFFFFU; ///< a size that ds64 has
+constexpr unsigned integer_tag = 1;
+constexpr unsigned float_tag = 3;
+
+bool is_float(format_kind f)
+{
+    return f == format_kind::float32;
+}
+
+void check_format(format_kind f, unsigned channels)
+{
+    if (f == format_kind::s24_4) {
+        throw error(error_kind::bad_input, "sample_format",
+                    fmt::format("a WAV file cannot hold {}", to_string(f)), "use float, s16, s24 or s32");
+    }
+    const std::size_t most = 0xFFFFU / bytes_of(f); // the header has two bytes for those of a frame
+    if (channels > most) {
+        throw error(error_kind::bad_input, "channels",
+                    fmt::format("a WAV file of {} holds {} at most, not {}", to_string(f), most, channels),
+                    "use fewer, or a format with fewer bytes");
+    }
+}
+
+/// Little end first, on any machine.
+std::string number(std::uint64_t value, unsigned bytes)
+{
+    std::string s;
+    for (unsigned i = 0; i < bytes; ++i) {
+        s += static_cast<char>(value >> (8 * i) & 0xFFU);
+    }
+    return s;
+}
+
+std::string chunk(std::string_view name, const std::string& content)
+{
+    return std::string(name) + number(content.size(), 4) + content;
+}
+
+std::string format_chunk(format_kind f, unsigned channels, unsigned rate)
+{
+    const auto bytes = static_cast<unsigned>(bytes_of(f));
+    const std::uint64_t frame = std::uint64_t{channels} * bytes;
+    std::string s = number(is_float(f) ? float_tag : integer_tag, 2) + number(channels, 2) + number(rate, 4) +
+                    number(rate * frame, 4) + number(frame, 2) + number(8ULL * bytes, 2);
+    if (is_float(f)) {
+        s += number(0, 2); // bytes of extension
+    }
+    return chunk("fmt ", s);
+}
+
+} // namespace
+
+std::string header(format_kind f, container c, unsigned channels, unsigned rate, std::uint64_t frames)
+{
+    check_format(f, channels);
+    const bool large = c == container::rf64;
+    const std::uint64_t data = frames * channels * bytes_of(f);
+    std::string chunks = format_chunk(f, channels, rate);
+    if (is_float(f)) {
+        chunks += chunk("fact", number(large ? elsewhere : frames, 4));
+    }
+    constexpr std::uint64_t ds64_bytes = 8 + 28;
+    const std::uint64_t riff = 4 + (large ? ds64_bytes : 0) + chunks.size() + 8 + data + padding(data);
+    std::string s = (large ? "RF64" : "RIFF") + number(large ? elsewhere : riff, 4) + "WAVE";
+    if (large) {
+        s += chunk("ds64", number(riff, 8) + number(data, 8) + number(frames, 8) + number(0, 4));
+    }
+    return s + chunks + "data" + number(large ? elsewhere : data, 4);
+}
+
+} // namespace tactor::wav

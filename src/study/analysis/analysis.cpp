@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+#include "study/analysis/analysis.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <tactor/words.hpp>
+
+#include "study/analysis/cells.hpp"
+
+namespace tactor::study {
+namespace {
+
+// The values of everybody in one row of cells, by motion, and their means over motions.
+by_motion test_row(const std::vector<cell_values>& all, std::size_t row, std::size_t motions, double against)
+{
+    by_motion b;
+    std::vector<double> means;
+    for (const cell_values& v : all)
+        means.push_back(average_of(v[row]));
+    b.all = test_mean(means, against);
+    std::vector<std::optional<double>> p;
+    for (std::size_t m = 0; m < motions; ++m) {
+        std::vector<double> one;
+        for (const cell_values& v : all)
+            one.push_back(v[row][m]);
+        b.motion.push_back(test_mean(one, against));
+        p.push_back(b.motion.back().p);
+    }
+    b.p_holm = holm(p);
+    return b;
+}
+
+cell_table table_of(const std::vector<cell_values>& all, std::size_t from_row, std::size_t rows,
+                    std::size_t motions)
+{
+    cell_table t;
+    t.first_levels = rows;
+    t.second_levels = motions;
+    for (const cell_values& v : all) {
+        std::vector<double> line;
+        for (std::size_t row = from_row; row < from_row + rows; ++row)
+            line.insert(line.end(), v[row].begin(), v[row].end());
+        t.values.push_back(std::move(line));
+    }
+    return t;
+}
+
+std::vector<comparison> pairs_of(const by_motion& b, const effect& e)
+{
+    std::vector<double> means;
+    for (const t_test& t : b.motion) {
+        if (!t.mean)
+            return {};
+        means.push_back(*t.mean);
+    }
+    return tukey(means, b.all.n, e.ms_error, e.df2);
+}
+
+void analyse_values(run_analysis& r, const std::vector<cell_values>& all)
+{
+    const std::size_t motions = r.run.motions.size();
+    const std::size_t rows = r.run.task == task_kind::choose ? 1 : r.run.methods.size();
+    for (std::size_t row = 0; row < rows; ++row)
+        r.cells.push_back(test_row(all, row, motions, chance(r.run)));
+    if (r.run.task == task_kind::identify)
+        return;
+    r.effects = repeated_measures(table_of(all, 0, rows, motions));
+    for (std::size_t row = 0; row < rows; ++row)
+        r.pairs.push_back(pairs_of(r.cells[row], repeated_measures(table_of(all, row, 1, motions)).second));
+    if (r.run.task == task_kind::choose || rows < 2)
+        return;
+    std::vector<double> differences;
+    for (const cell_values& v : all)
+        differences.push_back(*compared_value(r.run, v));
+    r.paired = test_mean(differences, 0.0);
+}
+
+void count_answers(run_analysis& r, const std::vector<const run_data*>& data)
+{
+    const std::size_t motions = r.run.motions.size();
+    r.confusion.assign(r.run.methods.size(),
+                       std::vector<std::vector<std::size_t>>(motions, std::vector<std::size_t>(motions, 0)));
+    for (const run_data* d : data)
+        for (const trial& t : d->trials)
+            ++r.confusion[t.method_1][t.motion][t.response];
+}
+
+run_analysis analyse_run(const dataset& d, std::size_t which)
+{
+    run_analysis r;
+    r.run = d.experiment.runs[which];
+    std::vector<cell_values> all;
+    std::vector<const run_data*> data;
+    std::vector<double> first;
+    for (std::size_t i = 0; i < d.participants.size(); ++i) {
+        const run_data& own = d.data[i][which];
+        r.voids += own.voids;
+        std::optional<cell_values> v = values_of(r.run, own.trials);
+        if (!v) {
+            r.missing.push_back({d.participants[i], own.trials.empty()
+                                                        ? "no trial that counts"
+                                                        : "no trial that counts in some of the cells"});
+            continue;
+        }
+        r.participants.push_back(d.participants[i]);
+        r.trials += own.trials.size();
+        all.push_back(*std::move(v));
+        data.push_back(&own);
+        if (r.run.task == task_kind::choose)
+            first.push_back(first_chosen(own.trials));
+    }
+    r.n = all.size();
+    analyse_values(r, all);
+    if (r.run.task == task_kind::choose)
+        r.first_interval = test_mean(first, 50.0);
+    if (r.run.task == task_kind::identify)
+        count_answers(r, data);
+    return r;
+}
+
+void warn_of_people(analysis& a, const run_analysis& r, const dataset& d, std::size_t which)
+{
+    for (const left_out& l : r.missing)
+        a.warnings.push_back(fmt::format("{}: sub-{} is left out: {}", r.run.name, l.participant, l.why));
+    for (std::size_t i = 0; i < d.participants.size(); ++i) {
+        const std::size_t count = d.data[i][which].trials.size();
+        if (r.run.trials != 0 && count != r.run.trials && count != 0)
+            a.warnings.push_back(fmt::format("{}: sub-{} has {} that count, of {}", r.run.name,
+                                             d.participants[i], counted(count, "trial"), r.run.trials));
+    }
+}
+
+// What is null in the figures, and why.
+void warn_of_figures(analysis& a, const run_analysis& r)
+{
+    const auto warn = [&](const std::string& what, const t_test& t) {
+        if (t.n > 1 && !t.t)
+            a.warnings.push_back(
+                fmt::format("{}: {}: no variance over participants, so no t test", r.run.name, what));
+        if (t.n > 1 && t.t && !t.d_ci)
+            a.warnings.push_back(
+                fmt::format("{}: {}: the effect is too large for an interval", r.run.name, what));
+        if (t.n > 1 && !t.p_signflip)
+            a.warnings.push_back(
+                fmt::format("{}: {}: too many participants for the exact test", r.run.name, what));
+    };
+    const bool tested = r.run.task != task_kind::rate;
+    for (std::size_t row = 0; row < r.cells.size(); ++row) {
+        const std::string of = r.run.task == task_kind::choose ? "" : r.run.methods[row] + ", ";
+        if (tested)
+            warn(of + "all", r.cells[row].all);
+        for (std::size_t m = 0; m < r.cells[row].motion.size(); ++m) {
+            const t_test& t = r.cells[row].motion[m];
+            if (tested)
+                warn(of + r.run.motions[m], t);
+            else if (t.n > 1 && !t.ci)
+                a.warnings.push_back(fmt::format("{}: {}{}: no variance over participants, so no interval",
+                                                 r.run.name, of, r.run.motions[m]));
+        }
+    }
+    warn("first interval", r.first_interval);
+    warn("methods", r.paired);
+    for (const auto& [name, e] : {std::pair<const char*, const effect&>{"method", r.effects.first},
+                                  {"motion", r.effects.second},
+                                  {"method:motion", r.effects.interaction}}) {
+        if (e.ms_error && !e.f)
+            a.warnings.push_back(fmt::format("{}: {}: the error has no variance, so no F", r.run.name, name));
+        else if (e.epsilon_gg && !e.mauchly_w)
+            a.warnings.push_back(
+                fmt::format("{}: {}: too few participants, or too little variance, for Mauchly's test",
+                            r.run.name, name));
+    }
+    for (std::size_t row = 0; row < r.pairs.size(); ++row)
+        if (!r.pairs[row].empty() && !r.pairs[row][0].q && r.n > 1)
+            a.warnings.push_back(
+                fmt::format("{}: {}: the error has no variance, so no Tukey", r.run.name,
+                            r.run.task == task_kind::choose ? "motion" : r.run.methods[row]));
+    if (r.n == 1)
+        a.warnings.push_back(r.run.name + ": one participant: tests need two");
+}
+
+} // namespace
+
+double chance(const run_outline& run) noexcept
+{
+    switch (run.task) {
+    case task_kind::choose:
+        return 50.0;
+    case task_kind::rate:
+        return 0.0;
+    case task_kind::identify:
+        break;
+    }
+    return 100.0 / static_cast<double>(run.motions.size());
+}
+
+analysis analyse(const dataset& d)
+{
+    analysis a;
+    a.experiment = d.experiment.name;
+    a.participants = d.participants.size();
+    a.simulated = d.simulated;
+    a.warnings = d.warnings;
+    for (std::size_t i = 0; i < d.experiment.runs.size(); ++i) {
+        a.runs.push_back(analyse_run(d, i));
+        warn_of_people(a, a.runs.back(), d, i);
+        warn_of_figures(a, a.runs.back());
+    }
+    return a;
+}
+
+} // namespace tactor::study

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What a study says: means, tests and effect sizes, run by run, as values.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/data/dataset.hpp"
+#include "study/statistics/anova.hpp"
+#include "study/statistics/t_test.hpp"
+#include "study/statistics/tukey.hpp"
+
+namespace tactor::study {
+
+/// Something measured for each motion; "all" is of the participants' unweighted means over motions.
+struct by_motion {
+    t_test all = {};
+    std::vector<t_test> motion = {};
+    std::vector<std::optional<double>> p_holm = {}; ///< of the motions' p
+};
+
+/// Somebody whose trials of a run are not in its figures.
+struct left_out {
+    std::string participant;
+    std::string why;
+};
+
+struct run_analysis {
+    run_outline run;
+    std::size_t n = 0; ///< participants with a trial that counts in each cell
+    std::vector<std::string> participants = {};
+    std::vector<left_out> missing = {};
+    std::size_t trials = 0; ///< that count, of the n
+    std::size_t voids = 0;  ///< of everybody who was selected
+
+    /// choose: per cent of trials in which the last method was chosen, against 50.
+    /// rate: mean ratings by method, not tested. identify: per cent correct by method, against chance.
+    std::vector<by_motion> cells = {};
+    /// choose: per cent of trials in which the first interval was chosen, against 50.
+    t_test first_interval = {};
+    /// rate, two methods or more: the last less the first, over all motions, against 0.
+    t_test paired = {};
+    /// choose: `second` is of motions. rate: `first` of methods, `second` of motions.
+    anova effects = {};
+    /// Pairs of motions: choose: one list. rate: one for each method, from that method's own one-way
+    /// analysis.
+    std::vector<std::vector<comparison>> pairs = {};
+    /// identify: answers by method, motion and motion answered, all participants.
+    std::vector<std::vector<std::vector<std::size_t>>> confusion = {};
+};
+
+struct analysis {
+    std::string experiment; ///< its name
+    std::size_t participants = 0;
+    bool simulated = false;
+    std::vector<run_analysis> runs = {};
+    std::vector<std::string> warnings = {};
+};
+
+/// The per cent that guessing gives.
+double chance(const run_outline& run) noexcept;
+
+analysis analyse(const dataset& d);
+
+} // namespace tactor::study

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "study/bids/describe.hpp"
+
+#include <array>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <tactor/version.hpp>
+
+namespace tactor::study {
+namespace {
+
+using ordered = nlohmann::ordered_json;
+
+constexpr const char* simulated_note = "SIMULATED: nobody was asked. The answers come from a model; they "
+                                       "test the software and say nothing about people.";
+
+std::string description_text(const ordered& j)
+{
+    return j.dump(2, ' ', false, ordered::error_handler_t::replace) + "\n";
+}
+
+ordered column_json(const char* description, const char* units = nullptr)
+{
+    ordered j{{"Description", description}};
+    if (units != nullptr)
+        j["Units"] = units;
+    return j;
+}
+
+std::string response_meaning(const run_definition& r)
+{
+    switch (r.outline.task) {
+    case task_kind::choose:
+        return "Which of the two stimuli was chosen, 1 or 2";
+    case task_kind::rate:
+        return fmt::format("The rating, 1 to {}", r.outline.scale);
+    case task_kind::identify:
+        break;
+    }
+    return "The motion that was named";
+}
+
+} // namespace
+
+std::string dataset_text(const experiment_definition& d, bool simulated)
+{
+    ordered j{{"Name", d.title + (simulated ? " (simulated)" : "")},
+              {"BIDSVersion", "1.8.0"},
+              {"DatasetType", "raw"}};
+    j["Authors"] = d.authors;
+    j["GeneratedBy"] = {
+        {{"Name", "tactor"},
+         {"Version", std::string(version())},
+         {"Description", simulated ? std::string("tactor experiment --simulate. ") + simulated_note
+                                   : std::string("tactor experiment")}}};
+    return description_text(j);
+}
+
+std::string readme_text(const experiment_definition& d, bool simulated)
+{
+    return fmt::format(
+        "{}\n\n{}"
+        "This folder was written by tactor experiment (definition: {}). Vibrations moved over the skin, and "
+        "after\n"
+        "each trial a question was answered; each run is a task of its own, and sub-CODE/beh has a line for "
+        "each\n"
+        "trial. What the columns mean is in task-NAME_beh.json. The definition, the array, the levels and "
+        "each\n"
+        "stimulus, named by the SHA-256 of its plan, are in sourcedata. Trials whose column void is true "
+        "were\n"
+        "played or answered under conditions that were not as planned; they do not count, and came again.\n"
+        "tactor analyze prints the statistics.\n",
+        d.title, simulated ? std::string(simulated_note) + "\n\n" : std::string(), d.name);
+}
+
+std::string participants_text(bool simulated)
+{
+    ordered j;
+    j["participant_id"] =
+        column_json(simulated ? simulated_note : "A code, which says nothing about who it is");
+    j["age"] = column_json("Age", "years");
+    j["sex"] = column_json("Sex, as the participant says");
+    j["sex"]["Levels"] = {{"F", "female"}, {"M", "male"}, {"O", "other"}};
+    j["handedness"] = column_json("Hand that the participant prefers");
+    j["handedness"]["Levels"] = {{"R", "right"}, {"L", "left"}, {"A", "both"}};
+    return description_text(j);
+}
+
+std::string task_text(const run_definition& r, bool simulated)
+{
+    ordered j{{"TaskName", r.outline.name}};
+    j["TaskDescription"] = fmt::format(
+        "{}{}", simulated ? std::string(simulated_note) + " " : "",
+        r.outline.task == task_kind::choose ? "Two stimuli, one after the other, of which one is chosen"
+        : r.outline.task == task_kind::rate ? "One stimulus, which is rated"
+                                            : "One stimulus, whose motion is named");
+    j["Instructions"] = r.question;
+    if (!r.labels.empty())
+        j["Labels"] = r.labels;
+    j["onset"] =
+        column_json("First frame of the first stimulus at the DAC, since the run's first sample there", "s");
+    j["duration"] = column_json(
+        "From the first frame of the first stimulus to the last of the last, the gap included", "s");
+    j["trial"] = column_json("Place in the sequence, from 1; a trial that comes again keeps it");
+    j["attempt"] = column_json("How often the trial has been begun");
+    j["motion"] = column_json("Target motion; the methods are how it was rendered");
+    j["method_1"] = column_json("Method of the first stimulus");
+    j["method_2"] = column_json("Method of the second stimulus; n/a where there is one only");
+    j["response"] = column_json(response_meaning(r).c_str());
+    j["response_time"] = column_json("From the last stimulus frame at the DAC to the answer", "s");
+    j["rating"] = column_json("The rating; n/a where nothing is rated");
+    j["void"] = column_json("Whether the trial does not count: it came again at the end of the run");
+    j["void"]["Levels"] = {{"true", "does not count"}, {"false", "counts"}};
+    j["xruns"] = column_json("Gaps in the sound while the stimuli played, as the device tells them");
+    j["stream"] = column_json("Counts openings of the device, from 1");
+    j["frame_1"] = column_json("First frame of the first stimulus in that stream");
+    j["frame_2"] = column_json("First frame of the second stimulus in that stream");
+    j["plan_1"] = column_json("SHA-256 of the first stimulus' plan: sourcedata/sub-CODE/plans");
+    j["plan_2"] = column_json("SHA-256 of the second stimulus' plan");
+    return description_text(j);
+}
+
+} // namespace tactor::study

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include "study/bids/disk.hpp"
+
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <tactor/error.hpp>
+
+#include "files/output_file.hpp"
+#include "study/data/kept.hpp"
+
+namespace tactor::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail_on_disk(const fs::path& file, int code)
+{
+    throw error(error_kind::runtime, file.string(), std::strerror(code), what_is_kept(code));
+}
+
+// A name must survive a power cut, too; not every file system can say that it did.
+void sync_names(const fs::path& folder) noexcept
+{
+    const int fd = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd >= 0) {
+        ::fsync(fd);
+        ::close(fd);
+    }
+}
+
+class descriptor {
+public:
+    descriptor(const fs::path& file, int flags) : fd_(::open(file.c_str(), flags | O_CLOEXEC | O_NOFOLLOW))
+    {
+        if (fd_ < 0)
+            fail_on_disk(file, errno);
+    }
+    ~descriptor() { ::close(fd_); }
+    descriptor(const descriptor&) = delete;
+    descriptor& operator=(const descriptor&) = delete;
+
+    int get() const noexcept { return fd_; }
+
+private:
+    int fd_;
+};
+
+// 0, or an errno.
+int write_to_disk(int fd, std::string_view text)
+{
+    while (!text.empty()) {
+        const ssize_t n = ::write(fd, text.data(), text.size());
+        if (n > 0)
+            text.remove_prefix(static_cast<std::size_t>(n));
+        else if (n == 0 || errno != EINTR)
+            return n == 0 ? ENOSPC : errno;
+    }
+    return ::fsync(fd) == 0 ? 0 : errno;
+}
+
+} // namespace
+
+void write_whole(const fs::path& file, std::string_view text)
+{
+    detail::output_file out(file);
+    out.write(text.data(), static_cast<std::int64_t>(text.size()));
+    if (out.failure() != 0)
+        fail_on_disk(file, out.failure());
+    out.commit();
+    sync_names(file.parent_path());
+}
+
+void append_line(const fs::path& file, std::string_view line)
+{
+    const descriptor d(file, O_WRONLY | O_APPEND);
+    struct stat before {};
+    if (::fstat(d.get(), &before) != 0)
+        fail_on_disk(file, errno);
+    if (const int code = write_to_disk(d.get(), std::string(line) + '\n')) {
+        [[maybe_unused]] const int ignored = ::ftruncate(d.get(), before.st_size);
+        fail_on_disk(file, code);
+    }
+}
+
+void cut_broken_line(const fs::path& file)
+{
+    const descriptor d(file, O_RDWR);
+    struct stat is {};
+    if (::fstat(d.get(), &is) != 0)
+        fail_on_disk(file, errno);
+    off_t end = is.st_size;
+    for (char last = '\0'; end > 0; --end) {
+        if (::pread(d.get(), &last, 1, end - 1) != 1)
+            fail_on_disk(file, errno);
+        if (last == '\n')
+            break;
+    }
+    if (end != is.st_size && (::ftruncate(d.get(), end) != 0 || ::fsync(d.get()) != 0))
+        fail_on_disk(file, errno);
+}
+
+bool there(const fs::path& p) noexcept
+{
+    std::error_code ignored;
+    return fs::exists(fs::symlink_status(p, ignored));
+}
+
+void make_folder(const fs::path& folder)
+{
+    if (::mkdir(folder.c_str(), 0777) == 0) {
+        sync_names(folder.parent_path());
+        return;
+    }
+    const int code = errno;
+    std::error_code ignored;
+    if (code == ENOSPC || code == EDQUOT)
+        fail_on_disk(folder, code);
+    if (code != EEXIST || !fs::is_directory(folder, ignored))
+        throw error(error_kind::runtime, folder.string(), std::strerror(code == EEXIST ? ENOTDIR : code),
+                    "name a folder that can be written");
+}
+
+void remove_leftovers(const fs::path& folder) noexcept
+{
+    std::error_code failed;
+    std::vector<fs::path> old;
+    for (fs::directory_iterator i(folder, failed), end; !failed && i != end; i.increment(failed)) {
+        const std::string name = i->path().filename().string();
+        if (name.starts_with('.') && name.ends_with(".part"))
+            old.push_back(i->path());
+    }
+    for (const fs::path& p : old)
+        fs::remove(p, failed);
+}
+
+folder_lock::folder_lock(const fs::path& folder)
+    : fd_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC))
+{
+    if (fd_ < 0)
+        throw error(error_kind::runtime, folder.string(), std::strerror(errno),
+                    "name a folder that can be read and written");
+    if (::flock(fd_, LOCK_EX | LOCK_NB) == 0)
+        return;
+    const int code = errno;
+    ::close(fd_);
+    if (code == EWOULDBLOCK)
+        throw error(error_kind::bad_input, folder.string(), "another session is running in this folder",
+                    "end that one first; two experimenters need a folder each");
+    throw error(error_kind::runtime, folder.string(), std::strerror(code),
+                "name a folder that can be locked");
+}
+
+folder_lock::~folder_lock()
+{
+    ::close(fd_);
+}
+
+} // namespace tactor::study

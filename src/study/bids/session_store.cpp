@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: MIT
+#include "study/bids/session_store.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "study/data/text_table.hpp"
+
+namespace tactor::study {
+namespace {
+
+namespace fs = std::filesystem;
+using ordered = nlohmann::ordered_json;
+
+// What says when and with what a session was held, not what was held.
+constexpr std::array<std::string_view, 7> may_differ{
+    "date", "versions", "device", "streams", "sound_server", "masker_sound_server", "walk"};
+
+// Enough for a trial's line and the tables that it may have to make.
+constexpr std::size_t reserved_bytes = std::size_t{64} << 10;
+
+// The first holds these, and each gives up a place for a file's name: a disk or a quota may be out of those,
+// too. The first answer of all takes two folders and three tables.
+constexpr std::array<const char*, 5> reserved{".reserve", ".reserve-2", ".reserve-3", ".reserve-4",
+                                              ".reserve-5"};
+
+std::string session_text(const ordered& j)
+{
+    return j.dump(2, ' ', false, ordered::error_handler_t::replace) + "\n";
+}
+
+// A value, where it is short enough to be shown.
+std::string brief(const ordered& j, const std::string& key)
+{
+    const std::string text = j.contains(key) ? j[key].dump() : "nothing";
+    constexpr std::size_t longest = 60;
+    return text.size() > longest ? std::string("another") : text;
+}
+
+} // namespace
+
+session_store::session_store(study_folder& folder, std::string code, const ordered& facts, bool resume)
+    : folder_(folder),
+      code_(std::move(code)),
+      facts_(facts),
+      source_(folder.path() / "sourcedata" / ("sub-" + code_))
+{
+    settle(resume);
+}
+
+session_store::~session_store()
+{
+    release();
+}
+
+void session_store::settle(bool resume)
+{
+    const fs::path file = source_ / "session.json";
+    const fs::path data = folder_.path() / ("sub-" + code_) / "beh";
+    for (const fs::path& p : {source_, source_ / "plans", data.parent_path(), data})
+        remove_leftovers(p);
+    if (!there(file)) {
+        if (there(data))
+            throw error(error_kind::bad_input, file.string(),
+                        fmt::format("it is missing, and sub-{} has data", code_),
+                        "put it back, or choose another code");
+        return;
+    }
+    if (!resume)
+        throw error(error_kind::bad_input, "--participant",
+                    fmt::format("there is a session of {} already", code_),
+                    "--resume goes on with it; somebody else needs another code");
+    const ordered began = ordered::parse(read_file(file), nullptr, false);
+    if (!began.is_object())
+        throw error(error_kind::bad_input, file.string(), "it is no JSON", "it was changed");
+    for (const auto& [key, value] : facts_.items()) {
+        const bool any = std::find(may_differ.begin(), may_differ.end(), key) != may_differ.end();
+        if (!any && (!began.contains(key) || began[key] != value))
+            throw error(error_kind::bad_input, file.string(),
+                        fmt::format("the session was begun with {} {}, and now it is {}", key,
+                                    brief(began, key), brief(facts_, key)),
+                        "a session goes on as it was begun");
+    }
+    facts_ = began;
+    resumed_ = true;
+}
+
+void session_store::begin(const std::vector<const stimulus*>& stimuli)
+{
+    make_folder(folder_.path() / "sourcedata");
+    make_folder(source_);
+    make_folder(source_ / "plans");
+    reserve();
+    for (const stimulus* s : stimuli) {
+        const fs::path file = source_ / "plans" / (s->hash + ".json");
+        if (!there(file))
+            write_whole(file, s->text);
+    }
+    if (!resumed_)
+        write_whole(source_ / "session.json", session_text(facts_));
+}
+
+fs::path session_store::table_of(const run_definition& r) const
+{
+    return folder_.path() / ("sub-" + code_) / "beh" /
+           fmt::format("sub-{}_task-{}_beh.tsv", code_, r.outline.file_name);
+}
+
+std::vector<trial_row> session_store::rows(const run_definition& r) const
+{
+    const fs::path table = table_of(r);
+    if (!there(table))
+        return {};
+    cut_broken_line(table);
+    return read_rows(text_table(table));
+}
+
+std::vector<trial_row> session_store::practice_rows(const run_definition& r) const
+{
+    const fs::path table = source_ / "practice.tsv";
+    if (!there(table))
+        return {};
+    cut_broken_line(table);
+    const text_table t(table);
+    std::vector<trial_row> all = read_rows(t);
+    std::vector<trial_row> own;
+    for (std::size_t i = 0; i < t.rows(); ++i)
+        if (t.need(i, "run") == r.outline.name)
+            own.push_back(std::move(all[i]));
+    return own;
+}
+
+void session_store::append(const run_definition& r, const trial_row& row, const std::string& acq_time)
+{
+    const fs::path table = table_of(r);
+    keeping([&] {
+        if (there(table)) {
+            append_line(table, row_line(row));
+            return;
+        }
+        const fs::path own = folder_.path() / ("sub-" + code_);
+        make_folder(own);
+        make_folder(own / "beh");
+        folder_.add_participant(code_);
+        folder_.add_scan(code_, "beh/" + table.filename().string(), acq_time);
+        write_whole(table, row_header() + "\n" + row_line(row) + "\n");
+    });
+}
+
+void session_store::append_practice(const run_definition& r, const trial_row& row)
+{
+    const fs::path table = source_ / "practice.tsv";
+    const std::string line = r.outline.name + "\t" + row_line(row);
+    keeping([&] {
+        if (there(table))
+            append_line(table, line);
+        else
+            write_whole(table, "run\t" + row_header() + "\n" + line + "\n");
+    });
+}
+
+void session_store::replace_last(const run_definition& r, const trial_row& row)
+{
+    const fs::path table = table_of(r);
+    std::string text = read_file(table);
+    text.erase(text.rfind('\n', text.size() - 2) + 1);
+    keeping([&] { write_whole(table, text + row_line(row) + "\n"); });
+}
+
+std::optional<std::string> session_store::acq_time(const run_definition& r) const
+{
+    return folder_.scan_time(code_, "beh/" + table_of(r).filename().string());
+}
+
+void session_store::note(const std::string& key, const ordered& value)
+{
+    facts_[key] = value;
+    write_whole(source_ / "session.json", session_text(facts_));
+}
+
+// Room on the disk that is given up for an answer which would be lost otherwise.
+void session_store::reserve()
+{
+    for (const char* name : reserved)
+        if (const fs::path file = source_ / name; !there(file))
+            write_whole(file, std::string(name == reserved.front() ? reserved_bytes : 0, '\n'));
+}
+
+void session_store::release() noexcept
+{
+    std::error_code ignored;
+    for (const char* name : reserved)
+        fs::remove(source_ / name, ignored);
+}
+
+void session_store::keeping(const std::function<void()>& write)
+{
+    try {
+        write();
+    } catch (const error& e) {
+        if (!there(source_ / reserved.front()))
+            throw;
+        release();
+        write();
+        throw error(error_kind::runtime, e.subject(), e.why(),
+                    "the last answer is kept; make room, and --resume goes on");
+    }
+}
+
+} // namespace tactor::study

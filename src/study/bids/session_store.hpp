@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// One participant's session on the disk: what it began with, its stimuli, and its trials, each of which is
+/// there before the next begins.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "study/bids/study_folder.hpp"
+#include "study/bids/trial_row.hpp"
+#include "study/experiment/run_queue.hpp"
+#include "study/experiment/stimuli.hpp"
+
+namespace tactor::study {
+
+class session_store {
+public:
+    /// `facts` is what session.json will say. Of a session that is there, all must be alike but what
+    /// `may_differ` lists.
+    /// \throws error: bad_input where there is a session of this participant (and not `resume`), or it began
+    ///         otherwise; runtime for what the system refuses.
+    session_store(study_folder& folder, std::string code, const nlohmann::ordered_json& facts, bool resume);
+    ~session_store();
+    session_store(const session_store&) = delete;
+    session_store& operator=(const session_store&) = delete;
+
+    /// Writes session.json, where it is not there, and each plan under its hash.
+    void begin(const std::vector<const stimulus*>& stimuli);
+
+    /// Whether this session goes on with one that was begun.
+    bool resumed() const noexcept { return resumed_; }
+
+    /// The lines of a run's table so far; and those of the practice before it.
+    std::vector<trial_row> rows(const run_definition& r) const;
+    std::vector<trial_row> practice_rows(const run_definition& r) const;
+
+    /// Adds a line; it is on the disk when this returns. The first of a run makes the table, and enters
+    /// participant and run into their lists; `acq_time` is of the run's first sample.
+    /// \throws error (runtime): where the disk is full, after the line was written to what was kept for it.
+    void append(const run_definition& r, const trial_row& row, const std::string& acq_time);
+    void append_practice(const run_definition& r, const trial_row& row);
+
+    /// The run's last line does not count: `row` in its place, whole, or not at all. \throws error (runtime).
+    void replace_last(const run_definition& r, const trial_row& row);
+    /// What append() was told of the run's first sample; nothing before it was.
+    std::optional<std::string> acq_time(const run_definition& r) const;
+
+    /// Rewrites session.json with this key changed.
+    void note(const std::string& key, const nlohmann::ordered_json& value);
+    const nlohmann::ordered_json& facts() const noexcept { return facts_; }
+
+private:
+    std::filesystem::path table_of(const run_definition& r) const;
+    void settle(bool resume);
+    void reserve();
+    void release() noexcept;
+    void keeping(const std::function<void()>& write);
+
+    study_folder& folder_;
+    std::string code_;
+    nlohmann::ordered_json facts_;
+    std::filesystem::path source_; ///< sourcedata/sub-CODE
+    bool resumed_ = false;
+};
+
+} // namespace tactor::study

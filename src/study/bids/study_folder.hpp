@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The folder of a study (BIDS), as it is written: what is of the study, and the lists of people and runs.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "study/bids/disk.hpp"
+#include "study/experiment/definition.hpp"
+
+namespace tactor::study {
+
+/// Letters and digits. \throws error (bad_input) for any other code of a participant.
+void check_code(const std::string& code);
+
+/// Holds the folder, alone, as long as it lives. One thread.
+class study_folder {
+public:
+    /// Makes the folder, or takes one that is a study's, and writes what is of the study where it is not
+    /// there yet: dataset_description.json, README, participants.json, a description of each run's table.
+    /// \throws error: bad_input where the folder has other things in it, another session is running in it, or
+    ///         somebody in it had another experiment, or was real where this is simulated, or the other way
+    ///         round; runtime for what the system refuses.
+    study_folder(std::filesystem::path folder, const experiment_definition& d, bool simulated);
+
+    const std::filesystem::path& path() const noexcept { return folder_; }
+
+    /// Adds a line to participants.tsv, with n/a in what it asks besides; nothing where there is one.
+    void add_participant(const std::string& code);
+
+    /// Enters a run's table, whose name counts from sub-CODE on, into sub-CODE_scans.tsv, or its time anew.
+    void add_scan(const std::string& code, const std::string& file_name, const std::string& acq_time);
+
+    /// The time that add_scan() entered for a table; nothing where there is none.
+    std::optional<std::string> scan_time(const std::string& code, const std::string& file_name) const;
+
+private:
+    void refuse_others(const experiment_definition& d, bool simulated) const;
+    void describe(const experiment_definition& d, bool simulated) const;
+    std::filesystem::path scans_of(const std::string& code) const;
+
+    std::filesystem::path folder_;
+    folder_lock lock_;
+};
+
+} // namespace tactor::study

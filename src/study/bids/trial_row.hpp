@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// A trial as a line of sub-CODE_task-NAME_beh.tsv.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/data/text_table.hpp"
+
+namespace tactor::study {
+
+/// Empty texts and missing values are n/a.
+struct trial_row {
+    std::optional<double> onset_s = {}; ///< since the run's first sample at the DAC
+    double duration_s = 0.0;            ///< from the first stimulus frame to the last, the gap included
+    unsigned trial = 0;                 ///< place in the sequence, from 1
+    unsigned attempt = 1;
+    std::string motion = {};
+    std::string method_1 = {};
+    std::string method_2 = {};
+    std::string response = {};
+    std::optional<double> response_time_s = {};
+    std::optional<unsigned> rating = {};
+    bool is_void = false;
+    unsigned xruns = 0;
+    unsigned stream = 0; ///< counts openings of the device, from 1
+    std::optional<std::uint64_t> frame_1 = {};
+    std::optional<std::uint64_t> frame_2 = {};
+    std::string plan_1 = {}; ///< SHA-256
+    std::string plan_2 = {};
+};
+
+/// The names of the columns, with tabs between, without a line end.
+std::string row_header();
+std::string row_line(const trial_row& r);
+
+/// All lines of a table. \throws error (bad_input) with file and line.
+std::vector<trial_row> read_rows(const text_table& t);
+
+} // namespace tactor::study

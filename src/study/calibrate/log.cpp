@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+#include "study/calibrate/log.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <tactor/error.hpp>
+
+#include "files/output_file.hpp"
+#include "study/data/kept.hpp"
+#include "study/data/text_table.hpp"
+
+namespace tactor::study {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+// The log's own name must survive a power cut, too; not every file system can.
+void sync_folder_of(const fs::path& file) noexcept
+{
+    const fs::path folder = file.parent_path().empty() ? fs::path(".") : file.parent_path();
+    const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd >= 0) {
+        ::fsync(fd);
+        ::close(fd);
+    }
+}
+
+json parse_settings(const fs::path& file)
+{
+    json j = json::parse(read_file(file), nullptr, false);
+    if (!j.is_object() || !j.contains("date") || !j["date"].is_string())
+        throw error(error_kind::bad_input, file.string(), "it does not say how a calibration was begun",
+                    "begin another, with another log");
+    return j;
+}
+
+// The date is that of the beginning; all else must be alike.
+void take_beginning(const fs::path& file, calibration_settings& s)
+{
+    const json began = parse_settings(file);
+    s.date = began["date"].get<std::string>();
+    const json now = json::parse(settings_text(s));
+    for (const auto& [key, value] : now.items())
+        if (!began.contains(key) || began[key] != value)
+            throw error(error_kind::bad_input, file.string(),
+                        fmt::format("the session was begun with {} {}, and {} is asked for", key,
+                                    began.contains(key) ? began[key].dump() : "unknown", value.dump()),
+                        "a session goes on as it was begun");
+}
+
+} // namespace
+
+fs::path settings_file(const fs::path& log)
+{
+    return fs::path(log).replace_extension(".json");
+}
+
+calibration_log::calibration_log(fs::path file, bool resume, calibration_settings& s)
+    : file_(std::move(file)), synced_(s.simulate.empty())
+{
+    try {
+        open();
+        settle(resume, s);
+    } catch (...) {
+        if (fd_ >= 0)
+            ::close(fd_);
+        throw;
+    }
+}
+
+calibration_log::~calibration_log()
+{
+    ::close(fd_);
+}
+
+void calibration_log::fail(int code) const
+{
+    throw error(error_kind::runtime, file_.string(), std::strerror(code), what_is_kept(code));
+}
+
+// O_NONBLOCK: somebody's pipe is not waited for.
+void calibration_log::open()
+{
+    fd_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW, 0666);
+    struct stat is {};
+    if (fd_ < 0)
+        throw error(error_kind::runtime, file_.string(), std::strerror(errno),
+                    "name a log that can be written");
+    if (::fstat(fd_, &is) != 0 || !S_ISREG(is.st_mode))
+        throw error(error_kind::bad_input, file_.string(), "it is no regular file", "name another log");
+    if (::flock(fd_, LOCK_EX | LOCK_NB) != 0)
+        throw error(error_kind::bad_input, file_.string(), "another session is writing it",
+                    "end that one first, or name another log");
+}
+
+void calibration_log::settle(bool resume, calibration_settings& s)
+{
+    const fs::path beginning = settings_file(file_);
+    std::error_code ignored;
+    const bool begun = fs::exists(fs::symlink_status(beginning, ignored));
+    const std::string text = take_whole_lines();
+    // One in which nothing was answered, as where the device was not there, is begun anew.
+    if (!resume && !lines_.empty())
+        throw error(error_kind::bad_input, file_.string(), "there is such a file already",
+                    "--resume goes on with the session that it is of; another needs other names");
+    if (begun && resume) {
+        take_beginning(beginning, s);
+    } else if (!lines_.empty()) {
+        throw error(error_kind::bad_input, beginning.string(),
+                    "it is missing, which says how the log was begun", "begin another, with another log");
+    } else {
+        if (begun)
+            parse_settings(beginning); // another's is not overwritten
+        const std::string said = settings_text(s);
+        detail::output_file out(beginning);
+        out.write(said.data(), static_cast<std::int64_t>(said.size()));
+        out.commit();
+    }
+    if (text.empty())
+        write(fmt::format("{}\n", log_header()));
+    if (synced_)
+        sync_folder_of(file_);
+}
+
+// The file's text up to its last line end; the rest, which a crash left, is cut off.
+std::string calibration_log::take_whole_lines()
+{
+    std::string text = read_file(file_);
+    const std::size_t whole = text.rfind('\n') == text.npos ? 0 : text.rfind('\n') + 1;
+    const std::string_view header = log_header();
+    const std::string_view begin = std::string_view(text).substr(0, header.size());
+    if (begin != header.substr(0, begin.size()) || (whole > 0 && text.find('\n') != header.size()))
+        throw error(error_kind::bad_input, file_.string(), "it is no log of a calibration",
+                    "name another log");
+    if (whole < text.size() && ::ftruncate(fd_, static_cast<off_t>(whole)) != 0)
+        fail(errno);
+    text.resize(whole);
+    if (::lseek(fd_, 0, SEEK_END) < 0)
+        fail(errno);
+    for (std::size_t at = std::min(header.size() + 1, text.size()); at < text.size();) {
+        const std::size_t end = text.find('\n', at);
+        lines_.push_back(text.substr(at, end - at));
+        at = end + 1;
+    }
+    return text;
+}
+
+void calibration_log::write(const std::string& text)
+{
+    for (std::size_t done = 0; done < text.size();) {
+        const ssize_t n = ::write(fd_, text.data() + done, text.size() - done);
+        if (n > 0)
+            done += static_cast<std::size_t>(n);
+        else if (n == 0 || errno != EINTR)
+            fail(n == 0 ? ENOSPC : errno);
+    }
+    if (synced_ && ::fdatasync(fd_) != 0)
+        fail(errno);
+}
+
+void calibration_log::append(const calibration_record& r)
+{
+    write(log_line(r) + '\n');
+}
+
+} // namespace tactor::study

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The log of a calibration: a line a trial, on the disk before the next one begins; and beside it how the
+/// session was begun, so that one that goes on is the same.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "study/calibrate/calibration.hpp"
+#include "study/calibrate/observer.hpp"
+
+namespace tactor::study {
+
+/// The first line, without its end.
+std::string_view log_header();
+std::string log_line(const calibration_record& r);
+
+/// What a session is begun with, as JSON.
+std::string settings_text(const calibration_settings& s);
+
+/// The file that says it: that of the log with the extension .json.
+std::filesystem::path settings_file(const std::filesystem::path& log);
+
+class calibration_log {
+public:
+    /// Opens and locks the log, and settles how the session began: a new one writes `s` beside it, one that
+    /// resumes takes its date from there. What a crash left of a line is cut off.
+    /// \throws error: bad_input where a log is there already (not `resume`), it is in use, it is none, or
+    ///         it was begun otherwise; runtime for what the system refuses.
+    calibration_log(std::filesystem::path file, bool resume, calibration_settings& s);
+    ~calibration_log();
+    calibration_log(const calibration_log&) = delete;
+    calibration_log& operator=(const calibration_log&) = delete;
+
+    /// The lines that were there.
+    const std::vector<std::string>& lines() const noexcept { return lines_; }
+    const std::filesystem::path& file() const noexcept { return file_; }
+    /// Appends a line; it is on the disk when this returns, but of a simulated session, which can be had
+    /// again, only written. \throws error (runtime).
+    void append(const calibration_record& r);
+
+private:
+    void open();
+    std::string take_whole_lines();
+    void settle(bool resume, calibration_settings& s);
+    void write(const std::string& text);
+    [[noreturn]] void fail(int code) const;
+
+    std::filesystem::path file_;
+    int fd_ = -1;
+    bool synced_;
+    std::vector<std::string> lines_ = {};
+};
+
+/// Gives the lines' answers to a session that begins; a simulated observer is asked each of them too, so that
+/// it goes on where it was. \throws error (bad_input) with file and line where they are not of this session.
+void replay(calibration& c, const calibration_log& log, observer* simulated);
+
+} // namespace tactor::study

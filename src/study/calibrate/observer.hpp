@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// A simulated observer. It tests the chain; it says nothing about people.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "study/calibrate/calibration.hpp"
+#include "study/random/random.hpp"
+
+namespace tactor::study {
+
+struct observer_settings {
+    std::vector<double> thresholds_dbfs = {}; ///< one for all, or one for each tactor that is measured
+    double spread_db = 2.0;
+    double lapse = 0.0; ///< 0 to 0.5
+};
+
+/// "threshold=-45,spread=2,lapse=0.02"; threshold=-45,-50,... is a list. `measured` are the tactors that are
+/// measured, of `all` that the array has: a list has as many entries as the one or the other.
+/// \throws error (bad_input) naming simulate.
+observer_settings parse_observer(std::string_view text, const std::vector<unsigned>& measured,
+                                 std::size_t all);
+
+/// How likely a right answer is: 0.5 + (0.5 - lapse) Phi((level - threshold) / spread).
+double right_at(const observer_settings& o, double threshold_dbfs, double level_dbfs);
+
+/// Answers trials in the order in which they are asked; one that resumes must be asked them all again.
+class observer {
+public:
+    observer(observer_settings o, const calibration_settings& s);
+
+    calibration_answer answer(const calibration_trial& t);
+
+private:
+    double threshold_of(unsigned tactor) const;
+    calibration_answer adjust(const calibration_trial& t);
+
+    observer_settings o_;
+    std::vector<unsigned> tactors_;
+    random_numbers r_;
+};
+
+} // namespace tactor::study

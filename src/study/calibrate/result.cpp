@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+#include "study/calibrate/result.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <tactor/error.hpp>
+
+#include "files/output_file.hpp"
+#include "study/data/kept.hpp"
+
+namespace tactor::study {
+namespace {
+
+std::string toml_string(std::string_view s)
+{
+    std::string q = "\"";
+    for (const char c : s) {
+        if (c == '"' || c == '\\')
+            q += fmt::format("\\{}", c);
+        else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+            q += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
+        else
+            q += c;
+    }
+    return q + '"';
+}
+
+std::string line_text(const gpio_line_name& l)
+{
+    if (!l.name.empty())
+        return fmt::format("name = {}", toml_string(l.name));
+    return fmt::format("chip = {}, offset = {}", toml_string(l.chip), l.offset.value_or(0));
+}
+
+// The file says milliseconds.
+double ms(double s)
+{
+    return s * 1e3;
+}
+
+template <typename T>
+void add(std::string& to, std::string_view key, const std::optional<T>& v)
+{
+    if (v)
+        to += fmt::format("{} = {}\n", key, *v);
+}
+
+std::string output_text(const output_settings& o)
+{
+    std::string s;
+    if (o.pcm)
+        s += fmt::format("pcm = {}\n", toml_string(*o.pcm));
+    add(s, "rate", o.rate);
+    add(s, "channels", o.channels);
+    add(s, "period_frames", o.period_frames);
+    add(s, "periods", o.periods);
+    return s.empty() ? s : "\n[output]\n" + s;
+}
+
+std::string lines_text(const setup& u)
+{
+    std::string s;
+    if (u.amplifier)
+        s += fmt::format("\n[amplifier]\nline = {{ {} }}\nactive_low = {}\nsettle_ms = {}\n",
+                         line_text(u.amplifier->line), u.amplifier->active_low, ms(u.amplifier->settle_s));
+    if (!u.sync)
+        return s;
+    s += "\n[sync]\n";
+    if (u.sync->out)
+        s += fmt::format("out = {{ {}, pulse_ms = {} }}\n", line_text(*u.sync->out), ms(u.sync->pulse_s));
+    add(s, "channel", u.sync->channel);
+    if (u.sync->in)
+        s += fmt::format("in = {{ {}, edge = \"{}\", debounce_ms = {}, pull = \"{}\" }}\n",
+                         line_text(*u.sync->in), to_string(u.sync->edge), ms(u.sync->debounce_s),
+                         to_string(u.sync->pull));
+    return s;
+}
+
+std::string limits_text(const limit_settings& l)
+{
+    std::string s = "\n[limits]\n";
+    add(s, "power_dbfs", l.power_dbfs);
+    add(s, "max_drive_s", l.max_drive_s);
+    add(s, "window_s", l.window_s);
+    return s;
+}
+
+std::string list_text(const std::vector<threshold_point>& points)
+{
+    std::string s;
+    for (const threshold_point& p : points)
+        s += fmt::format("{}[{}, {}]", s.empty() ? "" : ", ", p.hz, p.dbfs);
+    return fmt::format("threshold_dbfs = [{}]\n", s);
+}
+
+std::string tactor_text(const tactor_spec& t)
+{
+    std::string s = fmt::format("\n[[tactor]]\nx_mm = {}\ny_mm = {}\nchannel = {}\n", t.position.x_mm,
+                                t.position.y_mm, t.channel);
+    if (t.gain_db != 0.0)
+        s += fmt::format("gain_db = {}\n", t.gain_db);
+    if (t.max_dbfs != 0.0)
+        s += fmt::format("max_dbfs = {}\n", t.max_dbfs);
+    if (t.thresholds.empty())
+        add(s, "threshold_dbfs", t.threshold_dbfs);
+    else
+        s += list_text(t.thresholds);
+    if (t.polarity != 1)
+        s += fmt::format("polarity = {}\n", t.polarity);
+    if (t.actuator != actuator_kind::unknown)
+        s += fmt::format("actuator = \"{}\"\n", to_string(t.actuator));
+    if (t.rise_s)
+        s += fmt::format("rise_ms = {}\n", ms(*t.rise_s));
+    return s;
+}
+
+std::string threshold_text(const tactor_threshold& t, bool stairs)
+{
+    std::string s = fmt::format("\n[[calibration.tactor]]\ntactor = {}\n", t.tactor);
+    add(s, "threshold_dbfs", t.threshold_dbfs);
+    add(s, "sd_db", t.sd_db);
+    s += fmt::format("trials = {}\n", t.trials);
+    if (stairs)
+        s += fmt::format("reversals_dbfs = [{}]\n", fmt::join(t.reversals_dbfs, ", "));
+    add(s, "check_right", t.check_right);
+    return s;
+}
+
+} // namespace
+
+std::string array_text(const array& a, const setup& besides)
+{
+    std::string s = fmt::format("[array]\nname = {}\n", toml_string(a.name));
+    for (const tactor_spec& t : a.tactors)
+        s += tactor_text(t);
+    s += output_text(besides.output) + lines_text(besides);
+    if (besides.limits)
+        s += limits_text(*besides.limits);
+    if (!besides.defaults.empty())
+        s += "\n[defaults]\n";
+    for (const auto& [name, value] : besides.defaults)
+        s += fmt::format("{} = {}\n", name, toml_string(value));
+    return s;
+}
+
+std::string calibration_text(const calibration_settings& s, const std::vector<tactor_threshold>& thresholds)
+{
+    const bool stairs = s.method == calibration_method::staircase;
+    std::string t = fmt::format("\n[calibration]\nparticipant = {}\nmethod = \"{}\"\n",
+                                toml_string(s.participant), stairs ? "staircase" : "adjustment");
+    if (stairs)
+        t += fmt::format("rule = \"{}\"\n", rule_name(s));
+    t += fmt::format("carrier_hz = {}\ninterval_s = {}\n", s.carrier_hz, s.interval_s);
+    if (stairs)
+        t += fmt::format("feedback = {}\n", s.feedback);
+    t += fmt::format("masker = {}\ndate = {}\nseed = {}\nsimulated = {}\n",
+                     toml_string(s.masker.empty() ? "none" : s.masker), toml_string(s.date), s.seed,
+                     !s.simulate.empty());
+    for (const tactor_threshold& one : thresholds)
+        t += threshold_text(one, stairs);
+    return t;
+}
+
+void check_new_output(const std::filesystem::path& file)
+{
+    std::error_code ignored;
+    if (std::filesystem::exists(std::filesystem::symlink_status(file, ignored)))
+        throw error(error_kind::bad_input, file.string(), "there is such a file already",
+                    "choose another name: it is not overwritten");
+    const detail::output_file tried(file);
+}
+
+void write_new_output(const std::filesystem::path& file, const std::string& text)
+{
+    check_new_output(file);
+    detail::output_file out(file);
+    out.write(text.data(), static_cast<std::int64_t>(text.size()));
+    if (const int code = out.failure())
+        throw error(error_kind::runtime, file.string(), std::strerror(code), what_is_kept(code));
+    out.commit();
+}
+
+array with_thresholds(array a, const std::optional<calibration_origin>& earlier,
+                      const calibration_settings& s, const std::vector<tactor_threshold>& thresholds)
+{
+    const bool goes_on =
+        earlier && earlier->participant == s.participant && earlier->simulated == !s.simulate.empty();
+    const bool elsewhere = goes_on && earlier->carrier_hz != s.carrier_hz;
+    // One threshold alone is at the carrier that [calibration] says, which is this one's now.
+    for (tactor_spec& t : a.tactors)
+        if (elsewhere && t.threshold_dbfs)
+            t.thresholds = {{earlier->carrier_hz, *std::exchange(t.threshold_dbfs, {})}};
+    for (const tactor_threshold& measured : thresholds) {
+        tactor_spec& t = a.tactors[measured.tactor];
+        t.threshold_dbfs.reset();
+        if (!goes_on)
+            t.thresholds.clear();
+        std::erase_if(t.thresholds, [&](const threshold_point& p) { return p.hz == s.carrier_hz; });
+        if (t.thresholds.empty()) {
+            t.threshold_dbfs = measured.threshold_dbfs;
+            continue;
+        }
+        if (!measured.threshold_dbfs)
+            continue;
+        const threshold_point here{s.carrier_hz, *measured.threshold_dbfs};
+        const auto above = std::find_if(t.thresholds.begin(), t.thresholds.end(),
+                                        [&](const threshold_point& p) { return p.hz > here.hz; });
+        t.thresholds.insert(above, here);
+    }
+    return a;
+}
+
+} // namespace tactor::study

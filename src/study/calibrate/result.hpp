@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What a calibration comes to: an array file with its thresholds.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tactor/setup.hpp>
+
+#include "study/calibrate/calibration.hpp"
+
+namespace tactor::study {
+
+/// An array file that says all of an array, and what else a file says of how it is driven. It needs no other
+/// file.
+std::string array_text(const array& a, const setup& besides);
+
+/// The tables [calibration] and [[calibration.tactor]].
+std::string calibration_text(const calibration_settings& s, const std::vector<tactor_threshold>& thresholds);
+
+/// Whether a new file can be made there; what is written for that does not stay.
+/// \throws error: bad_input for a file that is there already or a folder that is not, runtime where the
+/// system
+///         refuses.
+void check_new_output(const std::filesystem::path& file);
+
+/// Writes it whole or not at all. Throws as above.
+void write_new_output(const std::filesystem::path& file, const std::string& text);
+
+/// The array with the thresholds measured. What the same participant's earlier calibration found at other
+/// carriers stays, in lists by frequency; what else a tactor had that is measured here gives way. Of a tactor
+/// that was not felt there is none at this carrier.
+array with_thresholds(array a, const std::optional<calibration_origin>& earlier,
+                      const calibration_settings& s, const std::vector<tactor_threshold>& thresholds);
+
+} // namespace tactor::study

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// One tactor's adaptive staircase (Levitt 1971), as a pure machine: a level out, an answer in.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace tactor::study {
+
+/// Below this nothing is left of a sample of 24 bits.
+inline constexpr double floor_dbfs = -144.0;
+/// What a rule may reach before its threshold is taken as it is.
+inline constexpr std::size_t most_reversals = 24;
+
+struct staircase_options {
+    unsigned right_for_down = 3; ///< 3: 79.4 %, 2: 70.7 %
+    double start_dbfs = -20.0;
+    double ceiling_dbfs = 0.0;
+    std::vector<double> steps_db = {4.0, 2.0, 1.0}; ///< the next from every second reversal on
+    std::size_t reversals = 12;                     ///< at most most_reversals
+    std::size_t discard = 4;                        ///< the first of them; two at least are left
+};
+
+enum class staircase_end {
+    felt,
+    not_felt,
+    below_range, ///< right at floor_dbfs: by something else than what the skin feels
+};
+
+/// Mean and standard deviation (n - 1) of what counts of the reversals, an even number of the last ones.
+struct reversal_mean {
+    double mean_dbfs = 0.0;
+    double sd_db = 0.0;
+    double halves_db = 0.0; ///< how far the means of the halves are apart
+};
+reversal_mean mean_of(std::span<const double> reversals_dbfs, std::size_t counted);
+
+class staircase {
+public:
+    explicit staircase(staircase_options o);
+
+    /// Of the next trial; check trials included.
+    double level_dbfs() const noexcept { return level_; }
+    /// Whether the threshold is there and the check trials above it run.
+    bool checking() const noexcept { return threshold_.has_value() && !end_; }
+    std::optional<staircase_end> end() const noexcept { return end_; }
+    /// The answer to the trial at level_dbfs(). True where it turned the direction.
+    bool answer(bool right);
+
+    std::size_t trials() const noexcept { return trials_; }
+    const std::vector<double>& reversals_dbfs() const noexcept { return reversals_; }
+    /// Of check trials; nothing where there were none.
+    std::optional<std::size_t> check_right() const noexcept;
+    /// Where the reversals say it is; of what was not felt too, if it came so far.
+    std::optional<reversal_mean> threshold() const noexcept { return threshold_; }
+
+private:
+    bool step(bool right);
+    bool turn(bool up);
+    void note_at_ceiling(bool right);
+    void note_at_floor(bool right);
+    void settle();
+    void check(bool right);
+
+    staircase_options o_;
+    double level_;
+    unsigned right_in_row_ = 0;
+    std::optional<bool> up_ = {};
+    std::vector<double> reversals_ = {};
+    std::vector<bool> at_ceiling_ = {}; ///< right or not
+    unsigned right_at_floor_ = 0;
+    std::optional<reversal_mean> threshold_ = {};
+    std::size_t checks_ = 0;
+    std::size_t checks_right_ = 0;
+    std::size_t trials_ = 0;
+    std::optional<staircase_end> end_ = {};
+};
+
+} // namespace tactor::study

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: MIT
+#include "study/data/dataset.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "study/data/session.hpp"
+#include "study/data/text_table.hpp"
+
+namespace tactor::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view prefix = "sub-";
+
+// The code of "sub-CODE", which becomes a part of paths; empty where it is none.
+std::string_view code_of(std::string_view id)
+{
+    if (!id.starts_with(prefix))
+        return {};
+    id.remove_prefix(prefix.size());
+    return file_name_of(id) == id ? id : std::string_view{};
+}
+
+std::vector<std::string> read_participants(const fs::path& folder)
+{
+    const text_table t(folder / "participants.tsv");
+    std::vector<std::string> all;
+    for (std::size_t i = 0; i < t.rows(); ++i) {
+        const std::string_view code = code_of(t.need(i, "participant_id"));
+        if (code.empty())
+            t.refuse(i, "this is no participant_id", "sub- and letters and digits");
+        if (std::find(all.begin(), all.end(), code) != all.end())
+            t.refuse(i, fmt::format("sub-{} is there twice", code), "everybody has one line");
+        all.emplace_back(code);
+    }
+    return all;
+}
+
+// Data of somebody who is not in the list would be left out without a word.
+void refuse_strangers(const fs::path& folder, const std::vector<std::string>& known)
+{
+    std::error_code failed;
+    for (const fs::directory_entry& e : fs::directory_iterator(folder, failed)) {
+        const std::string name = e.path().filename().string();
+        if (!name.starts_with(prefix))
+            continue;
+        if (std::find(known.begin(), known.end(), name.substr(prefix.size())) == known.end())
+            throw error(error_kind::bad_input, e.path().string(), "it is of nobody in participants.tsv",
+                        "add a line, or move it away");
+    }
+}
+
+std::vector<std::string> select(const std::vector<std::string>& known, const selection& who)
+{
+    const auto find = [&](const std::vector<std::string>& wanted, std::string_view option) {
+        std::set<std::string> codes;
+        for (const std::string& w : wanted) {
+            const std::string code = w.starts_with(prefix) ? w.substr(prefix.size()) : w;
+            if (std::find(known.begin(), known.end(), code) == known.end())
+                throw error(error_kind::bad_input, option,
+                            fmt::format("\"{}\" is not in participants.tsv", w),
+                            fmt::format("there are {}", fmt::join(known, ", ")));
+            codes.insert(code);
+        }
+        return codes;
+    };
+    const std::set<std::string> only = find(who.only, "--participants");
+    const std::set<std::string> without = find(who.without, "--exclude");
+    std::vector<std::string> left;
+    for (const std::string& code : known)
+        if ((only.empty() || only.contains(code)) && !without.contains(code))
+            left.push_back(code);
+    if (left.empty())
+        throw error(error_kind::bad_input, "--participants", "nobody is left",
+                    "somebody must have taken part");
+    return left;
+}
+
+std::size_t place_of(const text_table& t, std::size_t row, std::string_view column,
+                     const std::vector<std::string>& known)
+{
+    const std::string_view name = t.need(row, column);
+    const auto at = std::find(known.begin(), known.end(), name);
+    if (at == known.end())
+        t.refuse(row, fmt::format("{} \"{}\" is none of the run's", column, name),
+                 fmt::format("one of {}", fmt::join(known, ", ")));
+    return static_cast<std::size_t>(at - known.begin());
+}
+
+bool is_void(const text_table& t, std::size_t row)
+{
+    const std::string_view v = t.need(row, "void");
+    if (v != "true" && v != "false")
+        t.refuse(row, fmt::format("void is \"{}\"", v), "true or false");
+    return v == "true";
+}
+
+unsigned rating_of(const text_table& t, std::size_t row, unsigned scale)
+{
+    const auto response = t.whole(row, "response", 1, scale);
+    const auto rating = t.whole(row, "rating", 1, scale);
+    if (!response && !rating)
+        t.refuse(row, "there is no rating", "a trial that counts has one");
+    if (response && rating && *response != *rating)
+        t.refuse(row, fmt::format("response is {} and rating {}", *response, *rating), "they are the same");
+    return rating ? *rating : *response;
+}
+
+trial read_trial(const text_table& t, std::size_t row, const run_outline& run)
+{
+    trial r;
+    r.motion = place_of(t, row, "motion", run.motions);
+    r.method_1 = place_of(t, row, "method_1", run.methods);
+    r.response_time_s = t.number(row, "response_time");
+    switch (run.task) {
+    case task_kind::choose: {
+        r.method_2 = place_of(t, row, "method_2", run.methods);
+        if (r.method_1 == r.method_2)
+            t.refuse(row, "both stimuli are of one method", "choose compares two");
+        const auto response = t.whole(row, "response", 1, 2);
+        if (!response)
+            t.refuse(row, "there is no response", "a trial that counts has one");
+        r.response = *response;
+        break;
+    }
+    case task_kind::rate:
+        r.response = rating_of(t, row, run.scale);
+        break;
+    case task_kind::identify:
+        r.response = static_cast<unsigned>(place_of(t, row, "response", run.motions));
+        break;
+    }
+    return r;
+}
+
+run_data read_run(const fs::path& file, const run_outline& run)
+{
+    const text_table t(file);
+    run_data d;
+    std::set<unsigned> seen;
+    for (std::size_t i = 0; i < t.rows(); ++i) {
+        const auto place = t.whole(i, "trial", 1, 1000000);
+        if (!place)
+            t.refuse(i, "there is no trial", "its place in the sequence, from 1");
+        const unsigned attempt = t.whole(i, "attempt", 1, 1000000).value_or(1);
+        if (is_void(t, i)) {
+            ++d.voids;
+            continue;
+        }
+        if (!seen.insert(*place).second)
+            t.refuse(i, fmt::format("trial {} counts twice", *place), "all its attempts but one are void");
+        trial r = read_trial(t, i, run);
+        r.place = *place;
+        r.attempt = attempt;
+        d.trials.push_back(r);
+    }
+    return d;
+}
+
+class reader {
+public:
+    explicit reader(const fs::path& folder) : folder_(folder) {}
+
+    void add(const std::string& code)
+    {
+        const std::string sub = std::string(prefix) + code;
+        const fs::path file = folder_ / "sourcedata" / sub / "session.json";
+        std::error_code ignored;
+        const fs::path beh = folder_ / sub / "beh";
+        if (!fs::exists(file, ignored) && !fs::exists(beh, ignored)) {
+            set_.participants.push_back(code); // in the list, but not here yet
+            set_.data.emplace_back();
+            return;
+        }
+        take_session(code, read_session(file));
+        std::vector<run_data> runs;
+        for (const run_outline& run : set_.experiment.runs) {
+            const fs::path table = beh / fmt::format("{}_task-{}_beh.tsv", sub, run.file_name);
+            runs.push_back(fs::exists(table, ignored) ? read_run(table, run) : run_data{});
+        }
+        refuse_unknown_tables(beh, sub);
+        set_.participants.push_back(code);
+        set_.data.push_back(std::move(runs));
+    }
+
+    dataset finish()
+    {
+        if (first_.empty())
+            throw error(error_kind::bad_input, (folder_ / "sourcedata").string(), "nobody has a session.json",
+                        "tactor experiment writes it, with the experiment in it");
+        for (std::vector<run_data>& runs : set_.data)
+            runs.resize(set_.experiment.runs.size());
+        for (const run_outline& run : set_.experiment.runs)
+            check_description(folder_ / fmt::format("task-{}_beh.json", run.file_name), run);
+        return std::move(set_);
+    }
+
+private:
+    void take_session(const std::string& code, const session& s)
+    {
+        if (first_.empty()) {
+            first_ = code;
+            text_ = s.text;
+            set_.experiment = s.experiment;
+            set_.simulated = s.simulated;
+            return;
+        }
+        const auto differs = [&](std::string_view why, std::string_view hint) {
+            throw error(error_kind::bad_input, fmt::format("sub-{} and sub-{}", first_, code), why, hint);
+        };
+        if (s.simulated != set_.simulated)
+            differs("one is simulated and one is not", "choose with --participants or --exclude");
+        if (s.experiment != set_.experiment)
+            differs("their experiments differ in runs, motions or methods",
+                    "choose with --participants or --exclude");
+        if (s.text != text_)
+            set_.warnings.push_back(fmt::format(
+                "sub-{} and sub-{}: the texts of their experiments differ, though not in what is analysed",
+                first_, code));
+    }
+
+    // A table that no run of the experiment has would be left out without a word.
+    void refuse_unknown_tables(const fs::path& beh, const std::string& sub) const
+    {
+        std::error_code failed;
+        for (const fs::directory_entry& e : fs::directory_iterator(beh, failed)) {
+            const std::string name = e.path().filename().string();
+            const auto of_run = [&](const run_outline& r) {
+                return name == fmt::format("{}_task-{}_beh.tsv", sub, r.file_name);
+            };
+            if (!name.starts_with('.') && name.ends_with("_beh.tsv") &&
+                std::none_of(set_.experiment.runs.begin(), set_.experiment.runs.end(), of_run))
+                throw error(error_kind::bad_input, e.path().string(), "it is of no run of the experiment",
+                            "move it away");
+        }
+    }
+
+    fs::path folder_;
+    std::string first_; ///< who had the first session
+    std::string text_;
+    dataset set_;
+};
+
+} // namespace
+
+dataset read_dataset(const fs::path& folder, const selection& who)
+{
+    std::error_code failed;
+    if (!fs::is_directory(folder, failed))
+        throw error(error_kind::bad_input, folder.string(),
+                    fs::exists(folder, failed) ? "it is no folder" : "No such file or directory",
+                    "name the folder of a study");
+    const std::vector<std::string> known = read_participants(folder);
+    refuse_strangers(folder, known);
+    reader r(folder);
+    for (const std::string& code : select(known, who))
+        r.add(code);
+    return r.finish();
+}
+
+} // namespace tactor::study

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// A study's folder (BIDS) as values. What is read, and nothing else:
+///
+///   participants.tsv                          participant_id: who takes part, in this order
+///   sub-CODE/beh/sub-CODE_task-NAME_beh.tsv   the trials; columns trial attempt motion method_1 method_2
+///                                             response rating void response_time, others are left alone
+///   task-NAME_beh.json                        where it is there: an object whose TaskName is the run's
+///   sourcedata/sub-CODE/session.json          {"simulated": bool, "experiment": {"text": TOML}}, others are
+///                                             left alone: the order of motions and methods, and the runs
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/data/outline.hpp"
+
+namespace tactor::study {
+
+/// A trial that counts. Motion and methods are places in those of the run.
+struct trial {
+    unsigned place = 0; ///< in the sequence, from 1
+    unsigned attempt = 1;
+    std::size_t motion = 0;
+    std::size_t method_1 = 0;
+    std::size_t method_2 = 0; ///< of choose only
+    unsigned response = 0;    ///< choose: interval 1 or 2; rate: the rating; identify: the motion answered
+    std::optional<double> response_time_s = {};
+};
+
+struct run_data {
+    std::vector<trial> trials = {};
+    std::size_t voids = 0; ///< lines that do not count
+};
+
+struct dataset {
+    experiment_outline experiment;
+    bool simulated = false;
+    std::vector<std::string> participants = {};   ///< codes, without sub-
+    std::vector<std::vector<run_data>> data = {}; ///< by participant, by run
+    std::vector<std::string> warnings = {};
+};
+
+/// Who is looked at; codes with or without sub-.
+struct selection {
+    std::vector<std::string> only = {}; ///< empty: all
+    std::vector<std::string> without = {};
+};
+
+/// Reads the folder; of participants who are not selected nothing is opened.
+/// \throws error (bad_input) with file and line for what is not as above: a code that is not known, nobody
+/// left,
+///         a folder of somebody who is not in participants.tsv, experiments that differ, real and simulated
+///         sessions together, names that the experiment does not know, answers out of range, a trial that
+///         counts twice.
+dataset read_dataset(const std::filesystem::path& folder, const selection& who);
+
+} // namespace tactor::study

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What the analysis needs of an experiment's definition: who and what there is, in which order.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tactor::study {
+
+enum class task_kind { choose, rate, identify };
+std::string_view to_string(task_kind t) noexcept;
+
+struct run_outline {
+    std::string name;
+    std::string file_name; ///< the name's letters and digits, which name its files
+    task_kind task = task_kind::choose;
+    std::vector<std::string> motions = {}; ///< in the order of the definition
+    std::vector<std::string> methods = {}; ///< the same; what is chosen or compared is the last
+    unsigned trials = 0;                   ///< 0: the definition does not say
+    unsigned scale = 5;                    ///< rate: 1 to this
+
+    friend bool operator==(const run_outline&, const run_outline&) = default;
+};
+
+struct experiment_outline {
+    std::string name;
+    std::vector<run_outline> runs = {};
+
+    friend bool operator==(const experiment_outline&, const experiment_outline&) = default;
+};
+
+/// Letters and digits of a run's name (BIDS allows no others in a task's).
+std::string file_name_of(std::string_view run);
+
+/// Reads the parts named above from TOML; leaves the others alone. `name` stands for the text in messages.
+/// \throws error (bad_input) with line: no TOML, a key that is missing or of another type, a name that is
+/// there twice or not known, runs whose files would have one name, choose without two methods, identify
+/// without two motions.
+experiment_outline read_outline(std::string_view toml, const std::string& name);
+
+} // namespace tactor::study

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include "study/data/text_table.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "core/split.hpp"
+
+namespace tactor::study {
+namespace {
+
+[[noreturn]] void refuse_line(const std::string& file, std::size_t line, std::string_view why,
+                              std::string_view hint)
+{
+    throw error(error_kind::bad_input, fmt::format("{}:{}", file, line), why, hint);
+}
+
+void check_cells(const std::string& file, std::size_t line, const std::vector<std::string_view>& cells,
+                 std::size_t columns)
+{
+    if (cells.size() != columns)
+        refuse_line(file, line, fmt::format("it has {} columns, not {}", cells.size(), columns),
+                    "there is a tab between two of them, and n/a where there is no value");
+    for (const std::string_view c : cells)
+        if (c.empty() || c.find('\0') != std::string_view::npos)
+            refuse_line(file, line, "a cell is empty", "n/a where there is no value");
+}
+
+} // namespace
+
+std::string read_file(const std::filesystem::path& file, std::size_t most)
+{
+    std::error_code failed;
+    const std::filesystem::file_status s = std::filesystem::status(file, failed);
+    if (!std::filesystem::exists(s))
+        throw error(error_kind::bad_input, file.string(),
+                    failed ? failed.message() : "No such file or directory",
+                    "the folder of a study is what tactor experiment wrote");
+    if (!std::filesystem::is_regular_file(s))
+        throw error(error_kind::bad_input, file.string(), "it is no file",
+                    "the folder of a study has files only");
+    if (std::filesystem::file_size(file, failed) > most)
+        throw error(error_kind::bad_input, file.string(), fmt::format("longer than {} MB", most >> 20),
+                    "is it the right file?");
+    std::ifstream in(file, std::ios::binary);
+    std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    if (!in)
+        throw error(error_kind::bad_input, file.string(), "it cannot be read", "check the permissions");
+    return text;
+}
+
+text_table::text_table(const std::filesystem::path& file) : file_(file.string()), text_(read_file(file))
+{
+    std::string_view rest = text_;
+    if (rest.starts_with("\xef\xbb\xbf"))
+        rest.remove_prefix(3);
+    if (rest.empty())
+        throw error(error_kind::bad_input, file_, "it is empty", "the first line names the columns");
+    std::size_t line = 0;
+    while (!rest.empty()) {
+        ++line;
+        const std::size_t end = rest.find('\n');
+        if (end == std::string_view::npos)
+            refuse_line(file_, line, "the last line has no end",
+                        "it was cut off in the middle; tactor experiment --resume mends that");
+        std::string_view text = rest.substr(0, end);
+        rest.remove_prefix(end + 1);
+        if (text.ends_with('\r'))
+            text.remove_suffix(1);
+        std::vector<std::string_view> cells = detail::split(text, '\t');
+        check_cells(file_, line, cells, line == 1 ? cells.size() : columns_.size());
+        if (line > 1) {
+            cells_.push_back(std::move(cells));
+            continue;
+        }
+        columns_ = std::move(cells);
+        for (std::size_t i = 0; i < columns_.size(); ++i)
+            if (std::find(columns_.begin(), columns_.begin() + static_cast<std::ptrdiff_t>(i), columns_[i]) !=
+                columns_.begin() + static_cast<std::ptrdiff_t>(i))
+                refuse_line(file_, 1, fmt::format("the column {} is there twice", columns_[i]),
+                            "each has a name of its own");
+    }
+}
+
+std::optional<std::size_t> text_table::find(std::string_view column) const
+{
+    const auto at = std::find(columns_.begin(), columns_.end(), column);
+    return at == columns_.end() ? std::nullopt
+                                : std::optional(static_cast<std::size_t>(at - columns_.begin()));
+}
+
+std::optional<std::string_view> text_table::cell(std::size_t row, std::string_view column) const
+{
+    const auto at = find(column);
+    if (!at)
+        refuse_line(file_, 1, fmt::format("there is no column {}", column), "tactor-analyze(1) lists them");
+    const std::string_view text = cells_[row][*at];
+    return text == "n/a" ? std::nullopt : std::optional(text);
+}
+
+std::string_view text_table::need(std::size_t row, std::string_view column) const
+{
+    const auto text = cell(row, column);
+    if (!text)
+        refuse(row, fmt::format("{} is missing", column), "n/a is not enough here");
+    return *text;
+}
+
+std::optional<unsigned> text_table::whole(std::size_t row, std::string_view column, unsigned least,
+                                          unsigned most) const
+{
+    const auto text = cell(row, column);
+    if (!text)
+        return {};
+    unsigned v = 0;
+    const auto [end, failed] = std::from_chars(text->data(), text->data() + text->size(), v);
+    if (failed != std::errc() || end != text->data() + text->size() || v < least || v > most)
+        refuse(row, fmt::format("{} is \"{}\"", column, *text),
+               fmt::format("a whole number from {} to {}", least, most));
+    return v;
+}
+
+std::optional<double> text_table::number(std::size_t row, std::string_view column) const
+{
+    const auto text = cell(row, column);
+    if (!text)
+        return {};
+    double v = 0.0;
+    const auto [end, failed] = std::from_chars(text->data(), text->data() + text->size(), v);
+    if (failed != std::errc() || end != text->data() + text->size() || !std::isfinite(v))
+        refuse(row, fmt::format("{} is \"{}\"", column, *text), "a number, or n/a");
+    return v;
+}
+
+void text_table::refuse(std::size_t row, std::string_view why, std::string_view hint) const
+{
+    refuse_line(file_, row + 2, why, hint);
+}
+
+} // namespace tactor::study

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The definition of an experiment: tactor-experiment(5) as values.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tactor/plan.hpp>
+#include <tactor/stroke.hpp>
+
+#include "study/data/outline.hpp"
+#include "study/experiment/page_words.hpp"
+
+namespace tactor::study {
+
+enum class noise_kind { none, white, pink };
+std::string_view to_string(noise_kind k) noexcept;
+
+/// [masking]: noise from loudspeakers or headphones, so that nobody hears the array.
+struct masking_definition {
+    noise_kind noise = noise_kind::none;
+    double level_dbfs = -30.0; ///< root of the mean square, dB below that of a full-scale square
+    double fade_s = 0.05;
+    bool through_run = false; ///< while = "run": not only around each stimulus
+};
+
+/// [[motion]]: a target.
+struct motion_definition {
+    std::string name;
+    stroke drawn;
+    source_place where = {};
+};
+
+/// [[method]]: how a motion is planned.
+struct method_definition {
+    std::string name;
+    plan_options options = {};
+    source_place where = {};
+};
+
+/// [[run]]. Motions and methods are places in those of the definition.
+struct run_definition {
+    run_outline outline;
+    std::string attribute = {}; ///< similarity or uniformity; of identify: empty where it is not said
+    std::string question = {};
+    bool animation = false;
+    unsigned practice = 0; ///< trials before that do not count
+    double break_s = 0.0;  ///< after the run
+    std::vector<std::string> labels = {};
+    std::vector<std::size_t> motions = {};
+    std::vector<std::size_t> methods = {};
+    source_place where = {};
+};
+
+struct experiment_definition {
+    std::string name;
+    std::string title;
+    std::optional<std::string> array = {};  ///< a preset's name, or a file
+    std::optional<double> level_dbfs = {};  ///< none: sl_db
+    double sl_db = 7.0;                     ///< above each tactor's threshold
+    double gap_s = 1.0;                     ///< choose: from the first stimulus' end to the second's begin
+    std::optional<std::uint64_t> seed = {}; ///< none: seed_of(code)
+    std::string consent = {};
+    std::vector<std::string> authors = {};
+    masking_definition masking = {};
+    page_words page = {};
+    std::vector<motion_definition> motions = {};
+    std::vector<method_definition> methods = {};
+    std::vector<run_definition> runs = {};
+    experiment_outline outline = {}; ///< what the analysis will read
+    std::string text = {};           ///< all of it, TOML
+};
+
+/// Reads a definition. `name` stands for the text in messages, and names of files in it are relative to
+/// `folder`.
+/// \throws error (bad_input) with line and column: no TOML, keys that are missing, not known, of another type
+///         or out of range, names that are there twice or not known, a motion that cannot be read.
+experiment_definition read_definition(std::string_view toml, const std::string& name,
+                                      const std::filesystem::path& folder);
+
+/// The same of a text that was read once, as a session keeps it: without the array and the motions, whose
+/// files may be elsewhere by now, nor the runs' places in them. \throws error (bad_input).
+experiment_definition read_design(std::string_view toml, const std::string& name);
+
+/// The definitions that are built in: park2016.
+const std::vector<std::string>& shipped_experiments();
+
+/// The text of one. \throws error (bad_input) that lists them.
+std::string_view shipped_experiment(std::string_view name);
+
+/// One that is built in, or a file. \throws error (bad_input).
+experiment_definition load_definition(const std::string& name_or_file);
+
+} // namespace tactor::study

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include "study/experiment/page_dialogue.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace tactor::study {
+namespace {
+
+using ordered = nlohmann::ordered_json;
+
+ordered path_json(const std::vector<point>& path)
+{
+    ordered all = ordered::array();
+    for (const point& p : path)
+        all.push_back({p.x_mm, p.y_mm});
+    return all;
+}
+
+ordered progress_json(const page_progress& w)
+{
+    return {
+        {"run", w.run}, {"runs", w.runs}, {"practice", w.practice}, {"trial", w.trial}, {"trials", w.trials}};
+}
+
+std::string message_text(const ordered& j)
+{
+    return j.dump(-1, ' ', false, ordered::error_handler_t::replace);
+}
+
+// Of a whole number; 0 for anything else.
+std::uint64_t whole_number(const ordered& j, const char* key)
+{
+    const auto found = j.find(key);
+    return found != j.end() && found->is_number_unsigned() ? found->get<std::uint64_t>() : 0;
+}
+
+} // namespace
+
+std::string page_dialogue::state(std::int64_t now_ns) const
+{
+    ordered j{{"screen", screen_.name}, {"ask", open_ ? asked_ : 0}};
+    if (!screen_.text.empty())
+        j["text"] = screen_.text;
+    if (!screen_.question.empty())
+        j["question"] = screen_.question;
+    if (!screen_.choices.empty())
+        j["choices"] = screen_.choices;
+    if (screen_.where)
+        j["progress"] = progress_json(*screen_.where);
+    if (screen_.path.size() > 1)
+        j["path"] = path_json(screen_.path);
+    if (screen_.lasts_s > 0.0) {
+        j["lasts_s"] = screen_.lasts_s;
+        j["passed_s"] = static_cast<double>(now_ns - since_ns_) * 1e-9;
+    }
+    return message_text(j);
+}
+
+std::vector<page_dialogue::message> page_dialogue::show(page_screen s, std::int64_t now_ns)
+{
+    screen_ = std::move(s);
+    since_ns_ = now_ns;
+    open_ = !screen_.choices.empty();
+    if (open_)
+        ++asked_;
+    if (!theirs_)
+        return {};
+    return {{*theirs_, state(now_ns)}};
+}
+
+page_dialogue::heard page_dialogue::hear(visitor from, std::string_view text, std::int64_t now_ns)
+{
+    const ordered said = ordered::parse(text, nullptr, false);
+    if (!said.is_object())
+        return {.understood = false};
+    heard h;
+    if (said.contains("hello")) {
+        if (theirs_ && *theirs_ != from)
+            h.replies.push_back({*theirs_, message_text({{"screen", "elsewhere"}}), true});
+        theirs_ = from;
+        h.replies.push_back({from, message_text(facts_)});
+        h.replies.push_back({from, state(now_ns)});
+        return h;
+    }
+    const std::uint64_t choice = whole_number(said, "answer");
+    if (choice == 0)
+        return {.understood = false};
+    if (theirs_ != from)
+        return h; // it has been told
+    if (!open_ || whole_number(said, "ask") != asked_ || choice > screen_.keys.size()) {
+        h.replies.push_back({from, state(now_ns)});
+        return h;
+    }
+    open_ = false;
+    h.answer = screen_.keys[choice - 1];
+    return h;
+}
+
+page_dialogue::heard page_dialogue::press(char key, std::int64_t now_ns)
+{
+    heard h;
+    std::size_t choice = screen_.keys.find(key);
+    if (choice == std::string::npos && key >= '1' && key <= '9')
+        choice = static_cast<std::size_t>(key - '1');
+    if (!theirs_ || !open_ || choice >= screen_.keys.size())
+        return h;
+    open_ = false;
+    h.answer = screen_.keys[choice];
+    h.replies.push_back({*theirs_, state(now_ns)});
+    return h;
+}
+
+void page_dialogue::leave(visitor v)
+{
+    if (theirs_ == v)
+        theirs_.reset();
+}
+
+} // namespace tactor::study

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "study/experiment/sequence.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <span>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "study/random/random.hpp"
+#include "study/random/sha256.hpp"
+
+namespace tactor::study {
+namespace {
+
+constexpr unsigned most_draws = 1000000;
+
+bool is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+
+// What a run's trials are of: for each motion each method, or each order of the two.
+std::vector<planned_trial> cells_of(const run_definition& r)
+{
+    std::vector<planned_trial> cells;
+    for (const std::size_t motion : r.motions) {
+        if (r.outline.task == task_kind::choose) {
+            cells.push_back({motion, r.methods[0], r.methods[1]});
+            cells.push_back({motion, r.methods[1], r.methods[0]});
+            continue;
+        }
+        for (const std::size_t method : r.methods)
+            cells.push_back({motion, method});
+    }
+    return cells;
+}
+
+// n different cells: motions as often as each other as far as n allows, and so the others. The cells of one
+// motion stand together.
+std::vector<planned_trial> some_of(const std::vector<planned_trial>& cells, std::size_t motions,
+                                   std::size_t n, random_numbers& r)
+{
+    const std::size_t kinds = cells.size() / motions;
+    std::vector<std::size_t> first(motions);
+    std::vector<std::size_t> second(kinds);
+    std::iota(first.begin(), first.end(), 0);
+    std::iota(second.begin(), second.end(), 0);
+    shuffle(std::span(first), r);
+    shuffle(std::span(second), r);
+    std::vector<planned_trial> some;
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::size_t layer = i / motions;
+        some.push_back(cells[first[i % motions] * kinds + second[(i % motions + layer) % kinds]]);
+    }
+    return some;
+}
+
+std::vector<planned_trial> balanced(const run_definition& run, std::size_t n, random_numbers& r)
+{
+    const std::vector<planned_trial> cells = cells_of(run);
+    std::vector<planned_trial> all;
+    while (all.size() + cells.size() <= n)
+        all.insert(all.end(), cells.begin(), cells.end());
+    if (all.size() < n) {
+        const auto rest = some_of(cells, run.motions.size(), n - all.size(), r);
+        all.insert(all.end(), rest.begin(), rest.end());
+    }
+    return all;
+}
+
+bool too_many_in_a_row(const std::vector<planned_trial>& trials)
+{
+    std::size_t row = 0;
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+        row = i > 0 && trials[i].motion == trials[i - 1].motion ? row + 1 : 1;
+        if (row > most_in_a_row)
+            return true;
+    }
+    return false;
+}
+
+} // namespace
+
+std::uint64_t seed_of(std::string_view code)
+{
+    const sha256_digest d = sha256(code);
+    return std::uint64_t{d[0]} << 24 | std::uint64_t{d[1]} << 16 | std::uint64_t{d[2]} << 8 | d[3];
+}
+
+std::vector<std::size_t> run_order(std::size_t n, std::string_view code)
+{
+    const std::size_t rows = n % 2 == 0 ? n : 2 * n;
+    std::size_t row = seed_of(code) % rows;
+    if (!code.empty() && is_digit(code.back())) {
+        std::size_t digits = code.size();
+        while (digits > 0 && is_digit(code[digits - 1]))
+            --digits;
+        std::size_t number = 0; // modulo rows: it may have any number of digits
+        for (const char c : code.substr(digits))
+            number = (number * 10 + static_cast<std::size_t>(c - '0')) % rows;
+        row = (number + rows - 1) % rows;
+    }
+    // 0, 1, n - 1, 2, n - 2, ...: each difference once. The other rows are this one with 1, 2, ... added.
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::size_t first = i == 0 ? 0 : i % 2 == 1 ? (i + 1) / 2 : n - i / 2;
+        order.push_back((first + row) % n);
+    }
+    if (row >= n)
+        std::reverse(order.begin(), order.end());
+    return order;
+}
+
+run_sequence make_run(const experiment_definition& d, std::size_t run, std::string_view code,
+                      std::uint64_t seed)
+{
+    const run_definition& r = d.runs[run];
+    random_numbers numbers(fmt::format("{}/{}/{}/{}", seed, d.name, code, r.outline.name));
+    run_sequence s{run, {}, balanced(r, r.outline.trials, numbers)};
+    unsigned draws = 0;
+    do {
+        if (++draws > most_draws)
+            throw error(
+                error_kind::bad_input, r.where.text(),
+                fmt::format("no order of {} trials was found in which no motion comes {} times in a row",
+                            r.outline.trials, most_in_a_row + 1),
+                "several runs with fewer trials");
+        shuffle(std::span(s.trials), numbers);
+    } while (r.motions.size() > 1 && too_many_in_a_row(s.trials));
+    s.practice = balanced(r, r.practice, numbers);
+    shuffle(std::span(s.practice), numbers);
+    return s;
+}
+
+std::vector<run_sequence> make_sequence(const experiment_definition& d, std::string_view code,
+                                        std::uint64_t seed)
+{
+    std::vector<run_sequence> all;
+    for (const std::size_t run : run_order(d.runs.size(), code))
+        all.push_back(make_run(d, run, code, seed));
+    return all;
+}
+
+} // namespace tactor::study

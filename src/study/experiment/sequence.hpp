@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// In which order somebody gets the runs of an experiment, and the trials of each: the same on every machine.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "study/experiment/definition.hpp"
+
+namespace tactor::study {
+
+/// Motion and methods are places in those of the definition.
+struct planned_trial {
+    std::size_t motion = 0;
+    std::size_t method_1 = 0;
+    std::optional<std::size_t> method_2 = {}; ///< of choose only
+
+    friend bool operator==(const planned_trial&, const planned_trial&) = default;
+};
+
+struct run_sequence {
+    std::size_t run = 0;                      ///< its place in the definition
+    std::vector<planned_trial> practice = {}; ///< before the others; they do not count
+    std::vector<planned_trial> trials = {};   ///< trial 1 is the first
+
+    friend bool operator==(const run_sequence&, const run_sequence&) = default;
+};
+
+/// No more than so many trials with the same motion follow each other.
+inline constexpr std::size_t most_in_a_row = 3;
+
+/// The seed where nobody says one: the first four bytes of the code's SHA-256.
+std::uint64_t seed_of(std::string_view code);
+
+/// The order of n runs: a row of the Williams square (two of them for an odd n), in which each run follows
+/// each other equally often. Which row: the number at the code's end less 1, or where there is none the
+/// first four bytes of the code's SHA-256, modulo the number of rows.
+std::vector<std::size_t> run_order(std::size_t n, std::string_view code);
+
+/// The trials of one run, from the generator that "seed/experiment/code/run" seeds.
+/// \throws error (bad_input) where no order was found in which no motion comes four times in a row.
+run_sequence make_run(const experiment_definition& d, std::size_t run, std::string_view code,
+                      std::uint64_t seed);
+
+/// All runs, in the participant's order. Throws as above.
+std::vector<run_sequence> make_sequence(const experiment_definition& d, std::string_view code,
+                                        std::uint64_t seed);
+
+} // namespace tactor::study

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What a session with somebody does next, given what has happened: a value, without a device, a clock or a
+/// display.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "study/experiment/run_queue.hpp"
+
+namespace tactor::study {
+
+/// What is to be done.
+enum class step_kind {
+    consent,   ///< the text is shown: agree()
+    walk,      ///< a tactor is driven: felt()
+    introduce, ///< the run's question is shown: go_on()
+    trial,     ///< a trial is played and answered: took()
+    rest,      ///< a break between runs: go_on()
+    pause,     ///< the experimenter's: go_on()
+    over,      ///< all runs are through
+    refused,   ///< there was no consent
+    not_felt,  ///< a tactor of the walk was not
+};
+
+struct session_step {
+    step_kind what = step_kind::over;
+    unsigned tactor = 0;      ///< of the walk
+    std::size_t run = 0;      ///< place in the order of the session: from introduce to rest
+    bool practice = false;    ///< the trial does not count
+    pending_trial which = {}; ///< of practice the attempt is always 1
+
+    friend bool operator==(const session_step&, const session_step&) = default;
+};
+
+/// What is said of a tactor of the walk.
+enum class walk_answer { felt, not_felt, again, back };
+
+/// A run, where the session begins or goes on.
+struct flow_run {
+    unsigned practice = 0;  ///< trials that do not count
+    unsigned practised = 0; ///< how many of them are over
+    run_queue trials;
+    bool rest = false; ///< a break follows, unless it is the last
+};
+
+/// So many trials in a row that were void by themselves make a pause: somebody must look.
+inline constexpr unsigned most_void_in_row = 5;
+
+class session_flow {
+public:
+    /// Runs that are through are passed over. `tactors` are walked over first.
+    session_flow(std::vector<flow_run> runs, bool consent, unsigned tactors);
+
+    session_step next() const;
+
+    void agree(bool yes);
+    void felt(walk_answer a);
+    void go_on();
+    /// A trial is over, and on the disk.
+    void took(bool is_void);
+
+    /// The experimenter: the last trial that counted does not, and comes again at the end of its run, whose
+    /// place in the order is `void_run` before this is called. False where none can be made void: there was
+    /// none in this session, it is void already, or the next run has begun.
+    bool void_last();
+    std::size_t void_run() const noexcept { return last_run_; }
+    /// The experimenter: a pause comes before the next trial.
+    void pause() noexcept { paused_ = true; }
+
+private:
+    enum class place { introduce, trials, rest };
+
+    /// To the next run with trials left, if the present one has none.
+    void leave_done_run(bool rest);
+
+    std::vector<flow_run> runs_;
+    bool ask_consent_;
+    bool refused_ = false;
+    unsigned tactors_;
+    unsigned walked_ = 0;
+    bool not_felt_ = false;
+    std::size_t run_ = 0;
+    place place_ = place::introduce;
+    bool paused_ = false;
+    std::size_t last_run_ = 0;
+    bool has_last_ = false; ///< a trial was taken that void_last() may still reach
+    unsigned void_in_row_ = 0;
+};
+
+} // namespace tactor::study

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#include "study/experiment/stimuli.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "study/random/sha256.hpp"
+
+namespace tactor::study {
+namespace {
+
+constexpr double longest_stimulus_s = 600.0;
+
+// At equal parts of the target's time; where nothing is felt, what was felt last, and at first what is next.
+std::vector<point> path_of(const std::vector<percept_sample>& samples)
+{
+    std::vector<point> felt;
+    std::optional<point> last;
+    for (const percept_sample& s : samples)
+        if (s.felt && !last)
+            last = s.felt;
+    for (const percept_sample& s : samples) {
+        last = s.felt ? s.felt : last;
+        felt.push_back(last.value_or(s.target));
+    }
+    std::vector<point> parts;
+    for (std::size_t i = 0; i <= path_parts; ++i)
+        parts.push_back(felt[i * (felt.size() - 1) / path_parts]);
+    return parts;
+}
+
+} // namespace
+
+std::vector<point> target_path(const stroke& s)
+{
+    std::vector<point> parts;
+    for (std::size_t i = 0; i <= path_parts; ++i)
+        parts.push_back(s.motion.position(s.motion.duration_s() * static_cast<double>(i) / path_parts));
+    return parts;
+}
+
+stimulus_set::stimulus_set(const experiment_definition& d, const array& a, const render_options& o,
+                           const plan_writer& write)
+    : array_(a),
+      options_(o),
+      gap_frames_(static_cast<std::uint64_t>(std::llround(d.gap_s * o.rate))),
+      by_motion_(d.motions.size(), std::vector<std::optional<stimulus>>(d.methods.size()))
+{
+    const layout faces(a);
+    for (const run_definition& r : d.runs)
+        for (const std::size_t motion : r.motions)
+            for (const std::size_t method : r.methods)
+                if (!by_motion_[motion][method])
+                    by_motion_[motion][method] = make(d.motions[motion], d.methods[method], a, faces, write);
+}
+
+stimulus stimulus_set::make(const motion_definition& motion, const method_definition& method, const array& a,
+                            const layout& faces, const plan_writer& write)
+{
+    const auto blame = [&](const error& e) {
+        return error(e.kind(), motion.where.text(),
+                     fmt::format("motion \"{}\" by method \"{}\" (line {}): {}: {}", motion.name, method.name,
+                                 method.where.line, e.subject(), e.why()),
+                     e.hint());
+    };
+    try {
+        if (motion.drawn.motion.duration_s() > longest_stimulus_s)
+            throw error(error_kind::bad_input, "stroke", "it takes more than ten minutes", "a shorter one");
+        const stroke& drawn = motion.drawn;
+        stimulus s;
+        s.schedule = make_plan(a, faces, drawn, method.options);
+        const score sounds(a, s.schedule, options_);
+        s.frames = sounds.frames();
+        s.text = write(drawn, s.schedule, sounds);
+        s.hash = sha256_text(s.text);
+        const std::vector<percept_sample> samples = predict_percept(a, drawn, s.schedule);
+        s.felt = summarise(samples);
+        s.felt_path = path_of(samples);
+        for (const std::string& w : s.schedule.warnings) {
+            const std::string said =
+                fmt::format("motion \"{}\" by method \"{}\": {}", motion.name, method.name, w);
+            if (std::find(warnings_.begin(), warnings_.end(), said) == warnings_.end())
+                warnings_.push_back(said);
+        }
+        return s;
+    } catch (const error& e) {
+        if (e.kind() != error_kind::bad_input)
+            throw;
+        throw blame(e);
+    }
+}
+
+const stimulus& stimulus_set::at(std::size_t motion, std::size_t method) const
+{
+    return by_motion_[motion][method].value();
+}
+
+std::vector<const stimulus*> stimulus_set::all() const
+{
+    std::vector<const stimulus*> list;
+    for (const auto& of_motion : by_motion_)
+        for (const auto& one : of_motion)
+            if (one)
+                list.push_back(&*one);
+    return list;
+}
+
+std::uint64_t stimulus_set::second(const planned_trial& t) const
+{
+    return at(t.motion, t.method_1).frames + gap_frames_;
+}
+
+std::uint64_t stimulus_set::frames(const planned_trial& t) const
+{
+    return t.method_2 ? second(t) + at(t.motion, *t.method_2).frames : at(t.motion, t.method_1).frames;
+}
+
+score stimulus_set::make_score(const planned_trial& t) const
+{
+    std::vector<placed_plan> plans{{at(t.motion, t.method_1).schedule, 0.0}};
+    if (t.method_2)
+        plans.push_back({at(t.motion, *t.method_2).schedule, static_cast<double>(second(t)) / options_.rate});
+    return score(array_, std::move(plans), options_);
+}
+
+} // namespace tactor::study

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The stimuli of an experiment: each motion by each method that a run asks for, planned and held against the
+/// array's limits before anybody sits down.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tactor/array.hpp>
+#include <tactor/percept.hpp>
+#include <tactor/plan.hpp>
+#include <tactor/render.hpp>
+
+#include "study/experiment/definition.hpp"
+#include "study/experiment/sequence.hpp"
+
+namespace tactor::study {
+
+struct stimulus {
+    plan schedule = {};
+    std::uint64_t frames = 0;          ///< from its first frame to its last sound's end
+    std::string text = {};             ///< the plan as tactor-plan/1
+    std::string hash = {};             ///< its SHA-256
+    percept_summary felt = {};         ///< predicted
+    std::vector<point> felt_path = {}; ///< predicted, at equal parts of the time
+};
+
+/// Equal parts in which movements are compared.
+inline constexpr std::size_t path_parts = 100;
+
+/// Where the target is at 0, 1, ... path_parts parts of its time.
+std::vector<point> target_path(const stroke& s);
+
+/// Writes a plan down as tactor-plan/1.
+using plan_writer = std::function<std::string(const stroke&, const plan&, const score&)>;
+
+class stimulus_set {
+public:
+    /// Plans, predicts and checks all; the warnings are the planner's, each once.
+    /// \throws error (bad_input) with the motion's or method's line: it cannot be planned, or a level is too
+    ///         high.
+    stimulus_set(const experiment_definition& d, const array& a, const render_options& o,
+                 const plan_writer& write);
+
+    /// Planned because a run asks for it.
+    const stimulus& at(std::size_t motion, std::size_t method) const;
+    /// All of them.
+    std::vector<const stimulus*> all() const;
+    const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+
+    /// Frames from the trial's first to its last, the gap included, and of the second stimulus' begin.
+    std::uint64_t frames(const planned_trial& t) const;
+    std::uint64_t second(const planned_trial& t) const;
+    /// Both stimuli as one score, to the frame.
+    score make_score(const planned_trial& t) const;
+
+private:
+    stimulus make(const motion_definition& motion, const method_definition& method, const array& a,
+                  const layout& faces, const plan_writer& write);
+
+    array array_;
+    render_options options_;
+    std::uint64_t gap_frames_ = 0;
+    std::vector<std::vector<std::optional<stimulus>>> by_motion_; ///< and by method
+    std::vector<std::string> warnings_ = {};
+};
+
+} // namespace tactor::study

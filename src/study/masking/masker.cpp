@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include "study/masking/masker.hpp"
+
+#include <chrono>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+namespace tactor::study {
+namespace {
+
+constexpr int look_ms = 20;                 // a stream that stands still is looked at so often
+constexpr std::chrono::seconds patience(5); // and the fade
+constexpr int masking_priority = 60;        // below the array's audio thread
+
+masking_options checked(const masking_options& o)
+{
+    const double most = greatest_noise_dbfs(o.color);
+    if (!(o.level_dbfs <= most))
+        throw error(
+            error_kind::bad_input, "masking noise",
+            fmt::format("{} dBFS is above {} dBFS, where its peaks are at full scale", o.level_dbfs, most),
+            "less, and a louder amplifier");
+    return o;
+}
+
+} // namespace
+
+masker::masker(std::unique_ptr<sink> s, const masking_options& o)
+    : sink_(std::move(s)),
+      patience_(patience + std::chrono::duration<double>(o.fade_s)),
+      stream_(*sink_, checked(o)),
+      fds_(sink_->max_descriptors() + 1)
+{
+    if (const io_kind k = stream_.begin(); k != io_kind::ok)
+        throw error(error_kind::runtime, sink_->setup().name,
+                    fmt::format("the masking noise does not start: {}", to_string(k)));
+    thread_ = std::make_unique<rt::thread>(
+        rt::thread_options{.name = "tactor-masker", .fifo = true, .priority = masking_priority},
+        [this] { run(); });
+}
+
+masker::~masker()
+{
+    over_ = true;
+    wake_.signal();
+    thread_.reset();
+    sink_->drop();
+}
+
+void masker::want(bool on) noexcept
+{
+    on_ = on;
+    // What was before does not hold any more, also before the thread has looked.
+    if (ended_ == io_kind::ok)
+        state_ = masking_state::fading;
+    wake_.signal();
+}
+
+bool masker::poll_descriptor(int descriptor, int timeout_ms)
+{
+    pollfd p{.fd = descriptor, .events = POLLIN, .revents = 0};
+    ::poll(&p, 1, timeout_ms);
+    return true;
+}
+
+bool masker::wait_for(masking_state s, const waiter& wait)
+{
+    const auto until = std::chrono::steady_clock::now() + patience_;
+    while (ended_ == io_kind::ok && std::chrono::steady_clock::now() < until) {
+        if (state_ == s)
+            return true;
+        if (!wait(told_.fd(), look_ms))
+            return false;
+        told_.consume();
+    }
+    return false;
+}
+
+io_kind masker::wait() noexcept
+{
+    const std::size_t n = sink_->descriptors(std::span(fds_).first(fds_.size() - 1));
+    fds_[n] = {.fd = wake_.fd(), .events = POLLIN, .revents = 0};
+    if (::poll(fds_.data(), n + 1, look_ms) < 0)
+        return io_kind::again;
+    if (fds_[n].revents != 0)
+        wake_.consume();
+    return sink_->ready(std::span(fds_).first(n));
+}
+
+void masker::run() noexcept
+{
+    while (!over_) {
+        const io_kind ready = wait();
+        const bool on = on_;
+        const io_kind now = stream_.step(ready, on);
+        breaks_ = stream_.breaks();
+        if (now != io_kind::ok) {
+            ended_ = now;
+            told_.signal();
+            return;
+        }
+        const masking_state is = stream_.state();
+        // What was wanted of it meanwhile is not done yet.
+        if (is != (on ? masking_state::silent : masking_state::full) && state_.exchange(is) != is)
+            told_.signal();
+    }
+}
+
+} // namespace tactor::study

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include "study/masking/masking_stream.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <tactor/sample_format.hpp>
+
+#include "synth/mix/converter.hpp"
+
+namespace tactor::study {
+namespace {
+
+constexpr std::size_t masking_block_frames = 64;
+constexpr unsigned most_breaks_in_row = 3;
+
+} // namespace
+
+masking_stream::masking_stream(sink& s, const masking_options& o)
+    : sink_(s),
+      noise_(o.color, o.level_dbfs, o.seed),
+      frame_bytes_(s.setup().channels * bytes_of(s.setup().format)),
+      fade_frames_(static_cast<std::uint32_t>(std::max(1.0, std::round(o.fade_s * s.setup().rate)))),
+      samples_(masking_block_frames),
+      block_(masking_block_frames * frame_bytes_)
+{
+}
+
+io_kind masking_stream::begin() noexcept
+{
+    if (const io_kind s = sink_.prepare(); s != io_kind::ok)
+        return s;
+    pending_ = 0;
+    faded_ = 0;
+    made_ = 0;
+    full_from_.reset();
+    silent_from_ = 0;
+    if (const io_kind s = fill(sink_.setup().buffer_frames, false); s != io_kind::ok)
+        return s;
+    return sink_.start();
+}
+
+io_kind masking_stream::step(io_kind ready, bool on) noexcept
+{
+    if (ready == io_kind::again)
+        return io_kind::ok;
+    if (ready != io_kind::ok)
+        return again_after(ready);
+    const io_result room = sink_.room();
+    if (room.status == io_kind::again)
+        return io_kind::ok;
+    if (room.status != io_kind::ok)
+        return again_after(room.status);
+    const io_kind s = fill(room.frames, on);
+    return s == io_kind::ok ? s : again_after(s);
+}
+
+io_kind masking_stream::again_after(io_kind why) noexcept
+{
+    if (why != io_kind::xrun)
+        return why;
+    ++breaks_;
+    if (++breaks_in_row_ > most_breaks_in_row)
+        return io_kind::failed;
+    return begin();
+}
+
+io_kind masking_stream::fill(std::size_t frames, bool on) noexcept
+{
+    while (frames > 0 || pending_ > 0) {
+        if (pending_ == 0) {
+            pending_ = std::min(frames, masking_block_frames);
+            pending_from_ = 0;
+            frames -= pending_;
+            make_block(pending_, on);
+        }
+        const io_result r = sink_.write(block_.data() + pending_from_ * frame_bytes_, pending_);
+        if (r.status == io_kind::again || (r.status == io_kind::ok && r.frames == 0))
+            return io_kind::ok;
+        if (r.status != io_kind::ok)
+            return r.status;
+        pending_ -= r.frames;
+        pending_from_ += r.frames;
+    }
+    return io_kind::ok;
+}
+
+void masking_stream::make_block(std::size_t frames, bool on) noexcept
+{
+    for (std::size_t i = 0; i < frames; ++i) {
+        const double gain = next_gain(on);
+        samples_[i] = gain > 0.0 ? gain * noise_.next() : 0.0;
+    }
+    const std::size_t sample_bytes = bytes_of(sink_.setup().format);
+    const std::array<synth::channel_samples, 1> mono{{{.channel = 0, .x = samples_.data()}}};
+    synth::interleave(sink_.setup().format, mono, 1, static_cast<unsigned>(frames), block_.data());
+    // Spread from the last frame on: none is overwritten before it is read.
+    for (std::size_t i = frames; i-- > 0;)
+        for (std::size_t c = sink_.setup().channels; c-- > 0;)
+            std::copy_n(block_.data() + i * sample_bytes, sample_bytes,
+                        block_.data() + i * frame_bytes_ + c * sample_bytes);
+}
+
+double masking_stream::next_gain(bool on) noexcept
+{
+    if (on && faded_ < fade_frames_) {
+        silent_from_.reset();
+        if (++faded_ == fade_frames_)
+            full_from_ = made_;
+    } else if (!on && faded_ > 0) {
+        full_from_.reset();
+        if (--faded_ == 0)
+            silent_from_ = made_;
+    }
+    ++made_;
+    return 0.5 - 0.5 * std::cos(std::numbers::pi * faded_ / fade_frames_);
+}
+
+masking_state masking_stream::state() noexcept
+{
+    const stream_position p = sink_.position();
+    if (!p.valid)
+        return masking_state::fading;
+    if (p.played > 0)
+        breaks_in_row_ = 0;
+    if (full_from_ && p.played > *full_from_)
+        return masking_state::full;
+    return silent_from_ && p.played >= *silent_from_ ? masking_state::silent : masking_state::fading;
+}
+
+} // namespace tactor::study

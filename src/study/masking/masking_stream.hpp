@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Noise on a device of its own, faded in and out, one wake-up at a time: no thread and no clock.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tactor/sink.hpp>
+
+#include "study/masking/noise.hpp"
+
+namespace tactor::study {
+
+struct masking_options {
+    noise_color color = noise_color::white;
+    double level_dbfs = -30.0; ///< see noise
+    double fade_s = 0.05;      ///< raised cosine, in and out
+    std::string seed = {};
+};
+
+/// What is at the DAC.
+enum class masking_state { silent, fading, full };
+
+/// All channels get the same. After the constructor nothing allocates, locks or throws.
+class masking_stream {
+public:
+    masking_stream(sink& s, const masking_options& o);
+
+    /// Prepares the sink, fills its buffer and starts it.
+    io_kind begin() noexcept;
+    /// Writes what there is room for. `ready` is what the sink made of its descriptors. An xrun is counted
+    /// and the stream begun again, from silence. `ok`, or why it has ended.
+    io_kind step(io_kind ready, bool on) noexcept;
+
+    masking_state state() noexcept;
+    /// How often the stream stood still.
+    unsigned breaks() const noexcept { return breaks_; }
+    const stream_setup& setup() const noexcept { return sink_.setup(); }
+
+private:
+    io_kind fill(std::size_t frames, bool on) noexcept;
+    void make_block(std::size_t frames, bool on) noexcept;
+    double next_gain(bool on) noexcept;
+    io_kind again_after(io_kind why) noexcept;
+
+    sink& sink_;
+    noise noise_;
+    std::size_t frame_bytes_;
+    std::uint32_t fade_frames_;
+    std::vector<double> samples_;
+    std::vector<std::byte> block_;
+    std::size_t pending_ = 0; ///< frames of block_ that the sink has not taken yet
+    std::size_t pending_from_ = 0;
+    std::uint32_t faded_ = 0; ///< 0: silent, fade_frames_: full
+    std::uint64_t made_ = 0;  ///< frames of this epoch
+    std::optional<std::uint64_t> full_from_ = {};
+    std::optional<std::uint64_t> silent_from_ = 0;
+    unsigned breaks_ = 0;
+    unsigned breaks_in_row_ = 0; ///< without a frame played between
+};
+
+} // namespace tactor::study

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// SHA-256 (FIPS 180-4): seeds from text, names of plans.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace tactor::study {
+
+using sha256_digest = std::array<std::uint8_t, 32>;
+
+sha256_digest sha256(std::string_view bytes);
+
+/// The same as 64 lower-case hexadecimal digits.
+std::string sha256_text(std::string_view bytes);
+
+} // namespace tactor::study

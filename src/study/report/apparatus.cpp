@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+
+#include <tactor/phantom.hpp>
+#include <tactor/words.hpp>
+
+#include "study/report/markdown.hpp"
+#include "study/report/sections.hpp"
+
+namespace tactor::study {
+namespace {
+
+std::string spacing_of(const std::vector<double>& lines)
+{
+    std::vector<double> gaps;
+    for (std::size_t i = 1; i < lines.size(); ++i)
+        gaps.push_back(lines[i] - lines[i - 1]);
+    return range_text(gaps);
+}
+
+// Rows and columns where there are some, else how near neighbours are.
+std::string layout_text(const array& a)
+{
+    const auto grid = find_grid(a);
+    if (!grid)
+        return fmt::format("in no grid, {} mm from neighbour to neighbour (median)",
+                           digits(layout(a).pitch_mm()));
+    const std::size_t columns = grid->x_mm.size();
+    const std::size_t rows = grid->y_mm.size();
+    std::string text = fmt::format("in {} and {}", counted(rows, "row"), counted(columns, "column"));
+    if (columns > 1)
+        text += fmt::format(", {} mm from column to column", spacing_of(grid->x_mm));
+    if (rows > 1)
+        text += fmt::format("{} {} mm from row to row", columns > 1 ? " and" : ",", spacing_of(grid->y_mm));
+    return text + ", centre to centre";
+}
+
+std::string actuators_of(const array& a)
+{
+    std::set<std::string> kinds;
+    for (const tactor_spec& t : a.tactors)
+        kinds.insert(std::string(to_string(t.actuator)));
+    std::string all;
+    for (const std::string& k : kinds)
+        all += (all.empty() ? "" : ", ") + (k == "unknown" ? std::string(not_recorded) : k);
+    return all;
+}
+
+std::string array_table(const array& a)
+{
+    std::string text = table_head(
+        {"tactor", "x (mm)", "y (mm)", "channel", "polarity", "gain (dB)", "limit (dBFS)", "actuator"});
+    for (std::size_t i = 0; i < a.tactors.size(); ++i) {
+        const tactor_spec& t = a.tactors[i];
+        text += table_row({fmt::format("{}", i), digits(t.position.x_mm), digits(t.position.y_mm),
+                           fmt::format("{}", t.channel), fmt::format("{}", t.polarity), digits(t.gain_db),
+                           digits(t.max_dbfs), std::string(to_string(t.actuator))});
+    }
+    return text;
+}
+
+// Each array that was used, once, with those who felt it where there are several.
+std::string arrays_text(const study_facts& f)
+{
+    std::map<std::string, std::vector<std::string>> tables;
+    for (const session_facts& s : f.sessions)
+        tables[s.tactors ? array_table(*s.tactors) : ""].push_back(s.code);
+    std::string text;
+    for (const auto& [table, codes] : tables) {
+        if (tables.size() > 1)
+            text += fmt::format("\n{}:\n", subjects(codes));
+        text += table.empty() ? "\nThe places of the tactors are not recorded.\n" : "\n" + table;
+    }
+    return text;
+}
+
+std::string level_text(const session_facts& s)
+{
+    const json_fact level = s.facts()["level"];
+    if (const auto sl = level["sl_db"].number())
+        return fmt::format("{} dB above each tactor's detection threshold ({} dB SL)", digits(*sl),
+                           digits(*sl));
+    const auto dbfs = level["dbfs"].number();
+    return dbfs ? fmt::format("{} dBFS, the same for all tactors but for their gains", digits(*dbfs)) : "";
+}
+
+std::string assumed_text(const session_facts& s)
+{
+    const auto assumed = s.facts()["thresholds_assumed"].truth();
+    if (!assumed)
+        return "";
+    return *assumed ? "assumed, **not measured**, for tactors without one"
+                    : "from the array file, none assumed";
+}
+
+// One threshold, or those at several frequencies.
+std::string threshold_text(const json_fact& t)
+{
+    if (!t.there())
+        return "none";
+    if (!t.is_list())
+        return digits(t.need_number());
+    std::string all;
+    for (const json_fact& pair : t.list()) {
+        const std::vector<json_fact> hz_and_dbfs = pair.list();
+        if (hz_and_dbfs.size() != 2)
+            pair.refuse("is no frequency with a threshold", "it was changed");
+        all += fmt::format("{}{} at {} Hz", all.empty() ? "" : ", ", digits(hz_and_dbfs[1].need_number()),
+                           digits(hz_and_dbfs[0].need_number()));
+    }
+    return all;
+}
+
+// Of one tactor's thresholds, where each is one number.
+std::string mean_and_sd(const std::vector<double>& v)
+{
+    const t_test t = quick_test_mean(v, 0.0);
+    if (!t.mean)
+        return "none";
+    return !t.se ? fmt::format("{:.2f}", *t.mean)
+                 : fmt::format("{:.2f} ({:.2f})", *t.mean, *t.se * std::sqrt(static_cast<double>(v.size())));
+}
+
+// A row for each participant, and mean and standard deviation of each tactor's.
+std::string thresholds_table(const study_facts& f)
+{
+    std::size_t most = 0;
+    for (const session_facts& s : f.sessions)
+        most = std::max(most, s.facts()["thresholds_dbfs"].list().size());
+    if (most == 0)
+        return "Thresholds are not recorded.\n";
+    std::vector<std::string> head{"threshold (dBFS)"};
+    for (std::size_t i = 0; i < most; ++i)
+        head.push_back(fmt::format("tactor {}", i));
+    std::string text = table_head(head);
+    std::vector<std::vector<double>> columns(most);
+    for (const session_facts& s : f.sessions) {
+        std::vector<std::string> row{"sub-" + s.code};
+        for (const json_fact& one : s.facts()["thresholds_dbfs"].list()) {
+            row.push_back(threshold_text(one));
+            if (one.there() && !one.is_list())
+                columns[row.size() - 2].push_back(one.need_number());
+        }
+        row.resize(most + 1, "none");
+        text += table_row(row);
+    }
+    std::vector<std::string> summary{"mean (sd)"};
+    for (const std::vector<double>& v : columns)
+        summary.push_back(mean_and_sd(v));
+    return text + table_row(summary);
+}
+
+std::string words_of(const study_facts& f, const char* key)
+{
+    return told(f, [&](const session_facts& s) {
+        const json_fact said = s.facts()[key];
+        return !said.there() && s.document.contains(key) ? std::string("none") : plain(said.words());
+    });
+}
+
+} // namespace
+
+std::string apparatus_section(const study_facts& f)
+{
+    std::string text = "\n## Apparatus\n\n### Array\n\n";
+    text += fmt::format("Array: {}.\n", told(f, [](const session_facts& s) {
+                            return s.tactors ? fmt::format("{}: {} {}; actuators: {}", plain(s.tactors->name),
+                                                           counted(s.tactors->tactors.size(), "tactor"),
+                                                           layout_text(*s.tactors), actuators_of(*s.tactors))
+                                             : "";
+                        }));
+    text += arrays_text(f);
+    text += "\n### Sound\n\n";
+    text += fmt::format("Sample rate (Hz): {}. Channels: {}. Device: {}. Sound server between tactor and the "
+                        "device: {}.\n",
+                        words_of(f, "rate"), words_of(f, "channels"), words_of(f, "device"),
+                        words_of(f, "sound_server"));
+    text += "\n### Levels and thresholds\n\n";
+    text += fmt::format("Level: {}. Thresholds: {}.\n\n", told(f, level_text), told(f, assumed_text));
+    text += thresholds_table(f);
+    if (const std::string how = words_of(f, "calibration"); how != not_recorded)
+        text += fmt::format("\nCalibration: {}.\n", how);
+    return text;
+}
+
+} // namespace tactor::study

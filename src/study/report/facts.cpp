@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+#include "study/report/facts.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "study/data/text_table.hpp"
+#include "study/random/sha256.hpp"
+
+namespace tactor::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Sessions that tactor experiment held say so.
+constexpr std::string_view own_schema = "tactor-session/1";
+constexpr int most_channel = 16383;
+
+[[noreturn]] void refuse_changed(const std::string& what, const std::string& said, const std::string& is)
+{
+    throw error(error_kind::bad_input, what, fmt::format("its SHA-256 is {}, not {}", is, said),
+                "it was changed after the session: put back what it was");
+}
+
+tactor_spec tactor_in(const json_fact& t)
+{
+    tactor_spec one;
+    one.position = {t["x_mm"].need_number(), t["y_mm"].need_number()};
+    one.channel = static_cast<unsigned>(t["channel"].need_whole(0, most_channel));
+    if (t["polarity"].there())
+        one.polarity = t["polarity"].need_whole(-1, 1);
+    one.gain_db = t["gain_db"].number().value_or(0.0);
+    one.max_dbfs = t["max_dbfs"].number().value_or(0.0);
+    const std::string actuator = t["actuator"].text().value_or("unknown");
+    try {
+        one.actuator = from_string<actuator_kind>(actuator);
+    } catch (const error& e) {
+        t["actuator"].refuse(e.why(), e.hint());
+    }
+    return one;
+}
+
+std::optional<array> array_in(const json_fact& a)
+{
+    if (!a.there())
+        return {};
+    array all;
+    all.name = a["name"].text().value_or("");
+    for (const json_fact& t : a["tactors"].list())
+        all.tactors.push_back(tactor_in(t));
+    try {
+        validate(all);
+    } catch (const error& e) {
+        a.refuse(fmt::format("is none: {}: {}", e.subject(), e.why()), e.hint());
+    }
+    return all;
+}
+
+std::vector<planned_stimulus> stimuli_of(const session_facts& s, const fs::path& plans)
+{
+    std::vector<planned_stimulus> all;
+    for (const json_fact& one : s.facts()["stimuli"].list()) {
+        planned_stimulus p{
+            one["motion"].need_text(), one["method"].need_text(), one["sha256"].need_text(), {}, {}};
+        const fs::path file = plans / (fs::path(p.hash).filename().string() + ".json");
+        p.file = file.string();
+        const std::string text = read_file(file);
+        if (const std::string is = sha256_text(text); is != p.hash)
+            refuse_changed(p.file, p.hash, is);
+        p.plan = read_json(file, text);
+        all.push_back(std::move(p));
+    }
+    return all;
+}
+
+// The hash that a trial must name for a stimulus of its.
+void check_plan(const text_table& t, std::size_t row, const session_facts& s, const char* method,
+                const char* plan)
+{
+    if (!t.has(method) || !t.has(plan) || !t.cell(row, method) || !t.cell(row, plan))
+        return;
+    const auto same = [&](const planned_stimulus& p) {
+        return p.motion == *t.cell(row, "motion") && p.method == *t.cell(row, method);
+    };
+    const auto at = std::find_if(s.stimuli.begin(), s.stimuli.end(), same);
+    if (at == s.stimuli.end() || at->hash != *t.cell(row, plan))
+        t.refuse(row, fmt::format("{} is no plan of its motion by its method in session.json", plan),
+                 "it was changed");
+}
+
+void_count voids_of(const fs::path& file, const session_facts& s)
+{
+    void_count c;
+    std::error_code ignored;
+    if (!fs::exists(file, ignored))
+        return c;
+    const text_table t(file);
+    for (std::size_t i = 0; i < t.rows(); ++i) {
+        if (!s.stimuli.empty()) {
+            check_plan(t, i, s, "method_1", "plan_1");
+            check_plan(t, i, s, "method_2", "plan_2");
+        }
+        if (t.need(i, "void") != "true")
+            continue;
+        ++c.voids;
+        const auto xruns = t.has("xruns") ? t.whole(i, "xruns", 0, 1000000000) : std::nullopt;
+        if (!xruns)
+            ++c.unknown;
+        else if (*xruns > 0)
+            ++c.with_xruns;
+    }
+    return c;
+}
+
+session_facts session_of(const fs::path& folder, const std::string& code, const experiment_outline& outline)
+{
+    const std::string sub = "sub-" + code;
+    const fs::path source = folder / "sourcedata" / sub;
+    const fs::path file = source / "session.json";
+    session_facts s;
+    s.code = code;
+    s.file = file.string();
+    s.document = read_json(file, read_file(file));
+    const std::string text = s.facts()["experiment"]["text"].need_text();
+    s.definition_hash = sha256_text(text);
+    if (const auto said = s.facts()["experiment"]["sha256"].text(); said && *said != s.definition_hash)
+        refuse_changed(s.file + ": experiment.text", *said, s.definition_hash);
+    if (s.facts()["schema"].text() == own_schema)
+        s.design = read_design(text, s.file + ": experiment.text");
+    s.tactors = array_in(s.facts()["array"]);
+    s.stimuli = stimuli_of(s, source / "plans");
+    for (const run_outline& r : outline.runs)
+        s.voids.push_back(
+            voids_of(folder / sub / "beh" / fmt::format("{}_task-{}_beh.tsv", sub, r.file_name), s));
+    return s;
+}
+
+std::vector<person> people_of(const fs::path& folder, const std::vector<std::string>& codes)
+{
+    const text_table t(folder / "participants.tsv");
+    const auto cell = [&](std::size_t row, const char* column) {
+        const auto v = t.has(column) ? t.cell(row, column) : std::nullopt;
+        return v ? std::optional<std::string>(*v) : std::nullopt;
+    };
+    std::vector<person> all;
+    for (std::size_t i = 0; i < t.rows(); ++i) {
+        const std::string code(t.need(i, "participant_id").substr(4)); // after "sub-"
+        if (std::find(codes.begin(), codes.end(), code) != codes.end())
+            all.push_back({code, cell(i, "age"), cell(i, "sex"), cell(i, "handedness")});
+    }
+    return all;
+}
+
+} // namespace
+
+study_facts read_facts(const fs::path& folder, const dataset& d)
+{
+    study_facts f;
+    f.people = people_of(folder, d.participants);
+    for (const std::string& code : d.participants) {
+        std::error_code ignored;
+        if (fs::exists(folder / "sourcedata" / ("sub-" + code) / "session.json", ignored))
+            f.sessions.push_back(session_of(folder, code, d.experiment));
+    }
+    return f;
+}
+
+} // namespace tactor::study

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What a study's files say beside the answers: how each session was held, and who took part.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+#include <tactor/array.hpp>
+
+#include "study/data/dataset.hpp"
+#include "study/experiment/definition.hpp"
+#include "study/report/json_fact.hpp"
+
+namespace tactor::study {
+
+/// A stimulus that a session lists, with its plan (schema tactor-plan/1).
+struct planned_stimulus {
+    std::string motion;
+    std::string method;
+    std::string hash;
+    std::string file;
+    nlohmann::ordered_json plan;
+
+    json_fact facts() const { return {plan, file}; }
+};
+
+/// Void trials of a run, in how many of them the sound had gaps, and of how many nobody knows.
+struct void_count {
+    std::size_t voids = 0;
+    std::size_t with_xruns = 0;
+    std::size_t unknown = 0;
+
+    friend bool operator==(const void_count&, const void_count&) = default;
+};
+
+struct session_facts {
+    std::string code;
+    std::string file; ///< session.json
+    nlohmann::ordered_json document;
+    /// What the definition says, defaults included; only where tactor held the session: other programs may
+    /// have other defaults.
+    std::optional<experiment_definition> design = {};
+    std::string definition_hash; ///< SHA-256 of its text
+    std::optional<array> tactors = {};
+    std::vector<planned_stimulus> stimuli = {};
+    std::vector<void_count> voids = {}; ///< by run of the outline
+
+    json_fact facts() const { return {document, file}; }
+};
+
+/// A line of participants.tsv.
+struct person {
+    std::string code;
+    std::optional<std::string> age = {};
+    std::optional<std::string> sex = {};
+    std::optional<std::string> handedness = {};
+};
+
+struct study_facts {
+    std::vector<session_facts> sessions = {}; ///< in the order of participants.tsv
+    std::vector<person> people = {};          ///< who was selected, those without a session too
+};
+
+/// Of those whom `d` has, which was read from the same folder.
+/// \throws error (bad_input) with the file: a value of another type; a definition or a plan that is not there
+///         or does not have its SHA-256 any more; a trial whose stimulus is another than its plan's hash
+///         says.
+study_facts read_facts(const std::filesystem::path& folder, const dataset& d);
+
+} // namespace tactor::study

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
+#include <tactor/words.hpp>
+
+#include "study/report/equations.hpp"
+#include "study/report/markdown.hpp"
+#include "study/report/sections.hpp"
+#include "study/report/sound_text.hpp"
+
+namespace tactor::study {
+namespace {
+
+using numbers = std::vector<double>;
+
+// A number of each burst of a plan.
+numbers of_bursts(const planned_stimulus& p, const char* key)
+{
+    numbers all;
+    for (const json_fact& b : p.facts()["bursts"].list())
+        if (const auto v = b[key].number())
+            all.push_back(*v);
+    return all;
+}
+
+// Different values over the plans of a session, as text.
+template <class F>
+std::string over_plans(const session_facts& s, const F& value)
+{
+    std::set<std::string> seen;
+    for (const planned_stimulus& p : s.stimuli)
+        if (std::string text = value(p.facts()); !text.empty())
+            seen.insert(std::move(text));
+    std::string all;
+    for (const std::string& text : seen)
+        all += (all.empty() ? "" : ", ") + text;
+    return all;
+}
+
+std::string carrier_text(const session_facts& s)
+{
+    if (s.stimuli.empty())
+        return "";
+    numbers ramps;
+    for (const planned_stimulus& p : s.stimuli)
+        for (const double r : of_bursts(p, "ramp_s"))
+            ramps.push_back(r);
+    const std::string phase = over_plans(s, [](const json_fact& p) { return p["render"]["phase"].words(); });
+    std::string text = fmt::format("{}; {}; {} of {} s at both ends of a burst", over_plans(s, carrier_of),
+                                   phase == "stroke"  ? "the phase ran on through each stimulus"
+                                   : phase == "burst" ? "the phase began anew with each burst"
+                                                      : "the phase differed between stimuli",
+                                   over_plans(s, envelope_of), range_text(ramps));
+    if (const std::string rise = over_plans(s, rise_of); !rise.empty())
+        text += "; " + rise;
+    return text;
+}
+
+std::string law_text(const session_facts& s)
+{
+    if (!s.design)
+        return "";
+    std::set<std::string> laws;
+    for (const method_definition& m : s.design->methods)
+        laws.insert(timing_law(m.options.profile));
+    std::string all;
+    for (const std::string& law : laws)
+        all += (all.empty() ? "" : " and ") + law;
+    return all;
+}
+
+// The names of what a key has in the plans of a method, in the order of the sessions.
+std::vector<std::string> kinds_of(const study_facts& f, const std::string& method, const char* key)
+{
+    std::vector<std::string> kinds;
+    for (const session_facts& s : f.sessions)
+        for (const planned_stimulus& p : s.stimuli)
+            if (method.empty() || p.method == method)
+                if (const std::string kind = p.facts()[key].words();
+                    !kind.empty() && std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
+                    kinds.push_back(kind);
+    return kinds;
+}
+
+std::string options_text(const session_facts& s, const std::string& method)
+{
+    if (s.design)
+        for (const method_definition& m : s.design->methods)
+            if (m.name == method)
+                return method_options(m.options);
+    return "";
+}
+
+std::string method_text(const study_facts& f, const std::string& method)
+{
+    const std::vector<std::string> algorithms = kinds_of(f, method, "algorithm");
+    std::string text = fmt::format("\n**{}.** ", plain(method));
+    if (algorithms.empty())
+        return text + "Its algorithm is not recorded.\n";
+    for (const std::string& a : algorithms)
+        text += fmt::format("Algorithm {}: {}\n", plain(a), algorithm_text(a));
+    text += fmt::format("Phantom model: {}. Options: {}.\n", plain_list(kinds_of(f, method, "phantom")),
+                        told(f, [&](const session_facts& s) { return options_text(s, method); }));
+    return text;
+}
+
+std::string bursts_cell(const planned_stimulus& p)
+{
+    const numbers durations = of_bursts(p, "duration_s");
+    return durations.empty() ? "continuous"
+                             : fmt::format("{} of {} s", durations.size(), range_text(durations));
+}
+
+std::string plan_row(const planned_stimulus& p)
+{
+    const json_fact f = p.facts();
+    const auto number = [](const json_fact& v) {
+        return v.there() ? digits(v.need_number()) : std::string("-");
+    };
+    return table_row({plain(p.motion), plain(p.method), plain(f["stroke"]["name"].words()),
+                      number(f["stroke"]["duration_s"]), number(f["stroke"]["length_mm"]), number(f["soa_s"]),
+                      bursts_cell(p), number(f["total_s"]), fmt::format("{}", f["conflicts"].list().size()),
+                      "`" + p.hash + "`"});
+}
+
+// Every plan once; whose it is, where not everybody's.
+std::string plans_table(const study_facts& f)
+{
+    std::vector<std::pair<std::string, std::vector<std::string>>> rows;
+    for (const session_facts& s : f.sessions)
+        for (const planned_stimulus& p : s.stimuli) {
+            const std::string row = plan_row(p);
+            auto at = std::find_if(rows.begin(), rows.end(), [&](const auto& r) { return r.first == row; });
+            if (at == rows.end())
+                at = rows.insert(rows.end(), {row, {}});
+            at->second.push_back(s.code);
+        }
+    if (rows.empty())
+        return "\nThe stimuli are not recorded.\n";
+    std::string text = "\n" + table_head({"motion", "method", "path", "target (s)", "length (mm)", "SOA (s)",
+                                          "bursts", "sound (s)", "overlaps", "SHA-256 of the plan"});
+    std::string whose;
+    for (const auto& [row, codes] : rows) {
+        text += row;
+        if (codes.size() != f.sessions.size())
+            whose += fmt::format("\nNot everybody's: plan `{}` of {}.\n", row.substr(row.rfind('`') - 64, 64),
+                                 subjects(codes));
+    }
+    return text + whose;
+}
+
+std::string notes_text(const study_facts& f)
+{
+    std::set<std::string> notes;
+    for (const session_facts& s : f.sessions)
+        for (const planned_stimulus& p : s.stimuli) {
+            if (const std::string note = p.facts()["stroke"]["note"].words(); !note.empty())
+                notes.insert(fmt::format("- {}: {}\n", plain(p.motion), plain(note)));
+            for (const json_fact& w : p.facts()["warnings"].list())
+                notes.insert(
+                    fmt::format("- {} by {}: {}\n", plain(p.motion), plain(p.method), plain(w.need_text())));
+        }
+    std::string all;
+    for (const std::string& n : notes)
+        all += n;
+    return all.empty() ? "" : "\nOf these plans it was noted:\n\n" + all;
+}
+
+} // namespace
+
+std::string stimuli_section(const study_facts& f)
+{
+    std::string text = "\n## Stimuli\n\n### Carrier and timing\n\n";
+    text += fmt::format("Carrier: {}.\n\n", told(f, carrier_text));
+    text +=
+        fmt::format("Timing law (Eq. 1 of Park et al. 2016, from Israr and Poupyrev 2011), the SOA being the "
+                    "time from onset to onset:\n{}.\n",
+                    told(f, law_text));
+    text += "\n### Methods of rendering\n";
+    std::vector<std::string> methods;
+    for (const session_facts& s : f.sessions)
+        for (const planned_stimulus& p : s.stimuli)
+            if (std::find(methods.begin(), methods.end(), p.method) == methods.end())
+                methods.push_back(p.method);
+    for (const std::string& m : methods)
+        text += method_text(f, m);
+    for (const std::string& kind : kinds_of(f, "", "phantom"))
+        text += fmt::format("\n**Phantom model {}.** {}\n", plain(kind), phantom_text(kind));
+    text += "\n### Motions and plans\n";
+    return text + plans_table(f) + notes_text(f);
+}
+
+} // namespace tactor::study

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+#include "study/statistics/t_test.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+
+#include <boost/math/distributions/non_central_t.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <boost/math/tools/roots.hpp>
+
+#include "study/statistics/sign_flip.hpp"
+
+namespace tactor::study {
+namespace {
+
+double mean_of(std::span<const double> v)
+{
+    return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
+}
+
+double sd_of(std::span<const double> v, double mean)
+{
+    double squares = 0.0;
+    for (const double x : v)
+        squares += (x - mean) * (x - mean);
+    return std::sqrt(squares / static_cast<double>(v.size() - 1));
+}
+
+// The noncentrality with which P(T <= t) is `below`: it falls as the noncentrality grows.
+double noncentrality(double t, double df, double below)
+{
+    const auto off = [&](double delta) {
+        return boost::math::cdf(boost::math::non_central_t_distribution<>(df, delta), t) - below;
+    };
+    // Near t, as wide as the estimate of a standard deviation is uncertain.
+    double width = 1.0 + std::abs(t) / std::sqrt(df);
+    double low = t - width;
+    double high = t + width;
+    while (off(low) < 0.0)
+        low -= width *= 2.0;
+    width = 1.0 + std::abs(t) / std::sqrt(df);
+    while (off(high) > 0.0)
+        high += width *= 2.0;
+    std::uintmax_t steps = 200;
+    const auto [a, b] = boost::math::tools::toms748_solve(
+        off, low, high, boost::math::tools::eps_tolerance<double>(48), steps);
+    return (a + b) / 2.0;
+}
+
+} // namespace
+
+bool varies(std::span<const double> values)
+{
+    double largest = 0.0;
+    double low = values.empty() ? 0.0 : values[0];
+    double high = low;
+    for (const double x : values) {
+        largest = std::max(largest, std::abs(x));
+        low = std::min(low, x);
+        high = std::max(high, x);
+    }
+    return high - low > 1e-12 * largest;
+}
+
+double p_of_t(double t, double df)
+{
+    const boost::math::students_t_distribution<> dist(df);
+    return std::min(1.0, 2.0 * boost::math::cdf(boost::math::complement(dist, std::abs(t))));
+}
+
+std::optional<interval> noncentrality_interval(double t, double df)
+{
+    if (!(std::abs(t) <= 1e4))
+        return {};
+    return interval{noncentrality(t, df, 0.975), noncentrality(t, df, 0.025)};
+}
+
+t_test quick_test_mean(std::span<const double> values, double against)
+{
+    t_test r;
+    r.n = values.size();
+    if (values.empty())
+        return r;
+    r.mean = mean_of(values);
+    if (values.size() < 2)
+        return r;
+    r.df = static_cast<double>(r.n - 1);
+    if (!varies(values)) {
+        r.se = 0.0;
+        return r;
+    }
+    r.se = sd_of(values, *r.mean) / std::sqrt(static_cast<double>(r.n));
+    r.t = (*r.mean - against) / *r.se;
+    r.p = p_of_t(*r.t, *r.df);
+    return r;
+}
+
+t_test test_mean(std::span<const double> values, double against)
+{
+    t_test r = quick_test_mean(values, against);
+    if (values.size() < 2)
+        return r;
+    std::vector<double> off(values.begin(), values.end());
+    for (double& x : off)
+        x -= against;
+    r.p_signflip = sign_flip_p(off);
+    if (!r.t)
+        return r;
+    const double root_n = std::sqrt(static_cast<double>(r.n));
+    const double sd = sd_of(values, *r.mean);
+    const double wide = boost::math::quantile(boost::math::students_t_distribution<>(*r.df), 0.975) * *r.se;
+    r.ci = interval{*r.mean - wide, *r.mean + wide};
+    r.d = (*r.mean - against) / sd;
+    if (const auto delta = noncentrality_interval(*r.t, *r.df))
+        r.d_ci = interval{delta->first / root_n, delta->second / root_n};
+    return r;
+}
+
+std::vector<std::optional<double>> holm(const std::vector<std::optional<double>>& p)
+{
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < p.size(); ++i)
+        if (p[i])
+            order.push_back(i);
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return *p[a] < *p[b]; });
+    std::vector<std::optional<double>> adjusted(p.size());
+    double least = 0.0;
+    for (std::size_t rank = 0; rank < order.size(); ++rank) {
+        least = std::max(least, std::min(1.0, static_cast<double>(order.size() - rank) * *p[order[rank]]));
+        adjusted[order[rank]] = least;
+    }
+    return adjusted;
+}
+
+} // namespace tactor::study

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#include "synth/guard/guard.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+namespace tactor::synth {
+
+guard_settings guards_of(const drive_limits& l, unsigned rate)
+{
+    check_limits(l);
+    const auto frames = [rate](double s) { return static_cast<std::uint64_t>(std::llround(s * rate)); };
+    guard_settings g;
+    g.rate = rate;
+    g.power = std::pow(10.0, l.power_dbfs / 10.0);
+    if (l.max_drive_s < l.window_s) {
+        g.drive_frames = frames(l.max_drive_s);
+        g.window_frames = frames(l.window_s);
+    }
+    return g;
+}
+
+void check_limits(const drive_limits& l)
+{
+    if (std::isnan(l.power_dbfs) || l.power_dbfs < -120.0) {
+        throw error(error_kind::bad_input, "power limit", fmt::format("{} dBFS is not one", l.power_dbfs),
+                    "give e.g. 4.77, three channels at full scale");
+    }
+    if (!(l.max_drive_s >= 0.1) || !(l.window_s >= 0.1 && l.window_s <= 3600.0)) {
+        throw error(error_kind::bad_input, "longest drive",
+                    fmt::format("{} s within {} s is not a limit", l.max_drive_s, l.window_s),
+                    "give 0.1 s or more within 0.1 to 3600 s, e.g. 5 within 10");
+    }
+}
+
+} // namespace tactor::synth

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include <tactor/render.hpp>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "core/kind_table.hpp"
+#include "core/path/number.hpp"
+
+namespace tactor {
+namespace {
+
+constexpr detail::kind_table<phase_kind, 2> phases("phase", {{phase_kind::stroke, "stroke"},
+                                                             {phase_kind::burst, "burst"}});
+constexpr detail::kind_table<envelope_kind, 4> envelopes("envelope",
+                                                         {{envelope_kind::raised_cosine, "raised-cosine"},
+                                                          {envelope_kind::linear, "linear"},
+                                                          {envelope_kind::exponential, "exponential"},
+                                                          {envelope_kind::tukey, "tukey"}});
+
+} // namespace
+
+std::string_view to_string(phase_kind k) noexcept
+{
+    return phases.name(k);
+}
+
+template <>
+phase_kind from_string<phase_kind>(std::string_view name)
+{
+    return phases.kind(name);
+}
+
+template <>
+std::span<const phase_kind> values_of<phase_kind>() noexcept
+{
+    return phases.kinds();
+}
+
+std::string_view to_string(envelope_kind k) noexcept
+{
+    return envelopes.name(k);
+}
+
+template <>
+envelope_kind from_string<envelope_kind>(std::string_view name)
+{
+    return envelopes.kind(name);
+}
+
+template <>
+std::span<const envelope_kind> values_of<envelope_kind>() noexcept
+{
+    return envelopes.kinds();
+}
+
+burst_envelope parse_envelope(std::string_view text)
+{
+    const std::size_t colon = text.find(':');
+    burst_envelope e;
+    e.kind = from_string<envelope_kind>(text.substr(0, colon));
+    if (colon == std::string_view::npos)
+        return e;
+    std::size_t at = colon + 1;
+    const auto part = detail::scan_number(text, at);
+    if (e.kind != envelope_kind::tukey || !part || at != text.size() || !(*part >= 0.0 && *part <= 1.0))
+        throw error(error_kind::bad_input, "envelope", fmt::format("\"{}\" is not known", text),
+                    "only tukey has a part, 0 to 1, as tukey:0.5");
+    e.tukey_part = *part;
+    return e;
+}
+
+std::string envelope_text(const burst_envelope& e)
+{
+    if (e.kind == envelope_kind::tukey)
+        return fmt::format("tukey:{}", e.tukey_part);
+    return std::string(to_string(e.kind));
+}
+
+} // namespace tactor

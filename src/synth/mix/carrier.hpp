@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The carrier of a voice, window and fade included, shared by the voices that have it in common.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "synth/mix/fades.hpp"
+#include "synth/mix/oscillator.hpp"
+#include "synth/mix/voice.hpp"
+
+namespace tactor::synth {
+
+/// Keeps the latest block: the events of one burst, and of a whole continuous stroke, ask for the same.
+class carrier_block {
+public:
+    /// Samples of the n frames (at most block_frames) from frame `at` of the stream on. Valid until the next
+    /// call for the same wave.
+    const double* get(const voice& v, const fade* f, std::uint64_t at, unsigned n,
+                      wave w = wave::sine) noexcept;
+    /// Whether neither a window nor a fade shapes what get() gave for the sine.
+    bool is_plain(const double* s) const noexcept { return s == kept_[0].plain.data(); }
+    void forget() noexcept;
+
+private:
+    struct place {
+        std::uint64_t at = ~std::uint64_t{0};
+        unsigned n = 0;
+        double cycles_per_frame = 0.0;
+        std::uint64_t phase = 0;
+        const timbre* sound = nullptr;
+        bool operator==(const place&) const = default;
+    };
+    struct shape {
+        std::uint64_t window_place = 0;
+        burst_window window = {};
+        std::int64_t fade_place = 0;
+        std::uint64_t fade_length = 0;
+        bool operator==(const shape&) const = default;
+    };
+    struct kept {
+        place plain_place;
+        place shaped_place;
+        shape shaped_shape;
+        alignas(64) block plain{};
+        alignas(64) block shaped{};
+    };
+    oscillator_tables tables_;
+    std::array<kept, 2> kept_; ///< by wave
+};
+
+/// sum[j] = a * s[j] for lo <= j < hi.
+void set_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept;
+
+/// sum[j] += a * s[j] for lo <= j < hi.
+void add_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept;
+
+/// sum[j] += (a + slope * (k + j)) * s[j] for lo <= j < hi.
+void add_line(const double* s, double a, double slope, double k, unsigned lo, unsigned hi,
+              double* sum) noexcept;
+
+} // namespace tactor::synth

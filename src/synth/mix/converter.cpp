@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "synth/mix/converter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+
+#include "synth/mix/abreast.hpp"
+#include "synth/mix/clones.hpp"
+#include "synth/mix/oscillator.hpp"
+#include "synth/mix/sincos.hpp"
+
+namespace tactor::synth {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the formats are little-endian");
+
+TACTOR_CLONES void to_float(const channel_samples& c, unsigned n, std::uint32_t* __restrict v) noexcept
+{
+    const double* __restrict x = c.x;
+    const double gain = c.gain;
+    for (unsigned i = 0; i < n; ++i) {
+        v[i] = std::bit_cast<std::uint32_t>(static_cast<float>(gain * x[i] + 0.0)); // -0 + 0 = +0
+    }
+}
+
+TACTOR_CLONES void to_integer(const channel_samples& c, unsigned n, double scale,
+                              std::uint32_t* __restrict v) noexcept
+{
+    const double* __restrict x = c.x;
+    const double gain = c.gain;
+    for (unsigned i = 0; i < n; ++i) {
+        const double r = nearest(gain * x[i] * scale);
+        const double low = r < scale - 1.0 ? r : scale - 1.0;
+        v[i] = static_cast<std::uint32_t>(static_cast<std::int32_t>(low > -scale ? low : -scale));
+    }
+}
+
+void to_bits(format_kind f, const channel_samples& c, unsigned n, lane& v) noexcept
+{
+    switch (f) {
+    case format_kind::float32:
+        return to_float(c, n, v.data());
+    case format_kind::s16:
+        return to_integer(c, n, 32768.0, v.data());
+    case format_kind::s24_3:
+    case format_kind::s24_4:
+        return to_integer(c, n, 8388608.0, v.data());
+    case format_kind::s32:
+        return to_integer(c, n, 2147483648.0, v.data());
+    }
+}
+
+/// The low bytes of each of n values to places `stride` apart.
+template <std::size_t Bytes>
+void scatter(const lane& v, unsigned n, std::byte* out, std::size_t stride) noexcept
+{
+    for (unsigned i = 0; i < n; ++i) {
+        std::memcpy(out + i * stride, &v[i], Bytes);
+    }
+}
+
+void scatter(const lane& v, std::size_t bytes, unsigned n, std::byte* out, std::size_t stride) noexcept
+{
+    switch (bytes) {
+    case 2:
+        return scatter<2>(v, n, out, stride);
+    case 3:
+        return scatter<3>(v, n, out, stride);
+    default:
+        return scatter<4>(v, n, out, stride);
+    }
+}
+
+constexpr lane silent{};
+
+} // namespace
+
+void interleave(format_kind f, std::span<const channel_samples> sounding, std::size_t channels, unsigned n,
+                std::byte* out) noexcept
+{
+    const std::size_t sample = bytes_of(f);
+    const std::size_t stride = channels * sample;
+    if (sounding.size() < channels) {
+        std::memset(out, 0, n * stride);
+    }
+    std::array<lane, abreast> lanes;
+    std::size_t written = 0; // channels below are done
+    while (!sounding.empty()) {
+        // A face's tactors are often neighbours: their samples go out in one store.
+        const std::size_t next = sounding[0].channel;
+        const std::size_t first = std::min(next, channels - std::min(channels, abreast));
+        const auto end = std::find_if(sounding.begin(), sounding.end(), [first](const channel_samples& c) {
+            return c.channel >= first + abreast;
+        });
+        const auto count = static_cast<std::size_t>(end - sounding.begin());
+        if (sample == 3 || channels < abreast || count < 2 || first < written) {
+            to_bits(f, sounding[0], n, lanes[0]);
+            scatter(lanes[0], sample, n, out + next * sample, stride);
+            sounding = sounding.subspan(1);
+            written = next + 1;
+            continue;
+        }
+        std::array<const lane*, abreast> from{&silent, &silent, &silent, &silent};
+        for (const channel_samples& c : sounding.first(count)) {
+            const std::size_t i = c.channel - first;
+            to_bits(f, c, n, lanes[i]);
+            from[i] = &lanes[i];
+        }
+        write_abreast(from, sample, n, out + first * sample, stride);
+        sounding = sounding.subspan(count);
+        written = first + abreast;
+    }
+}
+
+} // namespace tactor::synth

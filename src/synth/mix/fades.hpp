@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Scores that are being faded out.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "synth/mix/window.hpp"
+
+namespace tactor::synth {
+
+struct fade {
+    bool used = false;
+    std::uint32_t score = 0;
+    std::uint64_t start = 0;
+    std::uint64_t length = 0;
+    std::uint64_t end() const noexcept { return start + length; }
+};
+
+/// A fixed number of fades.
+class fades {
+public:
+    static constexpr std::int32_t none = -1;
+
+    bool any() const noexcept { return used_ != 0; }
+    /// Its number, or none.
+    std::int32_t find(std::uint32_t score) const noexcept;
+    /// A new one's number, or none when all are in use.
+    std::int32_t begin(std::uint32_t score, std::uint64_t start, std::uint64_t length) noexcept;
+    void end(std::int32_t i) noexcept;
+    void clear() noexcept;
+    const fade& operator[](std::int32_t i) const noexcept { return fades_[static_cast<std::size_t>(i)]; }
+    /// One that has ended by a frame, or none.
+    std::int32_t ended(std::uint64_t by) const noexcept;
+
+private:
+    std::array<fade, 256> fades_{};
+    std::uint32_t used_ = 0;
+};
+
+} // namespace tactor::synth

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+// Where carriers beat on a channel: the envelope at the crests, for the limit on the power. One that went up
+// and down with the beat would make a gain that is heard. Carriers of one frequency add up with their phases.
+#include <algorithm>
+#include <cmath>
+
+#include "synth/mix/clones.hpp"
+#include "synth/mix/mixer_impl.hpp"
+
+namespace tactor::synth {
+
+namespace {
+
+/// Adds the length of (x, y) to `reach`, whose square is `square`, and clears x and y.
+TACTOR_CLONES void add_length(unsigned n, double* x, double* y, double* reach, double* square) noexcept
+{
+    double* __restrict sine = x;
+    double* __restrict cosine = y;
+    double* __restrict sum = reach;
+    double* __restrict out = square;
+    for (unsigned j = 0; j < n; ++j) {
+        const double e = sine[j] * sine[j] + cosine[j] * cosine[j];
+        const double length = std::sqrt(e);
+        out[j] += e + 2.0 * sum[j] * length;
+        sum[j] += length;
+        sine[j] = 0.0;
+        cosine[j] = 0.0;
+    }
+}
+
+/// Whether what the next voice plays is one carrier with this one's.
+bool adds_up(const voice& v, const voice& next) noexcept
+{
+    const bool sine = v.sound == nullptr || v.sound->is_sine();
+    return v.cycles_per_frame == next.cycles_per_frame && v.sound == next.sound &&
+           (sine || v.phase == next.phase);
+}
+
+} // namespace
+
+void mixer::impl::find_beats(unsigned from, unsigned n) noexcept
+{
+    list_carriers();
+    if (carriers.empty()) {
+        return;
+    }
+    for (const std::uint32_t c : sounding) {
+        strips[c].summed(n); // a lone voice's sine would be lost
+        if (strips[c].beats) {
+            std::fill(envelopes[c].begin() + from, envelopes[c].begin() + n, 0.0);
+        }
+    }
+    while (from < n) {
+        const unsigned to = std::min(n, from + static_cast<unsigned>(crest::frames));
+        find_crests(from, to);
+        from = to;
+    }
+}
+
+/// The voices on channels that beat, by frequency.
+void mixer::impl::list_carriers() noexcept
+{
+    carriers.clear();
+    const std::span<const std::uint32_t> active = voices.active();
+    for (std::uint32_t i = 0; i < active.size(); ++i) {
+        const voice& v = voices[active[i]];
+        if (std::any_of(v.drive.begin(), v.drive.begin() + v.drives,
+                        [this](const voice_drive& d) { return strips[d.channel].beats; })) {
+            carriers.emplace_back(v.cycles_per_frame, i);
+        }
+    }
+    std::sort(carriers.begin(), carriers.end());
+}
+
+void mixer::impl::find_crests(unsigned from, unsigned to) noexcept
+{
+    for (const std::uint32_t c : sounding) {
+        if (strips[c].beats) {
+            crests[c].reach.fill(0.0);
+        }
+    }
+    for (std::size_t i = 0; i < carriers.size(); ++i) {
+        const voice& v = voices[voices.active()[carriers[i].second]];
+        for (std::uint32_t k = 0; k < v.drives; ++k) {
+            const voice_drive& d = v.drive[k];
+            if (strips[d.channel].beats) {
+                crests[d.channel].touched = true;
+                add_wave(v, d, wave::sine, from, to, crests[d.channel].x.data());
+                add_wave(v, d, wave::cosine, from, to, crests[d.channel].y.data());
+            }
+        }
+        if (i + 1 == carriers.size() || !adds_up(v, voices[voices.active()[carriers[i + 1].second]])) {
+            add_carrier(from, to);
+        }
+    }
+    for (const std::uint32_t c : sounding) {
+        if (strips[c].beats) {
+            const double most = strips[c].most();
+            double* square = envelopes[c].data();
+            std::transform(square + from, square + to, square + from,
+                           [most](double e) { return e < most ? e : most; });
+        }
+    }
+}
+
+void mixer::impl::add_carrier(unsigned from, unsigned to) noexcept
+{
+    for (const std::uint32_t c : sounding) {
+        crest& r = crests[c];
+        if (r.touched) {
+            add_length(to - from, r.x.data(), r.y.data(), r.reach.data(), envelopes[c].data() + from);
+            r.touched = false;
+        }
+    }
+}
+
+} // namespace tactor::synth

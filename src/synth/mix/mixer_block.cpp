@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// One block: the voices are summed by channel, held within the limits and written.
+#include <algorithm>
+
+#include "synth/mix/mixer_impl.hpp"
+
+namespace tactor::synth {
+
+namespace {
+
+constexpr block ones = [] {
+    block b{};
+    b.fill(1.0);
+    return b;
+}();
+
+} // namespace
+
+void mixer::impl::segment(unsigned n, std::byte* out) noexcept
+{
+    voices.activate(position + n);
+    const std::span<const std::uint32_t> active = voices.active();
+    for (std::size_t i = 0; i < active.size(); ++i) {
+        mix(voices[active[i]], i + 1 == active.size(), n);
+    }
+    limit(n);
+    if (!envelopes.empty()) {
+        guard(n);
+    }
+    write(n, out);
+}
+
+// The carrier lasts until another voice asks for one: behind the last voice, until the block is written.
+void mixer::impl::mix(const voice& v, bool last, unsigned n) noexcept
+{
+    const auto from = static_cast<unsigned>(std::max(v.start, position) - position);
+    const auto to = static_cast<unsigned>(std::min(v.end, position + n) - position);
+    const double* s = v.cycles_per_frame == 0.0
+                          ? ones.data()
+                          : carrier.get(v, v.fade == fades::none ? nullptr : &fading[v.fade], position, n);
+    const auto k = static_cast<double>(static_cast<std::int64_t>(position - v.start));
+    for (std::uint32_t i = 0; i < v.drives; ++i) {
+        const voice_drive& d = v.drive[i];
+        const double peak = d.peak(v.end - v.start);
+        strip& t = strips[d.channel];
+        if (t.spare && v.cycles_per_frame != 0.0) {
+            limited += to - from; // there is no tactor that it could be meant for
+            continue;
+        }
+        if (!t.sounding) {
+            t.sounding = true;
+            t.since = from;
+            t.cycles_per_frame = v.cycles_per_frame;
+            t.sound = v.sound;
+            t.phase = v.phase;
+            t.power = v.sound == nullptr ? 1.0 : v.sound->power;
+            t.steady = d.slope == 0.0 && carrier.is_plain(s);
+            t.beats = false;
+            t.peak = 0.0;
+            t.until = 0;
+            t.reach(from, to, peak);
+            sounding.push_back(d.channel);
+            if (d.slope == 0.0 && to - from == n) {
+                t.lone = s;
+                t.gain = d.from;
+                if (!last) {
+                    t.summed(n);
+                }
+                continue;
+            }
+            std::fill_n(t.sum.begin(), n, 0.0);
+        } else {
+            t.reach(from, to, peak);
+            t.join(v);
+        }
+        double* sum = t.summed(n);
+        if (d.slope == 0.0) {
+            add_constant(s, d.from, from, to, sum);
+        } else {
+            add_line(s, d.from, d.slope, k, from, to, sum);
+        }
+    }
+}
+
+void mixer::impl::limit(unsigned n) noexcept
+{
+    for (const std::uint32_t c : sounding) {
+        strip& t = strips[c];
+        if (t.spare) {
+            limit_block(t.summed(n), n, 1.0); // two markers at once are one
+        } else if (!within_limit(t.peak, t.limit)) {
+            limited += limit_block(t.summed(n), n, t.limit);
+        }
+    }
+}
+
+void mixer::impl::write(unsigned n, std::byte* out) noexcept
+{
+    std::sort(sounding.begin(), sounding.end());
+    samples.clear();
+    for (const std::uint32_t c : sounding) {
+        strip& t = strips[c];
+        if (t.lone != nullptr) {
+            samples.push_back({c, t.lone, t.gain});
+        } else {
+            samples.push_back({c, t.sum.data(), 1.0});
+        }
+        t.lone = nullptr;
+        t.sounding = false;
+    }
+    sounding.clear();
+    interleave(format, samples, strips.size(), n, out);
+}
+
+} // namespace tactor::synth

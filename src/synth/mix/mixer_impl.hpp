@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The mixer's inside: what is kept from block to block, and the work on one.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "synth/guard/drive_guard.hpp"
+#include "synth/guard/limiter.hpp"
+#include "synth/guard/power_guard.hpp"
+#include "synth/mix/carrier.hpp"
+#include "synth/mix/converter.hpp"
+#include "synth/mix/fades.hpp"
+#include "synth/mix/mixer.hpp"
+#include "synth/mix/voice.hpp"
+#include "synth/tone/timbre.hpp"
+
+namespace tactor::synth {
+
+/// One channel in the current block.
+struct strip {
+    alignas(64) block sum;
+    const double* lone = nullptr; ///< only one voice so far, with `gain`: its carrier in place of the sum
+    double gain = 1.0;
+    double limit = 0.0;
+    double peak = 0.0;     ///< what the voices could reach together
+    double together = 0.0; ///< what those could that last until `until`, a frame of the block
+    unsigned until = 0;
+    unsigned since = 0;            ///< frame of the block at which the first voice begins
+    unsigned look = block_frames;  ///< the envelope is needed from this frame of the block on
+    double cycles_per_frame = 0.0; ///< of the first voice, as the next two
+    const timbre* sound = nullptr;
+    std::uint64_t phase = 0;
+    double power = 1.0;       ///< greatest of the voices' timbres
+    bool steady = false;      ///< one voice alone, with a constant envelope
+    bool beats = false;       ///< voices of several carriers
+    bool only_crests = false; ///< what the beat does between them is not needed
+    bool spare = false;       ///< no tactor: for markers
+    bool sounding = false;
+
+    /// A voice of that amplitude from one frame of the block to another. They come in order of their start.
+    void reach(unsigned from, unsigned to, double amplitude) noexcept
+    {
+        together = from < until ? together + amplitude : amplitude;
+        until = std::max(until, to);
+        peak = std::max(peak, together);
+    }
+    /// The most that its squared envelope may be.
+    double most() const noexcept { return limit * limit * power; }
+    /// A voice that is not the first. Waves that are no sines add up by their amplitudes, unless they are
+    /// one.
+    void join(const voice& v) noexcept
+    {
+        const bool sines =
+            (sound == nullptr || sound->is_sine()) && (v.sound == nullptr || v.sound->is_sine());
+        const bool another = sound != v.sound || (!sines && phase != v.phase);
+        steady = false;
+        beats = beats || cycles_per_frame != v.cycles_per_frame || another;
+        power = v.sound != nullptr ? std::max(power, v.sound->power) : power;
+    }
+    /// Whether it is not driven in this block, whatever the voices do.
+    bool is_quiet() const noexcept { return std::min(peak, limit) * std::sqrt(power) <= least_counted_drive; }
+    /// The sum, where a lone voice stood in for it.
+    double* summed(unsigned n) noexcept
+    {
+        if (lone != nullptr) {
+            set_constant(lone, gain, 0, n, sum.data());
+            lone = nullptr;
+        }
+        return sum.data();
+    }
+};
+
+/// Of a cache line's alignment in a vector, too.
+struct alignas(64) aligned_block : block {};
+
+/// Some frames of a channel where carriers beat.
+struct crest {
+    static constexpr std::size_t frames = 128;
+    alignas(64) std::array<double, frames> x{}; ///< of the carrier at hand, zero between two
+    alignas(64) std::array<double, frames> y{};
+    alignas(64) std::array<double, frames> reach{}; ///< of those before it
+    bool touched = false;
+};
+
+struct mixer::impl {
+    impl(std::span<const double> limits, format_kind f, std::size_t capacity, const guard_settings& g)
+        : format(f),
+          strips(limits.size()),
+          voices(capacity),
+          power(limits.size(), g.power, most_power * reach(limits), g.rate),
+          duty(limits.size(), g.drive_frames, g.window_frames, g.rate),
+          envelopes(power.on() || duty.on() ? limits.size() : 0),
+          crests(power.on() ? limits.size() : 0)
+    {
+        std::transform(limits.begin(), limits.end(), strips.begin(), [](double l) {
+            strip s;
+            s.limit = clean_limit(l);
+            s.spare = s.limit == 0.0;
+            return s;
+        });
+        sounding.reserve(strips.size());
+        powered.reserve(strips.size());
+        samples.reserve(strips.size());
+        carriers.reserve(power.on() ? capacity : 0);
+        frame_bytes = strips.size() * bytes_of(format);
+    }
+
+    static double reach(std::span<const double> limits) noexcept
+    {
+        return std::accumulate(limits.begin(), limits.end(), 0.0,
+                               [](double sum, double l) { return sum + clean_limit(l) * clean_limit(l); });
+    }
+
+    void segment(unsigned n, std::byte* out) noexcept;
+    void mix(const voice& v, bool last, unsigned n) noexcept;
+    void limit(unsigned n) noexcept;
+    void guard(unsigned n) noexcept;
+    void look_from(bool together, unsigned n) noexcept;
+    void add_wave(const voice& v, const voice_drive& d, wave w, unsigned look, unsigned n,
+                  double* sum) noexcept;
+    void find_envelopes(unsigned n) noexcept;
+    void count_drive(unsigned n) noexcept;
+    void find_beats(unsigned from, unsigned n) noexcept;
+    void list_carriers() noexcept;
+    void find_crests(unsigned from, unsigned to) noexcept;
+    void add_carrier(unsigned from, unsigned to) noexcept;
+    void cut(unsigned n) noexcept;
+    void guard_power(bool together, unsigned n) noexcept;
+    void write(unsigned n, std::byte* out) noexcept;
+    bool plays(const voice& v) const noexcept;
+    void end_fades() noexcept;
+
+    format_kind format;
+    std::size_t frame_bytes = 0;
+    std::vector<strip> strips;
+    std::vector<std::uint32_t> sounding;
+    schedule voices;
+    fades fading;
+    carrier_block carrier;
+    power_guard power;
+    drive_guard duty;
+    std::vector<aligned_block> envelopes; ///< squared, by channel; none where nobody asks
+    std::vector<powered_channel> powered;
+    std::vector<crest> crests;                              ///< by channel
+    std::vector<std::pair<double, std::uint32_t>> carriers; ///< cycles per frame, place among the active
+    std::vector<channel_samples> samples;
+    std::uint64_t clock = 0; ///< frames since the construction
+    std::uint64_t position = 0;
+    std::uint64_t limited = 0;
+    std::uint64_t power_limited = 0;
+};
+
+} // namespace tactor::synth

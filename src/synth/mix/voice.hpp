@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// A drive_event as the mixer keeps it, and the order in which voices wait and sound.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "synth/mix/window.hpp"
+#include "synth/score/event.hpp"
+
+namespace tactor::synth {
+
+/// Amplitude from + slope * k at frame k of the voice.
+struct voice_drive {
+    double from = 0.0;
+    double slope = 0.0;
+    std::uint32_t channel = 0;
+
+    /// Largest in `length` frames.
+    double peak(std::uint64_t length) const noexcept
+    {
+        return std::max(std::abs(from), std::abs(from + slope * static_cast<double>(length)));
+    }
+};
+
+/// Frames are the stream's; `phase` and `window_place` are those of frame 0 of the stream, modulo 2^64, so
+/// voices of one carrier have equal ones wherever they start.
+struct voice {
+    std::uint64_t start = 0;
+    std::uint64_t end = 0;
+    std::uint64_t order = 0;
+    std::uint64_t phase = 0;
+    double cycles_per_frame = 0.0;
+    std::uint64_t window_place = 0;
+    burst_window window = {};
+    std::uint32_t score = 0;
+    std::int32_t fade = -1;
+    std::uint32_t drives = 0;
+    const timbre* sound = nullptr; ///< none: a sine
+    std::array<voice_drive, drives_per_event> drive;
+};
+
+/// Takes over what of an event can sound on `channels` channels; drives that are not finite are silence.
+voice make_voice(const drive_event& e, std::size_t channels) noexcept;
+
+/// A fixed number of voices: some wait in a heap, the others sound, in the order of (start, arrival) always,
+/// so that sums have the same order whatever the block sizes.
+class schedule {
+public:
+    explicit schedule(std::size_t capacity);
+
+    std::size_t room() const noexcept { return free_.size(); }
+    std::size_t size() const noexcept { return voices_.size() - free_.size(); }
+
+    /// There must be room.
+    void add(voice v) noexcept;
+    /// Lets the voices sound that start before a frame.
+    void activate(std::uint64_t before) noexcept;
+    /// Frame at which the next waiting voice starts; the greatest number if none waits.
+    std::uint64_t next_start() const noexcept;
+
+    /// Those that sound, in order.
+    std::span<const std::uint32_t> active() const noexcept { return active_; }
+    voice& operator[](std::uint32_t slot) noexcept { return voices_[slot]; }
+
+    /// Forgets the sounding voices that have ended by a frame.
+    void retire(std::uint64_t by) noexcept;
+    /// Forgets the voices, waiting or sounding, for which gone(voice&) says so. Linear in the voices.
+    template <class Gone>
+    void forget_if(Gone gone) noexcept;
+    void clear() noexcept;
+
+private:
+    struct waiting {
+        std::uint64_t start;
+        std::uint64_t order;
+        std::uint32_t slot;
+    };
+    static bool later(const waiting& a, const waiting& b) noexcept
+    {
+        return a.start != b.start ? a.start > b.start : a.order > b.order;
+    }
+    void heapify() noexcept;
+    void insert(std::uint32_t slot) noexcept;
+    template <class Gone>
+    void forget_active(Gone gone) noexcept;
+
+    std::vector<voice> voices_;
+    std::vector<std::uint32_t> free_;
+    std::vector<waiting> heap_;
+    std::vector<std::uint32_t> active_;
+    std::uint64_t arrivals_ = 0;
+    std::uint64_t earliest_end_ = ~std::uint64_t{0};
+};
+
+template <class Gone>
+void schedule::forget_active(Gone gone) noexcept
+{
+    std::size_t kept = 0;
+    earliest_end_ = ~std::uint64_t{0};
+    for (const std::uint32_t slot : active_) {
+        if (gone(voices_[slot])) {
+            free_.push_back(slot);
+        } else {
+            active_[kept++] = slot;
+            earliest_end_ = voices_[slot].end < earliest_end_ ? voices_[slot].end : earliest_end_;
+        }
+    }
+    active_.resize(kept);
+}
+
+template <class Gone>
+void schedule::forget_if(Gone gone) noexcept
+{
+    forget_active(gone);
+    std::size_t kept = 0;
+    for (const waiting& w : heap_) {
+        if (gone(voices_[w.slot])) {
+            free_.push_back(w.slot);
+        } else {
+            heap_[kept++] = w;
+        }
+    }
+    heap_.resize(kept);
+    heapify();
+}
+
+} // namespace tactor::synth

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What crosses the ring from the control side to the audio thread: scheduled drives, not audio.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include <tactor/render.hpp>
+
+namespace tactor::synth {
+
+struct timbre;
+
+/// A window that falls in as many frames as it rises in.
+inline constexpr std::uint32_t as_ramp = ~std::uint32_t{0};
+
+inline constexpr unsigned drives_per_event = 4;
+
+/// One channel's part: peak amplitude (level, gain and polarity included) at the first frame of the
+/// event and at the frame after its last; linear between.
+struct channel_drive {
+    double from = 0.0;
+    double to = 0.0;
+    std::uint32_t channel = 0;
+};
+
+/// Up to four channels that share one carrier from frame `start` for `length` frames. The signal at
+/// frame start + j is
+///     amplitude(j) * w(ramp_position + j) * sin(2 pi cycles_per_frame (phase_frame + j))
+/// (1 in place of the sine where cycles_per_frame is 0: a marker, which only a channel without a tactor
+/// takes) with w the window of `window` frames that rises in `ramp` and falls in `release`. A timbre stands
+/// in for the sine.
+struct drive_event {
+    std::uint64_t start = 0;         ///< frames since the start of the score (source) or of the epoch (mixer)
+    std::uint64_t phase_frame = 0;   ///< carrier frame at `start`
+    double cycles_per_frame = 0.0;   ///< carrier / rate
+    std::uint64_t ramp_position = 0; ///< place of `start` in the window
+    std::uint64_t window = 0;        ///< frames of the whole burst (or of the continuous stroke)
+    std::uint32_t ramp = 0;          ///< 0: none
+    std::uint32_t release = as_ramp; ///< frames in which the window falls
+    std::uint32_t length = 0;        ///< frames
+    envelope_kind shape = envelope_kind::raised_cosine;
+    std::uint32_t score = 0;       ///< the submitted score it belongs to
+    std::uint32_t drives = 0;      ///< how many of `drive` are used
+    const timbre* sound = nullptr; ///< lives until the score is over; none: a sine
+    std::array<channel_drive, drives_per_event> drive{};
+};
+static_assert(std::is_trivially_copyable_v<drive_event>);
+
+} // namespace tactor::synth

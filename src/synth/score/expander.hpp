@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// An item's events, one after the other.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "synth/score/event.hpp"
+#include "synth/score/score.hpp"
+
+namespace tactor::synth {
+
+/// A continuous stroke at its latest two control points.
+struct control_points {
+    void reserve(std::size_t tactors);
+
+    struct change {
+        std::uint32_t tactor;
+        double from;
+        double to;
+    };
+    std::vector<drive> before;
+    std::vector<change> changes;
+    burst now;
+    std::string failure; ///< why the plan could not be followed further; empty: it could
+};
+
+/// Gives the events of one item in order of start. Allocates nothing.
+class expander {
+public:
+    /// `points` for a continuous item; not to be shared while this expander is in use.
+    void begin(const score::impl& s, std::size_t item_number, control_points* points) noexcept;
+
+    bool done() const noexcept { return done_; }
+    const drive_event& event() const noexcept { return event_; }
+    std::size_t item_number() const noexcept { return number_; }
+    control_points* points() const noexcept { return points_; }
+    void advance() noexcept;
+    /// Done before its end, for its plan failed: points()->failure says why.
+    bool failed() const noexcept { return failed_; }
+    /// Frame of the score up to which there were events.
+    std::uint64_t position() const noexcept { return position_; }
+
+private:
+    void stretch(std::uint64_t start, std::uint64_t length) noexcept;
+    void add(std::uint32_t tactor, double from, double to) noexcept;
+    void burst_event() noexcept;
+    void joined_event() noexcept;
+    void continuous_event() noexcept;
+    void marker_event() noexcept;
+    bool next_points() noexcept;
+
+    const score::impl* score_ = nullptr;
+    const item* item_ = nullptr;
+    control_points* points_ = nullptr;
+    std::size_t number_ = 0;
+    std::uint64_t position_ = 0; ///< first frame of the stretch whose events come next
+    std::uint64_t step_end_ = 0; ///< continuous: frame of the later control point
+    std::uint64_t step_ = 0;     ///< continuous: number of the later control point
+    std::size_t next_ = 0;       ///< drive, member or change that is next
+    bool done_ = true;
+    bool failed_ = false;
+    drive_event event_;
+};
+
+/// Amplitude of a group's carrier from one frame to another.
+struct joined_stretch {
+    std::uint64_t end = 0;
+    double from = 0.0;
+    double to = 0.0;
+};
+
+/// The stretch from frame `at` on in which the amplitude is taken as linear: to the next start or end of a
+/// member, in ramps to the next 64th of the ramp. `first`: member before which all have ended; moved on.
+joined_stretch join_members(const item_member* members, std::size_t count, std::size_t& first,
+                            std::uint64_t at, overlap_kind rule,
+                            envelope_kind shape = envelope_kind::raised_cosine) noexcept;
+
+/// Frame of control point k of a stroke of `length` frames, from its start. Points beyond the end are at it.
+std::uint64_t control_frame(std::uint64_t k, unsigned rate, std::uint64_t length) noexcept;
+
+/// \throws error (bad_input) where a continuous plan drives what is no tactor, or with what is no amplitude.
+void check_drives(const burst& b, double t_s, std::size_t tactors);
+
+/// Sample k of a continuous plan, in order of tactor. False, and why, where it cannot be computed or drives
+/// what is no tactor or with what is no amplitude. Allocates only then.
+bool checked_sample(const plan& p, std::uint64_t k, std::size_t tactors, burst& out,
+                    std::string& failure) noexcept;
+
+} // namespace tactor::synth

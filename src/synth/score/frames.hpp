@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Seconds to frames (rendering model, section 7).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include <tactor/render.hpp>
+
+namespace tactor::synth {
+
+/// Ramp of bursts that do not begin and end on a zero crossing.
+inline constexpr double default_ramp_s = 0.002;
+/// How far from a zero crossing, in half cycles, still counts as one.
+inline constexpr double half_cycle_tolerance = 0.01;
+/// Longest drive in one event; longer ones are cut without a seam.
+inline constexpr std::uint64_t longest_event = std::uint64_t{1} << 30;
+
+/// Nearest frame. A tie goes up, and so does what misses a tie by the noise of its last digits:
+/// otherwise o_k + d and o_(k+1), equal on paper, could end up in two frames.
+inline std::uint64_t frame_at(double seconds, double rate) noexcept
+{
+    return static_cast<std::uint64_t>(std::floor(seconds * rate + 0.5 + 1e-6));
+}
+
+/// Whether a carrier crosses zero at both ends of a burst, which are at so many of its half cycles.
+inline bool between_zeros(double from, double to) noexcept
+{
+    const auto on_zero = [](double at) { return std::abs(at - std::round(at)) <= half_cycle_tolerance; };
+    return on_zero(from) && on_zero(to) && to - from >= 1.0 - half_cycle_tolerance;
+}
+
+/// Ramp that was asked for, or the default one of a burst. The carrier has run for `carrier_s` when it
+/// begins; whole frames, to which both are rounded, do not count.
+inline double ramp_seconds(std::optional<double> ramp_s, double carrier_s, double duration_s,
+                           double carrier_hz) noexcept
+{
+    if (ramp_s) {
+        return *ramp_s;
+    }
+    const bool smooth =
+        between_zeros(2.0 * carrier_s * carrier_hz, 2.0 * (carrier_s + duration_s) * carrier_hz);
+    return smooth ? 0.0 : default_ramp_s;
+}
+
+/// Frames of the raised cosine at each end of a burst of `length` frames: at most half of it.
+inline std::uint32_t ramp_frames(double ramp_s, double rate, std::uint64_t length) noexcept
+{
+    return static_cast<std::uint32_t>(std::min({frame_at(ramp_s, rate), length / 2, longest_event}));
+}
+
+inline std::uint32_t ramp_frames(std::optional<double> ramp_s, double carrier_s, double duration_s,
+                                 double carrier_hz, double rate, std::uint64_t length) noexcept
+{
+    return ramp_frames(ramp_seconds(ramp_s, carrier_s, duration_s, carrier_hz), rate, length);
+}
+
+/// Frames in which a burst of `length` rises; `ramp_s`: where its envelope does not say. Ramps that do not
+/// fit are shortened alike.
+inline std::uint32_t attack_frames(double ramp_s, const burst_envelope& e, double rate,
+                                   std::uint64_t length) noexcept
+{
+    if (e.kind == envelope_kind::tukey) {
+        return ramp_frames(0.5 * e.tukey_part * static_cast<double>(length) / rate, rate, length);
+    }
+    if (!e.release_s) {
+        return ramp_frames(e.attack_s.value_or(ramp_s), rate, length);
+    }
+    const std::uint64_t rise = frame_at(e.attack_s.value_or(ramp_s), rate);
+    const std::uint64_t fall = frame_at(*e.release_s, rate);
+    const double fits = static_cast<double>(length) / static_cast<double>(std::max(rise + fall, length));
+    return static_cast<std::uint32_t>(
+        std::min(static_cast<std::uint64_t>(static_cast<double>(rise) * (rise + fall > length ? fits : 1.0)),
+                 longest_event));
+}
+
+/// Frames in which it falls.
+inline std::uint32_t release_frames(const burst_envelope& e, double rate, std::uint64_t length,
+                                    std::uint32_t attack) noexcept
+{
+    if (e.kind == envelope_kind::tukey || !e.release_s) {
+        return attack;
+    }
+    return static_cast<std::uint32_t>(
+        std::min({frame_at(*e.release_s, rate), length - attack, longest_event}));
+}
+
+} // namespace tactor::synth

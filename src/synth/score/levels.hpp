@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// How strongly each tactor is driven, and whether it may be.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "synth/score/score.hpp"
+
+namespace tactor::synth {
+
+/// Levels of tactors with thresholds at several frequencies are for this one; what another carrier needs
+/// comes on top.
+inline constexpr double reference_hz = 250.0;
+
+/// Gain of each tactor. \throws error (bad_input) for levels over full scale and missing thresholds.
+std::vector<tactor_level> tactor_levels(const array& a, const render_options& o);
+
+/// What a tactor with a sensation level gets more at a carrier than at reference_hz.
+double threshold_factor(const tactor_spec& t, double hz);
+
+/// Greatest peak that a tactor may have, linear: its max_dbfs or full scale, and the noise of last digits.
+double tactor_limit(const array& a, std::size_t i);
+
+/// \throws error (bad_input): the tactor's line in the array file and number, why and hint.
+[[noreturn]] void refuse_tactor(const array& a, std::size_t i, std::string_view why, std::string_view hint);
+
+/// Compares what the items ask of each tactor, added up where they sound together, with its limit and with
+/// full scale; continuous strokes too are bounded, not sampled. \throws error (bad_input) with the tactor's
+/// line. Returns what they come to at most, by tactor, linear; nothing where that is known of a part only.
+std::vector<double> check_peaks(const score::impl& s, const array& a, const render_options& o);
+
+} // namespace tactor::synth

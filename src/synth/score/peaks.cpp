@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "synth/score/continuous_items.hpp"
+#include "synth/score/expander.hpp"
+#include "synth/score/levels.hpp"
+
+namespace tactor::synth {
+
+namespace {
+
+/// At a frame, a tactor's possible amplitude changes.
+struct change {
+    std::uint64_t frame;
+    double by;
+    std::size_t tactor;
+
+    /// Of two changes of a tactor at one frame the one downwards comes first.
+    bool operator>(const change& c) const { return std::tie(frame, by) > std::tie(c.frame, c.by); }
+};
+
+/// The greatest amplitude of each tactor, summed over what may sound at once. Items arrive by start, so that
+/// only the changes of those that sound are kept.
+class sweep {
+public:
+    explicit sweep(std::size_t tactors) : sums_(tactors), peaks_(tactors) {}
+
+    /// The last frame does not count: of two bursts that touch, rounding may put the end of one into the
+    /// first frame of the other.
+    void note(std::size_t tactor, const item& it, double peak)
+    {
+        if (peak > 0.0 && it.length > 1) {
+            pass(it.start);
+            add({it.start, peak, tactor});
+            add({it.end() - 1, -peak, tactor});
+        }
+    }
+
+    const std::vector<double>& peaks()
+    {
+        pass(UINT64_MAX);
+        return peaks_;
+    }
+
+private:
+    void add(const change& c)
+    {
+        heap_.push_back(c);
+        std::push_heap(heap_.begin(), heap_.end(), std::greater<>{});
+    }
+
+    /// Takes what changes before a frame.
+    void pass(std::uint64_t frame)
+    {
+        while (!heap_.empty() && heap_.front().frame < frame) {
+            const change c = heap_.front();
+            std::pop_heap(heap_.begin(), heap_.end(), std::greater<>{});
+            heap_.pop_back();
+            sums_[c.tactor] += c.by;
+            peaks_[c.tactor] = std::max(peaks_[c.tactor], sums_[c.tactor]);
+        }
+    }
+
+    std::vector<change> heap_;
+    std::vector<double> sums_;  // by tactor
+    std::vector<double> peaks_; // by tactor
+};
+
+/// What a continuous item asks of each tactor.
+using continuous_peaks_of = std::function<const std::vector<double>&(std::size_t number)>;
+
+double joined_peak(const score::impl& s, std::size_t number)
+{
+    double peak = 0.0;
+    expander e;
+    for (e.begin(s, number, nullptr); !e.done(); e.advance()) {
+        const channel_drive& d = e.event().drive[0];
+        peak = std::max({peak, std::abs(d.from), std::abs(d.to)});
+    }
+    return peak;
+}
+
+std::vector<double> peaks_of(const score::impl& s, const continuous_peaks_of& continuous)
+{
+    sweep all(s.tactors.size());
+    const item_list& list = s.list;
+    for (std::size_t i = 0; i < list.items.size(); ++i) {
+        const item& it = list.items[i];
+        switch (it.kind) {
+        case item_kind::joined:
+            all.note(it.tactor, it, joined_peak(s, i));
+            break;
+        case item_kind::continuous: {
+            const std::vector<double>& peaks = continuous(i);
+            for (std::size_t k = 0; k < peaks.size(); ++k) {
+                all.note(k, it, peaks[k]);
+            }
+            break;
+        }
+        case item_kind::marker:
+            break;
+        case item_kind::burst:
+            for (std::size_t k = it.first; k < it.first + it.count; ++k) {
+                const std::size_t tactor = list.drive_tactors[k];
+                const double gain = s.tactors[tactor].gain * s.equalised(tactor, it.plan, it.start);
+                all.note(tactor, it, std::abs(list.drive_amplitudes[k] * gain));
+            }
+            break;
+        }
+    }
+    return all.peaks();
+}
+
+double in_db(double amplitude)
+{
+    return 20.0 * std::log10(amplitude);
+}
+
+void check(const array& a, std::size_t i, double peak, const render_options& o)
+{
+    const double limit_db = std::min(0.0, a.tactors[i].max_dbfs);
+    if (peak <= tactor_limit(a, i)) {
+        return;
+    }
+    const double excess_db = std::max(0.01, std::ceil((in_db(peak) - limit_db) * 100.0) / 100.0);
+    const bool limited = limit_db < 0.0;
+    const std::string limit =
+        limited ? fmt::format("its limit of {:.4g} dBFS (max_dbfs)", limit_db) : "full scale (0 dBFS)";
+    const std::string driven = fmt::format("would be driven at {:.4g} dBFS, above {}", in_db(peak), limit);
+    const char* raise = limited ? ", or raise max_dbfs" : "";
+    if (o.sl_db)
+        refuse_tactor(a, i,
+                      fmt::format("{}: with its threshold of {:.4g} dBFS {:.2f} dB are missing", driven,
+                                  threshold_at(a.tactors[i], reference_hz).value_or(0.0), excess_db),
+                      fmt::format("lower sl_db by {:.2f} dB or more{}", excess_db, raise));
+    refuse_tactor(
+        a, i, driven,
+        fmt::format("lower level_dbfs or the tactor's gain_db by {:.2f} dB or more{}", excess_db, raise));
+}
+
+} // namespace
+
+std::vector<double> check_peaks(const score::impl& s, const array& a, const render_options& o)
+{
+    continuous_items continuous(s, a);
+    const auto within = [&](const std::vector<double>& peaks) {
+        for (std::size_t i = 0; i < peaks.size(); ++i) {
+            if (!(peaks[i] <= tactor_limit(a, i))) {
+                return false;
+            }
+        }
+        return true;
+    };
+    // Nearly always the intensities say that all is well, and hours need not be looked through.
+    if (continuous.have_bounds()) {
+        std::vector<double> bounds = peaks_of(
+            s, [&](std::size_t i) -> const auto& { return continuous.bounds(i); });
+        if (within(bounds)) {
+            return bounds;
+        }
+    }
+    const std::vector<double> peaks = peaks_of(
+        s, [&](std::size_t i) -> const auto& { return continuous.peaks(i); });
+    for (std::size_t i = 0; i < peaks.size(); ++i) {
+        check(a, i, peaks[i], o);
+    }
+    return {};
+}
+
+} // namespace tactor::synth

@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: MIT
+#include "synth/score/place.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+#include <tactor/words.hpp>
+
+#include "synth/score/frames.hpp"
+#include "synth/tone/make_timbre.hpp"
+
+namespace tactor::synth {
+
+namespace {
+
+constexpr double longest_plan_s = 1e6;
+
+[[noreturn]] void refuse(std::size_t number, const std::string& why)
+{
+    throw error(error_kind::bad_input, fmt::format("burst {} of the plan", number + 1), why);
+}
+
+void check(const burst& b, std::size_t number, std::size_t tactors)
+{
+    if (!(b.onset_s >= 0.0 && b.duration_s >= 0.0 && b.onset_s + b.duration_s <= longest_plan_s)) {
+        refuse(number, fmt::format("it starts at {} and lasts {}", seconds_text(b.onset_s),
+                                   seconds_text(b.duration_s)));
+    }
+    if (!std::isfinite(b.intensity)) {
+        refuse(number, fmt::format("its intensity is {}", b.intensity));
+    }
+    for (const drive& d : b.drives) {
+        if (d.tactor >= tactors) {
+            refuse(number, fmt::format("tactor {} is not in the array, which has {}", d.tactor, tactors));
+        }
+        if (!std::isfinite(d.amplitude)) {
+            refuse(number, fmt::format("the amplitude of tactor {} is {}", d.tactor, d.amplitude));
+        }
+    }
+}
+
+/// What it has of ramp where its envelope says none.
+double plain_ramp_s(double onset_s, double duration_s, const plan& p, const render_options& o) noexcept
+{
+    return crosses_zero(p) ? burst_ramp_s(onset_s, duration_s, p.carrier_hz, o)
+                           : o.ramp_s.value_or(default_ramp_s);
+}
+
+/// The most that bursts which overlap come to: A_v, or what an intensity scale has made of it.
+double cap_of(const burst& b)
+{
+    const double energy =
+        std::accumulate(b.drives.begin(), b.drives.end(), 0.0,
+                        [](double sum, const drive& d) { return sum + d.amplitude * d.amplitude; });
+    return energy > b.intensity * b.intensity * (1.0 + 1e-9) ? std::sqrt(energy) : b.intensity;
+}
+
+/// When a burst sounds.
+struct stretch {
+    double from_s;
+    double to_s;
+    std::uint64_t from; ///< frame of the plan
+    std::uint64_t to;
+};
+
+stretch stretch_of(const burst& b, unsigned rate)
+{
+    const double to_s = b.onset_s + b.duration_s;
+    return {b.onset_s, to_s, frame_at(b.onset_s, rate), frame_at(to_s, rate)};
+}
+
+/// The latest bursts of one tactor of which each overlaps with one before it. They arrive by start.
+class run {
+public:
+    /// Whether the burst goes on with the run; if not, another one begins with it.
+    bool takes(const stretch& s)
+    {
+        constexpr double touch_s = 1e-9;
+        const bool goes_on = s.from < end_ && s.from_s < end_s_ - touch_s;
+        end_ = goes_on ? std::max(end_, s.to) : s.to;
+        end_s_ = goes_on ? std::max(end_s_, s.to_s) : s.to_s;
+        return goes_on;
+    }
+
+private:
+    std::uint64_t end_ = 0;
+    double end_s_ = 0.0;
+};
+
+/// A plan's bursts by start.
+class bursts_by_start {
+public:
+    bursts_by_start(std::span<const burst> bursts, unsigned rate) : bursts_(bursts), rate_(rate)
+    {
+        const auto earlier = [](const burst& a, const burst& b) { return a.onset_s < b.onset_s; };
+        if (std::is_sorted(bursts.begin(), bursts.end(), earlier)) {
+            return; // as planners leave them
+        }
+        order_.resize(bursts.size());
+        std::iota(order_.begin(), order_.end(), std::size_t{0});
+        std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
+            return frame_at(bursts[a].onset_s, rate) < frame_at(bursts[b].onset_s, rate);
+        });
+    }
+
+    /// Calls f(burst, stretch) for each that sounds in at least one frame.
+    template <class F>
+    void for_each(F f) const
+    {
+        for (std::size_t i = 0; i < bursts_.size(); ++i) {
+            const burst& b = bursts_[order_.empty() ? i : order_[i]];
+            const stretch s = stretch_of(b, rate_);
+            if (s.to > s.from) {
+                f(b, s);
+            }
+        }
+    }
+
+private:
+    std::span<const burst> bursts_;
+    unsigned rate_;
+    std::vector<std::size_t> order_; // empty: as they are
+};
+
+/// Places the bursts of one plan. What sounds by itself is put there at once; a bit for each drive says
+/// which do, so that nothing else grows with the plan.
+class placer {
+public:
+    placer(std::span<const burst> bursts, const plan& p, std::uint32_t number, std::uint64_t start,
+           std::size_t tactors, const render_options& o, item_list& out)
+        : plan_(p),
+          number_(number),
+          start_(start),
+          tactors_(tactors),
+          options_(o),
+          out_(out),
+          bursts_(bursts, o.rate)
+    {
+    }
+
+    /// Returns the frame at which they end.
+    std::uint64_t place()
+    {
+        find_joined();
+        if (any_joined_) {
+            append_joined();
+        }
+        append_bursts();
+        return end_;
+    }
+
+private:
+    void find_joined()
+    {
+        std::vector<run> runs(tactors_);
+        std::vector<std::size_t> latest(tactors_); // drive of each tactor
+        bursts_.for_each([&](const burst& b, const stretch& s) {
+            end_ = std::max(end_, start_ + s.to);
+            for (const drive& d : b.drives) {
+                const bool goes_on = runs[d.tactor].takes(s);
+                if (goes_on) {
+                    joined_[latest[d.tactor]] = true;
+                    any_joined_ = true;
+                }
+                latest[d.tactor] = joined_.size();
+                joined_.push_back(goes_on);
+            }
+        });
+    }
+
+    /// Items of bursts that overlap on a tactor, by start and then by tactor.
+    void append_joined()
+    {
+        std::vector<run> runs(tactors_);
+        std::vector<std::vector<item_member>> members(tactors_); // of the latest run
+        const std::size_t before = out_.items.size();
+        std::size_t number = 0;
+        bursts_.for_each([&](const burst& b, const stretch& s) {
+            for (const drive& d : b.drives) {
+                const bool goes_on = runs[d.tactor].takes(s);
+                if (!joined_[number++]) {
+                    continue;
+                }
+                if (!goes_on) {
+                    join(d.tactor, members[d.tactor]);
+                }
+                const std::uint32_t attack = ramp(b, s);
+                const std::uint32_t release =
+                    release_frames(options_.envelope, options_.rate, s.to - s.from, attack);
+                members[d.tactor].push_back(
+                    {start_ + s.from, s.to - s.from, attack, release, d.amplitude, cap_of(b)});
+            }
+        });
+        for (std::size_t i = 0; i < tactors_; ++i) {
+            join(i, members[i]);
+        }
+        std::stable_sort(out_.items.begin() + static_cast<std::ptrdiff_t>(before), out_.items.end(),
+                         [](const item& a, const item& b) {
+                             return std::tie(a.start, a.tactor) < std::tie(b.start, b.tactor);
+                         });
+    }
+
+    void join(std::size_t tactor, std::vector<item_member>& members)
+    {
+        if (members.empty()) {
+            return;
+        }
+        item it;
+        it.kind = item_kind::joined;
+        it.plan = number_;
+        it.tactor = static_cast<std::uint16_t>(tactor);
+        it.start = members.front().start;
+        it.first = out_.members.size();
+        it.count = static_cast<std::uint32_t>(members.size());
+        for (const item_member& m : members) {
+            it.length = std::max(it.length, m.end() - it.start);
+        }
+        out_.members.insert(out_.members.end(), members.begin(), members.end());
+        out_.items.push_back(it);
+        members.clear();
+    }
+
+    /// The drives that are in no run, burst by burst, in order of tactor.
+    void append_bursts()
+    {
+        std::vector<drive> single;
+        std::size_t number = 0;
+        bursts_.for_each([&](const burst& b, const stretch& s) {
+            single.clear();
+            for (const drive& d : b.drives) {
+                if (!joined_[number++]) {
+                    single.push_back(d);
+                }
+            }
+            if (single.empty()) {
+                return;
+            }
+            const auto lower = [](const drive& x, const drive& y) { return x.tactor < y.tactor; };
+            if (!std::is_sorted(single.begin(), single.end(), lower)) {
+                std::stable_sort(single.begin(), single.end(), lower);
+            }
+            item it;
+            it.start = start_ + s.from;
+            it.length = s.to - s.from;
+            it.ramp = ramp(b, s);
+            it.plan = number_;
+            it.first = out_.drive_tactors.size();
+            it.count = static_cast<std::uint32_t>(single.size());
+            for (const drive& d : single) {
+                out_.drive_tactors.push_back(static_cast<std::uint16_t>(d.tactor));
+                out_.drive_amplitudes.push_back(d.amplitude);
+            }
+            out_.items.push_back(it);
+        });
+    }
+
+    std::uint32_t ramp(const burst& b, const stretch& s) const
+    {
+        return attack_frames(plain_ramp_s(b.onset_s, b.duration_s, plan_, options_), options_.envelope,
+                             options_.rate, s.to - s.from);
+    }
+
+    const plan& plan_;
+    std::uint32_t number_;
+    std::uint64_t start_;
+    std::size_t tactors_;
+    const render_options& options_;
+    item_list& out_;
+    bursts_by_start bursts_;
+    std::uint64_t end_ = start_;
+    std::vector<bool> joined_; // by drive, in order of bursts_
+    bool any_joined_ = false;
+};
+
+} // namespace
+
+std::uint64_t place_bursts(std::span<const burst> bursts, std::size_t first, const plan& p,
+                           std::uint32_t plan, std::uint64_t start, std::size_t tactors,
+                           const render_options& o, item_list& out)
+{
+    for (std::size_t i = 0; i < bursts.size(); ++i) {
+        check(bursts[i], first + i, tactors);
+    }
+    return placer(bursts, p, plan, start, tactors, o, out).place();
+}
+
+std::uint64_t place_end(const plan& p, std::uint32_t plan, std::uint64_t start, std::uint64_t bursts_end,
+                        const render_options& o, item_list& out)
+{
+    for (const double s : {p.total_s, p.stroke_duration_s}) {
+        if (!(s >= 0.0 && s <= longest_plan_s)) {
+            throw error(error_kind::bad_input, "plan", "it lasts " + seconds_text(s),
+                        fmt::format("between 0 and {} s can be rendered", longest_plan_s));
+        }
+    }
+    const std::uint64_t total = start + frame_at(p.total_s, o.rate);
+    if (!p.curve) {
+        return std::max(total, bursts_end);
+    }
+    item it;
+    it.kind = item_kind::continuous;
+    it.start = start;
+    it.length = frame_at(p.stroke_duration_s, o.rate);
+    it.ramp = attack_frames(plain_ramp_s(0.0, p.stroke_duration_s, p, o), o.envelope, o.rate, it.length);
+    it.plan = plan;
+    if (it.length > 0) {
+        out.items.push_back(it);
+    }
+    return std::max(total, it.end());
+}
+
+} // namespace tactor::synth
+
+namespace tactor {
+
+double burst_ramp_s(double onset_s, double duration_s, double carrier_hz, const render_options& o) noexcept
+{
+    const double carrier_s = o.phase == phase_kind::stroke ? onset_s : 0.0;
+    return synth::ramp_seconds(o.ramp_s, carrier_s, duration_s, carrier_hz);
+}
+
+double burst_ramp_s(double onset_s, double duration_s, const plan& p, const render_options& o) noexcept
+{
+    if (o.envelope.kind == envelope_kind::tukey) {
+        return 0.5 * o.envelope.tukey_part * duration_s;
+    }
+    return o.envelope.attack_s.value_or(synth::plain_ramp_s(onset_s, duration_s, p, o));
+}
+
+} // namespace tactor

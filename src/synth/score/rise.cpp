@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+#include "synth/score/rise.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "synth/mix/window.hpp"
+#include "synth/score/frames.hpp"
+#include "synth/score/levels.hpp"
+
+namespace tactor::synth {
+
+namespace {
+
+/// After so many of its time constants an actuator has got there: 0.7 % are missing.
+constexpr double enough_rises = 5.0;
+/// Less than this, of full scale, is not worth a burst of its own (-100 dB).
+constexpr double least_boost = 1e-5;
+
+/// What a window adds to a lag in frames from ... to - 1, at frame `to`.
+double part_of(const burst_window& w, std::uint64_t from, std::uint64_t to, double rise)
+{
+    const double kept = std::exp(-1.0 / rise);
+    double y = 0.0;
+    for (std::uint64_t k = from; k < to; ++k) {
+        y = kept * y + (1.0 - kept) * window_at(static_cast<std::int64_t>(k), w);
+    }
+    return y;
+}
+
+/// What a tactor does when the next burst begins.
+struct motion {
+    std::uint64_t until = 0; ///< it is driven
+    double strength = 0.0;   ///< of its actuator then, in amplitudes of drives
+};
+
+/// A boost: how long and how strong, in amplitudes of drives.
+struct boost {
+    std::uint64_t length = 0;
+    double amplitude = 0.0;
+};
+
+class booster {
+public:
+    booster(score::impl& s, const array& a, const std::vector<double>& peaks)
+        : s_(s), a_(a), peaks_(peaks), motions_(a.tactors.size())
+    {
+    }
+
+    void run()
+    {
+        std::vector<item> more;
+        for (const item& it : s_.list.items) {
+            switch (it.kind) {
+            case item_kind::burst:
+                for (std::uint64_t k = it.first; k < it.first + it.count; ++k) {
+                    take_burst(it, s_.list.drive_tactors[k], s_.list.drive_amplitudes[k], more);
+                }
+                break;
+            case item_kind::joined:
+                moved(motions_[it.tactor], it.end(), s_.list.members[it.first].intensity);
+                break;
+            case item_kind::continuous:
+                for (motion& m : motions_) {
+                    moved(m, it.end(), 1.0);
+                }
+                break;
+            case item_kind::marker:
+                break;
+            }
+        }
+        std::copy(more.begin(), more.end(), std::back_inserter(s_.list.items));
+    }
+
+private:
+    static void moved(motion& m, std::uint64_t end, double strength)
+    {
+        m.strength = strength;
+        m.until = std::max(m.until, end);
+    }
+
+    void take_burst(const item& it, std::size_t tactor, double amplitude, std::vector<item>& more)
+    {
+        motion& m = motions_[tactor];
+        const auto rise_s = a_.tactors[tactor].rise_s;
+        // Of two bursts that touch, rounding may put the end of one into the first frame of the other.
+        if (!rise_s || it.start + 1 < m.until) {
+            moved(m, it.end(), amplitude);
+            return;
+        }
+        const std::uint32_t release = release_frames(s_.envelope, s_.rate, it.length, it.ramp);
+        const lag l(*rise_s * s_.rate, it.ramp, release, s_.envelope.kind);
+        const std::uint64_t pause = it.start - std::min(m.until, it.start);
+        const double before = m.strength * l.left(static_cast<double>(pause));
+        const double unit = std::abs(s_.tactors[tactor].gain) * s_.equalised(tactor, it.plan, it.start);
+        const double room = (tactor_limit(a_, tactor) * (1.0 - 2e-9) - peaks_[tactor]) / unit;
+        const boost b = boost_of(it, l, release, amplitude, before, room, *rise_s);
+        if (b.amplitude * unit > least_boost) {
+            add(it, tactor, b, more);
+        }
+        const auto length = static_cast<double>(it.length);
+        m.strength = before * l.left(length) + amplitude * l.fallen(length) +
+                     b.amplitude * l.fallen(static_cast<double>(b.length)) *
+                         l.left(length - static_cast<double>(b.length));
+        m.until = it.end();
+    }
+
+    /// The shortest of whole half cycles that is enough, or all that there is room for.
+    boost boost_of(const item& it, const lag& l, std::uint32_t release, double amplitude, double before,
+                   double room, double rise_s) const
+    {
+        if (!(room > 0.0 && amplitude > before)) {
+            return {};
+        }
+        const double half_cycle = 0.5 * s_.rate / s_.plans[it.plan].schedule.carrier_hz;
+        const double longest = std::min(static_cast<double>(it.length), enough_rises * rise_s * s_.rate);
+        const double shortest = std::max(1.0, static_cast<double>(it.ramp) + release);
+        const auto first = static_cast<std::uint64_t>(std::ceil(shortest / half_cycle));
+        const auto last = static_cast<std::uint64_t>(longest / half_cycle);
+        if (last < std::max<std::uint64_t>(first, 1)) {
+            return {};
+        }
+        const auto needed = [&](std::uint64_t half_cycles) -> boost {
+            const std::uint64_t frames = frame_at(static_cast<double>(half_cycles) * half_cycle, 1.0);
+            const auto t = static_cast<double>(frames);
+            const double missing = amplitude * (1.0 - l.risen(t)) - before * l.left(t);
+            return {frames, std::max(missing, 0.0) / l.fallen(t)};
+        };
+        std::uint64_t low = std::max<std::uint64_t>(first, 1);
+        for (std::uint64_t high = last; low < high;) {
+            const std::uint64_t middle = low + (high - low) / 2;
+            if (needed(middle).amplitude <= room) {
+                high = middle;
+            } else {
+                low = middle + 1;
+            }
+        }
+        boost b = needed(low);
+        b.amplitude = std::min(b.amplitude, room);
+        return b;
+    }
+
+    void add(const item& it, std::size_t tactor, const boost& b, std::vector<item>& more)
+    {
+        item over = it;
+        over.length = std::min(b.length, it.length);
+        over.first = s_.list.drive_tactors.size();
+        over.count = 1;
+        s_.list.drive_tactors.push_back(static_cast<std::uint16_t>(tactor));
+        s_.list.drive_amplitudes.push_back(b.amplitude);
+        more.push_back(over);
+    }
+
+    score::impl& s_;
+    const array& a_;
+    const std::vector<double>& peaks_;
+    std::vector<motion> motions_; ///< by tactor
+};
+
+} // namespace
+
+lag::lag(double rise, std::uint32_t attack, std::uint32_t release, envelope_kind shape)
+    : rise_(rise), attack_(attack), release_(release)
+{
+    const burst_window w{std::uint64_t{attack} + release, attack, release, shape};
+    after_attack_ = part_of(w, 0, attack, rise);
+    of_release_ = part_of(w, attack, w.length, rise);
+}
+
+double lag::left(double frames) const noexcept
+{
+    return std::exp(-frames / rise_);
+}
+
+double lag::risen(double frames) const noexcept
+{
+    return 1.0 - (1.0 - after_attack_) * left(frames - attack_);
+}
+
+double lag::fallen(double frames) const noexcept
+{
+    return risen(frames - release_) * left(release_) + of_release_;
+}
+
+bool boost_rises(score::impl& s, const array& a, const std::vector<double>& peaks)
+{
+    const auto rises = [](const tactor_spec& t) { return t.rise_s.has_value(); };
+    if (peaks.empty() || std::none_of(a.tactors.begin(), a.tactors.end(), rises)) {
+        return false;
+    }
+    const std::size_t before = s.list.items.size();
+    booster(s, a, peaks).run();
+    return s.list.items.size() > before;
+}
+
+} // namespace tactor::synth

@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: MIT
+#include "synth/score/score.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <functional>
+#include <span>
+
+#include <fmt/format.h>
+
+#include <tactor/words.hpp>
+
+#include <tactor/error.hpp>
+
+#include "core/access.hpp"
+#include "plan/job.hpp"
+#include "synth/guard/guard.hpp"
+#include "synth/mix/mixer.hpp"
+#include "synth/score/frames.hpp"
+#include "synth/score/levels.hpp"
+#include "synth/score/place.hpp"
+#include "synth/score/rise.hpp"
+#include "synth/tone/make_timbre.hpp"
+
+namespace tactor {
+
+namespace {
+
+using synth::item;
+using synth::item_kind;
+
+constexpr unsigned most_channels = 16384; // of an array; no PCM has so many
+constexpr double latest_start_s = 1e6;
+
+unsigned channels_of(const array& a, const render_options& o)
+{
+    const unsigned needed = a.channels();
+    const unsigned channels = o.channels == 0 ? needed : o.channels;
+    if (channels < needed) {
+        throw error(error_kind::bad_input, "channels",
+                    fmt::format("{} are too few: the array has a tactor on channel {}", channels, needed - 1),
+                    fmt::format("ask for {} or more", needed));
+    }
+    if (channels > most_channels) {
+        throw error(error_kind::bad_input, "channels", fmt::format("{} are too many", channels),
+                    fmt::format("at most {} can be rendered", most_channels));
+    }
+    return channels;
+}
+
+void check_options(const render_options& o)
+{
+    if (o.rate < 8000 || o.rate > 768000) {
+        throw error(error_kind::bad_input, "rate", fmt::format("{} Hz cannot be rendered", o.rate),
+                    "use 8000 to 768000, e.g. 48000");
+    }
+    if (o.ramp_s && !(*o.ramp_s >= 0.0 && *o.ramp_s <= latest_start_s)) {
+        throw error(error_kind::bad_input, "ramp_s", fmt::format("{} s is not a ramp", *o.ramp_s),
+                    "use 0 or more, e.g. 0.002");
+    }
+    const auto check_ramp = [](const char* what, std::optional<double> s) {
+        if (s && !(*s >= 0.0 && *s <= 10.0)) {
+            throw error(error_kind::bad_input, what, fmt::format("{} s is not a ramp", *s),
+                        "use 0 to 10, e.g. 0.01");
+        }
+    };
+    check_ramp("attack_s", o.envelope.attack_s);
+    check_ramp("release_s", o.envelope.release_s);
+    if (!(o.envelope.tukey_part >= 0.0 && o.envelope.tukey_part <= 1.0)) {
+        throw error(error_kind::bad_input, "tukey_part",
+                    fmt::format("{} is not a part of a burst", o.envelope.tukey_part),
+                    "use 0, a rectangle, to 1, all of it");
+    }
+}
+
+void check_marker(const array& a, const render_options& o, unsigned channels)
+{
+    if (!o.marker_channel) {
+        return;
+    }
+    const std::string what = fmt::format("marker channel {}", *o.marker_channel);
+    if (*o.marker_channel >= channels) {
+        throw error(error_kind::bad_input, what,
+                    fmt::format("there {} {}", channels == 1 ? "is" : "are", counted(channels, "channel")),
+                    fmt::format("ask for {} or more", counted(*o.marker_channel + 1, "channel")));
+    }
+    for (std::size_t i = 0; i < a.tactors.size(); ++i) {
+        if (a.tactors[i].channel == *o.marker_channel) {
+            throw error(error_kind::bad_input, what, fmt::format("it drives tactor {}", i),
+                        "choose a spare channel");
+        }
+    }
+    if (!(o.marker_s > 0.0 && o.marker_s <= 10.0)) {
+        throw error(error_kind::bad_input, "marker", fmt::format("{} s is not its length", o.marker_s),
+                    "use above 0 to 10 s, e.g. 0.005");
+    }
+}
+
+/// One at the start of each plan; none makes the piece longer.
+void place_markers(score::impl& s, std::uint64_t length, unsigned channel)
+{
+    for (std::size_t i = 0; i < s.starts.size(); ++i) {
+        item it;
+        it.kind = item_kind::marker;
+        it.start = s.starts[i];
+        it.length = std::min(std::max<std::uint64_t>(length, 1), s.frames - std::min(it.start, s.frames));
+        it.plan = static_cast<std::uint32_t>(i);
+        it.tactor = static_cast<std::uint16_t>(channel);
+        if (it.length > 0) {
+            s.list.items.push_back(it);
+        }
+    }
+}
+
+void check_carrier(double carrier_hz, unsigned rate)
+{
+    if (!(carrier_hz > 0.0 && carrier_hz < 0.5 * rate)) {
+        throw error(error_kind::bad_input, "carrier_hz",
+                    fmt::format("{} Hz cannot be rendered at a rate of {} Hz", carrier_hz, rate),
+                    fmt::format("use a carrier above 0 and below {} Hz, half the rate", 0.5 * rate));
+    }
+}
+
+std::uint64_t start_frame(std::optional<double> start_s, unsigned rate, std::uint64_t end_before)
+{
+    if (!start_s) {
+        return end_before;
+    }
+    if (!(*start_s >= 0.0 && *start_s <= latest_start_s)) {
+        throw error(error_kind::bad_input, "start of the stroke",
+                    fmt::format("{} s cannot be rendered", *start_s),
+                    fmt::format("use 0 to {} s", latest_start_s));
+    }
+    return synth::frame_at(*start_s, rate);
+}
+
+/// Greatest sum of `weight` over the items that are open at once; they arrive by start.
+template <class End, class Weight>
+std::size_t most_open(const std::deque<item>& items, End end, Weight weight)
+{
+    using open = std::pair<std::uint64_t, std::size_t>;
+    std::vector<open> heap;
+    std::size_t sum = 0;
+    std::size_t most = 0;
+    for (const item& it : items) {
+        while (!heap.empty() && heap.front().first < it.start) {
+            std::pop_heap(heap.begin(), heap.end(), std::greater<>{});
+            sum -= heap.back().second;
+            heap.pop_back();
+        }
+        const std::size_t w = weight(it);
+        if (w > 0) {
+            heap.emplace_back(end(it), w);
+            std::push_heap(heap.begin(), heap.end(), std::greater<>{});
+            most = std::max(most, sum += w);
+        }
+    }
+    return most;
+}
+
+/// Mostly they are in order; sorting needs room for half of them again.
+void sort_by_start(std::deque<item>& items)
+{
+    const auto earlier = [](const item& x, const item& y) { return x.start < y.start; };
+    if (!std::is_sorted(items.begin(), items.end(), earlier)) {
+        std::stable_sort(items.begin(), items.end(), earlier);
+    }
+}
+
+void measure(score::impl& s)
+{
+    const auto& items = s.list.items;
+    const auto events = [](std::size_t drives) {
+        return (drives + synth::drives_per_event - 1) / synth::drives_per_event;
+    };
+    const auto end = [](const item& it) { return it.end(); };
+    // A burst shorter than the longest event is through as soon as it has begun.
+    const auto walked = [](const item& it) {
+        return it.kind == item_kind::burst && it.length <= synth::longest_event ? it.start : it.end();
+    };
+    s.open_items = most_open(items, walked, [](const item&) -> std::size_t { return 1; });
+    s.open_continuous = most_open(
+        items, end, [](const item& it) -> std::size_t { return it.kind == item_kind::continuous ? 1 : 0; });
+    s.open_events = most_open(items, end, [&](const item& it) -> std::size_t {
+        switch (it.kind) {
+        case item_kind::burst:
+            return events(it.count);
+        case item_kind::continuous:
+            return events(s.tactors.size());
+        case item_kind::joined:
+        case item_kind::marker:
+            break;
+        }
+        return 1;
+    });
+}
+
+} // namespace
+
+/// A score in the making.
+struct score_builder::impl {
+    impl(const array& tactors, const render_options& options) : a(tactors), o(options)
+    {
+        validate(a);
+        check_options(o);
+        s->rate = o.rate;
+        s->phase = o.phase;
+        s->envelope = o.envelope;
+        s->channels = channels_of(a, o);
+        check_marker(a, o, s->channels);
+        if (o.limits) {
+            synth::check_limits(*o.limits);
+        }
+        s->guards = o.limits;
+        s->tactors = synth::tactor_levels(a, o);
+        const auto curved = [](const tactor_spec& t) { return !t.thresholds.empty(); };
+        if (o.sl_db && std::any_of(a.tactors.begin(), a.tactors.end(), curved)) {
+            s->measured = a.tactors;
+        }
+        s->limits = synth::channel_limits(a, s->channels);
+    }
+
+    std::uint32_t number() const noexcept { return static_cast<std::uint32_t>(s->plans.size()); }
+
+    /// Frame at which the next plan starts.
+    std::uint64_t start(std::optional<double> start_s, const start_anchor& anchor) const
+    {
+        if (start_s)
+            start_s = resolve_start_s(start_s, anchor, starts_s, ends_s);
+        return start_frame(start_s, o.rate, end);
+    }
+
+    std::uint64_t place(std::span<const burst> bursts, std::size_t first, const plan& p, std::uint64_t start)
+    {
+        return synth::place_bursts(bursts, first, p, number(), start, a.tactors.size(), o, s->list);
+    }
+
+    /// Takes a plan whose bursts are placed.
+    void close(plan p, std::optional<double> start_s, const start_anchor& anchor, std::uint64_t start,
+               std::uint64_t bursts_end)
+    {
+        starts_s.push_back(resolve_start_s(start_s, anchor, starts_s, ends_s));
+        ends_s.push_back(starts_s.back() + p.total_s);
+        s->sounds.push_back(shelf.get(p, o.rate));
+        end = synth::place_end(p, number(), start, bursts_end, o, s->list);
+        p.bursts = {};
+        s->plans.push_back({std::move(p), start_s, anchor});
+        s->starts.push_back(start);
+        s->ends.push_back(end);
+        s->frames = std::max(s->frames, end);
+    }
+
+    array a;
+    render_options o;
+    std::shared_ptr<score::impl> s = std::make_shared<score::impl>();
+    std::uint64_t end = 0;        ///< of the latest plan
+    std::vector<double> starts_s; ///< of the plans
+    std::vector<double> ends_s;
+    synth::timbre_shelf shelf;
+};
+
+score_builder::score_builder(const array& a, const render_options& o) : impl_(std::make_unique<impl>(a, o))
+{
+}
+
+score_builder::~score_builder() = default;
+
+void score_builder::add(plan p, std::optional<double> start_s, const start_anchor& anchor)
+{
+    check_carrier(p.carrier_hz, impl_->o.rate);
+    const std::uint64_t start = impl_->start(start_s, anchor);
+    const std::uint64_t end = impl_->place(p.bursts, 0, p, start);
+    impl_->close(std::move(p), start_s, anchor, start, end);
+}
+
+void score_builder::add(const layout& l, const stroke& s, const plan_options& o)
+{
+    const std::uint64_t start = impl_->start(s.start_s, s.anchor);
+    std::uint64_t end = start;
+    std::size_t placed = 0;
+    plan p = detail::plan_in_pieces(impl_->a, l, s, o, [&](const plan& so_far, std::span<const burst> next) {
+        check_carrier(so_far.carrier_hz, impl_->o.rate);
+        end = std::max(end, impl_->place(next, placed, so_far, start));
+        placed += next.size();
+    });
+    impl_->close(std::move(p), s.start_s, s.anchor, start, end);
+}
+
+score score_builder::take()
+{
+    score::impl& s = *impl_->s;
+    const render_options& o = impl_->o;
+    if (o.marker_channel) {
+        place_markers(s, synth::frame_at(o.marker_s, o.rate), *o.marker_channel);
+    }
+    sort_by_start(s.list.items);
+    if (synth::boost_rises(s, impl_->a, synth::check_peaks(s, impl_->a, o))) {
+        sort_by_start(s.list.items);
+    }
+    measure(s);
+    const auto made = detail::access::make<score>(std::shared_ptr<const score::impl>(std::move(impl_->s)));
+    impl_ = std::make_unique<impl>(impl_->a, impl_->o);
+    return made;
+}
+
+score::score(const array& a, std::vector<placed_plan> plans, const render_options& o)
+{
+    score_builder b(a, o);
+    for (placed_plan& p : plans) {
+        b.add(std::move(p.schedule), p.start_s, p.anchor);
+    }
+    *this = b.take();
+}
+
+std::vector<double> starts_of(std::span<const placed_plan> plans)
+{
+    std::vector<double> starts;
+    std::vector<double> ends;
+    for (const placed_plan& p : plans) {
+        starts.push_back(resolve_start_s(p.start_s, p.anchor, starts, ends));
+        ends.push_back(starts.back() + p.schedule.total_s);
+    }
+    return starts;
+}
+
+score::score(std::shared_ptr<const impl> made) noexcept : impl_(std::move(made))
+{
+}
+
+std::vector<placed_plan> score::alone(plan p)
+{
+    std::vector<placed_plan> one;
+    one.push_back({std::move(p), {}});
+    return one;
+}
+
+std::uint64_t score::frames() const noexcept
+{
+    return impl_->frames;
+}
+
+unsigned score::channels() const noexcept
+{
+    return impl_->channels;
+}
+
+unsigned score::rate() const noexcept
+{
+    return impl_->rate;
+}
+
+const std::vector<std::uint64_t>& score::starts() const noexcept
+{
+    return impl_->starts;
+}
+
+const std::vector<placed_plan>& score::plans() const noexcept
+{
+    return impl_->plans;
+}
+
+} // namespace tactor

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What a score holds: its plans in frames and channels.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include <tactor/render.hpp>
+
+#include "synth/tone/timbre.hpp"
+
+namespace tactor::synth {
+
+/// A tactor's way to its channel.
+struct tactor_level {
+    std::uint32_t channel = 0;
+    double gain = 0.0; ///< linear peak for amplitude 1, polarity included
+};
+
+/// A burst's part in a group of bursts that overlap on one tactor.
+struct item_member {
+    std::uint64_t start = 0;
+    std::uint64_t length = 0;
+    std::uint32_t ramp = 0;
+    std::uint32_t release = 0;
+    double amplitude = 0.0;
+    double intensity = 0.0; ///< A_v
+    std::uint64_t end() const noexcept { return start + length; }
+};
+
+enum class item_kind : std::uint8_t {
+    burst,      ///< drives that share one carrier and one window
+    joined,     ///< one tactor, several bursts under one carrier
+    continuous, ///< a whole continuous stroke
+    marker,     ///< a stroke's beginning, on a channel without a tactor
+};
+
+/// A stretch of one carrier. Frames of the score. Ten hours are half a million of them: no byte is idle.
+struct item {
+    std::uint64_t start = 0;
+    std::uint64_t length = 0;
+    std::uint64_t first = 0; ///< of its drives (burst) or members (joined)
+    std::uint32_t count = 0;
+    std::uint32_t plan = 0;
+    std::uint32_t ramp = 0;
+    std::uint16_t tactor = 0; ///< of a joined one; of a marker, the channel
+    item_kind kind = item_kind::burst;
+    std::uint64_t end() const noexcept { return start + length; }
+};
+static_assert(sizeof(item) == 40);
+
+/// All items of a score by start, and what they refer to.
+struct item_list {
+    // They grow without being copied, which would take half as much again.
+    std::deque<item> items;
+    // The drives of bursts: amplitude 1 is the intensity asked for. Two of them, for one would be padded.
+    std::deque<std::uint16_t> drive_tactors;
+    std::deque<double> drive_amplitudes;
+    std::vector<item_member> members;
+};
+
+} // namespace tactor::synth
+
+namespace tactor {
+
+struct score::impl {
+    std::vector<placed_plan> plans;                           ///< without their bursts, which are the items
+    std::vector<std::shared_ptr<const synth::timbre>> sounds; ///< of each plan; none: a sine
+    std::vector<std::uint64_t> starts;
+    std::vector<std::uint64_t> ends;          ///< of each plan
+    std::vector<synth::tactor_level> tactors; ///< by index
+    std::vector<tactor_spec> measured;        ///< thresholds by frequency; empty where they do not count
+    std::vector<double> limits;               ///< by channel
+    synth::item_list list;
+    std::uint64_t frames = 0;
+    unsigned channels = 0;
+    unsigned rate = 0;
+    phase_kind phase = phase_kind::stroke;
+    burst_envelope envelope = {};
+    std::optional<drive_limits> guards;
+    std::size_t open_items = 0;      ///< most items that have started and not ended at once
+    std::size_t open_continuous = 0; ///< of these, continuous ones
+    std::size_t open_events = 0;     ///< most events that sound in one frame
+
+    /// What a tactor gets beyond its gain in a frame of the score, for its threshold at the carrier there.
+    double equalised(std::size_t tactor, std::uint32_t plan, std::uint64_t frame) const;
+    /// The most of it in all of a plan.
+    double most_equalised(std::size_t tactor, std::uint32_t plan) const;
+};
+
+} // namespace tactor

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include "synth/score/sounding_now.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/access.hpp"
+#include "synth/score/score.hpp"
+
+namespace tactor::synth {
+
+sounding_now::sounding_now(const score& s)
+    : score_(s), source_(s), energy_(s.channels()), levels_(detail::access::of(s).tactors.size())
+{
+}
+
+const std::vector<double>& sounding_now::at(std::uint64_t asked)
+{
+    const std::uint64_t frame = latest_ = std::max(asked, latest_);
+    for (const drive_event* e = source_.peek(); e != nullptr && e->start <= frame; e = source_.peek()) {
+        if (e->start + e->length > frame) {
+            open_.push_back(*e);
+        }
+        source_.pop();
+    }
+    std::erase_if(open_, [frame](const drive_event& e) { return e.start + e.length <= frame; });
+    energy_.assign(energy_.size(), 0.0);
+    for (const drive_event& e : open_) {
+        const double part = static_cast<double>(frame - e.start) / e.length;
+        for (std::uint32_t i = 0; i < e.drives; ++i) {
+            const channel_drive& d = e.drive[i];
+            const double a = d.from + part * (d.to - d.from);
+            energy_[d.channel] += a * a;
+        }
+    }
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+        const tactor_level& t = detail::access::of(score_).tactors[i];
+        levels_[i] = std::sqrt(energy_[t.channel]) / std::abs(t.gain);
+    }
+    return levels_;
+}
+
+} // namespace tactor::synth

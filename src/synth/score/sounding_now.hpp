@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// How strongly each tactor is driven at one time, for pictures of what plays.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <tactor/render.hpp>
+
+#include "synth/score/event_source.hpp"
+
+namespace tactor::synth {
+
+/// Walks along with a score, so that nothing is kept of what is over. Control side, one thread at a time.
+class sounding_now {
+public:
+    explicit sounding_now(const score& s);
+
+    /// Amplitude of each tactor in a frame of the score, by index; 1 is the intensity asked for. A
+    /// frame before one that was asked for counts as that. Valid until the next call.
+    const std::vector<double>& at(std::uint64_t asked);
+
+private:
+    score score_;
+    event_source source_;
+    std::uint64_t latest_ = 0;
+    std::vector<drive_event> open_; ///< begun and not over
+    std::vector<double> energy_;    ///< by channel, at full level
+    std::vector<double> levels_;
+};
+
+} // namespace tactor::synth

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+#include "synth/tone/make_timbre.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "core/recording_name.hpp"
+#include "synth/tone/waves.hpp"
+
+namespace tactor::synth {
+
+namespace {
+
+/// Strokes of one score mostly sound alike; beyond so many that do not, each has its own.
+constexpr std::size_t most_places = 64;
+
+/// Of a recording at the rate of the stream: 32 MB.
+constexpr double most_loop_frames = 8388608.0;
+
+std::vector<course_part> course_of(const std::vector<carrier_point>& points, unsigned rate)
+{
+    std::vector<course_part> parts;
+    double cycles = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const carrier_point& from = points[i];
+        const carrier_point& to = points[std::min(i + 1, points.size() - 1)];
+        const double frames = (to.t_s - from.t_s) * rate;
+        const double change = frames > 0.0 ? (to.hz - from.hz) / rate / frames : 0.0;
+        if (frames > 0.0 || i + 1 == points.size()) {
+            parts.push_back({from.t_s * rate, cycles, from.hz / rate, 0.5 * change});
+        }
+        cycles += 0.5 * (to.t_s - from.t_s) * (from.hz + to.hz);
+        cycles -= std::floor(cycles);
+    }
+    return parts;
+}
+
+double highest_hz(const plan& p)
+{
+    return p.course.empty()
+               ? p.carrier_hz
+               : std::max_element(p.course.begin(), p.course.end(),
+                                  [](const carrier_point& a, const carrier_point& b) { return a.hz < b.hz; })
+                     ->hz;
+}
+
+void check_length(const recording& r, unsigned rate)
+{
+    const double frames = static_cast<double>(r.samples.size()) * rate / r.rate_hz;
+    if (frames > most_loop_frames) {
+        throw error(
+            error_kind::bad_input, detail::name_of(r),
+            fmt::format("it lasts {:.6g} s, which is too long at a rate of {} Hz", frames / rate, rate),
+            fmt::format("give at most {:.6g} s", most_loop_frames / rate));
+    }
+}
+
+void check_room(const char* what, double hz, unsigned rate)
+{
+    if (!(hz < 0.5 * rate)) {
+        throw error(error_kind::bad_input, what,
+                    fmt::format("with its modulation it reaches {} Hz, which cannot be rendered at a rate of "
+                                "{} Hz",
+                                hz, rate),
+                    fmt::format("stay below {} Hz, half the rate", 0.5 * rate));
+    }
+}
+
+/// What of a wave is below half the rate, its sidebands included.
+std::size_t harmonics_below(double hz, double am_hz, unsigned rate)
+{
+    const double room = (0.5 * rate - am_hz) / hz;
+    return static_cast<std::size_t>(
+        std::clamp(std::ceil(room) - 1.0, 1.0, static_cast<double>(most_cycle_samples)));
+}
+
+void fill_in(timbre& t, const plan& p, unsigned rate)
+{
+    const waveform& w = p.wave;
+    const double am_hz = p.am.depth > 0.0 ? p.am.hz : 0.0;
+    const bool timed = w.kind == waveform_kind::recording && w.texture == texture_kind::time;
+    if (w.kind == waveform_kind::noise) {
+        check_room("waveform", w.high_hz + am_hz, rate);
+        t.form = timbre::form_kind::loop;
+        t.samples = std::make_shared<const wave_samples>(noise_loop(w.low_hz, w.high_hz, w.seed, rate));
+    } else if (timed) {
+        check_length(*w.recorded, rate);
+        t.form = timbre::form_kind::loop;
+        t.samples = std::make_shared<const wave_samples>(recorded_loop(*w.recorded, rate));
+    } else {
+        check_room("carrier_hz", highest_hz(p) + am_hz, rate);
+        if (w.kind == waveform_kind::sine) {
+            return;
+        }
+        const std::size_t harmonics = harmonics_below(highest_hz(p), am_hz, rate);
+        t.form = timbre::form_kind::cycle;
+        t.samples = std::make_shared<const wave_samples>(
+            w.kind == waveform_kind::recording ? recorded_cycle(*w.recorded, harmonics)
+                                               : shape_cycle(w.kind, std::min(harmonics, most_harmonics)));
+    }
+    t.power = power_of(*t.samples);
+}
+
+bool sound_alike(const plan& a, const plan& b)
+{
+    return a.carrier_hz == b.carrier_hz && a.am == b.am && a.course == b.course && a.wave == b.wave;
+}
+
+} // namespace
+
+std::shared_ptr<const timbre> make_timbre(const plan& p, unsigned rate)
+{
+    validate(p.wave);
+    validate(p.am);
+    const bool modulated = p.am.hz > 0.0 && p.am.depth > 0.0;
+    if (p.wave.kind == waveform_kind::sine && !modulated && p.course.empty()) {
+        return nullptr;
+    }
+    auto t = std::make_shared<timbre>();
+    t->cycles_per_frame = p.carrier_hz / rate;
+    t->course = course_of(p.course, rate);
+    if (modulated) {
+        t->am_cycles_per_frame = p.am.hz / rate;
+        t->am_depth = p.am.depth;
+    }
+    fill_in(*t, p, rate);
+    return t;
+}
+
+bool crosses_zero(const plan& p) noexcept
+{
+    return p.course.empty() && p.wave.kind != waveform_kind::noise && p.wave.kind != waveform_kind::recording;
+}
+
+std::shared_ptr<const timbre> timbre_shelf::get(const plan& p, unsigned rate)
+{
+    const auto there =
+        std::find_if(places_.begin(), places_.end(), [&](const place& q) { return sound_alike(q.asked, p); });
+    if (there != places_.end()) {
+        return there->made;
+    }
+    std::shared_ptr<const timbre> made = make_timbre(p, rate);
+    if (made && places_.size() < most_places) {
+        plan asked;
+        asked.carrier_hz = p.carrier_hz;
+        asked.wave = p.wave;
+        asked.am = p.am;
+        asked.course = p.course;
+        places_.push_back({std::move(asked), made});
+    }
+    return made;
+}
+
+} // namespace tactor::synth

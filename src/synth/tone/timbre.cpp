@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+#include "synth/tone/timbre.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "synth/mix/clones.hpp"
+#include "synth/mix/sincos.hpp"
+
+namespace tactor::synth {
+
+namespace {
+
+TACTOR_CLONES void linear_turns(double first, double cycles_per_frame, unsigned n, double* out) noexcept
+{
+    double* __restrict o = out;
+    for (int j = 0; j < static_cast<int>(n); ++j) {
+        o[j] = (first + j) * cycles_per_frame;
+    }
+}
+
+TACTOR_CLONES void swept_turns(const course_part& p, double first, unsigned n, double* out) noexcept
+{
+    double* __restrict o = out;
+    const double cycles = p.cycles;
+    const double speed = p.cycles_per_frame;
+    const double half_slope = p.half_slope;
+    const double from = first - p.start;
+    for (int j = 0; j < static_cast<int>(n); ++j) {
+        const double k = from + j;
+        o[j] = cycles + k * (speed + k * half_slope);
+    }
+}
+
+TACTOR_CLONES void sines(const double* turns, unsigned n, bool cosine, double* out) noexcept
+{
+    const double* __restrict in = turns;
+    double* __restrict o = out;
+    const double ahead = cosine ? 0.25 : 0.0;
+    for (int j = 0; j < static_cast<int>(n); ++j) {
+        o[j] = sincos_turns(in[j] + ahead).sin;
+    }
+}
+
+TACTOR_CLONES void widen(const float* from, unsigned n, double* to) noexcept
+{
+    const float* __restrict in = from;
+    double* __restrict out = to;
+    for (unsigned j = 0; j < n; ++j) {
+        out[j] = static_cast<double>(in[j]);
+    }
+}
+
+void read_loop(const wave_samples& loop, std::int64_t first, unsigned n, double* out) noexcept
+{
+    const auto size = static_cast<std::int64_t>(loop.size());
+    auto at = static_cast<std::size_t>(((first % size) + size) % size);
+    while (n > 0) {
+        const auto length = static_cast<unsigned>(std::min<std::size_t>(n, loop.size() - at));
+        widen(loop.data() + at, length, out);
+        out += length;
+        n -= length;
+        at = 0;
+    }
+}
+
+/// What makes the envelope of each frame the same.
+TACTOR_CLONES void rest_of(double power, unsigned n, double* x) noexcept
+{
+    double* __restrict o = x;
+    for (unsigned j = 0; j < n; ++j) {
+        const double rest = power - o[j] * o[j];
+        o[j] = std::sqrt(rest > 0.0 ? rest : 0.0);
+    }
+}
+
+void play(const timbre& t, const double* turns, unsigned n, wave w, double* out) noexcept
+{
+    if (t.is_sine()) {
+        sines(turns, n, w == wave::cosine, out);
+    } else {
+        read_cycle(*t.samples, turns, n, out);
+    }
+}
+
+/// Each frame by its own place on the carrier alone, so that blocks make no difference.
+void follow(const timbre& t, std::int64_t first, unsigned n, wave w, double* out) noexcept
+{
+    alignas(64) block turns;
+    if (t.course.empty()) {
+        linear_turns(static_cast<double>(first), t.cycles_per_frame, n, turns.data());
+        play(t, turns.data(), n, w, out);
+        return;
+    }
+    const auto after = [](double frame, const course_part& p) { return frame < p.start; };
+    auto next = std::upper_bound(t.course.begin(), t.course.end(), static_cast<double>(first), after);
+    for (unsigned done = 0; done < n;) {
+        const auto at = static_cast<double>(first + done);
+        while (next != t.course.end() && next->start <= at) {
+            ++next;
+        }
+        const course_part& p = next == t.course.begin() ? *next : *(next - 1);
+        unsigned length = n - done;
+        if (next != t.course.end()) {
+            length = static_cast<unsigned>(std::min<double>(length, std::ceil(next->start - at)));
+        }
+        if (p.rests()) {
+            std::fill_n(out + done, length, 0.0); // a constant would push the tactor off its place
+        } else {
+            swept_turns(p, at, length, turns.data());
+            play(t, turns.data(), length, w, out + done);
+        }
+        done += length;
+    }
+}
+
+} // namespace
+
+TACTOR_CLONES void read_cycle(const wave_samples& cycle, const double* turns, unsigned n,
+                              double* out) noexcept
+{
+    const auto points = static_cast<double>(cycle.size() - cycle_margin);
+    const float* __restrict x = cycle.data();
+    const double* __restrict in = turns;
+    double* __restrict o = out;
+    for (int j = 0; j < static_cast<int>(n); ++j) {
+        const double place = (in[j] - nearest(in[j]) + 0.5) * points;
+        const int i = static_cast<int>(place);
+        const double t = place - i;
+        const auto a = static_cast<double>(x[i]);
+        const auto b = static_cast<double>(x[i + 1]);
+        const auto c = static_cast<double>(x[i + 2]);
+        const auto d = static_cast<double>(x[i + 3]);
+        const double cubic = (d - a) * (1.0 / 6.0) + (b - c) * 0.5;
+        const double square = (a + c) * 0.5 - b;
+        const double line = c - a * (1.0 / 3.0) - b * 0.5 - d * (1.0 / 6.0);
+        o[j] = b + t * (line + t * (square + t * cubic));
+    }
+}
+
+void timbre::fill(std::int64_t first, unsigned n, double* out, wave w) const noexcept
+{
+    if (form == form_kind::loop) {
+        read_loop(*samples, first, n, out);
+    } else {
+        follow(*this, first, n, w, out);
+    }
+    if (w == wave::cosine && !is_sine()) {
+        rest_of(power, n, out);
+    }
+}
+
+void modulate_block(oscillator_tables& tables, double cycles_per_frame, double depth, std::int64_t first,
+                    unsigned n, double* out) noexcept
+{
+    const oscillator_table& t = tables.get(cycles_per_frame);
+    const double whole = 1.0 / (1.0 + depth);
+    for_each_part(first, 0, n, [&](const table_part& p) {
+        // A sine is the cosine of a quarter of a cycle before.
+        const sine_cosine base = sincos_cycles(static_cast<double>(p.base) * cycles_per_frame - 0.25);
+        times_cosine(t, base, whole, depth * whole, p, out);
+    });
+}
+
+} // namespace tactor::synth

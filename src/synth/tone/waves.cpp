@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: MIT
+#include "synth/tone/waves.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+#include <tactor/error.hpp>
+
+#include "core/recording_name.hpp"
+#include "synth/mix/sincos.hpp"
+#include "synth/tone/fourier.hpp"
+
+namespace tactor::synth {
+
+namespace {
+
+/// Of the highest harmonic: what is read between them misses a wave by -89 dB of that harmonic, far less of
+/// all that are below it.
+constexpr std::size_t points_a_period = 32;
+
+/// A peak may lie between two points, or be missed by rounding.
+constexpr double above_peak = 1.0 + 2e-5;
+
+double peak_of(const wave_samples& x)
+{
+    return static_cast<double>(std::accumulate(
+        x.begin(), x.end(), 0.0F, [](float most, float v) { return std::max(most, std::abs(v)); }));
+}
+
+void scale(wave_samples& x, double peak)
+{
+    const double gain = peak > 0.0 ? 1.0 / (peak * above_peak) : 0.0;
+    for (float& v : x) {
+        v = static_cast<float>(gain * static_cast<double>(v));
+    }
+}
+
+/// Between the points, too.
+double cycle_peak(const wave_samples& cycle)
+{
+    constexpr std::size_t between = 8;
+    const double points = static_cast<double>(cycle.size() - cycle_margin);
+    double peak = 0.0;
+    block turns;
+    block x;
+    const std::size_t all = between * (cycle.size() - cycle_margin);
+    for (std::size_t at = 0; at < all; at += block_frames) {
+        const auto n = static_cast<unsigned>(std::min<std::size_t>(block_frames, all - at));
+        for (unsigned j = 0; j < n; ++j) {
+            turns[j] = static_cast<double>(at + j) / (between * points);
+        }
+        read_cycle(cycle, turns.data(), n, x.data());
+        for (unsigned j = 0; j < n; ++j) {
+            peak = std::max(peak, std::abs(x[j]));
+        }
+    }
+    return peak;
+}
+
+std::size_t points_for(std::size_t harmonics)
+{
+    return std::bit_ceil(points_a_period * std::max<std::size_t>(harmonics, 2));
+}
+
+/// Beside a peak of 1 to 2: what is less is the arithmetic's, and would sound as loud as what is asked for.
+constexpr double least_peak = 1e-5;
+
+void require_left(double peak, const recording& r)
+{
+    if (!(peak >= least_peak)) {
+        throw error(error_kind::bad_input, detail::name_of(r),
+                    "nothing of it is left below half its own rate and the stream's",
+                    "give a slower vibration, a lower carrier_hz or a higher rate");
+    }
+}
+
+/// About their mean, and by a power of 2 with a peak of 1 to 2: in whatever unit they are, sums of them are
+/// finite and as exact as they are.
+std::vector<float> unit_samples(const recording& r)
+{
+    std::vector<double> x(r.samples.begin(), r.samples.end());
+    const auto to_unit = [&x] {
+        const double peak = std::accumulate(
+            x.begin(), x.end(), 0.0, [](double most, double v) { return std::max(most, std::abs(v)); });
+        const double gain = peak > 0.0 ? std::ldexp(1.0, -std::ilogb(peak)) : 0.0;
+        std::transform(x.begin(), x.end(), x.begin(), [gain](double v) { return gain * v; });
+    };
+    to_unit();
+    const double mean = std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
+    std::transform(x.begin(), x.end(), x.begin(), [mean](double v) { return v - mean; });
+    to_unit();
+    std::vector<float> samples(x.size());
+    std::transform(x.begin(), x.end(), samples.begin(), [](double v) { return static_cast<float>(v); });
+    return samples;
+}
+
+/// The real part of the sum of harmonics, from half a cycle before the beginning on.
+wave_samples cycle_of(spectrum harmonics)
+{
+    const std::size_t points = harmonics.size();
+    for (std::size_t h = 1; h < points; h += 2) {
+        harmonics[h] = -harmonics[h]; // half a cycle
+    }
+    fourier_sum(harmonics);
+    wave_samples x(points + cycle_margin);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        x[i] = static_cast<float>(harmonics[(i + points - 1) % points].real());
+    }
+    return x;
+}
+
+double harmonic_of(waveform_kind shape, std::size_t h)
+{
+    const auto n = static_cast<double>(h);
+    const bool odd = h % 2 == 1;
+    switch (shape) {
+    case waveform_kind::square:
+        return odd ? 1.0 / n : 0.0;
+    case waveform_kind::triangle:
+        return odd ? (h % 4 == 1 ? 1.0 : -1.0) / (n * n) : 0.0;
+    case waveform_kind::sawtooth:
+        return (odd ? 1.0 : -1.0) / n;
+    case waveform_kind::sine:
+    case waveform_kind::noise:
+    case waveform_kind::recording:
+        break;
+    }
+    return h == 1 ? 1.0 : 0.0;
+}
+
+/// Steele's SplitMix64 (OOPSLA 2014).
+std::uint64_t next_random(std::uint64_t& state) noexcept
+{
+    std::uint64_t z = state += 0x9E3779B97F4A7C15U;
+    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
+    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
+    return z ^ (z >> 31U);
+}
+
+/// A sinc in a window of Blackman and Harris, as a table: zero beyond `width` samples.
+class kernel {
+public:
+    /// `cutoff`: in cycles a sample of what is read.
+    explicit kernel(double cutoff) : width_(crossings / (2.0 * cutoff)), table_(size + 2)
+    {
+        for (std::size_t i = 0; i <= size; ++i) {
+            const double u = static_cast<double>(i) / size; // 0: in the middle, 1: at the end
+            const double t = u * crossings;
+            const double sinc = i == 0 ? 1.0 : sincos_turns(0.5 * t).sin / (3.14159265358979323846 * t);
+            const double a = 0.5 * u;
+            const double window = 0.35875 + 0.48829 * sincos_turns(a).cos +
+                                  0.14128 * sincos_turns(2 * a).cos + 0.01168 * sincos_turns(3 * a).cos;
+            table_[i] = 2.0 * cutoff * sinc * window;
+        }
+    }
+
+    double width() const noexcept { return width_; }
+    double at(double d) const noexcept
+    {
+        const double place = std::min(std::abs(d) / width_, 1.0) * size;
+        const auto i = static_cast<std::size_t>(place);
+        return table_[i] + (place - static_cast<double>(i)) * (table_[i + 1] - table_[i]);
+    }
+
+private:
+    static constexpr double crossings = 32.0;
+    static constexpr std::size_t size = 65536;
+    double width_;
+    std::vector<double> table_;
+};
+
+wave_samples resampled(const std::vector<float>& in, std::size_t size)
+{
+    wave_samples out(size);
+    const auto m = static_cast<std::int64_t>(in.size());
+    const double step = static_cast<double>(in.size()) / static_cast<double>(out.size());
+    // The window's transition, an eighth of the band, ends at half of the lower rate.
+    const kernel k(0.5 * (1.0 - 0.125) * std::min(1.0, 1.0 / step));
+    const auto reach = static_cast<std::int64_t>(std::ceil(k.width()));
+    for (std::size_t n = 0; n < out.size(); ++n) {
+        const double place = static_cast<double>(n) * step;
+        const auto middle = static_cast<std::int64_t>(place);
+        double sum = 0.0;
+        for (std::int64_t i = middle - reach; i <= middle + reach + 1; ++i) {
+            const auto around = static_cast<std::size_t>(((i % m) + m) % m);
+            sum += static_cast<double>(in[around]) * k.at(place - static_cast<double>(i));
+        }
+        out[n] = static_cast<float>(sum);
+    }
+    return out;
+}
+
+} // namespace
+
+wave_samples shape_cycle(waveform_kind shape, std::size_t harmonics)
+{
+    spectrum x(points_for(harmonics));
+    for (std::size_t h = 1; h <= harmonics; ++h) {
+        x[h] = {0.0, -harmonic_of(shape, h)}; // -i exp(i a) has the sine of a
+    }
+    wave_samples cycle = cycle_of(std::move(x));
+    scale(cycle, cycle_peak(cycle));
+    return cycle;
+}
+
+wave_samples recorded_cycle(const recording& r, std::size_t harmonics)
+{
+    // The highest of an even number of samples says nothing of its phase.
+    const std::size_t own = std::max<std::size_t>((r.samples.size() - 1) / 2, 1);
+    harmonics = std::min(harmonics, own);
+    const spectrum c = fourier_coefficients(unit_samples(r), harmonics + 1);
+    spectrum x(points_for(harmonics));
+    std::copy(c.begin() + 1, c.end(), x.begin() + 1);
+    wave_samples cycle = cycle_of(std::move(x));
+    const double peak = cycle_peak(cycle);
+    require_left(peak, r);
+    scale(cycle, peak);
+    return cycle;
+}
+
+wave_samples noise_loop(double low_hz, double high_hz, std::uint64_t seed, unsigned rate)
+{
+    const std::size_t frames = std::min(std::bit_ceil(std::size_t{4} * rate), std::size_t{1} << 20U);
+    const double line = static_cast<double>(rate) / static_cast<double>(frames);
+    const auto first = static_cast<std::size_t>(std::ceil(low_hz / line));
+    const auto last = std::min(static_cast<std::size_t>(high_hz / line), frames / 2 - 1);
+    spectrum x(frames);
+    // Lines of one height and of any phase: by their number they are as good as a Gaussian's.
+    for (std::size_t k = first; k <= last; ++k) {
+        const sine_cosine v = sincos_turns(static_cast<double>(next_random(seed) >> 11U) * 0x1p-53);
+        x[k] = {v.cos, v.sin};
+    }
+    fourier_sum(x);
+    wave_samples loop(frames);
+    std::transform(x.begin(), x.end(), loop.begin(),
+                   [](const std::complex<double>& v) { return static_cast<float>(v.real()); });
+    scale(loop, peak_of(loop));
+    return loop;
+}
+
+wave_samples recorded_loop(const recording& r, unsigned rate)
+{
+    const double frames = static_cast<double>(r.samples.size()) * rate / r.rate_hz;
+    wave_samples x = unit_samples(r);
+    const std::size_t size = std::max<std::size_t>(static_cast<std::size_t>(std::llround(frames)), 2);
+    if (x.size() != size) {
+        x = resampled(x, size);
+    }
+    const double mean = std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
+    for (float& v : x) {
+        v = static_cast<float>(static_cast<double>(v) - mean);
+    }
+    const double peak = peak_of(x);
+    require_left(peak, r);
+    scale(x, peak);
+    return x;
+}
+
+double power_of(const wave_samples& x) noexcept
+{
+    const double sum = std::accumulate(x.begin(), x.end(), 0.0, [](double s, float v) {
+        return s + static_cast<double>(v) * static_cast<double>(v);
+    });
+    return std::max(1.0, 2.0 * sum / static_cast<double>(x.size()));
+}
+
+} // namespace tactor::synth

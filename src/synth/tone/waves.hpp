@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The samples behind a timbre.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <tactor/waveform.hpp>
+
+#include "synth/tone/timbre.hpp"
+
+namespace tactor::synth {
+
+/// Most harmonics of a cycle: beyond them a slow one has nothing that is felt.
+inline constexpr std::size_t most_harmonics = 4096;
+
+/// Square, triangle or sawtooth by its harmonics 1 to `harmonics`, with a peak of 1, as read_cycle() takes
+/// it.
+wave_samples shape_cycle(waveform_kind shape, std::size_t harmonics);
+
+/// One cycle of recorded samples, with no more harmonics than that and than it has; without its mean, and
+/// with a peak of 1. \throws error (bad_input) when nothing of it is left.
+wave_samples recorded_cycle(const recording& r, std::size_t harmonics);
+
+/// Noise that repeats after some 5 s, with nothing outside low_hz to high_hz; its peak is 1.
+wave_samples noise_loop(double low_hz, double high_hz, std::uint64_t seed, unsigned rate);
+
+/// A recording in its own time at another rate; its peak is 1, and its mean 0. \throws error (bad_input) when
+/// nothing of it is left.
+wave_samples recorded_loop(const recording& r, unsigned rate);
+
+/// Twice the mean square, but at least 1.
+double power_of(const wave_samples& x) noexcept;
+
+} // namespace tactor::synth

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+// Which line a user means, on chips that are but values.
+#include "amplifier/find.hpp"
+
+#include <cerrno>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <tactor/error.hpp>
+
+namespace find_test {
+
+using tactor::gpio_line_name;
+using tactor::gpio::chip;
+using tactor::gpio::find_line;
+
+namespace {
+
+chip make_chip(unsigned number, const std::string& label, const std::vector<std::string>& names)
+{
+    chip c;
+    c.info.name = "gpiochip" + std::to_string(number);
+    c.info.path = "/dev/" + c.info.name;
+    c.info.label = label;
+    for (const std::string& n : names)
+        c.info.lines.push_back({.offset = static_cast<unsigned>(c.info.lines.size()), .name = n});
+    return c;
+}
+
+chip shut_chip(unsigned number, int code, const std::string& group)
+{
+    chip c = make_chip(number, "", {});
+    c.code = code;
+    c.group = group;
+    return c;
+}
+
+const std::vector<chip> pi{make_chip(0, "pinctrl-rp1", {"ID_SD", "GPIO1", "GPIO17", "", "LED"}),
+                           make_chip(10, "gpio-brcmstb@0", {"LED", "FAN"}), make_chip(11, "empty", {})};
+
+gpio_line_name by_chip(const std::string& name, unsigned offset)
+{
+    return {.chip = name, .offset = offset};
+}
+
+gpio_line_name by_name(const std::string& name, const std::string& on = {})
+{
+    return {.chip = on, .name = name};
+}
+
+std::string complaint(const std::vector<chip>& chips, const gpio_line_name& wanted,
+                      tactor::error_kind kind = tactor::error_kind::not_available)
+{
+    try {
+        find_line(chips, wanted);
+    } catch (const tactor::error& e) {
+        CHECK(e.kind() == kind);
+        return e.what();
+    }
+    return "found";
+}
+
+} // namespace
+
+TEST_CASE("a chip is found by label and by path, a line by offset and by name")
+{
+    struct row {
+        gpio_line_name wanted;
+        std::size_t chip;
+        unsigned offset;
+    };
+    const std::vector<row> rows{
+        {by_chip("pinctrl-rp1", 0), 0, 0},
+        {by_chip("pinctrl-rp1", 4), 0, 4},
+        {by_chip("/dev/gpiochip10", 1), 1, 1},
+        {by_name("GPIO17"), 0, 2},
+        {by_name("FAN"), 1, 1},
+        {by_name("LED", "gpio-brcmstb@0"), 1, 0},
+        {by_name("LED", "/dev/gpiochip0"), 0, 4},
+    };
+    for (const row& r : rows) {
+        CAPTURE(r.wanted.chip);
+        CAPTURE(r.wanted.name);
+        const auto found = find_line(pi, r.wanted);
+        CHECK(found.chip == r.chip);
+        CHECK(found.offset == r.offset);
+    }
+}
+
+TEST_CASE("what is not there is answered with what is")
+{
+    CHECK(complaint(pi, by_chip("pinctrl-bcm2711", 17)) ==
+          "GPIO line 17 of pinctrl-bcm2711: no chip labelled \"pinctrl-bcm2711\" (there are: \"pinctrl-rp1\" "
+          "at "
+          "/dev/gpiochip0, \"gpio-brcmstb@0\" at /dev/gpiochip10, \"empty\" at /dev/gpiochip11)");
+    CHECK(complaint(pi, by_chip("/dev/gpiochip4", 17)) ==
+          "GPIO line 17 of /dev/gpiochip4: there is no /dev/gpiochip4 (there are: \"pinctrl-rp1\" at "
+          "/dev/gpiochip0, \"gpio-brcmstb@0\" at /dev/gpiochip10, \"empty\" at /dev/gpiochip11)");
+    CHECK(
+        complaint(pi, by_chip("pinctrl-rp1", 5)) ==
+        "GPIO line 5 of pinctrl-rp1: chip \"pinctrl-rp1\" at /dev/gpiochip0 has lines 0 to 4, no line 5 (an "
+        "offset counts the chip's own lines from 0)");
+    CHECK(complaint(pi, by_chip("empty", 0)) == "GPIO line 0 of empty: chip \"empty\" at /dev/gpiochip11 has "
+                                                "no lines (an offset counts the chip's own "
+                                                "lines from 0)");
+    CHECK(complaint(pi, by_name("GPI017")) ==
+          "GPIO line \"GPI017\": no line has this name (did you mean \"GPIO17\"?)");
+    CHECK(complaint(pi, by_name("AMPLIFIER")) ==
+          "GPIO line \"AMPLIFIER\": no line has this name (there are: ID_SD, GPIO1, GPIO17, LED, LED, FAN)");
+    CHECK(complaint(pi, by_name("FAN", "pinctrl-rp1")) ==
+          "GPIO line \"FAN\": no line of pinctrl-rp1 has this name (there are: ID_SD, GPIO1, GPIO17, LED)");
+    CHECK(complaint({make_chip(0, "sim", {"", ""})}, by_name("GPIO17")) ==
+          "GPIO line \"GPIO17\": no line has this name (no line here has a name: give chip and offset)");
+    CHECK(complaint({}, by_name("GPIO17")) == "GPIO line \"GPIO17\": there is no GPIO chip on this machine "
+                                              "(GPIO chips are /dev/gpiochip*; a container "
+                                              "has to be given them)");
+}
+
+TEST_CASE("a chip's number is no name for it, for it changes")
+{
+    CHECK(complaint(pi, by_chip("gpiochip0", 17)) ==
+          "GPIO line 17 of gpiochip0: \"gpiochip0\" is a number that the kernel gives anew at each start "
+          "(use the "
+          "label, chip = \"pinctrl-rp1\", or the path /dev/gpiochip0)");
+    CHECK(complaint({shut_chip(0, EACCES, "gpio")}, by_chip("gpiochip0", 17)) ==
+          "GPIO line 17 of gpiochip0: \"gpiochip0\" is a number that the kernel gives anew at each start "
+          "(use the "
+          "chip's label, or the path /dev/gpiochip0)");
+    // Unless it is a label.
+    CHECK(find_line(std::vector{make_chip(3, "gpiochip0", {"", ""})}, by_chip("gpiochip0", 1)).offset == 1);
+}
+
+TEST_CASE("names that are there twice are not guessed")
+{
+    CHECK(
+        complaint(pi, by_name("LED")) ==
+        "GPIO line \"LED\": 2 lines have this name: line 4 of /dev/gpiochip0, line 0 of /dev/gpiochip10 (say "
+        "which by chip and offset)");
+    const std::vector<chip> twins{make_chip(0, "ftdi", {"a"}), make_chip(1, "ftdi", {"b"})};
+    CHECK(complaint(twins, by_chip("ftdi", 0)) == "GPIO line 0 of ftdi: 2 chips are labelled \"ftdi\": "
+                                                  "/dev/gpiochip0, /dev/gpiochip1 (name the chip by "
+                                                  "its path)");
+    CHECK(find_line(twins, by_chip("/dev/gpiochip1", 0)).chip == 1);
+}
+
+TEST_CASE("a chip that may not be opened is named with the group to join")
+{
+    const std::string shut =
+        "GPIO line 17 of pinctrl-rp1: no permission to open /dev/gpiochip0 (sudo usermod -aG "
+        "gpio $USER, then log in again)";
+    CHECK(complaint({shut_chip(0, EACCES, "gpio")}, by_chip("pinctrl-rp1", 17)) == shut);
+    CHECK(complaint({make_chip(1, "other", {"x"}), shut_chip(0, EACCES, "gpio")},
+                    by_chip("pinctrl-rp1", 17)) == shut);
+    CHECK(complaint({shut_chip(0, EPERM, "dialout")}, by_chip("/dev/gpiochip0", 17)) ==
+          "GPIO line 17 of /dev/gpiochip0: no permission to open /dev/gpiochip0 (sudo usermod -aG dialout "
+          "$USER, "
+          "then log in again)");
+    CHECK(complaint({shut_chip(0, EACCES, "root")}, by_name("GPIO17")) ==
+          "GPIO line \"GPIO17\": no permission to open /dev/gpiochip0 (the device is root's alone: sudo "
+          "groupadd --system --force gpio, install the udev rules, which give it to that group, then sudo "
+          "usermod -aG "
+          "gpio $USER, and log in again)");
+    CHECK(
+        complaint({shut_chip(0, ENOTTY, "")}, by_chip("/dev/gpiochip0", 17)) ==
+        "GPIO line 17 of /dev/gpiochip0: /dev/gpiochip0 is not a GPIO chip (tactor devices lists the chips)");
+    // One that is not needed does not matter.
+    CHECK(find_line(std::vector{shut_chip(0, EACCES, "gpio"), make_chip(1, "other", {"x"})}, by_name("x"))
+              .chip == 1);
+}
+
+TEST_CASE("a line without chip, offset and name is bad input, and says where it was written")
+{
+    CHECK(complaint(pi, {}, tactor::error_kind::bad_input) ==
+          "GPIO line: a line needs chip and offset, or a name (line = { chip = \"pinctrl-rp1\", offset = 17 "
+          "} or { "
+          "name = \"GPIO17\" })");
+    gpio_line_name half;
+    half.chip = "pinctrl-rp1";
+    half.where = {"palm.toml", 12, 3};
+    CHECK(complaint(pi, half, tactor::error_kind::bad_input)
+              .starts_with("palm.toml:12:3: GPIO line: a line needs"));
+}
+
+TEST_CASE("a long list is cut")
+{
+    std::vector<std::string> names;
+    for (int i = 0; i < 54; ++i)
+        names.push_back("PIN" + std::to_string(i));
+    const std::string text = complaint({make_chip(0, "c", names)}, by_name("amplifier"));
+    CHECK(text.find("PIN11 and 42 more)") != std::string::npos);
+}
+
+} // namespace find_test

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: MIT
+// The holder in the life of a player: commands, beats, what it keeps of the player, and its own loss.
+#include "amplifier/holder.hpp"
+
+#include <atomic>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <doctest/doctest.h>
+
+#include <tactor/error.hpp>
+
+#include "fake_line.hpp"
+
+namespace holder_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+bool never()
+{
+    return false;
+}
+
+std::unique_ptr<gpio::holder_link> start(fake_line& line)
+{
+    return gpio::start_holder(line.held(), never);
+}
+
+std::string next_of(const fake_line& line)
+{
+    const auto s = line.next();
+    return s ? (s->on ? "on" : "off") : "nothing";
+}
+
+} // namespace
+
+TEST_CASE("the line follows the commands and ends off, and the holder ends with the link")
+{
+    fake_line line;
+    auto h = start(line);
+    const int holder = open_pidfd(h->pid());
+    CHECK(!line.next(0).has_value());
+    CHECK(h->set(true));
+    CHECK(next_of(line) == "on");
+    CHECK(h->set(false));
+    CHECK(next_of(line) == "off");
+    CHECK(h->set(true));
+    CHECK(next_of(line) == "on");
+    h.reset();
+    CHECK(next_of(line) == "off");
+    CHECK(ends(holder));
+    ::close(holder);
+}
+
+TEST_CASE("a line that is off needs no beats, one that is on does")
+{
+    fake_line line;
+    const auto h = start(line);
+    CHECK(!line.next(2 * gpio::silence_ms).has_value());
+    CHECK(h->beat());
+    CHECK(h->set(true));
+    CHECK(next_of(line) == "on");
+    std::int64_t last = now_ns();
+    for (int i = 0; i < 10; ++i) {
+        CHECK(h->beat());
+        last = now_ns();
+        CHECK(!line.next(50).has_value());
+    }
+    const auto s = line.next();
+    REQUIRE(s.has_value());
+    CHECK(!s->on);
+    CHECK((s->time_ns - last) / 1'000'000 >= gpio::silence_ms - 1);
+    CHECK((s->time_ns - last) / 1'000'000 < promised_ms(h->pid()));
+    CHECK(!h->beat());
+    CHECK(!h->beat());
+    CHECK(h->set(true));
+    CHECK(next_of(line) == "on");
+    CHECK(h->beat());
+}
+
+TEST_CASE("a line that cannot be switched is reported")
+{
+    fake_line line;
+    line.break_it();
+    const auto h = start(line);
+    CHECK(!h->set(true));
+    CHECK(h->set(false));
+    CHECK(next_of(line) == "off");
+}
+
+TEST_CASE("an off that is refused is answered as such, and at its end the holder tries again by itself")
+{
+    fake_line line;
+    line.refuse_off(4);
+    auto h = start(line);
+    CHECK(h->set(true));
+    CHECK(next_of(line) == "on");
+    CHECK(!h->set(false));
+    CHECK(!h->set(false));
+    const int holder = open_pidfd(h->pid());
+    h.reset();
+    CHECK(next_of(line) == "off");
+    CHECK(ends(holder));
+    ::close(holder);
+}
+
+TEST_CASE("the holder keeps nothing of the player but the line")
+{
+    std::ofstream other("/dev/null");
+    const int high = ::fcntl(STDIN_FILENO, F_DUPFD, 700);
+    ::mlockall(MCL_CURRENT);
+    fake_line line;
+    const auto h = start(line);
+    ::munlockall();
+    ::close(high);
+
+    const std::filesystem::path proc = "/proc/" + std::to_string(h->pid());
+    std::size_t open = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(proc / "fd")) {
+        CAPTURE(std::filesystem::read_symlink(entry.path()).string());
+        ++open;
+    }
+    CHECK(open == 3); // the line, the socket, the pidfd
+    CHECK(std::filesystem::read_symlink(proc / "cwd") == "/");
+    CHECK(status_of(h->pid(), "Name") == "tactor-amp");
+    CHECK(status_of(h->pid(), "VmLck") == "0 kB");
+    CHECK(::getsid(h->pid()) == h->pid());
+    CHECK(status_of(h->pid(), "PPid") != std::to_string(::getpid()));
+}
+
+TEST_CASE("two holders do not keep each other alive")
+{
+    fake_line first;
+    fake_line second;
+    auto a = start(first);
+    auto b = start(second);
+    CHECK(a->set(true));
+    CHECK(b->set(true));
+    CHECK(next_of(first) == "on");
+    CHECK(next_of(second) == "on");
+    a.reset();
+    CHECK(next_of(first) == "off");
+    CHECK(b->set(true));
+    CHECK(next_of(second) == "on");
+    b.reset();
+    CHECK(next_of(second) == "off");
+}
+
+TEST_CASE("a holder that was killed is noticed by beat and set, and the player switches off itself")
+{
+    for (const bool by_beat : {true, false}) {
+        fake_line line;
+        int rescues = 0;
+        const auto h = gpio::start_holder(line.held(), [&] { return ++rescues > 0; });
+        CHECK(h->set(true));
+        const int holder = open_pidfd(h->pid());
+        ::kill(h->pid(), SIGKILL);
+        CHECK(ends(holder));
+        ::close(holder);
+        CHECK(!(by_beat ? h->beat() : h->set(true)));
+        CHECK(rescues == 1);
+        CHECK(h->set(false)); // it is off already
+        CHECK(!h->set(true));
+        CHECK(!h->beat());
+        CHECK(rescues == 1);
+    }
+}
+
+TEST_CASE("a rescue that failed is tried again when the line is to go off")
+{
+    fake_line line;
+    int rescues = 0;
+    const auto h = gpio::start_holder(line.held(), [&] { return ++rescues == 3; });
+    const int holder = open_pidfd(h->pid());
+    ::kill(h->pid(), SIGKILL);
+    CHECK(ends(holder));
+    ::close(holder);
+    CHECK(!h->beat());
+    CHECK(!h->set(false));
+    CHECK(h->set(false));
+    CHECK(rescues == 3);
+}
+
+TEST_CASE("a holder that hangs loses the line to the player")
+{
+    fake_line line;
+    int rescues = 0;
+    const auto h = gpio::start_holder(line.held(), [&] { return ++rescues > 0; });
+    const int holder = open_pidfd(h->pid());
+    CHECK(h->set(true));
+    ::kill(h->pid(), SIGSTOP);
+    CHECK(h->set(false));
+    CHECK(rescues == 1);
+    CHECK(ends(holder));
+    ::close(holder);
+}
+
+TEST_CASE("a holder that does not answer beats is given up")
+{
+    fake_line line;
+    int rescues = 0;
+    const auto h = gpio::start_holder(line.held(), [&] { return ++rescues > 0; });
+    ::kill(h->pid(), SIGSTOP);
+    int beats = 0;
+    while (h->beat())
+        REQUIRE(++beats <= 10);
+    CHECK(beats == 10);
+    CHECK(rescues == 1);
+}
+
+TEST_CASE("a player with busy threads can start one")
+{
+    std::atomic<bool> stop = false;
+    std::vector<std::thread> busy;
+    for (int i = 0; i < 3; ++i)
+        busy.emplace_back([&] {
+            while (!stop)
+                std::vector<char>(1000, 'x').shrink_to_fit();
+        });
+    for (int i = 0; i < 30; ++i) {
+        fake_line line;
+        auto h = start(line);
+        CHECK(h->set(true));
+        h.reset();
+        CHECK(next_of(line) == "on");
+        CHECK(next_of(line) == "off");
+    }
+    stop = true;
+    for (std::thread& t : busy)
+        t.join();
+}
+
+TEST_CASE("without descriptors there is an error instead of a holder")
+{
+    fake_line line;
+    const pid_t child = ::fork();
+    if (child == 0) {
+        const rlimit none{0, 0};
+        ::setrlimit(RLIMIT_NOFILE, &none);
+        try {
+            start(line);
+        } catch (const error& e) {
+            ::_exit(e.kind() == error_kind::not_available ? 7 : 1);
+        }
+        ::_exit(0);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    CHECK(WEXITSTATUS(status) == 7);
+}
+
+} // namespace holder_test

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: MIT
+"""What tactor experiment writes is BIDS, as bids-validator has it: whole, broken off, resumed, with void trials, and with
+what is made of it. Usage: test_bids.py TOOL SOURCE_ROOT VALIDATOR"""
+import json
+import pathlib
+import subprocess
+import sys
+
+VALIDATOR = pathlib.Path(sys.argv.pop(3))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
+from experiments import ExperimentTest  # noqa: E402
+from harness import main  # noqa: E402
+
+# One author is enough for an example.
+HARMLESS = {"TOO_FEW_AUTHORS"}
+
+
+class Folders(ExperimentTest):
+    def issues(self):
+        """What the validator says of the study: its errors and warnings by name, and its summary."""
+        said = subprocess.run(["node", VALIDATOR, "--json", self.dir / "study"], capture_output=True, text=True, check=False)
+        told = json.loads(said.stdout)
+        errors = {i["key"]: [f["evidence"] for f in i["files"]] for i in told["issues"]["errors"]}
+        self.assertEqual(said.returncode != 0, bool(errors), said.stderr)
+        return errors, {i["key"] for i in told["issues"]["warnings"]}, told["summary"]
+
+    def valid(self, subjects, warned=()):
+        errors, warnings, summary = self.issues()
+        self.assertEqual(errors, {})
+        self.assertEqual(warnings - HARMLESS, set(warned))
+        self.assertEqual(summary["subjects"], subjects)
+        self.assertEqual(summary["dataTypes"], ["beh"])
+        return summary
+
+    def test_two_participants_of_the_paper_s_experiment(self):
+        for code in ("01", "02"):
+            self.simulate(code, definition="park2016")
+        told = self.valid(["01", "02"])
+        self.assertEqual(sorted(told["tasks"]), ["similarity", "similarity-rating", "uniformity", "uniformity-rating"])
+
+    def test_void_trials_practice_and_what_is_made_of_it(self):
+        for code in ("A1", "b2"):
+            self.simulate(code, spec="seed=2,void=0.3")
+        rows = [r for code in ("A1", "b2") for task in ("whichone", "howgood", "what") for r in self.rows(code, task)]
+        self.assertIn("true", {r["void"] for r in rows})
+        self.ok("report", "study", "-o", "study/derivatives/tactor/methods.md")
+        self.ok("analyze", "study", "-o", "study/derivatives/tactor/study.svg")
+        self.valid(["A1", "b2"])
+
+    def test_a_session_that_was_broken_off_and_goes_on(self):
+        self.simulate("01")
+        self.simulate("02")
+        beh = self.dir / "study/sub-02/beh"
+        table = beh / "sub-02_task-howgood_beh.tsv"
+        scans = self.dir / "study/sub-02/sub-02_scans.tsv"
+        order = [line.split("\t")[0] for line in scans.read_text().splitlines()[1:]]
+        at = order.index(f"beh/{table.name}")
+        for name in order[at + 1:]:
+            (self.dir / "study/sub-02" / name).unlink()
+        scans.write_text("".join(scans.read_text().splitlines(True)[:at + 2]))
+        table.write_text("".join(table.read_text().splitlines(True)[:3]))
+        self.valid(["01", "02"], ["INCONSISTENT_SUBJECTS"])
+        self.simulate("02", "--resume")
+        self.assertEqual(len(self.rows("02", "howgood")), 4)
+        self.valid(["01", "02"])
+
+    def test_columns_that_somebody_fills_in(self):
+        self.simulate("01")
+        path = self.dir / "study/participants.tsv"
+        path.write_text(path.read_text().replace("sub-01\tn/a\tn/a\tn/a", "sub-01\t31\tF\tR"))
+        self.valid(["01"])
+
+    def test_the_validator_finds_what_is_wrong(self):
+        self.simulate("01")
+        good = self.dir / "study/sub-01/beh/sub-01_task-what_beh.tsv"
+        bad = good.with_name("sub-01_what_beh.tsv")
+        good.rename(bad)
+        self.assertIn("NOT_INCLUDED", self.issues()[0])
+        bad.rename(good)
+        self.valid(["01"])
+        text = good.read_text()
+        good.write_text(text.replace("\t", "\t\t", 1))
+        self.assertNotEqual(self.issues()[0], {})
+        good.write_text(text)
+        (self.dir / "study/dataset_description.json").unlink()
+        self.assertNotEqual(self.issues()[0], {})
+
+
+if __name__ == "__main__":
+    main()

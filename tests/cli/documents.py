@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: MIT
+"""What documents show as code: commands, names of commands, and files, in the order of the text."""
+import dataclasses
+import re
+
+PROGRAMS = r"(?:\S*/)?(?:tactor|quickstart|run)|sudo|meson|man|c\+\+|cp|dpkg-\w+|grep|ulimit|kill|python3"
+
+
+@dataclasses.dataclass
+class Block:
+    kind: str  # command, name (of a command of the tool), or what a block is: toml, csv, c++, boot, formula
+    text: str
+    line: int
+
+
+def kind_of(text):
+    """What a block of code is; whatever it is not known to be is commands."""
+    for kind, pattern in (("c++", r"^#include"), ("toml", r"^\[+\w+\]+$"), ("csv", r"^t_s,"), ("boot", r"^dtoverlay="),
+                          ("formula", r"^(?:[A-Za-z_]\w*(?:\(t\))? = |polarity \* )")):
+        if re.search(pattern, text, re.M):
+            return kind
+    return "command"
+
+
+def commands_in(text, line):
+    """The commands of a block: a backslash goes on, two spaces outside quotes begin what a command does."""
+    joined, number = "", line
+    for offset, part in enumerate(text.split("\n")):
+        number = number if joined else line + offset
+        joined += part.strip() if joined else part.rstrip()
+        if joined.endswith("\\"):
+            joined = joined[:-1]
+            continue
+        if joined and not joined.startswith((" ", "#")):  # what is indented goes on with what a command does
+            # Two quotes or none before the gap.
+            command = re.match(r"""((?:[^"' ]|"[^"]*"|'[^']*'| (?! ))+)""", joined)[1]
+            yield Block("command", command, number)
+        joined = ""
+
+
+def inline(code, line):
+    """Code within a sentence: with arguments a command, without them the name of one."""
+    if not re.match(rf"(?:{PROGRAMS}) \S", code):
+        return []
+    name = re.fullmatch(r"tactor [\w-]+", code)
+    return [Block("name" if name else "command", code, line)]
+
+
+def of_block(text, line):
+    kind = kind_of(text)
+    return commands_in(text, line) if kind == "command" else [Block(kind, text, line)]
+
+
+def code_of_markdown(text):
+    lines = text.split("\n")
+    at = 0
+    while at < len(lines):
+        if lines[at].startswith("    ") and (at == 0 or not lines[at - 1].strip()):
+            end = at
+            while end < len(lines) and (lines[end].startswith("    ") or not lines[end].strip()):
+                end += 1
+            yield from of_block("\n".join(part[4:] for part in lines[at:end]).rstrip("\n") + "\n", at + 1)
+            at = end
+            continue
+        end = at + 1
+        while lines[at].strip() and end < len(lines) and lines[end].strip():
+            end += 1
+        paragraph = "\n".join(lines[at:end])
+        for code in re.finditer(r"`([^`]+)`", paragraph):  # which may go over the end of a line
+            yield from inline(" ".join(code[1].split()), at + 1 + paragraph.count("\n", 0, code.start()))
+        at = end
+
+
+def plain(text):
+    """Escapes of roff as the characters that they print."""
+    for escape, character in (("\\(dq", '"'), ("\\(aq", "'"), ("\\-", "-"), ("\\&", ""), ("\\e", "\\")):
+        text = text.replace(escape, character)
+    return text
+
+
+def code_of_man(text, sentences=True):
+    """`sentences`: with what stands in them, too."""
+    lines = text.split("\n")
+    at = 0
+    while at < len(lines):
+        line = lines[at]
+        if line.startswith(".Bd -literal"):
+            end = lines.index(".Ed", at)
+            block = plain("\n".join(lines[at + 1:end]) + "\n")
+            yield from of_block(block, at + 2)
+            at = end
+        elif line.startswith(".Dl "):
+            yield from of_block(plain(line[4:]), at + 1)
+        elif line.startswith(".Ic ") and sentences:
+            yield from inline(plain(line[4:]), at + 1)
+        at += 1
+
+
+def code_of_script(text):
+    """Commands of the tool in comments: indented, a line each."""
+    for number, line in enumerate(text.split("\n"), 1):
+        if command := re.match(r"# {2,}(tactor .*)", line):
+            yield Block("command", command[1], number)

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: MIT
+"""What the tests of tactor experiment share: a small definition, and reading what a session wrote."""
+import json
+import pathlib
+
+from harness import ToolTest
+
+COLUMNS = ("onset duration trial attempt motion method_1 method_2 response response_time rating void xruns stream "
+           "frame_1 frame_2 plan_1 plan_2").split()
+
+SMALL = """[experiment]
+name = "small"
+title = "A small one"
+authors = ["A. Author"]
+gap_s = 0.25
+[[motion]]
+name = "to the right"
+path = "M0 20H40"
+duration = 0.7
+[[motion]]
+name = "down"
+path = "M20 0V40"
+duration = 0.7
+[[method]]
+name = "brush"
+algorithm = "tactile-brush"
+[[method]]
+name = "park"
+algorithm = "park2016"
+[[run]]
+name = "which-one"
+task = "choose"
+attribute = "similarity"
+animation = true
+trials = 4
+practice = 1
+break_s = 10
+[[run]]
+name = "how good"
+task = "rate"
+attribute = "similarity"
+trials = 4
+scale = 7
+[[run]]
+name = "what"
+task = "identify"
+trials = 3
+methods = ["park"]
+"""
+
+
+class ExperimentTest(ToolTest):
+    def small(self, text=SMALL):
+        self.write("small.toml", text)
+        return "small.toml"
+
+    def simulate(self, code="01", *more, definition=None, folder="study", spec="seed=1,sigma=1", run=None):
+        return (run or self.ok)("experiment", definition or self.small(), "--participant", code, "-o", folder,
+                                "--simulate", spec, *more)
+
+    def rows(self, code, task, folder="study"):
+        return read_table(self.dir / folder / f"sub-{code}/beh/sub-{code}_task-{task}_beh.tsv")
+
+    def session(self, code="01", folder="study"):
+        return json.loads((self.dir / folder / f"sourcedata/sub-{code}/session.json").read_text())
+
+
+def read_table(path):
+    text = pathlib.Path(path).read_text(encoding="utf-8")
+    assert text.endswith("\n"), text[-80:]
+    head, *lines = (line.split("\t") for line in text[:-1].split("\n"))
+    assert all(len(line) == len(head) for line in lines), path
+    return [dict(zip(head, line)) for line in lines]
+
+
+def contents(folder):
+    """Every file below a folder, hidden ones too: its name and bytes."""
+    return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(pathlib.Path(folder).rglob("*")) if p.is_file()}

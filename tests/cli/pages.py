@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: MIT
+"""A session of tactor experiment whose participant sits before a page."""
+import json
+import os
+import re
+import select
+import subprocess
+
+from harness import PATIENCE_S, TOOL
+from websocket import TEXT, Peer
+
+
+class Session:
+    """The tool with --display page; what is written to `keys` is typed by the experimenter."""
+
+    def __init__(self, test, args):
+        self.test = test
+        self.process = subprocess.Popen([TOOL, *map(str, args)], cwd=test.dir, env=test.env, stdin=subprocess.PIPE,
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, bufsize=0)
+        test.addCleanup(self.kill)
+        self.said = ""
+        self.address = self.told(r"page is at http://([^/]+)/\n")[1]
+
+    def told(self, pattern):
+        """Once standard error has said so."""
+        while not (found := re.search(pattern, self.said)):
+            if not select.select([self.process.stderr], [], [], PATIENCE_S)[0]:
+                raise AssertionError(self.said)
+            # Not by the stream, which would keep the lines after this one where select() does not see them.
+            more = os.read(self.process.stderr.fileno(), 4096)
+            assert more, self.said
+            self.said += more.decode()
+        return found
+
+    def key(self, key):
+        self.process.stdin.write(key + "\n")
+
+    def end(self):
+        """Its exit status."""
+        self.shown, more = self.process.communicate(timeout=PATIENCE_S)
+        self.said += more
+        return self.process.returncode
+
+    def participant(self):
+        return Participant(self)
+
+    def kill(self):
+        if self.process.poll() is None:
+            self.process.kill()
+        for stream in (self.process.stdin, self.process.stdout, self.process.stderr):
+            stream.close()
+        self.process.wait()
+
+
+class Participant(Peer):
+    """A page, as far as the wire is concerned."""
+
+    def __init__(self, session):
+        super().__init__(session.address)
+        session.test.addCleanup(self.socket.close)
+        self.seen = []
+        assert self.upgrade(Origin=f"http://{session.address}") == 101
+        self.say(hello=True)
+        self.facts = self.next()
+
+    def say(self, **message):
+        self.frame(TEXT, json.dumps(message).encode())
+
+    def next(self):
+        self.seen.append(json.loads(self.text()))
+        return self.seen[-1]
+
+    def until(self, screen, asked=True):
+        while (s := self.next())["screen"] != screen or bool(s["ask"]) != asked:
+            pass
+        return s
+
+    def answer(self, screen, choice):
+        s = self.until(screen)
+        self.say(ask=s["ask"], answer=choice)
+        return s
+
+    def begin(self, tactors=2):
+        """Up to the first run's first trial."""
+        self.answer("consent", 1)
+        for _ in range(tactors):
+            self.answer("walk", 1)
+        self.answer("introduce", 1)

@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: MIT
+"""A server of the tool, and clients that speak its protocol, for the tests."""
+import json
+import os
+import select
+import signal
+import socket
+import subprocess
+
+import jsonschema
+
+from harness import PATIENCE_S, ROOT, TOOL, ToolTest
+
+# Whatever a server says is held against it.
+MESSAGE = jsonschema.Draft202012Validator(
+    json.loads((ROOT / "src/cli/schemas/tactor-protocol-1.schema.json").read_text(encoding="utf-8")))
+
+LONG = {"path": "M 0 0 L 40 40", "options": {"algorithm": "continuous", "duration": 300}}
+SHORT = {"path": "M 0 0 L 40 40", "options": {"algorithm": "continuous", "duration": 0.05}}
+
+
+class Client:
+    """One connection. Replies and notifications are kept until somebody asks for them."""
+
+    def __init__(self, address):
+        family = socket.AF_UNIX if isinstance(address, str) else socket.AF_INET
+        self.socket = socket.socket(family, socket.SOCK_STREAM)
+        self.socket.settimeout(PATIENCE_S)
+        self.socket.connect(address)
+        self.buffer = b""
+        self.told = []
+        self.last = 0
+
+    def send(self, message):
+        self.raw(json.dumps(message).encode() + b"\n")
+
+    def raw(self, data):
+        self.socket.sendall(data)
+
+    def next(self):
+        """The next message; None at the end."""
+        while b"\n" not in self.buffer:
+            try:
+                more = self.socket.recv(65536)
+            except ConnectionResetError:
+                return None
+            if not more:
+                return None
+            self.buffer += more
+        line, _, self.buffer = self.buffer.partition(b"\n")
+        message = json.loads(line)
+        MESSAGE.validate(message)
+        return message
+
+    def reply(self):
+        """The next that is no notification."""
+        while True:
+            m = self.next()
+            if m is None or isinstance(m, list) or "method" not in m:
+                return m
+            self.told.append(m)
+
+    def call(self, method, **params):
+        self.last += 1
+        self.send({"jsonrpc": "2.0", "id": self.last, "method": method, "params": params})
+        r = self.reply()
+        assert r is not None and r["id"] == self.last, r
+        return r
+
+    def ok(self, method, **params):
+        r = self.call(method, **params)
+        assert "result" in r, r
+        return r["result"]
+
+    def error(self, method, **params):
+        r = self.call(method, **params)
+        assert "error" in r, r
+        return r["error"]
+
+    def notification(self, matches):
+        """The first that matches, of those that came and those to come."""
+        for i, m in enumerate(self.told):
+            if matches(m):
+                return self.told.pop(i)
+        while True:
+            m = self.next()
+            assert m is not None, "the connection ended"
+            if "method" in m and matches(m):
+                return m
+            self.told.append(m)
+
+    def stroke(self, number, *states):
+        return self.notification(lambda m: m["method"] == "stroke" and m["params"]["stroke"] == number
+                                 and m["params"]["state"] in states)["params"]
+
+    def end_of(self, number):
+        return self.stroke(number, "finished", "cancelled", "interrupted")
+
+    def close(self):
+        self.socket.close()
+
+
+class Server:
+    """`tactor serve`, listening once this is made; `where` is what it said of that."""
+
+    def __init__(self, test, *args, env=None, pass_fds=(), device=("-D", "null"), config=""):
+        self.test = test
+        file = test.write("serve.toml", config)
+        socket_option = () if "--socket" in args or env else ("--socket", str(test.dir / "s.sock"))
+        self.process = subprocess.Popen(
+            [TOOL, "serve", *socket_option, *device, "--config", file, "--format", "json", *map(str, args)],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=test.dir, env=test.env | (env or {}),
+            pass_fds=pass_fds)
+        test.addCleanup(self.kill)
+        line = self.process.stdout.readline()
+        self.where = json.loads(line) if line else None
+        if not line:
+            self.process.wait(PATIENCE_S)
+            self.errors = self.process.stderr.read()
+
+    def client(self, tcp=False):
+        address = self.where["socket"]
+        if tcp:
+            host, _, port = self.where["tcp"].rpartition(":")
+            address = (host, int(port))
+        c = Client(address)
+        self.test.addCleanup(c.close)
+        return c
+
+    def terminate(self, with_signal=signal.SIGTERM):
+        """Its exit status and what else it said."""
+        self.process.send_signal(with_signal)
+        out, err = self.process.communicate(timeout=PATIENCE_S)
+        return self.process.returncode, out, err
+
+    def kill(self):
+        if self.process.poll() is None:
+            self.process.kill()
+            self.process.wait()
+        for stream in (self.process.stdout, self.process.stderr):
+            stream.close()
+
+
+def readable(fd):
+    return bool(select.select([fd], [], [], PATIENCE_S)[0])
+
+
+def listening_fds(names):
+    """Environment of a process that inherits sockets; LISTEN_PID must be its own, so a shell sets it."""
+    return {"LISTEN_FDS": str(len(names)), "LISTEN_FDNAMES": ":".join(names), "PATH": os.environ["PATH"]}
+
+
+class ServeTest(ToolTest):
+    """Tests that start servers and look at what these refuse."""
+
+    def serve(self, *args, **more):
+        s = Server(self, *args, **more)
+        if s.where is None:
+            self.fail(s.errors)
+        return s
+
+    def refuses_to_start(self, status, *args, says, **more):
+        s = Server(self, *args, **more)
+        self.assertIsNone(s.where)
+        self.assertEqual(s.process.returncode, status, s.errors)
+        self.assertIn(says, s.errors)
+
+    def check_error(self, error, code, what=None):
+        self.assertEqual(error["code"], code, error)
+        self.assertEqual(set(error["data"]), {"kind", "what", "why", "hint"})
+        self.assertNotIn("--", json.dumps(error))
+        if what is not None:
+            self.assertEqual(error["data"]["what"], what, error)

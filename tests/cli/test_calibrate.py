@@ -1,0 +1,414 @@
+# SPDX-License-Identifier: MIT
+"""tactor calibrate: simulated sessions, a person's at a terminal and through a pipe, and what is refused."""
+import csv
+import json
+import os
+import pty
+import re
+import resource
+import select
+import signal
+import struct
+import subprocess
+import tomllib
+
+from harness import GRID, TOOL, ToolTest, main
+from pages import Session
+
+OBSERVER = "threshold=-45,spread=2,lapse=0.02"
+SHORT = ("--reversals", 4, "--discard", 2)
+
+
+class CalibrateTest(ToolTest):
+    def simulated(self, name, *args, spec=OBSERVER):
+        return self.ok("calibrate", "--participant", "P07", "-o", name, "--simulate", spec, *args)
+
+    def rows(self, name):
+        with (self.dir / name).open(newline="") as file:
+            return list(csv.DictReader(file, delimiter="\t"))
+
+    def toml(self, name):
+        return tomllib.loads((self.dir / name).read_text())
+
+
+class Simulated(CalibrateTest):
+    def test_the_result_is_an_array_for_every_command(self):
+        said = self.simulated("me.toml", "--tactors", "0-8", "--carrier", 200)
+        self.assertIn("SIMULATED", said.stdout)
+        plan = self.plan("park2016-3", "--array", "me.toml", "--sl", 7)
+        made = self.toml("me.toml")
+        for got, tactor, entry in zip(made["calibration"]["tactor"], made["tactor"], plan["array"]["tactors"]):
+            self.assertEqual(got["threshold_dbfs"], tactor["threshold_dbfs"])
+            self.assertEqual(got["threshold_dbfs"], entry["threshold_dbfs"])
+            self.assertLess(abs(got["threshold_dbfs"] + 44.5), 4)
+        for command in (("render", "park2016-3", "-o", "x.wav"), ("play", "park2016-3", "-D", "null"), ("check",)):
+            self.ok(*command, "--array", "me.toml", *([] if command[0] == "check" else ["--sl", 7]))
+        told = made["calibration"]
+        self.assertEqual({k: told[k] for k in ("participant", "method", "rule", "carrier_hz", "interval_s", "feedback",
+                                               "masker", "simulated")},
+                         {"participant": "P07", "method": "staircase", "rule": "1up3down", "carrier_hz": 200,
+                          "interval_s": 0.5, "feedback": True, "masker": "none", "simulated": True})
+        self.assertRegex(told["date"], r"^\d{4}-\d\d-\d\d$")
+        self.assertIsInstance(told["seed"], int)
+
+    def test_a_second_carrier_adds_to_the_first(self):
+        self.simulated("low.toml", "--tactors", "0,1", "--carrier", 100, spec="threshold=-20,spread=1")
+        self.simulated("both.toml", "--tactors", "0,1", "--carrier", 250, "--array", "low.toml", spec="threshold=-41,spread=1")
+        low, both = self.toml("low.toml"), self.toml("both.toml")
+        for first, second, found in zip(low["tactor"], both["tactor"], both["calibration"]["tactor"]):
+            self.assertEqual(second["threshold_dbfs"], [[100, first["threshold_dbfs"]], [250, found["threshold_dbfs"]]])
+        self.ok("check", "--array", "both.toml")
+
+    def test_log_and_result_tell_the_same(self):
+        self.simulated("me.toml", "--tactors", "3,1", "--practice", 2)
+        rows, told = self.rows("me.tsv"), self.toml("me.toml")["calibration"]["tactor"]
+        self.assertEqual(list(rows[0]), "trial tactor level_dbfs interval response correct reversal practice "
+                                        "response_time_s onset_frame".split())
+        self.assertEqual([int(r["trial"]) for r in rows], list(range(1, len(rows) + 1)))
+        self.assertEqual([r["practice"] for r in rows[:3]], ["true", "true", "false"])
+        self.assertEqual([t["tactor"] for t in told], [3, 1])
+        for t in told:
+            own = [r for r in rows if r["tactor"] == str(t["tactor"]) and r["practice"] == "false"]
+            self.assertEqual(len(own), t["trials"])
+            self.assertEqual([float(r["level_dbfs"]) for r in own if r["reversal"] == "true"], t["reversals_dbfs"])
+            counted = t["reversals_dbfs"][-8:]
+            mean = sum(counted) / 8
+            self.assertAlmostEqual(t["threshold_dbfs"], mean, 9)
+            self.assertAlmostEqual(t["sd_db"], (sum((x - mean) ** 2 for x in counted) / 7) ** 0.5, 9)
+            checks = own[-10:]
+            self.assertEqual(sum(r["correct"] == "true" for r in checks), t["check_right"])
+            self.assertEqual({float(r["level_dbfs"]) for r in checks}, {round(mean + 6, 6)})
+        for r in rows:
+            self.assertEqual(r["correct"] == "true", r["interval"] == r["response"])
+
+    def test_the_same_seed_gives_the_same_bytes(self):
+        for name, seed in (("a", 1), ("b", 1), ("c", 2)):
+            self.simulated(f"{name}.toml", "--seed", seed, "--tactors", 0)
+        logs = {n: (self.dir / f"{n}.tsv").read_bytes() for n in "abc"}
+        files = {n: re.sub(r"date = .*", "", (self.dir / f"{n}.toml").read_text()) for n in "abc"}
+        self.assertEqual((logs["a"], files["a"]), (logs["b"], files["b"]))
+        self.assertNotEqual(logs["a"], logs["c"])
+
+    def test_a_session_cut_off_at_any_line_goes_on_to_the_same_files(self):
+        self.simulated("a.toml", *SHORT, "--tactors", "0,1")
+        log, made, began = ((self.dir / f"a.{e}").read_bytes() for e in ("tsv", "toml", "json"))
+        ends = [0, 5] + [i + 1 for i, c in enumerate(log) if c == 10] + [len(log) - 3]
+        for end in ends:
+            for name, data in (("b.tsv", log[:end]), ("b.json", began)):
+                self.write(name, data)
+            (self.dir / "b.toml").unlink(missing_ok=True)
+            self.simulated("b.toml", *SHORT, "--tactors", "0,1", "--resume")
+            self.assertEqual((self.dir / "b.tsv").read_bytes(), log, end)
+            self.assertEqual((self.dir / "b.toml").read_bytes(), made, end)
+        before = {f.name: f.stat().st_mtime_ns for f in self.dir.iterdir()}
+        self.assertIn("finished", self.simulated("b.toml", *SHORT, "--tactors", "0,1", "--resume").stdout)
+        self.assertEqual({f.name: f.stat().st_mtime_ns for f in self.dir.iterdir()}, before)
+
+    def test_a_disk_that_fills_loses_no_trial(self):
+        self.simulated("whole.toml", *SHORT, "--tactors", 0)
+        args = ("calibrate", "--participant", "P07", "-o", "me.toml", "--simulate", OBSERVER, *SHORT, "--tactors", 0)
+        whole = (self.dir / "whole.tsv").read_bytes()
+
+        def small():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (700, 700))
+        result = subprocess.run([TOOL, *map(str, args)], cwd=self.dir, env=self.env, preexec_fn=small,
+                                capture_output=True, text=True, timeout=60, check=False)
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn("me.tsv: File too large (what was answered before is kept", result.stderr)
+        self.assertTrue(whole.startswith((self.dir / "me.tsv").read_bytes()))
+        self.assertFalse((self.dir / "me.toml").exists())
+        self.ok(*args, "--resume")
+        self.assertEqual((self.dir / "me.tsv").read_bytes(), whole)
+
+    def test_who_feels_nothing_has_no_threshold_and_it_is_said(self):
+        said = self.simulated("me.toml", "--tactors", "0,1", spec="threshold=-45,500,spread=2")
+        self.assertIn("tactor 1 has no threshold (not felt)", said.stderr)
+        self.assertNotIn("tactor 0 has no", said.stderr)
+        entries = self.toml("me.toml")["calibration"]["tactor"]
+        self.assertEqual(["threshold_dbfs" in t for t in entries], [True, False])
+        self.refused(2, "plan", "park2016-1", "--array", "me.toml", "--sl", 7, says=["tactor"])
+
+    def test_a_level_that_does_not_fit_is_told_at_once_and_refused_later(self):
+        self.write("weak.toml", '[array]\npreset = "palm-3x3"\n' + "".join(
+            f"[[tactor]]\ntactor = {i}\nmax_dbfs = -10\n" for i in range(9)))
+        said = self.simulated("me.toml", "--array", "weak.toml", spec="threshold=-14,spread=0.5")
+        self.assertRegex(said.stderr, r"tactor 0: 7 dB above its threshold of -1\d\.\d\d dBFS are \d\.\d\d dB more")
+        threshold = self.toml("me.toml")["tactor"][0]["threshold_dbfs"]
+        told = self.refused(2, "render", "--path", "M 0 0 L 0.001 0", "--array", "me.toml", "--sl", 7, "-o", "x.wav",
+                            says=["tactor 0", f"threshold of {threshold:.4g} dBFS", "dB are missing", "max_dbfs"])
+        self.assertNotIn("full scale", told.stderr)
+
+    def test_what_the_array_file_says_is_kept(self):
+        self.write("desk.toml", GRID + '[limits]\nmax_drive_s = 2\n[defaults]\ncarrier = 180\n')
+        self.simulated("me.toml", "--array", "desk.toml")
+        made = self.toml("me.toml")
+        self.assertEqual(made["array"]["name"], "desk")
+        self.assertEqual((made["output"]["pcm"], made["limits"]["max_drive_s"]), ("null", 2))
+        self.assertEqual((made["tactor"][1]["gain_db"], made["tactor"][0]["actuator"]), (-3, "piezo"))
+        self.assertEqual(made["calibration"]["carrier_hz"], 180)
+        self.ok("check", "--array", "me.toml")
+
+    def test_adjustment(self):
+        self.simulated("me.toml", "--method", "adjustment", "--tactors", 4)
+        rows, told = self.rows("me.tsv"), self.toml("me.toml")["calibration"]
+        self.assertEqual([(r["response"], r["interval"], r["correct"]) for r in rows], [("set", "n/a", "n/a")] * 6)
+        self.assertEqual(told["method"], "adjustment")
+        mean = sum(float(r["level_dbfs"]) for r in rows) / 6
+        self.assertAlmostEqual(told["tactor"][0]["threshold_dbfs"], mean, 9)
+
+
+class Person(CalibrateTest):
+    ARGS = ("calibrate", "--participant", "P1", "-o", "me.toml", "-D", "null", "--tactors", 1, "--interval", 0.05,
+            "--start-dbfs", -20)
+
+    def test_answers_from_lines_and_on_where_it_was_left(self):
+        result = self.refused(1, *self.ARGS, stdin="1\nx\n2\n", says=["trial 3: no answer", "--resume"])
+        self.assertIn('"x" is neither 1 nor 2', result.stdout)
+        self.assertEqual([r["response"] for r in self.rows("me.tsv")], ["1", "2"])
+        result = self.refused(1, *self.ARGS, "--resume", stdin="2\n", says=["trial 4: no answer"])
+        self.assertIn("goes on at trial 3", result.stdout)
+        rows = self.rows("me.tsv")
+        self.assertEqual([r["trial"] for r in rows], ["1", "2", "3"])
+        for r in rows:
+            self.assertGreaterEqual(float(r["response_time_s"]), 0)
+            self.assertGreater(int(r["onset_frame"]), 23999)
+            self.assertEqual(r["correct"] == "true", r["interval"] == r["response"])
+        self.refused(2, *self.ARGS, stdin="1\n", says=["me.tsv", "--resume goes on"])
+
+    def test_nothing_tells_which_interval_it_is(self):
+        result = self.run_tool(*self.ARGS, "--feedback", "off", stdin="1\n" * 6)
+        told = re.findall(r"trial \d+:(.*)which", result.stdout)
+        self.assertEqual(set(told), {" interval 1 interval 2 "})
+        self.assertEqual(len({r["interval"] for r in self.rows("me.tsv")}), 2)
+        self.assertNotRegex(result.stdout, "right|wrong|dBFS")
+
+    def noise_of(self, name):
+        """Power of each 10 ms of what the second device got (S32, stereo)."""
+        values = [v for v, in struct.iter_unpack("<i", (self.dir / name).read_bytes())]
+        self.assertEqual(values[::2], values[1::2])
+        left = [v / 2 ** 31 for v in values[::2]]
+        return [sum(v * v for v in left[i:i + 480]) / 480 for i in range(0, len(left) - 479, 480)]
+
+    def test_noise_covers_both_intervals_of_each_trial(self):
+        args = (*self.ARGS, "--masker", "raw:noise.raw", "--masker-dbfs", -20)
+        self.refused(1, *args, stdin="1\n2\n", says=["trial 3: no answer"])
+        power = self.noise_of("noise.raw")
+        full = [10 ** -2 * 0.7 < p < 10 ** -2 * 1.4 for p in power]
+        runs = [len(r) for r in re.findall("1+", "".join(str(int(f)) for f in full))]
+        # Three trials: half a second before interval 1, two intervals of 50 ms, half a second between.
+        self.assertGreaterEqual(sum(runs), 3 * 109)
+        self.assertLessEqual(len(runs), 3)
+        self.assertGreaterEqual(min(runs), 109)
+        self.assertEqual(power[0], 0)
+        self.assertEqual(json.loads((self.dir / "me.json").read_text())["masker"],
+                         "white noise, -20 dBFS, raw:noise.raw")
+        self.refused(2, *self.ARGS, "--resume", says=["masker", "white noise", '"none"'])
+        for args, status, says in ((("--masker", "hw:CARD=Nowhere"), 3, "hw:CARD=Nowhere"),
+                                   (("--masker", ""), 2, "--masker")):
+            self.refused(status, "calibrate", "--participant", "P2", "-o", f"n{status}.toml", "-D", "null", *args, says=[says])
+
+    def test_the_noise_stands_in_the_result(self):
+        self.run_tool(*self.ARGS, "--method", "adjustment", "--masker", "null", "--masker-noise", "pink", stdin="a\n" * 6)
+        self.assertEqual(self.toml("me.toml")["calibration"]["masker"], "pink noise, -30 dBFS, null")
+        self.ok("check", "--array", "me.toml")
+
+    def test_levels_do_not_come_from_thresholds_that_the_array_has(self):
+        self.write("a.toml", '[array]\nname = "a"\ngrid = { rows = 1, columns = 2, pitch_mm = 20.0 }\n[[tactor]]\ntactor = 1\n'
+                             "max_dbfs = -15\nthreshold_dbfs = [[100, -8], [250, -6]]\n")
+        self.refused(1, *self.ARGS, "--array", "a.toml", stdin="1\n", says=["trial 2: no answer"])
+        self.assertEqual([float(r["level_dbfs"]) for r in self.rows("me.tsv")], [-20])
+
+    def test_feedback(self):
+        result = self.run_tool(*self.ARGS, stdin="1\n" * 4)
+        told = re.findall(r"^(right|wrong)$", result.stdout, re.M)
+        self.assertEqual(told, ["right" if r["correct"] == "true" else "wrong" for r in self.rows("me.tsv")])
+
+    def test_a_whole_adjustment_by_lines(self):
+        result = self.run_tool(*self.ARGS, "--method", "adjustment", stdin="--<a\n+>a\n--a\n++a\n-a\n+\n<a\n")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual([float(r["level_dbfs"]) for r in self.rows("me.tsv")],
+                         [-9.5, -22, -11, -22, -9, -22.5])
+        self.assertAlmostEqual(self.toml("me.toml")["tactor"][1]["threshold_dbfs"], -16, 9)
+
+    def test_keys_of_a_terminal_and_its_end_by_ctrl_c(self):
+        pid, fd = pty.fork()
+        if pid == 0:
+            os.chdir(self.dir)
+            os.execve(TOOL, [str(TOOL), *map(str, self.ARGS)], self.env)
+        seen = ""
+
+        def until(pattern):
+            nonlocal seen
+            while not re.search(pattern, seen):
+                if not select.select([fd], [], [], 60)[0]:
+                    raise AssertionError(f"no {pattern} in {seen!r}")
+                seen += os.read(fd, 4096).decode()
+            seen = seen[re.search(pattern, seen).end():]
+        until("Any key begins")
+        os.write(fd, b" ")
+        until("trial 1: interval 1")
+        os.write(fd, b"2")  # too early: does not count
+        until("which\\? ")
+        os.write(fd, b"1")
+        until("trial 2: interval 1 interval 2 which\\? ")
+        os.write(fd, b"2")
+        until("trial 3: interval 1")
+        os.write(fd, b"\x03")
+        try:
+            until("ended before trial 3")
+            while os.read(fd, 4096):
+                pass
+        except OSError:
+            pass  # the terminal is gone with the program
+        self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]), 130)
+        os.close(fd)
+        self.assertEqual([r["response"] for r in self.rows("me.tsv")], ["1", "2"])
+
+    def test_killed_at_any_moment_nothing_answered_is_lost(self):
+        with subprocess.Popen([TOOL, *map(str, self.ARGS)], cwd=self.dir, env=self.env, stdin=subprocess.PIPE,
+                              stdout=subprocess.PIPE, text=True) as tool:
+            tool.stdin.write("1\n1\n")
+            tool.stdin.flush()
+            for line in tool.stdout:
+                if line.startswith("trial 2"):
+                    break
+            tool.stdout.readline()
+            tool.send_signal(signal.SIGKILL)
+        self.assertEqual(len(self.rows("me.tsv")), 2)
+        self.refused(1, *self.ARGS, "--resume", says=["trial 3: no answer"])
+
+
+class Page(CalibrateTest):
+    """The participant before a page: tests/cli/test_experiment_page.py has what holds for every page."""
+
+    def start(self, *more):
+        s = Session(self, (*Person.ARGS, "--display", "page", *more))
+        self.page = s.participant()
+        return s
+
+    def until_text(self, pattern):
+        while not re.match(pattern, self.page.next().get("text", "")):
+            pass
+
+    def test_intervals_are_shown_and_answered_on_the_page(self):
+        s = self.start()
+        s.key("1")  # what is typed at the terminal is no answer
+        self.assertEqual(self.page.answer("introduce", 1)["choices"], ["Begin"])
+        for trial in (1, 2, 3):
+            for interval in (1, 2):
+                self.until_text(f"Interval {interval}$")
+            asked = self.page.next()
+            s.key("2")
+            self.assertEqual((asked["question"], asked["choices"]), ("Which one vibrated?", ["", ""]))
+            self.page.say(ask=asked["ask"], answer=1)
+            self.page.say(ask=asked["ask"], answer=2)  # each question has one
+            self.until_text("That was (right|wrong)")
+        s.process.send_signal(signal.SIGINT)
+        self.assertEqual(s.end(), 130)
+        self.assertEqual([r["response"] for r in self.rows("me.tsv")], ["1"] * 3)
+        self.assertIn("trial 1: interval 1 interval 2 which? 1", s.shown)
+
+    def test_a_level_is_set_on_the_page(self):
+        s = self.start("--method", "adjustment")
+        self.page.answer("introduce", 1)
+        for change in (1, 2, 3, 4):  # down by 2 and by half a dB, and up again
+            self.page.answer("question", change)
+        for _ in range(6):
+            self.page.answer("question", 5)
+        self.page.until("over", asked=False)
+        self.assertEqual(s.end(), 0, s.said)
+        levels = [float(r["level_dbfs"]) for r in self.rows("me.tsv")]
+        self.assertEqual(len(levels), 6)
+        self.assertAlmostEqual(self.toml("me.toml")["calibration"]["tactor"][0]["threshold_dbfs"], sum(levels) / 6, 9)
+
+    def test_options(self):
+        self.refused(2, *Person.ARGS, "--page", "0.0.0.0:0", says=["--page", "whoever is on the network"])
+        self.refused(2, *Person.ARGS, "--page", "0", "--display", "terminal", says=["--page", "the participant sees the terminal"])
+        self.refused(2, "calibrate", "--participant", "P07", "-o", "me.toml", "--simulate", OBSERVER, "--display", "page", says=["--display", "nobody looks"])
+
+
+class BadInput(CalibrateTest):
+    def bad(self, *args, says, status=2):
+        before = sorted(f.name for f in self.dir.iterdir())
+        self.refused(status, "calibrate", "--participant", "P07", "-o", "me.toml", "--simulate", OBSERVER, *args, says=says)
+        self.assertEqual(sorted(f.name for f in self.dir.iterdir()), before)
+
+    def test_each_is_said_before_a_trial(self):
+        self.write("limited.toml", '[array]\npreset = "palm-3x3"\n[[tactor]]\ntactor = 4\nmax_dbfs = -30\n')
+        for args, says in [
+                (("--tactors", "9"), ["no tactor 9", "0 to 8"]),
+                (("--tactors", "1,0-2"), ["tactor 1 is named twice"]),
+                (("--tactors", "5-3"), ["5-3", "3-5"]),
+                (("--tactors", "a"), ['"a"', "0,3-5"]),
+                (("--tactors", "99999999999"), ["99999999999"]),
+                (("--array", "limited.toml"), ["tactor 4", "-30 dBFS at most", "-20"]),
+                (("--start-dbfs", "3"), ["3 is out of range"]),
+                (("--steps", "4,,1"), ["--steps"]),
+                (("--steps", "-1"), ["--steps"]),
+                (("--reversals", "25"), ["2 to 24"]),
+                (("--reversals", "5", "--discard", "4"), ["5 reversals 4 are discarded"]),
+                (("--practice", "1.5"), ["not a whole number"]),
+                (("--interval", "0"), ["--interval"]),
+                (("--feedback", "yes"), ["on, off"]),
+                (("--rule", "2up1down"), ["1up3down"]),
+                (("--method", "limits"), ["staircase"]),
+                (("--method", "adjustment", "--rule", "1up2down"), ["--rule", "adjustment"]),
+                (("--masker-dbfs", "-20"), ["--masker-dbfs", "no device for the noise"]),
+                (("--masker", "null", "--masker-dbfs", "-3"), ["--masker-dbfs", "-3 dBFS", "full scale from -5 dBFS"]),
+                (("--masker", "null", "--masker-noise", "pink", "--masker-dbfs", "-12"), ["from -15 dBFS"]),
+                (("--masker", "null", "--masker-noise", "brown"), ["white, pink"]),
+                (("--log", "x.txt"), [".tsv"]),
+                (("--log", "nowhere/x.tsv"), ["nowhere/x.tsv"]),
+                (("--seed", "-1"), ["--seed"]),
+                (("--carrier", "nan"), ["--carrier"])]:
+            self.bad(*args, says=says, status=1 if "nowhere/x.tsv" in args else 2)
+        self.refused(2, "calibrate", "-o", "me.toml", says=["--participant"])
+        self.refused(2, "calibrate", "--participant", "P07", says=["--output"])
+        self.refused(2, "calibrate", "--participant", "P-7", "-o", "me.toml", says=["letters and digits"])
+        self.refused(2, "calibrate", "--participant", "P7", "-o", "me.txt", says=[".toml"])
+        self.refused(2, "calibrate", "--participant", "P7", "-o", "me.toml", says=["no device is configured"])
+        self.refused(2, "calibrate", "--participant", "P7", "-o", "none/me.toml", "-D", "null", says=["none"])
+        self.refused(1, "calibrate", "--participant", "P7", "-o", "/proc/me.toml", "-D", "null", says=["/proc/me.toml"])
+        self.refused(2, "calibrate", "--participant", "P7", "-o", "me.toml", "--simulate", "level=3", says=["--simulate"])
+
+    def test_what_is_there_is_not_overwritten(self):
+        self.write("me.toml", "mine")
+        self.bad(says=["me.toml: there is such a file already"])
+        self.assertEqual((self.dir / "me.toml").read_text(), "mine")
+        (self.dir / "me.toml").unlink()
+        self.write("me.tsv", "my\ttable\n")
+        self.bad(says=["me.tsv: it is no log of a calibration"])
+        self.bad("--resume", says=["me.tsv: it is no log of a calibration"])
+        self.assertEqual((self.dir / "me.tsv").read_text(), "my\ttable\n")
+
+    def test_a_session_goes_on_only_as_it_was_begun(self):
+        self.simulated("me.toml", "--tactors", 0)
+        (self.dir / "me.toml").unlink()
+        for args, says in [(("--tactors", 1), "tactors"), (("--carrier", 100), "carrier_hz 250.0, and 100.0"),
+                           (("--seed", 1), "seed"), (("--tactors", 0, "--array", "palm-2x4"), "array_sha256")]:
+            self.bad("--resume", *(args if "--tactors" in args else ("--tactors", 0, *args)), says=["me.json", says])
+        self.bad("--tactors", 0, says=["me.tsv: there is such a file already", "--resume"])
+
+    def test_two_sessions_on_one_log(self):
+        with subprocess.Popen([TOOL, *map(str, Person.ARGS)], cwd=self.dir, env=self.env, stdin=subprocess.PIPE,
+                              stdout=subprocess.PIPE, text=True) as first:
+            first.stdout.readline()  # what it asks: the log is open
+            for more in ((), ("--resume",)):
+                self.refused(2, *Person.ARGS, *more, says=["me.tsv: another session is writing it"])
+            first.send_signal(signal.SIGINT)
+            self.assertEqual(first.wait(60), 130)
+
+    def test_a_keypad_that_is_none(self):
+        self.refused(2, *Person.ARGS, "--keypad", "/dev/null", says=["/dev/null: it is no input device (as /dev/input/by-id"])
+        self.refused(3, *Person.ARGS, "--keypad", "/dev/input/nobody", says=["/dev/input/nobody: No such file"])
+        self.bad("--keypad", "/dev/input/event0", says=["--keypad: nobody is asked"])
+
+    def test_a_device_that_is_not_there_leaves_no_trace_in_the_way(self):
+        args = ("calibrate", "--participant", "P07", "-o", "me.toml", "--tactors", 0)
+        self.refused(3, *args, "-D", "hw:CARD=Nowhere", says=["hw:CARD=Nowhere"])
+        self.refused(1, *args, "-D", "null", says=["trial 1: no answer"])
+        self.assertEqual(json.loads((self.dir / "me.json").read_text())["participant"], "P07")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,262 @@
+# SPDX-License-Identifier: MIT
+"""Every command that README, man pages, examples and --help show runs as written, or stands below with the reason why not.
+
+What a document's text and earlier commands make is there for the later ones. hw:CARD=Tactor is a null device here.
+"""
+import collections
+import os
+import pathlib
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "study"))
+import studies
+
+from documents import Block, code_of_man, code_of_markdown, code_of_script
+from harness import ALSA_CONFIG, PATIENCE_S, ROOT, TOOL, ToolTest, main
+
+# The card that the documents speak of.
+CARD = """
+pcm.hw {
+    @args [ CARD DEV SUBDEV ]
+    @args.CARD { type string }
+    @args.DEV { type string default "0" }
+    @args.SUBDEV { type string default "0" }
+    type null
+}
+"""
+# What is run, by how it begins. What is neither here nor below fails.
+RUN = ("tactor ", "build/src/cli/tactor ", "man -l man/", "python3 -m jsonschema ")
+# Commands, by how they begin, that are not run here, and why.
+NOT_RUN = {
+    "sudo ": "needs root and changes the system",
+    "examples/quickstart": "installs packages and builds: needs root and the network",
+    "tests/run": "would run this test",
+    "meson install": "changes the system: the suite install does it elsewhere",
+    "meson compile -C build docs": "the suite docs does it",
+    "meson compile -C build": "the lane tests/lanes/deb builds with the service",
+    "meson setup build -Dservice=true": "the lane tests/lanes/deb builds with the service",
+    "c++ ": "the suite install compiles it against an installed library",
+    "cp -r examples/debian": "the lane tests/lanes/deb does it",
+    "dpkg-buildpackage": "the lane tests/lanes/deb does it",
+    "grep . /sys/module/pinctrl": "needs the kernel of a Raspberry Pi",
+    "tactor off --array palm.toml": "needs the GPIO line of an amplifier",
+    "tactor stop": "needs a server: the suite cli-remote runs it",
+    "tactor status": "needs a server: the suite cli-remote runs it",
+    "tactor play park2016-3 --socket": "needs a server: the suite cli-remote runs it",
+    "(echo 20 20; sleep": "the suite cli-remote does the same without sleeping",
+    "tactor serve": "goes on until it is ended: the suite cli-serve runs it",
+    "build/src/cli/tactor serve": "goes on until it is ended: the suite cli-serve runs it",
+    '{"': "is a line of the service's protocol: the suite cli-serve speaks it",
+    "oscsend": "needs a server: the suite cli-serve_osc runs it",
+    "echo '{": "needs a server: the suite cli-serve says the same",
+    "ulimit ": "says what step 4 of the page has changed",
+    "kill -9": "is part of a sentence: which process is not said",
+}
+# Commands that run with something else in place of what is not here: (pattern, replacement, why).
+SOMEBODY = [(r"^((?:build/src/cli/)?tactor calibrate .*)-D hw:CARD=Tactor", r"\1--simulate threshold=-45", "there is nobody to answer"),
+            (r"^((?:build/src/cli/)?tactor experiment (?!.*--check-noise).*)-D hw:CARD=Tactor", r"\1--simulate seed=1", "there is nobody to answer"),
+            (r" --page 4004$", "", "and nobody to look at a page")]
+INSTEAD = {
+    "README.md": SOMEBODY,
+    "man/tactor-calibrate.1": SOMEBODY,
+    "man/tactor-experiment.1": SOMEBODY,
+    "tactor calibrate --help": SOMEBODY,
+    "man/tactor-raspberry-pi.7": [
+        (r"^tactor (play|check)(?!.*--no-gpio)", r"tactor \1 --no-gpio", "the GPIO lines of a Raspberry Pi are left alone"),
+        (r" --require-realtime", "", "rights of step 4 are not asked for"),
+        (r"/tmp/", "", "the test's own folder"),
+    ],
+    "man/tactor-json.5": [(r"/usr/local/share/tactor/", str(TOOL.parent / "schemas") + "/", "schemas of the build")],
+}
+# Files that a document speaks of and that are in the sources.
+FILES = {
+    "man/tactor.1": {"palm.toml": "examples/arrays/palm-measured.toml", "curve.toml": "examples/strokes/curve.toml"},
+    "man/tactor.toml.5": {"arrays/palm.toml": "examples/arrays/palm-measured.toml"},
+}
+# What is felt where, for --walk: all is wired as it should be.
+ANSWERS = "".join(f"{k}\n" for k in range(16))
+
+
+class Documents(ToolTest):
+    counts = collections.Counter()
+
+    @classmethod
+    def tearDownClass(cls):
+        c = cls.counts
+        print(f"commands of documents: {c['run']} run as written, {c['instead']} with something in place of hardware or rights, "
+              f"{c['not run']} not run (see above)")
+
+    def setUp(self):
+        super().setUp()
+        self.write("alsa.conf", ALSA_CONFIG + CARD)
+        for place, program in (("bin/tactor", str(TOOL)), ("build/src/cli/tactor", str(TOOL)), ("bin/python3", sys.executable)):
+            self.write(place, f'#!/bin/sh\nexec {shlex.quote(program)} "$@"\n').chmod(0o755)
+        (self.dir / "man").symlink_to(ROOT / "man")
+        for study in ("study", "STUDY", "DIR"):  # as analyze's page and the README call a study's folder
+            studies.simulated(self.dir / study)
+        self.env |= {"PATH": f"{self.dir}/bin:{os.environ['PATH']}", "MANPAGER": "cat", "LC_ALL": "C.UTF-8"}
+        self.names = set(re.findall(r"^  (\w+) ", self.ok("--help").stdout.partition("Subcommands:")[2], re.M))
+        self.ran = 0
+        self.configured = False  # the page's configuration holds, which names the card
+
+    def shell(self, command):
+        return subprocess.run(["sh", "-ec", command], input=ANSWERS if "--walk" in command else "", capture_output=True, text=True,
+                              cwd=self.dir, env=self.env, timeout=4 * PATIENCE_S, check=False)
+
+    def run_command(self, document, command):
+        why = next((why for begin, why in NOT_RUN.items() if command.startswith(begin)), None)
+        if why:
+            self.counts["not run"] += 1
+            print(f"not run: {command}   [{document}: {why}]")
+            return
+        self.assertTrue(command.startswith(RUN), f"{document}: {command}: neither among what is run nor among what is not")
+        meant, reasons = command, []
+        for pattern, other, reason in INSTEAD.get(document, ()):
+            changed = re.sub(pattern, other, meant)
+            reasons += [reason] * (changed != meant)
+            meant = changed
+        if "hw:CARD=Tactor" in meant or self.configured:
+            reasons.append("the card is a null device")
+        told = self.shell(meant)
+        self.assertEqual(told.returncode, 0, f"{document}: {command}\n{told.stdout[-300:]}{told.stderr}")
+        self.counts["instead" if reasons else "run"] += 1
+        self.ran += 1
+        if reasons:
+            print(f"run: {meant}   [{document}: {'; '.join(reasons)}]")
+
+    def read_block(self, document, block):
+        """Blocks of TOML and CSV are what the tool reads them as."""
+        if block.kind == "csv":
+            self.ok("plan", "-", stdin=block.text)
+        if block.kind != "toml":
+            return
+        name = f"block-{block.line}.toml"
+        self.write(name, block.text)
+        if block.text.startswith("[experiment]"):
+            self.ok("experiment", name, "--dry-run")
+        elif block.text.startswith("[[stroke]]") or block.text.startswith("[stroke]"):
+            self.ok("plan", name)
+        else:
+            self.ok("plan", "park2016-1", "--fit", "--config", name)
+        if "raspberry-pi" in document:
+            self.env["TACTOR_CONFIG"] = str(self.dir / name)
+            self.configured = True
+
+    def follow(self, document, blocks):
+        for name, source in FILES.get(document, {}).items():
+            self.write(name, (ROOT / source).read_bytes())
+        for block in blocks:
+            with self.subTest(document=document, line=block.line):
+                if block.kind == "name":
+                    self.assertIn(block.text.split()[1], self.names | {"--version"}, f"{document} speaks of {block.text}")
+                elif block.kind == "command":
+                    self.run_command(document, block.text)
+                else:
+                    self.read_block(document, block)
+
+    def test_readme(self):
+        self.follow("README.md", code_of_markdown((ROOT / "README.md").read_text(encoding="utf-8")))
+        self.assertGreater(self.ran, 12)
+
+    def test_readmes_of_examples(self):
+        for file in sorted((ROOT / "examples").rglob("README.md")):
+            self.follow(file.relative_to(ROOT).as_posix(), code_of_markdown(file.read_text(encoding="utf-8")))
+
+    def test_man_pages(self):
+        for page in sorted((ROOT / "man").glob("*.[1-8]")):
+            self.env.pop("TACTOR_CONFIG", None)
+            self.configured = False
+            self.follow(f"man/{page.name}", code_of_man(page.read_text(encoding="utf-8")))
+        self.assertGreater(self.ran, 16)
+
+    def test_comments_of_examples(self):
+        for folder in ("arrays", "strokes"):
+            for file in (ROOT / "examples" / folder).iterdir():
+                shutil.copy(file, self.dir)
+        for file in sorted((ROOT / "examples").rglob("*.toml")):
+            self.follow(file.relative_to(ROOT).as_posix(), code_of_script(file.read_text(encoding="utf-8")))
+        self.assertGreaterEqual(self.ran, 5)
+
+    def test_what_is_not_run_is_shown_somewhere(self):
+        shown = [block.text for file in [ROOT / "README.md", *(ROOT / "examples").rglob("README.md")]
+                 for block in code_of_markdown(file.read_text(encoding="utf-8"))]
+        shown += [block.text for page in (ROOT / "man").glob("*.[1-8]") for block in code_of_man(page.read_text(encoding="utf-8"))]
+        self.assertEqual([begin for begin in NOT_RUN if not any(text.startswith(begin) for text in shown)], [])
+
+    def test_examples_of_help(self):
+        for name in sorted(self.names):
+            example = re.search(r"^Example: (.*)", self.ok(name, "--help").stdout, re.M)[1]
+            self.follow(f"tactor {name} --help", [Block("command", example, 0)])
+        self.assertGreaterEqual(self.ran, 6)
+
+    def not_shown(self, page):
+        """Lines of code that a reader does not see as they are meant: mdoc takes a lone point or comma in a macro's line for
+        punctuation, and quotes for its own."""
+        pages = [" ".join(subprocess.run([*command, page], capture_output=True, text=True, encoding="utf-8", check=True,
+                                         env=self.env).stdout.replace("\u2010", "-").replace("\\\n", "\n").split())
+                 for command in (["mandoc", "-Tutf8", "-Owidth=200"],
+                                 ["groff", "-mdoc", "-t", "-Tutf8", "-rLL=200n", "-P-c", "-P-b", "-P-o", "-P-u"])]
+        return [f"{page.name}:{b.line}: {b.text}" for b in code_of_man(page.read_text(encoding="utf-8"), sentences=False)
+                if not all(" ".join(b.text.split()) in shown for shown in pages)]
+
+    def test_what_a_page_shows_is_what_its_source_says(self):
+        for page in sorted((ROOT / "man").glob("*.[1-8]")):
+            self.assertEqual(self.not_shown(page), [])
+        page = self.write("eaten.7", ".Dd November 20, 2026\n.Dt EATEN 7\n.Os\n.Sh NAME\n.Nm eaten\n.Nd by mdoc\n.Sh DESCRIPTION\n"
+                                     ".Dl tactor plan \"M 0 0\"\n.Pp\n.Dl tactor plan \\(dqM 1 1\\(dq\n.Pp\n.Dl grep . /sys\n")
+        self.assertEqual(self.not_shown(page), ['eaten.7:8: tactor plan "M 0 0"', "eaten.7:12: grep . /sys"])
+
+    def test_a_command_that_is_on_no_list_is_refused(self):
+        for command in ("frobnicate --all", "tactorize", "rm -rf x"):
+            with self.assertRaisesRegex(AssertionError, "neither among what is run"):
+                self.run_command("x", command)
+
+    def test_code_is_found_in_text(self):
+        found = [(b.kind, b.text, b.line) for b in code_of_markdown(
+            "Run `tactor plan\nx.toml`, or `tactor play`:\n\n    tactor plan \"a  b\"   says it\n                  all\n    sudo x\n\nand\n\n    [a]\n")]
+        self.assertEqual(found, [("command", "tactor plan x.toml", 1), ("name", "tactor play", 2),
+                                 ("command", 'tactor plan "a  b"', 4), ("command", "sudo x", 6), ("toml", "[a]\n", 10)])
+
+
+class OneName(ToolTest):
+    """What is wired where has one name and one number in all documents."""
+
+    # I2C (identification and set-up of cards), I2S, and what a card of eight channels takes.
+    TAKEN = {0, 1, 2, 3, *range(18, 28)}
+
+    def texts(self):
+        files = [ROOT / "README.md", *(ROOT / "man").glob("*.[1-8]"), *(ROOT / "udev").iterdir(),
+                 *(f for f in (ROOT / "examples").rglob("*") if f.is_file() and f.suffix != ".svg")]
+        return {f.relative_to(ROOT).as_posix(): f.read_text(encoding="utf-8") for f in files}
+
+    def test_the_card_of_the_array(self):
+        found = collections.Counter()
+        for name, text in self.texts().items():
+            for card in re.findall(r"hw:CARD=(\w+)", text):
+                # Noise for the ears comes from another card.
+                self.assertIn(card, ("Tactor", "ID", "Phones"), name)
+                found[card] += 1
+        self.assertGreater(found["Tactor"], 10)
+
+    def test_gpio_lines_are_the_same_everywhere_and_free(self):
+        lines = collections.defaultdict(set)
+        for text in self.texts().values():
+            text = text.replace("\\(dq", '"')
+            for purpose, offset in re.findall(r"^(line|out|in) = \{[^}]*\boffset = (\d+)", text, re.M):
+                lines[purpose].add(int(offset))
+            for offset in re.findall(r"^gpio=(\d+)=op", text, re.M):
+                lines["line"].add(int(offset))
+            for offset in re.findall(r'name = "GPIO(\d+)"', text):
+                lines["line"].add(int(offset))
+        self.assertEqual({k: len(v) for k, v in lines.items()}, {"line": 1, "out": 1, "in": 1}, lines)
+        used = set.union(*lines.values())
+        self.assertEqual(len(used), 3)
+        self.assertEqual(used & self.TAKEN, set())
+
+
+if __name__ == "__main__":
+    main()

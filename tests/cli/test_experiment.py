@@ -1,0 +1,387 @@
+# SPDX-License-Identifier: MIT
+"""tactor experiment: the definition, the dry run, simulated sessions and the folder that they write."""
+import fcntl
+import hashlib
+import json
+import os
+import pathlib
+import re
+import unittest
+
+from experiments import COLUMNS, SMALL, ExperimentTest, contents, read_table
+from harness import ROOT, SANITIZED, main
+
+SHIPPED = ROOT / "examples/experiments/park2016.toml"
+
+
+class Definition(ExperimentTest):
+    def test_the_shipped_one_is_printed_as_it_stands_among_the_examples(self):
+        self.assertEqual(self.ok("experiment", "park2016", "--print").stdout, SHIPPED.read_text(encoding="utf-8"))
+
+    def test_what_is_printed_can_be_used(self):
+        self.write("mine.toml", self.ok("experiment", "park2016", "--print").stdout)
+        self.assertEqual(self.ok("experiment", "mine.toml", "--dry-run", "--format", "json").stdout,
+                         self.ok("experiment", "park2016", "--dry-run", "--format", "json").stdout)
+
+    def test_what_is_wrong_is_said_with_file_and_line_and_nothing_is_written(self):
+        for old, new, says in (
+                ("gap_s = 0.25", "gaps_s = 0.25", ("small.toml:5:", "did you mean 'gap_s'")),
+                ('path = "M0 20H40"', 'path = "M0 20H90"', ("small.toml:6:", "to the right", "line 14")),
+                ("duration = 0.7", "duration = 0.01", ("small.toml:6:", "method \"brush\"")),
+                ("gap_s = 0.25", "level = { sl_db = 50 }", ("full scale",)),
+                ("trials = 4", "trials = 0", ("small.toml:25:", "trials is 0")),
+                ('name = "how good"', 'name = "which one"', ("small.toml:", "one name"))):
+            self.small(SMALL.replace(old, new, 1))
+            for more in (("--dry-run",), ("--participant", "01", "-o", "study", "--simulate", "seed=1")):
+                result = self.refused(2, "experiment", "small.toml", *more, says=says)
+                self.assertEqual(result.stdout, "")
+            self.assertFalse((self.dir / "study").exists())
+
+    def test_options_that_are_wrong(self):
+        self.small()
+        for args, says in (((), ("--participant",)),
+                           (("--participant", "01"), ("-o",)),
+                           (("--participant", "P-1"), ("letters and digits",)),
+                           (("--participant", ""), ("letters and digits",)),
+                           (("--display", "tv"), ("page or terminal",)),
+                           (("--seed", "1.5"), ("--seed",)),
+                           (("--simulate", "sigma=x"), ("--simulate", "sigma")),
+                           (("--format", "xml"), ("text, json",))):
+            self.refused(2, "experiment", "small.toml", *args, says=says)
+        self.refused(2, "experiment", "park2061", "--dry-run", says=("park2016, or a file",))
+        self.refused(2, "experiment", "none.toml", "--dry-run", says=("none.toml",))
+
+    def test_real_sessions_need_measured_thresholds(self):
+        self.refused(2, "experiment", "park2016", "--participant", "01", "-o", "study", "-D", "null",
+                     says=("no threshold", "tactor calibrate"))
+        self.assertFalse((self.dir / "study").exists())
+
+
+class DryRun(ExperimentTest):
+    def dry(self, *more):
+        result = self.ok("experiment", *more, "--dry-run", "--format", "json")
+        return json.loads(result.stdout), result.stderr
+
+    def test_all_trials_of_the_shipped_one(self):
+        told, warned = self.dry("park2016", "--participant", "02")
+        self.assertEqual([r["name"] for r in told["runs"]],
+                         ["uniformity", "similarity-rating", "similarity", "uniformity-rating"])
+        for run in told["runs"]:
+            self.assertEqual([t["trial"] for t in run["trials"]], list(range(1, 41)))
+            count = {}
+            for t in run["trials"]:
+                key = t["motion"], t["method_1"]
+                count[key] = count.get(key, 0) + 1
+                self.assertEqual(t["method_2"] is None, run["task"] == "rate")
+            self.assertEqual(set(count.values()), {5})
+            motions = "".join(t["motion"][-1] for t in run["trials"])
+            self.assertIsNone(re.search(r"(.)\1{3}", motions))
+        self.assertIn("-40 dBFS", warned)
+        self.assertTrue(told["thresholds_assumed"])
+
+    def test_what_is_listed_is_what_a_session_gets(self):
+        told, _ = self.dry(self.small(), "--participant", "P3", "--seed", "8")
+        self.simulate("P3", "--seed", "8")
+        for run in told["runs"]:
+            rows = self.rows("P3", run["file_name"])
+            for row, trial in zip(rows, run["trials"], strict=True):
+                for key in ("trial", "motion", "method_1", "method_2", "plan_1", "plan_2"):
+                    self.assertEqual(row[key], "n/a" if trial[key] is None else str(trial[key]))
+                self.assertAlmostEqual(float(row["duration"]), trial["duration_s"], 6)
+
+    def test_the_table_has_the_same(self):
+        told, _ = self.dry(self.small())
+        text = self.ok("experiment", "small.toml", "--dry-run").stdout
+        self.assertEqual(len(re.findall(r"^ +\d+  ", text, re.M)), sum(len(r["trials"]) for r in told["runs"]))
+        self.assertEqual(len(re.findall(r"^practice  ", text, re.M)), 1)
+
+    def test_seeds_and_codes_make_other_orders(self):
+        small = self.small(SMALL.replace("trials = 4", "trials = 40"))
+        def trials(*more):
+            return [t["motion"] for r in self.dry(small, *more)[0]["runs"] for t in r["trials"]]
+        self.assertEqual(trials(), trials("--participant", "01"))
+        self.assertNotEqual(trials("--seed", "1"), trials("--seed", "2"))
+        self.assertEqual(self.dry(small, "--participant", "abc")[0]["seed"], 0xba7816bf)
+        self.small(SMALL.replace("gap_s = 0.25", "gap_s = 0.25\nseed = 77"))
+        self.assertEqual(self.dry("small.toml", "--participant", "abc")[0]["seed"], 77)
+        self.assertEqual(self.dry("small.toml", "--seed", "5")[0]["seed"], 5)
+
+    def test_a_plan_is_what_tactor_plan_prints(self):
+        self.write("felt.toml", '[array]\nname = "felt"\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n' + "".join(
+            f"[[tactor]]\ntactor = {i}\nthreshold_dbfs = {-40 - i}\n" for i in range(9)))
+        told, warned = self.dry("park2016", "--array", "felt.toml")
+        self.assertFalse(told["thresholds_assumed"])
+        self.assertNotIn("-40 dBFS", warned)
+        for motion in (1, 3):
+            plan = self.ok("plan", f"park2016-{motion}", "--algorithm", "park2016", "--sl", 7, "--array", "felt.toml",
+                           "--format", "json").stdout
+            self.assertIn({"sha256": hashlib.sha256(plan.encode()).hexdigest(), "motion": f"motion-{motion}",
+                           "method": "park2016"}, told["stimuli"])
+
+    def test_of_thresholds_at_several_carriers_that_of_the_trial_counts(self):
+        self.write("felt.toml", '[array]\nname = "felt"\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n' + "".join(
+            f"[[tactor]]\ntactor = {i}\nthreshold_dbfs = [[100, -20], [250, -40]]\n" for i in range(9)))
+        self.small(SMALL.replace('algorithm = "park2016"', 'algorithm = "park2016"\ncarrier = 100', 1))
+        told, warned = self.dry("small.toml", "--array", "felt.toml")
+        self.assertFalse(told["thresholds_assumed"])
+        self.assertNotIn("-40 dBFS", warned)
+        self.simulate("01", "--array", "felt.toml", definition="small.toml")
+        session = self.session()
+        self.assertEqual(session["thresholds_dbfs"], [[[100, -20], [250, -40]]] * 9)
+        self.assertEqual(session["array"]["tactors"][0]["threshold_dbfs"], [[100, -20], [250, -40]])
+        self.assertEqual({s["method"] for s in session["stimuli"]}, {"park", "brush"})
+        for stimulus in session["stimuli"]:
+            plan = json.loads((self.dir / f"study/sourcedata/sub-01/plans/{stimulus['sha256']}.json").read_text())
+            for peak in plan["render"]["peak_dbfs"]:
+                self.assertAlmostEqual(peak, 7 + {"park": -20, "brush": -40}[stimulus["method"]])
+
+    def test_tactors_without_a_threshold_beside_some_with_several(self):
+        self.write("some.toml", '[array]\nname = "some"\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n'
+                                "[[tactor]]\ntactor = 0\nthreshold_dbfs = [[100, -20], [250, -40]]\n")
+        self.assertTrue(self.dry(self.small(), "--array", "some.toml")[0]["thresholds_assumed"])
+        self.refused(2, "experiment", "small.toml", "--array", "some.toml", "--participant", "01", "-o", "study", "-D", "null",
+                     says=("tactor 1 has no threshold",))
+
+
+class Simulated(ExperimentTest):
+    def test_the_folder_is_what_bids_wants(self):
+        self.simulate("P07")
+        study = self.dir / "study"
+        files = set(contents(study))
+        plans = {f for f in files if f.startswith("sourcedata/sub-P07/plans/")}
+        self.assertEqual(files - plans, {
+            "README", "dataset_description.json", "participants.json", "participants.tsv", "task-howgood_beh.json",
+            "task-what_beh.json", "task-whichone_beh.json", "sub-P07/sub-P07_scans.tsv",
+            "sub-P07/beh/sub-P07_task-howgood_beh.tsv", "sub-P07/beh/sub-P07_task-what_beh.tsv",
+            "sub-P07/beh/sub-P07_task-whichone_beh.tsv", "sourcedata/sub-P07/session.json",
+            "sourcedata/sub-P07/practice.tsv"})
+        self.assertEqual(len(plans), 4)
+        for plan in plans:
+            self.assertEqual(hashlib.sha256((study / plan).read_bytes()).hexdigest(), pathlib.Path(plan).stem)
+        description = json.loads((study / "dataset_description.json").read_text())
+        for key in ("Name", "BIDSVersion", "DatasetType", "Authors", "GeneratedBy"):
+            self.assertIn(key, description)
+        self.assertEqual(description["Authors"], ["A. Author"])
+        self.assertEqual(description["DatasetType"], "raw")
+        self.assertGreater(len((study / "README").read_bytes()), 150)
+        self.assertEqual(read_table(study / "participants.tsv"),
+                         [{"participant_id": "sub-P07", "age": "n/a", "sex": "n/a", "handedness": "n/a"}])
+        for run in ("whichone", "howgood", "what"):
+            described = json.loads((study / f"task-{run}_beh.json").read_text())
+            self.assertEqual(set(COLUMNS) - set(described), set())
+            self.assertEqual(list(self.rows("P07", run)[0]), COLUMNS)
+
+    def test_the_runs_are_in_the_order_in_which_they_were_held(self):
+        self.simulate("02")
+        scans = read_table(self.dir / "study/sub-02/sub-02_scans.tsv")
+        self.assertEqual([s["filename"] for s in scans],
+                         [f"beh/sub-02_task-{r}_beh.tsv" for r in ("howgood", "what", "whichone")])
+        times = [s["acq_time"] for s in scans]
+        self.assertEqual(times, sorted(times))
+        for t in times:
+            self.assertRegex(t, r"^2000-01-01T\d\d:\d\d:\d\d\.\d{6}$")
+
+    def test_columns_of_each_task(self):
+        self.simulate()
+        rate = 48000
+        for row in self.rows("01", "whichone"):
+            self.assertEqual({row["method_1"], row["method_2"]}, {"brush", "park"})
+            self.assertIn(row["response"], ("1", "2"))
+            self.assertEqual(row["rating"], "n/a")
+            # Both methods take their own time; the gap is exact to the frame.
+            first = self.plan_frames(row["plan_1"])
+            self.assertEqual(int(row["frame_2"]) - int(row["frame_1"]), first + rate // 4)
+            self.assertAlmostEqual(float(row["duration"]), (first + rate / 4 + self.plan_frames(row["plan_2"])) / rate, 6)
+        for row in self.rows("01", "howgood"):
+            self.assertEqual((row["method_2"], row["plan_2"], row["frame_2"]), ("n/a", "n/a", "n/a"))
+            self.assertEqual(row["response"], row["rating"])
+            self.assertIn(int(row["rating"]), range(1, 8))
+        for row in self.rows("01", "what"):
+            self.assertIn(row["response"], ("to the right", "down"))
+            self.assertEqual((row["rating"], row["method_1"], row["method_2"]), ("n/a", "park", "n/a"))
+        for run in ("whichone", "howgood", "what"):
+            rows = self.rows("01", run)
+            self.assertEqual(float(rows[0]["onset"]), 0)
+            for row in rows:
+                self.assertEqual((row["void"], row["xruns"], row["stream"], row["attempt"]), ("false", "0", "1", "1"))
+                self.assertGreater(float(row["response_time"]), 0)
+                self.assertAlmostEqual(float(row["onset"]), (int(row["frame_1"]) - int(rows[0]["frame_1"])) / rate, 5)
+            ends = [float(r["onset"]) + float(r["duration"]) + float(r["response_time"]) for r in rows]
+            self.assertTrue(all(float(r["onset"]) > e for r, e in zip(rows[1:], ends)))
+
+    def plan_frames(self, name):
+        return json.loads((self.dir / f"study/sourcedata/sub-01/plans/{name}.json").read_text())["render"]["frames"]
+
+    def test_the_session_says_all_that_it_was(self):
+        self.simulate("01", "--seed", "12")
+        s = self.session()
+        self.assertEqual((s["simulated"], s["seed"], s["simulation"]), (True, 12, "seed=1,sigma=1"))
+        self.assertEqual(s["experiment"]["text"], SMALL)
+        self.assertEqual(s["experiment"]["sha256"], hashlib.sha256(SMALL.encode()).hexdigest())
+        self.assertEqual(s["thresholds_dbfs"], [-40] * 9)
+        self.assertTrue(s["thresholds_assumed"])
+        self.assertEqual(len(s["array"]["tactors"]), 9)
+        self.assertEqual(s["device"], None)
+        self.assertIn("tactor", s["versions"])
+
+    def test_every_file_that_describes_says_that_it_is_simulated(self):
+        result = self.simulate()
+        self.assertIn("SIMULATED", result.stdout)
+        study = self.dir / "study"
+        for name in ("README", "dataset_description.json", "participants.json", "task-what_beh.json"):
+            self.assertIn("simulated", (study / name).read_text().lower(), name)
+
+    def test_void_trials_come_again_at_the_end_of_their_run(self):
+        self.simulate(spec="seed=4,sigma=1,void=0.5", definition=self.small(SMALL.replace("trials = 4", "trials = 12")))
+        rows = self.rows("01", "howgood")
+        queue = [(n, 1) for n in range(1, 13)]
+        first = {}
+        for row in rows:
+            trial, attempt = queue.pop(0)
+            self.assertEqual((int(row["trial"]), int(row["attempt"])), (trial, attempt))
+            stimulus = row["motion"], row["method_1"], row["plan_1"]
+            self.assertEqual(first.setdefault(trial, stimulus), stimulus)
+            if row["void"] == "true":
+                self.assertEqual((row["response"], row["rating"], row["response_time"], row["xruns"]),
+                                 ("n/a", "n/a", "n/a", "1"))
+                queue.append((trial, attempt + 1))
+        self.assertEqual(queue, [])
+        self.assertGreater(len(rows), 12)
+
+    def test_the_same_session_is_the_same_bytes(self):
+        self.simulate(folder="one")
+        self.simulate(folder="two")
+        self.assertEqual(contents(self.dir / "one"), contents(self.dir / "two"))
+        self.simulate(folder="three", spec="seed=2,sigma=1")
+        self.assertNotEqual(contents(self.dir / "one"), contents(self.dir / "three"))
+
+    def test_a_study_of_several_is_analysed(self):
+        for n in range(1, 9):
+            self.simulate(f"{n:02}", definition="park2016")
+        told = json.loads(self.ok("analyze", "study", "--format", "json").stdout)
+        self.assertEqual((told["participants"], told["simulated"]), (8, True))
+        self.assertEqual(list(told["runs"]), ["similarity", "uniformity", "similarity-rating", "uniformity-rating"])
+        for run in told["runs"].values():
+            self.assertEqual((run["n"], run["trials"]), (8, 320))
+        rows = [r for n in range(1, 9) for r in self.rows(f"{n:02}", "similarity")]
+        chosen = sum(r["method_" + r["response"]] == "park2016" for r in rows)
+        self.assertAlmostEqual(told["runs"]["similarity"]["preference"]["all"]["mean"], 100 * chosen / len(rows), 9)
+        # Who seems nearer to the target in the model is chosen more often.
+        self.assertGreater(abs(told["runs"]["similarity"]["preference"]["all"]["mean"] - 50), 3)
+
+    def test_identify_is_analysed_too(self):
+        for n in range(1, 4):
+            self.simulate(f"{n}")
+        told = json.loads(self.ok("analyze", "study", "--format", "json").stdout)
+        self.assertEqual(told["runs"]["what"]["n"], 3)
+
+
+class Folder(ExperimentTest):
+    def test_somebody_who_was_here_is_refused_but_for_resume(self):
+        self.simulate()
+        before = contents(self.dir / "study")
+        self.simulate(run=lambda *a: self.refused(2, *a, says=("session of 01 already", "--resume")))
+        result = self.simulate("01", "--resume")
+        self.assertIn("finished", result.stdout)
+        self.assertEqual(contents(self.dir / "study"), before)
+
+    def test_resume_without_a_session_begins_one(self):
+        self.simulate("01", "--resume", folder="one")
+        self.simulate("01", folder="two")
+        self.assertEqual(contents(self.dir / "one"), contents(self.dir / "two"))
+
+    def test_a_session_that_stopped_anywhere_goes_on_as_if_it_had_not(self):
+        spec = "seed=4,sigma=1,void=0.3"
+        self.simulate(spec=spec, folder="whole")
+        whole = contents(self.dir / "whole")
+        table = "sub-01/beh/sub-01_task-howgood_beh.tsv"
+        later = [n for n in whole if "task-what" in n and n.startswith("sub-01")]
+        text = whole[table]
+        # After any byte of any line but the header and the first, which come at once.
+        least = text.index(b"\n", text.index(b"\n") + 1) + 1
+        for cut in sorted({least, *range(len(text) - 200, len(text), 9), *range(least, len(text), 199)}):
+            os.system(f"rm -rf {self.dir}/study && cp -r {self.dir}/whole {self.dir}/study")
+            (self.dir / "study" / table).write_bytes(text[:cut])
+            for name in later:
+                (self.dir / "study" / name).unlink()
+            scans = self.dir / "study/sub-01/sub-01_scans.tsv"
+            scans.write_text("".join(scans.read_text().splitlines(True)[:-1]))
+            self.simulate("01", "--resume", spec=spec)
+            self.assertEqual(contents(self.dir / "study"), whole, f"cut at {cut} of {len(text)}")
+
+    def test_a_session_goes_on_only_as_it_was_begun(self):
+        self.simulate("01", "--seed", "3")
+        for more, says in ((("--seed", "4"), "seed 3"), (("--simulate", "seed=9"), "simulation")):
+            args = ["experiment", "small.toml", "--participant", "01", "-o", "study", "--resume", *more]
+            if "--simulate" not in more:
+                args += ["--simulate", "seed=1,sigma=1"]
+            else:
+                args += ["--seed", "3"]
+            self.refused(2, *args, says=(says, "as it was begun"))
+        self.small(SMALL + "# a word more\n")
+        self.refused(2, "experiment", "small.toml", "--participant", "01", "-o", "study", "--resume", "--seed", "3",
+                     "--simulate", "seed=1,sigma=1", says=("experiment", "as it was begun"))
+
+    def test_lines_of_another_session_are_refused(self):
+        self.simulate()
+        file = self.dir / "study/sub-01/beh/sub-01_task-howgood_beh.tsv"
+        lines = file.read_text().splitlines(True)
+        file.write_text("".join([lines[0], lines[2], lines[1], *lines[3:]]))
+        self.simulate("01", "--resume", run=lambda *a: self.refused(2, *a, says=("run how good: line 2",)))
+
+    def test_simulated_and_real_sessions_do_not_mix(self):
+        self.simulate()
+        file = self.dir / "study/sourcedata/sub-01/session.json"
+        file.write_text(file.read_text().replace('"simulated": true', '"simulated": false'))
+        self.simulate("02", run=lambda *a: self.refused(2, *a, says=("sub-01 is real", "a folder each")))
+
+    def test_another_experiment_needs_another_folder(self):
+        self.simulate()
+        self.small(SMALL.replace('name = "down"', 'name = "up"'))
+        self.simulate("02", definition="small.toml",
+                      run=lambda *a: self.refused(2, *a, says=("another experiment", "folder of its own")))
+
+    def test_two_experimenters_in_one_folder(self):
+        self.simulate()
+        holder = os.open(self.dir / "study", os.O_RDONLY)
+        fcntl.flock(holder, fcntl.LOCK_EX)
+        self.simulate("02", run=lambda *a: self.refused(2, *a, says=("another session is running",)))
+        os.close(holder)
+        self.simulate("02")
+
+    def test_a_folder_of_other_things_is_left_alone(self):
+        self.write("study/letter.txt", "dear")
+        self.simulate(run=lambda *a: self.refused(2, *a, says=("other things",)))
+        self.assertEqual(set(contents(self.dir / "study")), {"letter.txt"})
+        self.write("file", "x")
+        self.simulate(folder="file", run=lambda *a: self.refused(2, *a, says=("no folder",)))
+        self.simulate(folder="none/study", run=lambda *a: self.refused(2, *a, says=("does not exist",)))
+
+    def test_a_folder_that_cannot_be_written(self):
+        self.simulate(folder="/proc/study", run=lambda *a: self.refused(1, *a, says=("/proc/study",)))
+
+    @unittest.skipIf(os.geteuid() == 0, "root may write everywhere")
+    def test_a_folder_without_the_right_to_write(self):
+        (self.dir / "study").mkdir(mode=0o555)
+        self.simulate(run=lambda *a: self.refused(1, *a, says=("study",)))
+
+    def test_what_the_experimenter_added_to_the_list_of_people_stays(self):
+        self.simulate()
+        file = self.dir / "study/participants.tsv"
+        file.write_text("participant_id\tage\tsex\thandedness\tgroup\r\nsub-01\t24\tF\tR\told\r\n")
+        self.simulate("02")
+        self.assertEqual(file.read_text(), "participant_id\tage\tsex\thandedness\tgroup\nsub-01\t24\tF\tR\told\n"
+                                           "sub-02\tn/a\tn/a\tn/a\tn/a\n")
+
+    def test_what_a_crash_left_is_cleared_away(self):
+        self.simulate(folder="whole")
+        whole = contents(self.dir / "whole")
+        os.system(f"cp -r {self.dir}/whole {self.dir}/study")
+        for name in (".README.0badcafe.part", "sub-01/beh/.x.00000001.part", "sourcedata/sub-01/plans/.y.2.part"):
+            self.write(f"study/{name}", "half")
+        self.simulate("01", "--resume")
+        self.assertEqual(contents(self.dir / "study"), whole)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: MIT
+"""A simulated session that is killed at any of its writes, or whose disk is full at any of them, goes on with --resume
+as if nothing had been: strace injects the signal, and the error."""
+import shutil
+import subprocess
+import unittest
+
+from experiments import SMALL, ExperimentTest, contents
+from harness import TOOL, main
+
+# What changes a disk. strace counts each by itself. (Who is killed at an fsync leaves what one leaves who is killed at the
+# next of these.)
+CALLS = ("write", "rename", "mkdir", "unlink", "ftruncate")
+
+
+def traceable():
+    if shutil.which("strace") is None:
+        return "strace is not here"
+    probe = subprocess.run(["strace", "-f", "-o", "/dev/null", "-e", "inject=chdir:error=EIO:when=1", "true"],
+                           capture_output=True, text=True, check=False)
+    return "" if probe.returncode == 0 else f"ptrace is not permitted: {probe.stderr.strip().splitlines()[-1:]}"
+
+
+WHY_NOT = traceable()
+
+
+@unittest.skipIf(WHY_NOT, WHY_NOT)
+class AtEveryWrite(ExperimentTest):
+    def setUp(self):
+        super().setUp()
+        # Two runs, void trials, practice: each kind of write, and not many of them.
+        self.small(SMALL.replace("trials = 4", "trials = 2").replace("trials = 3", "trials = 2"))
+        self.args = ["experiment", "small.toml", "--participant", "01", "-o", "study", "--simulate",
+                     "seed=4,sigma=1,void=0.3"]
+        self.ok(*self.args)
+        self.whole = contents(self.dir / "study")
+
+    def with_fault(self, call, fault, n):
+        """Runs a session in which the n-th call fails so; its exit status."""
+        shutil.rmtree(self.dir / "study", ignore_errors=True)
+        run = subprocess.run(["strace", "-f", "-qq", "-o", self.dir / "trace", "-e", f"trace={call}", "-e",
+                              f"inject={call}:{fault}:when={n}", TOOL, *self.args], cwd=self.dir, env=self.env,
+                             capture_output=True, text=True, check=False)
+        return run
+
+    def resumed(self, said):
+        self.ok(*self.args, "--resume")
+        self.assertEqual(contents(self.dir / "study"), self.whole, said)
+
+    def test_kill_9(self):
+        for call in CALLS:
+            n = 0
+            while True:
+                n += 1
+                run = self.with_fault(call, "signal=KILL", n)
+                if run.returncode == 0:
+                    break
+                self.assertEqual(run.returncode, -9, f"{call} {n}: {run.stderr}")
+                self.resumed(f"killed at {call} {n}")
+            print(f"{call}: killed {n - 1} times")
+            if call in ("write", "fsync", "rename"):
+                self.assertGreater(n, 20, call)
+
+    def test_a_full_disk(self):
+        refused = kept = 0
+        for call, fault in (("write", "error=ENOSPC"), ("rename", "error=EDQUOT")):
+            self.with_fault(call, fault, 65535)
+            calls = len((self.dir / "trace").read_text().splitlines())
+            self.assertGreater(calls, 15)
+            for n in range(1, calls + 1):
+                run = self.with_fault(call, fault, n)
+                if run.returncode == 0:
+                    continue # of what is no file: a wake-up, a line on standard output that is tried again
+                refused += 1
+                self.assertEqual(run.returncode, 1, f"{call} {n}: {run.stderr}")
+                self.assertRegex(run.stderr, r"No space left|quota exceeded", f"{call} {n}")
+                # What was kept for it takes the answer, and the session stops.
+                kept += "the last answer is kept" in run.stderr
+                self.resumed(f"{call} {n} failed")
+        self.assertGreater(refused, 30)
+        self.assertGreater(kept, 10)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,284 @@
+# SPDX-License-Identifier: MIT
+"""The participant's page of tactor experiment as it is on the wire: what is sent, which answer counts, and who may."""
+import json
+import re
+import signal
+
+from experiments import ExperimentTest, read_table
+from harness import main
+from pages import Session
+from test_experiment_person import DESK, SHORT
+from websocket import BINARY, TEXT, Peer
+
+
+class PageTest(ExperimentTest):
+    def setUp(self):
+        super().setUp()
+        self.write("desk.toml", DESK)
+        self.write("short.toml", SHORT)
+
+    def args(self, *more, definition="short.toml"):
+        return ("experiment", definition, "--participant", "01", "-o", "study", "-D", "null", *more)
+
+    def start(self, *more, **which):
+        return Session(self, self.args("--display", "page", *more, **which))
+
+    def answers(self, task="pairs", column="response"):
+        return [(r["trial"], r["attempt"], r["void"], r[column]) for r in self.rows("01", task)]
+
+
+class Sessions(PageTest):
+    def test_a_whole_session(self):
+        s = self.start()
+        self.assertRegex(s.address, r"^127\.0\.0\.1:[1-9]\d*$")
+        p = s.participant()
+        self.assertEqual(p.facts["tactors"], [[0, 0], [20, 0]])
+        asked = p.answer("consent", 1)
+        self.assertEqual((asked["text"], asked["question"], asked["choices"]), ("Be at ease.", "Do you agree?", ["Yes", "No"]))
+        self.assertEqual(len(p.answer("walk", 3)["choices"]), 3)  # once more
+        p.answer("walk", 1)
+        self.assertEqual(len(p.answer("walk", 4)["choices"]), 4)  # the one before
+        for _ in (0, 1):
+            p.answer("walk", 1)
+        asked = p.answer("introduce", 1)
+        self.assertEqual((asked["question"], asked["progress"]),
+                         ("Which one?", {"run": 1, "runs": 2, "practice": False, "trial": 0, "trials": 2}))
+        self.assertTrue(p.answer("question", 1)["progress"]["practice"])
+        for i in (1, 2):
+            target = p.until("target", asked=False)
+            self.assertEqual(target["lasts_s"], 0.2)
+            self.assertLess(target["passed_s"], 0.2)
+            self.assertEqual({tuple(target["path"][0]), tuple(target["path"][-1])}, {(0, 0), (20, 0)})
+            p.until("stimulus", asked=False)
+            asked = p.answer("question", i)
+            self.assertEqual((asked["choices"], asked["progress"]["trial"]), (["", ""], i))
+        rest = p.until("rest", asked=False)
+        self.assertEqual(rest["lasts_s"], 0.3)
+        p.answer("introduce", 1)
+        for _ in (1, 2):
+            asked = p.answer("question", 3)
+            self.assertEqual((asked["question"], asked["choices"]), ("How even?", ["not", "half", "all"]))
+        p.until("over", asked=False)
+        self.assertEqual(s.end(), 0, s.said)
+        self.assertEqual(self.answers(), [("1", "1", "false", "1"), ("2", "1", "false", "2")])
+        self.assertEqual([r["rating"] for r in self.rows("01", "marks")], ["3", "3"])
+        self.assertEqual(len(read_table(self.dir / "study/sourcedata/sub-01/practice.tsv")), 1)
+        self.assertEqual([x["display"] for x in self.session()["streams"]], ["page"])
+        self.assertGreaterEqual(min(float(r["response_time"]) for r in self.rows("01", "pairs")), 0)
+        # The experimenter reads what was answered; neither reads the method, the participant not even the title.
+        self.assertIn("trial 2 of 2: Which one? 1 or 2: 2", s.shown)
+        self.assertNotIn("cannot be drawn", s.said)
+        for text in (json.dumps(p.seen), s.shown, re.sub(r'tactor: warning: motion ".*', "", s.said)):
+            self.assertNotRegex(text, "(?i)alder|birch|tactile-brush|park")
+        self.assertNotIn("east", json.dumps(p.seen))
+
+    def test_what_is_sent_is_the_same_for_both_methods(self):
+        s = self.start()
+        p = s.participant()
+        p.begin()
+        for _ in range(3):
+            p.answer("question", 1)
+        p.answer("introduce", 1)
+        for _ in range(2):
+            p.answer("question", 1)
+        self.assertEqual(s.end(), 0, s.said)
+        self.assertEqual({r["method_1"] for r in self.rows("01", "marks")}, {"Alder", "Birch"})
+        marks = [m for m in p.seen if m.get("progress", {}).get("run") == 2 and m["progress"]["trial"]]
+        for m in marks:
+            del m["progress"], m["ask"]
+        self.assertEqual(marks[:len(marks) // 2], marks[len(marks) // 2:])
+
+    def test_words_in_the_participant_s_language(self):
+        words = '[page]\nlanguage = "de"\nagree = "Machen Sie mit?"\nyes = "Ja"\npause = "Pause"\n'
+        self.write("de.toml", SHORT.replace("[[motion]]", words + "[[motion]]", 1))
+        s = self.start(definition="de.toml")
+        p = s.participant()
+        self.assertEqual((p.facts["words"]["language"], p.facts["words"]["pause"]), ("de", "Pause"))
+        asked = p.answer("consent", 2)
+        self.assertEqual((asked["question"], asked["choices"]), ("Machen Sie mit?", ["Ja", "No"]))
+        p.until("over", asked=False)
+        self.assertEqual(s.end(), 1)
+        self.assertIn("did not agree", s.said)
+        self.assertFalse((self.dir / "study/sourcedata").exists())
+        self.write("de.toml", SHORT.replace("[[motion]]", '[page]\nagre = "x"\n[[motion]]', 1))
+        self.refused(2, *self.args(definition="de.toml"), says=("agre", "agree"))
+
+    def test_the_experimenter_s_keys(self):
+        s = self.start()
+        p = s.participant()
+        p.begin()
+        p.answer("question", 1)  # practice
+        p.until("question")
+        s.key("r")
+        s.told("trial 1 is void: the experimenter repeats it")
+        p.until("question")
+        s.key("1")  # the participant answers, nobody else
+        s.key("p")
+        s.told("a pause comes")
+        p.say(ask=p.seen[-1]["ask"], answer=2)
+        p.until("pause", asked=False)
+        s.key("g")
+        p.until("question")
+        s.key("v")
+        s.told("trial 2 is void: the experimenter says so")
+        p.say(ask=p.seen[-1]["ask"], answer=1)
+        p.answer("question", 1)
+        p.until("rest", asked=False)
+        s.key("g")
+        p.until("introduce")
+        s.key("g")  # begins, too
+        p.until("question")
+        s.key("q")
+        self.assertEqual(s.end(), 130)
+        self.assertEqual(self.answers(), [("1", "1", "true", "n/a"), ("2", "1", "true", "2"), ("1", "2", "false", "1"),
+                                          ("2", "2", "false", "1")])
+
+    def test_a_tactor_that_is_not_felt(self):
+        s = self.start()
+        p = s.participant()
+        p.answer("consent", 1)
+        p.answer("walk", 2)
+        self.assertEqual(s.end(), 1)
+        self.assertIn("tactor 0: it was not felt", s.said)
+
+
+class OnceAndNoMore(PageTest):
+    def test_reload_second_page_doubled_and_late_answers(self):
+        s = self.start()
+        p = s.participant()
+        p.begin()
+        old = p.answer("question", 1)["ask"]
+        # The practice's answer again, and one from before the question: neither is the first trial's.
+        p.say(ask=old, answer=2)
+        p.say(ask=old + 1, answer=2)
+        p.until("stimulus", asked=False)
+        # Reload in mid-trial: the present state.
+        p.socket.close()
+        p = s.participant()
+        now = p.next()
+        self.assertEqual(now["progress"]["trial"], 1)
+        ask = now["ask"] or p.until("question")["ask"]
+        # Reload while it is asked: the same question.
+        p.socket.close()
+        p = s.participant()
+        self.assertEqual(p.next()["ask"], ask)
+        # A second page: the first is told, and its answer does not count.
+        second = s.participant()
+        self.assertEqual(second.next()["ask"], ask)
+        self.assertEqual(p.next(), {"screen": "elsewhere"})
+        p.say(ask=ask, answer=1)
+        self.assertEqual(p.end(), 1001)
+        p = second
+        # Wrong numbers are no answers: the state comes again.
+        for choice, which in ((3, ask), (2, ask + 1), (1, ask - 1)):
+            p.say(ask=which, answer=choice)
+            self.assertEqual(p.next()["ask"], ask)
+        p.say(ask=ask, answer=2)
+        p.say(ask=ask, answer=1)
+        p.say(ask=ask, answer=2)
+        self.assertEqual(p.until("question")["progress"]["trial"], 2)
+        # Nobody there: the question waits.
+        p.socket.close()
+        p = s.participant()
+        p.answer("question", 1)
+        p.answer("introduce", 1)
+        for _ in (1, 2):
+            p.answer("question", 2)
+        self.assertEqual(s.end(), 0, s.said)
+        self.assertEqual(self.answers(), [("1", "1", "false", "2"), ("2", "1", "false", "1")])
+        self.assertEqual(self.answers("marks", "rating"), [("1", "1", "false", "2"), ("2", "1", "false", "2")])
+
+    def test_killed_and_on_at_the_next_trial(self):
+        s = self.start()
+        p = s.participant()
+        p.begin()
+        p.answer("question", 1)
+        p.answer("question", 2)
+        p.until("question")
+        s.process.send_signal(signal.SIGKILL)
+        s.end()
+        self.assertEqual(self.answers(), [("1", "1", "false", "2")])
+        s = self.start("--resume")
+        p = s.participant()
+        for _ in (0, 1):
+            p.answer("walk", 1)
+        p.answer("introduce", 1)
+        self.assertEqual(p.answer("question", 1)["progress"]["trial"], 2)
+        p.until("rest", asked=False)
+        s.process.send_signal(signal.SIGINT)
+        self.assertEqual(s.end(), 130)
+        self.assertEqual(self.answers(), [("1", "1", "false", "2"), ("2", "1", "false", "1")])
+
+    def test_no_nonsense(self):
+        s = self.start()
+        s.participant().until("consent")
+        for text in (b"", b"{", b"[]", b"7", b'{"answer":0}', b'{"answer":-1,"ask":1}', b'{"answer":"1","ask":1}', b"[" * 4000,
+                     b'{"answer":4294967297,"ask":4294967297}'):
+            p = s.participant()
+            asked = p.next()
+            p.frame(TEXT, text)
+            if text and b"429" not in text:
+                self.assertEqual(p.end(), 1008, text)
+                continue
+            if text:
+                self.assertEqual(p.next(), asked)
+            p.say(ask=99, answer=1)
+            self.assertEqual(p.next(), asked)
+        p = s.participant()
+        p.frame(BINARY, b"{}")
+        p.next()
+        self.assertEqual(p.end(), 1003)
+        p = s.participant()
+        p.frame(TEXT, b" " * 5000)
+        p.next()
+        self.assertEqual(p.end(), 1009)
+        p = s.participant()
+        self.assertEqual(p.next()["screen"], "consent")
+
+
+class WhoMay(PageTest):
+    def test_the_page_is_one_document_that_loads_nothing(self):
+        s = self.start()
+        p = Peer(s.address)
+        self.addCleanup(p.socket.close)
+        status, headers = p.request()
+        page = p.body(headers).decode()
+        self.assertEqual((status, headers["content-type"]), (200, "text/html; charset=utf-8"))
+        self.assertTrue(headers["content-security-policy"].startswith("default-src 'none'; "))
+        self.assertNotIn("unsafe", headers["content-security-policy"])
+        self.assertNotIn("NONCE", page)
+        self.assertFalse(re.findall(r"(?:src|href)=\"(?!data:,)", page))
+        self.assertFalse(re.findall(r"https?://(?!www\.w3\.org/2000/svg)", page))
+
+    def test_host_and_origin(self):
+        s = self.start()
+        port = s.address.rpartition(":")[2]
+        for host, status in ((s.address, 200), (f"localhost:{port}", 200), ("localhost", 403), (f"evil.example:{port}", 403),
+                             (f"127.0.0.2:{port}", 403)):
+            p = Peer(s.address)
+            self.addCleanup(p.socket.close)
+            self.assertEqual(p.request(host=host)[0], status, host)
+        for origin, status in ((f"http://{s.address}", 101), ("null", 403), ("http://evil.example", 403), (f"http://localhost:{port}", 403)):
+            p = Peer(s.address)
+            self.addCleanup(p.socket.close)
+            self.assertEqual(p.upgrade(Origin=origin), status, origin)
+        for target, status in (("/rpc", 426), ("/status", 404), ("/x", 404)):
+            p = Peer(s.address)
+            self.addCleanup(p.socket.close)
+            self.assertEqual(p.request(target)[0], status, target)
+
+    def test_what_does_not_go_together(self):
+        self.refused(2, *self.args("--page", "0.0.0.0:0"), says=("--page", "not of this machine alone"))
+        self.refused(2, *self.args("--page", "4:4:4"), says=("--page", "no address"))
+        self.refused(2, *self.args("--page", "0", "--display", "terminal"), says=("--page", "terminal"))
+        self.refused(2, *self.args("--display", "wall"), says=("wall", "page or terminal"))
+        self.refused(2, *self.args("--page", "0", "--simulate", "seed=1"), says=("--page", "simulated"))
+        s = self.start()
+        self.refused(3, *self.args("--page", s.address.rpartition(":")[2]), says=("--page", s.address))
+        self.assertFalse((self.dir / "study/sourcedata").exists())
+        again = Session(self, self.args("--page", "[::1]:0"))
+        self.assertRegex(again.address, r"^\[::1\]:")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,429 @@
+# SPDX-License-Identifier: MIT
+"""tactor experiment with somebody at a terminal, and with lines for keys: what is shown, asked, written and refused."""
+import contextlib
+import fcntl
+import json
+import os
+import pty
+import re
+import select
+import signal
+import struct
+import subprocess
+import tempfile
+
+from experiments import SMALL, ExperimentTest, contents, read_table
+from harness import PATIENCE_S, TOOL, main
+
+DESK = """[array]
+name = "desk"
+grid = { rows = 1, columns = 2, pitch_mm = 20.0 }
+"""
+SHORT = """[experiment]
+name = "short"
+array = "desk.toml"
+level = { dbfs = -20 }
+gap_s = 0.1
+consent = "Be at ease."
+[[motion]]
+name = "east"
+path = "M0 0H20"
+duration = 0.2
+[[motion]]
+name = "west"
+path = "M20 0H0"
+duration = 0.2
+[[method]]
+name = "Alder"
+algorithm = "tactile-brush"
+[[method]]
+name = "Birch"
+algorithm = "park2016"
+[[run]]
+name = "pairs"
+task = "choose"
+attribute = "similarity"
+question = "Which one?"
+animation = true
+trials = 2
+practice = 1
+break_s = 0.3
+[[run]]
+name = "marks"
+task = "rate"
+attribute = "uniformity"
+question = "How even?"
+trials = 2
+scale = 3
+labels = ["not", "half", "all"]
+"""
+AGREED = "y\n" + "y\n" * 2  # consent, and both tactors felt
+RATE = 48000
+
+
+class PersonTest(ExperimentTest):
+    def setUp(self):
+        super().setUp()
+        self.write("desk.toml", DESK)
+        self.write("short.toml", SHORT)
+
+    def args(self, *more, code="01", definition="short.toml", device="null"):
+        return ("experiment", definition, "--participant", code, "-o", "study", *(("-D", device) if device else ()), *more)
+
+    def frames_of(self, plan, code="01"):
+        return json.loads((self.dir / f"study/sourcedata/sub-{code}/plans/{plan}.json").read_text())["render"]["frames"]
+
+
+class Terminal:
+    """The tool at a terminal of its own; standard error goes to a file, as an experimenter's console would."""
+
+    def __init__(self, test, args):
+        self.console = tempfile.TemporaryFile("w+")
+        self.pid, self.fd = pty.fork()
+        if self.pid == 0:
+            os.dup2(self.console.fileno(), 2)
+            os.chdir(test.dir)
+            os.execve(TOOL, [str(TOOL), *map(str, args)], test.env | {"TERM": "xterm"})
+        self.all = self.seen = ""
+
+    def read(self):
+        if not select.select([self.fd], [], [], PATIENCE_S)[0]:
+            raise AssertionError(f"nothing more after {self.seen!r}")
+        text = os.read(self.fd, 4096).decode()
+        self.all += text
+        self.seen += text
+
+    def until(self, pattern):
+        while not (found := re.search(pattern, self.seen)):
+            self.read()
+        self.seen = self.seen[found.end():]
+        return found
+
+    def key(self, keys):
+        os.write(self.fd, keys.encode())
+
+    def answer(self, pattern, key):
+        self.until(pattern)
+        self.key(key)
+
+    def begin(self):
+        """Up to the first run's first trial."""
+        self.answer("Do you agree", "y")
+        for i in (0, 1):
+            self.answer(f"tactor {i}: was it felt", "y")
+        self.answer("Any key begins", " ")
+
+    def end(self):
+        """Its exit status."""
+        with contextlib.suppress(OSError):  # the terminal is gone with the program
+            while True:
+                self.read()
+        os.close(self.fd)
+        return os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1])
+
+    def said(self):
+        self.console.seek(0)
+        return self.console.read()
+
+
+class AtTheTerminal(PersonTest):
+    def start(self, *more, **which):
+        t = Terminal(self, self.args(*more, **which))
+        self.addCleanup(t.console.close)
+        return t
+
+    def test_a_whole_session_by_keys(self):
+        t = self.start()
+        t.begin()
+        t.answer("practice 1 of 1", "12")  # too early: no answers
+        t.answer("Which one\\? 1 or 2: ", "x3" "1")  # nor are these
+        for i in (1, 2):
+            t.until(f"trial {i} of 2")
+            t.answer("Which one\\? 1 or 2: ", str(i))
+        t.until("A break of 0 s|A break of")
+        t.answer("Any key begins", " ")
+        for i in (1, 2):
+            t.until(f"trial {i} of 2")
+            t.answer("How even\\? 1 \\(not\\), 2 \\(half\\), 3 \\(all\\): ", "3")
+        t.answer("Any key ends", " ")
+        self.assertEqual(t.end(), 0, t.said())
+        rows = self.rows("01", "pairs")
+        self.assertEqual([r["response"] for r in rows], ["1", "2"])
+        self.assertEqual([r["rating"] for r in self.rows("01", "marks")], ["3", "3"])
+        for r in rows:
+            self.assertEqual(int(r["frame_2"]) - int(r["frame_1"]), self.frames_of(r["plan_1"]) + RATE // 10)
+            self.assertAlmostEqual(float(r["duration"]),
+                                   (self.frames_of(r["plan_1"]) + RATE // 10 + self.frames_of(r["plan_2"])) / RATE, 6)
+            self.assertEqual((r["void"], r["xruns"], r["stream"], r["attempt"]), ("false", "0", "1", "1"))
+            self.assertLess(float(r["response_time"]), PATIENCE_S)
+        self.assertEqual(rows[0]["onset"], "0.000000")
+        self.assertAlmostEqual(float(rows[1]["onset"]), (int(rows[1]["frame_1"]) - int(rows[0]["frame_1"])) / RATE, 5)
+        # Half a second, the animation's 0.2 s, and the stimuli are between two trials at least.
+        self.assertGreater(float(rows[1]["onset"]), float(rows[0]["duration"]) + 0.7)
+        self.assertEqual(len(read_table(self.dir / "study/sourcedata/sub-01/practice.tsv")), 1)
+
+    def test_nothing_tells_the_method(self):
+        t = self.start()
+        t.begin()
+        for _ in range(3):
+            t.answer("Which one\\? ", "1")
+        t.answer("Any key begins", " ")
+        for _ in range(2):
+            t.answer("How even\\? ", "2")
+        t.answer("Any key ends", " ")
+        self.assertEqual(t.end(), 0, t.said())
+        for text in (t.all, re.sub(r'tactor: warning: motion ".*', "", t.said())):
+            self.assertNotRegex(text, "(?i)alder|birch|tactile-brush|park")
+        # The target moved: the picture was drawn over itself.
+        self.assertIn("\033[", t.all)
+        self.assertNotIn("cannot be drawn", t.said())
+
+    def test_the_experimenter_s_keys(self):
+        t = self.start()
+        t.begin()
+        t.answer("Which one\\? ", "1")  # practice
+        t.answer("trial 1 of 2", "r")  # while it plays
+        t.until("once more, later")
+        t.answer("trial 2 of 2: [^?]*Which one\\? ", "r")  # while it is asked
+        t.until("once more, later")
+        t.answer("trial 1 of 2 \\(again\\): [^?]*Which one\\? ", "p2")
+        t.answer("A pause", "1g")
+        t.answer("trial 2 of 2 \\(again\\): [^?]*Which one\\? ", "v")
+        t.key("2")
+        t.answer("trial 1 of 2 \\(again\\): [^?]*Which one\\? ", "1")
+        t.answer("Any key begins", "v")  # in the next run's introduction: back to this one
+        t.answer("trial 1 of 2 \\(again\\): [^?]*Which one\\? ", "2")
+        t.answer("Any key begins", " ")
+        t.answer("How even\\? ", "1")
+        t.answer("How even\\? ", "2")
+        t.answer("Any key ends", "v")
+        t.answer("trial 2 of 2 \\(again\\): How even\\? ", "3")
+        t.answer("Any key ends", " ")
+        self.assertEqual(t.end(), 0, t.said())
+        told = [(r["trial"], r["attempt"], r["void"], r["response"]) for r in self.rows("01", "pairs")]
+        self.assertEqual(told, [("1", "1", "true", "n/a"), ("2", "1", "true", "n/a"), ("1", "2", "true", "2"),
+                                ("2", "2", "false", "2"), ("1", "3", "true", "1"), ("1", "4", "false", "2")])
+        told = [(r["trial"], r["attempt"], r["void"], r["rating"]) for r in self.rows("01", "marks")]
+        self.assertEqual(told, [("1", "1", "false", "1"), ("2", "1", "true", "2"), ("2", "2", "false", "3")])
+        told = json.loads(self.ok("analyze", "study", "--format", "json").stdout)["runs"]
+        self.assertEqual((told["pairs"]["n"], told["pairs"]["trials"]), (1, 2))
+        self.assertEqual(t.said().count("is void: the experimenter repeats it"), 2)
+        self.assertEqual(t.said().count("is void: the experimenter says so"), 3)
+        self.ok("experiment", "short.toml", "--participant", "01", "-o", "study", "-D", "null", "--resume")
+
+    def test_ctrl_c_at_any_place_and_on_from_there(self):
+        t = self.start()
+        t.answer("Do you agree", "\x03")
+        self.assertEqual(t.end(), 130)
+        self.assertFalse((self.dir / "study/sourcedata").exists())
+        t = self.start()
+        t.answer("Do you agree", "y")
+        t.answer("tactor 0: was it felt", "q")  # as good
+        self.assertEqual(t.end(), 130)
+        self.assertFalse((self.dir / "study/sourcedata").exists())
+        for n, place in enumerate(("Any key begins", "practice 1 of 1", "trial 1 of 2: ", "A break")):
+            more = ("--resume",) if n else ()
+            t = self.start(*more)
+            if not n:
+                t.answer("Do you agree", "y")
+            for i in (0, 1):
+                t.answer(f"tactor {i}: was it felt", "y")
+            if n:
+                t.answer("Any key begins", " ")
+            if n == 2:
+                t.answer("Which one\\? ", "1")
+            if n == 3:
+                t.answer("Which one\\? ", "1")
+                t.answer("Which one\\? ", "2")
+            t.answer(place, "\x03")
+            self.assertEqual(t.end(), 130, place)
+            self.assertIn("--resume goes on", t.said())
+        self.assertEqual([r["response"] for r in self.rows("01", "pairs")], ["1", "2"])
+        # The break was over with the interruption; and the stream is another.
+        result = self.ok(*self.args("--resume"), stdin="y\ny\n1\n2\n")
+        self.assertNotIn("A break", result.stdout)
+        self.assertEqual({r["stream"] for r in self.rows("01", "pairs")}, {"4"})
+        self.assertEqual({r["stream"] for r in self.rows("01", "marks")}, {"5"})
+        self.assertEqual([s["stream"] for s in self.session("01")["streams"]], [1, 2, 3, 4, 5])
+
+
+class ByLines(PersonTest):
+    ANSWERS = AGREED + "1\n1\n2\n" + "1\n2\n"
+
+    def test_a_session_and_what_it_leaves(self):
+        result = self.ok(*self.args(), stdin=self.ANSWERS)
+        self.assertIn('warning: playing to "null", which nobody feels', result.stderr)
+        self.assertIn("warning: the target cannot be drawn", result.stderr)
+        s = self.session("01")
+        self.assertEqual((s["simulated"], s["device"], s["sound_server"], s["masker"], s["thresholds_assumed"]),
+                         (False, "null", None, None, False))
+        self.assertEqual([w["tactor"] for w in s["walk"]], [0, 1])
+        self.assertEqual(len(s["streams"]), 1)
+        self.assertRegex(s["consent"], r"^20\d\d-")
+        self.assertEqual((s["streams"][0]["device"], s["streams"][0]["display"]), ("null", "terminal"))
+        self.assertNotIn("simulated", (self.dir / "study/README").read_text().lower())
+        self.assertNotIn("SIMULATED", result.stdout)
+        for scan in read_table(self.dir / "study/sub-01/sub-01_scans.tsv"):
+            self.assertRegex(scan["acq_time"], r"^20\d\d-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{6}$")
+        told = json.loads(self.ok("analyze", "study", "--format", "json").stdout)
+        self.assertFalse(told["simulated"])
+        before = contents(self.dir / "study")
+        self.assertIn("finished", self.ok(*self.args("--resume")).stdout)
+        self.assertEqual(contents(self.dir / "study"), before)
+        self.refused(2, *self.args(), says=("session of 01 already", "--resume"))
+        self.refused(2, "experiment", "short.toml", "--participant", "03", "-o", "study", "--simulate", "seed=1",
+                     says=("sub-01 is real", "a folder each"))
+
+    def test_no_consent_no_data(self):
+        self.refused(1, *self.args(), stdin="n\n", says=("sub-01: did not agree",))
+        self.assertFalse((self.dir / "study/sourcedata").exists())
+        self.assertFalse((self.dir / "study/participants.tsv").exists())
+        self.ok(*self.args(), stdin=self.ANSWERS)
+
+    def test_a_tactor_that_is_not_felt_ends_it_and_may_be_driven_again(self):
+        result = self.refused(1, *self.args(), stdin="y\nr\nx\ny\nb\ny\nn\n", says=("tactor 1: it was not felt", "--walk"))
+        self.assertEqual(re.findall(r"tactor (\d): was it felt", result.stdout), list("00101"))
+        self.assertFalse((self.dir / "study/sourcedata").exists())
+
+    def test_identify_names_the_motions(self):
+        text = SHORT[:SHORT.index("[[run]]")].replace('consent = "Be at ease."\n', "")
+        self.write("what.toml", text + '[[run]]\nname = "what"\ntask = "identify"\ntrials = 2\nmethods = ["Birch"]\n')
+        result = self.ok(*self.args(definition="what.toml"), stdin="y\ny\n3\n1\n2\n")
+        self.assertIn("Which movement was it? 1 east, 2 west: ", result.stdout)
+        self.assertIn("that is no answer: 1 east, 2 west", result.stdout)
+        self.assertNotIn("agree", result.stdout)  # there is nothing to agree to
+        self.assertEqual([r["response"] for r in self.rows("01", "what")], ["east", "west"])
+
+    def test_no_more_answers_loses_none(self):
+        self.refused(1, *self.args(), stdin=AGREED + "1\n1\n", says=("no answer any more", "--resume"))
+        self.assertEqual(len(self.rows("01", "pairs")), 1)
+        result = self.ok(*self.args("--resume"), stdin="y\ny\n" + "2\n1\n2\n")
+        self.assertNotIn("Do you agree", result.stdout)
+        self.assertNotIn("practice 1", result.stdout)
+        rows = self.rows("01", "pairs")
+        self.assertEqual([(r["trial"], r["response"], r["stream"]) for r in rows], [("1", "1", "1"), ("2", "2", "2")])
+        # Over the gap between two streams the clock of the day counts.
+        self.assertGreater(float(rows[1]["onset"]), float(rows[0]["duration"]))
+
+    def test_a_keypad_that_is_none_is_told_before_anything_is_written(self):
+        self.refused(2, *self.args("--keypad", "/dev/null"), stdin=AGREED, says=("/dev/null: it is no input device",))
+        self.refused(3, *self.args("--keypad", "/dev/input/nobody"), stdin=AGREED, says=("/dev/input/nobody: No such file",))
+        self.refused(2, *self.args("--keypad", "/dev/null", "--simulate", "seed=1"), says=("--keypad", "nobody is asked"))
+        self.assertFalse((self.dir / "study/sub-01").exists())
+
+    def test_killed_at_any_moment_nothing_answered_is_lost(self):
+        with subprocess.Popen([TOOL, *map(str, self.args())], cwd=self.dir, env=self.env, stdin=subprocess.PIPE,
+                              stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as tool:
+            tool.stdin.write(AGREED + "1\n2\n")
+            tool.stdin.flush()
+            for line in tool.stdout:
+                if line.startswith("trial 2"):
+                    break
+            tool.send_signal(signal.SIGKILL)
+        self.assertEqual([r["response"] for r in self.rows("01", "pairs")], ["2"])
+        self.ok(*self.args("--resume"), stdin="y\ny\n" + "1\n1\n2\n")
+        self.assertEqual([r["response"] for r in self.rows("01", "pairs")], ["2", "1"])
+
+
+class Masking(PersonTest):
+    def noisy(self, extra=""):
+        self.write("noisy.toml", SHORT.replace("[[motion]]", f'[masking]\nnoise = "white"\nlevel_dbfs = -20\n{extra}[[motion]]', 1))
+        return "noisy.toml"
+
+    def covered(self, name):
+        """How many times 10 ms each piece of full noise lasts (S32, stereo)."""
+        values = [v / 2 ** 31 for v, in struct.iter_unpack("<i", (self.dir / name).read_bytes())]
+        self.assertEqual(values[::2], values[1::2])
+        left = values[::2]
+        power = [sum(v * v for v in left[i:i + 480]) / 480 for i in range(0, len(left) - 479, 480)]
+        self.assertEqual(power[0], 0)
+        full = "".join(str(int(0.7e-2 < p < 1.4e-2)) for p in power)
+        return [len(r) for r in re.findall("1+", full)]
+
+    def test_noise_around_each_stimulus(self):
+        self.ok(*self.args("--masker", "raw:noise.raw", definition=self.noisy()), stdin=ByLines.ANSWERS)
+        self.assertEqual(self.session("01")["masker"], "raw:noise.raw")
+        pieces = self.covered("noise.raw")
+        # Two tactors of the walk (0.65 s), three pairs and two single stimuli after half a second each; without
+        # answers to wait for, neighbours may run into one.
+        least = 2 * 65 + 100 * sum(0.5 + float(r["duration"]) for r in
+                                   read_table(self.dir / "study/sourcedata/sub-01/practice.tsv")
+                                   + self.rows("01", "pairs") + self.rows("01", "marks"))
+        self.assertGreaterEqual(sum(pieces), least - 7)
+        self.assertGreaterEqual(min(pieces), 64)
+
+    def test_noise_through_the_run(self):
+        self.ok(*self.args("--masker", "raw:noise.raw", definition=self.noisy('while = "run"\n')), stdin=ByLines.ANSWERS)
+        pieces = self.covered("noise.raw")
+        whole = [100 * (float(r["onset"]) + float(r["duration"])) for r in
+                 (self.rows("01", "pairs")[-1], self.rows("01", "marks")[-1])]
+        for run in whole:  # from its first sample to its last, in one piece
+            self.assertTrue([p for p in pieces if p >= run], (pieces, whole))
+
+    def test_its_level_is_checked_by_ear(self):
+        check = ("experiment", self.noisy(), "--check-noise", "-D", "null")
+        said = self.ok(*check, "--masker", "raw:noise.raw", stdin="s\ns\nn\nx\nn\nq\n").stdout
+        self.assertIn("white noise, -20 dBFS, on raw:noise.raw", said)
+        self.assertEqual(said.splitlines()[1:2] + said.splitlines()[4:], ["noise", "silence", "noise"])
+        self.assertRegex(said.splitlines()[2], r"^a stimulus of 0\.\d\d s$")
+        self.assertGreaterEqual(sum(self.covered("noise.raw")), 40)
+        self.assertFalse((self.dir / "study").exists())
+        self.ok(*check, "--masker", "null")  # no keys: it ends
+        self.refused(2, *check, says=("--check-noise", "--masker PCM"))
+        self.refused(2, "experiment", "short.toml", "--check-noise", "-D", "null", "--masker", "null",
+                     says=("--masker", "no masking noise"))
+        self.refused(2, *check[:-2], "--simulate", "seed=1", "--masker", "null", says=("--check-noise", "nobody hears"))
+
+    def test_what_does_not_go_together(self):
+        self.refused(2, *self.args("--masker", "null"), says=("--masker", "no masking noise"))
+        self.refused(2, *self.args("--masker", ""), says=("--masker", "no device is named"))
+        self.refused(3, *self.args("--masker", "hw:CARD=Nowhere", definition=self.noisy()), says=("hw:CARD=Nowhere",))
+        self.assertIn("masking noise has no device",
+                      self.refused(1, *self.args(definition=self.noisy()), stdin="n\n", says=("did not agree",)).stderr)
+        self.write("loud.toml", (self.dir / "noisy.toml").read_text().replace("= -20\n", "= -3\n"))
+        for more in ((), ("--dry-run",)):
+            self.refused(2, *self.args(*more, definition="loud.toml"), says=("loud.toml:", "level_dbfs is -3", "from -5 on"))
+
+
+class Refused(PersonTest):
+    def test_each_before_a_trial(self):
+        self.write("sl.toml", SHORT.replace("{ dbfs = -20 }", "{ sl_db = 7 }"))
+        self.refused(2, *self.args(definition="sl.toml"), says=("tactor 0 has no threshold", "tactor calibrate"))
+        self.refused(2, *self.args(device=None), says=("-D: no device is configured", "--simulate"))
+        many = SHORT[:SHORT.index("[[method]]")].replace('"east"', '"m0"').replace('"west"', '"m1"') + "".join(
+            f'[[motion]]\nname = "m{i}"\npath = "M0 0H{i}"\nduration = 0.2\n' for i in range(2, 10)) + \
+            '[[method]]\nname = "one"\n[[run]]\nname = "what"\ntask = "identify"\ntrials = 10\n'
+        self.write("many.toml", many)
+        self.refused(2, *self.args(definition="many.toml"), says=("many.toml", '"what" has 10 answers', "1 to 9"))
+        self.assertFalse((self.dir / "study").exists())
+        self.refused(3, *self.args(device="hw:CARD=Nowhere"), says=("hw:CARD=Nowhere",))
+        self.refused(2, *self.args("--display", "hologram"), says=("--display",))
+
+    def test_two_experimenters_in_one_folder(self):
+        (self.dir / "study").mkdir()
+        holder = os.open(self.dir / "study", os.O_RDONLY)
+        fcntl.flock(holder, fcntl.LOCK_EX)
+        self.refused(2, *self.args(), says=("another session is running",))
+        os.close(holder)
+
+    def test_a_sound_server_in_between(self):
+        # By its type alone: a plugin that is called so, and that nothing stands behind.
+        self.write("alsa.conf", (self.dir / "alsa.conf").read_text() +
+                   "pcm.shared { type pipewire }\npcm.!pipewire { type null }\n")
+        told = self.refused(2, *self.args(device="shared"), says=("shared", "PipeWire is in between", "--allow-sound-server"))
+        self.assertFalse((self.dir / "study").exists())
+        self.assertNotIn("tactor: warning: PipeWire", told.stderr)
+        allowed = self.run_tool(*self.args("--allow-sound-server", device="shared"), stdin="n\n")
+        self.assertIn("tactor: warning: PipeWire is in between", allowed.stderr)
+        self.write("noisy.toml", SHORT.replace("[[motion]]", '[masking]\nnoise = "pink"\n[[motion]]', 1))
+        self.refused(2, *self.args("--masker", "shared", definition="noisy.toml"), says=("shared", "PipeWire is in between", "--masker hw:CARD="))
+
+    def test_simulated_sessions_need_none_of_it(self):
+        self.write("noisy.toml", SMALL.replace("[[motion]]", '[masking]\nnoise = "pink"\n[[motion]]', 1))
+        result = self.simulate("01", definition="noisy.toml")
+        self.assertNotIn("--masker", result.stderr)
+        self.assertEqual((self.session()["masker"], self.session()["device"]), (None, None))
+
+
+if __name__ == "__main__":
+    main()

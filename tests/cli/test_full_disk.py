@@ -1,0 +1,243 @@
+# SPDX-License-Identifier: MIT
+"""Disks that are full, or read-only all of a sudden: nothing is replaced by half of something, nothing that was answered is
+lost or doubled, and what to do is said."""
+import shutil
+import subprocess
+import unittest
+
+from disks import PAGE, Disk, why_not
+from experiments import SMALL, ExperimentTest
+from harness import PATIENCE_S, TOOL, main
+from serving import Server
+from test_experiment_person import DESK, SHORT, Terminal
+
+WHY_NOT = why_not()
+NO_SPACE = "No space left on device"
+FREE_SOME = "free some space"
+
+
+@unittest.skipIf(WHY_NOT, WHY_NOT)
+class FullDisk(ExperimentTest):
+    def redirected(self, *args):
+        """Standard output is a file on the disk; what was said."""
+        with open(self.dir / "disk/out", "wb") as out:
+            r = subprocess.run([TOOL, *args], cwd=self.dir, env=self.env, stdout=out, stderr=subprocess.PIPE, text=True,
+                               timeout=PATIENCE_S, check=False)
+        self.assertEqual(r.returncode, 1, r.stderr)
+        (self.dir / "disk/out").unlink()
+        return r.stderr
+
+    def test_what_is_written_to_a_file_is_there_whole_or_not_at_all(self):
+        disk = Disk(self, 8192)
+        self.simulate()
+        for args in (("render", "park2016-1", "-o", "disk/o.wav"),
+                     *(("plot", "park2016-1", "-o", f"disk/o.{e}") for e in ("svg", "pdf", "png")),
+                     ("compare", "park2016-1", "-o", "disk/c.svg"), ("report", "study", "-o", "disk/o.md"),
+                     ("analyze", "study", "-o", "disk/a.svg")):
+            for before in (False, True):
+                kept = disk.files()
+                for pages in (0, 1):
+                    disk.fill(pages)
+                    self.refused(1, *args, says=[args[-1], NO_SPACE, FREE_SOME])
+                    self.assertEqual(disk.files(), kept, (args, before, pages))
+                    disk.make_room()
+                disk.fill_names()
+                self.refused(1, *args, says=[args[-1], NO_SPACE, FREE_SOME])
+                disk.make_room()
+                self.assertEqual(disk.files(), kept, args)
+                self.ok(*args)
+                self.assertGreater(len(disk.files()[args[-1].removeprefix("disk/")]), PAGE)
+
+    def test_standard_output_that_is_a_file(self):
+        disk = Disk(self)
+        long = ("plan", "--path", "M 0 0 L 40 40", "--duration", "300", "--format")
+        for args in ((*long, "json"), (*long, "csv"), ("plan", "park2016-1", "--format", "json"), ("render", "park2016-1", "-o", "-"),
+                     ("experiment", "park2016", "--dry-run", "--format", "json")):
+            for pages in (0, 1):
+                disk.fill(pages)
+                said = self.redirected(*args)
+                self.assertRegex(said, rf"(standard output|/dev/stdout: cannot be written): {NO_SPACE} \({FREE_SOME}, .* is cut short\)")
+                disk.make_room()
+
+    def test_a_disk_that_is_read_only(self):
+        disk = Disk(self, 8192)
+        self.ok("render", "park2016-1", "-o", "disk/o.wav")
+        kept = disk.files()
+        disk.read_only()
+        for name in ("o.wav", "p.wav"):
+            self.refused(1, "render", "park2016-2", "-o", f"disk/{name}", says=["Read-only file system", "name a file where you may write"])
+        disk.read_only(False)
+        self.assertEqual(disk.files(), kept)
+
+    def test_calibrate(self):
+        args = ("calibrate", "--participant", "P07", "-o", "disk/me.toml", "--simulate", "threshold=-45,spread=2",
+                "--reversals", 8, "--tactors", "0-2")
+        disk = Disk(self)
+        self.ok(*args)
+        whole = disk.files()
+        begun = kept = pages = 0
+        while True:
+            for name in whole:
+                (disk.path / name).unlink()
+            disk.fill(pages)
+            r = self.run_tool(*args)
+            if r.returncode == 0:
+                break
+            log = disk.files()["me.tsv"]
+            self.assertEqual(r.returncode, 1, r.stderr)
+            self.assertTrue(whole["me.tsv"].startswith(log))
+            self.assertNotIn("me.toml", disk.files())
+            # Before it begins, when a trial is answered, and when all are.
+            begun += "me.json: cannot be written" in r.stderr
+            if "me.json" not in r.stderr:
+                self.assertRegex(r.stderr, rf"me\.(tsv|toml): {NO_SPACE} \(what was answered before is kept; make room, and --resume goes on\)")
+                kept += len(log.splitlines()) > 2
+            self.refused(1, *args, "--resume", says=[NO_SPACE])  # there still is no room
+            disk.make_room()
+            self.ok(*args, "--resume")
+            self.assertEqual(disk.files(), whole, pages)
+            pages += 1
+        self.assertEqual(disk.files(), whole)
+        self.assertEqual((begun, kept), (1, pages - 2))
+        self.assertGreater(kept, 1)
+
+    def study(self, fill):
+        """A simulated session for any room that is left on the disk, and how often an answer took what was kept for it."""
+        self.small(SMALL.replace("trials = 4", "trials = 40"))
+        args = ("experiment", "small.toml", "--participant", "01", "-o", "disk/study", "--simulate", "seed=4,sigma=1,void=0.3")
+        disk = Disk(self)
+        self.ok(*args)
+        whole = disk.files()
+
+        def answered():
+            return {n: d for n, d in disk.files().items() if n.endswith("_beh.tsv")}
+
+        kept = left = 0
+        while True:
+            shutil.rmtree(disk.path / "study")
+            fill(disk, left)
+            r = self.run_tool(*args)
+            if r.returncode == 0:
+                break
+            self.assertEqual(r.returncode, 1, r.stderr)
+            # A first file may be written elsewhere.
+            self.assertRegex(r.stderr, rf"{NO_SPACE} \(.*(make room, and --resume goes on|free some space.*)\)")
+            kept += "the last answer is kept" in r.stderr
+            found = answered()
+            for name, data in found.items():
+                self.assertTrue(whole[name].startswith(data) and data.endswith(b"\n"), name)
+            if found:
+                fill(disk, 0)  # of what was kept for an answer
+                self.refused(1, *args, "--resume", says=[NO_SPACE])
+                self.assertEqual(answered(), found)
+            disk.make_room()
+            self.ok(*args, "--resume")
+            self.assertEqual(disk.files(), whole, left)
+            left += 1
+        self.assertEqual(disk.files(), whole)
+        return kept
+
+    def test_a_simulated_study_on_a_full_disk(self):
+        self.assertGreater(self.study(Disk.fill), 5)
+
+    def test_a_simulated_study_on_a_disk_without_names(self):
+        self.assertGreater(self.study(Disk.fill_names), 5)
+
+    def person(self, *more):
+        self.write("desk.toml", DESK)
+        self.write("short.toml", SHORT)
+        t = Terminal(self, ("experiment", "short.toml", "--participant", "01", "-o", "disk/study", "-D", "null", *more))
+        self.addCleanup(t.console.close)
+        return t
+
+    def answers(self, run):
+        return [r["rating" if run == "marks" else "response"] for r in self.rows("01", run, "disk/study")]
+
+    def resumed(self, *answers):
+        """A session that goes on, with these answers to the question that each is for."""
+        t = self.person("--resume")
+        for i in (0, 1):
+            t.answer(f"tactor {i}: was it felt", "y")
+        for question, answer in answers:
+            t.answer(question, answer)
+        self.assertEqual(t.end(), 0, t.said())
+
+    def test_a_disk_that_fills_while_somebody_answers(self):
+        disk = Disk(self)
+        t = self.person()
+        t.begin()
+        for _ in range(2):  # practice, and a trial
+            t.answer("Which one\\? ", "1")
+        t.until("Which one\\? ")
+        disk.fill()
+        t.key("2")  # there is room where the table ends
+        t.answer("Any key begins", " ")
+        t.answer("How even\\? ", "3")  # this takes a table of its own
+        self.assertEqual(t.end(), 1)
+        self.assertRegex(t.said(), rf"{NO_SPACE} \(the last answer is kept; make room, and --resume goes on\)")
+        self.assertEqual((self.answers("pairs"), self.answers("marks")), (["1", "2"], ["3"]))
+        disk.make_room()
+        self.resumed(("Any key begins", " "), ("trial 2 of 2: How even\\? ", "1"), ("Any key ends", " "))
+        self.assertEqual((self.answers("pairs"), self.answers("marks")), (["1", "2"], ["3", "1"]))
+
+    def test_a_disk_without_names_while_somebody_answers(self):
+        disk = Disk(self)
+        t = self.person()
+        t.begin()
+        t.answer("Which one\\? ", "1")
+        t.until("Which one\\? ")
+        disk.fill_names()
+        t.key("2")
+        self.assertEqual(t.end(), 1)
+        self.assertRegex(t.said(), rf"{NO_SPACE} \(the last answer is kept; make room, and --resume goes on\)")
+        self.assertEqual(self.answers("pairs"), ["2"])
+
+    def test_a_disk_that_becomes_read_only_while_somebody_answers(self):
+        disk = Disk(self)
+        t = self.person()
+        t.begin()
+        for _ in range(2):
+            t.answer("Which one\\? ", "1")
+        t.until("Which one\\? ")
+        disk.read_only()
+        t.key("2")
+        self.assertEqual(t.end(), 1)
+        self.assertRegex(t.said(), r"Read-only file system \(what was answered before is kept; make the disk writable again, and --resume goes on\)")
+        t = self.person("--resume")
+        self.assertEqual(t.end(), 1)
+        self.assertIn("Read-only file system", t.said())
+        disk.read_only(False)
+        self.assertEqual(self.answers("pairs"), ["1"])
+        self.resumed(("Any key begins", " "), ("trial 2 of 2: [^?]*Which one\\? ", "2"), ("Any key begins", " "),
+                     ("How even\\? ", "3"), ("How even\\? ", "1"), ("Any key ends", " "))
+        self.assertEqual((self.answers("pairs"), self.answers("marks")), (["1", "2"], ["3", "1"]))
+
+    def test_serve_goes_on_without_its_log(self):
+        disk = Disk(self)
+        log = disk.path / "serve.log"
+        line = "2026-01-01T00:00:00.000Z info an earlier line\n"
+        # The next page begins in the first line that it writes.
+        log.write_text(line * (PAGE // len(line) + 1))
+        log.write_bytes(log.read_bytes()[:PAGE - 10 - len(line)] + b"\n" + line.encode())
+        before = log.read_text()
+        disk.fill()
+        s = Server(self, "--log", log)
+        c = s.client()
+        self.assertEqual(c.end_of(c.ok("play", stroke="park2016-1")["stroke"])["state"], "finished")
+        disk.make_room()
+        self.assertEqual(c.end_of(c.ok("play", stroke="park2016-1")["stroke"])["state"], "finished")
+        status, _, err = s.terminate()
+        self.assertEqual(status, 0, err)
+        self.assertEqual(err.count(f"serve.log: {NO_SPACE}: the log ends here"), 1)
+        self.assertEqual(log.read_text(), before)
+        # Another one goes on in a line of its own.
+        s = Server(self, "--log", log)
+        self.assertEqual(s.terminate()[0], 0)
+        lines = log.read_text().removeprefix(before).splitlines()
+        self.assertGreater(len(lines), 2)
+        for each in lines:
+            self.assertRegex(each, r"^\d{4}-\d\d-\d\dT[\d:.]+Z info ")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: MIT
+"""Plans that were stored are played, rendered and drawn as they are."""
+import json
+
+from harness import ROOT, ToolTest, main
+
+DESK = """[array]
+name = "desk"
+grid = { rows = 3, columns = 3, pitch_mm = 20.0 }
+[[tactor]]
+tactor = 4
+channel = 11
+gain_db = -3.3
+max_dbfs = -1.5
+polarity = -1
+[output]
+channels = 14
+[sync]
+channel = 13
+"""
+HEARD = '[array]\nname = "heard"\ngrid = { rows = 2, columns = 2, pitch_mm = 30.0 }\n' + "".join(
+    f"[[tactor]]\ntactor = {i}\nthreshold_dbfs = {-40.1 - i}\n" for i in range(4))
+THREE = """[[stroke]]
+name = "first"
+path = "M 1.1 2.2 L 39 33.3"
+duration_s = 0.7123
+[[stroke]]
+name = "second"
+path = "M 1 2 C 20 -1 20 45 40 30"
+duration_s = 0.33337
+[[stroke]]
+name = "third"
+points = [[0, 10], [30, 12]]
+duration_s = 0.5
+start_s = 0.25
+carrier_hz = 187.5
+"""
+
+
+class PlanFile(ToolTest):
+    def stored(self, *args, name="plan.json"):
+        self.write(name, self.ok("plan", *args, "--format", "json").stdout)
+        return name
+
+    def same(self, *args):
+        """Rendered from its plan a stroke has the same bytes, and its plan is the same text."""
+        file = self.stored(*args)
+        self.ok("render", *args, "-o", "stroke.wav")
+        self.ok("render", file, "-o", "plan.wav")
+        self.assertEqual((self.dir / "stroke.wav").read_bytes(), (self.dir / "plan.wav").read_bytes(), args)
+        self.assertEqual(self.ok("plan", file, "--format", "json").stdout, (self.dir / file).read_text(), args)
+
+    def test_a_plan_renders_the_bytes_of_its_stroke(self):
+        for algorithm in ("park2016", "tactile-brush", "continuous"):
+            for phantom in ("inverse-distance", "barycentric", "gaussian"):
+                with self.subTest(algorithm=algorithm, phantom=phantom):
+                    self.same("park2016-3", "--algorithm", algorithm, "--phantom", phantom)
+        self.same("park2016-1", "--algorithm", "continuous", "--duration", "5.00033")
+        self.same("--path", "M 0 10 C 20 5 20 35 40 30", "--algorithm", "continuous", "--speed", "33")
+        self.same("wave-2x4", "--array", "palm-2x4")
+        for name in ("reach", "knocks"):
+            self.same(str(ROOT / f"examples/strokes/{name}.toml"))
+
+    def test_how_it_is_rendered_is_in_it(self):
+        self.same("park2016-3", "--rate", "44100", "--level-dbfs", "-20.05", "--phase", "burst", "--ramp", "0.0013")
+        self.same("park2016-2", "--algorithm", "tactile-brush", "--overlap", "max", "--carrier", "187.5")
+        self.write("desk.toml", DESK)
+        self.same("park2016-1", "--array", "desk.toml")
+        self.write("heard.toml", HEARD)
+        self.same("--path", "M 0 10 L 30 12", "--array", "heard.toml", "--sl", "7.7")
+
+    def test_several_strokes_begin_at_their_frames(self):
+        self.write("three.toml", THREE)
+        for algorithm in ("park2016", "continuous"):
+            self.same("three.toml", "--algorithm", algorithm, "--rate", "44100")
+
+    def test_options_of_rendering_win_and_those_of_planning_are_refused(self):
+        file = self.stored("park2016-1", "--rate", "44100")
+        self.ok("render", file, "--rate", "48000", "--level-dbfs", "-20", "-o", "plan.wav")
+        self.ok("render", "park2016-1", "--level-dbfs", "-20", "-o", "stroke.wav")
+        self.assertEqual((self.dir / "stroke.wav").read_bytes(), (self.dir / "plan.wav").read_bytes())
+        for option in (("--soa", "0.06"), ("--algorithm", "continuous"), ("--duration", "2"), ("--fit",), ("--snap",),
+                       ("--carrier", "200"), ("--overlap", "sum"), ("--timing", "fit")):
+            said = self.refused(2, "render", file, *option, "-o", "x.wav", says=[f"{option[0]}: plan.json is planned"])
+            self.assertFalse((self.dir / "x.wav").exists(), said)
+
+    def test_defaults_are_for_planning_anew(self):
+        file = self.stored("park2016-1")
+        self.ok("render", file, "-o", "plan.wav")
+        config = self.write("tactor.toml", '[defaults]\nalgorithm = "continuous"\nlevel-dbfs = -30.0\nsoa = 0.06\n')
+        self.ok("render", file, "--config", config, "-o", "configured.wav")
+        self.assertEqual((self.dir / "plan.wav").read_bytes(), (self.dir / "configured.wav").read_bytes())
+        palm = self.write("palm.toml", '[array]\nname = "p"\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n'
+                          '[defaults]\nlevel-dbfs = -30.0\nphase = "burst"\nramp = 0.003\n')
+        self.ok("render", file, "--array", palm, "-o", "configured.wav")
+        self.assertEqual((self.dir / "plan.wav").read_bytes(), (self.dir / "configured.wav").read_bytes())
+
+    def test_every_command_that_plays_or_draws_takes_it(self):
+        for algorithm in ("park2016", "continuous"):
+            file = self.stored("park2016-1", "--algorithm", algorithm)
+            self.ok("plot", file, "-o", "a.svg")
+            self.ok("plot", file, "--view", "wave", "-o", "b.svg")
+            self.ok("play", file, "-D", "null")
+            self.assertEqual(self.ok("plan", file).stdout, self.ok("plan", "park2016-1", "--algorithm", algorithm).stdout)
+        self.refused(2, "compare", file, says=["plan.json: it is a plan"])
+        self.refused(2, "render", file, "park2016-1", "-o", "x.wav")
+
+    def test_an_array_that_differs_is_refused(self):
+        file = self.stored("park2016-1")
+        self.ok("render", file, "--array", "palm-3x3", "-o", "x.wav")
+        self.refused(2, "play", file, "--array", "palm-2x4", "-D", "null", says=["9 tactors there, 8 here", "--array"])
+        desk = self.write("desk.toml", DESK)
+        self.refused(2, "render", file, "--array", desk, "-o", "y.wav", says=["tactor 4 is on channel 4 there, on 11"])
+        wide = self.write("wide.toml", '[array]\nname = "wide"\ngrid = { rows = 3, columns = 3, pitch_mm = 21.0 }\n')
+        said = self.refused(2, "render", file, "--config", wide, "-o", "y.wav", says=['"wide"', "tactor 1 is at (20, 0)"])
+        self.assertIn("(21, 0) mm here", said.stderr)
+        self.assertFalse((self.dir / "y.wav").exists())
+        other = self.stored("wave-2x4", "--array", "palm-2x4", name="other.json")
+        self.refused(2, "play", file, other, "-D", "null", says=["other.json: it was planned for"])
+
+    def test_a_plan_comes_through_a_pipe(self):
+        self.ok("render", "park2016-1", "-o", "stroke.wav")
+        stored = (self.dir / self.stored("park2016-1")).read_text()
+        for text in (stored, "\ufeff\n" + stored):
+            self.ok("render", "-", "-o", "pipe.wav", stdin=text)
+            self.assertEqual((self.dir / "pipe.wav").read_bytes(), (self.dir / "stroke.wav").read_bytes())
+        self.assertEqual(self.ok("plan", "-", "--format", "json", stdin=stored).stdout, stored)
+        self.ok("play", "-", "-D", "null", stdin=stored)
+        self.ok("plot", "-", "-o", "pipe.svg", stdin=stored)
+        self.refused(2, "render", "-", "--phantom", "gaussian", "-o", "x.wav", stdin=stored, says=["standard input is planned already"])
+        self.refused(2, "compare", "-", stdin=stored, says=["standard input: it is a plan"])
+        self.refused(2, "render", "-", "-o", "x.wav", stdin=stored[:700], says=["standard input: line "])
+        self.refused(2, "render", "-", "-o", "x.wav", stdin=" {}", says=["standard input", "tactor plan STROKE --format json"])
+        self.assertFalse((self.dir / "x.wav").exists())
+
+    def test_what_is_no_plan_says_where(self):
+        good = self.plan("park2016-1", "--algorithm", "continuous")
+        bursts = self.plan("park2016-1")
+        self.refused(2, "render", "none.json", "-o", "x.wav", says=["none.json: No such file"])
+        self.refused(2, "render", self.dir.name + ".json/", "-o", "x.wav")
+        (self.dir / "folder.json").mkdir()
+        self.refused(2, "render", "folder.json", "-o", "x.wav", says=["folder.json"])
+
+        def refuses(text, *says):
+            self.write("bad.json", text if isinstance(text, str) else json.dumps(text))
+            self.refused(2, "render", "bad.json", "-o", "x.wav", says=["bad.json", *says])
+
+        refuses("")
+        refuses("[]", "no plan in it", "tactor plan STROKE --format json")
+        refuses("{\n  \"schema\": \"tactor-plan/1\",\n  \"algorithm\" }", "line 3, column 15")
+        refuses({"schema": "tactor-play/1"}, "its schema is tactor-play/1")
+        refuses("[" * 100000, "bad.json")
+
+        def without(plan, *keys):
+            p = json.loads(json.dumps(plan))
+            at = p
+            for k in keys[:-1]:
+                at = at[k]
+            del at[keys[-1]]
+            return p
+
+        def changed(plan, value, *keys):
+            p = json.loads(json.dumps(plan))
+            at = p
+            for k in keys[:-1]:
+                at = at[k]
+            at[keys[-1]] = value
+            return p
+
+        refuses(without(good, "continuous", "points", 700), "continuous.points", "1401 samples")
+        refuses(without(good, "continuous", "points", 7, "x_mm"), "points[7].x_mm: is missing")
+        refuses(without(bursts, "render", "phase"), "render.phase: is missing")
+        refuses(without(bursts, "array", "tactors", 2, "channel"), "array.tactors[2].channel: is missing")
+        refuses(changed(bursts, "loud", "bursts", 3, "intensity"), "bursts[3].intensity: is no number")
+        refuses(changed(bursts, 9, "bursts", 3, "drives", 0, "tactor"), "bursts[3]", "tactor 9 of 9")
+        refuses(changed(bursts, 0.0, "bursts", 3, "onset_s"), "bursts[3]", "before")
+        refuses(changed(bursts, "tango", "render", "overlap"), "render.overlap", '"tango"')
+        refuses(changed(bursts, [], "bursts"), "bursts")
+        refuses(changed(good, 0.002, "continuous", "step_s"), "continuous.step_s", "0.001")
+        self.write("loud.json", json.dumps(changed(good, 1e300, "continuous", "points", 5, "drives", 0, "amplitude")))
+        self.refused(2, "render", "loud.json", "-o", "x.wav", says=["tactor 0: would be driven", "full scale"])
+        refuses(json.dumps(bursts).replace('"total_s": ', '"total_s": 1e999, "x": '), "bad.json")
+        self.write("ends.json", json.dumps(changed(bursts, -1.0, "total_s")))
+        self.refused(2, "render", "ends.json", "-o", "x.wav", says=["it lasts -1 s", "between 0"])
+        self.assertFalse((self.dir / "x.wav").exists())
+
+
+main()

@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: MIT
+"""Clients in the tool: play --socket, stop, status, and live strokes from standard input, here and through a server."""
+import json
+import signal
+import subprocess
+
+from harness import PATIENCE_S, TOOL, ToolTest, main
+from serving import Server
+
+BRIEF = ("--path", "M 0 0 L 40 40", "--algorithm", "continuous", "--duration", "0.05")
+LONG = ("--path", "M 0 0 L 40 40", "--algorithm", "continuous", "--duration", "300")
+
+
+class Remote(ToolTest):
+    def serve(self, **more):
+        s = Server(self, **more)
+        self.assertIsNotNone(s.where, getattr(s, "errors", ""))
+        return s
+
+    def begun(self, *args):
+        p = subprocess.Popen([TOOL, *args], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                             cwd=self.dir, env=self.env)
+        self.addCleanup(lambda: [f.close() for f in (p.stdin, p.stdout, p.stderr) if f])
+        self.addCleanup(p.wait)
+        self.addCleanup(p.kill)
+        return p
+
+    def started(self, client, states=("started",)):
+        return client.notification(lambda m: m["method"] == "stroke" and m["params"]["state"] in states)["params"]
+
+    def test_play_through_a_server(self):
+        s = self.serve()
+        r = self.ok("play", *BRIEF, "--socket", s.where["socket"])
+        self.assertIn("--path: played 0.050 s", r.stdout)
+        stroke = self.write("two.toml", "[[stroke]]\npath = 'M 0 0 L 40 0'\nduration_s = 0.1\n"
+                                        "[[stroke]]\npath = 'M 0 0 L 0 40'\nduration_s = 0.1\n")
+        record = json.loads(self.ok("play", "park2016-1", stroke, "--duration", "0.1", "--algorithm", "continuous", "--format",
+                                    "json", "--socket", s.where["socket"]).stdout)
+        self.assertEqual([(x["stroke"], x["state"]) for x in record["strokes"]],
+                         [("park2016-1", "finished"), (str(stroke), "finished")])
+        self.assertEqual(record["strokes"][1]["frames"], 9600)
+        self.assertEqual((record["schema"], record["device"]["pcm"]), ("tactor-play/1", "null"))
+
+    def test_the_users_socket_is_found(self):
+        env = {"XDG_RUNTIME_DIR": str(self.dir)}
+        s = self.serve(env=env)
+        self.assertEqual(s.where["socket"], str(self.dir / "tactor.sock"))
+        self.ok("stop", env=env)
+        self.assertEqual(json.loads(self.ok("status", "--format", "json", env=env).stdout)["stream"]["state"], "running")
+        self.assertIn("running", self.ok("status", env=env).stdout)
+
+    def test_no_server_is_no_device(self):
+        for command in (("stop",), ("status",), ("play", "park2016-1")):
+            self.refused(3, *command, "--socket", "none.sock", says=("none.sock", "tactor serve"))
+
+    def test_what_the_server_refuses_is_said_in_options(self):
+        s = self.serve()
+        for option, value in (("--soa", "3"), ("--level-dbfs", "-1")):
+            self.refused(2, "play", "park2016-1", option, value, "--socket", s.where["socket"], says=(f"tactor: {option}: ",))
+        self.refused(2, "play", "--path", "M 0 0 L 400 0", "--socket", s.where["socket"], says=("--path", "--outside"))
+        for option in (("--array", "palm-3x3"), ("-D", "null"), ("--fit",), ("--rate", "48000")):
+            self.refused(2, "play", "park2016-1", *option, "--socket", s.where["socket"], says=("--socket",))
+        self.refused(2, "play", "nonsense", "--socket", s.where["socket"], says=("nonsense",))
+        plan = self.ok("plan", "park2016-1", "--format", "json").stdout
+        self.write("plan.json", plan)
+        for argument, name in (("plan.json", "plan.json"), ("-", "standard input")):
+            self.refused(2, "play", argument, "--socket", s.where["socket"], stdin=plan, says=(f"{name}: it is a plan", "a server"))
+
+    def test_stop_and_ctrl_c_end_it_with_their_status(self):
+        s = self.serve()
+        watcher = s.client()
+        watcher.ok("subscribe", events=["strokes"])
+        p = self.begun("play", *LONG, "--socket", s.where["socket"])
+        self.started(watcher)
+        self.ok("stop", "--socket", s.where["socket"])
+        out, err = p.communicate(timeout=PATIENCE_S)
+        self.assertEqual(p.returncode, 1, out)
+        self.assertIn("cancelled", err)
+        p = self.begun("play", *LONG, "--socket", s.where["socket"])
+        n = self.started(watcher)["stroke"]
+        p.send_signal(signal.SIGINT)
+        p.communicate(timeout=PATIENCE_S)
+        self.assertEqual(p.returncode, 130)
+        self.assertEqual(watcher.end_of(n)["state"], "cancelled")
+
+    def test_status_watches(self):
+        s = self.serve()
+        p = self.begun("status", "--watch", "--format", "json", "--socket", s.where["socket"])
+        self.assertEqual(json.loads(p.stdout.readline())["clients"], 1)
+        n = s.client().ok("drive", tactor=0, duration_s=0.05)["stroke"]
+        said = []
+        while len(said) < 2:
+            m = json.loads(p.stdout.readline())
+            if m["method"] == "stroke":
+                said.append(m["params"])
+        self.assertEqual([(x["stroke"], x["state"]) for x in said], [(n, "started"), (n, "finished")])
+        s.process.terminate()
+        self.assertEqual(json.loads(p.stdout.readline())["params"]["state"], "closing")
+        self.assertEqual(p.wait(PATIENCE_S), 0)
+
+    def test_lines_move_a_live_stroke_through_a_server(self):
+        s = self.serve()
+        watcher = s.client()
+        watcher.ok("subscribe", events=["strokes"])
+        p = self.begun("play", "--live", "-", "--socket", s.where["socket"])
+        p.stdin.write("10 10\n\n# a remark\n20 20 0.5\n")
+        p.stdin.flush()
+        n = self.started(watcher)["stroke"]
+        p.stdin.write("30 30")
+        p.stdin.close()
+        p.stdin = None
+        out, err = p.communicate(timeout=PATIENCE_S)
+        self.assertEqual(p.returncode, 0, err)
+        self.assertIn("live: played", out)
+        self.assertEqual(watcher.end_of(n)["state"], "finished")
+        p = self.begun("play", "--live", "-", "--socket", s.where["socket"])
+        p.stdin.write("10 10\n")
+        p.stdin.flush()
+        n = self.started(watcher)["stroke"]
+        p.stdin.write("10 x\n")
+        p.stdin.flush()
+        self.assertEqual(p.wait(PATIENCE_S), 2)
+        self.assertIn("standard input:2:", p.stderr.read())
+        self.assertIn(watcher.end_of(n)["state"], ("cancelled", "finished"))
+
+    def test_lines_move_a_live_stroke_here(self):
+        r = self.ok("play", "--live", "-", "-D", "null", stdin="10 10\n20 20 0.5\n30, 30\n")
+        self.assertIn("live: played", r.stdout)
+        record = json.loads(self.ok("play", "--live", "-", "-D", "null", "--format", "json", stdin="10 10\n").stdout)
+        self.assertEqual(record["strokes"][0]["state"], "finished")
+        for line, why in (("1\n", "words"), ("1 2 3 4\n", "words"), ("1 y\n", "not a number"), ("1 2 -1\n", "out of range"),
+                          ("1 nan\n", "not a number"), ("x" * 5000, "4096")):
+            self.refused(2, "play", "--live", "-", "-D", "null", stdin="10 10\n" + line, says=("standard input:2:", why))
+        self.refused(2, "play", "--live", "park2016-1", says=("--live",))
+        self.ok("play", "--live", "-", "-D", "null", "--smooth", "0.1", stdin="10 10\n20 20\n")
+        self.refused(2, "play", "--live", "-", "-D", "null", "--smooth", "2", says=("--smooth", "0 to 1 s"))
+        self.refused(2, "play", "park2016-1", "-D", "null", "--smooth", "0.1", says=("--smooth", "--live"))
+        self.refused(2, "play", "--live", "-", "--duration", "1", says=("--duration",))
+        self.refused(2, "play", "--live", "-", "--level-dbfs", "-1", "--array", "none.toml", says=("none.toml",))
+
+    def test_ctrl_c_ends_a_live_stroke(self):
+        p = self.begun("play", "--live", "-", "-D", "null")
+        self.assertIn("null", p.stdout.readline())
+        p.send_signal(signal.SIGINT)
+        p.communicate(timeout=PATIENCE_S)
+        self.assertEqual(p.returncode, 130)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,377 @@
+# SPDX-License-Identifier: MIT
+"""tactor report: each number against the study's files, what differs between participants, marks of what is simulated,
+and what it refuses."""
+import hashlib
+import json
+import re
+import shutil
+import statistics
+import sys
+
+from experiments import ExperimentTest, contents, read_table
+from harness import ROOT, main
+
+sys.path.insert(0, str(ROOT / "tests/study"))
+import studies  # noqa: E402
+
+RUNS = ("similarity", "uniformity", "similarityrating", "uniformityrating")
+
+
+def section(text, heading):
+    """From a heading to the next of the same rank or above."""
+    rank = heading.split(" ")[0]
+    found = re.search(rf"^{re.escape(heading)}[^\n]*\n(.*?)(?=^#{{1,{len(rank)}}} |\Z)", text, re.M | re.S)
+    assert found, f"no {heading}"
+    return found[1]
+
+
+def tables(text):
+    """Each table as a list of dicts by the head's cells."""
+    found = []
+    for block in re.findall(r"(?:^\|.*\n)+", text, re.M):
+        head, _, *rows = ([c.strip() for c in line.strip("|").split(" | ")] for line in block.splitlines())
+        found.append([dict(zip(head, row)) for row in rows])
+    return found
+
+
+class ReportTest(ExperimentTest):
+    def report(self, *args):
+        return self.ok("report", *args).stdout
+
+    def change(self, code, change, folder="study"):
+        """Rewrites a session as change(its JSON) makes it."""
+        path = self.dir / folder / f"sourcedata/sub-{code}/session.json"
+        told = json.loads(path.read_text())
+        change(told)
+        path.write_text(json.dumps(told))
+
+    def plans(self, code, folder="study"):
+        return {p.stem: json.loads(p.read_text()) for p in (self.dir / folder / f"sourcedata/sub-{code}/plans").iterdir()}
+
+
+class Numbers(ReportTest):
+    made = None  # sessions wait for the disk at each line: once is enough for all
+
+    def setUp(self):
+        super().setUp()
+        if Numbers.made is None:
+            for code in ("01", "02", "03"):
+                self.simulate(code, definition="park2016", spec="seed=1,sigma=1,void=0.05")
+            Numbers.made = contents(self.dir / "study")
+        for name, data in Numbers.made.items():
+            self.write(f"study/{name}", data)
+        self.text = self.report("study")
+        self.one = self.session("01")
+
+    def test_the_array_is_the_session_s(self):
+        apparatus = section(self.text, "## Apparatus")
+        self.assertIn("palm-3x3: 9 tactors in 3 rows and 3 columns, 20 mm from column to column and 20 mm from row to row",
+                      apparatus)
+        places, thresholds = tables(apparatus)
+        self.assertEqual(len(places), 9)
+        for row, tactor in zip(places, self.one["array"]["tactors"]):
+            for shown, key in (("x (mm)", "x_mm"), ("y (mm)", "y_mm"), ("channel", "channel"), ("polarity", "polarity"),
+                               ("gain (dB)", "gain_db"), ("limit (dBFS)", "max_dbfs")):
+                self.assertEqual(float(row[shown]), tactor[key])
+        self.assertEqual([r["threshold (dBFS)"] for r in thresholds], ["sub-01", "sub-02", "sub-03", "mean (sd)"])
+        for i, v in enumerate(self.one["thresholds_dbfs"]):
+            self.assertEqual(float(thresholds[0][f"tactor {i}"]), v)
+        self.assertIn(f"{self.one['level']['sl_db']:g} dB SL", apparatus)
+        self.assertIn("**not measured**", apparatus)
+        self.assertIn("Sample rate (Hz): 48000. Channels: 9. Device: none.", apparatus)
+
+    def test_the_plans_are_those_of_the_session(self):
+        rows, = tables(section(self.text, "### Motions and plans"))
+        plans, stimuli = self.plans("01"), self.one["stimuli"]
+        self.assertEqual(len(rows), len(stimuli))
+        for row, told in zip(rows, stimuli):
+            self.assertEqual((row["motion"], row["method"]), (told["motion"], told["method"]))
+            self.assertEqual(row["SHA-256 of the plan"], f"`{told['sha256']}`")
+            plan = plans[told["sha256"]]
+            for shown, value in (("target (s)", plan["stroke"]["duration_s"]), ("length (mm)", plan["stroke"]["length_mm"]),
+                                 ("sound (s)", plan["total_s"])):
+                self.assertAlmostEqual(float(row[shown]) / value, 1, 5)
+            self.assertEqual(row["SOA (s)"], "-" if plan["soa_s"] is None else f"{plan['soa_s']:g}")
+            self.assertEqual(int(row["overlaps"]), len(plan["conflicts"]))
+            durations = [b["duration_s"] for b in plan["bursts"]]
+            shown = re.fullmatch(r"(\d+) of (\S+)(?: to (\S+))? s", row["bursts"])
+            self.assertEqual(int(shown[1]), len(durations))
+            self.assertAlmostEqual(float(shown[2]), min(durations), 5)
+            self.assertAlmostEqual(float(shown[3] or shown[2]), max(durations), 5)
+        self.assertIn("Carrier: sine of 250 Hz; the phase ran on through each stimulus; raised-cosine ramps of 0 to 0.002 s",
+                      self.text)
+        self.assertIn(r"\mathrm{SOA} = 0.32\,d + 0.0473", self.text)
+        self.assertIn("SOA 0.07 s, timing fixed", self.text)
+        self.assertIn("reconstructed: the figure that shows it", self.text)
+
+    def test_trials_and_voids_are_counted_from_the_tables(self):
+        counts, = tables(section(self.text, "## Data"))
+        voids = 0
+        for row in counts:
+            code = row["participant"][4:]
+            for name, column in zip(RUNS, list(row)[1:]):
+                trials = self.rows(code, name)
+                bad = [t for t in trials if t["void"] == "true"]
+                voids += len(bad)
+                self.assertEqual(row[column], f"{len(trials) - len(bad)} / {len(bad)} / "
+                                              f"{sum(int(t['xruns']) > 0 for t in bad)}")
+        self.assertGreater(voids, 3)
+        self.assertIn(f"Void trials: {voids}, of which had gaps in the sound: {voids};", self.text)
+
+    def test_procedure_is_the_definition_s_and_the_sessions(self):
+        procedure = section(self.text, "## Procedure")
+        for told in ("Gap between the two stimuli of a choice: 1 s.", "Question: Which of the two moved more evenly in speed?",
+                     "Labels of the scale: very uneven, very even", "Break after the run: 60 s", "rated from 1 to 5",
+                     "Trials: 40; practice trials before, which do not count: 4",
+                     "white noise of -30 dBFS (root mean square), faded over 0.05 s, while stimuli played"):
+            self.assertIn(told, procedure)
+        for code in ("01", "02", "03"):
+            session = self.session(code)
+            self.assertIn(f"{', '.join(session['order'])} (sub-{code})", procedure)
+            self.assertIn(f"{session['seed']} (sub-{code})", procedure)
+        self.assertEqual(procedure.count("of each participant: 5\n"), 4)
+
+    def test_versions_and_hashes(self):
+        data = section(self.text, "### Versions and hashes")
+        text = self.one["experiment"]["text"]
+        self.assertIn(f"`{hashlib.sha256(text.encode()).hexdigest()}`", data)
+        self.assertIn(f"tactor: {self.one['versions']['tactor']} (", data)
+
+    def test_results_are_those_of_analyze(self):
+        told = json.loads(self.ok("analyze", "study", "--format", "json").stdout)["runs"]
+
+        def p(value):
+            return "p < 0.001" if value < 0.001 else f"p = {value:.3f}"
+        for name, run in told.items():
+            results = section(self.text, f"### {name} (SIMULATED)")
+            if run["task"] == "choose":
+                t = run["preference"]["all"]
+                self.assertIn(f"park2016 was chosen in {t['mean']:.2f} % (se {t['se']:.2f}, 95 % interval {t['ci'][0]:.2f} ... "
+                              f"{t['ci'][1]:.2f}) of trials, against 50 %: t({t['df']:.0f}) = {t['t']:.2f}, {p(t['p'])}", results)
+                for row in tables(results)[0]:
+                    self.assertEqual(row["mean"], f"{run['preference']['motion'][row['motion']]['mean']:.2f}")
+                first = run["first_interval"]
+                self.assertIn(f"first interval was chosen in {first['mean']:.2f} %", results)
+            else:
+                t = run["paired"]
+                self.assertIn(f"paired: {t['difference']:.2f} (se ", results)
+                self.assertIn(f"t({t['df']:.0f}) = {t['t']:.2f}, {p(t['p'])}", results)
+                for row in tables(results)[0]:
+                    self.assertEqual(row["mean"], f"{run['means'][row['method']]['motion'][row['motion']]['mean']:.2f}")
+            for e in run["anova"].values():
+                self.assertIn(f"F({e['df1']:.0f}, {e['df2']:.0f}) = {e['F']:.2f}, {p(e['p'])}", results)
+
+    def test_the_equations_of_both_algorithms_and_their_sources(self):
+        for told in (r"A_i = \sqrt{(1/d_i) / \sum_{j=1}^{3} 1/d_j}\,A_v", r"A_1 = \sqrt{d_2 / (d_1 + d_2)}\,A_v",
+                     r"m_{i+1} = (\tau_{i+1} - \tau_i - b + (1 - a)\,m_i) / (1 + a)", "- Israr, A., Poupyrev, I. (2011)",
+                     "- Park, J., Kim, J., Oh, Y., Tan, H. Z. (2016)"):
+            self.assertIn(told, self.text)
+
+    def test_simulated_is_said_at_the_top_and_at_each_result(self):
+        self.assertIn("**SIMULATED: nobody was asked.**", "\n".join(self.text.splitlines()[:4]))
+        results = section(self.text, "## Results (SIMULATED)")
+        runs = results.partition("### ")[2].partition("### Warnings")[0]
+        for line in runs.splitlines():
+            if line.startswith("- ") or line.endswith(":") or line.startswith("### "):
+                self.assertIn("simulated", line.lower())
+
+    def test_a_file_is_written_whole_and_replaced(self):
+        self.write("methods.md", "old")
+        said = self.ok("report", "study", "-o", "methods.md")
+        self.assertEqual((self.dir / "methods.md").read_text(), self.text)
+        self.assertEqual(said.stdout, "")
+        self.ok("report", "study", "-o", "study/derivatives/tactor/methods.md")
+        self.assertEqual((self.dir / "study/derivatives/tactor/methods.md").read_text(), self.text)
+        self.assertEqual(self.report("study"), self.text)
+
+
+class Differences(ReportTest):
+    def setUp(self):
+        super().setUp()
+        for code in ("01", "02", "03"):
+            self.simulate(code)
+
+    def test_versions_that_are_mixed_are_told_with_their_participants(self):
+        def older(told):
+            told["versions"] = {"tactor": "0.0.9", "build": "an older one"}
+        self.change("02", older)
+        own = self.session("01")["versions"]["tactor"]
+        self.assertRegex(self.report("study"), rf"- tactor: {re.escape(own)} \(.*\) \(sub-01, sub-03\); 0\.0\.9 \(an older one\) \(sub-02\)")
+
+    def test_thresholds_levels_and_arrays_that_differ(self):
+        def measured(told):
+            told["thresholds_assumed"] = False
+            for i, t in enumerate(told["array"]["tactors"]):
+                t["threshold_dbfs"] = -40.5 - i
+            told["thresholds_dbfs"] = [-40.5 - i for i in range(9)]
+        self.change("03", measured)
+        text = self.report("study")
+        self.assertIn("tactors without one (sub-01, sub-02); from the array file, none assumed (sub-03)", text)
+        rows = tables(section(text, "### Levels and thresholds"))[0]
+        self.assertEqual(rows[2]["tactor 4"], "-44.5")
+        of_4 = [-40, -40, -44.5]
+        self.assertEqual(rows[3]["tactor 4"], f"{statistics.mean(of_4):.2f} ({statistics.stdev(of_4):.2f})")
+        self.assertEqual(len(tables(section(text, "### Array"))), 1)  # places are alike
+
+        def moved(told):
+            told["array"]["tactors"][8]["x_mm"] = 42.0
+            told["level"] = {"sl_db": None, "dbfs": -18.5}
+        self.change("02", moved)
+        text = self.report("study")
+        self.assertEqual(len(tables(section(text, "### Array"))), 2)
+        self.assertIn("in no grid, 20 mm from neighbour to neighbour (median)", text)
+        self.assertIn("-18.5 dBFS, the same for all tactors but for their gains (sub-02)", text)
+
+    def test_definitions_that_differ_in_what_is_asked(self):
+        def other(told):
+            e = told["experiment"]
+            e["text"] = e["text"].replace("gap_s = 0.25", "gap_s = 0.5")
+            e["sha256"] = hashlib.sha256(e["text"].encode()).hexdigest()
+        self.change("01", other)
+        text = self.report("study")
+        self.assertIn("Gap between the two stimuli of a choice: 0.5 s (sub-01); 0.25 s (sub-02, sub-03).", text)
+        self.assertIn("the texts of their experiments differ", text)
+
+    def test_participants_as_their_table_has_them(self):
+        path = self.dir / "study/participants.tsv"
+        path.write_text("participant_id\tage\tsex\thandedness\nsub-01\t26\tF\tR\nsub-02\t36\tM\tR\nsub-03\tn/a\tF\tL\n"
+                        "sub-04\t99\tn/a\tn/a\n")
+        text = section(self.report("study", "--exclude", "04"), "## Participants")
+        self.assertIn("3 participants: sub-01, sub-02, sub-03. Age: 26 to 36 years, mean 31.0, sd 7.1 (of 2; the others': not "
+                      "recorded). Sex: 2 F, 1 M. Handedness: 1 L, 2 R.", text)
+        text = self.report("study")
+        self.assertIn("sub-04 is among the participants and has no session.", text)
+        self.assertIn("sub-04 is left out: no trial that counts", text)
+        text = self.report("study", "--participants", "02")
+        self.assertIn("1 participant: sub-02. Age: 36 years, mean 36.0. ", text)
+        self.assertNotIn("sub-01", text)
+
+    def test_names_are_no_markdown_and_steer_no_terminal(self):
+        def named(told):
+            told["device"] = {"pcm": "hw:0\x1b[2J", "name": "a | b *c*"}
+            told["date"] = "2026-11-21T10:00:00Z"
+        self.change("01", named)
+        text = self.report("study")
+        self.assertNotIn("\x1b", text)
+        self.assertIn(r"pcm: hw:0\\x1b\[2J, name: a \| b \*c\* (sub-01); none (sub-02, sub-03)", text)
+        self.assertIn("Dates of the sessions: 2026-11-21.", text)
+
+    def test_other_methods_have_their_own_words(self):
+        for kind, told in (("barycentric", r"A_i = \sqrt{b_i}"), ("gaussian", r"e^{-d_i^2"), ("linear", "A_i = b_i A_v"),
+                           ("log", r"\log_2(1 + b_i)")):
+            text = self.small().replace(".toml", "")
+            self.write(f"{kind}.toml", (self.dir / f"{text}.toml").read_text().replace(
+                'algorithm = "park2016"', f'algorithm = "continuous"\nphantom = "{kind}"\ncarrier = 200'))
+            self.simulate("07", definition=f"{kind}.toml", folder=kind)
+            text = self.report(kind)
+            self.assertIn(told, text)
+            self.assertIn("no bursts: the intensities", text)
+            self.assertIn("Carrier: sine of 200 Hz, sine of 250 Hz; the phase ran on", text)
+        self.assertIn("| continuous |", text)
+
+
+    def test_what_an_array_file_says_besides(self):
+        tactor = '[[tactor]]\nx_mm = {}\ny_mm = {}\nchannel = {}\nthreshold_dbfs = {}\nactuator = "lra"\nrise_ms = 20\n'
+        self.write("own.toml", '[array]\nname = "own"\n' + "".join(
+            tactor.format(20 * (i % 3), 20 * (i // 3), i, "[[100, -40], [250, -50.5]]" if i == 4 else f"-{40 + i}.25") for i in range(9)))
+        self.simulate("04", "--array", "own.toml", folder="other")
+        text = self.report("other")
+        rows = tables(section(text, "### Levels and thresholds"))[0]
+        self.assertEqual((rows[0]["tactor 3"], rows[0]["tactor 4"]), ("-43.25", "-40 at 100 Hz, -50.5 at 250 Hz"))
+        self.assertEqual((rows[1]["tactor 3"], rows[1]["tactor 4"]), ("-43.25", "none"))
+        self.assertIn("actuators: lra", text)
+        self.assertIn("rise times of the actuators, for which bursts begin stronger where they can: tactor 0 0.02 s", text)
+        self.assertIn("Thresholds: from the array file, none assumed.", text)
+
+
+class OtherStudies(ReportTest):
+    def test_what_other_programs_wrote_has_what_is_there_and_no_more(self):
+        for name, make in studies.STUDIES.items():
+            make(self.dir / name)
+            text = self.report(name)
+            self.assertIn("Level: not recorded. Thresholds: not recorded.", text)
+            self.assertIn("The stimuli are not recorded.", text)
+            for told in ("0.32", "250 Hz", "48000", "20 mm"):
+                self.assertNotIn(told, text.partition("## Data")[0], name)
+            self.assertNotIn("nan", re.findall(r"\w+", text.lower()), name)
+            self.assertEqual("SIMULATED" in text, name == "simulated")
+        self.assertIn("Void trials: 144, of which had gaps in the sound: not recorded;", self.report("simulated"))
+        text = self.report("missing")
+        self.assertIn("sub-Late is among the participants and has no session.", text)
+        self.assertIn("sub-E5 is left out: no trial that counts in some of the cells.", text)
+        answers = tables(section(self.report("three-by-three"), "### which"))
+        told = json.loads(self.ok("analyze", "three-by-three", "--format", "json").stdout)["runs"]["which"]["confusion"]
+        self.assertEqual({row["motion, then its answers"]: {k: int(row[k]) for k in ("motion-1", "motion-2", "motion-3")}
+                          for row in answers[1]}, told["tactile-brush"])
+
+
+class Refusals(ReportTest):
+    def setUp(self):
+        super().setUp()
+        self.simulate()
+
+    def says(self, *texts):
+        for more in ((), ("-o", "never.md")):
+            result = self.refused(2, "report", "study", *more, says=texts)
+            self.assertEqual(result.stdout, "")
+        self.assertFalse((self.dir / "never.md").exists())
+
+    def test_folders_and_names_that_are_none(self):
+        self.refused(2, "report", says=["DIR"])
+        self.refused(2, "report", "none", says=["none: No such file"])
+        self.refused(2, "report", self.dir, says=["participants.tsv: No such file"])
+        self.refused(2, "report", "study", "-o", "study/participants.tsv", says=["Markdown", ".md"])
+        self.refused(2, "report", "study", "-o", "nowhere/m.md", says=["nowhere"])
+        self.refused(2, "report", "study", "-o", "/dev/full", says=[".md"])
+        self.refused(2, "report", "study", "--exclude", "01", says=["nobody is left"])
+        self.write("study/sub-01/beh/sub-01_task-whichone_beh.tsv", "half")
+        self.says("sub-01_task-whichone_beh.tsv")
+
+    def test_what_was_changed_after_the_session(self):
+        good = (self.dir / "study/sourcedata/sub-01/session.json").read_text()
+        for change, why in (
+                (lambda t: t["experiment"].update(text=t["experiment"]["text"] + "# more\n"), "its SHA-256 is"),
+                (lambda t: t["array"]["tactors"][3].update(x_mm="left"), "array.tactors[3].x_mm is no number"),
+                (lambda t: t["array"]["tactors"][3].pop("y_mm"), "array.tactors[3].y_mm is missing"),
+                (lambda t: t["array"].update(tactors=7), "array.tactors is no list"),
+                (lambda t: t["array"]["tactors"][3].update(channel=-1), "array.tactors[3].channel is no whole number"),
+                (lambda t: t["array"]["tactors"][3].update(polarity=1e300), "array.tactors[3].polarity is no whole number"),
+                (lambda t: t["array"]["tactors"][3].update(actuator="pump"), 'session.json: array.tactors[3].actuator "pump" is not known'),
+                (lambda t: t["array"]["tactors"][3].update(x_mm=20.0), "session.json: array is none: "),
+                (lambda t: t["thresholds_dbfs"].__setitem__(2, [[250]]), "thresholds_dbfs[2][0] is no frequency"),
+                (lambda t: t.update(level=[7]), "level is no object"),
+                (lambda t: t.update(order=[7]), "order[0] is no text"),
+                (lambda t: t.update(thresholds_assumed="yes"), "thresholds_assumed is neither true nor false"),
+                (lambda t: t["stimuli"][0].update(sha256="../../../passwd"), "passwd.json"),
+                (lambda t: t["stimuli"].pop(0), "plan_1 is no plan of its motion by its method")):
+            self.change("01", change)
+            self.says(why)
+            self.write("study/sourcedata/sub-01/session.json", good)
+        self.ok("report", "study")
+
+    def test_a_plan_that_was_changed_or_lost(self):
+        plan = sorted((self.dir / "study/sourcedata/sub-01/plans").iterdir())[0]
+        text = plan.read_bytes()
+        plan.write_bytes(text + b"\n")
+        self.says(plan.name, "its SHA-256 is")
+        plan.unlink()
+        self.says(plan.name, "No such file")
+        plan.write_bytes(text)
+        beh = self.dir / "study/sub-01/beh/sub-01_task-howgood_beh.tsv"
+        rows = read_table(beh)
+        table = beh.read_text()
+        other = next(r["plan_1"] for r in rows if r["plan_1"] != rows[0]["plan_1"])
+        beh.write_text(table.replace(rows[0]["plan_1"], other, 1))
+        self.says("sub-01_task-howgood_beh.tsv:2: plan_1 is no plan of its motion")
+        beh.write_text(table)
+        self.ok("report", "study")
+
+    def test_a_disk_that_refuses_leaves_the_old_file(self):
+        self.write("locked/m.md", "old")
+        shutil.copytree(self.dir / "study", self.dir / "locked/study")
+        self.refused(2, "report", "study", "-o", "locked/m.md/x.md", says=["locked/m.md"])
+        self.assertEqual((self.dir / "locked/m.md").read_text(), "old")
+
+
+if __name__ == "__main__":
+    main()

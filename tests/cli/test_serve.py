@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: MIT
+"""tactor serve as programs meet it: where it listens, who may, and its end."""
+import json
+import os
+import signal
+import socket
+import stat
+import subprocess
+
+from harness import PATIENCE_S, TOOL, main
+from serving import Client, ServeTest, Server
+
+
+class Serve(ServeTest):
+    # Where it listens.
+
+    def test_the_line_and_the_end(self):
+        s = self.serve("--tcp", "0")
+        self.assertEqual(set(s.where), {"event", "socket", "tcp", "osc", "http"})
+        self.assertEqual(s.where["event"], "listening")
+        self.assertRegex(s.where["tcp"], r"^127\.0\.0\.1:[1-9]\d*$")
+        self.assertIsNone(s.where["osc"])
+        self.assertIsNone(s.where["http"])
+        status, out, err = s.terminate()
+        self.assertEqual((status, out), (0, ""), err)
+        self.assertIn("every user of this machine", err)
+        self.assertFalse(os.path.exists(s.where["socket"]))
+
+    def test_sigint_ends_it_too(self):
+        self.assertEqual(self.serve().terminate(signal.SIGINT)[0], 0)
+
+    def test_the_mode_of_the_socket_under_any_umask(self):
+        before = os.umask(0)
+        self.addCleanup(os.umask, before)
+        for mask in (0, 0o777, 0o22):
+            os.umask(mask)
+            try:
+                file = self.dir / f"mask{mask}"
+                env = {"XDG_RUNTIME_DIR": str(self.dir)}
+                os.umask(0o22)
+                self.write("serve.toml", "")
+                os.umask(mask)
+                s = Server(self, "--socket", file, env=env)
+            finally:
+                os.umask(0o22)
+            self.assertIsNotNone(s.where, getattr(s, "errors", ""))
+            self.assertEqual(stat.S_IMODE(file.stat().st_mode), 0o600)
+            self.assertEqual(s.terminate()[0], 0)
+
+    def test_the_systems_socket_is_the_groups(self):
+        (self.dir / "run").mkdir()
+        s = self.serve(env={"RUNTIME_DIRECTORY": str(self.dir / "run"), "XDG_RUNTIME_DIR": str(self.dir / "user")})
+        self.assertEqual(s.where["socket"], str(self.dir / "run/tactor.sock"))
+        self.assertEqual(stat.S_IMODE(os.stat(s.where["socket"]).st_mode), 0o660)
+
+    def test_a_users_default_socket(self):
+        s = self.serve(env={"XDG_RUNTIME_DIR": str(self.dir)})
+        self.assertEqual(s.where["socket"], str(self.dir / "tactor.sock"))
+        self.assertEqual(stat.S_IMODE(os.stat(s.where["socket"]).st_mode), 0o600)
+
+    def test_a_second_server_says_who_has_the_socket(self):
+        first = self.serve()
+        self.refuses_to_start(3, says=f"process {first.process.pid}")
+        self.assertEqual(first.client().ok("status")["amplifier"], "none")
+
+    def test_what_a_killed_server_left_is_replaced_and_nothing_else(self):
+        first = self.serve()
+        first.kill()
+        self.assertTrue(os.path.exists(first.where["socket"]))
+        self.assertEqual(self.serve().terminate()[0], 0)
+        self.write("s.sock", "mine")
+        self.refuses_to_start(2, says="no socket")
+        self.assertEqual((self.dir / "s.sock").read_text(), "mine")
+
+    def test_inherited_sockets_win_and_stay(self):
+        path = str(self.dir / "given.sock")
+        with socket.socket(socket.AF_UNIX) as given:
+            given.bind(path)
+            given.listen()
+            os.set_inheritable(given.fileno(), True)
+            command = f'exec 3<&{given.fileno()}; export LISTEN_PID=$$; exec "$@"'
+            p = subprocess.Popen(["sh", "-c", command, "sh", TOOL, "serve", "-D", "null", "--format", "json"],
+                                 stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, cwd=self.dir,
+                                 pass_fds=[given.fileno()],
+                                 env=self.env | {"LISTEN_FDS": "1", "LISTEN_FDNAMES": "socket"})
+            self.addCleanup(p.stdout.close)
+            self.assertEqual(json.loads(p.stdout.readline())["socket"], path)
+            self.assertEqual(Client(path).ok("hello")["protocol"], "tactor/1")
+            p.terminate()
+            self.assertEqual(p.wait(PATIENCE_S), 0)
+            self.assertTrue(os.path.exists(path))
+
+    def test_it_tells_its_manager(self):
+        path = str(self.dir / "notify")
+        with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as manager:
+            manager.bind(path)
+            manager.settimeout(PATIENCE_S)
+            s = self.serve("--socket", self.dir / "n.sock", env={"NOTIFY_SOCKET": path, "WATCHDOG_USEC": "200000"})
+            said = set()
+            while len(said) < 3: # on a slow machine the watchdog is fed more than once before the rest comes
+                said.add(manager.recv(1000))
+            self.assertEqual(said, {b"READY=1", b"WATCHDOG=1", b"STATUS=stream: running"})
+            s.process.terminate()
+            while manager.recv(1000) != b"STOPPING=1":
+                pass
+
+    def test_what_is_not_served_and_where_nothing_says_where(self):
+        self.refuses_to_start(2, "--tcp", "nonsense:1:2", says="no address")
+        self.refuses_to_start(2, "--tcp", "0.0.0.0:0", says="token_file")
+        self.refuses_to_start(2, "--socket", "x" * 200, says="name")
+        self.refuses_to_start(2, config="[serve]\nhttpp = 4\n", says="httpp")
+        r = self.run_tool("serve", "-D", "null", env={"XDG_RUNTIME_DIR": "", "RUNTIME_DIRECTORY": ""})
+        self.assertEqual(r.returncode, 2)
+
+    def test_check_says_what_listens_where(self):
+        s = self.serve("--tcp", "0")
+        token = self.write("token", "secret\n")
+        token.chmod(0o600)
+        open_to_all = self.serve("--socket", self.dir / "open.sock", config=f'[serve]\ntcp = "0.0.0.0:0"\ntoken_file = "{token}"\n')
+        r = self.run_tool("check", "-D", "null", "--format", "json")
+        self.assertEqual(r.returncode, 0, r.stderr)
+        found = {f["found"]: f["level"] for f in json.loads(r.stdout)["findings"] if f["check"] == "service"}
+        for server, level, more in ((s, "ok", "listens at"), (open_to_all, "warning", "other machines can connect")):
+            said = [(text, how) for text, how in found.items() if f"process {server.process.pid})" in text]
+            self.assertEqual(len(said), 1, found)
+            self.assertEqual(said[0][1], level)
+            for part in (server.where["tcp"], server.where["socket"], more):
+                self.assertIn(part, said[0][0])
+        self.write("tactor.toml", f'[serve]\ntcp = 0\ntoken_file = "{token}"\n')
+        token.chmod(0o644)
+        r = self.run_tool("check", "-D", "null", "--config", "tactor.toml")
+        self.assertEqual(r.returncode, 2)
+        self.assertIn("others may read it", r.stderr)
+
+    # Who may.
+
+    def test_tcp_begins_with_hello(self):
+        s = self.serve("--tcp", "0")
+        c = s.client(tcp=True)
+        self.assertEqual(c.ok("hello")["version"], self.run_tool("--version").stdout.split()[1])
+        self.assertEqual(c.ok("status")["clients"], 1)
+        for first in (b"POST / HTTP/1.1\r\nHost: x\r\n\r\n", b'{"jsonrpc":"2.0","id":1,"method":"stop"}\n', b"[]\n"):
+            c = s.client(tcp=True)
+            c.raw(first)
+            self.assertIsNone(c.next())
+
+    def test_a_token(self):
+        token = self.write("token", "secret\n")
+        token.chmod(0o604)
+        config = f'[serve]\ntcp = 0\ntoken_file = "{token}"\n'
+        self.refuses_to_start(2, config=config, says="others may read it")
+        token.chmod(0o600)
+        s = self.serve(config=config)
+        c = s.client(tcp=True)
+        self.check_error(c.error("hello"), -32003, "token")
+        self.check_error(c.error("play", stroke="park2016-1"), -32003)
+        self.check_error(c.error("hello", token="secret "), -32003, "token")
+        self.assertEqual(c.ok("hello", token="secret")["protocol"], "tactor/1")
+        c.ok("status")
+        c = s.client(tcp=True)
+        for _ in range(3):
+            self.check_error(c.error("hello", token="guess"), -32003)
+        self.assertIsNone(c.next())
+        s.client().ok("status")
+
+
+if __name__ == "__main__":
+    main()

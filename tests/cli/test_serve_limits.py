@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: MIT
+"""tactor serve at its limits: too many, too long, too slow, no descriptors, a full disk, no card."""
+import os
+import resource
+import socket
+import subprocess
+import time
+
+from harness import PATIENCE_S, TOOL, main
+from serving import LONG, SHORT, Client, ServeTest
+
+
+class Limits(ServeTest):
+    # Limits.
+
+    def test_strokes_at_once(self):
+        c = self.serve(config="[serve]\nmax_strokes = 3\nmax_live_strokes = 1\n").client()
+        c.ok("begin", timeout_s=3600)
+        self.check_error(c.error("begin"), -32001, "max_live_strokes")
+        for _ in range(2):
+            c.ok("play", **SHORT, start="armed")
+        self.check_error(c.error("play", **SHORT), -32001, "max_strokes")
+        self.check_error(c.error("drive", tactor=0), -32001, "max_strokes")
+
+    def test_strokes_that_last_and_points(self):
+        c = self.serve(config="[serve]\nmax_points_per_s = 5\n").client()
+        self.check_error(c.error("play", path="M 0 0 L 40 40", options={"algorithm": "continuous", "duration": 600.1}),
+                         -32001, "max_stroke_s")
+        n = c.ok("begin", timeout_s=3600)["stroke"]
+        codes = [c.call("to", stroke=n, x_mm=1, y_mm=1).get("error", {}).get("code") for _ in range(100)]
+        self.assertEqual(codes[:5], [None] * 5)
+        self.assertIn(-32001, codes)
+
+    def test_live_strokes_that_last(self):
+        c = self.serve(config="[serve]\nmax_stroke_s = 0.1\n").client()
+        n = c.ok("begin", timeout_s=3600)["stroke"]
+        c.ok("to", stroke=n, x_mm=1, y_mm=1)
+        end = c.end_of(n)
+        self.assertEqual((end["state"], end["reason"]), ("interrupted", "it has lasted as long as it may"))
+        self.assertGreaterEqual(end["frames"], 4800)
+
+    def test_live_strokes_that_are_smoothed(self):
+        c = self.serve().client()
+        n = c.ok("begin", timeout_s=3600, smooth_s=0.3)["stroke"]
+        c.ok("to", stroke=n, x_mm=1, y_mm=1)
+        c.stroke(n, "started")
+        c.end_of(c.ok("drive", tactor=8, duration_s=0.05)["stroke"])
+        c.ok("to", stroke=n, x_mm=39, y_mm=39)
+        c.ok("end", stroke=n)
+        self.assertGreaterEqual(c.end_of(n)["frames"], 0.3 * 48000)
+        self.check_error(c.error("begin", smooth_s=2), -32602, "smooth_s")
+
+    # What runs out.
+
+    def test_descriptors(self):
+        s = self.serve("--http", "0")
+        busy = s.client()
+        live = busy.ok("begin", timeout_s=3600)["stroke"]
+        busy.ok("to", stroke=live, x_mm=10, y_mm=10)
+        busy.stroke(live, "started")
+        pid = s.process.pid
+        used = len(os.listdir(f"/proc/{pid}/fd"))
+        before = resource.prlimit(pid, resource.RLIMIT_NOFILE)
+        highest = max(map(int, os.listdir(f"/proc/{pid}/fd")))
+        resource.prlimit(pid, resource.RLIMIT_NOFILE, (highest + 1, before[1]))
+        room = highest + 1 - used # gaps among those that are open
+        for c in [s.client() for _ in range(room + 10)][room:]:
+            self.check_error(c.next()["error"], -32001, "descriptors")
+            self.assertIsNone(c.next())
+        host, _, port = s.where["http"].removeprefix("http://").rstrip("/").rpartition(":")
+        with socket.create_connection((host, int(port)), PATIENCE_S) as page:
+            self.assertTrue(page.recv(65536).startswith(b"HTTP/1.1 503 "))
+        # Who is there draws on.
+        busy.ok("to", stroke=live, x_mm=20, y_mm=20)
+        self.assertEqual(busy.end_of(busy.ok("play", **SHORT)["stroke"])["state"], "finished")
+        resource.prlimit(pid, resource.RLIMIT_NOFILE, before)
+        self.assertEqual(s.client().ok("hello")["protocol"], "tactor/1")
+        busy.ok("end", stroke=live)
+        self.assertEqual(busy.end_of(live)["state"], "finished")
+        self.assertEqual(busy.ok("status")["stream"]["xruns"], 0)
+        self.assertEqual(s.terminate()[0], 0)
+
+    def test_a_full_disk(self):
+        log = self.dir / "serve.log"
+        s = self.serve("--log", log)
+        c = s.client()
+        c.end_of(c.ok("play", **SHORT)["stroke"])
+        # No further byte, as on a full disk: the log ends, with the reason, and nothing else does.
+        resource.prlimit(s.process.pid, resource.RLIMIT_FSIZE, (log.stat().st_size, resource.RLIM_INFINITY))
+        self.assertEqual(c.end_of(c.ok("play", **SHORT)["stroke"])["state"], "finished")
+        status, _, err = s.terminate()
+        self.assertEqual(status, 0, err)
+        self.assertIn("serve.log: File too large: the log ends here", err)
+        self.assertFalse(os.path.exists(s.where["socket"]))
+
+    def test_where_it_listens_cannot_be_said(self):
+        if not os.path.exists("/dev/full"):
+            self.skipTest("there is no /dev/full")
+        file = str(self.dir / "full.sock")
+        with open("/dev/full", "w", encoding="ascii") as full:
+            p = subprocess.Popen([TOOL, "serve", "-D", "null", "--socket", file], stdout=full, stderr=subprocess.PIPE, text=True,
+                                 cwd=self.dir, env=self.env)
+        self.addCleanup(p.stderr.close)
+        said = next(line for line in p.stderr if "standard output" in line)
+        self.assertIn("No space left on device: where it listens could not be said", said)
+        c = Client(file)
+        self.assertEqual(c.end_of(c.ok("play", **SHORT)["stroke"])["state"], "finished")
+        c.close()
+        p.terminate()
+        self.assertEqual(p.wait(PATIENCE_S), 0)
+
+    def test_places(self):
+        s = self.serve("--tcp", "0", config="[serve]\nmax_clients = 4\nkept_clients = 2\n")
+        for _ in range(3):  # a place that leaks shows in the second round
+            network = [s.client(tcp=True) for _ in range(2)]
+            for c in network:
+                c.ok("hello")
+            third = s.client(tcp=True)
+            self.check_error(third.next()["error"], -32001, "max_clients")
+            self.assertIsNone(third.next())
+            local = [s.client() for _ in range(2)]
+            for c in local:
+                self.assertEqual(c.ok("hello")["protocol"], "tactor/1")
+            fifth = s.client()
+            self.check_error(fifth.next()["error"], -32001, "max_clients")
+            for c in network + local[1:]:
+                c.socket.shutdown(socket.SHUT_WR)
+                self.assertIsNone(c.next())
+            self.assertEqual(local[0].ok("status")["clients"], 1)
+            local[0].socket.shutdown(socket.SHUT_WR)
+            self.assertIsNone(local[0].next())
+
+    def test_messages_too_long_and_too_slow(self):
+        s = self.serve(config="[serve]\nmax_message_bytes = 2000\nmax_message_s = 0.2\n")
+        c = s.client()
+        c.raw(b" " * 2001)
+        self.check_error(c.next()["error"], -32001, "max_message_bytes")
+        self.assertIsNone(c.next())
+        c = s.client()
+        self.check_error(c.next()["error"], -32001, "max_message_s")
+        self.assertIsNone(c.next())
+        c = s.client()
+        c.ok("status")
+        c.raw(b"{")
+        self.check_error(c.next()["error"], -32001, "max_message_s")
+        self.assertIsNone(c.next())
+
+    def test_who_does_not_read_is_dropped_and_others_play_on(self):
+        s = self.serve(config="[serve]\nmax_unread_bytes = 100000\n")
+        deaf, other = s.client(), s.client()
+        deaf.socket.settimeout(PATIENCE_S)
+        line = b'{"jsonrpc":"2.0","id":1,"method":"hello"}\n'
+        with self.assertRaises((BrokenPipeError, ConnectionResetError)):
+            for _ in range(1_000_000):
+                deaf.raw(line * 100)
+        n = other.ok("play", **SHORT)["stroke"]
+        self.assertEqual(other.end_of(n)["state"], "finished")
+
+    # Faults.
+
+    def test_each_number_has_one_end_when_it_is_told_to_stop(self):
+        s = self.serve()
+        c = s.client()
+        numbers = [c.ok("play", **LONG)["stroke"] for _ in range(3)] + [c.ok("play", **SHORT, start="armed")["stroke"]]
+        live = c.ok("begin", timeout_s=3600)["stroke"]
+        c.ok("to", stroke=live, x_mm=1, y_mm=1)
+        c.stroke(numbers[0], "started")
+        s.process.terminate()
+        told = c.told
+        while (m := c.next()) is not None:
+            told.append(m)
+        ends = [(m["params"]["stroke"], m["params"]["state"]) for m in told
+                if m["method"] == "stroke" and m["params"]["state"] != "started"]
+        self.assertEqual(sorted(ends), [(n, "cancelled") for n in sorted(numbers + [live])])
+        self.assertIn("closing", [m["params"]["state"] for m in told if m["method"] == "stream"])
+        self.assertEqual(s.process.wait(PATIENCE_S), 0)
+
+    def test_a_card_that_comes_later(self):
+        conf = self.dir / "late.conf"
+        conf.write_text("pcm.!default { type null }\n")
+        s = self.serve(device=("-D", "late"), env={"ALSA_CONFIG_PATH": str(conf), "XDG_RUNTIME_DIR": str(self.dir)})
+        c = s.client()
+        c.ok("subscribe", events=["stream"])
+        self.assertEqual(c.ok("hello")["stream"]["format"], None)
+        self.check_error(c.error("play", **SHORT), -32000, "stream")
+        self.check_error(c.error("begin"), -32000, "stream")
+        self.assertEqual(c.ok("status")["stream"]["state"], "lost")
+        conf.write_text("pcm.!default { type null }\npcm.late { type null }\n")
+        os.utime(conf, (time.time() + 10, time.time() + 10))  # ALSA looks at whole seconds
+        c.notification(lambda m: m["method"] == "stream" and m["params"]["state"] == "running")
+        n = c.ok("play", **SHORT)["stroke"]
+        self.assertEqual(c.end_of(n)["state"], "finished")
+
+    def test_an_idle_stream_stops_and_starts_with_the_next_stroke(self):
+        c = self.serve("--idle-stop", "0.05").client()
+        c.ok("subscribe", events=["stream"])
+        c.notification(lambda m: m["params"]["state"] == "idle")
+        for method, params in (("play", SHORT), ("drive", {"tactor": 0, "duration_s": 0.05})):
+            n = c.ok(method, **params)["stroke"]
+            self.assertEqual(c.end_of(n)["state"], "finished")
+            c.notification(lambda m: m["method"] == "stream" and m["params"]["state"] == "idle")
+        n = c.ok("begin", timeout_s=3600)["stroke"]
+        self.assertEqual(c.ok("status")["stream"]["state"], "running")
+        c.ok("end", stroke=n)
+        c.end_of(n)
+
+
+if __name__ == "__main__":
+    main()

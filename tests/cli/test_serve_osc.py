@@ -1,0 +1,341 @@
+# SPDX-License-Identifier: MIT
+"""tactor serve --osc as programs of music and art meet it: real sockets, and liblo's own oscsend and oscdump."""
+import json
+import os
+import random
+import select
+import socket
+import struct
+import subprocess
+import time
+
+from harness import PATIENCE_S, TOOL, ToolTest, main
+from osc import Sender, bundle, message, text
+from serving import Server
+
+DRAWING = "M 0 0 L 40 40"
+
+
+class ServeOsc(ToolTest):
+    def serve(self, *args, **more):
+        s = Server(self, "--osc", "0", *args, **more)
+        if s.where is None:
+            self.fail(s.errors)
+        return s
+
+    def refuses_to_start(self, says, *args, **more):
+        s = Server(self, *args, **more)
+        self.assertIsNone(s.where)
+        self.assertEqual(s.process.returncode, 2, s.errors)
+        self.assertIn(says, s.errors)
+
+    # Where it listens.
+
+    def test_the_line_and_the_end(self):
+        s = self.serve()
+        self.assertRegex(s.where["osc"], r"^127\.0\.0\.1:[1-9]\d*$")
+        a = Sender(self, s)
+        a.say("/tactor/play", 1, DRAWING, "duration=300")
+        self.assertEqual(a.next(), ["/tactor/stroke", 1, "started"])
+        a.say("/tactor/subscribe", "stream") # who has nothing else going on is told of the end, too
+        status, out, err = s.terminate()
+        self.assertEqual((status, out), (0, ""), err)
+        self.assertIn("osc 127.0.0.1", err)
+        self.assertIn("every user of this machine", err)
+        told = [a.next(), a.next()]
+        self.assertIn(["/tactor/stroke", 1, "cancelled"], told)
+        self.assertIn(["/tactor/stream", "closing"], told)
+
+    def test_text_says_the_endpoint_too(self):
+        self.write("t.toml", "[serve]\nosc = 0\n")
+        p = subprocess.Popen([TOOL, "serve", "-D", "null", "--socket", "t.sock", "--config", "t.toml"], cwd=self.dir,
+                             env=self.env, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        self.addCleanup(p.stdout.close)
+        self.assertEqual(p.stdout.readline(), "listening: socket t.sock\n")
+        self.assertRegex(p.stdout.readline(), r"^listening: osc 127\.0\.0\.1:\d+\n$")
+        p.terminate()
+        self.assertEqual(p.wait(PATIENCE_S), 0)
+
+    def test_beyond_loopback_only_for_peers(self):
+        self.refuses_to_start("osc_peers", "--osc", "0.0.0.0:0")
+        self.refuses_to_start("osc_peers", "--osc", "[::]:0")
+        self.refuses_to_start("neither an address nor a prefix", "--osc", "0", config='[serve]\nosc_peers = ["10.0.0.0/40"]\n')
+        self.refuses_to_start("no address", "--osc", "nonsense:1:2")
+        s = Server(self, "--osc", "0.0.0.0:0", config='[serve]\nosc_peers = ["10.0.0.0/8"]\n')
+        self.assertRegex(s.where["osc"], r"^0\.0\.0\.0:\d+$")
+        a = Sender(self, s) # loopback is heard
+        a.say("/tactor/nonsense")
+        self.assertEqual(a.next()[:2], ["/tactor/error", "/tactor/nonsense"])
+        r = self.run_tool("check", "-D", "null", "--format", "json")
+        self.assertIn(f"osc {s.where['osc']}", r.stdout)
+        self.assertIn("other machines can connect", r.stdout)
+
+    def test_another_address_of_this_machine_is_heard_only_as_a_peer(self):
+        own = [a for a in subprocess.run(["hostname", "-I"], capture_output=True, text=True, check=False).stdout.split() if "." in a]
+        if not own:
+            self.skipTest("this machine has no address but loopback")
+        for peers, heard in (("198.51.100.0/24", False), (own[0], True)):
+            s = Server(self, "--osc", "0.0.0.0:0", config=f'[serve]\nosc_peers = ["{peers}"]\n')
+            other = Sender(self, s, own[0])
+            other.to = (own[0], other.to[1])
+            other.say("/tactor/nonsense")
+            # What loopback says later is answered later.
+            local = Sender(self, s)
+            local.say("/tactor/stop", 1)
+            self.assertEqual(local.next()[1], "/tactor/stop")
+            if heard:
+                self.assertEqual(other.next()[1], "/tactor/nonsense")
+            else:
+                other.socket.setblocking(False)
+                self.assertRaises(BlockingIOError, other.next)
+            s.terminate()
+
+    def test_ipv6(self):
+        try:
+            with socket.socket(socket.AF_INET6, socket.SOCK_DGRAM) as probe:
+                probe.bind(("::1", 0))
+        except OSError:
+            self.skipTest("this machine has no IPv6")
+        s = Server(self, "--osc", "[::1]:0")
+        a = Sender(self, s, "::1")
+        a.say("/tactor/drive", 4, 0.5, 0.01)
+        self.assertEqual(a.next(), ["/tactor/stroke", 0, "started"])
+
+    def test_an_inherited_socket_wins(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as given:
+            given.bind(("127.0.0.1", 0))
+            port = given.getsockname()[1]
+            self.check_inherited(given, "osc", {"osc": f"127.0.0.1:{port}"})
+        with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as given:
+            given.bind(("127.0.0.1", 0))
+            given.listen()
+            self.check_inherited(given, "osc", None, "it is no UDP socket")
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as given:
+            self.check_inherited(given, "osc", None, "it is no UDP socket with a port")
+
+    def check_inherited(self, given, name, where, says=""):
+        os.set_inheritable(given.fileno(), True)
+        command = f'exec 3<&{given.fileno()}; export LISTEN_PID=$$; exec "$@"'
+        p = subprocess.Popen(["sh", "-c", command, "sh", TOOL, "serve", "-D", "null", "--format", "json",
+                              "--socket", "i.sock"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                             cwd=self.dir, pass_fds=[given.fileno()], env=self.env | {"LISTEN_FDS": "1", "LISTEN_FDNAMES": name})
+        line = p.stdout.readline()
+        if where is not None:
+            self.assertLess(where.items(), json.loads(line).items())
+            p.terminate()
+        _, err = p.communicate(timeout=PATIENCE_S)
+        self.assertEqual(p.returncode, 0 if where else 2, err)
+        self.assertIn(says, err)
+
+    # What it does.
+
+    def test_a_live_stroke(self):
+        s = self.serve()
+        a = Sender(self, s)
+        a.say("/tactor/begin", 3, "timeout_s=60")
+        a.say("/tactor/to", 3, 10, 12.5)
+        self.assertEqual(a.next(), ["/tactor/stroke", 3, "started"])
+        a.say("/tactor/to", ("h", struct.pack(">q", 3)), ("d", struct.pack(">d", 11.0)), 12.5, 0.5)
+        a.say("/tactor/end", 3)
+        self.assertEqual(a.next(), ["/tactor/stroke", 3, "finished"])
+
+    def test_silence_ends_a_live_stroke(self):
+        a = Sender(self, self.serve())
+        a.say("/tactor/begin", 3, "timeout_s=0.05")
+        a.say("/tactor/to", 3, 20, 20)
+        self.assertEqual(a.next(), ["/tactor/stroke", 3, "started"])
+        self.assertEqual(a.next(), ["/tactor/stroke", 3, "interrupted"])
+
+    def began_at_a_time_tag(self):
+        """How much later than said a play, a drive and a live stroke began, s; the time of a period, s; and how often the stream ran dry."""
+        s = self.serve()
+        watcher = s.client()
+        watcher.ok("subscribe", events=["strokes"])
+        period_s = watcher.ok("hello")["stream"]["period_frames"] / watcher.ok("hello")["stream"]["rate"]
+        a = Sender(self, s)
+        then = time.time() + 0.6
+        a.raw(bundle(then, message("/tactor/play", 1, DRAWING, "duration=0.05"), message("/tactor/drive", 0, 0.5, 0.02),
+                     message("/tactor/begin", 2, "timeout_s=5"), message("/tactor/to", 2, 20, 20)))
+        began = []
+        while len(began) < 3:
+            p = watcher.notification(lambda m: m["params"].get("state") == "started")["params"]
+            began.append(p["started_unix_s"] - then)
+        states = sorted(a.next()[1:] for _ in range(3))
+        self.assertEqual(states, [[0, "started"], [1, "started"], [2, "started"]])
+        return sorted(began, key=abs), period_s, watcher.ok("status")["stream"]["xruns"]
+
+    def test_time_tags_say_when_the_first_sample_is_at_the_dac(self):
+        # Where the machine let the stream run dry, what came after that is late, and says when.
+        for _ in range(20):
+            began, period_s, xruns = self.began_at_a_time_tag()
+            if xruns == 0:
+                break
+        self.assertEqual(xruns, 0)
+        # play and drive to the sample, as far as the two clocks' readings agree; the live stroke to a period, and later where the
+        # machine lets the service wait for its turn.
+        self.assertLess(abs(began[0]), 0.001)
+        self.assertLess(abs(began[1]), 0.001)
+        self.assertGreater(began[2], -1.5 * period_s - 0.002)
+        self.assertLess(began[2], 0.25)
+
+    def test_far_times_are_refused_and_the_past_is_now(self):
+        a = Sender(self, self.serve())
+        a.raw(bundle(time.time() + 70, message("/tactor/play", 1, DRAWING)))
+        self.assertRegex(a.next()[2], r"^time tag: it is (69\.\d|70\.0) s ahead")
+        for when in (time.time() - 1000, None, -2208988800):
+            a.raw(bundle(when, message("/tactor/play", 1, DRAWING, "duration=0.02")))
+            self.assertEqual(a.next(), ["/tactor/stroke", 1, "started"])
+            self.assertEqual(a.next(), ["/tactor/stroke", 1, "finished"])
+
+    def test_stop_is_everybodys(self):
+        s = self.serve()
+        a, b, c = Sender(self, s), Sender(self, s), s.client()
+        a.say("/tactor/play", 1, DRAWING, "duration=300")
+        self.assertEqual(a.next(), ["/tactor/stroke", 1, "started"])
+        n = c.ok("play", path=DRAWING, options={"duration": 300})["stroke"]
+        b.raw(bundle(time.time() + 50, message("/tactor/stop")))
+        self.assertEqual(a.next(), ["/tactor/stroke", 1, "cancelled"])
+        self.assertEqual(c.end_of(n)["state"], "cancelled")
+
+    def test_levels_and_stream_at_a_port_of_choice(self):
+        s = self.serve()
+        a, ears = Sender(self, s), Sender(self, s)
+        a.say("/tactor/subscribe", ears.port, "levels", "stream")
+        a.say("/tactor/drive", 4, 0.5, 5.0)
+        while True:
+            levels = ears.next("/tactor/levels")[1:]
+            self.assertEqual(len(levels), 9)
+            self.assertTrue(all(v == -200 for i, v in enumerate(levels) if i != 4), levels)
+            if levels[4] > -30:
+                break
+        self.assertEqual(a.next(), ["/tactor/stroke", 0, "started"])
+
+    # What it does not.
+
+    def test_hostile_packets_are_answered_in_words_or_not_at_all(self):
+        s = self.serve()
+        play = message("/tactor/play", 1, DRAWING)
+        deep = play
+        for _ in range(200):
+            deep = bundle(None, deep)
+        self.assertRefused(s, b"", "0 bytes")
+        self.assertRefused(s, play[:-1], "no multiple of 4")
+        self.assertRefused(s, play[:-4], "value")
+        self.assertRefused(s, deep, "nest deeper")
+        self.assertRefused(s, bundle(None, *[message("/tactor/stop")] * 300), "more than 256")
+        self.assertRefused(s, b"#bundle\0" + bytes(8) + struct.pack(">i", 2**31 - 4) + play, "2147483644 bytes")
+        self.assertRefused(s, text("/tactor/play") + b",s\0\0" + b"abcd", "value")
+        self.assertRefused(s, text("/tactor/play") + b",s\0xabc\0", "types")
+        self.assertRefused(s, message("/tactor/play", ("b", struct.pack(">i", 4) + b"abcd")), "it is no text")
+        self.assertRefused(s, message("/tactor/to", 1, ("T", b""), 1.0), "it is no number")
+        self.assertRefused(s, text("/tactor/play") + text(",s") + b"\xff\xfe\xfd\0", "stroke")
+        random.seed(1)
+        a = Sender(self, s)
+        for _ in range(2000):
+            a.raw(random.randbytes(4 * random.randrange(20)))
+            mangled = bytearray(play)
+            mangled[random.randrange(len(mangled))] = random.randrange(256)
+            a.raw(bytes(mangled))
+        self.assertEqual(s.client().ok("stop"), {})
+
+    def assertRefused(self, server, packet, says):
+        # Each from an address of its own, which may have its errors.
+        self.last = getattr(self, "last", 1) + 1
+        a = Sender(self, server, f"127.0.0.{self.last}")
+        a.raw(packet)
+        kind, _, why = a.next()
+        self.assertEqual(kind, "/tactor/error")
+        self.assertIn(says, why)
+
+    def test_ten_errors_a_second_to_an_address(self):
+        s = self.serve()
+        began = time.monotonic()
+        a, b = Sender(self, s), Sender(self, s)
+        for _ in range(50): # more than that do not fit into a socket that is not read
+            a.say("/tactor/nonsense")
+            b.say("/tactor/nonsense")
+        # Another address hears its own: all above was dealt with.
+        c = Sender(self, s, "127.0.0.2")
+        c.say("/tactor/nonsense")
+        c.next()
+        took = time.monotonic() - began
+        count = 0
+        for x in (a, b):
+            x.socket.setblocking(False)
+            while True:
+                try:
+                    x.next()
+                except BlockingIOError:
+                    break
+                count += 1
+        self.assertGreaterEqual(count, 10)
+        self.assertLessEqual(count, 10 * (1 + int(took)))
+
+    def test_two_servers_that_hear_each_other_fall_silent(self):
+        one = self.serve()
+        two = self.serve("--socket", self.dir / "two.sock")
+        # Each is the subscriber of the other: what one sends comes from its own port to the other's.
+        between = Sender(self, one)
+        between.say("/tactor/subscribe", int(two.where["osc"].rpartition(":")[2]), "levels", "stream")
+        # What one says to somebody, that one says to the other.
+        said = []
+        between.say("/tactor/nonsense")
+        said.append(between.next())
+        between.say("/tactor/play", 1, DRAWING, "duration=0.02")
+        said += [between.next(), between.next()]
+        relay = Sender(self, two)
+        for m in said + [["/tactor/levels", -12.0], ["/tactor/stream", "running"], ["/tactor/error"], ["/tactor/stroke", "x"]]:
+            relay.say(*m)
+        relay.say("/tactor/cancel", 77)
+        self.assertEqual(relay.next()[:2], ["/tactor/error", "/tactor/cancel"])
+        # A stroke's own sender and the asker: nobody else became a client of the second.
+        self.assertEqual(two.client().ok("status")["clients"], 1)
+
+    def test_senders_are_forgotten(self):
+        s = self.serve()
+        for _ in range(200):
+            a = Sender(self, s)
+            a.say("/tactor/drive", 0, 0.1, 0.001)
+            self.assertEqual(a.next()[1:], [0, "started"])
+            self.assertEqual(a.next()[1:], [0, "finished"])
+            a.socket.close()
+        self.assertEqual(s.client().ok("status")["clients"], 1)
+
+    # Others' programs.
+
+    def test_oscsend_and_oscdump(self):
+        s = self.serve()
+        port = s.where["osc"].rpartition(":")[2]
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+            free.bind(("127.0.0.1", 0))
+            ears = free.getsockname()[1]
+        dump = subprocess.Popen(["oscdump", "-L", str(ears)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        self.addCleanup(dump.stdout.close)
+        self.addCleanup(dump.wait)
+        self.addCleanup(dump.kill)
+        watcher = s.client()
+        watcher.ok("subscribe", events=["strokes"])
+
+        def oscsend(*args):
+            subprocess.run(["oscsend", "127.0.0.1", port, *args], check=True, timeout=PATIENCE_S)
+
+        # Until it listens.
+        line = ""
+        while "/tactor/levels" not in line:
+            oscsend("/tactor/subscribe", "is", str(ears), "levels")
+            if select.select([dump.stdout], [], [], 0.2)[0]:
+                line = dump.stdout.readline()
+        self.assertRegex(line, r"^\S+ /tactor/levels f{9} (-200\.000000 ?){9}$")
+        for args in (["/tactor/play", "is", "5", "park2016-1"], ["/tactor/play", "hss", "6", DRAWING, "duration=0.05"],
+                     ["/tactor/drive", "ff", "4", "0.5"], ["/tactor/drive", "ddd", "4", "0.5", "0.01"]):
+            oscsend(*args)
+            watcher.notification(lambda m: m["params"].get("state") == "started")
+            watcher.notification(lambda m: m["params"].get("state") == "finished")
+        oscsend("/tactor/play", "ss", DRAWING, "duration=300")
+        watcher.notification(lambda m: m["params"].get("state") == "started")
+        oscsend("/tactor/stop")
+        watcher.notification(lambda m: m["params"].get("state") == "cancelled")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: MIT
+"""tactor serve as programs meet it: its protocol."""
+import json
+import socket
+import time
+
+from harness import PATIENCE_S, main
+from serving import LONG, SHORT, ServeTest
+
+
+class Protocol(ServeTest):
+    def test_hello(self):
+        r = self.serve().client().ok("hello")
+        self.assertEqual(list(r), ["protocol", "version", "array", "stream", "presets", "clock", "max_level_dbfs"])
+        self.assertEqual(set(r["stream"]), {"rate", "channels", "format", "period_frames", "latency_s", "pcm"})
+        self.assertEqual(r["array"], self.plan("park2016-1")["array"])
+        self.assertEqual((r["stream"]["pcm"], r["stream"]["channels"], r["max_level_dbfs"]), ("null", 9, -12.0))
+        self.assertIn("park2016-1", r["presets"])
+        self.assertLess(abs(r["clock"]["monotonic_s"] - time.monotonic()), PATIENCE_S)
+
+    def test_json_rpc(self):
+        c = self.serve().client()
+
+        def answer(raw):
+            c.raw(raw + b"\n")
+            return c.reply()
+
+        for raw, code, number in (
+                (b"{", -32700, None), (b'"\xff"', -32700, None), (b"1", -32600, None), (b"[]", -32600, None),
+                (b'{"jsonrpc":"2.0","id":1}', -32600, 1), (b'{"jsonrpc":"1.0","id":2,"method":"status"}', -32600, 2),
+                (b'{"jsonrpc":"2.0","id":"x","method":"dance"}', -32601, "x"),
+                (b'{"jsonrpc":"2.0","id":3.5,"method":"status","params":[1]}', -32602, 3.5),
+                (b'{"jsonrpc":"2.0","id":4,"method":"status","params":1}', -32600, 4),
+                (b'{"jsonrpc":"2.0","id":[],"method":"status"}', -32600, None),
+                (b'{"jsonrpc":"2.0","id":5,"method":"status","params":{"x":1}}', -32602, 5),
+                (b"[" * 65, -32001, None),
+                (json.dumps([{"jsonrpc": "2.0", "method": "status"}] * 65).encode(), -32001, None)):
+            r = answer(raw)
+            self.assertEqual((r["jsonrpc"], r["id"], r["error"]["code"]), ("2.0", number, code), raw)
+            self.check_error(r["error"], code)
+        self.assertEqual(answer(b'{"jsonrpc":"2.0","id":null,"method":"status"}')["id"], None)
+        # Notifications have no reply, in a batch and alone.
+        c.raw(b'{"jsonrpc":"2.0","method":"status"}\n{"jsonrpc":"2.0","method":"dance"}\n'
+              b'[{"jsonrpc":"2.0","method":"stop"}]\n')
+        batch = answer(b'[{"jsonrpc":"2.0","id":1,"method":"stop"}, 1, {"jsonrpc":"2.0","method":"stop"},'
+                       b'{"jsonrpc":"2.0","id":2,"method":"play","params":' + json.dumps(SHORT).encode() + b'}]\r')
+        self.assertEqual([r.get("id") for r in batch], [1, None, 2])
+        self.assertEqual(batch[1]["error"]["code"], -32600)
+        self.assertEqual(c.end_of(batch[2]["result"]["stroke"])["state"], "finished")
+
+    def test_play_in_all_forms(self):
+        c = self.serve().client()
+        toml = "[[stroke]]\npath = 'M 0 0 L 40 0'\nduration_s = 0.1\n[[stroke]]\npath = 'M 0 0 L 0 40'\nduration_s = 0.1\n"
+        for params, count in (({"stroke": "park2016-1"}, 1), (SHORT, 1), ({"points": [[0, 0, 0], [0.1, 20, 20, 0.5]]}, 1),
+                              ({"toml": toml}, 2), ({"csv": "t_s,x_mm,y_mm\n0,0,0\n0.1,20,20\n"}, 1),
+                              ({"svg": '<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0 L20 0 M0 20 L20 20"/></svg>'}, 2)):
+            r = c.ok("play", **params)
+            self.assertEqual(set(r), {"stroke", "strokes", "total_s", "warnings"})
+            self.assertEqual((r["strokes"][0], len(r["strokes"])), (r["stroke"], count))
+            for n in r["strokes"]:
+                self.assertIsInstance(c.stroke(n, "started")["started_s"], float)
+                end = c.end_of(n)
+                self.assertEqual((end["state"], end["reason"]), ("finished", ""))
+                self.assertGreater(end["frames"], 0)
+                self.assertLess(abs(end["started_unix_s"] - time.time()), 2 * PATIENCE_S)
+        self.assertEqual(c.ok("status")["strokes"], [])
+
+    def test_plan_is_what_the_tool_prints(self):
+        c = self.serve().client()
+        self.assertEqual(c.ok("plan", stroke="park2016-3", options={"phantom": "barycentric"}),
+                         self.plan("park2016-3", "--phantom", "barycentric"))
+        self.check_error(c.error("plan", path="M 0 0 L 40 40", options={"algorithm": "continuous", "duration": 600}), -32001)
+
+    def test_bad_strokes_and_options_name_their_parameter(self):
+        c = self.serve().client()
+        path = "M 0 0 L 40 40"
+        for what, params in (("options.soa", {"path": path, "options": {"soa": 3}}),
+                             ("options.soa", {"path": path, "options": {"soa": "0.07"}}),
+                             ("options.nonsense", {"path": path, "options": {"nonsense": 1}}),
+                             ("options.power_dbfs", {"path": path, "options": {"power_dbfs": 1}}),
+                             ("options.level_dbfs", {"path": path, "options": {"level_dbfs": -11.9}}),
+                             ("options.level_dbfs", {"points": [[0, 0, 0], [1, 20, 20, 1.1]]}),
+                             ("options.sl", {"path": path, "options": {"sl": 10}}),
+                             ("options.algorithm", {"path": path, "options": {"algorithm": "x"}}),
+                             ("options.snap", {"path": path, "options": {"snap": "true"}}),
+                             ("options", {"path": path, "options": []}),
+                             ("path", {"path": "M 0 0 L 400 400"}), ("path", {"path": "M 0 x"}), ("path", {"path": 1}),
+                             ("points", {"points": [[0, 0, 0]]}), ("points", {"points": [[0, 0], [1, 2, 3]]}),
+                             ("stroke", {"stroke": "/etc/passwd"}), ("toml", {"toml": "x = 1"}), ("csv", {"csv": "1,2"}),
+                             ("svg", {"svg": "<svg"}), ("stroke", {}), ("path", {"stroke": "park2016-1", "path": path}),
+                             ("start", {"path": path, "start": "soon"}), ("start.delay_s", {"path": path, "start": {"delay_s": -1}}),
+                             ("dance", {"path": path, "dance": 1})):
+            for method in ("play", "plan"):
+                self.check_error(c.error(method, **params), -32602, what)
+
+    def test_the_owners_level_is_the_ceiling(self):
+        c = self.serve(config='[serve]\nmax_level_dbfs = -30\n[defaults]\nlevel-dbfs = -20\n').client()
+        self.assertEqual(c.ok("hello")["max_level_dbfs"], -30)
+        self.check_error(c.error("play", path="M 0 0 L 40 40", options={"level_dbfs": -29.9}), -32602, "options.level_dbfs")
+        self.check_error(c.error("begin", options={"level_dbfs": -29.9}), -32602, "options.level_dbfs")
+        self.assertEqual(c.ok("plan", stroke="park2016-1")["render"]["level_dbfs"], -30)
+        c = self.serve("--socket", self.dir / "b.sock", config='[defaults]\nlevel-dbfs = -20\n').client()
+        self.assertEqual(c.ok("hello")["max_level_dbfs"], -20)
+
+    def test_cancel_stop_fire(self):
+        s = self.serve()
+        a, b = s.client(), s.client()
+        mine = a.ok("play", **LONG)["stroke"]
+        a.stroke(mine, "started")
+        for method, params in (("cancel", {}), ("to", {"x_mm": 1, "y_mm": 1}), ("end", {})):
+            self.check_error(b.error(method, stroke=mine, **params), -32002, "stroke")
+        self.assertEqual(a.ok("cancel", stroke=mine), {})
+        end = a.end_of(mine)
+        self.assertEqual(end["state"], "cancelled")
+        self.check_error(a.error("cancel", stroke=mine), -32002)
+        armed = a.ok("play", **SHORT, start="armed")["stroke"]
+        later = a.ok("play", **SHORT, start={"delay_s": 3600})["stroke"]
+        self.assertEqual({x["stroke"]: x["state"] for x in b.ok("status")["strokes"]}, {armed: "armed", later: "waiting"})
+        self.assertEqual(b.ok("fire"), {"count": 1})
+        self.assertEqual(a.end_of(armed)["state"], "finished")
+        self.assertEqual(b.ok("stop"), {})
+        end = a.end_of(later)
+        self.assertEqual((end["state"], end["frames"], end["started_s"]), ("cancelled", 0, None))
+        n = a.ok("play", **SHORT)["stroke"]
+        self.assertEqual(a.end_of(n)["state"], "finished")
+
+    def test_an_armed_file_of_several_strokes_plays_them_all(self):
+        c = self.serve().client()
+        toml = "".join(f"[[stroke]]\npath = 'M 0 0 L 40 {y}'\nduration_s = 0.1\n" for y in (0, 10, 20))
+        numbers = c.ok("play", toml=toml, start="armed", options={"algorithm": "continuous"})["strokes"]
+        c.ok("fire")
+        starts = [c.stroke(n, "started")["started_s"] for n in numbers]
+        self.assertAlmostEqual(starts[2] - starts[0], 0.2, delta=0.001)
+        self.assertEqual([c.end_of(n)["state"] for n in numbers], ["finished"] * 3)
+        numbers = c.ok("play", toml=toml, start="armed")["strokes"]
+        c.ok("stop")
+        self.assertEqual([c.end_of(n)["state"] for n in numbers], ["cancelled"] * 3)
+
+    def test_a_live_stroke(self):
+        s = self.serve()
+        c = s.client()
+        n = c.ok("begin", timeout_s=3600)["stroke"]
+        c.send({"jsonrpc": "2.0", "method": "to", "params": {"stroke": n, "x_mm": 10, "y_mm": 10}})
+        self.assertIsNotNone(c.stroke(n, "started"))
+        self.assertEqual(c.ok("to", stroke=n, x_mm=20, y_mm=20, intensity=100), {})
+        self.assertEqual(c.ok("end", stroke=n), {})
+        self.assertEqual(c.end_of(n)["state"], "finished")
+        self.check_error(c.error("to", stroke=n, x_mm=1, y_mm=1), -32002)
+        n = c.ok("begin", timeout_s=0.01)["stroke"]
+        self.assertEqual(c.end_of(n)["state"], "interrupted")
+        self.check_error(c.error("begin", options={"duration": 1}), -32602, "options.duration")
+        self.check_error(c.error("to", stroke=1), -32602, "x_mm")
+
+    def test_who_goes_ends_live_strokes_only(self):
+        s = self.serve()
+        c, watcher = s.client(), s.client()
+        watcher.ok("subscribe", events=["strokes"])
+        live = c.ok("begin", timeout_s=3600)["stroke"]
+        c.ok("to", stroke=live, x_mm=10, y_mm=10)
+        played = c.ok("play", **LONG)["stroke"]
+        c.stroke(played, "started")
+        c.close()
+        self.assertEqual(watcher.end_of(live)["state"], "finished")
+        self.assertEqual([(x["stroke"], x["state"]) for x in watcher.ok("status")["strokes"]], [(played, "started")])
+
+    def test_half_closed_sockets_hear_of_the_end(self):
+        c = self.serve().client()
+        c.send({"jsonrpc": "2.0", "id": 1, "method": "play", "params": SHORT})
+        c.socket.shutdown(socket.SHUT_WR)
+        n = c.reply()["result"]["stroke"]
+        self.assertEqual(c.end_of(n)["state"], "finished")
+        self.assertIsNone(c.next())
+
+    def test_drive(self):
+        c = self.serve().client()
+        n = c.ok("drive", tactor=3, intensity=0.5, duration_s=0.05)["stroke"]
+        self.assertEqual(c.end_of(n)["frames"], 2400)
+        for what, params in (("tactor", {"tactor": 9}), ("tactor", {}), ("tactor", {"tactor": 0.5}),
+                             ("intensity", {"tactor": 0, "intensity": 1.1}), ("duration_s", {"tactor": 0, "duration_s": -1})):
+            self.check_error(c.error("drive", **params), -32602, what)
+
+    def test_levels_are_those_of_the_tactors(self):
+        c = self.serve().client()
+        c.ok("subscribe", events=["levels"], levels_hz=100)
+        c.ok("drive", tactor=3, duration_s=300)
+        m = c.notification(lambda m: m["method"] == "levels" and m["params"]["dbfs"][3] is not None
+                           and m["params"]["dbfs"][3] > -12.1)["params"]["dbfs"]
+        self.assertEqual([v is None for v in m], [i != 3 for i in range(9)])
+        self.assertLess(m[3], -11.9)
+        self.check_error(c.error("subscribe", events=["x"]), -32602, "events")
+        self.check_error(c.error("subscribe", events=[], levels_hz=101), -32602, "levels_hz")
+        c.ok("subscribe", events=[])
+
+    def test_status(self):
+        s = self.serve()
+        c = s.client()
+        c.ok("play", **SHORT)
+        r = c.ok("status")
+        self.assertEqual(list(r), ["version", "stream", "amplifier", "clients", "strokes", "limits"])
+        self.assertLessEqual({"state", "xruns", "uptime_s", "realtime"}, set(r["stream"]))
+        self.assertEqual((r["stream"]["state"], r["amplifier"], r["clients"]), ("running", "none", 1))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,244 @@
+# SPDX-License-Identifier: MIT
+"""tactor serve --http as browsers meet it: who may ask, the page, the status, and the WebSocket as RFC 6455 has it."""
+import json
+import re
+import socket
+import struct
+
+from harness import PATIENCE_S, ToolTest, main
+from serving import MESSAGE, Server
+from websocket import BINARY, CLOSE, CONTINUATION, PING, PONG, TEXT, Peer
+
+
+
+class Caller(Peer):
+    """Calls the service through the WebSocket."""
+
+    def message(self):
+        m = json.loads(self.text())
+        MESSAGE.validate(m)
+        return m
+
+    def call(self, method, **params):
+        self.frame(TEXT, json.dumps({"jsonrpc": "2.0", "id": 1, "method": method, "params": params}).encode())
+        while True:
+            m = self.message()
+            if "method" not in m:
+                return m
+
+
+class Web(ToolTest):
+    def serve(self, *args, **more):
+        s = Server(self, "--http", "0", *args, **more)
+        if s.where is None:
+            self.fail(s.errors)
+        self.assertRegex(s.where["http"], r"^http://127\.0\.0\.1:[1-9]\d*/$")
+        s.address = s.where["http"].removeprefix("http://").rstrip("/")
+        s.port = s.address.rpartition(":")[2]
+        s.peer = lambda: self.kept(Caller(s.address))
+        return s
+
+    def kept(self, peer):
+        self.addCleanup(peer.socket.close)
+        return peer
+
+    def websocket(self, s, **headers):
+        p = s.peer()
+        self.assertEqual(p.upgrade(**headers), 101)
+        return p
+
+    # The page, and the status.
+
+    def test_the_page_is_one_document_that_loads_nothing(self):
+        s = self.serve()
+        p = s.peer()
+        status, headers = p.request()
+        page = p.body(headers).decode()
+        self.assertEqual(status, 200)
+        self.assertEqual(headers["content-type"], "text/html; charset=utf-8")
+        policy = headers["content-security-policy"]
+        self.assertTrue(policy.startswith("default-src 'none'; "), policy)
+        self.assertIn("frame-ancestors 'none'", policy)
+        self.assertNotIn("unsafe", policy)
+        nonce = re.search(r"script-src 'nonce-(\w{32})'", policy)[1]
+        self.assertEqual(page.count(f'nonce="{nonce}"'), 2)
+        self.assertNotIn("NONCE", page)
+        self.assertFalse(re.findall(r"(?:src|href)=\"(?!data:,)", page))
+        self.assertFalse(re.findall(r"https?://(?!www\.w3\.org/2000/svg)", page))
+        self.assertNotIn(nonce, str(s.peer().request()))
+
+    def test_status(self):
+        s = self.serve()
+        p = s.peer()
+        status, headers = p.request("/status")
+        self.assertEqual((status, headers["content-type"]), (200, "application/json"))
+        told = json.loads(p.body(headers))
+        self.assertEqual(told["clients"], 0)
+        self.assertEqual(told["stream"]["state"], s.client().ok("status")["stream"]["state"])
+
+    def test_nothing_else(self):
+        s = self.serve()
+        for target, method, status in (("/x", "GET", 404), ("/status/", "GET", 404), ("/rpc", "GET", 426), ("/", "HEAD", 405),
+                                       ("/", "PUT", 405), ("/rpc", "POST", 405), ("/../etc/passwd", "GET", 404)):
+            self.assertEqual(s.peer().request(target, method)[0], status, (target, method))
+        p = s.peer()
+        self.assertEqual(p.request("/", Content_Length="5")[0], 413)
+        p = s.peer()
+        p.send(b"\x16\x03\x01 nonsense\r\n\r\n")
+        self.assertEqual(p.head()[0], 400)
+        p = s.peer()
+        p.send(b"GET / HTTP/1.1\r\nHost: x\r\nX: " + b"a" * 20000)
+        self.assertEqual(p.head()[0], 413)
+
+    def test_a_request_in_pieces_and_one_that_never_ends(self):
+        s = self.serve(config="[serve]\nmax_message_s = 1\n")
+        p = s.peer()
+        p.send(b"GET / HTTP/1.1\r\n")
+        self.assertRaises(EOFError, p.head)
+        s = self.serve("--socket", self.dir / "other.sock")
+        p = s.peer()
+        for b in b"GET / HTTP/1.1\r\nHost: %s\r\n\r\n" % s.address.encode():
+            p.send(bytes([b]))
+        self.assertEqual(p.head()[0], 200)
+
+    # Who may.
+
+    def test_host_and_origin(self):
+        s = self.serve(config='[serve]\nallow_hosts = ["pi.lan"]\n')
+        for host, status in ((f"localhost:{s.port}", 200), (f"LOCALHOST:{s.port}", 200), (s.address, 200), ("localhost", 403),
+                             ("127.0.0.1", 403), (f"127.0.0.2:{s.port}", 403), (f"evil.example:{s.port}", 403), ("localhost:1", 403),
+                             (f"[::1]:{s.port}", 403), ("pi.lan", 200), (f"pi.lan:{s.port}", 200), ("pi.lan.evil.example", 403),
+                             ("", 403), ("]", 403)):
+            p = s.peer()
+            p.send(f"GET /status HTTP/1.1\r\nHost: {host}\r\n\r\n".encode())
+            self.assertEqual(p.head()[0], status, host)
+        for text in ("", f"Host: {s.address}\r\nHost: {s.address}\r\n", f"Host: {s.address}\r\nHost: evil.example\r\n"):
+            p = s.peer()
+            p.send(f"GET / HTTP/1.1\r\n{text}\r\n".encode())
+            self.assertEqual(p.head()[0], 403, text)
+        for origin, status in ((f"http://{s.address}", 200), ("null", 403), ("http://evil.example", 403), (f"https://{s.address}", 403),
+                               ("http://pi.lan", 200), ("https://pi.lan:8443", 200), (f"http://localhost:{s.port}", 403), ("", 403)):
+            self.assertEqual(s.peer().request("/status", Origin=origin)[0], status, origin)
+            self.assertEqual(s.peer().upgrade(Origin=origin), 101 if status == 200 else 403, origin)
+
+    def test_the_token(self):
+        token = self.write("token", "secret\n")
+        token.chmod(0o600)
+        s = self.serve(config=f'[serve]\ntoken_file = "{token}"\n')
+        self.assertEqual(s.peer().request("/")[0], 200)
+        self.assertEqual(s.peer().request("/status")[0], 401)
+        self.assertEqual(s.peer().request("/status", Authorization="Bearer guess")[0], 401)
+        self.assertEqual(s.peer().request("/status", Authorization="Basic secret")[0], 401)
+        self.assertEqual(s.peer().request("/status", Authorization="Bearer secret")[0], 200)
+        p = self.websocket(s)
+        self.assertEqual(p.call("status")["error"]["code"], -32003)
+        self.assertEqual(p.call("hello", token="secret")["result"]["protocol"], "tactor/1")
+        self.assertIn("result", p.call("status"))
+        p = self.websocket(s)
+        for _ in range(3):
+            self.assertEqual(p.call("hello", token="guess")["error"]["code"], -32003)
+        self.assertEqual(p.end(), 1001)
+
+    def test_beyond_loopback_takes_a_token(self):
+        s = Server(self, "--http", "0.0.0.0:0")
+        self.assertIsNone(s.where)
+        self.assertEqual(s.process.returncode, 2, s.errors)
+        self.assertIn("token_file", s.errors)
+
+    # The WebSocket.
+
+    def test_it_speaks_the_protocol(self):
+        s = self.serve()
+        p = self.websocket(s)
+        self.assertEqual(p.call("hello")["result"]["protocol"], "tactor/1")
+        number = p.call("begin")["result"]["stroke"]
+        p.frame(TEXT, json.dumps({"jsonrpc": "2.0", "method": "to", "params": {"stroke": number, "x_mm": 5, "y_mm": 5}}).encode())
+        self.assertEqual(p.message()["params"]["state"], "started")
+        p.frame(TEXT, json.dumps({"jsonrpc": "2.0", "method": "end", "params": {"stroke": number}}).encode())
+        self.assertEqual(p.message()["params"]["state"], "finished")
+        self.assertEqual(p.call("status")["result"]["clients"], 1)
+
+    def test_who_goes_ends_live_strokes(self):
+        s = self.serve()
+        p = self.websocket(s)
+        number = p.call("begin", timeout_s=300)["result"]["stroke"]
+        p.call("to", stroke=number, x_mm=5, y_mm=5)
+        watcher = s.client()
+        watcher.ok("subscribe", events=["strokes"])
+        p.socket.close()
+        told = watcher.next()
+        while told["params"].get("state") == "started":
+            told = watcher.next()
+        self.assertEqual((told["params"]["stroke"], told["params"]["state"]), (number, "finished"))
+
+    def test_control_frames_and_pieces(self):
+        p = self.websocket(self.serve())
+        p.frame(PING, b"are you there")
+        self.assertEqual(p.next_frame(), (PONG, b"are you there"))
+        text = b'{"jsonrpc":"2.0","id":1,"method":"hello"}'
+        p.frame(TEXT, text[:5], last=False)
+        p.frame(PING)
+        p.frame(CONTINUATION, text[5:20], last=False)
+        p.frame(CONTINUATION, text[20:])
+        self.assertEqual(p.next_frame(), (PONG, b""))
+        self.assertEqual(p.message()["result"]["protocol"], "tactor/1")
+        p.frame(CLOSE, struct.pack("!H", 1000) + b"done")
+        self.assertEqual(p.end(), 1000)
+
+    def test_close_codes(self):
+        s = self.serve(config="[serve]\nmax_message_bytes = 1024\n")
+        for code, send in ((1003, lambda p: p.frame(BINARY, b"{}")), (1007, lambda p: p.frame(TEXT, b'{"x":"\xff"}')),
+                           (1009, lambda p: p.frame(TEXT, b"a" * 1025)), (1002, lambda p: p.frame(TEXT, b"{}", masked=False)),
+                           (1002, lambda p: p.frame(CONTINUATION, b"{}")), (1002, lambda p: p.frame(3, b"")),
+                           (1002, lambda p: p.frame(PING, b"a" * 126)), (1002, lambda p: p.frame(PING, b"", last=False))):
+            p = self.websocket(s)
+            send(p)
+            self.assertEqual(p.end(), code)
+        self.websocket(s).call("hello")
+
+    def test_a_message_that_never_ends_and_a_silent_client(self):
+        s = self.serve(config="[serve]\nmax_message_s = 1\n")
+        silent = self.websocket(s)
+        self.assertEqual(silent.end(), 1008)
+        slow = self.websocket(s)
+        slow.call("hello")
+        slow.frame(TEXT, b'{"jsonrpc"', last=False)
+        self.assertEqual(slow.end(), 1008)
+        patient = self.websocket(s)
+        patient.call("hello")
+        self.assertEqual(silent.end(), None)
+        patient.call("status")
+
+    def test_places(self):
+        s = self.serve(config="[serve]\nmax_clients = 3\nkept_clients = 1\n")
+        first, second = self.websocket(s), self.websocket(s)
+        first.call("hello")
+        second.call("hello")
+        self.assertEqual(s.peer().upgrade(), 503)
+        local = s.client()
+        local.ok("status")
+        local.close()
+        first.frame(CLOSE, struct.pack("!H", 1000))
+        self.assertEqual(first.end(), 1000)
+        while True:
+            p = s.peer()
+            status = p.upgrade()
+            if status == 101:
+                break
+            self.assertEqual(status, 503)
+
+    def test_the_end_is_told(self):
+        s = self.serve()
+        p = self.websocket(s)
+        number = p.call("play", path="M 0 0 L 40 40", options={"algorithm": "continuous", "duration": 300})["result"]["stroke"]
+        s.process.terminate()
+        told = []
+        while not told or told[-1]["method"] != "stroke" or told[-1]["params"]["state"] == "started":
+            told.append(p.message())
+        self.assertEqual((told[-1]["params"]["stroke"], told[-1]["params"]["state"]), (number, "cancelled"))
+        self.assertEqual(p.end(), 1001)
+        self.assertEqual(s.process.wait(PATIENCE_S), 0)
+
+
+if __name__ == "__main__":
+    main()

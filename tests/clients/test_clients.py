@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: MIT
+"""tactor serve as other people's programs meet it: wscat, and SuperCollider with the example for it. Usage:
+test_clients.py TOOL SOURCE_ROOT WSCAT"""
+import json
+import os
+import pathlib
+import pty
+import re
+import shutil
+import subprocess
+import sys
+import threading
+import unittest
+
+WSCAT = pathlib.Path(sys.argv.pop(3))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
+from harness import PATIENCE_S, ROOT, ToolTest, Wav, main  # noqa: E402
+from osc import Sender  # noqa: E402
+from serving import MESSAGE, Server  # noqa: E402
+
+
+class Program:
+    """A process whose lines are waited for; what it says is kept in `said`."""
+
+    def __init__(self, test, command, fd=None, **more):
+        self.said = []
+        self.process = subprocess.Popen(list(map(str, command)), **more)
+        self.output = self.process.stdout if fd is None else os.fdopen(fd, "rb")
+        # One that hangs is ended, and its lines with it.
+        patience = threading.Timer(PATIENCE_S, self.process.kill)
+        patience.start()
+        for undo in (self.close, self.process.wait, self.process.kill, patience.cancel):
+            test.addCleanup(undo)
+
+    def close(self):
+        for stream in (self.process.stdin, self.output):
+            if stream is not None:
+                stream.close()
+
+    def until(self, pattern):
+        """The match in the first line from here on that has it."""
+        for line in self.lines():
+            if found := re.search(pattern, line):
+                return found
+        raise AssertionError(f"no {pattern!r} in {self.said}")
+
+    def lines(self):
+        while True:
+            try:
+                line = self.output.readline()
+            except OSError:  # a terminal's end
+                line = b""
+            if not line:
+                return
+            # What moves the cursor is none of ours, nor is what was overwritten.
+            self.said.append(re.sub(r"\x1b\[[0-9;]*[A-Za-z]", "", line.decode()).strip().rpartition("\r")[2])
+            yield self.said[-1]
+
+
+class Wscat(ToolTest):
+    def serve(self):
+        s = Server(self, "--http", "0")
+        if s.where is None:
+            self.fail(s.errors)
+        s.rpc = s.where["http"].replace("http:", "ws:") + "rpc"
+        return s
+
+    def on_a_terminal(self, s, *args):
+        """Only there it says how connections end."""
+        screen, terminal = pty.openpty()
+        p = Program(self, ["node", WSCAT, "--no-color", "-c", s.rpc, *args], fd=screen, stdin=subprocess.PIPE, stdout=terminal,
+                    stderr=terminal)
+        os.close(terminal)
+        p.until("^Connected")
+        return p
+
+    def type(self, p, line):
+        p.process.stdin.write(line.encode() + b"\n")
+        p.process.stdin.flush()
+
+    def message(self, p):
+        m = json.loads(p.until(r"^< (\{.*\})$")[1])
+        MESSAGE.validate(m)
+        return m
+
+    def call(self, p, method, **params):
+        self.type(p, json.dumps({"jsonrpc": "2.0", "id": 7, "method": method, "params": params}))
+        m = self.message(p)
+        self.assertEqual(m["id"], 7)
+        return m["result"]
+
+    def run_wscat(self, s, *args):
+        # It ends where its input does.
+        held = os.pipe()
+        for end in held:
+            self.addCleanup(os.close, end)
+        return subprocess.run(["node", WSCAT, "-c", s.rpc, *args], stdin=held[0], capture_output=True, text=True, timeout=PATIENCE_S,
+                              check=False)
+
+    def test_a_conversation(self):
+        s = self.serve()
+        p = self.on_a_terminal(s, "--slash", "-P")
+        told = self.call(p, "hello")
+        self.assertEqual((told["protocol"], told["array"]["name"], len(told["array"]["tactors"])), ("tactor/1", "palm-3x3", 9))
+        number = self.call(p, "play", stroke="park2016-1")["stroke"]
+        ends = [self.message(p), self.message(p)]
+        self.assertEqual([(m["method"], m["params"]["stroke"], m["params"]["state"]) for m in ends],
+                         [("stroke", number, "started"), ("stroke", number, "finished")])
+        self.assertEqual(ends[1]["params"]["frames"], 70560)
+        self.type(p, "/ping anybody?")
+        p.until(r'^< Received pong \(data: "anybody\?"\)$')
+        self.type(p, "/close 1000 done")
+        self.assertEqual(p.until(r'^Disconnected \(code: (\d+)')[1], "1000")
+        self.assertEqual(p.process.wait(PATIENCE_S), 0)
+        self.assertEqual(s.client().ok("status")["clients"], 1)
+
+    def test_the_server_ends(self):
+        s = self.serve()
+        p = self.on_a_terminal(s)
+        self.call(p, "hello")
+        s.process.terminate()
+        self.assertEqual(self.message(p)["params"]["state"], "closing")
+        self.assertEqual(p.until(r'^Disconnected \(code: (\d+)')[1], "1001")
+        self.assertEqual(s.process.wait(PATIENCE_S), 0)
+
+    def test_one_call_in_one_line_of_shell(self):
+        # It closes as soon as it has asked, and is still answered.
+        r = self.run_wscat(self.serve(), "-w", "0", "-x", '{"jsonrpc":"2.0","id":1,"method":"hello"}')
+        self.assertEqual((r.returncode, r.stderr), (0, ""))
+        self.assertEqual(json.loads(r.stdout)["result"]["protocol"], "tactor/1")
+
+    def test_origins(self):
+        s = self.serve()
+        for origin in ("http://evil.example", "null"):
+            r = self.run_wscat(s, "-o", origin)
+            self.assertEqual((r.returncode, r.stdout, r.stderr), (255, "", "error: Unexpected server response: 403\n"))
+        self.call(self.on_a_terminal(s, "-o", s.where["http"].rstrip("/")), "hello")
+
+
+# Evaluates a block of the example, as Ctrl-Return does, when told its number.
+DRIVER = r"""
+OSCdef(\evaluate, { |m| File.readAllString("FOLDER/block" ++ m[1]).interpret }, '/evaluate');
+OSCdef(\leave, { 0.exit }, '/leave');
+"evaluates at %".format(NetAddr.langPort).postln;
+"""
+# sclang is linked with Qt's browser, which does not run as root otherwise, and wants a screen where nothing is shown.
+NO_SCREEN = {"QT_QPA_PLATFORM": "offscreen", "QTWEBENGINE_DISABLE_SANDBOX": "1"}
+
+
+def blocks(text):
+    """What Ctrl-Return evaluates, in turn: from a ( that begins a line to the ) that does, or a line."""
+    return re.findall(r"^\((?s:.*?)^\)|^[^\s(/)].*", text, re.M)
+
+
+@unittest.skipUnless(shutil.which("sclang"), "sclang is not here")
+class SuperCollider(ToolTest):
+    def start(self, parts):
+        for number, code in enumerate(parts):
+            self.write(f"block{number}", code)
+        driver = self.write("driver.scd", DRIVER.replace("FOLDER", str(self.dir)))
+        # Nothing of the user's, and nothing is left in their home.
+        env = self.env | NO_SCREEN | {"HOME": str(self.dir), "XDG_CONFIG_HOME": str(self.dir / "config"), "XDG_DATA_HOME": str(self.dir / "data"),
+                                      "XDG_RUNTIME_DIR": str(self.dir)}
+        p = Program(self, ["sclang", driver], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=env, cwd=self.dir)
+        where = p.until(r"^evaluates at (\d+)$")[1]
+        return p, Sender(self, type("At", (), {"where": {"osc": f"127.0.0.1:{where}"}}))
+
+    def test_the_example(self):
+        felt = self.dir / "felt.raw"
+        s = Server(self, "--osc", "0", device=("-D", f"raw:{felt}"))
+        watcher = s.client()
+        watcher.ok("subscribe", events=["strokes"])
+        port = s.where["osc"].rpartition(":")[2]
+        parts = blocks((ROOT / "examples/serve_client.scd").read_text(encoding="utf-8").replace("4002", port))
+        self.assertEqual(len(parts), 5)
+        handlers, preset, circle, levels, stop = range(5)
+        p, sclang = self.start(parts)
+
+        sclang.say("/evaluate", handlers)
+        sclang.say("/evaluate", preset)
+        p.until("^stroke 1: started$")
+        p.until("^stroke 1: finished$")
+        told = watcher.notification(lambda m: m["params"]["state"] != "started")["params"]
+        self.assertEqual((told["state"], told["frames"]), ("finished", 70560))
+
+        sclang.say("/evaluate", circle)
+        p.until("^stroke 2: started$")
+        p.until("^stroke 2: finished$")
+        told = watcher.notification(lambda m: m["params"]["state"] != "started")["params"]
+        # A second of points, however late they were said.
+        self.assertEqual(told["state"], "finished")
+        self.assertGreater(told["frames"], 40000)
+
+        other = Sender(self, s)
+        other.say("/tactor/play", 1, "M 0 0 L 40 40", "duration=300")
+        self.assertEqual(other.next(), ["/tactor/stroke", 1, "started"])
+        sclang.say("/evaluate", levels)
+        shown = p.until(r"^\[ (-?\d.*) \]$")[1]
+        while max(dbfs := [float(v) for v in shown.split(",")]) < -30:
+            shown = p.until(r"^\[ (-?\d.*) \]$")[1]
+        self.assertEqual(len(dbfs), 9)
+        self.assertEqual(min(dbfs), -200)
+        sclang.say("/evaluate", stop)
+        self.assertEqual(other.next(), ["/tactor/stroke", 1, "cancelled"])
+
+        sclang.say("/leave")
+        self.assertEqual([line for line in p.lines() if line.startswith("stroke")], [])
+        self.assertEqual(p.process.wait(PATIENCE_S), 0)
+        self.assertEqual([line for line in p.said if "ERROR" in line or "WARNING" in line], [])
+        self.assertEqual(s.terminate()[0], 0)
+        self.ok("render", "park2016-1", "--sample-format", "s32", "-o", "rendered.wav")
+        self.assertIn(Wav(self.dir / "rendered.wav").data.strip(b"\0"), felt.read_bytes())
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+// Points that come in bursts, smoothed over a window.
+#include <cmath>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <tactor/error.hpp>
+
+#include "live_rig.hpp"
+
+namespace live_smooth_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+constexpr std::uint64_t window = 2400; // 0.05 s
+
+// The first tactor's amplitude tells where it is: x = 40 is 1.
+class across final : public phantom_model {
+public:
+    std::string_view name() const noexcept override { return "across"; }
+    void weights(point p, double a_v, std::vector<drive>& out) const override
+    {
+        out.clear();
+        if (p.x_mm > 0.0)
+            out.push_back({0, a_v * p.x_mm / 40.0});
+        if (p.y_mm > 39.0)
+            throw error(error_kind::bad_input, "across", "not there");
+    }
+};
+
+live_options smoothed(double seconds = 0.05)
+{
+    live_options o;
+    o.plan.custom_phantom = std::make_shared<across>();
+    o.smooth_s = seconds;
+    return o;
+}
+
+// Where it is at each crest of the carrier from a frame on, mm: crests are 96 frames apart.
+std::vector<double> places(const live_rig& r, std::uint64_t base, std::uint64_t from)
+{
+    constexpr std::uint64_t crest = 48;
+    std::vector<double> x;
+    const auto s = r.channel(0, base);
+    for (std::uint64_t i = from + crest; i < s.size(); i += 96)
+        x.push_back(40.0 * std::abs(s[i]) / live_level);
+    return x;
+}
+
+bool near(double a, double b)
+{
+    return std::abs(a - b) < 1e-3;
+}
+
+} // namespace
+
+TEST_CASE("off, a point is there at the end of the next period; on, the place moves evenly over the window")
+{
+    for (const double seconds : {0.0, 0.05}) {
+        CAPTURE(seconds);
+        live_rig r(smoothed(seconds));
+        r.live->to({10.0, 0.0}, 1.0);
+        const std::uint64_t base = r.status().written;
+        r.play(4800);
+        const std::uint64_t came = r.status().written - base;
+        r.live->to({40.0, 0.0}, 1.0);
+        r.play(9600);
+        CHECK(near(places(r, base, 96).front(), 10.0)); // the first one at once
+        const auto x = places(r, base, came);
+        for (std::size_t k = 0; k < 90; ++k) {
+            CAPTURE(k);
+            const double gone = 48.0 + 96.0 * static_cast<double>(k);
+            const double takes = seconds == 0.0 ? 96.0 : static_cast<double>(window);
+            REQUIRE(near(x[k], 10.0 + 30.0 * std::min(gone / takes, 1.0)));
+        }
+    }
+}
+
+TEST_CASE("bursts of points as long as the window: even speed, half a window and half a burst behind")
+{
+    live_rig r(smoothed());
+    r.live->to({0.0, 0.0}, 1.0);
+    const std::uint64_t base = r.status().written;
+    double x_mm = 0.0;
+    for (std::uint64_t n = 0; n < 20; ++n) {
+        for (int i = 0; i < 5; ++i) // 2 mm a burst
+            r.live->to({x_mm += 0.4, 0.0}, 1.0);
+        for (std::uint64_t f = 0; f < window; f += 96)
+            r.play(96);
+    }
+    const auto x = places(r, base, 0);
+    REQUIRE(x.size() >= 500);
+    // The points are of the 0.05 s before they come: at frame f the finger was at 2 + 2 f / window.
+    for (std::size_t k = 25; k < 500; ++k)
+        REQUIRE(near(x[k], 2.0 * (48.0 + 96.0 * static_cast<double>(k)) / static_cast<double>(window)));
+}
+
+TEST_CASE("intensity moves with the place, in bursts of the carrier too")
+{
+    live_options o = smoothed(0.2);
+    o.plan.algorithm = algorithm_kind::park2016;
+    live_rig r(o);
+    r.live->to({40.0, 0.0}, 1.0);
+    const std::uint64_t base = r.status().written;
+    r.play(2400);
+    const std::uint64_t came = r.status().written - base;
+    r.live->to({40.0, 0.0}, 0.5);
+    r.play(14'400);
+    const auto s = r.channel(0, base);
+    for (std::uint64_t at = 0; at + 3360 <= 16'800; at += 3360) {
+        CAPTURE(at);
+        const double gone = at < came ? 0.0 : static_cast<double>(at - came) / 9600.0;
+        CHECK(peak(s, at + 480, at + 960) ==
+              doctest::Approx(live_level * (1.0 - 0.5 * std::min(gone, 1.0))).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("end waits until the last point is reached, cancel does not, and what stands still does not wait")
+{
+    using engine::live_voice;
+    for (const auto how : {live_voice::wish::end, live_voice::wish::cancel}) {
+        live_rig r(smoothed());
+        r.live->to({10.0, 0.0}, 1.0);
+        const std::uint64_t base = r.status().written;
+        r.play(960);
+        const std::uint64_t came = r.status().written - base;
+        r.live->to({40.0, 0.0}, 1.0);
+        r.live->voice.ask(how);
+        r.play_out();
+        const bool ended = how == live_voice::wish::end;
+        CHECK(r.report({1})->state == (ended ? state_kind::finished : state_kind::cancelled));
+        CHECK(r.report({1})->frames == came + (ended ? window : 0) + 480);
+    }
+    live_rig still(smoothed());
+    still.live->to({10.0, 0.0}, 1.0);
+    const std::uint64_t base = still.status().written;
+    still.play(960);
+    const std::uint64_t came = still.status().written - base;
+    still.live->voice.ask(live_voice::wish::end);
+    still.play_out();
+    CHECK(still.report({1})->frames == came + 480);
+}
+
+TEST_CASE("a point that is refused leaves it where it was, also on its way")
+{
+    live_rig r(smoothed());
+    r.live->to({10.0, 0.0}, 1.0);
+    const std::uint64_t base = r.status().written;
+    r.play(960);
+    const std::uint64_t came = r.status().written - base;
+    r.live->to({40.0, 0.0}, 1.0);
+    r.play(960);
+    CHECK_THROWS_AS(r.live->to({0.0, 40.0}, 1.0), error);
+    CHECK_THROWS_WITH_AS(r.live->to({0.0, 0.0}, -0.5), doctest::Contains("-0.5"), error);
+    CHECK_THROWS_AS(r.live->to({0.0, 0.0}, std::nan("")), error);
+    CHECK(r.live->points == 2);
+    r.play(4800);
+    const auto x = places(r, base, came);
+    for (std::size_t k = 0; k < 50; ++k)
+        REQUIRE(near(x[k], 10.0 + 30.0 * std::min((48.0 + 96.0 * static_cast<double>(k)) / window, 1.0)));
+}
+
+TEST_CASE("the mean over the window, however the points came")
+{
+    std::mt19937_64 random(3);
+    for (const std::uint64_t w : {1U, 7U, 100U}) {
+        engine::smoothing s(w);
+        std::vector<double> told; // by frame
+        double x = 0.0;
+        for (std::uint64_t frame = 0; frame < 1000; ++frame) {
+            if (frame == 0 || random() % 11 == 0) {
+                x = static_cast<double>(random() % 1000);
+                s.to(frame, {{x, -x}, x});
+                s.to(frame, {{x, -x}, x}); // once more counts once
+            }
+            told.push_back(x);
+            double sum = 0.0;
+            for (std::uint64_t back = 0; back < w; ++back)
+                sum += told[frame - std::min(back, frame)];
+            // What was told of a frame holds after it.
+            const auto p = s.at(frame + 1);
+            REQUIRE(p.at.x_mm == doctest::Approx(sum / static_cast<double>(w)));
+            REQUIRE(p.at.y_mm == -p.at.x_mm);
+            REQUIRE(p.intensity == p.at.x_mm);
+        }
+        s.to(2000, {{5.0, 0.0}, 1.0});
+        CHECK(s.settles_in() == w);
+        CHECK(s.at(2000 + w).at.x_mm == 5.0);
+    }
+}
+
+} // namespace live_smooth_test

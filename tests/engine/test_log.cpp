@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+// What the program's log is told of the stream.
+#include <algorithm>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <tactor/error.hpp>
+#include <tactor/log.hpp>
+#include <tactor/player.hpp>
+
+#include "amplifier_rig.hpp"
+#include "clock_runner.hpp"
+#include "engine/control/stream_log.hpp"
+#include "player_support.hpp"
+
+namespace log_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+struct heard {
+    std::mutex mutex; // a player's lines come from its control thread
+    std::vector<std::string> lines;
+
+    log_function function()
+    {
+        return [this](log_kind k, std::string_view text) {
+            const std::lock_guard lock(mutex);
+            lines.push_back(std::string(to_string(k)) + " " + std::string(text));
+        };
+    }
+    std::size_t count(std::string_view part)
+    {
+        const std::lock_guard lock(mutex);
+        return static_cast<std::size_t>(std::count_if(
+            lines.begin(), lines.end(), [&](const std::string& l) { return l.find(part) != l.npos; }));
+    }
+};
+
+// A rig whose control side looks after each period.
+template <typename Rig>
+struct logged : Rig {
+    explicit logged(const rig_options& o = {}, const drive_limits& held = {})
+        : Rig(o), log(told.function(), this->link, held)
+    {
+        this->also_control = [this, before = this->also_control] {
+            if (before)
+                before();
+            log.look(this->status(), this->now);
+            log.tell();
+        };
+    }
+    heard told;
+    engine::stream_log log;
+};
+
+} // namespace
+
+TEST_CASE("an xrun is a line, and so is that the stream runs again")
+{
+    logged<rig> r;
+    REQUIRE(r.start().status == io_kind::ok);
+    r.play(9600);
+    CHECK(r.told.count("") == 1); // strokes may sound
+    r.dac.advance(1000);
+    r.step();
+    r.control();
+    CHECK(r.told.count("warning xrun 1: the device ran dry") == 1);
+    CHECK(r.told.count("info the stream runs again, started 2 times by now") == 1);
+    r.play(9600);
+    CHECK(r.told.count("xrun") == 1);
+}
+
+TEST_CASE("why a lost device ended the stream is a line, once")
+{
+    logged<rig> r;
+    REQUIRE(r.start().status == io_kind::ok);
+    r.play(960);
+    r.dac.disconnect();
+    for (int i = 0; i < 10 && !r.loop.over(); ++i)
+        r.step();
+    r.control();
+    REQUIRE(r.feed.stream_over());
+    r.log.end(r.feed.stream_reason());
+    r.log.end(r.feed.stream_reason());
+    r.log.tell();
+    CHECK(r.told.count("error the stream has ended: the device is gone") == 1);
+}
+
+TEST_CASE("a muted amplifier is a line")
+{
+    logged<playing> r;
+    CHECK(r.told.count("mute") == 0);
+    r.line.is_on = false; // as when its holder died: beat() tells
+    r.wait(200 * ms);
+    r.play(960);
+    CHECK(r.told.count("warning the amplifier was muted") == 1);
+}
+
+TEST_CASE("limits that act are told once a second at most")
+{
+    rig_options o;
+    o.loop.guards = synth::guards_of({.power_dbfs = -60.0}, rate);
+    logged<rig> r(o, {.power_dbfs = -60.0});
+    REQUIRE(r.start().status == io_kind::ok);
+    r.submit(tone(2.5));
+    r.play(120'000);
+    CHECK(r.told.count("warning the power of all tactors was held at -60 dBFS") == 3);
+}
+
+TEST_CASE("nobody listens: nothing is gathered")
+{
+    engine::link l;
+    engine::stream_log silent({}, l, {});
+    l.count.count_xrun(5);
+    silent.look({}, 1);
+    silent.end("");
+    silent.tell();
+    CHECK_FALSE(silent.on());
+}
+
+TEST_CASE("a player tells of its start and its end, and bears a log that throws")
+{
+    for (const bool throws : {false, true}) {
+        CAPTURE(throws);
+        fake_dac dac;
+        heard told;
+        player_options o = patient();
+        o.log = [to = told.function(), throws](log_kind k, std::string_view text) {
+            to(k, text);
+            if (throws)
+                throw std::runtime_error("log");
+        };
+        {
+            player p(pcm::adopt(dac.pcm(), nine()), palm(), o);
+            CHECK(told.count("info stream on \"null\" runs: 9 channels at 48000 Hz, 3 of 96 frames") == 1);
+            const stroke_id id = p.submit(tone(0.1));
+            const running_clock clock(dac);
+            REQUIRE(p.wait(id));
+            p.stop();
+            CHECK(p.ended() == "");
+        }
+        CHECK(told.count("info the stream has ended") == 1);
+    }
+}
+
+TEST_CASE("kinds have names, and names kinds")
+{
+    for (const log_kind k : {log_kind::debug, log_kind::info, log_kind::warning, log_kind::error})
+        CHECK(from_string<log_kind>(to_string(k)) == k);
+    CHECK_THROWS_WITH_AS(from_string<log_kind>("warn"),
+                         doctest::Contains("one of debug, info, warning, error"), error);
+}
+
+} // namespace log_test

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+#include "files/output_file.hpp"
+
+#include <cerrno>
+#include <csignal>
+#include <fstream>
+#include <string>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <doctest/doctest.h>
+
+#include <tactor/error.hpp>
+
+#include "folder.hpp"
+
+namespace output_file_test {
+
+using namespace tactor;
+namespace fs = std::filesystem;
+
+namespace {
+
+void put(const fs::path& p, const std::string& text)
+{
+    detail::output_file f(p);
+    f.write(text.data(), static_cast<std::int64_t>(text.size()));
+    f.commit();
+}
+
+unsigned rights(const fs::path& p)
+{
+    struct stat s {};
+    REQUIRE(::stat(p.c_str(), &s) == 0);
+    return s.st_mode & 07777U;
+}
+
+std::string why_not(const fs::path& p)
+{
+    try {
+        put(p, "x");
+    } catch (const error& e) {
+        return e.what();
+    }
+    return {};
+}
+
+/// A pipe's writer must not die of it.
+class no_sigpipe {
+public:
+    no_sigpipe() : before_(std::signal(SIGPIPE, SIG_IGN)) {}
+    ~no_sigpipe() { std::signal(SIGPIPE, before_); }
+    no_sigpipe(const no_sigpipe&) = delete;
+    no_sigpipe& operator=(const no_sigpipe&) = delete;
+
+private:
+    void (*before_)(int);
+};
+
+} // namespace
+
+TEST_CASE("a file that is replaced keeps its rights")
+{
+    const folder dir;
+    std::ofstream(dir / "a") << "old";
+    for (const unsigned mode : {0600U, 0640U, 0664U, 0755U}) {
+        REQUIRE(::chmod((dir / "a").c_str(), mode) == 0);
+        put(dir / "a", "new");
+        CHECK(rights(dir / "a") == mode);
+    }
+    // Nobody runs as somebody else because of a file that we wrote.
+    REQUIRE(::chmod((dir / "a").c_str(), 04755) == 0);
+    put(dir / "a", "new");
+    CHECK(rights(dir / "a") == 0755);
+}
+
+TEST_CASE("a link is followed, but not where anybody may put one")
+{
+    const folder dir;
+    fs::create_symlink("real", dir / "link");
+    put(dir / "link", "new");
+    CHECK(fs::is_symlink(dir / "link"));
+    CHECK(dir.bytes("real") == "new");
+    fs::create_directory(dir / "shared");
+    REQUIRE(::chmod((dir / "shared").c_str(), 01777) == 0);
+    fs::create_symlink(dir / "real", dir / "shared/link");
+    const std::string why = why_not(dir / "shared/link");
+    CHECK(why.find("others can write") != std::string::npos);
+    CHECK(dir.bytes("real") == "new");
+    put(dir / "shared/plain", "x");
+    CHECK(dir.bytes("shared/plain") == "x");
+    // A link elsewhere that leads through such a one.
+    fs::create_symlink(dir / "shared/link", dir / "second");
+    CHECK_FALSE(why_not(dir / "second").empty());
+}
+
+TEST_CASE("a pipe without a reader is waited for until the user has enough")
+{
+    const folder dir;
+    REQUIRE(::mkfifo((dir / "pipe").c_str(), 0600) == 0);
+    int asked = 0;
+    detail::output_file f(dir / "pipe", [&] { return ++asked < 3; });
+    CHECK(asked == 3);
+    CHECK(f.given_up());
+    CHECK(f.write("x", 1) == 0);
+    CHECK_THROWS_AS(f.commit(), error);
+}
+
+TEST_CASE("a pipe that is full is waited for until the user has enough, and nothing is lost until then")
+{
+    const folder dir;
+    REQUIRE(::mkfifo((dir / "pipe").c_str(), 0600) == 0);
+    const int reader = ::open((dir / "pipe").c_str(), O_RDONLY | O_NONBLOCK);
+    REQUIRE(reader >= 0);
+    bool enough = false;
+    detail::output_file f(dir / "pipe", [&] { return !enough; });
+    const std::string some(4096, 'x');
+    CHECK(f.write(some.data(), 4096) == 4096);
+    std::string got(1 << 20, '\0');
+    CHECK(::read(reader, got.data(), got.size()) == 4096);
+    enough = true;
+    const std::string more(1 << 20, 'y');
+    const std::int64_t done = f.write(more.data(), 1 << 20);
+    CHECK(f.given_up());
+    CHECK(done < 1 << 20);
+    CHECK(::read(reader, got.data(), got.size()) == done);
+    ::close(reader);
+}
+
+TEST_CASE("a reader that leaves is a failure that says so")
+{
+    const no_sigpipe quiet;
+    const folder dir;
+    REQUIRE(::mkfifo((dir / "pipe").c_str(), 0600) == 0);
+    const int reader = ::open((dir / "pipe").c_str(), O_RDONLY | O_NONBLOCK);
+    REQUIRE(reader >= 0);
+    detail::output_file f(dir / "pipe");
+    CHECK(f.write("x", 1) == 1);
+    ::close(reader);
+    CHECK(f.write("x", 1) == 0);
+    CHECK(f.failure() == EPIPE);
+    CHECK_THROWS_WITH_AS(f.commit(), doctest::Contains("ended before"), error);
+}
+
+TEST_CASE("names of descriptors are written to from where they stand")
+{
+    const folder dir;
+    const int fd = ::open((dir / "a").c_str(), O_WRONLY | O_CREAT, 0600);
+    REQUIRE(::write(fd, "before ", 7) == 7);
+    put("/dev/fd/" + std::to_string(fd), "one ");
+    put("/proc/self/fd/" + std::to_string(fd), "two");
+    ::close(fd);
+    CHECK(dir.bytes("a") == "before one two");
+    CHECK(why_not("/dev/fd/" + std::to_string(fd)).find("cannot be written") != std::string::npos);
+}
+
+} // namespace output_file_test

@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: MIT
+// [output], [amplifier], [sync] and [defaults]; texts that are no TOML.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <clocale>
+#include <random>
+#include <string>
+
+#include <tactor/setup.hpp>
+
+#include "message_of.hpp"
+
+namespace setup_test {
+
+using namespace tactor;
+
+namespace {
+
+setup read(const std::string& text)
+{
+    return parse_setup(text, "t.toml");
+}
+
+std::string complaint(const std::string& text)
+{
+    return message_of([&] { read(text); });
+}
+
+// The format's example, all tables in use.
+const std::string whole = R"([array]
+name = "palm-3x3"
+grid = { rows = 3, columns = 3, pitch_mm = 20.0 }
+
+[output]
+pcm = "hw:CARD=Tactor"
+rate = 48000
+channels = 16
+period_frames = 96
+periods = 3
+
+[amplifier]
+line = { chip = "pinctrl-rp1", offset = 17 }
+active_low = true
+settle_ms = 12.5
+
+[sync]
+out = { chip = "pinctrl-rp1", offset = 27, pulse_ms = 4 }
+channel = 15
+in  = { name = "GPIO22", edge = "falling", debounce_ms = 2.5, pull = "up" }
+
+[limits]
+power_dbfs = 3
+max_drive_s = 2.5
+
+[defaults]
+algorithm = "tactile-brush"
+soa = 0.06
+speed = 80
+snap = true
+rate = 96000
+level-dbfs = "-20"
+)";
+
+std::string with(std::string from, const std::string& to)
+{
+    std::string text = whole;
+    const auto at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    return text.replace(at, from.size(), to);
+}
+
+} // namespace
+
+TEST_CASE("a whole configuration")
+{
+    const setup s = read(whole);
+    CHECK(s.array->tactors.size() == 9);
+    CHECK(s.output.pcm == "hw:CARD=Tactor");
+    CHECK(s.output.rate == 48000u);
+    CHECK(s.output.channels == 16u);
+    CHECK(s.output.period_frames == 96u);
+    CHECK(s.limits->power_dbfs == 3.0);
+    CHECK(s.limits->max_drive_s == 2.5);
+    CHECK_FALSE(s.limits->window_s);
+    CHECK(s.output.periods == 3u);
+    REQUIRE(s.amplifier.has_value());
+    CHECK(s.amplifier->line.chip == "pinctrl-rp1");
+    CHECK(s.amplifier->line.offset == 17u);
+    CHECK(s.amplifier->line.where.text() == "t.toml:13:8");
+    CHECK(s.amplifier->active_low);
+    CHECK(s.amplifier->settle_s == 0.0125);
+    REQUIRE(s.sync.has_value());
+    CHECK(s.sync->out->offset == 27u);
+    CHECK(s.sync->pulse_s == 0.004);
+    CHECK(s.sync->channel == 15u);
+    CHECK(s.sync->in->name == "GPIO22");
+    CHECK_FALSE(s.sync->in->offset.has_value());
+    CHECK(s.sync->edge == edge_kind::falling);
+    CHECK(s.sync->debounce_s == 0.0025);
+    CHECK(s.sync->pull == pull_kind::up);
+    CHECK(s.defaults == std::map<std::string, std::string>{{"algorithm", "tactile-brush"},
+                                                           {"soa", "0.06"},
+                                                           {"speed", "80"},
+                                                           {"snap", "true"},
+                                                           {"rate", "96000"},
+                                                           {"level-dbfs", "-20"}});
+}
+
+TEST_CASE("what a file leaves out is left to the program")
+{
+    for (const char* text : {"", "# nothing\n", "[output]\n", "\xef\xbb\xbf# with a byte order mark\r\n"}) {
+        const setup s = read(text);
+        CHECK_FALSE(s.array.has_value());
+        CHECK_FALSE(s.output.pcm.has_value());
+        CHECK_FALSE(s.output.channels.has_value());
+        CHECK_FALSE(s.amplifier.has_value());
+        CHECK_FALSE(s.sync.has_value());
+        CHECK(s.defaults.empty());
+    }
+    const setup s = read("[amplifier]\nline = { name = \"GPIO17\" }\n[sync]\n");
+    CHECK_FALSE(s.amplifier->active_low);
+    CHECK(s.amplifier->settle_s == 0.010);
+    CHECK(s.sync->pulse_s == 0.005);
+    CHECK(s.sync->edge == edge_kind::rising);
+    CHECK(s.sync->debounce_s == 0.001);
+    CHECK(s.sync->pull == pull_kind::as_is);
+    CHECK_FALSE(s.sync->out.has_value());
+}
+
+TEST_CASE("[output] out of range")
+{
+    CHECK(complaint(with("rate = 48000", "rate = 7999")) ==
+          "t.toml:7:8: rate is 7999 (allowed: 8000 to 768000)");
+    CHECK(complaint(with("rate = 48000", "rate = 48000.0")) ==
+          "t.toml:7:8: rate is 48000 (give a whole number)");
+    CHECK(complaint(with("periods = 3", "periods = 1")) == "t.toml:10:11: periods is 1 (allowed: 2 to 1024)");
+    CHECK(complaint(with("\"hw:CARD=Tactor\"", "\"\"")) == "t.toml:6:7: pcm is empty");
+    CHECK(complaint(with("\"hw:CARD=Tactor\"", "hw")).starts_with("t.toml:6:"));
+    CHECK(complaint(with("period_frames", "period_frame")) ==
+          "t.toml:9:1: unknown key 'period_frame' in [output] (did you mean 'period_frames'?)");
+    CHECK(complaint(with("[output]", "[ouput]")) ==
+          "t.toml:5:2: unknown key 'ouput' in the file (did you mean 'output'?)");
+    CHECK(complaint(with("channels = 16", "channels = 1025")) ==
+          "t.toml:8:12: channels is 1025 (allowed: 1 to 1024)");
+}
+
+TEST_CASE("fewer channels than the map or the marker needs")
+{
+    CHECK(
+        complaint("[array]\npreset = \"palm-3x3\"\n[output]\nchannels = 8\n") ==
+        "t.toml:4:12: channels is 8, but tactor 8 (t.toml:2:10) is on channel 8 (the array needs 9 channels; "
+        "they count from 0)");
+    CHECK(complaint("[array]\npreset = \"palm-3x3\"\n[output]\nchannels = 9\n").empty());
+    CHECK(complaint(with("channels = 16", "channels = 15")) ==
+          "t.toml:19:11: the marker's channel is 15, but there are 15 channels (t.toml:8:12) (channels count "
+          "from 0)");
+    CHECK(complaint(with("channel = 15", "channel = 3")) ==
+          "t.toml:19:11: the marker's channel 3 is that of tactor 3 (t.toml:3:8) (give the marker a channel "
+          "without a tactor)");
+}
+
+TEST_CASE("GPIO lines: a chip and an offset, or a name, each line once")
+{
+    const auto line = [](const std::string& l) { return complaint("[amplifier]\nline = " + l + "\n"); };
+    CHECK(line("{ chip = \"a\" }") == "t.toml:2:8: line has no offset (add offset = ...)");
+    CHECK(line("{ chip = \"a\", name = \"b\" }") ==
+          "t.toml:2:29: line has both chip and name (keep one of them)");
+    CHECK(line("{ name = \"a\", offset = 2 }") ==
+          "t.toml:2:31: line has both name and offset (a name is enough)");
+    CHECK(line("{ offset = 2 }") == "t.toml:2:8: line says nothing of what it "
+                                    "is (add one of: chip, name)");
+    CHECK(line("{ chip = \"a\", offset = -2 }") == "t.toml:2:31: offset is -2 (allowed: 0 to 65535)");
+    CHECK(line("\"GPIO17\"") ==
+          "t.toml:2:8: line is 'GPIO17' (give a table, line = { chip, offset } or { name })");
+    CHECK(complaint("[amplifier]\nactive_low = true\n") ==
+          "t.toml:1:1: [amplifier] has no line (add line = ...)");
+    CHECK(complaint(with("offset = 27", "offset = 17")) ==
+          "t.toml:18:7: the line is in use at t.toml:13:8 (give each purpose a GPIO line of its own)");
+    CHECK(complaint(with("falling", "fall")) == "t.toml:20:33: edge is 'fall' (did you mean 'falling'?)");
+    CHECK(complaint(with("settle_ms = 12.5", "settle_ms = -1")) ==
+          "t.toml:15:13: settle_ms is -1 (allowed: 0 to 10000)");
+    CHECK(complaint(with("active_low = true", "active_low = 1")) ==
+          "t.toml:14:14: active_low is 1 (give true or false)");
+}
+
+TEST_CASE("[defaults] takes the options it lists, checked")
+{
+    for (const std::string& name : setup_default_names())
+        CHECK_FALSE(complaint("[defaults]\n" + name + " = []\n").empty());
+    CHECK(setup_default_names().size() == 34);
+    CHECK(complaint("[defaults]\nphantoms = \"log\"\n") ==
+          "t.toml:2:1: unknown key 'phantoms' in [defaults] (did you mean 'phantom'?)");
+    CHECK(complaint("[defaults]\nlevel_dbfs = -6\n") ==
+          "t.toml:2:1: unknown key 'level_dbfs' in [defaults] (did you mean 'level-dbfs'?)");
+    CHECK(complaint("[defaults]\nphantom = \"gauss\"\n") ==
+          "t.toml:2:11: phantom is 'gauss' (did you mean 'gaussian'?)");
+    CHECK(complaint("[defaults]\ntiming = \"x\"\n") ==
+          "t.toml:2:10: timing is 'x' (known values: fixed, fit)");
+    CHECK(complaint("[defaults]\ntiming = 3\n") == "t.toml:2:10: timing is 3 (known values: fixed, fit)");
+    CHECK(complaint("[defaults]\nsoa = nan\n") ==
+          "t.toml:2:7: soa is nan (allowed: more than 0, at most 10)");
+    CHECK(complaint("[defaults]\nsoa = \"0,07\"\n") == "t.toml:2:7: soa is '0,07' (give a number)");
+    CHECK(complaint("[defaults]\nsoa = \"inf\"\n") ==
+          "t.toml:2:7: soa is inf (allowed: more than 0, at most 10)");
+    CHECK(complaint("[defaults]\nrate = 44100.5\n") == "t.toml:2:8: rate is 44100.5 (give a whole number)");
+    CHECK(complaint("[defaults]\nlevel-dbfs = 1\n") == "t.toml:2:14: level-dbfs is 1 (allowed: -200 to 0)");
+    CHECK(complaint("[defaults]\nsnap = 1\n") == "t.toml:2:8: snap is 1 (give true or false)");
+    CHECK(complaint("[defaults]\nlevel-dbfs = -6\nsl = 7\n") ==
+          "t.toml:3:6: [defaults] has both level-dbfs and sl (keep one of them)");
+}
+
+TEST_CASE("numbers in [defaults] come out as they went in, in any locale")
+{
+    const std::string before = std::setlocale(LC_ALL, nullptr);
+    for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "C.UTF-8"})
+        std::setlocale(LC_ALL, name); // those that are installed
+    const setup s = read("[defaults]\nsoa = 0.0575\nramp = 1e-4\ncarrier = 250\nslope = 0.1\n");
+    std::setlocale(LC_ALL, before.c_str());
+    CHECK(s.defaults.at("soa") == "0.0575");
+    CHECK(s.defaults.at("ramp") == "0.0001");
+    CHECK(s.defaults.at("carrier") == "250");
+    CHECK(s.defaults.at("slope") == "0.1");
+}
+
+TEST_CASE("what is no TOML has its line")
+{
+    CHECK(complaint("[array]\nname = \n").starts_with("t.toml:2:"));
+    CHECK(complaint("a = 1\na = 2\n").starts_with("t.toml:2:"));
+    CHECK(complaint("[output]\nrate = 99999999999999999999\n").starts_with("t.toml:2:"));
+    CHECK(complaint("[output]\npcm = \"\xff\"\n").starts_with("t.toml:2:"));
+    CHECK(complaint("# \xc3\x28\n").starts_with("t.toml:1:"));
+    CHECK(complaint(std::string("[output]\npcm = \"a\0b\"\n", 20)).starts_with("t.toml:2:"));
+    CHECK(complaint("<svg/>").starts_with("t.toml:1:1:"));
+}
+
+TEST_CASE("where pcm comes from is told")
+{
+    const setup s = parse_setup("[output]\nrate = 48000\npcm = \"null\"\n", "t.toml");
+    CHECK(s.output.pcm_at.text() == "t.toml:3:7");
+    CHECK_FALSE(s.output.pcm_included);
+}
+
+TEST_CASE("keys and values nested without end are refused, not followed")
+{
+    std::string dotted = "a";
+    for (int i = 0; i < 300000; ++i)
+        dotted += ".a";
+    CHECK(complaint(dotted + " = 1\n") ==
+          "t.toml:1:34: a key of too many parts (no key has more than three)");
+    CHECK(complaint("[" + dotted + "]\n").starts_with("t.toml:1:35: a key of too many parts"));
+    CHECK(complaint("x = [\"\"\"\"a\"\"\"\"\", {" + dotted + " = 1}]\n").find("too many parts") !=
+          std::string::npos);
+    CHECK(complaint("x = '#' # '\n" + dotted + " = 1\n").starts_with("t.toml:2:34: a key of too many parts"));
+    CHECK_FALSE(complaint("a = " + std::string(300000, '[')).empty());
+    // Dots that are no keys.
+    CHECK(
+        complaint(
+            "[output]\npcm = \"a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q.r.s.t\" # . . . . . . . . . . . . . . . .\n")
+            .empty());
+}
+
+TEST_CASE("damaged files are refused or read, never worse")
+{
+    std::mt19937_64 random(3);
+    std::uniform_int_distribution<std::size_t> where(0, whole.size() - 1);
+    std::uniform_int_distribution<int> byte(0, 255);
+    int refused = 0;
+    for (int round = 0; round < 4000; ++round) {
+        std::string text = whole;
+        for (int k = 0; k <= round % 3; ++k)
+            text[where(random)] = static_cast<char>(byte(random));
+        if (round % 5 == 0)
+            text.resize(where(random));
+        const std::string why = complaint(text);
+        refused += why.empty() ? 0 : 1;
+        // Every complaint has file, line and column.
+        if (!why.empty()) {
+            REQUIRE(why.starts_with("t.toml:"));
+            REQUIRE(why.find(": ") > why.find(':', 7));
+        }
+    }
+    CHECK(refused > 2000);
+}
+
+TEST_CASE("limits that are none are told")
+{
+    for (const char* said : {"power_dbfs = nan", "power_dbfs = 61", "max_drive_s = 0", "max_drive_s = -1",
+                             "window_s = inf", "window = 10"}) {
+        CAPTURE(said);
+        CHECK(complaint(std::string("[limits]\n") + said).starts_with("t.toml:2:"));
+    }
+}
+
+} // namespace setup_test

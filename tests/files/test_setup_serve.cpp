@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include <tactor/error.hpp>
+#include <tactor/setup.hpp>
+
+#include "message_of.hpp"
+
+namespace setup_serve_test {
+
+using namespace tactor;
+
+TEST_CASE("[serve]: all keys, and none")
+{
+    const setup all = parse_setup(R"([serve]
+socket = "/run/x.sock"
+tcp = 4001
+osc = "0.0.0.0:4002"
+http = "[::1]:4003"
+token_file = "/etc/t"
+allow_hosts = ["pi.local:4003"]
+osc_peers = ["10.0.0.0/8", "::1"]
+max_level_dbfs = -20
+idle_stop_s = 60
+max_clients = 10
+kept_clients = 2
+max_strokes = 3
+max_live_strokes = 0
+max_points_per_s = 100
+max_stroke_s = 5
+max_message_bytes = 2000
+max_nesting = 10
+max_message_s = 1
+max_unread_bytes = 3000
+max_all_unread_bytes = 4000
+)",
+                                  "t");
+    REQUIRE(all.serve);
+    const serve_settings& s = *all.serve;
+    CHECK(s.socket == "/run/x.sock");
+    CHECK(s.tcp == "4001");
+    CHECK(s.osc == "0.0.0.0:4002");
+    CHECK(s.http == "[::1]:4003");
+    CHECK(s.token_file == "/etc/t");
+    CHECK(s.allow_hosts.size() == 1);
+    CHECK(s.osc_peers.size() == 2);
+    CHECK(s.max_level_dbfs == -20.0);
+    CHECK(s.idle_stop_s == 60.0);
+    CHECK(s.max_clients == 10U);
+    CHECK(s.kept_clients == 2U);
+    CHECK(s.max_strokes == 3U);
+    CHECK(s.max_live_strokes == 0U);
+    CHECK(s.max_points_per_s == 100U);
+    CHECK(s.max_stroke_s == 5.0);
+    CHECK(s.max_message_bytes == 2000U);
+    CHECK(s.max_nesting == 10U);
+    CHECK(s.max_message_s == 1.0);
+    CHECK(s.max_unread_bytes == 3000U);
+    CHECK(s.max_all_unread_bytes == 4000U);
+    CHECK_FALSE(parse_setup("", "t").serve);
+    CHECK_FALSE(parse_setup("[serve]\n", "t").serve->tcp);
+}
+
+TEST_CASE("[serve]: what cannot be, with its place")
+{
+    const auto says = [](const std::string& line) {
+        return message_of([&] { static_cast<void>(parse_setup("[serve]\n" + line + "\n", "t")); });
+    };
+    CHECK(says("tpc = 1").find("t:2:") == 0);
+    CHECK(says("tpc = 1").find("tcp") != std::string::npos);
+    for (const char* line : {"tcp = 70000", "tcp = 1.5", "socket = ''", "allow_hosts = 'x'",
+                             "osc_peers = [1]", "max_level_dbfs = 1", "idle_stop_s = 0", "max_clients = 0",
+                             "max_strokes = -1", "max_message_bytes = 1.5", "kept_clients = 128"})
+        CHECK_MESSAGE(says(line).find("t:2:") == 0, line);
+}
+
+} // namespace setup_serve_test

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include <tactor/error.hpp>
+#include <tactor/stroke.hpp>
+
+#include "message_of.hpp"
+
+namespace stroke_csv_test {
+
+using tactor::point;
+using tactor::stroke;
+
+namespace {
+
+stroke one(const std::string& csv)
+{
+    std::vector<stroke> all = tactor::parse_strokes_csv(csv, "dir/finger.csv");
+    REQUIRE(all.size() == 1);
+    return all.front();
+}
+
+std::string refusal(const std::string& csv)
+{
+    return message_of([&] { static_cast<void>(tactor::parse_strokes_csv(csv, "f.csv")); });
+}
+
+} // namespace
+
+TEST_CASE("a CSV file is one stroke of timed points")
+{
+    const stroke s = one("t_s,x_mm,y_mm,intensity\n0,0,10,1\n0.5,20,20,0.5\n1.5,40,30,0\n");
+    CHECK(s.name == "finger");
+    CHECK_FALSE(s.start_s.has_value());
+    CHECK(s.motion.duration_s() == 1.5);
+    CHECK(s.motion.position(0.25) == point{10.0, 15.0});
+    CHECK(s.motion.intensity(0.25) == 0.75);
+    CHECK(s.note == tactor::note_kind::none);
+}
+
+TEST_CASE("columns come in any order, and intensity may be left out")
+{
+    const stroke s = one("y_mm,t_s,x_mm\n10,0,0\n30,2,40\n");
+    CHECK(s.motion.position(1.0) == point{20.0, 20.0});
+    CHECK(s.motion.intensity(1.0) == 1.0);
+}
+
+TEST_CASE("byte order mark, CRLF, blanks, quotes, comments and empty lines are taken")
+{
+    const stroke s =
+        one("\xEF\xBB\xBF# recorded\r\n\r\n \"t_s\" , x_mm,\ty_mm \r\n# begin\r\n 0 , \"0\" , +10 "
+            "\r\n\r\n  # end\r\n2.0e0,4e1, 30. \r\n");
+    CHECK(s.motion.position(1.0) == point{20.0, 20.0});
+    CHECK(one("t_s,x_mm,y_mm\n0,0,0\n1,1,1").motion.duration_s() == 1.0);
+}
+
+TEST_CASE("the time of the first line is the stroke's zero, whatever a recorder counted from")
+{
+    for (const char* csv :
+         {"t_s,x_mm,y_mm\n2.5,0,0\n3,5,0\n4.5,5,5\n", "t_s,x_mm,y_mm\n-2.5,0,0\n-2,5,0\n-0.5,5,5\n",
+          "t_s,x_mm,y_mm\n1700000000.5,0,0\n1700000001,5,0\n1700000002.5,5,5\n",
+          "y_mm,x_mm,t_s\n0,0,-0.5\n0,5,0\n5,5,1.5\n"}) {
+        CAPTURE(csv);
+        const stroke s = one(csv);
+        CHECK_FALSE(s.start_s.has_value());
+        CHECK(s.motion.duration_s() == 2.0);
+        CHECK(s.motion.position(0.5) == point{5.0, 0.0});
+    }
+}
+
+TEST_CASE("of lines with equal times the last counts, and the stroke says so")
+{
+    const std::string head = "t_s,x_mm,y_mm,intensity\n";
+    const stroke s = one(head + "2,9,9,1\n2,0,0,0.5\n# same report\n3,9,9,1\n3,8,8,1\n3,4,2,0\n4,8,8,1\n");
+    CHECK(s.motion.duration_s() == 2.0);
+    CHECK(s.motion.position(0.0) == point{0.0, 0.0});
+    CHECK(s.motion.intensity(0.0) == 0.5);
+    CHECK(s.motion.position(0.5) == point{2.0, 1.0});
+    CHECK(s.motion.intensity(1.0) == 0.0);
+    REQUIRE(s.warnings.size() == 1);
+    CHECK(s.warnings[0] == "dir/finger.csv:3: repeats the time of the line before, as 3 lines do in all; the "
+                           "last of equal times counts");
+
+    const stroke last = one(head + "0,0,0,1\n1,4,4,1\n1,8,0,1\n");
+    CHECK(last.motion.position(1.0) == point{8.0, 0.0});
+    REQUIRE(last.warnings.size() == 1);
+    CHECK(last.warnings[0] == "dir/finger.csv:4: repeats the time of the line before, which does not count");
+
+    CHECK(one(head + "0,0,0,1\n1,1,1,1\n").warnings.empty());
+}
+
+TEST_CASE("what is wrong in a CSV file is named by line and column")
+{
+    struct sample {
+        const char* csv;
+        const char* message;
+    };
+    const sample samples[] = {
+        {"", "f.csv: is empty"},
+        {"# only this\n\n", "f.csv:2: is empty"},
+        {"t_s,x_mm,y_mm\n", "f.csv:1: 0 of at least 2 points"},
+        {"t_s,x_mm,y_mm\n0,0,0\n", "f.csv:2: 1 of at least 2 points"},
+        {"t_s,x_mm,z_mm\n", "f.csv:1:10: unknown column 'z_mm' (known columns: t_s, x_mm, y_mm, intensity)"},
+        {"t_s,x_mm,y_mm,\n", "f.csv:1:15: unknown column ''"},
+        {"0,0,0\n1,1,1\n", "f.csv:1:1: unknown column '0'"},
+        {"t_s;x_mm;y_mm\n", "f.csv:1:1: unknown column 't_s;x_mm;y_mm' (separate the columns by commas)"},
+        {"t_s,x_mm,t_s\n", "f.csv:1:10: column t_s twice"},
+        {"\nt_s,x_mm\n", "f.csv:2: no column y_mm"},
+        {"t_s,x_mm,y_mm\n0,0,0\n1,1\n", "f.csv:3:3: 2 values where the header names 3 columns"},
+        {"t_s,x_mm,y_mm\n0,0,0\n0,5,1,1\n", "f.csv:3:5: 4 values where the header names 3 columns"},
+        {"t_s,x_mm,y_mm\n0,0,0\n1,,1\n", "f.csv:3:3: x_mm is missing (give a number)"},
+        {"t_s,x_mm,y_mm\n0,0,0\n1, 1a,1\n", "f.csv:3:4: x_mm is not a number: '1a'"},
+        {"t_s,x_mm,y_mm\n0,0,0\n1,nan,1\n", "f.csv:3:3: x_mm is not a number: 'nan'"},
+        {"t_s,x_mm,y_mm\n0,0,0\n1,1,inf\n", "f.csv:3:5: y_mm is not a number: 'inf'"},
+        {"t_s,x_mm,y_mm\n0,0,0\n1,1,-1e999\n", "f.csv:3:5: y_mm -1e999"},
+        {"t_s,x_mm,y_mm\n0,0,0\n1,1000001,0\n", "f.csv:3:3: x_mm 1000001 (it is between -1e+06 and 1e+06)"},
+        {"t_s,x_mm,y_mm\n0,0,0\n86401,1,0\n",
+         "f.csv:3:1: time 86401 s is 86401 s after the first line (a stroke lasts at most 86400 s)"},
+        {"t_s,x_mm,y_mm\n1000000,0,0\n1086400.5,1,0\n",
+         "f.csv:3:1: time 1086400.5 s is 86400.5 s after the first line"},
+        {"t_s,x_mm,y_mm\n0,0,0\n1e11,1,0\n", "f.csv:3:1: t_s 1e11 (it is between -1e+10 and 1e+10)"},
+        {"t_s,x_mm,y_mm\n-1,0,0\n-2,1,0\n", "f.csv:3:1: time -2 s is before -1 s"},
+        {"t_s,x_mm,y_mm\n1e10,0,0\n10000000000.0000001,1,0\n",
+         "f.csv:3: 1 of at least 2 points with times of their own"},
+        {"t_s,x_mm,y_mm\n0,0,0\n1,1,0\n# x\n0.5,2,0\n",
+         "f.csv:5:1: time 0.5 s is before 1 s of the line before (times ascend)"},
+        {"x_mm,t_s,y_mm\n0,0,0\n1,2,0\n2,2,0\n2,1.5,0\n", "f.csv:5:3: time 1.5 s is before 2 s"},
+        {"t_s,x_mm,y_mm\n7,0,0\n7,1,0\n7,2,0\n", "f.csv:4: 1 of at least 2 points with times of their own"},
+        {"t_s,x_mm,y_mm,intensity\n0,0,0,1\n1,1,0,-0.5\n",
+         "f.csv:3:7: intensity -0.5 (it is between 0 and 1000)"},
+        {"t_s,x_mm,y_mm\n0,\"0,0\n", "f.csv:2:3: a quote that does not end"},
+        {"t_s,x_mm,y_mm\n0,\"0\"0,0\n", "f.csv:2:6: text behind a quote"},
+    };
+    for (const sample& s : samples) {
+        CAPTURE(s.csv);
+        const std::string got = refusal(s.csv);
+        CAPTURE(got);
+        CHECK(got.find(s.message) == 0);
+    }
+}
+
+TEST_CASE("a million lines are read as they are")
+{
+    std::string csv = "t_s,x_mm,y_mm\n";
+    for (int i = 0; i < 1'000'000; ++i)
+        csv += std::to_string(i) + "e-3," + std::to_string(i % 40) + "," + std::to_string(i % 17) + ".25\n";
+    const stroke s = one(csv);
+    CHECK(s.motion.duration_s() == doctest::Approx(999.999));
+    CHECK(s.motion.position(123.456).x_mm == doctest::Approx(123456 % 40));
+    CHECK(s.motion.position(123.456).y_mm == doctest::Approx(123456 % 17 + 0.25));
+}
+
+TEST_CASE("changed CSV gives a stroke or an error, nothing else")
+{
+    std::mt19937_64 random(555);
+    const std::string good =
+        "# a\nt_s,x_mm,y_mm,intensity\n0,0,10,1\n0.5,20,20,0.5\n\"1.5\",40,30,0\n2,1e1,-3.5,1\n";
+    constexpr char letters[] = "0123456789.,-+eE\"#\n\r\t ;tsxym_\0\xff";
+    const std::string alphabet(letters, sizeof letters - 1);
+    std::uniform_int_distribution<std::size_t> letter(0, alphabet.size() - 1);
+    int read = 0;
+    for (int n = 0; n < 20000; ++n) {
+        std::string csv = good;
+        for (int change = 0; change < 1 + n % 5; ++change) {
+            const std::size_t at = std::uniform_int_distribution<std::size_t>(0, csv.size() - 1)(random);
+            if (n % 3 == 0)
+                csv[at] = alphabet[letter(random)];
+            else if (n % 3 == 1)
+                csv.insert(at, 1, alphabet[letter(random)]);
+            else
+                csv.erase(at, 1 + n % 7);
+        }
+        CAPTURE(csv);
+        const std::string m = refusal(csv);
+        CHECK((m.empty() || m.find("f.csv") == 0));
+        read += m.empty() ? 1 : 0;
+    }
+    CHECK(read > 500);
+}
+
+} // namespace stroke_csv_test

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: MIT
+"""Holds the public headers to their conventions, since what is awkward there becomes ABI.
+
+* Times are seconds as double, called ..._s; instants of a clock are ns as int64, called ..._ns. No ..._ms, no chrono.
+* Closed sets are enumerations called ..._kind, each with to_string(), from_string() and values_of().
+* Nothing is made from an impl in public, and nobody gets at one: no public data().
+* Classes with virtual functions cannot be copied.
+* A function that has a result is [[nodiscard]]: to drop it is a mistake (to_string() and its kin apart; write_wav(), whose
+  work is the file).
+
+Usage: headers.py SOURCE_ROOT. Prints each line that breaks a rule, then counts.
+"""
+import pathlib
+import re
+import sys
+
+COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.S)
+ENUM = re.compile(r"\benum\s+class\s+(\w+)")
+# A double that is a time by its name, and says no unit.
+TIME = re.compile(r"\bdouble\s+(duration|timeout|delay|onset|start|time|pause|wait|window|period)\b(?!_)")
+INT_TIME = re.compile(r"\b(?:std::)?u?int\d+_t\s+\w*_(?:s|ms|us)\b")
+DROPPED = re.compile(r"^TACTOR_API\s+(?!void\b)[^;{]*?\b(\w+)\(", re.M)
+MAY_DROP = {"to_string", "write_wav"}
+CLASS = re.compile(r"\bclass\s+(?:TACTOR_API\s+)?(\w+)(?:\s+final)?[^;{]*\{(.*?)\n\};", re.S)
+
+
+def public_part(body):
+    """What of a class's text is public."""
+    kept, public = [], False
+    for line in body.split("\n"):
+        if m := re.match(r"\s*(public|protected|private):", line):
+            public = m[1] == "public"
+        elif public:
+            kept.append(line)
+    return "\n".join(kept)
+
+
+def complaints(name, text, everything):
+    code = COMMENT.sub("", text)
+    if "chrono" in code:
+        yield f"{name}: chrono; times are seconds as double"
+    for m in re.findall(r"\b\w+_ms\b", code):
+        yield f"{name}: {m}: times are seconds (_s), clock instants ns (_ns)"
+    for m in TIME.finditer(code):
+        yield f"{name}: {m[0]}: a time in seconds is called ..._s"
+    for m in INT_TIME.finditer(code):
+        yield f"{name}: {m[0]}: whole numbers of time are ns"
+    for enum in ENUM.findall(code):
+        if not enum.endswith("_kind"):
+            yield f"{name}: enumeration {enum} is not called ..._kind"
+        for needed in (rf"to_string\({enum} ", rf"from_string<{enum}>\(", rf"values_of<{enum}>\("):
+            if not re.search(needed, everything):
+                yield f"{name}: {enum} has no {needed.replace(chr(92), '')}"
+    if re.search(r"\benum\s+(?!class)\w+\s*\{", code):
+        yield f"{name}: an enumeration without class"
+    for m in DROPPED.finditer(code):
+        before = code[: m.start()].rstrip()
+        if m[1] not in MAY_DROP and not before.endswith("template <>"):
+            yield f"{name}: {m[1]}() is not [[nodiscard]]"
+    for cls, body in CLASS.findall(code):
+        seen = public_part(body)
+        if re.search(r"\bdata\(\)", seen):
+            yield f"{name}: {cls}::data() is public"
+        if re.search(rf"\b{cls}\(\s*std::(?:shared|unique)_ptr<(?:const )?impl>", seen):
+            yield f"{name}: {cls} can be made from an impl in public"
+        base = re.search(rf"class\s+(?:TACTOR_API\s+)?{cls}\s*(?:final\s*)?:", code)
+        if re.search(r"^\s*virtual\s", body, re.M) and not base and f"{cls}(const {cls}&) = delete" not in body:
+            yield f"{name}: {cls} has virtual functions and can be copied"
+
+
+def main():
+    root = pathlib.Path(sys.argv[1]).resolve() / "include" / "tactor"
+    texts = {f.name: f.read_text(encoding="utf-8") for f in sorted(root.glob("*.hpp"))}
+    everything = "\n".join(COMMENT.sub("", t) for t in texts.values())
+    bad = {name: list(complaints(name, text, everything)) for name, text in texts.items()}
+    for lines in bad.values():
+        for line in lines:
+            print(line)
+    broken = sum(1 for lines in bad.values() if lines)
+    print(f"{len(texts) - broken} passed, {broken} failed")
+    return 1 if broken or not texts else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

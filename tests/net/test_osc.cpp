@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT
+// Packets of OSC: what they say, and what is wrong with them.
+#include "net/osc.hpp"
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include <tactor/error.hpp>
+
+#include "has.hpp"
+#include "message_of.hpp"
+#include "rounds.hpp"
+
+namespace osc_test {
+
+using namespace tactor;
+using namespace tactor::net;
+using namespace std::string_literals;
+
+namespace {
+
+std::string big_endian(std::uint64_t n, int bytes)
+{
+    std::string s;
+    for (int i = bytes - 1; i >= 0; --i)
+        s += static_cast<char>(n >> (8 * i) & 0xffU);
+    return s;
+}
+
+std::string padded(std::string s)
+{
+    s += std::string(4 - s.size() % 4, '\0');
+    return s;
+}
+
+std::string bundle(std::uint64_t tag, const std::vector<std::string>& elements)
+{
+    std::string b = "#bundle\0"s + big_endian(tag, 8);
+    for (const std::string& e : elements)
+        b += big_endian(e.size(), 4) + e;
+    return b;
+}
+
+const std::string stop = padded("/tactor/stop") + padded(",");
+
+std::string refusal(const std::string& packet, const osc_limits& l = {})
+{
+    return message_of([&] { static_cast<void>(parse_osc(packet, l)); });
+}
+
+} // namespace
+
+TEST_CASE("a message as the standard's example has it, byte by byte")
+{
+    // OSC 1.0's second example: /foo with two integers, a text and two floats.
+    const std::string packet = "/foo\0\0\0\0,iisff\0\0\0\0\x03\xe8\xff\xff\xff\xffhello\0\0\0"
+                               "\x3f\x9d\xf3\xb6\x40\xb5\xb2\x2d"s;
+    const auto all = parse_osc(packet);
+    REQUIRE(all.size() == 1);
+    CHECK(all[0].address == "/foo");
+    REQUIRE(all[0].values.size() == 5);
+    CHECK(std::get<std::int64_t>(all[0].values[0]) == 1000);
+    CHECK(std::get<std::int64_t>(all[0].values[1]) == -1);
+    CHECK(std::get<std::string>(all[0].values[2]) == "hello");
+    CHECK(std::get<double>(all[0].values[3]) == double{1.234F});
+    CHECK(std::get<double>(all[0].values[4]) == double{5.678F});
+    CHECK_FALSE(all[0].unix_ns);
+    CHECK(osc_packet("/foo", all[0].values) == packet);
+}
+
+TEST_CASE("numbers of 8 bytes wherever they stand, and types that are passed over")
+{
+    const std::string values = big_endian(1, 4) + big_endian(0xfffffffffffffffeU, 8) +
+                               big_endian(0x3ff8000000000000U, 8) + big_endian(3, 4) + padded("abc") +
+                               padded("sym");
+    const auto m = parse_osc(padded("/x") + padded(",ihdbSTFNI") + values).front();
+    REQUIRE(m.values.size() == 9);
+    CHECK(std::get<std::int64_t>(m.values[1]) == -2);
+    CHECK(std::get<double>(m.values[2]) == 1.5);
+    CHECK(std::get<osc_other>(m.values[3]).tag == 'b');
+    CHECK(std::get<std::string>(m.values[4]) == "sym");
+    for (std::size_t i = 5; i < 9; ++i)
+        CHECK(std::get<osc_other>(m.values[i]).tag == "TFNI"[i - 5]);
+}
+
+TEST_CASE("no values: with types and without")
+{
+    for (const std::string& packet : {stop, padded("/tactor/stop")}) {
+        const auto all = parse_osc(packet);
+        REQUIRE(all.size() == 1);
+        CHECK(all[0].address == "/tactor/stop");
+        CHECK(all[0].values.empty());
+    }
+}
+
+TEST_CASE("bundles give each message the time of the innermost")
+{
+    // 2 s after 1970, and a quarter; then a time after 2036, whose seconds begin anew.
+    const std::uint64_t early = (std::uint64_t{2'208'988'802U} << 32U) | 0x40000000U;
+    const std::uint64_t late = std::uint64_t{16} << 32U;
+    const auto all = parse_osc(bundle(early, {stop, bundle(1, {stop}), bundle(late, {stop}), bundle(0, {})}));
+    REQUIRE(all.size() == 3);
+    CHECK(all[0].unix_ns == 2'250'000'000);
+    CHECK_FALSE(all[1].unix_ns);
+    CHECK(all[2].unix_ns == (std::int64_t{4'294'967'296} + 16 - 2'208'988'800) * 1'000'000'000);
+    CHECK(parse_osc(bundle(1, {})).empty());
+}
+
+TEST_CASE("a broken packet says why, and none of it is taken")
+{
+    struct broken {
+        std::string packet;
+        const char* says;
+    };
+    const std::string whole = padded("/a") + padded(",i") + big_endian(7, 4);
+    for (const auto& [packet, says] : std::initializer_list<broken>{
+             {"", "0 bytes"},
+             {"/a\0"s, "3 bytes"},
+             {"abcd", "does not begin with /"},
+             {"\0\0\0\0"s, "does not begin with /"},
+             {"/abc", "address"},
+             {"/a\0x"s, "address"},
+             {padded("/a") + ",i\0x"s, "types"},
+             {padded("/a") + "i\0\0\0"s, "types"},
+             {padded("/a") + ",iii", "types"},
+             {whole + "\0\0\0\0"s, "do not agree"},
+             {whole.substr(0, 8), "value"},
+             {padded("/a") + padded(",s") + "abcd", "value"},
+             {padded("/a") + padded(",b") + big_endian(5, 4) + "abcd", "value"},
+             {padded("/a") + padded(",b") + big_endian(0x7fffffff, 4) + "abcd", "value"},
+             {padded("/a") + padded(",b") + big_endian(0xffffffff, 4) + "abcd", "value"},
+             {padded("/a") + padded(",?") + "abcd", "value"},
+             {"#bundle\0"s, "without its time"},
+             {"#bundle\0"s + big_endian(1, 4), "without its time"},
+             {bundle(1, {stop}) + "\0\0\0\4"s, "4 bytes where 0 are left"},
+             {bundle(1, {}) + big_endian(0, 4), "0 bytes"},
+             {bundle(1, {}) + big_endian(0xfffffffc, 4) + stop, "4294967292 bytes"},
+             {bundle(1, {}) + big_endian(6, 4) + "/a\0\0\0\0\0\0"s, "6 bytes"},
+             {bundle(1, {stop, "abcd"}), "does not begin with /"},
+         }) {
+        CAPTURE(packet);
+        const std::string said = refusal(packet);
+        CHECK_MESSAGE(has(said, says), said);
+        CHECK(has(said, "OSC 1.0"));
+    }
+}
+
+TEST_CASE("bundles in bundles and messages have an end")
+{
+    std::string deep = stop;
+    for (int i = 0; i < 8; ++i)
+        deep = bundle(1, {deep});
+    CHECK(parse_osc(deep).size() == 1);
+    CHECK(has(refusal(bundle(1, {deep})), "nest deeper than 8"));
+    for (int i = 0; i < 2000; ++i)
+        deep = bundle(1, {deep});
+    CHECK(has(refusal(deep), "nest deeper than 8"));
+    const std::vector<std::string> many(257, stop);
+    CHECK(has(refusal(bundle(1, many)), "more than 256"));
+    CHECK(parse_osc(bundle(1, {many.begin(), many.end() - 1})).size() == 256);
+}
+
+TEST_CASE("what is written is read, whatever the numbers")
+{
+    const auto m =
+        parse_osc(osc_packet("/tactor/stroke", {std::int64_t{1} << 40, -1e300, ""s, "abc"s, "abcd"s}))
+            .front();
+    CHECK(m.address == "/tactor/stroke");
+    REQUIRE(m.values.size() == 5);
+    CHECK(std::get<std::int64_t>(m.values[0]) == std::numeric_limits<std::int32_t>::max());
+    CHECK(std::isinf(std::get<double>(m.values[1])));
+    CHECK(std::get<std::string>(m.values[2]).empty());
+    CHECK(std::get<std::string>(m.values[4]) == "abcd");
+}
+
+TEST_CASE("no packet is more than refused, whichever of its bytes are wrong or missing")
+{
+    std::mt19937 random(7);
+    const std::string good =
+        bundle(std::uint64_t{1} << 63U,
+               {osc_packet("/tactor/play", {std::int64_t{1}, "M 0 0"s, 0.5}), bundle(1, {stop})});
+    std::size_t cut_off = 0;
+    for (std::size_t n = 0; n < good.size(); ++n)
+        cut_off += refusal(good.substr(0, n)).empty() ? 0 : 1;
+    CHECK(cut_off == good.size() - 2); // but where an element ends, before the first one and after
+    int refused = 0;
+    const int times = tactor::test::rounds(20000);
+    for (int i = 0; i < times; ++i) {
+        std::string bad = good;
+        for (unsigned k = random() % 4 + 1; k != 0; --k)
+            bad[random() % bad.size()] = static_cast<char>(random());
+        try {
+            const auto all = parse_osc(bad);
+            CHECK(all.size() <= bad.size() / 4);
+        } catch (const error& e) {
+            CHECK(e.kind() == error_kind::bad_input);
+            ++refused;
+        }
+    }
+    CHECK(refused > times / 4);
+    CHECK(refused < times);
+}
+
+} // namespace osc_test

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include <doctest/doctest.h>
+
+#include "net/rpc.hpp"
+
+namespace rpc_test {
+
+using namespace tactor::net;
+
+namespace {
+
+int code_of(std::string_view text)
+{
+    const rpc_message m = parse_rpc(text, {});
+    REQUIRE(m.parts.size() == 1);
+    const auto* r = std::get_if<rpc_refusal>(&m.parts.front());
+    return r == nullptr ? 0 : r->why.code;
+}
+
+} // namespace
+
+TEST_CASE("requests, notifications and batches are told apart")
+{
+    const rpc_message one = parse_rpc(R"({"jsonrpc":"2.0","id":"a","method":"m","params":{"x":1}})", {});
+    REQUIRE(one.parts.size() == 1);
+    CHECK_FALSE(one.batch);
+    const auto& r = std::get<rpc_request>(one.parts.front());
+    CHECK(r.method == "m");
+    CHECK(r.id == "a");
+    CHECK(r.params["x"] == 1);
+    CHECK(r.wants_reply);
+    const rpc_message many = parse_rpc(R"([{"jsonrpc":"2.0","method":"m"},7])", {});
+    CHECK(many.batch);
+    REQUIRE(many.parts.size() == 2);
+    CHECK_FALSE(std::get<rpc_request>(many.parts[0]).wants_reply);
+    CHECK(std::get<rpc_refusal>(many.parts[1]).why.code == code_invalid_request);
+    CHECK(parse_rpc(R"([{"jsonrpc":"2.0","method":"m"}])", {}).batch);
+}
+
+TEST_CASE("what is no request has the standard's code")
+{
+    for (const char* text : {"", "{", "nul", "\"\xff\"", "{\"a\":1,}", "[1] 2", "\xc0\x80"})
+        CHECK_MESSAGE(code_of(text) == code_parse_error, text);
+    for (const char* text :
+         {"1", "null", "[]", "{}", R"({"jsonrpc":"2.0"})", R"({"jsonrpc":2.0,"method":"m"})",
+          R"({"jsonrpc":"2.0","method":1})", R"({"jsonrpc":"2.0","method":"m","params":"p"})",
+          R"({"jsonrpc":"2.0","method":"m","id":true})", R"({"jsonrpc":"2.0","method":"m","id":{}})"})
+        CHECK_MESSAGE(code_of(text) == code_invalid_request, text);
+    CHECK(code_of(R"({"jsonrpc":"2.0","method":"m","params":[1],"id":null})") == 0);
+}
+
+TEST_CASE("nesting is counted outside of texts, and refused before anything is built")
+{
+    const auto nested = [](int n) { return std::string(static_cast<std::size_t>(n), '['); };
+    CHECK(code_of(nested(65)) == code_limit);
+    CHECK(code_of(nested(1'000'000)) == code_limit);
+    CHECK(code_of(nested(64)) == code_parse_error);
+    CHECK(code_of("\"" + nested(100) + "\\\"" + nested(100) + "\"") == code_invalid_request);
+    std::string flat = "[";
+    for (int i = 0; i < 1000; ++i)
+        flat += "[],";
+    CHECK(code_of(flat + "[]]") == code_limit); // a batch of 1001
+    CHECK(code_of("[[[]]]") == code_invalid_request);
+}
+
+TEST_CASE("errors say kind, what, why and hint")
+{
+    const reply_json e = error_reply(7, {code_bad_params, "bad-input", "options.soa", "too long", "shorter"});
+    CHECK(text_of(e) ==
+          R"x({"jsonrpc":"2.0","id":7,"error":{"code":-32602,"message":"options.soa: too long (shorter)",)x"
+          R"("data":{"kind":"bad-input","what":"options.soa","why":"too long","hint":"shorter"}}})");
+    CHECK(text_of(result_reply(nullptr, reply_json::object())) ==
+          R"({"jsonrpc":"2.0","id":null,"result":{}})");
+    CHECK(text_of(notification("stroke", {{"stroke", 1}})) ==
+          R"({"jsonrpc":"2.0","method":"stroke","params":{"stroke":1}})");
+}
+
+} // namespace rpc_test

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// Which browsers' requests are meant for this server.
+#include "net/web_access.hpp"
+
+#include <doctest/doctest.h>
+
+namespace web_access_test {
+
+using namespace tactor::net;
+
+TEST_CASE("names by which a browser may call this server")
+{
+    const std::string local = "127.0.0.1:4003";
+    for (const char* ours : {"127.0.0.1:4003", "localhost:4003", "LocalHost:4003"}) {
+        CAPTURE(ours);
+        CHECK(host_is_ours(ours, local, {}));
+    }
+    // A name that somebody pointed at this address, another address, another port, no port, and rubbish.
+    for (const char* not_ours :
+         {"evil.example:4003", "127.0.0.2:4003", "127.1:4003", "0x7f000001:4003", "localhost:4004",
+          "localhost", "127.0.0.1", "localhost.:4003", "localhost:4003:4003", "[::1]:4003", "", ":", ":4003",
+          "[", "[]", "[127.0.0.1]:4003x", "localhost:04003", "localhost: 4003"}) {
+        CAPTURE(not_ours);
+        CHECK_FALSE(host_is_ours(not_ours, local, {}));
+    }
+    CHECK_FALSE(host_is_ours(std::string_view("127.0.0.1\0.evil:4003", 20), local, {}));
+    CHECK(host_is_ours("[::1]:4003", "[::1]:4003", {}));
+    CHECK(host_is_ours("[0:0::1]:4003", "[::1]:4003", {}));
+    CHECK_FALSE(host_is_ours("[::1]", "[::1]:4003", {}));
+    CHECK(host_is_ours("localhost", "127.0.0.1:80", {}));
+    CHECK(host_is_ours("192.168.1.7:4003", "192.168.1.7:4003", {}));
+}
+
+TEST_CASE("names that the owner allows")
+{
+    const std::vector<std::string> allowed{"pi.lan", "desk.lan:8080"};
+    CHECK(host_is_ours("pi.lan", "10.0.0.2:4003", allowed));
+    CHECK(host_is_ours("PI.lan:4003", "10.0.0.2:4003", allowed));
+    CHECK(host_is_ours("desk.lan:8080", "10.0.0.2:4003", allowed));
+    CHECK_FALSE(host_is_ours("desk.lan:4003", "10.0.0.2:4003", allowed));
+    CHECK_FALSE(host_is_ours("pi.lan.evil.example", "10.0.0.2:4003", allowed));
+    CHECK_FALSE(host_is_ours("xpi.lan", "10.0.0.2:4003", allowed));
+    CHECK_FALSE(host_is_ours("", "10.0.0.2:4003", {""}));
+}
+
+TEST_CASE("pages that may connect")
+{
+    const std::string host = "127.0.0.1:4003";
+    const std::vector<std::string> allowed{"pi.lan", "desk.lan:8443"};
+    CHECK(origin_is_ours("http://127.0.0.1:4003", host, allowed));
+    CHECK(origin_is_ours("http://pi.lan", host, allowed));
+    CHECK(origin_is_ours("https://pi.lan", host, allowed));
+    CHECK(origin_is_ours("https://desk.lan:8443", host, allowed));
+    for (const char* not_ours :
+         {"null", "", "http://", "https://127.0.0.1:4003", "http://localhost:4003", "http://127.0.0.1",
+          "http://evil.example", "ftp://pi.lan", "pi.lan", "https://desk.lan",
+          "http://127.0.0.1:4003.evil.example", "http://pi.lan@evil.example"}) {
+        CAPTURE(not_ours);
+        CHECK_FALSE(origin_is_ours(not_ours, host, allowed));
+    }
+}
+
+TEST_CASE("tokens")
+{
+    CHECK(bearer_of("Bearer secret") == "secret");
+    CHECK(bearer_of("bearer secret") == "secret");
+    CHECK(bearer_of("Basic secret").empty());
+    CHECK(bearer_of("Bearer ").empty());
+    CHECK(bearer_of("").empty());
+}
+
+} // namespace web_access_test

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: MIT
+"""A headless Chromium, driven by the DevTools protocol over its own WebSocket. The client of that is in tests/cli."""
+import base64
+import json
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import time
+
+from harness import PATIENCE_S
+from websocket import TEXT, Peer
+
+PROGRAM = shutil.which("chromium")
+
+
+class Browser:
+    def __init__(self):
+        self.folder = tempfile.mkdtemp(prefix="tactor-chromium-")
+        # As root, and in containers, it has no sandbox of its own; it only ever sees this test's pages.
+        self.process = subprocess.Popen(
+            [PROGRAM, "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
+             "--disable-background-networking", "--disable-component-update", "--remote-debugging-port=0",
+             f"--user-data-dir={self.folder}", "about:blank"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        told = pathlib.Path(self.folder) / "DevToolsActivePort"
+        until = time.monotonic() + PATIENCE_S
+        while not told.exists() or len(told.read_text(encoding="ascii").splitlines()) < 2:
+            if self.process.poll() is not None or time.monotonic() > until:
+                raise RuntimeError("chromium does not start")
+            time.sleep(0.05)  # there is nothing to wait on but the file
+        port, path = told.read_text(encoding="ascii").splitlines()[:2]
+        self.channel = Peer(f"127.0.0.1:{port}")
+        assert self.channel.upgrade(path) == 101
+        self.last = 0
+        self.events = []
+
+    def call(self, method, session=None, **params):
+        self.last += 1
+        self.channel.frame(TEXT, json.dumps({"id": self.last, "method": method, "params": params}
+                                     | ({"sessionId": session} if session else {})).encode())
+        while True:
+            m = json.loads(self.channel.text())
+            if m.get("id") == self.last:
+                assert "error" not in m, (method, m)
+                return m["result"]
+            self.events.append(m)
+
+    def open(self, address, size=(1280, 800)):
+        return Page(self, address, size)
+
+    def close(self):
+        self.channel.socket.close()
+        self.process.terminate()
+        self.process.wait(PATIENCE_S)
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+class Page:
+    def __init__(self, browser, address, size):
+        self.browser = browser
+        self.target = browser.call("Target.createTarget", url="about:blank")["targetId"]
+        self.session = browser.call("Target.attachToTarget", targetId=self.target, flatten=True)["sessionId"]
+        self.call("Emulation.setDeviceMetricsOverride", width=size[0], height=size[1], deviceScaleFactor=1, mobile=False)
+        self.call("Network.enable")
+        self.call("Page.enable")
+        self.call("Page.navigate", url=address)
+
+    def call(self, method, **params):
+        return self.browser.call(method, self.session, **params)
+
+    def value(self, expression):
+        r = self.call("Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True)
+        assert "exceptionDetails" not in r, r
+        return r["result"].get("value")
+
+    def until(self, expression):
+        """What an expression is once it is true; asked once a frame, by the page itself."""
+        return self.value(f"""new Promise((done, failed) => {{
+            const end = performance.now() + {PATIENCE_S * 1000};
+            const look = () => {{ let v; try {{ v = {expression}; }} catch {{}}
+                if (v) done(v); else if (performance.now() > end) failed(new Error(document.body.innerText));
+                else setTimeout(look, 16); }};
+            look(); }})""")
+
+    def requests(self):
+        return [e["params"]["request"]["url"] for e in self.browser.events
+                if e.get("sessionId") == self.session and e.get("method") == "Network.requestWillBeSent"]
+
+    def middle(self, selector):
+        return self.value(f"""(() => {{ const r = document.querySelector({json.dumps(selector)}).getBoundingClientRect();
+            return [r.x + r.width / 2, r.y + r.height / 2]; }})()""")
+
+    def mouse(self, kind, x, y):
+        self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=0 if kind == "mouseReleased" else 1,
+                  clickCount=1)
+
+    def click(self, selector):
+        x, y = self.middle(selector)
+        self.mouse("mousePressed", x, y)
+        self.mouse("mouseReleased", x, y)
+
+    def touch(self, kind, *points):
+        self.call("Input.dispatchTouchEvent", type=kind, touchPoints=[{"x": x, "y": y, "id": i} for i, x, y in points])
+
+    def key(self, code, key=None, modifiers=0):
+        for kind in ("rawKeyDown", "keyUp"):
+            self.call("Input.dispatchKeyEvent", type=kind, code=code, key=key or code, modifiers=modifiers)
+
+    def picture(self, file):
+        self.call("Page.bringToFront")  # of a tab behind another none is made
+        data = self.call("Page.captureScreenshot", format="png")["data"]
+        pathlib.Path(file).write_bytes(base64.b64decode(data))
+
+    def close(self):
+        self.browser.call("Target.closeTarget", targetId=self.target)
+
+
+class BrowserTest:
+    """Beside unittest.TestCase: one browser for the tests of a class, as self.browser."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.browser = Browser()
+        cls.addClassCleanup(cls.browser.close)
+
+    def page(self, address, **more):
+        p = self.browser.open(address, **more)
+        self.addCleanup(p.close)
+        return p

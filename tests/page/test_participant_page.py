@@ -1,0 +1,275 @@
+# SPDX-License-Identifier: MIT
+"""The participant's page of tactor experiment and calibrate in a real Chromium: a simulated participant clicks, types and
+taps through sessions. Usage: test_participant_page.py TOOL SOURCE_ROOT [FOLDER_FOR_PICTURES]"""
+import pathlib
+import re
+import sys
+
+PICTURES = pathlib.Path(sys.argv.pop(3)).resolve() if len(sys.argv) > 3 else None
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
+from browser import BrowserTest  # noqa: E402
+from experiments import ExperimentTest  # noqa: E402
+from harness import main  # noqa: E402
+from pages import Session  # noqa: E402
+from test_experiment_person import DESK, SHORT  # noqa: E402
+
+DARK = [{"name": "prefers-color-scheme", "value": "dark"}]
+SIZES = ((1280, 800), (390, 844))
+FRAME_S = 1 / 60
+
+
+class ParticipantPage(BrowserTest, ExperimentTest):
+    def setUp(self):
+        super().setUp()
+        self.write("desk.toml", DESK)
+        self.write("short.toml", SHORT)
+
+    def start(self, definition="short.toml", *more):
+        return Session(self, ("experiment", definition, "--participant", "01", "-o", "study", "-D", "null", "--display", "page", *more))
+
+    def open(self, s, **more):
+        return self.page(f"http://{s.address}/", **more)
+
+    @staticmethod
+    def asked(p, screen, ask=0):
+        """The number of a question that is newer than `ask`."""
+        return p.until(f"state.screen === '{screen}' && state.ask > {ask} && !document.querySelector('#answers button').disabled && state.ask")
+
+    def click(self, p, screen, choice, ask=0):
+        ask = self.asked(p, screen, ask)
+        p.click(f"#answers button:nth-child({choice})")
+        return ask
+
+    def key(self, p, screen, key, ask=0):
+        ask = self.asked(p, screen, ask)
+        p.key({" ": "Space"}.get(key, f"Digit{key}"), key)
+        return ask
+
+    def tap(self, p, screen, choice, ask=0):
+        ask = self.asked(p, screen, ask)
+        x, y = p.middle(f"#answers button:nth-child({choice})")
+        p.touch("touchStart", (1, x, y))
+        p.touch("touchEnd")
+        return ask
+
+    def told(self, task, column="response"):
+        return [(r["trial"], r["attempt"], r["void"], r[column]) for r in self.rows("01", task)]
+
+    def picture(self, p, name):
+        """Of each size, light and dark, nothing beside the screen and no button too small."""
+        for width, height in SIZES:
+            p.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+            self.assertLessEqual(p.value("document.documentElement.scrollWidth"), width, name)
+            for x, y, w, h in p.value("[...document.querySelectorAll('#answers button')].map(b => { const r ="
+                                      " b.getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; })"):
+                self.assertTrue(x >= 0 and y >= 0 and x + w <= width and y + h <= height, (name, width, x, y, w, h))
+                self.assertGreaterEqual(h, 44, name)
+            if PICTURES:
+                p.call("Emulation.setEmulatedMedia", features=DARK if width < 500 else [])
+                p.picture(PICTURES / f"participant-{name}-{width}x{height}.png")
+
+    def test_mouse_keys_and_touch(self):
+        s = self.start()
+        p = self.open(s)
+        self.asked(p, "consent")
+        self.picture(p, "consent")
+        ask = self.click(p, "consent", 1)
+        ask = self.asked(p, "walk", ask)
+        ask = self.key(p, "walk", "1")
+        ask = self.asked(p, "walk", ask)
+        self.picture(p, "walk")
+        ask = self.tap(p, "walk", 1)
+        self.asked(p, "introduce", ask)
+        self.picture(p, "introduce")
+        ask = self.key(p, "introduce", " ")
+        ask = self.click(p, "question", 2, ask)
+        ask = self.asked(p, "question", ask)
+        self.picture(p, "choose")
+        p.key("Digit7", "7")  # there is none
+        ask = self.key(p, "question", "2")
+        ask = self.tap(p, "question", 1, ask)
+        p.until("state.screen === 'rest' && /^[01]$/.test(document.querySelector('#left').textContent)")
+        self.picture(p, "rest")
+        ask = self.click(p, "introduce", 1, ask)
+        ask = self.asked(p, "question", ask)
+        self.picture(p, "rate")
+        ask = self.key(p, "question", "3")
+        self.key(p, "question", "1", ask)
+        p.until("state.screen === 'over'")
+        self.picture(p, "over")
+        self.assertEqual(s.end(), 0, s.said)
+        self.assertEqual(self.told("pairs"), [("1", "1", "false", "2"), ("2", "1", "false", "1")])
+        self.assertEqual(self.told("marks", "rating"), [("1", "1", "false", "3"), ("2", "1", "false", "1")])
+        # The end is not taken for a lost connection, and nothing was asked of anybody else.
+        self.assertTrue(p.value("document.querySelector('#offline').hidden"))
+        self.assertEqual({u.split("/rpc")[0].rstrip("/").replace("ws:", "http:") for u in p.requests() if not u.startswith("data:")},
+                         {f"http://{s.address}"})
+
+    def test_the_target_moves_in_its_own_time(self):
+        self.write("slow.toml", SHORT.replace("duration = 0.2", "duration = 2.0").replace("practice = 1\n", ""))
+        s = self.start("slow.toml")
+        p = self.open(s)
+        ask = self.click(p, "consent", 1)
+        for _ in (0, 1):
+            ask = self.click(p, "walk", 1, ask)
+        ask = self.click(p, "introduce", 1, ask)
+        # Where it is in each frame, beside where the plan's own time has it.
+        p.until("state.screen === 'target' && document.querySelector('#dot')")
+        self.assertGreater(p.value("document.querySelector('#dot').getBoundingClientRect().width"), 4)
+        seen = p.value("""new Promise(done => { const all = [];
+            const look = () => {
+                if (state.screen !== 'target') return done([all, state.screen]);
+                all.push([(performance.now() - began) / 1000, Number(document.querySelector('#dot').getAttribute('cx'))]);
+                requestAnimationFrame(look); };
+            requestAnimationFrame(look); })""")
+        places, after = seen
+        self.assertEqual(after, "stimulus")
+        self.assertEqual(p.value("document.querySelector('#field').getClientRects().length"), 0)
+        self.assertGreater(len(places), 10)
+        self.click(p, "question", 1, ask)
+        p.until("state.screen === 'target' && document.querySelector('#dot')")
+        self.picture(p, "target")  # takes its time
+        s.key("q")
+        self.assertEqual(s.end(), 130)
+        speed = 20 / 2.0
+        east = places[-1][1] > places[0][1]
+        for t, x in places:
+            self.assertLessEqual(abs((x if east else 20 - x) - speed * min(t, 2.0)), speed * FRAME_S, (t, x))
+
+    def test_all_160_trials(self):
+        """The paper's four runs, with quick motions."""
+        text = self.ok("experiment", "park2016", "--print").stdout
+        for pattern, other in ((r"^(preset = .*)", r"\1\nduration = 0.15"), ("^gap_s.*", "gap_s = 0.05"), ("^break_s.*", "break_s = 0.2"),
+                               ("^practice.*", "practice = 1"), ("^level = .*", "level = { dbfs = -20 }"), ("^noise = .*", 'noise = "none"')):
+            text = re.sub(pattern, other, text, flags=re.M)
+        self.write("quick.toml", text)
+        s = self.start("quick.toml")
+        p = self.open(s)
+        ask = self.click(p, "consent", 1)
+        for _ in range(9):
+            ask = self.key(p, "walk", "1", ask)
+        given, ways = {}, (self.click, self.key, self.tap)
+        for run in range(4):
+            ask = self.key(p, "introduce", " ", ask)
+            # Practice, and forty. Where the stream was late a trial is void: it is not asked, and comes again after the others.
+            n = -1
+            while n < 40:
+                ask = self.asked(p, "question", ask)
+                told = p.value("state")
+                self.assertEqual(told["progress"]["run"], run + 1)
+                n = 0 if told["progress"]["practice"] else max(n, 0) + 1
+                choice = (7 * n + run) % len(told["choices"]) + 1
+                ways[n % 3](p, "question", str(choice) if n % 3 == 1 else choice)
+                if n > 0:
+                    given.setdefault(told["question"], []).append((str(told["progress"]["trial"]), str(choice)))
+        self.assertEqual(s.end(), 0, s.said)
+        questions = dict(zip(re.findall('^name = "(.*-rating|similarity|uniformity)"', text, re.M), re.findall('^question = "(.*)"', text, re.M)))
+        self.assertEqual(sum(map(len, given.values())), 160)
+        for name, question in questions.items():
+            rows = self.rows("01", name.replace("-", ""))
+            self.assertEqual([(r["trial"], r["response"]) for r in rows if r["void"] == "false"], given[question], (name, s.said))
+            self.assertEqual([r["trial"] for r in rows if r["attempt"] == "1"], [str(i) for i in range(1, 41)])
+            for r in rows:
+                if r["void"] == "true":
+                    self.assertIn(f"trial {r['trial']} is void", s.said)
+
+    def test_reload_second_tab_and_lost_connection(self):
+        s = self.start()
+        p = self.open(s)
+        self.asked(p, "consent")
+        p.call("Page.reload")
+        ask = self.click(p, "consent", 1)
+        for _ in (0, 1):
+            ask = self.click(p, "walk", 1, ask)
+        ask = self.click(p, "introduce", 1, ask)
+        ask = self.click(p, "question", 1, ask)  # practice
+        p.until("state.screen === 'stimulus'")
+        p.call("Page.reload")  # in mid-trial
+        ask = self.asked(p, "question", ask)
+        p.call("Page.reload")  # while it is asked
+        self.assertEqual(self.asked(p, "question"), ask)
+        second = self.open(s, size=SIZES[1])
+        self.assertEqual(self.asked(second, "question"), ask)
+        p.until("state.screen === 'elsewhere'")
+        self.picture(p, "elsewhere")
+        p.key("Digit1", "1")
+        second.call("Page.bringToFront")
+        # A lost connection: said, and found again by itself; what was asked is asked still.
+        second.value("socket.close()")
+        second.until("!document.querySelector('#offline').hidden || state.ask")
+        self.assertEqual(self.asked(second, "question"), ask)
+        second.until("document.querySelector('#offline').hidden")
+        # Doubled: by hand, beside the page's own guard.
+        second.value(f"socket.send('{{\"ask\":{ask},\"answer\":2}}'); socket.send('{{\"ask\":{ask},\"answer\":1}}')")
+        ask = self.asked(second, "question", ask)
+        for _ in range(3):
+            second.key("Digit1", "1")
+        ask = self.click(second, "introduce", 1, ask)
+        for _ in (1, 2):
+            ask = self.tap(second, "question", 2, ask)
+        self.assertEqual(s.end(), 0, s.said)
+        self.assertEqual(self.told("pairs"), [("1", "1", "false", "2"), ("2", "1", "false", "1")])
+        self.assertEqual(self.told("marks", "rating"), [("1", "1", "false", "2"), ("2", "1", "false", "2")])
+        self.assertEqual(p.value("state.screen"), "elsewhere")
+
+    def test_a_program_that_is_killed_and_comes_back(self):
+        s = self.start()
+        p = self.open(s)
+        self.asked(p, "consent")
+        s.process.kill()
+        p.until("!document.querySelector('#offline').hidden")
+        self.assertTrue(p.value("document.querySelector('#answers button').disabled"))
+        self.picture(p, "offline")
+        s.end()
+        self.start("short.toml", "--page", s.address.rpartition(":")[2])
+        self.asked(p, "consent")
+        self.assertTrue(p.value("document.querySelector('#offline').hidden"))
+
+    def test_scales_with_words_at_their_ends_and_names(self):
+        self.write("many.toml", SHORT[:SHORT.index("[[run]]")].replace('consent = "Be at ease."\n', "")
+                   + '[[run]]\nname = "marks"\ntask = "rate"\nattribute = "similarity"\ntrials = 1\nscale = 9\nlabels = ["very uneven", "very even"]\n'
+                   + '[[run]]\nname = "what"\ntask = "identify"\ntrials = 1\nmethods = ["Birch"]\n')
+        s = self.start("many.toml")
+        p = self.open(s)
+        ask = 0
+        for _ in (0, 1):
+            ask = self.click(p, "walk", 1, ask)
+        for run in ("scale", "names"):
+            ask = self.click(p, "introduce", 1, ask)
+            ask = self.asked(p, "question", ask)
+            self.picture(p, run)
+            if run == "scale":
+                self.assertEqual(p.value("document.querySelector('#ends').innerText.split(/\\s*\\n\\s*/)"), ["very uneven", "very even"])
+                self.key(p, "question", "9")
+            else:
+                self.assertEqual(p.value("[...document.querySelectorAll('#answers span')].map(e => e.textContent)"), ["east", "west"])
+                self.click(p, "question", 2)
+        self.assertEqual(s.end(), 0, s.said)
+        self.assertEqual([r["rating"] for r in self.rows("01", "marks")], ["9"])
+        self.assertEqual([r["response"] for r in self.rows("01", "what")], ["west"])
+
+    def test_thresholds_are_asked_for_on_it(self):
+        for method in ("staircase", "adjustment"):
+            s = Session(self, ("calibrate", "--participant", "01", "-o", f"{method}.toml", "-D", "null", "--tactors", "0", "--interval", "0.05",
+                               "--method", method, "--display", "page"))
+            p = self.open(s)
+            self.asked(p, "introduce")
+            self.picture(p, f"{method}-begin")
+            ask = self.click(p, "introduce", 1)
+            self.asked(p, "question", ask)
+            self.picture(p, method)
+            if method == "staircase":
+                self.key(p, "question", "2", ask)
+                p.until("/That was (right|wrong)/.test(document.querySelector('#text').textContent)")
+                self.picture(p, "told")
+                s.process.terminate()
+                self.assertEqual(s.end(), 143, s.said)
+                continue
+            for choice in (1, 3, 5, 5, 5, 5, 5, 5):  # much weaker, stronger, and the six series as they are then
+                ask = self.tap(p, "question", choice, ask)
+            p.until("state.screen === 'over'")
+            self.assertEqual(s.end(), 0, s.said)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <tactor/error.hpp>
+#include <tactor/observer.hpp>
+
+#include "../plan/arrays.hpp"
+#include "../plan/strokes.hpp"
+
+#include "rounds.hpp"
+
+namespace compensate_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+std::vector<double> onsets(std::size_t n, double soa_s)
+{
+    std::vector<double> t(n);
+    for (std::size_t i = 0; i < n; ++i)
+        t[i] = soa_s * static_cast<double>(i);
+    return t;
+}
+
+double cost(const std::vector<point>& felt, const std::vector<point>& targets)
+{
+    double sum = 0.0;
+    for (std::size_t i = 0; i < felt.size(); ++i)
+        sum += std::pow(distance_mm(felt[i], targets[i]), 2.0);
+    return sum;
+}
+
+point between_of(point a, point b, double u)
+{
+    return {a.x_mm + u * (b.x_mm - a.x_mm), a.y_mm + u * (b.y_mm - a.y_mm)};
+}
+
+/// The least cost that another way finds: projected gradients with momentum (Beck and Teboulle 2009), begun
+/// anew where they climb, knowing nothing but felt_places() and the nearest point of the array.
+double by_gradients(const layout& l, const low_speed_observer& o, const std::vector<double>& t,
+                    const std::vector<point>& x, int steps)
+{
+    std::vector<point> m(x.size(), l.places().front());
+    std::vector<point> ahead = m;
+    double momentum = 1.0;
+    double best = 1e300;
+    for (int i = 0; i < steps; ++i) {
+        std::vector<point> r = felt_places(o, t, ahead);
+        for (std::size_t k = 0; k < r.size(); ++k)
+            r[k] = {r[k].x_mm - x[k].x_mm, r[k].y_mm - x[k].y_mm};
+        const std::vector<point> slope = felt_places(o, t, r); // the inverse of I + K is symmetric
+        std::vector<point> next(x.size());
+        for (std::size_t k = 0; k < r.size(); ++k)
+            next[k] = l.nearest({ahead[k].x_mm - slope[k].x_mm, ahead[k].y_mm - slope[k].y_mm});
+        const double now = cost(felt_places(o, t, next), x);
+        const double later = now > best ? 1.0 : (1.0 + std::sqrt(1.0 + 4.0 * momentum * momentum)) / 2.0;
+        for (std::size_t k = 0; k < r.size(); ++k)
+            ahead[k] = between_of(m[k], next[k], 1.0 + (later > 1.0 ? (momentum - 1.0) / later : 0.0));
+        momentum = later;
+        m = next;
+        best = std::min(best, now);
+    }
+    return best;
+}
+
+compensated_plan of_motion(const char* name, phantom_kind phantom, const low_speed_observer& m = {},
+                           algorithm_kind algorithm = algorithm_kind::park2016)
+{
+    plan_options o;
+    o.phantom = phantom;
+    o.algorithm = algorithm;
+    return make_compensated_plan(palm, layout(palm), preset_stroke(name), o, m);
+}
+
+} // namespace
+
+TEST_CASE("inside the array the target itself is felt")
+{
+    const array wide = make_grid("wide", 5, 5, 20.0, 20.0);
+    plan_options o;
+    o.phantom = phantom_kind::barycentric;
+    for (const double sigma : {2.0, 5.0, 10.0}) {
+        const stroke s = along("M 30 40 A 10 10 0 0 0 50 40", 1.0);
+        const compensated_plan p = make_compensated_plan(wide, layout(wide), s, o, {sigma, 100.0});
+        CHECK(p.at_edge == 0);
+        CHECK(p.residual_largest_mm < 1e-9);
+        const tap_summary felt = summarise(predict_taps(wide, s, p.schedule, {sigma, 100.0}));
+        CHECK(*felt.largest_error_mm < 1e-6);
+        CHECK(*felt.length_ratio == doctest::Approx(1.0).epsilon(1e-9));
+        // It is another plan: without it, the observer is off.
+        CHECK(*summarise(predict_taps(wide, s, make_plan(wide, s, o), {sigma, 100.0})).largest_error_mm >
+              0.1);
+    }
+}
+
+TEST_CASE("two taps by hand: at the edge as far as it goes")
+{
+    // A pair of tactors 10 mm apart, targets at 1 and 9 mm, k = 1/2: 8 mm are felt of 16 mm, of which 10 fit;
+    // they are felt 5 mm apart, 1.5 mm short on each side.
+    const layout l(array_of({{0.0, 0.0}, {10.0, 0.0}}));
+    const low_speed_observer o{5.0, 100.0};
+    const double t = 0.05 * std::sqrt(2.0);
+    const compensated_places p = compensate(l, o, {{0.0, t}}, {{{1.0, 3.0}, {9.0, -4.0}}});
+    CHECK(p.at_edge == 2);
+    CHECK(distance_mm(p.played[0], {0.0, 0.0}) < 1e-9);
+    CHECK(distance_mm(p.played[1], {10.0, 0.0}) < 1e-9);
+    CHECK(distance_mm(p.felt[0], {2.5, 0.0}) < 1e-9);
+    CHECK(distance_mm(p.felt[1], {7.5, 0.0}) < 1e-9);
+    const compensated_places free = compensate(l, o, {{0.0, t}}, {{{3.0, 0.0}, {7.0, 0.0}}});
+    CHECK(free.at_edge == 0);
+    CHECK(distance_mm(free.played[0], {1.0, 0.0}) < 1e-12);
+    const compensated_places one =
+        compensate(layout(array_of({{2.0, 3.0}})), o, {{0.0, t}}, {{{1.0, 3.0}, {9.0, 4.0}}});
+    CHECK(one.played[1] == point{2.0, 3.0});
+    CHECK(one.at_edge == 2);
+}
+
+TEST_CASE("at the edge no other way finds places that are felt nearer")
+{
+    generator g(20);
+    int at_edge = 0;
+    for (int round = 0; round < rounds(96); ++round) {
+        const array a = some_array(g, static_cast<unsigned>(round) % kinds_of_array);
+        const layout l(a);
+        const low_speed_observer o{between(g, 1.0, 12.0), between(g, 60.0, 200.0)};
+        const unsigned n = pick(g, 1, 25);
+        std::vector<double> t{0.0};
+        std::vector<point> x;
+        while (t.size() < n)
+            t.push_back(t.back() + between(g, 0.05, 0.2));
+        for (unsigned i = 0; i < n; ++i)
+            x.push_back(some_point(g, l));
+        const compensated_places p = compensate(l, o, t, x);
+        at_edge += p.at_edge != 0 ? 1 : 0;
+        for (const point& m : p.played)
+            REQUIRE(l.contains(m));
+        const std::vector<point> felt = felt_places(o, t, p.played);
+        for (unsigned i = 0; i < n; ++i)
+            REQUIRE(distance_mm(felt[i], p.felt[i]) < 1e-9);
+        CAPTURE(round);
+        const double ours = cost(p.felt, x);
+        const double theirs = by_gradients(l, o, t, x, 4000);
+        CHECK(ours <= theirs + 1e-6);
+        CHECK(theirs <= ours + 1e-3 * (1.0 + ours)); // they are after the same thing
+    }
+    CHECK(at_edge > rounds(40));
+}
+
+TEST_CASE("strong pulls and long chains have an answer, or are refused")
+{
+    const layout l(palm);
+    for (const double sigma : {5.0, 20.0, 100.0, 1000.0, 7000.0}) {
+        const std::vector<double> t = onsets(40, 0.07);
+        std::vector<point> x;
+        for (std::size_t i = 0; i < t.size(); ++i)
+            x.push_back({static_cast<double>(i), 20.0 + 16.0 * std::sin(0.4 * static_cast<double>(i))});
+        const low_speed_observer o{std::min(sigma, 1000.0), sigma > 1000.0 ? 100.0 * 1000.0 / sigma : 100.0};
+        const compensated_places p = compensate(l, o, t, x);
+        CAPTURE(sigma);
+        CHECK(p.at_edge > 0);
+        // Nobody feels less than where all are played in the middle.
+        CHECK(cost(p.felt, x) <= cost(std::vector<point>(x.size(), {20.0, 20.0}), x));
+        for (const point& m : p.played)
+            CHECK(l.contains(m));
+    }
+    CHECK_THROWS_WITH_AS(compensate(l, {1000.0, 0.001}, {{0.0, 0.07}}, {{{0.0, 0.0}, {40.0, 0.0}}}),
+                         doctest::Contains("sigma_mm"), error);
+    CHECK_THROWS_WITH_AS(compensate(l, {}, {{0.0, 0.0}}, {{{0.0, 0.0}, {40.0, 0.0}}}),
+                         doctest::Contains("begin together"), error);
+    const std::size_t many = 50'000;
+    std::vector<point> x;
+    for (std::size_t i = 0; i < many; ++i)
+        x.push_back({20.0 + 20.0 * std::cos(0.2 * static_cast<double>(i)),
+                     20.0 + 20.0 * std::sin(0.2 * static_cast<double>(i))});
+    const compensated_places p = compensate(l, {}, onsets(many, 0.07), x);
+    CHECK(p.at_edge > 1000);
+    x.clear(); // to and fro between two corners: no array is wide enough
+    for (std::size_t i = 0; i < 1'000'001; ++i)
+        x.push_back(i % 2 == 0 ? point{0.0, 0.0} : point{40.0, 40.0});
+    CHECK_THROWS_WITH_AS(compensate(l, {}, onsets(x.size(), 0.07), x), doctest::Contains("too many"), error);
+}
+
+TEST_CASE("a plan is moved whole: places, drives and what it says")
+{
+    const compensated_plan p = of_motion("park2016-1", phantom_kind::barycentric);
+    const plan before = make_plan(palm, preset_stroke("park2016-1"), {.phantom = phantom_kind::barycentric});
+    REQUIRE(p.schedule.bursts.size() == before.bursts.size());
+    CHECK(p.observer == low_speed_observer{});
+    bool moved = false;
+    for (std::size_t i = 0; i < before.bursts.size(); ++i) {
+        const burst& b = p.schedule.bursts[i];
+        CHECK(b.onset_s == before.bursts[i].onset_s);
+        CHECK(b.duration_s == before.bursts[i].duration_s);
+        CHECK(energy(b.drives) == doctest::Approx(1.0).epsilon(1e-12));
+        CHECK(distance_mm(energy_centroid(layout(palm), b.drives), b.position) < 1e-9);
+        CHECK(distance_mm(p.taps[i].alone, b.position) < 1e-9);
+        moved = moved || distance_mm(b.position, before.bursts[i].position) > 0.1;
+    }
+    CHECK(moved);
+    REQUIRE(p.schedule.warnings.size() == before.warnings.size() + 1);
+    for (const char* word : {"low-speed", "sigma 5 mm", "taps", "RMS"})
+        CHECK(p.schedule.warnings.back().find(word) != std::string::npos);
+    // With another phantom what it is off by itself is left.
+    const compensated_plan q = of_motion("park2016-1", phantom_kind::inverse_distance);
+    CHECK(q.residual_rms_mm == doctest::Approx(p.residual_rms_mm).epsilon(1e-9));
+    CHECK(*summarise(q.taps).rms_error_mm > p.residual_rms_mm + 0.1);
+    // The Tactile Brush is moved off its lines, and says so.
+    const compensated_plan brushed =
+        of_motion("park2016-1", phantom_kind::barycentric, {2.0, 100.0}, algorithm_kind::tactile_brush);
+    CHECK(brushed.schedule.warnings.back().find("Tactile Brush") != std::string::npos);
+    CHECK_THROWS_WITH_AS(of_motion("park2016-1", phantom_kind::log, {}, algorithm_kind::continuous),
+                         doctest::Contains("no bursts"), error);
+}
+
+} // namespace compensate_test

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <tactor/plan.hpp>
+
+#include "arrays.hpp"
+#include "plan/job.hpp"
+#include "strokes.hpp"
+
+namespace brush_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+stroke circle(double duration_s)
+{
+    return stroke_of(trajectory::along(path::arc({20.0, 20.0}, 20.0, -90.0, 360.0), duration_s));
+}
+
+/// Eqs. of the schedule as they are written down first, not in closed form.
+void check_law(const plan& p, const timing_profile& law)
+{
+    for (std::size_t i = 0; i < p.bursts.size(); ++i) {
+        const burst& b = p.bursts[i];
+        REQUIRE(b.duration_s >= 0.0);
+        REQUIRE(b.tau_s);
+        REQUIRE(b.onset_s <= *b.tau_s + 1e-12);
+        REQUIRE(b.onset_s + b.duration_s >= *b.tau_s - 1e-9);
+        REQUIRE(b.drives.size() <= 2);
+        if (i + 1 < p.bursts.size())
+            REQUIRE(p.bursts[i + 1].onset_s - b.onset_s ==
+                    doctest::Approx(law.slope * b.duration_s + law.intercept_s).epsilon(1e-9));
+    }
+    REQUIRE(p.bursts.back().onset_s + p.bursts.back().duration_s ==
+            doctest::Approx(p.stroke_duration_s).epsilon(1e-12));
+    REQUIRE(p.bursts.front().onset_s == 0.0);
+}
+
+} // namespace
+
+TEST_CASE("Tactile Brush: the check value of the rendering model, to a microsecond")
+{
+    const plan p = make_plan(arm, along("M 10 30 L 45 10", 1.0), brush());
+    const double onset[] = {0.0, 0.070465, 0.245294, 0.482543, 0.708659};
+    const double duration[] = {0.072392, 0.398526, 0.593592, 0.558798, 0.291341};
+    REQUIRE(p.bursts.size() == 5);
+    for (std::size_t i = 0; i < 5; ++i) {
+        CHECK(std::abs(p.bursts[i].onset_s - onset[i]) < 1e-6);
+        CHECK(std::abs(p.bursts[i].duration_s - duration[i]) < 1e-6);
+    }
+    CHECK(p.algorithm == "tactile-brush");
+    CHECK_FALSE(p.soa_s);
+    CHECK(std::abs(p.total_s - 1.041341) < 1e-6); // the fourth burst outlasts the stroke
+    CHECK(p.dropped.empty());
+    CHECK(p.bursts[1].position.x_mm == 15.0);
+    REQUIRE(p.warnings.size() == 1);
+    CHECK(p.warnings[0].find("4 of 5") != std::string::npos);
+    CHECK(p.warnings[0].find("0.160") != std::string::npos);
+    check_law(p, {});
+}
+
+TEST_CASE("the law holds and the last burst ends with the stroke, for any path, time and profile")
+{
+    generator g(31);
+    unsigned planned = 0;
+    for (unsigned i = 0; i < 1000; ++i) {
+        const array a =
+            make_grid("g", pick(g, 2, 5), pick(g, 2, 5), between(g, 10.0, 30.0), between(g, 10.0, 30.0));
+        const layout l(a);
+        std::vector<point> corners;
+        for (unsigned k = 0; k < pick(g, 2, 5); ++k)
+            corners.push_back(some_point(g, l));
+        if (corners.size() < 2 || distance_mm(corners[0], corners[1]) < 1.0)
+            continue;
+        plan_options o = brush();
+        o.snap = true;
+        o.drop_points = i % 2 == 0;
+        o.profile = {between(g, 0.1, 0.9), between(g, 0.0, 0.06), 0.07};
+        const stroke s = stroke_of(trajectory::along(path::polyline(corners), between(g, 0.1, 3.0)));
+        const std::string why = refusal(a, s, o);
+        if (!why.empty()) {
+            REQUIRE(why.find("follow one another too fast") != std::string::npos);
+            continue;
+        }
+        ++planned;
+        check_law(make_plan(a, l, s, o), o.profile);
+    }
+    CHECK(planned > 300);
+}
+
+TEST_CASE("a row and a column met at once are one virtual tactor")
+{
+    const plan p = make_plan(palm, along("M 0 0 L 40 40", 2.0), brush());
+    REQUIRE(p.bursts.size() == 3);
+    for (unsigned i = 0; i < 3; ++i)
+        CHECK(p.bursts[i].drives == std::vector<drive>{{4 * i, 1.0}});
+    CHECK(*p.bursts[1].tau_s == doctest::Approx(1.0));
+}
+
+TEST_CASE("along a grid line only the other lines are met")
+{
+    const plan p = make_plan(palm, along("M 5 20 L 35 20", 1.0), brush());
+    REQUIRE(p.bursts.size() == 3);
+    CHECK(p.bursts[1].position == point{20.0, 20.0});
+    CHECK(p.bursts[0].drives.size() == 2);
+}
+
+TEST_CASE("a closed path starts and ends at one place, and both play")
+{
+    const plan p = make_plan(palm, circle(4.0), brush());
+    REQUIRE(p.bursts.size() == 5);
+    const unsigned expected[] = {1, 5, 7, 3, 1};
+    for (unsigned i = 0; i < 5; ++i) {
+        CAPTURE(i);
+        REQUIRE(p.bursts[i].drives.size() == 1);
+        CHECK(p.bursts[i].drives[0].tactor == expected[i]);
+        CHECK(*p.bursts[i].tau_s == doctest::Approx(i).epsilon(1e-6));
+    }
+    // A place that is left and met again counts twice.
+    CHECK(
+        make_plan(palm, along("M 10 0 L 20 10 L 30 5 L 30 15 L 20 10 L 10 20", 4.0), brush()).bursts.size() ==
+        4);
+    // A loop inside one cell meets nothing else.
+    CHECK(make_plan(palm, along("M 0 10 L 10 5 L 10 15 Z", 2.0), brush()).bursts.size() == 2);
+}
+
+TEST_CASE("a target that rests where it starts, crosses or ends is there once")
+{
+    const auto p = make_plan(palm,
+                             timed({{0.0, {0, 0}},
+                                    {1.0, {0, 0}},
+                                    {2.0, {20, 20}},
+                                    {3.0, {20, 20}},
+                                    {4.0, {40, 40}},
+                                    {5.0, {40, 40}}}),
+                             brush());
+    REQUIRE(p.bursts.size() == 3);
+    CHECK(*p.bursts[1].tau_s == doctest::Approx(2.0));
+    CHECK(*p.bursts[2].tau_s == 5.0);
+}
+
+TEST_CASE("a start or end off the grid is refused with the nearest point on it; snap moves it there")
+{
+    plan_options o = brush();
+    const std::string start = refusal(palm, along("M 3 8 L 20 20", 1.0), o);
+    CHECK(start.find("starts at (3.000, 8.000) mm") != std::string::npos);
+    CHECK(start.find("(0.000, 8.000) mm") != std::string::npos);
+    CHECK(start.find("snap = true") != std::string::npos);
+    const std::string end = refusal(palm, along("M 0 20 L 33 12", 1.0), o);
+    CHECK(end.find("ends at (33.000, 12.000) mm") != std::string::npos);
+    CHECK(end.find("(40.000, 12.000) mm") != std::string::npos);
+    o.snap = true;
+    const plan p = make_plan(palm, along("M 3 8 L 20 20", 1.0), o);
+    CHECK(p.bursts[0].position == point{0.0, 8.0});
+    CHECK(p.bursts[0].tau_s == 0.0);
+    // Snapped onto the line that it crosses straight away: one place.
+    const plan q = make_plan(palm, along("M 10 21 L 10 0", 1.0), o);
+    REQUIRE(q.bursts.size() == 2);
+    CHECK(q.bursts[0].position == point{10.0, 20.0});
+}
+
+TEST_CASE("conflicts of bursts inside one another, one after the other, and side by side")
+{
+    const auto sounds = [](unsigned tactor, double from, double to) {
+        burst b;
+        b.onset_s = from;
+        b.duration_s = to - from;
+        b.drives = {{tactor, 1.0}};
+        return b;
+    };
+    const auto found =
+        detail::find_conflicts({sounds(3, 0.0, 1.0), sounds(2, 0.05, 0.3), sounds(3, 0.1, 0.5),
+                                sounds(2, 0.1, 0.2), sounds(3, 0.2, 0.3), sounds(3, 0.7, 0.8),
+                                sounds(3, 0.8, 1.2), sounds(2, 0.3, 0.4), sounds(3, 1.2 - 1e-10, 1.4)});
+    REQUIRE(found.size() == 3);
+    CHECK(found[0].tactor == 2);
+    CHECK(found[0].from_s == doctest::Approx(0.1));
+    CHECK(found[0].to_s == doctest::Approx(0.2));
+    CHECK(found[1].tactor == 3);
+    CHECK(found[1].from_s == doctest::Approx(0.1));
+    CHECK(found[1].to_s == doctest::Approx(0.5));
+    CHECK(found[2].from_s == doctest::Approx(0.7));
+    CHECK(found[2].to_s == doctest::Approx(1.0));
+}
+
+TEST_CASE("conflicts: when two bursts or more sound on one tactor, merged, by time and then by tactor")
+{
+    generator g(34);
+    for (unsigned i = 0; i < 200; ++i) {
+        plan_options o = brush();
+        o.snap = true;
+        std::vector<point> corners;
+        for (unsigned k = 0; k < 3; ++k)
+            corners.push_back({between(g, 0.0, 45.0), between(g, 0.0, 30.0)});
+        const stroke s = stroke_of(trajectory::along(path::polyline(corners), between(g, 1.0, 4.0)));
+        if (!refusal(arm, s, o).empty())
+            continue;
+        const plan p = make_plan(arm, s, o);
+        const auto reported = [&](unsigned tactor, double t) {
+            return std::any_of(p.conflicts.begin(), p.conflicts.end(), [&](const conflict& c) {
+                return c.tactor == tactor && c.from_s < t && t < c.to_s;
+            });
+        };
+        for (unsigned k = 0; k < 300; ++k) {
+            const double t = between(g, 0.0, p.total_s);
+            for (unsigned tactor = 0; tactor < arm.tactors.size(); ++tactor) {
+                unsigned sounding = 0;
+                for (const burst& b : p.bursts)
+                    for (const drive& d : b.drives)
+                        sounding +=
+                            d.tactor == tactor && b.onset_s < t && t < b.onset_s + b.duration_s ? 1 : 0;
+                REQUIRE(reported(tactor, t) == (sounding >= 2));
+            }
+        }
+        for (std::size_t k = 0; k < p.conflicts.size(); ++k) {
+            REQUIRE(p.conflicts[k].from_s < p.conflicts[k].to_s);
+            if (k > 0)
+                REQUIRE(p.conflicts[k - 1].from_s <= p.conflicts[k].from_s);
+        }
+    }
+}
+
+TEST_CASE("the array must be a grid; a single row is one")
+{
+    CHECK(refusal(ring_of(5, 20.0, true), along("M 0 0 L 10 0", 1.0), brush()).find("grid") !=
+          std::string::npos);
+    CHECK(make_plan(make_grid("row", 1, 5, 10.0, 10.0), along("M 5 0 L 40 0", 2.0), brush()).bursts.size() ==
+          5);
+}
+
+TEST_CASE("a way out between two crossings is refused; clamped it stays at the edge")
+{
+    plan_options o = brush();
+    const stroke out = along("M 0 20 C 0 20 20 -30 40 20", 3.0);
+    CHECK(refusal(palm, out, o).find("leaves the array") != std::string::npos);
+    o.outside = outside_kind::clamp;
+    const plan p = make_plan(palm, out, o);
+    for (const burst& b : p.bursts)
+        CHECK(layout(palm).contains(b.position));
+    // Round the corner outside: the corner plays once.
+    const plan q = make_plan(palm, along("M 20 0 L 45 -5 L 45 20", 3.0), o);
+    unsigned corner = 0;
+    for (const burst& b : q.bursts)
+        corner += b.position == point{40.0, 0.0} ? 1 : 0;
+    CHECK(corner == 1);
+}
+
+} // namespace brush_test

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+// Carriers and recordings that lie along the path go with targets that ease, change their speed and rest.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "strokes.hpp"
+
+namespace course_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+constexpr double length_mm = 40.0;
+constexpr double rest_s = 0.6;
+
+const movement eased{.duration_s = 2.0, .easing = easing_kind::in_out};
+const movement jerk{.duration_s = 2.0, .easing = easing_kind::minimum_jerk};
+const movement ever_faster{.duration_s = 1.5, .speed_mm_s = {{0.0, 1.0}, {1.0, 1000.0}}};
+const movement two_speeds{.speed_mm_s = {{0.0, 20.0}, {0.3, 20.0}, {0.31, 80.0}}};
+const movement resting{.duration_s = 3.0,
+                       .easing = easing_kind::in_out,
+                       .speed_mm_s = {{0.0, 1.0}, {1.0, 2.0}},
+                       .rests = {{0.4, rest_s, 0.0}}};
+const movement at_ends{.duration_s = 2.0, .rests = {{0.0, 0.5}, {1.0, 0.25}}};
+
+stroke moving(const movement& m)
+{
+    return stroke_of(trajectory::along(path::from_svg("M 0 20 H 40"), m));
+}
+
+std::vector<stroke> strokes()
+{
+    std::vector<stroke> all;
+    for (const movement& m : {eased, jerk, ever_faster, two_speeds, resting, at_ends}) {
+        const stroke s = moving(m);
+        all.push_back(s);
+        all.push_back(stroke_of(s.motion.with_duration(0.7)));
+        all.push_back(stroke_of(s.motion.reversed()));
+    }
+    return all;
+}
+
+std::vector<carrier_point> course_of(const stroke& s)
+{
+    return make_plan(palm, s, {.algorithm = algorithm_kind::continuous}).course;
+}
+
+/// Along the path by its length, four times.
+std::vector<carrier_point> texture_of(stroke s)
+{
+    waveform w;
+    w.kind = waveform_kind::recording;
+    w.texture = texture_kind::length;
+    w.texture_mm = length_mm / 4.0;
+    w.recorded = std::make_shared<const recording>(recording{"x.wav", 8000.0, {0.0F, 1.0F, 0.0F, -1.0F}});
+    s.wave = w;
+    return course_of(s);
+}
+
+/// The path that lies behind the target, as a part of it.
+double part(const stroke& s, double t_s)
+{
+    return std::abs(s.motion.position(t_s).x_mm - s.motion.position(0.0).x_mm) / length_mm;
+}
+
+double hz_at(const std::vector<carrier_point>& course, double t_s)
+{
+    const auto after = std::find_if(course.begin() + 1, course.end() - 1,
+                                    [t_s](const carrier_point& c) { return c.t_s > t_s; });
+    const carrier_point& before = *(after - 1);
+    return std::lerp(before.hz, after->hz, (t_s - before.t_s) / (after->t_s - before.t_s));
+}
+
+/// How often it has come round until a time.
+double rounds(const std::vector<carrier_point>& course, double t_s)
+{
+    double sum = 0.0;
+    for (std::size_t i = 0; i + 1 < course.size() && course[i].t_s < t_s; ++i) {
+        const carrier_point& a = course[i];
+        const carrier_point& b = course[i + 1];
+        if (b.t_s > a.t_s) {
+            const double end_s = std::min(b.t_s, t_s);
+            const double hz = std::lerp(a.hz, b.hz, (end_s - a.t_s) / (b.t_s - a.t_s));
+            sum += 0.5 * (a.hz + hz) * (end_s - a.t_s);
+        }
+    }
+    return sum;
+}
+
+double greatest_hz(const std::vector<carrier_point>& course)
+{
+    double most = 0.0;
+    for (const carrier_point& c : course)
+        most = std::max(most, c.hz);
+    return most;
+}
+
+} // namespace
+
+TEST_CASE("the carrier is that of the part of the path that the target has gone")
+{
+    for (stroke s : strokes()) {
+        s.carrier_profile = {{0.2, 100.0}, {0.7, 300.0}};
+        const auto course = course_of(s);
+        const double end_s = s.motion.duration_s();
+        CHECK(course.front().t_s == 0.0);
+        CHECK(course.back().t_s == end_s);
+        double worst = 0.0;
+        for (int i = 0; i <= 1000; ++i) {
+            const double t_s = end_s * i / 1000.0;
+            const double wanted = 100.0 + 400.0 * (std::clamp(part(s, t_s), 0.2, 0.7) - 0.2);
+            worst = std::max(worst, std::abs(hz_at(course, t_s) - wanted));
+        }
+        CHECK(worst < 0.05);
+    }
+}
+
+TEST_CASE("a recording along the path is where the target is, at every time")
+{
+    for (const stroke& s : strokes()) {
+        const auto course = texture_of(s);
+        const double end_s = s.motion.duration_s();
+        CHECK(course.back().t_s == end_s);
+        double worst = 0.0;
+        for (int i = 0; i <= 1000; ++i)
+            worst = std::max(
+                worst, std::abs(rounds(course, end_s * i / 1000.0) / 4.0 - part(s, end_s * i / 1000.0)));
+        CHECK(worst < 1e-4);
+        CHECK(rounds(course, end_s) == doctest::Approx(4.0));
+    }
+    CHECK(greatest_hz(texture_of(moving(jerk))) == doctest::Approx(1.875 * 2.0).epsilon(0.02));
+    CHECK(greatest_hz(texture_of(moving(eased))) == doctest::Approx(1.5 * 2.0).epsilon(0.02));
+}
+
+TEST_CASE("where the target rests a recording along the path stays, and the carrier is held")
+{
+    stroke s = moving(resting);
+    const auto silent_s = [](const std::vector<carrier_point>& course) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i + 1 < course.size(); ++i)
+            if (course[i].hz == 0.0 && course[i + 1].hz == 0.0)
+                sum += course[i + 1].t_s - course[i].t_s;
+        return sum;
+    };
+    CHECK(silent_s(texture_of(s)) == doctest::Approx(rest_s));
+    CHECK(silent_s(texture_of(moving(at_ends))) == doctest::Approx(0.75));
+    CHECK(silent_s(texture_of(moving(jerk))) == 0.0);
+    s.carrier_profile = {{0.0, 100.0}, {1.0, 200.0}};
+    double held_s = 0.0;
+    const auto course = course_of(s);
+    for (std::size_t i = 0; i + 1 < course.size(); ++i)
+        if (course[i].hz == course[i + 1].hz) {
+            CHECK(course[i].hz == doctest::Approx(140.0));
+            held_s += course[i + 1].t_s - course[i].t_s;
+        }
+    CHECK(held_s == doctest::Approx(rest_s));
+}
+
+TEST_CASE("a course has as many points as its bends need")
+{
+    stroke s = moving({.duration_s = 2.0, .intensity = {{0.0, 0.2}, {1.0, 0.8}}});
+    s.carrier_profile = {{0.0, 100.0}, {1.0, 200.0}};
+    CHECK(course_of(s) == std::vector<carrier_point>{{0.0, 100.0}, {2.0, 200.0}});
+    s.motion = moving(at_ends).motion;
+    CHECK(course_of(s) ==
+          std::vector<carrier_point>{{0.0, 100.0}, {0.5, 100.0}, {1.75, 200.0}, {2.0, 200.0}});
+    for (stroke t : strokes()) {
+        t.carrier_profile = s.carrier_profile;
+        CHECK(course_of(t).size() < 500);
+    }
+}
+
+TEST_CASE("points as near in time as two numbers can be make no frequency that is none")
+{
+    // With another duration the second and the third are at the same time.
+    const double next = std::nextafter(1.0, 2.0);
+    REQUIRE(1.0 / 7.0 * 0.111 == next / 7.0 * 0.111);
+    stroke s = timed({{0.0, {0, 20}}, {1.0, {10, 20}}, {next, {11, 20}}, {7.0, {40, 20}}});
+    s.motion = s.motion.with_duration(0.111);
+    const auto course = texture_of(s);
+    for (const carrier_point& c : course)
+        CHECK(std::isfinite(c.hz));
+    CHECK(rounds(course, 0.111) == doctest::Approx(4.0));
+}
+
+} // namespace course_test

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include <tactor/phantom.hpp>
+
+#include "arrays.hpp"
+#include "core/access.hpp"
+#include "oracle.hpp"
+#include "plan/faces/delaunay.hpp"
+#include "plan/faces/layout_impl.hpp"
+
+namespace layout_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+double area(const layout& l, const std::vector<unsigned>& f)
+{
+    double sum = 0.0;
+    for (std::size_t i = 2; i < f.size(); ++i)
+        sum += cross(l.places()[f[0]], l.places()[f[i - 1]], l.places()[f[i]]) / 2.0;
+    return sum;
+}
+
+double covered(const layout& l)
+{
+    double sum = 0.0;
+    for (const auto& f : l.faces())
+        sum += area(l, f);
+    return sum;
+}
+
+double hull_area(const layout& l)
+{
+    const auto& h = detail::access::of(l).hull;
+    double sum = 0.0;
+    for (std::size_t i = 2; i < h.size(); ++i)
+        sum += cross(h[0], h[i - 1], h[i]) / 2.0;
+    return sum;
+}
+
+std::vector<std::size_t> sizes(const layout& l)
+{
+    std::vector<std::size_t> s;
+    for (const auto& f : l.faces())
+        s.push_back(f.size());
+    std::sort(s.begin(), s.end());
+    return s;
+}
+
+} // namespace
+
+TEST_CASE("the cells of a rectangular grid are its faces, however it is turned and whatever its pitch")
+{
+    generator g(11);
+    for (unsigned round = 0; round < 300; ++round) {
+        const unsigned rows = pick(g, 2, 9);
+        const unsigned columns = pick(g, 2, 9);
+        const double turn = round % 3 == 0 ? 0.0 : between(g, 0.0, 6.3);
+        const layout l(
+            rotated(make_grid("g", rows, columns, between(g, 1.0, 50.0), between(g, 1.0, 50.0)), turn));
+        CAPTURE(round);
+        REQUIRE(sizes(l) == std::vector<std::size_t>((rows - 1) * (columns - 1), 4));
+        REQUIRE(covered(l) == doctest::Approx(hull_area(l)).epsilon(1e-12));
+    }
+}
+
+TEST_CASE("grids given to the micrometre and coarser pitches keep their cells")
+{
+    array a = make_grid("g", 4, 5, 100.0 / 3.0, 100.0 / 7.0);
+    for (tactor_spec& t : a.tactors)
+        t.position = {std::round(t.position.x_mm * 1e6) / 1e6, std::round(t.position.y_mm * 1e6) / 1e6};
+    CHECK(sizes(layout(a)) == std::vector<std::size_t>(12, 4));
+}
+
+TEST_CASE("a ring is one face, with its centre a face for each neighbouring pair")
+{
+    generator g(12);
+    for (unsigned n = 3; n < 200; n += n < 20 ? 1 : 13) {
+        const double turn = between(g, 0.0, 6.3);
+        const layout ring(ring_of(n, 25.0, false, turn));
+        CAPTURE(n);
+        REQUIRE(ring.faces().size() == 1);
+        REQUIRE(ring.faces()[0].size() == n);
+        const layout wheel(ring_of(n, 25.0, true, turn));
+        REQUIRE(wheel.faces().size() == (n == 4 ? 4 : n));
+        REQUIRE(covered(wheel) == doctest::Approx(hull_area(wheel)).epsilon(1e-12));
+    }
+    // Written to six decimals.
+    array a = ring_of(48, 30.0, false);
+    for (tactor_spec& t : a.tactors)
+        t.position = {std::round(t.position.x_mm * 1e6) / 1e6, std::round(t.position.y_mm * 1e6) / 1e6};
+    CHECK(layout(a).faces().size() == 1);
+}
+
+TEST_CASE("faces are Delaunay: no tactor in the circle round one, every tactor in a face, the hull covered")
+{
+    generator g(13);
+    for (unsigned round = 0; round < 200; ++round) {
+        const array a = round % 2 == 0 ? cloud(g, pick(g, 3, 60)) : some_array(g, round / 2 % 5);
+        const layout l(a);
+        CAPTURE(round);
+        REQUIRE(covered(l) == doctest::Approx(hull_area(l)).epsilon(1e-9));
+        std::set<unsigned> seen;
+        for (const auto& f : l.faces()) {
+            seen.insert(f.begin(), f.end());
+            REQUIRE(area(l, f) > 0.0);
+            const auto& t = l.places();
+            const point o = t[f[0]];
+            const point u{t[f[1]].x_mm - o.x_mm, t[f[1]].y_mm - o.y_mm};
+            const point v{t[f[2]].x_mm - o.x_mm, t[f[2]].y_mm - o.y_mm};
+            const double uu = u.x_mm * u.x_mm + u.y_mm * u.y_mm;
+            const double vv = v.x_mm * v.x_mm + v.y_mm * v.y_mm;
+            const double d = 2.0 * cross(o, t[f[1]], t[f[2]]);
+            const point centre{o.x_mm + (v.y_mm * uu - u.y_mm * vv) / d,
+                               o.y_mm + (u.x_mm * vv - v.x_mm * uu) / d};
+            const double radius = distance_mm(centre, o);
+            for (unsigned i = 0; i < t.size(); ++i) {
+                const bool member = std::find(f.begin(), f.end(), i) != f.end();
+                const double off = distance_mm(centre, t[i]) - radius;
+                if (member)
+                    REQUIRE(std::abs(off) < 1e-5 * (1.0 + radius / 100.0));
+                else
+                    REQUIRE(off > -1e-5 * (1.0 + radius / 100.0));
+            }
+        }
+        REQUIRE(seen.size() == a.tactors.size());
+    }
+}
+
+TEST_CASE("four points are on one circle when a move of a nanometre each puts them there, thin or not")
+{
+    CHECK(detail::cocircular({point{0, 0}, {20, 0}, {20, 40}, {0, 40}}));
+    CHECK(detail::cocircular({point{0, 0}, {20, 0}, {20, 40 + 1e-6}, {0, 40}}));
+    CHECK_FALSE(detail::cocircular({point{0, 0}, {20, 0}, {20, 40 + 1e-5}, {0, 40}}));
+    // Nearly in line, so that three of them fix their circle badly.
+    const auto thin = [](double radius, double off) {
+        const auto at = [&](double angle) {
+            return point{radius * std::sin(angle), radius * (1.0 - std::cos(angle))};
+        };
+        std::array<point, 4> p{at(0.0), at(10.0 / radius), at(20.0 / radius), at(30.0 / radius)};
+        p[2].y_mm += off;
+        return detail::cocircular(p);
+    };
+    CHECK(thin(1e4, 0.0));
+    CHECK_FALSE(thin(1e4, 1e-4));
+}
+
+TEST_CASE("the hull holds its edge within a nanometre, and nearest() lies on it")
+{
+    generator g(15);
+    const layout l(preset_array("palm-3x3"));
+    CHECK(l.contains({40.0 + 0.9e-6, 20.0}));
+    CHECK_FALSE(l.contains({40.0 + 1.1e-6, 20.0}));
+    CHECK_FALSE(l.contains({not_a_number, 20.0}));
+    CHECK(l.nearest({50.0, 50.0}) == point{40.0, 40.0});
+    CHECK(l.nearest({13.0, -5.0}) == point{13.0, 0.0});
+    CHECK_THROWS_AS(l.nearest({not_a_number, 0.0}), error);
+    for (unsigned round = 0; round < 2000; ++round) {
+        const layout m(some_array(g, round % kinds_of_array));
+        const point p{between(g, -150.0, 150.0), between(g, -150.0, 150.0)};
+        const point q = m.nearest(p);
+        CAPTURE(round);
+        REQUIRE(m.contains(q));
+        if (m.contains(p)) {
+            REQUIRE(distance_mm(p, q) <= same_place_mm);
+            continue;
+        }
+        // No point of the hull is nearer: in a convex hull it is enough to look at the tactors' side.
+        for (const point& t : m.places())
+            REQUIRE((t.x_mm - q.x_mm) * (p.x_mm - q.x_mm) + (t.y_mm - q.y_mm) * (p.y_mm - q.y_mm) <= 1e-6);
+    }
+}
+
+TEST_CASE("every place of a grid is inside, on the diagonals of the hull, too")
+{
+    generator g(29);
+    for (unsigned round = 0; round < 2000; ++round) {
+        const double x_mm = between(g, 0.1, 50.0);
+        const double y_mm = between(g, 0.1, 50.0);
+        const unsigned n = 3 + round % 3;
+        CAPTURE(x_mm);
+        CAPTURE(y_mm);
+        const layout l(make_grid("grid", n, n, x_mm, y_mm));
+        for (const point p : l.places()) {
+            CHECK(l.contains(p));
+            CHECK(distance_mm(l.nearest(p), p) <= same_place_mm);
+        }
+    }
+    const layout found(make_grid("grid", 4, 4, 49.547345412160652, 0.14901599888563485));
+    CHECK(found.contains(found.places()[5]));
+}
+
+} // namespace layout_test

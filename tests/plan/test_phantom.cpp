@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include <tactor/phantom.hpp>
+
+#include "arrays.hpp"
+#include "oracle.hpp"
+
+namespace phantom_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+TEST_CASE(
+    "inverse distance keeps Eqs. (8) and (9), at most three tactors, and a triangle that holds the point")
+{
+    generator g(1);
+    for (unsigned round = 0; round < 600; ++round) {
+        const array a = some_array(g, round % kinds_of_array);
+        const layout l(a);
+        const auto model = make_phantom(phantom_kind::inverse_distance, l);
+        std::vector<drive> d;
+        for (unsigned i = 0; i < 30; ++i) {
+            const point p = some_point(g, l);
+            const double a_v = between(g, 0.01, 3.0);
+            model->weights(p, a_v, d);
+            CAPTURE(round);
+            CAPTURE(p.x_mm);
+            CAPTURE(p.y_mm);
+            REQUIRE(!d.empty());
+            REQUIRE(d.size() <= 3);
+            REQUIRE(std::is_sorted(d.begin(), d.end(), [](auto& x, auto& y) { return x.tactor < y.tactor; }));
+            REQUIRE(std::abs(energy(d) / (a_v * a_v) - 1.0) < 1e-12);
+            const auto moment = [&](const drive& x) {
+                return distance_mm(p, l.places()[x.tactor]) * x.amplitude * x.amplitude;
+            };
+            for (const drive& x : d)
+                REQUIRE(moment(x) == doctest::Approx(moment(d[0])).epsilon(1e-10));
+            const auto place = [&](std::size_t k) { return l.places()[d[k].tactor]; };
+            if (d.size() == 1)
+                REQUIRE(distance_mm(place(0), p) <= same_place_mm);
+            else if (d.size() == 2)
+                REQUIRE(off_segment(place(0), place(1), p) <= same_place_mm);
+            else
+                REQUIRE(in_triangle(place(0), place(1), place(2), p));
+        }
+    }
+}
+
+TEST_CASE("what a point gets does not depend on the points before it, near edges, diagonals and tactors too")
+{
+    generator g(7);
+    std::vector<drive> d;
+    std::vector<drive> alone;
+    for (unsigned round = 0; round < 40; ++round) {
+        CAPTURE(round);
+        const array a = some_array(g, round % kinds_of_array);
+        const layout l(a);
+        const auto kind = static_cast<phantom_kind>(round % 4);
+        const auto model = make_phantom(kind, l);
+        point p = some_point(g, l);
+        for (unsigned i = 0; i < 60; ++i) {
+            // Small steps stay in a face, the smallest ones in its rim; others lead to any face.
+            const double step = std::pow(10.0, between(g, -8.0, 0.0)) * l.pitch_mm();
+            p = i % 4 == 0 ? some_point(g, l)
+                           : point{p.x_mm + between(g, -step, step), p.y_mm + between(g, -step, step)};
+            model->weights(p, 1.0, d);
+            const layout fresh(a);
+            make_phantom(kind, fresh)->weights(p, 1.0, alone);
+            CAPTURE(p.x_mm);
+            CAPTURE(p.y_mm);
+            REQUIRE(d == alone);
+            REQUIRE(l.contains(p) == fresh.contains(p));
+        }
+    }
+}
+
+TEST_CASE("inverse distance chooses the tactors that the rules say, by brute force")
+{
+    generator g(2);
+    for (unsigned round = 0; round < 500; ++round) {
+        const unsigned kind = std::array<unsigned, 6>{0U, 1U, 2U, 3U, 4U, 8U}[round % 6];
+        // The oracle takes indices for ranks: by row, then by column.
+        array a = some_array(g, kind);
+        std::stable_sort(a.tactors.begin(), a.tactors.end(), [](const auto& x, const auto& y) {
+            return x.position.y_mm < y.position.y_mm - same_place_mm ||
+                   (x.position.y_mm < y.position.y_mm + same_place_mm && x.position.x_mm < y.position.x_mm);
+        });
+        const layout l(a);
+        const auto model = make_phantom(phantom_kind::inverse_distance, l);
+        std::vector<drive> d;
+        for (unsigned i = 0; i < 30; ++i) {
+            const point p = some_point(g, l);
+            model->weights(p, 1.0, d);
+            CAPTURE(kind);
+            CAPTURE(round);
+            CAPTURE(p.x_mm);
+            CAPTURE(p.y_mm);
+            REQUIRE(tactors_of(d) == expected_tactors(l, p));
+        }
+    }
+}
+
+TEST_CASE("on a square grid these are the paper's three closest tactors")
+{
+    const array a = preset_array("palm-3x3");
+    const layout l(a);
+    generator g(3);
+    for (unsigned i = 0; i < 5000; ++i) {
+        const point p{between(g, 0.0, 40.0), between(g, 0.0, 40.0)};
+        std::vector<unsigned> order(9);
+        std::iota(order.begin(), order.end(), 0U);
+        std::sort(order.begin(), order.end(), [&](unsigned x, unsigned y) {
+            return distance_mm(p, l.places()[x]) < distance_mm(p, l.places()[y]);
+        });
+        order.resize(3);
+        std::sort(order.begin(), order.end());
+        REQUIRE(tactors_of(weights(l, phantom_kind::inverse_distance, p)) == order);
+    }
+}
+
+TEST_CASE("on a 20 x 40 mm grid no point is played by three tactors in one line")
+{
+    const layout l(make_grid("g", 3, 3, 20.0, 40.0));
+    generator g(4);
+    for (unsigned i = 0; i < 5000; ++i) {
+        const auto t = tactors_of(
+            weights(l, phantom_kind::inverse_distance, {between(g, 0.0, 40.0), between(g, 0.0, 80.0)}));
+        REQUIRE(t.size() == 3);
+        REQUIRE(std::abs(cross(l.places()[t[0]], l.places()[t[1]], l.places()[t[2]])) > 1.0);
+    }
+}
+
+TEST_CASE("edges and diagonals play two tactors, the shortest segment first and then the lowest")
+{
+    const layout l(make_grid("g", 3, 3, 20.0, 40.0));
+    const auto at = [&](double x, double y) {
+        return tactors_of(weights(l, phantom_kind::inverse_distance, {x, y}));
+    };
+    CHECK(at(20.0, 40.0) == std::vector<unsigned>{4});
+    CHECK(at(20.0 + 0.9e-6, 40.0) == std::vector<unsigned>{4});
+    CHECK(at(5.0, 0.0) == std::vector<unsigned>{0, 1});
+    CHECK(at(5.0, 10.0) == std::vector<unsigned>{0, 4});
+    CHECK(at(15.0, 10.0) == std::vector<unsigned>{1, 3});
+    CHECK(at(10.0, 20.0) == std::vector<unsigned>{0, 4});
+    CHECK(at(5.0, 10.0 + 0.9e-6) == std::vector<unsigned>{0, 4});
+    CHECK(at(5.0, 10.01).size() == 3);
+
+    // Half-way up to the next tactor: Eq. (2).
+    const auto d = weights(l, phantom_kind::inverse_distance, {5.0, 0.0}, 2.0);
+    CHECK(d[0].amplitude == doctest::Approx(2.0 * std::sqrt(0.75)).epsilon(1e-14));
+    CHECK(d[1].amplitude == doctest::Approx(2.0 * std::sqrt(0.25)).epsilon(1e-14));
+}
+
+TEST_CASE("Eq. (10), worked by hand")
+{
+    const layout l(preset_array("palm-3x3"));
+    const auto d = weights(l, phantom_kind::inverse_distance, {8.0, 6.0});
+    REQUIRE(tactors_of(d) == std::vector<unsigned>{0, 1, 3});
+    const double d0 = 10.0;
+    const double d1 = std::sqrt(180.0);
+    const double d3 = std::sqrt(260.0);
+    const double sum = 1.0 / d0 + 1.0 / d1 + 1.0 / d3;
+    CHECK(d[0].amplitude == doctest::Approx(std::sqrt(1.0 / d0 / sum)).epsilon(1e-14));
+    CHECK(d[1].amplitude == doctest::Approx(std::sqrt(1.0 / d1 / sum)).epsilon(1e-14));
+    CHECK(d[2].amplitude == doctest::Approx(std::sqrt(1.0 / d3 / sum)).epsilon(1e-14));
+}
+
+TEST_CASE("the energy centroid of inverse distance misses the point by up to 4.7 mm on the paper's array")
+{
+    const layout l(preset_array("palm-3x3"));
+    const auto model = make_phantom(phantom_kind::inverse_distance, l);
+    std::vector<drive> d;
+    double worst = 0.0;
+    for (double x = 0.05; x < 20.0; x += 0.1)
+        for (double y = 0.03; y < 20.0; y += 0.1) {
+            model->weights({x, y}, 1.0, d);
+            worst = std::max(worst, distance_mm({x, y}, energy_centroid(l, d)));
+        }
+    CHECK(worst == doctest::Approx(4.7).epsilon(0.02));
+}
+
+TEST_CASE("ties in distance go to the lowest tactor by row and column, within a nanometre")
+{
+    for (const double noise : {0.0, 3e-7}) {
+        array a = preset_array("palm-3x3");
+        for (std::size_t i = 0; i < 9; ++i)
+            a.tactors[i].position.y_mm += i % 2 == 0 ? noise : 0.0;
+        const layout l(a);
+        const auto at = [&](double x, double y) {
+            return tactors_of(weights(l, phantom_kind::inverse_distance, {x, y}));
+        };
+        CAPTURE(noise);
+        CHECK(at(10.0, 3.0) == std::vector<unsigned>{0, 1, 3});
+        CHECK(at(3.0, 10.0) == std::vector<unsigned>{0, 1, 3});
+        CHECK(at(10.0, 17.0) == std::vector<unsigned>{0, 3, 4});
+        CHECK(at(17.0, 10.0) == std::vector<unsigned>{0, 1, 4});
+        CHECK(at(10.0, 10.0) == std::vector<unsigned>{0, 4});
+        CHECK(at(30.0, 30.0) == std::vector<unsigned>{4, 8});
+    }
+}
+
+} // namespace phantom_test

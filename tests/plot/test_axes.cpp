@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <set>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include "plot/draw/axes.hpp"
+#include "plot/paint/text.hpp"
+
+namespace axes_test {
+
+using namespace tactor::plot;
+
+namespace {
+
+// Labels of ticks, left to right, as boxes on the page.
+struct label {
+    double from;
+    double to;
+    std::string text;
+};
+
+std::vector<label> tick_labels(const canvas& c)
+{
+    std::vector<label> all;
+    for (const canvas::element& e : c.elements)
+        if (const auto* t = std::get_if<item::text>(&e); t != nullptr && t->m.kind == "tick-label") {
+            const double half = text_width(t->string, t->s.size) / 2.0;
+            all.push_back({t->at.x - half, t->at.x + half, t->string});
+        }
+    return all;
+}
+
+} // namespace
+
+TEST_CASE("ticks are round numbers inside the range, as many as asked for at most")
+{
+    std::mt19937_64 random(11);
+    std::uniform_real_distribution<double> exponent(-6.0, 6.0);
+    std::uniform_real_distribution<double> part(-1.0, 1.0);
+    for (int i = 0; i < 5000; ++i) {
+        const double span = std::pow(10.0, exponent(random));
+        const double lo = part(random) * span;
+        const std::size_t most = 2 + static_cast<std::size_t>(i % 10);
+        const ticks t = nice_ticks(lo, lo + span, most);
+        CHECK(t.at.size() <= most);
+        CHECK(!t.at.empty());
+        const double mantissa = t.step / std::pow(10.0, std::floor(std::log10(t.step) + 1e-9));
+        CHECK((std::abs(mantissa - 1.0) < 1e-6 || std::abs(mantissa - 2.0) < 1e-6 ||
+               std::abs(mantissa - 5.0) < 1e-6));
+        for (const double v : t.at) {
+            CHECK(v >= lo - 1e-6 * span);
+            CHECK(v <= lo + span + 1e-6 * span);
+            CHECK(std::abs(v / t.step - std::round(v / t.step)) < 1e-6);
+        }
+    }
+}
+
+TEST_CASE("a range of nothing, and one that is no number, has one tick")
+{
+    CHECK(nice_ticks(2.0, 2.0, 5).at.size() == 1);
+    CHECK(nice_ticks(0.0, std::numeric_limits<double>::infinity(), 5).at.size() == 1);
+    CHECK(nice_ticks(0.0, 1.0, 0).at.size() == 1);
+}
+
+TEST_CASE("labels have as many decimals as the step")
+{
+    const ticks t = nice_ticks(0.0, 0.35, 8);
+    CHECK(t.step == doctest::Approx(0.05));
+    CHECK(t.label(0.1) == "0.10");
+    CHECK(t.label(-1e-18) == "0.00");
+    CHECK(nice_ticks(0.0, 3600.0, 8).label(500.0) == "500");
+}
+
+TEST_CASE("labels along an axis do not touch, and all differ")
+{
+    for (double end = 0.001; end < 100000.0; end *= 1.37)
+        for (const double width : {40.0, 120.0, 180.0, 500.0}) {
+            canvas c;
+            draw_horizontal_axis(c, {0.0, end, 50.0, 50.0 + width}, 10.0, 0.0, "time (s)");
+            const std::vector<label> labels = tick_labels(c);
+            std::set<std::string> texts;
+            for (std::size_t i = 0; i < labels.size(); ++i) {
+                texts.insert(labels[i].text);
+                if (i > 0)
+                    CHECK(labels[i].from > labels[i - 1].to);
+            }
+            CHECK(texts.size() == labels.size());
+            CHECK(!labels.empty());
+        }
+}
+
+TEST_CASE("a chart of a million values costs no more than its width")
+{
+    chart ch;
+    ch.where = {0.0, 0.0, 200.0, 100.0};
+    ch.x_to = 1e6;
+    ch.y_from = -1.0;
+    ch.lines = {{"noise", {}, {.stroke = blue}}};
+    for (int i = 0; i < 1000000; ++i)
+        ch.lines[0].values.push_back({static_cast<double>(i), std::sin(i * 0.7)});
+    canvas c;
+    draw_chart(c, ch);
+    std::size_t points = 0;
+    for (const canvas::element& e : c.elements)
+        if (const auto* p = std::get_if<item::poly>(&e))
+            points += p->points.size();
+    CHECK(points > 100);
+    CHECK(points < 5000);
+}
+
+TEST_CASE("a chart keeps its lines inside, its extremes, and breaks lines where a value is missing")
+{
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    chart ch;
+    ch.where = {10.0, 20.0, 150.0, 90.0};
+    ch.x_to = 4.0;
+    ch.y_to = 2.0;
+    ch.lines = {{"speed", {{0.0, 0.0}, {1.0, 2.0}, {2.0, none}, {3.0, 1.0}, {4.0, 50.0}}, {.stroke = blue}}};
+    canvas c;
+    const box inside = draw_chart(c, ch);
+    std::vector<const item::poly*> curves;
+    for (const canvas::element& e : c.elements)
+        if (const auto* p = std::get_if<item::poly>(&e))
+            curves.push_back(p);
+    REQUIRE(curves.size() == 2);
+    CHECK(curves[0]->points.size() == 2);
+    CHECK(curves[0]->points[1].x == doctest::Approx(inside.x + inside.width / 4.0));
+    CHECK(curves[0]->points[1].y == doctest::Approx(inside.y));
+    for (const item::poly* p : curves)
+        for (const spot& s : p->points) {
+            CHECK(s.y >= inside.y - 1e-9);
+            CHECK(s.y <= inside.bottom() + 1e-9);
+        }
+    CHECK(inside.bottom() < ch.where.bottom());
+    CHECK(inside.x > ch.where.x);
+}
+
+} // namespace axes_test

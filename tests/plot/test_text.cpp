@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include <random>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include "plot/paint/text.hpp"
+
+namespace text_test {
+
+using namespace tactor::plot;
+
+TEST_CASE("text is as wide as the sum of its letters, and scales with its size")
+{
+    CHECK(text_width("", 10.0) == 0.0);
+    CHECK(text_width("0", 10.0) == doctest::Approx(6.36));
+    CHECK(text_width("00", 20.0) == doctest::Approx(25.44));
+    CHECK(text_width("ii", 10.0) < text_width("WW", 10.0));
+    CHECK(text_width("a", 10.0, true) > text_width("a", 10.0));
+    CHECK(text_width("\xC3\xA9", 10.0) == doctest::Approx(10.0)); // one letter of two bytes
+}
+
+TEST_CASE("clean keeps text and replaces what is none")
+{
+    CHECK(clean("Fingerkuppe \xC3\xA4\xE2\x82\xAC\xF0\x9F\x96\x90") ==
+          "Fingerkuppe \xC3\xA4\xE2\x82\xAC\xF0\x9F\x96\x90");
+    CHECK(clean("a\xFF"
+                "b") == "a\xEF\xBF\xBD"
+                        "b");
+    CHECK(clean(std::string("a\0b", 3)) == "a\xEF\xBF\xBD"
+                                           "b");
+    CHECK(clean("\xC0\xAF") == "\xEF\xBF\xBD\xEF\xBF\xBD");         // too long a form
+    CHECK(clean("\xED\xA0\x80").find('\xED') == std::string::npos); // half a pair
+    CHECK(clean("\xE2\x82") == "\xEF\xBF\xBD\xEF\xBF\xBD");         // cut off
+    CHECK(clean("a\tb\nc") == "a b c");
+}
+
+TEST_CASE("clean comes to rest: what it gives is clean, whatever the bytes")
+{
+    std::mt19937_64 random(7);
+    std::uniform_int_distribution<int> byte(0, 255);
+    std::uniform_int_distribution<int> length(0, 40);
+    for (int i = 0; i < 5000; ++i) {
+        std::string s;
+        for (int k = length(random); k > 0; --k)
+            s += static_cast<char>(byte(random));
+        const std::string once = clean(s);
+        CHECK(clean(once) == once);
+    }
+}
+
+TEST_CASE("shortened text fits, and says that it was longer")
+{
+    CHECK(shorten("short", 6.0, 100.0) == "short");
+    const std::string all = "a name that is far too long for the place that it has";
+    for (double w = 10.0; w < 200.0; w += 3.0) {
+        const std::string s = shorten(all, 6.0, w);
+        CHECK(text_width(s, 6.0) <= w);
+        if (s != all)
+            CHECK(s.ends_with("\xE2\x80\xA6"));
+    }
+    CHECK(text_width(shorten(std::string(1 << 20, 'x'), 6.0, 80.0), 6.0) <= 80.0);
+}
+
+TEST_CASE("lines break after separators")
+{
+    const auto lines = wrap({"one", "", "two", "three"}, ", ", 6.0, text_width("one, two,", 6.0) + 0.01, 3);
+    REQUIRE(lines.size() == 2);
+    CHECK(lines[0] == "one, two,");
+    CHECK(lines[1] == "three");
+    CHECK(wrap({"one", "two", "three"}, ", ", 6.0, 1e9, 3).size() == 1);
+    CHECK(wrap({"one", "two", "three"}, ", ", 6.0, 1.0, 2).size() == 2);
+}
+
+TEST_CASE("numbers have no noise")
+{
+    CHECK(number(0.07) == "0.07");
+    CHECK(number(0.1 + 0.2) == "0.3");
+    CHECK(number(-0.0) == "0");
+    CHECK(number(75.398223686) == "75.4");
+    CHECK(number(3600.0, 6) == "3600");
+}
+
+} // namespace text_test

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: MIT
+"""What the tests share. TACTOR_TOOL names the tool of the same build."""
+import os
+import pathlib
+import shlex
+import subprocess
+
+import pytest
+
+import tactor
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def pytest_configure(config):
+    config.addinivalue_line("markers", "unsanitized: measures, forks, or looks at examples, files and documents: of no use under a sanitizer")
+
+
+class Tool:
+    """The command-line tool, without the configuration of whoever runs the tests."""
+
+    def __init__(self, folder):
+        self.program = os.environ["TACTOR_TOOL"]
+        self.folder = folder
+
+    def __call__(self, *arguments, status=0):
+        env = {**os.environ, "TACTOR_CONFIG": os.devnull}
+        r = subprocess.run([self.program, *map(str, arguments)], cwd=self.folder, env=env, capture_output=True, text=True, check=False)
+        assert r.returncode == status, r.stderr
+        return r.stdout if status == 0 else r.stderr
+
+
+def without_preloaded():
+    """For programs that are none of ours: under a sanitizer that is loaded before them they would fail by their own leaks."""
+    return {name: value for name, value in os.environ.items() if name != "LD_PRELOAD"}
+
+
+def compiled(folder, name, *arguments):
+    """A library of C++ beside the package: its path."""
+    file = folder / f"lib{name}.so"
+    command = [*shlex.split(os.environ.get("CXX", "c++")), "-std=c++20", "-O2", "-fPIC", "-DPIC", "-shared", "-o", file, *arguments]
+    subprocess.run(command, env=without_preloaded(), check=True)
+    return file
+
+
+@pytest.fixture(scope="session")
+def fake_pcm(tmp_path_factory):
+    """ALSA's plugin that is the fake DAC."""
+    sources = [ROOT / "tests/python/fake_pcm.cpp", *sorted((ROOT / "tests/support").glob("fake_dac*.cpp"))]
+    return compiled(tmp_path_factory.mktemp("fake"), "fake", f"-I{ROOT / 'tests/support'}", *sources, "-lasound")
+
+
+@pytest.fixture(scope="session")
+def cpp_library(tmp_path_factory):
+    """A program's part in C++ that does what Python does, with the library of the tool's build."""
+    built = pathlib.Path(os.environ["TACTOR_TOOL"]).resolve().parents[1]
+    return compiled(tmp_path_factory.mktemp("overhead"), "overhead", f"-I{ROOT / 'include'}", f"-I{built.parent / 'include'}",
+                    ROOT / "tests/python/overhead.cpp", f"-L{built}", "-ltactor", f"-Wl,-rpath,{built}")
+
+
+@pytest.fixture
+def tool(tmp_path):
+    return Tool(tmp_path)
+
+
+@pytest.fixture
+def palm():
+    return tactor.Array.preset("palm-3x3")
+
+
+@pytest.fixture
+def stroke():
+    return tactor.Stroke.along(tactor.Path.svg("M 0 10 C 20 -5 20 45 40 30"), duration=1.2)
+
+
+@pytest.fixture
+def root():
+    return ROOT

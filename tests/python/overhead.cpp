@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// What a program in C++ does for the samples of park2016-3 on palm-3x3: planning and rendering.
+#include <cstddef>
+#include <cstring>
+#include <memory>
+
+#include <tactor/tactor.hpp>
+
+extern "C" void plan_and_render(float* copy)
+{
+    static const tactor::array palm = tactor::preset_array("palm-3x3");
+    static const tactor::stroke stroke = tactor::preset_stroke("park2016-3");
+    const tactor::score score(palm, tactor::make_plan(palm, stroke));
+    tactor::renderer r(score, tactor::format_kind::float32);
+    const auto frames = static_cast<std::size_t>(score.frames());
+    const std::size_t bytes = frames * score.channels() * sizeof(float);
+    const auto samples = std::make_unique_for_overwrite<std::byte[]>(bytes);
+    r.process(frames, samples.get());
+    if (copy != nullptr)
+        std::memcpy(copy, samples.get(), bytes);
+}

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: MIT
+"""The examples run."""
+import ast
+import json
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import textwrap
+import xml.etree.ElementTree
+
+import pytest
+
+import tactor
+
+pytestmark = pytest.mark.unsanitized
+
+
+def run(program, *arguments, cwd=None, **environment):
+    env = {**os.environ, "TACTOR_CONFIG": os.devnull, **environment}
+    r = subprocess.run([sys.executable, program, *map(str, arguments)], cwd=cwd, env=env, capture_output=True, text=True, timeout=120, check=False)
+    assert (r.returncode, r.stderr) == (0, "")
+    return r.stdout
+
+
+def test_each_example_is_short_and_run_here(root):
+    text = pathlib.Path(__file__).read_text(encoding="utf-8")
+    examples = [p for p in (root / "examples/python").iterdir() if p.suffix in (".py", ".ipynb")]
+    assert len(examples) >= 6
+    for program in examples:
+        assert f'"examples/python/{program.name}"' in text, program
+        assert program.suffix != ".py" or program.read_text(encoding="utf-8").count("\n") <= 80, program
+
+
+def test_a_staircase_of_twenty_lines_finds_the_threshold(root):
+    program = root / "examples/python/staircase.py"
+    said = run(program)
+    assert abs(float(re.match(r"threshold: (-[\d.]+) dBFS", said)[1]) + 34) < 4
+    code = program.read_text(encoding="utf-8").split('"""')[2].splitlines()
+    assert sum(bool(line.strip()) for line in code) <= 20
+
+
+def trials(text):
+    head, *rows = (line.split("\t") for line in text.splitlines())
+    return [dict(zip(head, row)) for row in rows]
+
+
+def test_a_trial_is_in_psychopys_time(root, tmp_path):
+    program = root / "examples/python/psychopy_trial.py"
+    # PsychoPy's clock is another than CLOCK_MONOTONIC: of this one it is known by how much.
+    (tmp_path / "psychopy").mkdir()
+    (tmp_path / "psychopy/__init__.py").write_text("")
+    (tmp_path / "psychopy/core.py").write_text("import time\ndef getTime():\n    return time.monotonic() - 1234.5\n")
+    path = os.pathsep.join(filter(None, (str(tmp_path), os.environ.get("PYTHONPATH"))))
+    for ahead, environment in ((0.0, {}), (-1234.5, {"PYTHONPATH": path})):
+        rows = trials(run(program, **environment))
+        assert [r["stroke"] for r in rows] == ["left", "right", "right", "left"]
+        for r in rows:
+            assert abs(float(r["onset_s"]) - float(r["started_s"]) - ahead) <= float(r["within_s"]) + 2e-6
+            assert r["response"] in ("left", "right") and float(r["response_time_s"]) < 1.0
+
+
+def test_a_study_is_read(root, tmp_path):
+    subprocess.run([sys.executable, root / "tests/study/studies.py", tmp_path], check=True)
+    studies = sorted(p for p in tmp_path.iterdir() if (p / "participants.tsv").exists())
+    assert studies
+    for study in studies:
+        lines = run(root / "examples/python/read_study.py", study).splitlines()
+        assert lines and all(re.match(r"sub-\w+_task-[\w-]+_beh: \d+ trials: ", line) for line in lines)
+
+
+def test_what_an_experiment_writes_is_read(root, tool, tmp_path):
+    for participant in ("01", "02"):
+        tool("experiment", "park2016", "--participant", participant, "-o", "study", "--simulate", f"seed={participant},sigma=1")
+    lines = run(root / "examples/python/read_study.py", tmp_path / "study").splitlines()
+    assert {line[:6] for line in lines} == {"sub-01", "sub-02"}
+    written = sum(row["void"] == "false" for file in (tmp_path / "study").glob("sub-*/beh/*_beh.tsv") for row in trials(file.read_text(encoding="utf-8")))
+    assert sum(int(re.search(r": (\d+) trials: ", line)[1]) for line in lines) == written > 0
+
+
+DRAWING = """
+    import importlib.util, sys, tkinter
+    import tactor
+    spec = importlib.util.spec_from_file_location("draw", sys.argv[1])
+    draw = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(draw)
+    window = tkinter.Tk()
+    with tactor.Player("null", tactor.Array.preset("palm-3x3")) as player:
+        canvas = draw.Drawing(window, player)
+        canvas.pack()
+        window.update()
+        canvas.event_generate("<Button-1>", x=100, y=100)
+        for i in range(50):
+            canvas.event_generate("<B1-Motion>", x=100 + 8 * i, y=100 + i)
+            window.update()
+        finger = canvas.finger
+        canvas.event_generate("<ButtonRelease-1>", x=500, y=150)
+        window.update()
+        report = finger.wait(30)
+        seen = len(canvas.find_withtag("way")), canvas.finger, report.state
+        canvas.event_generate("<B1-Motion>", x=10, y=10)
+        canvas.event_generate("<ButtonRelease-1>", x=10, y=10)
+        window.update()
+    window.destroy()
+    print(*seen)  # the player's thread prints, too, and is over now
+"""
+
+
+@pytest.fixture
+def display():
+    """A screen that nobody sees."""
+    read, write = os.pipe()
+    try:
+        screen = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "800x600x24", "-nolisten", "tcp"], pass_fds=[write],
+                                  stderr=subprocess.DEVNULL)
+    except FileNotFoundError:
+        os.close(read)
+        os.close(write)
+        pytest.skip("Xvfb is not here: nothing is drawn with the mouse")
+    os.close(write)
+    with os.fdopen(read) as said:
+        number = said.readline().strip()
+    assert number, "Xvfb says no display"
+    yield f":{number}"
+    screen.terminate()
+    screen.wait()
+
+
+def test_what_is_drawn_with_the_mouse_is_played(root, tmp_path, display):
+    pytest.importorskip("tkinter", reason="tkinter is not here: nothing is drawn with the mouse")
+    (tmp_path / "drawing.py").write_text(textwrap.dedent(DRAWING))
+    said = sorted(run(tmp_path / "drawing.py", root / "examples/python/draw.py", DISPLAY=display).splitlines())
+    assert said[0] == "50 None finished"
+    assert re.fullmatch(r"finished: (\d+) points, (\d+) outside", said[1]) and int(said[1].split()[1]) >= 51 and int(said[1].split()[3]) > 0
+
+
+def test_a_client_draws_through_the_service(root, tool, tmp_path):
+    env = {**os.environ, "TACTOR_CONFIG": os.devnull, "XDG_RUNTIME_DIR": str(tmp_path)}
+    with subprocess.Popen([tool.program, "serve", "-D", "null", "--format", "json"], env=env, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as service:
+        where = json.loads(service.stdout.readline())["socket"]
+        said = run(root / "examples/python/serve_client.py", where)
+        assert run(root / "examples/python/serve_client.py", XDG_RUNTIME_DIR=str(tmp_path)) == said
+        service.send_signal(signal.SIGTERM)
+    assert re.fullmatch(r"tactor/1 on palm-3x3, 48000 Hz\npark2016-1: finished after [1-9]\d+ frames\ncircle: finished\n", said)
+
+
+def shown(cell, names):
+    """Runs a cell as a notebook does; what its last line gives."""
+    tree = ast.parse("".join(cell["source"]))
+    last = ast.Expression(tree.body.pop().value) if isinstance(tree.body[-1], ast.Expr) else None
+    exec(compile(tree, cell["id"], "exec"), names)
+    return None if last is None else eval(compile(last, cell["id"], "eval"), names)
+
+
+def test_a_notebook_goes_from_stroke_to_figure(root, tool, tmp_path, monkeypatch):
+    notebook = json.loads((root / "examples/python/from_stroke_to_figure.ipynb").read_text(encoding="utf-8"))
+    try:
+        import nbformat
+        nbformat.validate(notebook)
+    except ImportError:
+        pytest.skip("nbformat is not here: the notebook is not checked")
+    pytest.importorskip("pandas", reason="pandas is not here: the notebook does not run")
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    results = {c["id"]: shown(c, names) for c in notebook["cells"] if c["cell_type"] == "code"}
+    assert all(c["outputs"] == [] and c["execution_count"] is None for c in notebook["cells"] if c["cell_type"] == "code")
+    for name in ("stroke", "plan", "compare"):
+        assert xml.etree.ElementTree.fromstring(results[name]._repr_svg_()).tag.endswith("svg")
+    assert isinstance(results["plan"], tactor.Plan) and len(results["table"]) == 18
+    assert set(results["errors"]) == {"park2016", "tactile-brush", "continuous"} and results["score"][0][1] == 9
+    tool("render", "--path", "M 0 10 C 20 -5 20 45 40 30", "--duration", "1.2", "--phantom", "barycentric", "-o", "tool.wav")
+    assert (tmp_path / "curve.wav").read_bytes() == (tmp_path / "tool.wav").read_bytes()
+    assert (tmp_path / "curve.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_the_readme_runs(root, tmp_path):
+    text = (root / "README.md").read_text(encoding="utf-8")
+    block = re.search(r"## From Python\n\n((?:    .*\n|\n)+)", text)[1]
+    code = "\n".join(line[4:] for line in block.splitlines()).replace("hw:CARD=Tactor", "null")
+    (tmp_path / "readme.py").write_text(code)
+    assert "state='finished'" in run(tmp_path / "readme.py")

@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: MIT
+"""Plans are those of the tool, as arrays."""
+import json
+import pickle
+import re
+
+import numpy as np
+import pytest
+
+import tactor
+from tactor import _tactor
+
+
+def test_bursts_and_arrays_say_the_same(palm, stroke):
+    plan = tactor.plan(palm, stroke, algorithm="park2016", phantom="inverse-distance", soa=0.07)
+    bursts = plan.bursts
+    assert len(bursts) == 18 and plan.curve is None and plan.soa == 0.07
+    assert plan.amplitudes.shape == (18, 9) and plan.amplitudes.dtype == np.float64
+    assert plan.onsets.tolist() == [b.onset for b in bursts] and plan.durations.tolist() == [b.duration for b in bursts]
+    assert plan.positions.tolist() == [list(b.position) for b in bursts] and plan.intensities.tolist() == [b.intensity for b in bursts]
+    dense = np.zeros((18, 9))
+    for i, b in enumerate(bursts):
+        for d in b.drives:
+            dense[i, d.tactor] = d.amplitude
+    assert np.array_equal(plan.amplitudes, dense) and np.allclose((dense ** 2).sum(axis=1), 1.0)
+    onset, duration, position, intensity, drives = bursts[0]
+    assert (onset, duration, position, intensity) == (0.0, 0.07, (0.0, 10.0), 1.0) and len(drives) == 2
+
+
+def test_arrays_look_at_the_plan_and_outlive_it(palm, stroke):
+    plan = tactor.plan(palm, stroke)
+    onsets, positions, amplitudes = plan.onsets, plan.positions, plan.amplitudes
+    assert amplitudes is plan.amplitudes
+    for a in (onsets, positions, amplitudes, plan.durations, plan.taus):
+        assert not a.flags.writeable and not a.flags.owndata
+        with pytest.raises(ValueError):
+            a[0] = 1
+    before = onsets.tolist(), positions.tolist(), amplitudes.tolist()
+    del plan
+    junk = [tactor.plan(palm, stroke) for _ in range(50)]
+    assert (onsets.tolist(), positions.tolist(), amplitudes.tolist()) == before and junk
+
+
+def test_a_continuous_stroke_is_a_curve(palm, stroke):
+    plan = tactor.plan(palm, stroke, algorithm="continuous", phantom="barycentric")
+    assert plan.bursts == [] and plan.amplitudes.shape == (0, 9) and plan.onsets.shape == (0,) and plan.positions.shape == (0, 2)
+    c = plan.curve
+    assert len(c) == 1201 and c.t[-1] == 1.2 and c.positions.shape == (1201, 2) and c.amplitudes.shape == (1201, 9)
+    assert np.allclose((c.amplitudes ** 2).sum(axis=1), 1.0) and np.all(c.intensities == 1.0)
+    assert np.allclose(c.positions[600], stroke.position(0.6))
+
+
+CASES = [
+    (["park2016-1"], {}),
+    (["park2016-3", "--algorithm", "tactile-brush", "--snap", "--drop-points"], dict(algorithm="tactile-brush", snap=True, drop_points=True)),
+    (["park2016-2", "--algorithm", "continuous", "--phantom", "gaussian", "--overlap", "max"],
+     dict(algorithm="continuous", phantom="gaussian", overlap="max")),
+    (["park2016-4", "--soa", "0.06", "--burst", "0.05", "--timing", "fit", "--duration", "2.5", "--carrier", "200"],
+     dict(soa=0.06, burst=0.05, timing="fit", duration=2.5, carrier=200)),
+    (["park2016-4", "--slope", "0.4", "--intercept", "0.03", "--soa", "0.05", "--speed", "30"], dict(slope=0.4, intercept=0.03, soa=0.05, speed=30)),
+    (["wave-2x4", "--fit", "--fit-margin", "1.5", "--phase", "burst", "--ramp", "0.003", "--level-dbfs", "-20", "--rate", "44100"],
+     dict(fit=True, fit_margin=1.5, phase="burst", ramp=0.003, level_dbfs=-20, rate=44100)),
+    (["round-2x4", "--outside", "clamp"], dict(outside="clamp")),
+    (["park2016-3", "--compensate", "low-speed", "--sigma-mm", "2"], dict(compensate="low-speed", sigma_mm=2)),
+]
+
+
+@pytest.mark.parametrize("arguments,options", CASES)
+def test_the_record_is_the_tools(tool, palm, arguments, options):
+    plan = tactor.plan(palm, tactor.Stroke.preset(arguments[0]), **options)
+    printed = json.loads(tool("plan", *arguments, "--format", "json"))
+    assert plan.to_dict() == printed
+    again = tactor.Plan.from_dict(printed)
+    assert again == plan and hash(again) == hash(plan)
+    assert np.array_equal(tactor.Score(palm, again).render(), tactor.Score(palm, plan).render())
+    assert pickle.loads(pickle.dumps(plan)) == plan and pickle.loads(pickle.dumps(plan)).stroke == plan.stroke
+
+
+def test_options_have_the_names_of_the_tools(tool):
+    said = {name.replace("-", "_") for command in ("plan", "compare") for name in re.findall(r"--([a-z][a-z-]+)", tool(command, "--help"))}
+    not_ours = {"help", "path", "array", "config", "format", "sample_format", "algorithms", "phantoms", "output", "width", "dpi",
+                "version"}  # objects and arguments of their own
+    own = {"channels", "marker_channel", "marker_s", "power_dbfs", "max_drive_s", "drive_window_s",  # a score's, from files and `play`
+           "tukey_part"}  # the tool's --envelope tukey:PART
+    assert said - not_ours == set(_tactor.option_names()) - own
+
+
+def test_what_is_not_an_option_is_a_type_error(palm, stroke):
+    with pytest.raises(TypeError):
+        tactor.plan(palm, stroke, sao=0.07)
+    with pytest.raises(TypeError):
+        tactor.plan(palm, stroke, "park2016")
+
+
+@pytest.mark.parametrize("options,what", [
+    (dict(soa=0.5), "soa"), (dict(soa="0.07"), "soa"), (dict(soa=float("nan")), "soa"), (dict(algorithm="park"), "algorithm"),
+    (dict(phantom="none"), "phantom"), (dict(timing=1), "timing"), (dict(fit="yes"), "fit"), (dict(fit_margin=1.0), "fit_margin"),
+    (dict(carrier=-1), "carrier"), (dict(carrier=True), "carrier"), (dict(duration=1, speed=1), "duration"), (dict(level_dbfs=1), "level_dbfs"),
+    (dict(level_dbfs=-3, sl=3), "level_dbfs"), (dict(rate=48000.5), "rate"), (dict(slope=1.0), "slope"), (dict(burst=0.08), "burst"),
+    (dict(sigma_mm=3), "sigma_mm"), (dict(sigma_v_mm_s=80, compensate="none"), "sigma_v_mm_s"),
+])
+def test_options_that_cannot_be_are_refused_by_their_name(palm, stroke, options, what):
+    with pytest.raises(tactor.InputError) as e:
+        tactor.plan(palm, stroke, **options)
+    assert e.value.what == what and e.value.why
+
+
+def test_an_observer_of_a_file_may_stand_there_for_other_strokes(tmp_path, stroke):
+    file = tmp_path / "palm.toml"
+    file.write_text('[array]\npreset = "palm-3x3"\n[defaults]\nsigma-mm = 2.0\n')
+    array = tactor.Array.from_file(file)
+    assert tactor.plan(array, stroke).compensation is None
+    moved = tactor.plan(array, stroke, compensate="low-speed").compensation
+    assert moved["sigma_mm"] == 2.0
+    with pytest.raises(tactor.InputError, match="nothing here uses it"):
+        tactor.plan(array, stroke, sigma_mm=3.0)
+
+
+def test_numbers_of_numpy_are_numbers(palm, stroke):
+    assert tactor.plan(palm, stroke, soa=np.float64(0.06), fit=np.bool_(False), rate=np.int64(44100)) == tactor.plan(palm, stroke, soa=0.06)
+
+
+def test_a_plan_is_compared_by_what_it_plays(palm, stroke):
+    plan = tactor.plan(palm, stroke)
+    assert plan == tactor.plan(palm, stroke) and plan != tactor.plan(palm, stroke, soa=0.06) and plan != 1
+    assert repr(plan) == "<tactor.Plan of 'path': park2016, inverse-distance, 18 bursts, 1.26 s on 'palm-3x3'>"
+
+
+@pytest.mark.parametrize("change", [
+    lambda d: d.pop("array"), lambda d: d.update(schema="x"), lambda d: d.update(total_s="1"), lambda d: d["bursts"][0].pop("onset_s"),
+    lambda d: d["bursts"][0]["drives"][0].update(tactor=9), lambda d: d.update(total_s=float("nan")), lambda d: d.update(total_s={1}),
+])
+def test_records_that_cannot_be_are_refused(palm, stroke, change):
+    d = tactor.plan(palm, stroke).to_dict()
+    change(d)
+    with pytest.raises(tactor.InputError):
+        tactor.Plan.from_dict(d)
+
+
+class Nearest:
+    """The nearest tactor alone."""
+
+    name = "nearest"
+
+    def __init__(self, array):
+        self.positions = np.array(array.positions)
+
+    def weights(self, x_mm, y_mm, intensity):
+        return {int(np.hypot(*(self.positions - (x_mm, y_mm)).T).argmin()): intensity}
+
+
+def test_a_model_may_be_a_python_object(palm, stroke):
+    for algorithm in ("park2016", "continuous"):
+        plan = tactor.plan(palm, stroke, algorithm=algorithm, phantom=Nearest(palm))
+        assert plan.phantom == "nearest"
+        amplitudes = plan.amplitudes if plan.curve is None else plan.curve.amplitudes
+        assert set(np.unique(amplitudes)) == {0.0, 1.0} and (amplitudes.sum(axis=1) == 1).all()
+        assert pickle.loads(pickle.dumps(plan)) == plan
+
+
+@pytest.mark.parametrize("answer", [None, 3, {9: 1.0}, {-1: 1.0}, {0: float("nan")}, {0: -1.0}, {"a": 1.0}, {0: "loud"}, [(0, 1.0)]])
+def test_a_model_that_returns_rubbish_is_an_error(palm, stroke, answer):
+    class Rubbish:
+        def weights(self, x_mm, y_mm, intensity):
+            return answer
+    with pytest.raises((tactor.InputError, TypeError, ValueError, AttributeError)):
+        tactor.plan(palm, stroke, phantom=Rubbish())
+
+
+def test_what_a_model_raises_comes_out(palm, stroke):
+    class Raises:
+        def weights(self, x_mm, y_mm, intensity):
+            raise ZeroDivisionError("mine")
+    with pytest.raises(ZeroDivisionError, match="mine"):
+        tactor.plan(palm, stroke, algorithm="continuous", phantom=Raises())
+
+
+def test_what_is_predicted_to_be_felt(palm, stroke):
+    plan = tactor.plan(palm, stroke, algorithm="continuous", phantom="barycentric")
+    samples = plan.percept()
+    assert len(samples) == 1201 and samples[600].target == pytest.approx(samples[600].felt, abs=1e-9)
+    assert plan.percept_summary()["rms_error_mm"] < 1e-9
+
+
+def test_the_timing_law():
+    assert tactor.burst_duration(soa=0.07) == pytest.approx(0.07) and tactor.burst_duration(soa=0.06) == pytest.approx((0.06 - 0.0473) / 0.32)
+    assert tactor.burst_duration(soa=0.07, burst=0.02) == 0.02
+
+
+def test_a_file_says_what_nobody_else_does(tmp_path, stroke, tool):
+    file = tmp_path / "quiet.toml"
+    file.write_text('[array]\npreset = "palm-3x3"\n[defaults]\nphantom = "barycentric"\nlevel-dbfs = -30\nsoa = 0.06\n[output]\nchannels = 12\nrate = 44100\n')
+    quiet = tactor.Array.from_file(file)
+    plan = tactor.plan(quiet, tactor.Stroke.preset("park2016-1"), soa=0.065)
+    assert plan.phantom == "barycentric" and plan.soa == 0.065
+    assert plan.to_dict() == json.loads(tool("plan", "park2016-1", "--array", file, "--soa", "0.065", "--format", "json"))
+    score = tactor.Score(quiet, plan)
+    assert (score.channels, score.rate) == (12, 44100) and tactor.Score(pickle.loads(pickle.dumps(quiet)), plan).channels == 12
+    assert np.abs(score.render()).max() < 10 ** (-29.9 / 20)
+    assert tactor.Score(quiet, plan, rate=48000, channels=9).channels == 9
+    file.write_text('[array]\npreset = "palm-3x3"\n[defaults]\nwaveform = "noise:50-300"\nnoise-seed = 7\nam = "30:0.5"\nenvelope = "tukey:0.3"\n')
+    rough = tactor.plan(tactor.Array.from_file(file), tactor.Stroke.preset("park2016-1")).to_dict()
+    assert rough == json.loads(tool("plan", "park2016-1", "--array", file, "--format", "json"))
+    assert rough["render"]["envelope"]["tukey_part"] == 0.3

@@ -1,0 +1,392 @@
+# SPDX-License-Identifier: MIT
+"""Playing on ALSA's null device, which takes real time: strokes are short."""
+import asyncio
+import gc
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+import warnings
+
+import numpy as np
+import pytest
+
+import tactor
+
+LONG = 120.0  # s: an answer that takes longer never comes
+
+
+@pytest.fixture
+def player(palm):
+    with tactor.Player("null", palm, config=os.devnull) as p:
+        yield p
+
+
+@pytest.fixture
+def short(palm):
+    stroke = tactor.Stroke.along(tactor.Path.svg("M 0 10 L 40 30"), duration=0.1)
+    return tactor.Score(palm, tactor.plan(palm, stroke, algorithm="continuous"))
+
+
+@pytest.fixture
+def endless(palm):
+    stroke = tactor.Stroke.along(tactor.Path.svg("M 0 10 L 40 30"), duration=60)
+    return tactor.Score(palm, tactor.plan(palm, stroke, algorithm="continuous"), level_dbfs=-60)
+
+
+def run(code, *arguments):
+    """A program of its own; what it printed."""
+    env = {**os.environ, "TACTOR_CONFIG": os.devnull}
+    # From Python 3.12 on, whoever forks beside threads is warned.
+    warned = "-W", "error::ResourceWarning", "-W", "ignore:This process:DeprecationWarning"
+    # What a shell starts in the background ignores Ctrl-C, and so do its children.
+    r = subprocess.run([sys.executable, *warned, "-c", textwrap.dedent(code), *arguments], env=env, capture_output=True, text=True,
+                       timeout=LONG, check=False, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+    return r.returncode, r.stdout, r.stderr
+
+
+def test_a_score_is_played_to_its_end(player, short):
+    before = time.monotonic()
+    report = player.play(short)
+    assert (report.state, report.reason, report.frames, report.late_s) == ("finished", "", short.frames, 0.0)
+    assert before <= report.started_s <= time.monotonic()
+    stats = player.stats()
+    assert stats["frames"] >= short.frames and stats["xruns"] == 0 and isinstance(stats["realtime"], bool) and stats["xrun_s"] == []
+
+
+def test_what_the_device_agreed_to(palm):
+    with tactor.Player("null", palm, rate=44100, period_frames=441, periods=4, config=os.devnull) as p:
+        assert (p.rate, p.channels, p.setup["period_frames"], p.setup["buffer_frames"], p.setup["has_clock"]) == (44100, 9, 441, 1764, False)
+        assert repr(p).startswith("<tactor.Player 'null': 9 channels, 44100 Hz")
+        with pytest.raises(tactor.InputError):
+            p.submit(tactor.Score(palm, tactor.plan(palm, tactor.Stroke.preset("park2016-1"))))
+
+
+def test_frames_that_reach_a_file_are_those_rendered(tmp_path, palm, short):
+    raw = tmp_path / "played.raw"
+    with tactor.Player(f"file:'{raw}',raw", palm, sample_format="float", config=os.devnull) as p:
+        assert p.play(short).state == "finished"
+    played = np.fromfile(raw, dtype="float32").reshape(-1, 9)
+    first = int(np.flatnonzero(np.abs(played).any(axis=1))[0])
+    own = short.render()
+    lead = int(np.flatnonzero(np.abs(own).any(axis=1))[0])
+    assert np.array_equal(played[first - lead:first - lead + short.frames], own)
+
+
+def test_starts_at_a_time(player, short):
+    at = time.monotonic() + 0.2
+    tickets = player.submit(short, at_s=at), player.submit(short, delay=0.2)
+    for ticket in tickets:
+        report = ticket.wait(LONG)
+        assert abs(report.started_s - at) < 0.1 and report.state == "finished"
+    late = player.submit(short, at_s=time.monotonic() - 1.0).wait(LONG)
+    assert late.late_s >= 1.0
+
+
+def test_armed_strokes_wait_to_be_fired(player, short):
+    tickets = [player.submit(short, at="armed") for _ in range(2)]
+    with pytest.raises(TimeoutError):
+        tickets[0].wait(0.05)
+    assert not tickets[0].done() and tickets[0].report is None and "goes on" in repr(tickets[0])
+    assert player.fire() == 2 and [t.wait(LONG).state for t in tickets] == ["finished"] * 2 and player.fire() == 0
+
+
+@pytest.mark.parametrize("options", [dict(at="soon"), dict(at="armed", delay=1), dict(at_s=1.0, delay=1.0), dict(at_s=float("nan")),
+                                     dict(at_s=1e300), dict(frame=-1), dict(frame=1 << 70)])
+def test_starts_that_cannot_be_are_refused(player, short, options):
+    with pytest.raises(tactor.InputError):
+        player.submit(short, **options)
+
+
+def test_cancelled_strokes_say_so(player, endless):
+    ticket = player.submit(endless)
+    assert ticket.cancel() and ticket.wait(LONG).state == "cancelled" and not ticket.cancel()
+    assert ticket.wait() is ticket.report and ticket.done() and repr(ticket).endswith("cancelled>")
+
+
+def test_callbacks_run_in_a_thread_of_the_package(player, short, endless, capsys):
+    called = threading.Event()
+    seen = []
+
+    def callback(ticket):
+        seen.append((threading.current_thread(), ticket))
+        with pytest.raises(RuntimeError):
+            other.wait()
+        called.set()
+        raise ZeroDivisionError("mine")
+    other = player.submit(endless)
+    ticket = player.submit(short)
+    ticket.add_done_callback(callback)
+    assert called.wait(LONG) and seen[0][1] is ticket and seen[0][0] is not threading.main_thread()
+    ticket.add_done_callback(lambda t: seen.append((threading.current_thread(), t)))
+    assert seen[1] == (threading.main_thread(), ticket)
+    other.cancel()
+    other.wait(LONG)
+    assert "ZeroDivisionError: mine" in capsys.readouterr().err and player.play(short).state == "finished"
+
+
+def test_a_live_stroke_follows_its_points(player):
+    with player.live(algorithm="continuous") as finger:
+        assert finger.open and finger.to(12.0, 20.0) and finger.to(13.0, 20.0, intensity=0.5)
+        assert finger.to(1000.0, 20.0)
+        with pytest.raises(tactor.InputError):
+            finger.to(float("nan"), 0.0)
+    assert finger.report.state == "finished" and not finger.open and not finger.to(0.0, 0.0)
+    assert finger.counts["points"] == 3 and finger.counts["outside"] == 1
+
+
+def test_a_live_stroke_ends_with_its_block_or_its_producer(player):
+    with pytest.raises(ZeroDivisionError):
+        with player.live(algorithm="park2016", soa=0.06) as finger:
+            finger.to(20, 20)
+            raise ZeroDivisionError
+    assert finger.report.state == "cancelled"
+    silent = player.live(timeout=0.05)
+    silent.to(20, 20)
+    report = silent.wait(LONG)
+    assert report.state == "interrupted" and report.reason
+    long = player.live(timeout=LONG, longest=0.05)
+    long.to(20, 20)
+    assert long.wait(LONG).state == "interrupted" and "as long as it may" in long.report.reason
+    for bad in ({"longest": 0}, {"longest": float("nan")}, {"smooth": -0.1}, {"smooth": 1.1}):
+        with pytest.raises(tactor.InputError):
+            player.live(**bad)
+    with player.live(smooth=0.05) as even:
+        even.to(10, 20)
+        even.to(30, 20)
+    assert even.report.state == "finished" and even.counts["points"] == 2
+
+
+def test_a_model_of_python_shapes_a_live_stroke(player):
+    class All:
+        def weights(self, x_mm, y_mm, intensity):
+            if x_mm > 30:
+                raise ZeroDivisionError("mine")
+            return {4: intensity}
+    with player.live(phantom=All()) as finger:
+        assert finger.to(20, 20)
+        with pytest.raises(ZeroDivisionError):
+            finger.to(35, 20)
+        assert finger.to(20, 20)
+    assert finger.report.state == "finished"
+
+
+def test_awaiting_gives_the_report(player, short, endless):
+    async def main():
+        ticked = 0
+
+        async def tick():
+            nonlocal ticked
+            while True:
+                ticked += 1
+                await asyncio.sleep(0.005)
+        clock = asyncio.create_task(tick())
+        first, second = await asyncio.gather(_report(player.submit(short)), _report(player.submit(short)))
+        assert first.state == second.state == "finished" and ticked > 3
+        assert (await player.submit(short)).frames == short.frames
+        ticket = player.submit(endless)
+        task = asyncio.create_task(_report(ticket))
+        await asyncio.sleep(0)
+        await asyncio.sleep(0.02)
+        task.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await task
+        assert (await ticket).state == "cancelled"
+        clock.cancel()
+
+    async def _report(ticket):
+        return await ticket
+    asyncio.run(main())
+
+
+def test_waiting_leaves_the_interpreter_to_others(player, endless):
+    ticket = player.submit(endless)
+    waiter = threading.Thread(target=ticket.wait)
+    waiter.start()
+    stopper = threading.Thread(target=player.stop)
+    stopper.start()
+    counted = 0
+    while waiter.is_alive() or stopper.is_alive():
+        counted += 1
+    assert counted > 100 and ticket.report.state == "cancelled" and player.ended == ""
+    with pytest.raises(tactor.StreamError):
+        player.submit(endless)
+
+
+def test_many_threads_may_play(player, short):
+    reports = []
+    threads = [threading.Thread(target=lambda: reports.append(player.play(short))) for _ in range(16)]
+    for t in threads:
+        t.start()
+    for t in threads:
+        t.join(LONG)
+    assert [r.state for r in reports] == ["finished"] * 16
+
+
+def test_a_closed_player_says_so(palm, short, endless):
+    p = tactor.Player("null", palm, config=os.devnull)
+    ticket = p.submit(endless)
+    p.close()
+    assert ticket.report.state == "cancelled" and p.closed
+    p.close()
+    for call in (lambda: p.submit(short), lambda: p.play(short), p.live, p.fire, p.stop, p.stats, p.position, lambda: p.ended, ticket.cancel):
+        with pytest.raises(tactor.StreamError):
+            call()
+    with tactor.Player("null", palm, config=os.devnull, after=p) as next_one:
+        assert next_one.play(short).state == "finished"
+
+
+def test_devices_that_are_not_there(palm):
+    with pytest.raises(tactor.DeviceError) as e:
+        tactor.Player("hw:CARD=Nowhere", palm, config=os.devnull)
+    assert "Nowhere" in str(e.value) and isinstance(e.value, OSError) and e.value.hint
+    for options in (dict(rate=1), dict(periods=1), dict(period_frames=0), dict(rate=48000.5), dict(config="/nonexistent.toml"), dict(latency=-1), dict(latency=0),
+                    dict(sync_delay=float("nan")), dict(channels=4)):
+        with pytest.raises(tactor.InputError):
+            tactor.Player("null", palm, **{"config": os.devnull, **options})
+
+
+def test_the_configuration_counts(palm, tmp_path, monkeypatch, short):
+    file = tmp_path / "tactor.toml"
+    file.write_text("[output]\nrate = 44100\nperiod_frames = 128\n[limits]\npower_dbfs = -40.0\n")
+    monkeypatch.setenv("TACTOR_CONFIG", str(file))
+    for config in (None, file):
+        with tactor.Player("null", palm, config=config) as p:
+            assert (p.rate, p.setup["period_frames"]) == (44100, 128)
+            p.play(tactor.Score(palm, short.plans[0], rate=44100))
+            assert p.stats()["power_limited_frames"] > 0
+    with tactor.Player("null", palm, power_dbfs=0.0) as p:
+        p.play(tactor.Score(palm, short.plans[0], rate=44100))
+        assert p.stats()["power_limited_frames"] == 0
+    file.write_text('[amplifier]\nline = { chip = "no-such-chip", offset = 3 }\n')
+    with pytest.raises(tactor.DeviceError, match="no-such-chip"):
+        tactor.Player("null", palm)
+    tactor.Player("null", palm, no_gpio=True).close()
+
+
+def test_an_arrays_file_brings_its_limits(tmp_path):
+    file = tmp_path / "palm.toml"
+    file.write_text('[array]\npreset = "palm-3x3"\n[output]\nchannels = 12\n[limits]\npower_dbfs = -40.0\n')
+    array = tactor.Array.from_file(file)
+    score = tactor.Score(array, tactor.plan(array, tactor.Stroke.preset("park2016-1"), duration=0.2))
+    with tactor.Player("null", array, config=os.devnull) as p:
+        assert p.channels == 12 == score.channels
+        p.play(score)
+        assert p.stats()["power_limited_frames"] > 0
+
+
+def test_a_stream_of_more_channels_takes_a_score_of_fewer(palm, short):
+    with tactor.Player("null", palm, channels=16, config=os.devnull) as p:
+        assert p.play(short).state == "finished"
+
+
+def test_the_log_is_told_in_the_packages_thread(palm, short):
+    lines = []
+    with tactor.Player("null", palm, config=os.devnull, log=lambda kind, text: lines.append((threading.current_thread().name, kind, text))) as p:
+        p.play(short)
+    assert lines and {(name, kind) for name, kind, _ in lines} <= {("tactor", k) for k in ("debug", "info", "warning", "error")}
+
+
+def test_a_forgotten_player_is_closed_when_it_is_collected(palm):
+    p = tactor.Player("null", palm, config=os.devnull)
+    thread = p._shared.thread
+    with pytest.warns(ResourceWarning, match="unclosed"):
+        del p
+        gc.collect()
+    assert not thread.is_alive()
+
+
+PLAYING = """
+    import os, sys, signal, threading, time
+    import tactor
+    palm = tactor.Array.preset("palm-3x3")
+    stroke = tactor.Stroke.along(tactor.Path.svg("M 0 10 L 40 30"), duration=60)
+    score = tactor.Score(palm, tactor.plan(palm, stroke, algorithm="continuous"), level_dbfs=-60)
+    player = tactor.Player("null", palm)
+    ticket = player.submit(score)
+"""
+
+
+def test_a_forgotten_player_is_closed_at_exit():
+    code, out, err = run(PLAYING + """
+    ticket.add_done_callback(lambda t: print(t.report.state, flush=True))
+    """)
+    assert (code, out, err) == (0, "cancelled\n", "")
+
+
+def test_ctrl_c_fades_out():
+    code, out, err = run(PLAYING + """
+    threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    try:
+        print("ended by itself:", ticket.wait())
+    except KeyboardInterrupt:
+        print(ticket.report.state)
+    player.close()
+    """)
+    assert (code, out, err) == (0, "cancelled\n", "")
+
+
+@pytest.mark.unsanitized  # a child gives nothing back of what is its parent's
+def test_a_fork_leaves_the_player_to_its_parent():
+    code, out, err = run(PLAYING + """
+    finger = player.live(timeout=10)
+    finger.to(20, 20)
+    child = os.fork()
+    if child == 0:
+        calls = [player.stats, player.stop, player.close, player.fire, player.position, player.live, ticket.cancel, ticket.wait,
+                 lambda: player.submit(score), lambda: player.ended, lambda: finger.to(1, 1), finger.end, finger.wait]
+        refused = 0
+        for call in calls:
+            try:
+                call()
+            except tactor.StreamError as e:
+                refused += "fork" in str(e)
+        print(refused == len(calls), flush=True)
+        del player, ticket, finger
+        sys.exit(0)
+    print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), ticket.done(), finger.to(21, 20), player.ended)
+    player.close()
+    print(ticket.report.state)
+    """)
+    assert err == "" and sorted(out.split("\n")) == sorted(["True", "0 False True None", "cancelled", ""]) and code == 0
+
+
+@pytest.mark.unsanitized  # a child gives nothing back of what is its parent's
+def test_a_forked_process_may_have_a_player_of_its_own():
+    code, out, err = run(PLAYING + """
+    child = os.fork()
+    if child == 0:
+        with tactor.Player("null", palm) as own:
+            t = own.submit(score)
+            t.cancel()
+            print(t.wait(20).state, flush=True)
+        sys.exit(0)
+    os.waitpid(child, 0)
+    player.close()
+    """)
+    assert (code, out, err) == (0, "cancelled\n", "")
+
+
+def test_nothing_of_a_player_is_left_behind(palm, short):
+    def descriptors():
+        return len(os.listdir("/proc/self/fd"))
+    with tactor.Player("null", palm, config=os.devnull) as p:
+        p.play(short)
+    before = descriptors(), threading.active_count()
+    for _ in range(5):
+        with tactor.Player("null", palm, config=os.devnull) as p:
+            p.submit(short)
+    assert (descriptors(), threading.active_count()) == before
+
+
+def test_the_signal_that_python_set_stays(player, short):
+    before = signal.getsignal(signal.SIGINT)
+    player.play(short)
+    assert signal.getsignal(signal.SIGINT) is before
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        player.play(short)

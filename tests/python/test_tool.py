@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: MIT
+"""Comparisons, figures and devices are the tool's."""
+import copy
+import json
+import os
+import pickle
+import xml.etree.ElementTree
+
+import pytest
+
+import tactor
+
+
+@pytest.mark.parametrize("arguments,options", [
+    ([], {}),
+    (["--phantoms", "linear,log"], dict(phantoms=["linear", "log"])),
+    (["--algorithms", "continuous", "--phantom", "gaussian", "--duration", "2"], dict(algorithms="continuous", phantom="gaussian", duration=2)),
+    (["--observer", "low-speed", "--sigma-v-mm-s", "80"], dict(observer="low-speed", sigma_v_mm_s=80)),
+    (["--algorithm", "park2016", "--soa", "0.06", "--fit"], dict(algorithm="park2016", soa=0.06, fit=True)),
+    (["--spread", "20"], dict(spread=20)),
+    (["--spread", "20", "--spread-seed", "7", "--spread-sigma", "3", "--observer", "low-speed", "--spread-threshold-db", "4", "--spread-place-mm", "1"],
+     dict(spread=20, spread_seed=7, spread_sigma=3, observer="low-speed", spread_threshold_db=4, spread_place_mm=1)),
+])
+def test_comparisons_are_those_of_the_tool(tool, palm, arguments, options):
+    printed = json.loads(tool("compare", "park2016-3", *arguments, "--format", "json"))
+    compared = tactor.compare(palm, tactor.Stroke.preset("park2016-3"), **options)
+    assert compared == printed["results"] and compared.record == printed and isinstance(compared[0], dict)
+    assert pickle.loads(pickle.dumps(compared)) == compared == copy.copy(compared)
+
+
+def test_an_algorithm_that_cannot_says_why(palm):
+    line = tactor.Array.from_points([(0, 0), (13, 2), (29, 1), (11, 20)])
+    rows = tactor.compare(line, tactor.Stroke.along(tactor.Path.svg("M 1 1 L 20 1.5"), duration=1.0))
+    assert [r["refused"] is None for r in rows] == [True, False, True] and "grid" in rows[1]["refused"]
+    with pytest.raises(tactor.InputError):
+        tactor.compare(palm, tactor.Stroke.along(tactor.Path.svg("M 0 0 L 500 0"), duration=1.0))
+    for options in (dict(algorithms=["park"]), dict(soa=0.5), dict(phantoms="none"), dict(spread=1), dict(spread=2.5), dict(spread_seed=3),
+                    dict(spread=3, spread_sigma=0.5), dict(spread=3, spread_seed=-1), dict(sigma_mm=3), dict(sigma_v_mm_s=80, observer="centroid")):
+        with pytest.raises(tactor.InputError):
+            tactor.compare(palm, tactor.Stroke.preset("park2016-1"), **options)
+
+
+def test_a_comparison_is_drawn_as_the_tool_does(tool, tmp_path, palm):
+    tool("compare", "park2016-3", "-o", "tool.svg")
+    compared = tactor.compare(palm, tactor.Stroke.preset("park2016-3"))
+    compared.plot(tmp_path / "ours.svg")
+    assert compared._repr_svg_().encode() == (tmp_path / "ours.svg").read_bytes() == (tmp_path / "tool.svg").read_bytes()
+
+
+@pytest.mark.parametrize("view", ["both", "array", "timing", "wave"])
+def test_figures_are_those_of_the_tool(tool, tmp_path, palm, view):
+    tool("plot", "park2016-3", "--view", view, "--width", "120", "-o", "tool.svg")
+    plan = tactor.plan(palm, tactor.Stroke.preset("park2016-3"))
+    tactor.plot(plan, tmp_path / "ours.svg", view=view, width=120)
+    assert (tmp_path / "ours.svg").read_bytes() == (tmp_path / "tool.svg").read_bytes()
+
+
+@pytest.mark.parametrize("kind", ["png", "pdf"])
+def test_other_formats_are_painted_by_the_tools_module(tool, tmp_path, palm, kind):
+    tool("plot", "park2016-3", "--dpi", "100", "-o", f"tool.{kind}")
+    plan = tactor.plan(palm, tactor.Stroke.preset("park2016-3"))
+    tactor.plot(plan, str(tmp_path / f"ours.{kind}"), dpi=100)
+    assert (tmp_path / f"ours.{kind}").read_bytes() == (tmp_path / f"tool.{kind}").read_bytes()
+
+
+def test_notebooks_show_strokes_and_plans(tool, tmp_path, palm, stroke):
+    plan = tactor.plan(palm, tactor.Stroke.preset("park2016-3"))
+    tool("plot", "park2016-3", "-o", "tool.svg")
+    assert plan._repr_svg_().encode() == (tmp_path / "tool.svg").read_bytes()
+    for s in (stroke, tactor.Stroke.along(tactor.Path.svg("M 100 100 L 900 100"), duration=1.0), tactor.Stroke.timed([0, 1], [5, 5], [5, 5])):
+        assert xml.etree.ElementTree.fromstring(s._repr_svg_()).tag.endswith("svg")
+
+
+def test_several_plans_in_one_figure(tmp_path, root, palm):
+    plans = [tactor.plan(palm, s) for s in tactor.load(root / "examples/strokes/several.toml")]
+    tactor.plot(plans, tmp_path / "s.svg", name="several.toml")
+    assert "several.toml" in (tmp_path / "s.svg").read_text()
+
+
+@pytest.mark.parametrize("file,options", [("x.gif", {}), ("x.svg", dict(view="side")), ("x.svg", dict(width=1)), ("x.png", dict(dpi=-1)), ("x.png", dict(dpi=100000)), ("none/x.svg", {})])
+def test_figures_that_cannot_be_are_refused(tmp_path, palm, stroke, file, options):
+    with pytest.raises(tactor.InputError):
+        tactor.plot(tactor.plan(palm, stroke), tmp_path / file, **options)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_devices_are_those_of_the_tool(tool, tmp_path, palm, monkeypatch):
+    monkeypatch.setenv("TACTOR_CONFIG", os.devnull)
+    assert tactor.devices() == tactor.devices(palm) == json.loads(tool("devices", "--format", "json"))
+    other = json.loads(tool("devices", "--array", "palm-2x4", "-D", "null", "--rate", "44100", "--format", "json"))
+    assert tactor.devices(tactor.Array.preset("palm-2x4"), device="null", rate=44100) == other
+    (tmp_path / "own.toml").write_text('[array]\npreset = "palm-2x4"\n[output]\npcm = "null"\nchannels = 16\n')
+    configured = json.loads(tool("devices", "--config", "own.toml", "--format", "json"))
+    assert tactor.devices(config=tmp_path / "own.toml") == configured and configured["wanted"]["channels"] == 16
+    assert tactor.devices(palm, config=tmp_path / "own.toml")["wanted"]["channels"] == 9
+
+
+def test_tables_for_pandas(palm, stroke):
+    pytest.importorskip("pandas", reason="pandas is not here")
+    plan = tactor.plan(palm, stroke)
+    table = plan.to_pandas()
+    assert len(table) == 18 and list(table.columns)[:5] == ["onset_s", "duration_s", "x_mm", "y_mm", "intensity"]
+    assert (table[[f"tactor_{i}" for i in range(9)]].to_numpy() == plan.amplitudes).all()

@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: MIT
+"""Arrays, paths and strokes are values."""
+import pickle
+
+import numpy as np
+import pytest
+
+import tactor
+
+GRID = '[array]\nname = "forearm"\ngrid = { rows = 2, columns = 4, pitch_mm = [25.0, 40.0] }\n'
+
+
+def test_an_array_is_a_sequence_of_tactors(palm):
+    assert len(palm) == 9 and palm.channels == 9 and palm.name == "palm-3x3"
+    assert palm[3] == palm.tactors[3] == list(palm)[3]
+    assert palm[3].position == (0.0, 20.0) and palm[3].channel == 3 and palm[-1].channel == 8
+    with pytest.raises(IndexError):
+        palm[9]
+
+
+def test_positions_are_a_look_that_cannot_be_written(palm):
+    assert palm.positions.shape == (9, 2) and palm.positions.dtype == np.float64
+    assert not palm.positions.flags.owndata and not palm.positions.flags.writeable
+    assert palm.positions.tolist() == [list(t.position) for t in palm]
+    kept = palm.positions
+    del palm
+    assert kept[8].tolist() == [40.0, 40.0]
+
+
+def test_arrays_of_a_file_a_grid_and_points_agree(tmp_path):
+    file = tmp_path / "forearm.toml"
+    file.write_text(GRID)
+    of_file = tactor.Array.from_file(file)
+    assert of_file == tactor.Array.from_file(str(file)) == tactor.Array.grid("forearm", 2, 4, (25.0, 40.0))
+    of_points = tactor.Array.from_points(of_file.positions, name="forearm")
+    assert of_points == of_file and hash(of_points) == hash(of_file)
+    assert of_points != tactor.Array.from_points(of_file.positions + 1, name="forearm")
+    assert tactor.Array.grid("square", 2, 2, 10).positions.tolist() == [[0, 0], [10, 0], [0, 10], [10, 10]]
+
+
+def test_an_array_knows_its_faces(palm):
+    assert len(palm.faces) == 4 and palm.pitch_mm == 20.0
+    assert palm.grid_lines == ([0.0, 20.0, 40.0], [0.0, 20.0, 40.0])
+    assert palm.contains((40, 40)) and not palm.contains((40.1, 40)) and palm.nearest((50, 10)) == (40.0, 10.0)
+    assert palm.weights((20.0, 20.0)) == {4: 1.0}
+
+
+def test_what_a_tactor_has_is_kept():
+    one = tactor.Tactor(tactor.Point(1.0, 2.0), 3, -1.0, -2.0, -40.0, -1, "piezo")
+    array = tactor.Array("one", [one])
+    assert array[0] == one and array.channels == 4
+    assert pickle.loads(pickle.dumps(array)) == array
+
+
+@pytest.mark.parametrize("make", [
+    lambda: tactor.Array("none", []),
+    lambda: tactor.Array.from_points([(0, 0), (0, 0)]),
+    lambda: tactor.Array.from_points([0, 1, 2]),
+    lambda: tactor.Array.from_points([(0, float("nan"))]),
+    lambda: tactor.Array.grid("none", 0, 3, 10),
+    lambda: tactor.Array.grid("less", -1, 3, 10),
+    lambda: tactor.Array.grid("much", 1000, 1000, 10),
+    lambda: tactor.Array.preset("palm"),
+    lambda: tactor.Array("below", [tactor.Tactor(tactor.Point(0, 0), -1)]),
+    lambda: tactor.Array("word", [tactor.Tactor(tactor.Point(0, 0), 0, actuator="steam")]),
+])
+def test_arrays_that_cannot_be_are_refused(make):
+    with pytest.raises(tactor.InputError):
+        make()
+
+
+def test_a_path_goes_by_arc_length():
+    path = tactor.Path.polyline([(0, 0), (30, 0), (30, 40)])
+    assert path.length_mm == 70.0
+    assert path.at(40) == tactor.Point(30.0, 10.0) and path.at(-1) == (0.0, 0.0) and path.at(1e9) == (30.0, 40.0)
+    assert path.at([0, 30, 70]).tolist() == [[0, 0], [30, 0], [30, 40]]
+    assert path.at(np.float64(40)) == (30.0, 10.0)
+    arc = tactor.Path.arc((20, 20), 10.0, 0.0, 90.0)
+    assert arc.length_mm == pytest.approx(5 * np.pi) and arc.at(1e9) == pytest.approx((20, 30))
+    assert tactor.Path.svg("M 0 0 L 30 0 30 40") == path
+    assert path.meets_x(30.0) == [] and path.meets_y(20.0) == [50.0]
+
+
+@pytest.mark.parametrize("data", ["M 0 10 C 20 -5 20 45 40 30", "M 0 0 A 20 10 30 1 1 30 30 L 0 40 Q 3 4 5 6 Z", "M 0.1 0.2 L 0.3 0.4"])
+def test_paths_are_pickled_to_the_bit(data):
+    path = tactor.Path.svg(data)
+    again = pickle.loads(pickle.dumps(path))
+    assert again == path and hash(again) == hash(path) and again.length_mm == path.length_mm and again.data == path.data
+    lengths = np.linspace(0, path.length_mm, 1001)
+    assert np.array_equal(again.at(lengths), path.at(lengths))
+
+
+def test_strokes_say_how_they_move(stroke):
+    assert stroke.duration == 1.2 and stroke.position(0.0) == (0.0, 10.0) and stroke.intensity(0.5) == 1.0
+    path = tactor.Path.polyline([(0, 0), (30, 0)])
+    assert tactor.Stroke.along(path, speed=60.0).duration == 0.5 == tactor.Stroke.along(path).duration
+    timed = tactor.Stroke.timed([0, 1, 3], [0, 10, 10], np.array([0, 0, 20], dtype=np.int32), intensity=[0, 1, 0.5])
+    assert timed.position(2.0) == (10.0, 10.0) and timed.intensity(0.5) == 0.5 and timed.duration == 3.0
+    assert tactor.Stroke.timed([0, 1], [0, 1], [0, 1]).intensity(0.3) == 1.0
+    assert timed.with_duration(6.0).position(4.0) == (10.0, 10.0) and timed.with_intensity(0.5).intensity(1.0) == 0.5
+    preset = tactor.Stroke.preset("park2016-1")
+    assert preset.note == "reconstructed" and preset.name == "park2016-1"
+
+
+def test_strokes_ease_change_their_speed_and_rest():
+    path = tactor.Path.polyline([(0, 0), (40, 0)])
+    eased = tactor.Stroke.along(path, duration=2.0, easing="minimum-jerk")
+    assert all(abs(eased.position(2 * u).x / 40 - (10 * u**3 - 15 * u**4 + 6 * u**5)) < 1e-12 for u in np.linspace(0, 1, 101))
+    assert abs(eased.position(eased.meets_x(7.0)[0]).x - 7.0) < 1e-12
+    faster = tactor.Stroke.along(path, speed=[(0, 20), (1, 80)])
+    assert abs(faster.duration - 40 * np.log(4) / 60) < 1e-12 and abs(faster.speed - 40 / faster.duration) < 1e-12
+    resting = tactor.Stroke.along(path, speed=40, pauses=[(0.5, 0.5), (1, 0.25, 0)], intensity=[(0, 0.2), (1, 1)])
+    assert abs(resting.duration - 1.75) < 1e-12 and resting.position(0.7) == (20.0, 0.0) and resting.speed == 40.0
+    assert abs(resting.intensity(0.7) - 0.6) < 1e-12 and resting.intensity(1.7) == 0.0
+    assert abs(resting.with_speed(20).duration - 2.75) < 1e-12
+    assert resting.reversed().position(0.0) == (40.0, 0.0) and resting.reversed().intensity(0.1) == 0.0
+    rising = tactor.parse("[stroke]\npoints = [[0, 0], [40, 0]]\nduration_s = 2\ncarrier_profile = [[0, 100], [0.25, 300]]\n")[0]
+    course = tactor.plan(tactor.Array.preset("palm-3x3"), rising.reversed()).to_dict()["stroke"]["course"]
+    assert [(p["t_s"], p["hz"]) for p in course] == [(0.0, 300.0), (1.5, 300.0), (2.0, 100.0)]
+    for wrong in ({"easing": "fast"}, {"speed": [(0, 0)]}, {"speed": [(0.5, 1), (0.5, 2)]}, {"speed": [1, 2]}, {"pauses": [(0.5,)]},
+                  {"pauses": [(0.5, -1)]}, {"duration": 1.0, "pauses": [(0.5, 1.0)]}, {"intensity": [(0, -1)]}, {"intensity": [(2, 1)]}):
+        with pytest.raises(tactor.InputError):
+            tactor.Stroke.along(path, **wrong)
+
+
+def test_strokes_of_files_start_from_others_and_choose(tmp_path, palm):
+    drawn = tmp_path / "s.toml"
+    drawn.write_text("""[[stroke]]
+path = "M 0 10 L 40 10"
+duration_s = 0.7
+repeat = 2
+pause_s = 0.1
+[[stroke]]
+path = "M 0 10 L 40 10"
+duration_s = 0.7
+start_s = 0.05
+start_from = "start"
+phantom = "gaussian"
+soa_s = 0.06
+""")
+    first, again, last = tactor.load(drawn)
+    assert (first.start, first.start_from) == (None, "piece") and (again.start, again.start_from) == (0.1, "end")
+    assert last.choices == {"phantom": "gaussian", "soa": 0.06} and first.choices == {}
+    plans = [tactor.plan(palm, s) for s in (first, again, last)]
+    assert plans[2].phantom == "gaussian" and plans[0].phantom == "inverse-distance"
+    starts = tactor.Score(palm, plans).starts
+    total = plans[0].to_dict()["total_s"]
+    assert [round(s / 48000, 3) for s in starts] == [0.0, round(total + 0.1, 3), 0.05]
+    for s in (again, last):
+        assert pickle.loads(pickle.dumps(s)) == s
+
+
+def test_strokes_are_pickled_to_the_bit(stroke, tmp_path):
+    drawn = tmp_path / "s.toml"
+    drawn.write_text('[[stroke]]\npath = "M 0 0 C 1 2 3 4 40 40"\n')
+    timed = tactor.Stroke.timed([0, 0.1, 1], [0, 10, 20], [0, 0, 7], [1, 0.5, 0.25], name="é", start=0.5, carrier=100.0)
+    uneven = tactor.Stroke.along(tactor.Path.svg("M 0 0 C 1 2 3 4 40 40"), speed=[(0.1, 20), (1, 80)], intensity=[(0, 0.2), (1, 1)],
+                                 easing="in-out", pauses=[(0.3, 0.1), (0.7, 0.3, 0.5)])
+    for s in [stroke, timed, timed.with_duration(0.7).with_intensity(0.3), uneven, uneven.with_duration(0.77).with_intensity(0.3), *tactor.load(drawn), *map(tactor.Stroke.preset, tactor.stroke_presets())]:
+        again = pickle.loads(pickle.dumps(s))
+        assert again == s and hash(again) == hash(s)
+        assert (again.name, again.duration, again.start, again.carrier, again.speed, again.note, again.warnings) == \
+            (s.name, s.duration, s.start, s.carrier, s.speed, s.note, s.warnings)
+        assert [again.position(t) for t in np.linspace(0, s.duration, 101)] == [s.position(t) for t in np.linspace(0, s.duration, 101)]
+    assert stroke != stroke.with_duration(1.3) and stroke != timed
+
+
+def test_pickles_that_were_damaged_are_refused(stroke):
+    state = stroke._core.state()
+    for cut in range(0, len(state), 7):
+        with pytest.raises(tactor.Error):
+            tactor._tactor.Stroke.from_state(state[:cut])
+
+
+@pytest.mark.parametrize("make", [
+    lambda: tactor.Path.svg("M 0 0"), lambda: tactor.Path.polyline([(0, 0)]), lambda: tactor.Path.polyline([("a", "b"), (0, 0)]),
+    lambda: tactor.Path.arc((0, 0), -1, 0, 90),
+    lambda: tactor.Stroke.along(tactor.Path.svg("M 0 0 L 1 1"), duration=0), lambda: tactor.Stroke.along(tactor.Path.svg("M 0 0 L 1 1"), speed=0),
+    lambda: tactor.Stroke.along(tactor.Path.svg("M 0 0 L 1 1"), duration=1, speed=1),
+    lambda: tactor.Stroke.timed([0, 1], [0, 1], [0]), lambda: tactor.Stroke.timed([0], [0], [0]),
+    lambda: tactor.Stroke.timed([1, 2], [0, 1], [0, 1]), lambda: tactor.Stroke.timed([0, 1], [0, 1], [0, 1], [1, 2, 3]),
+    lambda: tactor.Stroke.preset("park"),
+])
+def test_paths_and_strokes_that_cannot_be_are_refused(make):
+    with pytest.raises(tactor.InputError):
+        make()
+
+
+def test_files_are_loaded_as_the_tool_does(root):
+    assert [s.name for s in tactor.load(root / "examples/strokes/several.toml")]
+    csv = tactor.load(str(root / "examples/strokes/touch.csv"))
+    of_text = tactor.parse((root / "examples/strokes/touch.csv").read_text())
+    assert len(csv) == 1 and of_text[0].position(0.1) == csv[0].position(0.1)
+    assert len(tactor.load(root / "examples/strokes/drawing.svg")) >= 1
+
+
+def test_strokes_are_fitted(palm, stroke):
+    far = tactor.Stroke.along(tactor.Path.svg("M 1000 1000 L 1100 1050"), duration=1.0)
+    (fitted,), placed = tactor.fit_strokes([far], palm, 2.0)
+    assert fitted == far.fitted(palm, 2.0) and palm.contains(fitted.position(0)) and placed.scale < 1
+    assert tactor.plan(palm, far, fit=True, fit_margin=2.0).stroke == fitted
+
+
+def test_values_say_what_they_are(palm, stroke):
+    assert repr(palm) == "<tactor.Array 'palm-3x3': 9 tactors, 9 channels>"
+    assert repr(stroke) == f"<tactor.Stroke 'path': {stroke.length_mm:.6g} mm in 1.2 s>"
+    assert repr(tactor.Path.svg("M 0 0 L 3 4")) == "<tactor.Path 'M 0 0 L 3 4': 5 mm>"
+
+
+def test_values_cannot_be_made_of_nothing():
+    for kind in (tactor.Path, tactor.Stroke, tactor.Plan):
+        with pytest.raises(TypeError):
+            kind()

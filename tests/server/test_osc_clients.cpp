@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: MIT
+// Senders of OSC: their numbers, their times, what they are told, and that they are forgotten.
+#include "server/osc/clients.hpp"
+
+#include <set>
+
+#include <doctest/doctest.h>
+
+#include "has.hpp"
+#include "osc_rig.hpp"
+
+namespace osc_clients_test {
+
+using namespace tactor;
+using namespace tactor::test;
+using namespace std::string_literals;
+
+namespace {
+
+const osc_rig::endpoint me = osc_rig::at(9000);
+const osc_rig::endpoint you = osc_rig::at(9001);
+
+std::int64_t operator""_i(unsigned long long n)
+{
+    return static_cast<std::int64_t>(n);
+}
+
+const std::string drawing = "M 0 0 L 40 40";
+
+// A live stroke, which waits for its first point as long as it is let.
+osc_rig::values endless(std::int64_t number)
+{
+    return {number, "timeout_s=86400"s};
+}
+
+void ready(osc_rig& rig)
+{
+    rig.plug();
+    rig.start();
+}
+
+} // namespace
+
+TEST_CASE("a stroke is told of by the sender's own number, and then nobody is left")
+{
+    osc_rig rig;
+    ready(rig);
+    rig.say(me, "/tactor/play", {7_i, drawing, "duration=0.1"s, "algorithm=continuous"s});
+    CHECK(rig.osc.count() == 1);
+    CHECK(rig.next(me) == "/tactor/stroke 7 started");
+    CHECK(rig.next(me) == "/tactor/stroke 7 finished");
+    rig.say(me, "/tactor/play", {drawing, "duration=0.1"s});
+    CHECK(rig.next(me) == "/tactor/stroke 0 started");
+    CHECK(rig.next(me) == "/tactor/stroke 0 finished");
+    rig.say(me, "/tactor/drive", {4_i, 0.5, 0.05});
+    CHECK(rig.next(me) == "/tactor/stroke 0 started");
+    CHECK(rig.next(me) == "/tactor/stroke 0 finished");
+    rig.io.poll();
+    CHECK(rig.osc.count() == 0);
+    const auto c = rig.client();
+    CHECK(rig.ok(c, "status")["clients"] == 1);
+}
+
+TEST_CASE("numbers belong to an address with its port")
+{
+    osc_rig rig;
+    ready(rig);
+    rig.say(me, "/tactor/begin", endless(1));
+    rig.say(you, "/tactor/begin", endless(1));
+    rig.say(me, "/tactor/begin", endless(1));
+    CHECK(has(rig.next(me), "/tactor/error /tactor/begin number: stroke 1 goes on"));
+    rig.say(me, "/tactor/play", {1_i, drawing});
+    CHECK(has(rig.next(me), "/tactor/error /tactor/play number: stroke 1 goes on"));
+    rig.say(osc_rig::at(9000, "127.0.0.2"), "/tactor/cancel", {1_i});
+    CHECK(has(rig.next(osc_rig::at(9000, "127.0.0.2")), "no stroke 1 of this sender goes on"));
+    rig.say(you, "/tactor/cancel", {1_i});
+    CHECK(rig.next(you) == "/tactor/stroke 1 cancelled");
+    CHECK(rig.silent(me));
+    rig.say(you, "/tactor/begin", endless(1)); // free again
+    rig.say(osc_rig::at(9), "/tactor/stop");   // of somebody who has drawn nothing
+    CHECK(rig.next(me) == "/tactor/stroke 1 cancelled");
+    CHECK(rig.next(you) == "/tactor/stroke 1 cancelled");
+    CHECK(rig.silent(me));
+}
+
+TEST_CASE("a live stroke in one packet, before its own number is known to anybody")
+{
+    osc_rig rig([](auto&, auto& s) { s.idle_stop_s = 0.001; });
+    ready(rig);
+    rig.sleep_and_plug();
+    // The stream has to start first: the points wait.
+    rig.osc.receive(osc_rig::bundle(0, {rig.message("/tactor/begin", {5_i, "timeout_s=86400"s}),
+                                        rig.message("/tactor/to", {5_i, 20_i, 20.0}),
+                                        rig.message("/tactor/to", {5_i, 21_i, 20.0, 0.5})}),
+                    me);
+    CHECK(rig.next(me) == "/tactor/stroke 5 started");
+    rig.say(me, "/tactor/to", {5_i, 1e9, 0.0});
+    CHECK(has(rig.next(me), "/tactor/error /tactor/to stroke 5: x_mm: 1000000000 is out of range"));
+    rig.say(me, "/tactor/end", {5_i});
+    CHECK(rig.next(me) == "/tactor/stroke 5 finished");
+    rig.say(me, "/tactor/to", {5_i, 0.0, 0.0});
+    CHECK(has(rig.next(me), "no stroke 5"));
+}
+
+TEST_CASE("what goes wrong is said with the address and the number")
+{
+    osc_rig rig;
+    ready(rig);
+    rig.say(me, "/tactor/play", {3_i, "circel"s});
+    CHECK(has(rig.next(me), "/tactor/error /tactor/play stroke 3: stroke: "));
+    rig.say(me, "/tactor/play", {drawing, "level_dbfs=0"s});
+    CHECK(has(rig.next(me), "/tactor/error /tactor/play options.level_dbfs: 0 dBFS is more than"));
+    rig.say(me, "/tactor/begin", {3_i, "algorithm=brush"s});
+    CHECK(has(rig.next(me), "/tactor/error /tactor/begin stroke 3: options.algorithm: "));
+    rig.say(me, "/tactor/drive", {9_i, 1.0});
+    CHECK(has(rig.next(me), "/tactor/error /tactor/drive tactor: "));
+    rig.say(me, "/tactor/nonsense");
+    CHECK(has(rig.next(me), "/tactor/error /tactor/nonsense address: it is not known"));
+    rig.osc.receive("rubbish!", me);
+    CHECK(has(rig.next(me), "/tactor/error  message: its address does not begin with /"));
+    rig.osc.receive(std::string(65540, '/'), me);
+    CHECK(has(rig.next(me), "packet: it has 65540 bytes"));
+    rig.io.poll();
+    CHECK(rig.osc.count() == 0);
+}
+
+TEST_CASE("without a card strokes are refused, and subscribers hear of the stream")
+{
+    osc_rig rig;
+    rig.start();
+    rig.say(me, "/tactor/play", {1_i, drawing});
+    CHECK(has(rig.next(me), "stroke 1: stream: "));
+    rig.say(me, "/tactor/subscribe", {9100_i, "stream"s});
+    rig.plug();
+    CHECK(rig.next(osc_rig::at(9100)) == "/tactor/stream running");
+    rig.unplug();
+    CHECK(rig.next(osc_rig::at(9100)) == "/tactor/stream lost");
+}
+
+TEST_CASE("levels come for ten seconds, and on if that is renewed")
+{
+    osc_rig rig;
+    ready(rig);
+    rig.say(me, "/tactor/subscribe", {"levels"s});
+    CHECK(has(rig.next(me), "/tactor/levels -200.000000 -200.000000"));
+    CHECK(rig.osc.next_ns().has_value());
+    rig.pass(9.0);
+    rig.say(me, "/tactor/subscribe", {"levels"s});
+    rig.pass(9.0);
+    CHECK(rig.osc.count() == 1);
+    rig.pass(1.5);
+    CHECK(rig.osc.count() == 0);
+    CHECK_FALSE(rig.osc.next_ns().has_value());
+    rig.say(me, "/tactor/subscribe", {"levels"s});
+    rig.say(me, "/tactor/subscribe"); // ends it
+    rig.io.poll();
+    CHECK(rig.osc.count() == 0);
+    CHECK_FALSE(rig.osc.next_ns().has_value());
+}
+
+TEST_CASE("to, end and cancel act at their time, stop at once")
+{
+    osc_rig rig;
+    ready(rig);
+    const auto later = [&](double s) { return rig.unix_ns() + static_cast<std::int64_t>(s * 1e9); };
+    rig.say(me, "/tactor/begin", {1_i, "timeout_s=86400"s});
+    rig.osc.receive(osc_rig::bundle(later(-5.0), {rig.message("/tactor/to", {1_i, 20.0, 20.0})}), me);
+    CHECK(rig.next(me) == "/tactor/stroke 1 started"); // the past is now
+    rig.osc.receive(osc_rig::bundle(later(2.0), {rig.message("/tactor/end", {1_i})}), me);
+    rig.osc.receive(osc_rig::bundle(later(1.0), {rig.message("/tactor/to", {1_i, 1e9, 0.0})}), me);
+    CHECK(rig.silent(me));
+    rig.pass(1.001);
+    CHECK(has(rig.next(me), "x_mm: 1000000000 is out of range"));
+    CHECK(rig.silent(me));
+    rig.pass(1.0);
+    CHECK(rig.next(me) == "/tactor/stroke 1 finished");
+    // What had its end before its time came is told so.
+    rig.say(me, "/tactor/begin", endless(2));
+    rig.osc.receive(osc_rig::bundle(later(1.0), {rig.message("/tactor/cancel", {2_i})}), me);
+    rig.say(me, "/tactor/cancel", {2_i});
+    CHECK(rig.next(me) == "/tactor/stroke 2 cancelled");
+    rig.pass(1.001);
+    CHECK(has(rig.next(me), "/tactor/error /tactor/cancel stroke: "));
+    // stop does not wait for the bundle's time, and takes along what does.
+    rig.say(me, "/tactor/begin", endless(3));
+    rig.osc.receive(
+        osc_rig::bundle(later(30.0), {rig.message("/tactor/cancel", {3_i}),
+                                      rig.message("/tactor/begin", {4_i}), rig.message("/tactor/stop", {})}),
+        me);
+    CHECK(rig.next(me) == "/tactor/stroke 4 cancelled");
+    CHECK(rig.next(me) == "/tactor/stroke 3 cancelled");
+    rig.io.poll();
+    CHECK(rig.osc.count() == 0);
+    CHECK_FALSE(rig.osc.next_ns().has_value());
+}
+
+TEST_CASE("a live stroke with a time begins then, with the point that has the same time")
+{
+    osc_rig rig;
+    ready(rig);
+    const std::int64_t then = rig.unix_ns() + 1'000'000'000;
+    rig.osc.receive(osc_rig::bundle(then, {rig.message("/tactor/begin", {1_i, "timeout_s=86400"s})}), me);
+    rig.osc.receive(osc_rig::bundle(then, {rig.message("/tactor/to", {1_i, 20.0, 20.0})}), me);
+    rig.osc.receive(osc_rig::bundle(then, {rig.message("/tactor/end", {1_i})}), me);
+    const auto& s = rig.all->output().setup();
+    const double lead_s = (s.buffer_frames + 0.5 * s.period_frames) / s.rate;
+    CHECK(lead_s > 0.0);
+    rig.pass(1.0 - lead_s - 0.001);
+    CHECK(rig.silent(me));
+    rig.pass(0.002);
+    CHECK(rig.next(me) == "/tactor/stroke 1 started");
+    CHECK(rig.silent(me)); // its end acts at the time itself
+    rig.pass(lead_s);
+    CHECK(rig.next(me) == "/tactor/stroke 1 finished");
+    // Cancelled before it began.
+    rig.osc.receive(
+        osc_rig::bundle(rig.unix_ns() + 1'000'000'000,
+                        {rig.message("/tactor/begin", {1_i}), rig.message("/tactor/to", {1_i, 2.0, 2.0})}),
+        me);
+    rig.say(me, "/tactor/cancel", {1_i});
+    CHECK(rig.next(me) == "/tactor/stroke 1 cancelled");
+    rig.pass(2.0);
+    CHECK(rig.silent(me));
+    CHECK(rig.osc.count() == 0);
+}
+
+TEST_CASE("no time is more than a minute ahead")
+{
+    osc_rig rig;
+    ready(rig);
+    const auto bundle_in = [&](double s) {
+        return osc_rig::bundle(rig.unix_ns() + static_cast<std::int64_t>(s * 1e9),
+                               {rig.message("/tactor/begin", {1_i})});
+    };
+    rig.osc.receive(bundle_in(61.0), me);
+    CHECK(has(rig.next(me), "/tactor/error /tactor/begin time tag: it is 61.0 s ahead (at most 60"));
+    rig.io.poll();
+    CHECK(rig.osc.count() == 0);
+    rig.osc.receive(bundle_in(60.0), me);
+    CHECK(rig.silent(me));
+    CHECK(rig.osc.count() == 1);
+    rig.say(me, "/tactor/cancel", {1_i});
+    CHECK(rig.next(me) == "/tactor/stroke 1 cancelled");
+}
+
+TEST_CASE("an address is sent ten errors a second, whatever its ports")
+{
+    osc_rig rig;
+    ready(rig);
+    for (std::uint16_t port = 1; port <= 100; ++port)
+        rig.say(osc_rig::at(port), "/tactor/nonsense");
+    CHECK(rig.sent.size() == 10);
+    rig.say(osc_rig::at(1, "127.0.0.2"), "/tactor/nonsense");
+    CHECK(rig.sent.size() == 11);
+    rig.pass(0.999);
+    rig.say(me, "/tactor/nonsense");
+    CHECK(rig.sent.size() == 11);
+    rig.pass(0.001);
+    for (int i = 0; i < 100; ++i)
+        rig.say(me, "/tactor/nonsense");
+    CHECK(rig.sent.size() == 21);
+    CHECK(rig.osc.count() == 0);
+}
+
+TEST_CASE("two servers that hear each other fall silent")
+{
+    osc_rig a;
+    osc_rig b;
+    ready(a);
+    ready(b);
+    // Each subscribes to the other, begins a stroke there, and says what the other does not know.
+    for (osc_rig* r : {&a, &b}) {
+        r->say(me, "/tactor/subscribe", {"levels"s, "stream"s});
+        r->say(me, "/tactor/begin", endless(1));
+        r->say(me, "/tactor/nonsense");
+        r->all->close([] {}); // the stroke's end, and the stream's
+        // Of each kind one, however often the levels come meanwhile.
+        r->until([&] {
+            std::set<std::string> kinds;
+            for (const auto& [to, packet] : r->packets)
+                kinds.insert(net::parse_osc(packet).front().address);
+            return kinds ==
+                   std::set{"/tactor/error"s, "/tactor/levels"s, "/tactor/stream"s, "/tactor/stroke"s};
+        });
+    }
+    std::size_t heard = 0;
+    for (osc_rig* r : {&a, &b}) {
+        osc_rig& other = r == &a ? b : a;
+        for (const auto& [to, packet] : std::exchange(r->packets, {})) {
+            other.sent.clear();
+            other.osc.receive(packet, you);
+            CHECK(other.silent(you));
+            ++heard;
+        }
+    }
+    CHECK(heard >= 8);
+}
+
+TEST_CASE("what one sender may keep waiting has an end")
+{
+    osc_rig rig;
+    ready(rig);
+    rig.say(me, "/tactor/begin", {1_i, "timeout_s=86400"s});
+    const std::string one =
+        osc_rig::bundle(rig.unix_ns() + 30'000'000'000, {rig.message("/tactor/to", {1_i, 2.0, 2.0})});
+    for (std::size_t i = 0; i < server::osc_clients::most_held; ++i)
+        rig.osc.receive(one, me);
+    CHECK(rig.silent(me));
+    rig.osc.receive(one, me);
+    CHECK(has(rig.next(me), "/tactor/error /tactor/to messages: too many wait for their time"));
+    rig.say(me, "/tactor/stop");
+    CHECK_FALSE(rig.osc.next_ns().has_value());
+}
+
+TEST_CASE("places are for those of whom something goes on")
+{
+    osc_rig rig([](auto& o, auto&) {
+        o.limits.max_clients = 4;
+        o.limits.kept_clients = 1;
+    });
+    ready(rig);
+    for (std::uint16_t port = 1; port <= 50; ++port) {
+        rig.say(osc_rig::at(port), "/tactor/play", {drawing, "duration=0.01"s});
+        CHECK(rig.next(osc_rig::at(port)) == "/tactor/stroke 0 started");
+        CHECK(rig.next(osc_rig::at(port)) == "/tactor/stroke 0 finished");
+        rig.io.poll();
+        CHECK(rig.osc.count() == 0);
+    }
+    for (std::uint16_t port = 1; port <= 3; ++port)
+        rig.say(osc_rig::at(port), "/tactor/begin", endless(1));
+    rig.say(me, "/tactor/begin", endless(1));
+    CHECK(has(rig.next(me), "/tactor/error /tactor/begin max_clients: "));
+    rig.say(me, "/tactor/stop"); // needs none
+    for (std::uint16_t port = 1; port <= 3; ++port)
+        CHECK(rig.next(osc_rig::at(port)) == "/tactor/stroke 1 cancelled");
+}
+
+} // namespace osc_clients_test

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+// What messages of OSC ask for, and what is wrong with their values.
+#include "server/osc/request.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <doctest/doctest.h>
+
+#include "has.hpp"
+#include "server/faults.hpp"
+
+namespace osc_request_test {
+
+using namespace tactor;
+using namespace tactor::server;
+using net::json;
+using values = std::vector<net::osc_value>;
+
+namespace {
+
+osc_request read(const std::string& address, values v)
+{
+    return read_osc({.address = address, .values = std::move(v)});
+}
+
+std::string refusal(const std::string& address, values v)
+{
+    try {
+        static_cast<void>(read(address, std::move(v)));
+    } catch (const fault_error& e) {
+        return net::words_of(e.fault());
+    }
+    return {};
+}
+
+std::int64_t operator""_i(unsigned long long n)
+{
+    return static_cast<std::int64_t>(n);
+}
+
+} // namespace
+
+TEST_CASE("each address asks for a method of the protocol")
+{
+    struct {
+        const char* address;
+        values given;
+        const char* params;
+        std::int32_t number;
+    } const cases[] = {
+        {"/tactor/play", {"park2016-1"}, R"({"stroke":"park2016-1","options":{}})", 0},
+        {"/tactor/play", {7_i, " M 0 0 L 9 9"}, R"({"path":" M 0 0 L 9 9","options":{}})", 7},
+        {"/tactor/play",
+         {-3.0, "m 0 0 9 9", "soa=0.07", "snap=true", "algorithm=park2016", "sl=-1e1"},
+         R"({"path":"m 0 0 9 9","options":{"soa":0.07,"snap":true,"algorithm":"park2016","sl":-10.0}})",
+         -3},
+        {"/tactor/begin", {1_i}, R"({"options":{}})", 1},
+        {"/tactor/begin",
+         {1_i, "timeout_s=5", "phantom=linear", "smooth_s=0.05"},
+         R"({"options":{"phantom":"linear"},"smooth_s":0.05,"timeout_s":5.0})",
+         1},
+        {"/tactor/to", {1_i, 2_i, 3.5}, R"({"x_mm":2.0,"y_mm":3.5})", 1},
+        {"/tactor/to", {1_i, 2.0, 3.5, 0.25}, R"({"x_mm":2.0,"y_mm":3.5,"intensity":0.25})", 1},
+        {"/tactor/end", {2_i}, "{}", 2},
+        {"/tactor/cancel", {2147483647_i}, "{}", 2147483647},
+        {"/tactor/stop", {}, "{}", 0},
+        {"/tactor/drive", {4_i, 1_i}, R"({"tactor":4.0,"intensity":1.0})", 0},
+        {"/tactor/drive", {4_i, 0.5, 2.0}, R"({"tactor":4.0,"intensity":0.5,"duration_s":2.0})", 0},
+        {"/tactor/subscribe", {"levels", "stream"}, R"({"events":["levels","stream"]})", 0},
+        {"/tactor/subscribe", {}, R"({"events":[]})", 0},
+    };
+    for (const auto& c : cases) {
+        CAPTURE(c.params);
+        const osc_request r = read(c.address, c.given);
+        CHECK(r.address == c.address);
+        CHECK("/tactor/" + r.method == c.address);
+        CHECK(r.params == json::parse(c.params));
+        CHECK(r.number == c.number);
+    }
+    CHECK(read("/tactor/subscribe", {9000_i, "levels"}).port == 9000);
+}
+
+TEST_CASE("wrong values are refused by their names")
+{
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    struct {
+        const char* address;
+        values given;
+        const char* says;
+    } const cases[] = {
+        {"/tactor/play", {}, "stroke: it is missing"},
+        {"/tactor/play", {1_i}, "stroke: it is missing"},
+        {"/tactor/play", {1_i, 2_i}, "stroke: it is no text"},
+        {"/tactor/play", {1.5, "x"}, "number: 1.5 is no whole number"},
+        {"/tactor/play", {2147483648_i, "x"}, "number: 2147483648 is no whole number"},
+        {"/tactor/play", {net::osc_other{'N'}, "x"}, "stroke: it is no text"},
+        {"/tactor/play", {"x", 1_i}, "options: it is no text"},
+        {"/tactor/play", {"x", "soa"}, "\"soa\" is no option"},
+        {"/tactor/play", {"x", "=1"}, "\"=1\" is no option"},
+        {"/tactor/play", {"x", "soa=1", "soa=2"}, "options.soa: it is there twice"},
+        {"/tactor/begin", {}, "number: it is missing"},
+        {"/tactor/begin", {0_i}, "number: 0 stands for none"},
+        {"/tactor/begin", {"1"}, "number: it is no number"},
+        {"/tactor/to", {1_i, 2_i}, "y_mm: it is missing"},
+        {"/tactor/to", {1_i, nan, 0_i}, "x_mm: it is not finite"},
+        {"/tactor/to", {1_i, 0_i, std::numeric_limits<double>::infinity()}, "y_mm: it is not finite"},
+        {"/tactor/to", {1_i, net::osc_other{'b'}, 0_i}, "x_mm: it is no number"},
+        {"/tactor/to", {1_i, 0_i, 0_i, "loud"}, "intensity: it is no number"},
+        {"/tactor/to", {1_i, 0_i, 0_i, 1_i, 1_i}, "values: there are 5, of which 4 are known"},
+        {"/tactor/end", {}, "number: it is missing"},
+        {"/tactor/cancel", {nan}, "number: it is not finite"},
+        {"/tactor/stop", {1_i}, "values: there are 1, of which 0 are known"},
+        {"/tactor/drive", {1_i}, "intensity: it is missing"},
+        {"/tactor/subscribe", {0_i, "levels"}, "port: 0 is no whole number"},
+        {"/tactor/subscribe", {65536_i, "levels"}, "port: 65536 is no whole number"},
+        {"/tactor/subscribe", {"strokes"}, "there are no \"strokes\""},
+        {"/tactor", {}, "address: it is not known"},
+        {"/tactor/", {}, "address: it is not known"},
+        {"/tactor/st*p", {}, "address: it is not known"},
+        {"/tactor/hello", {}, "address: it is not known"},
+    };
+    for (const auto& c : cases) {
+        CAPTURE(c.address);
+        CHECK(has(refusal(c.address, c.given), c.says));
+    }
+}
+
+TEST_CASE("what servers send is known as such, and is nothing that can be asked for")
+{
+    for (const char* own : {"/tactor/stroke", "/tactor/error", "/tactor/levels", "/tactor/stream"}) {
+        CHECK(is_servers_own(own));
+        CHECK(has(refusal(own, {}), "not known"));
+    }
+    CHECK_FALSE(is_servers_own("/tactor/stop"));
+    CHECK_FALSE(is_servers_own("/tactor/stroke/"));
+}
+
+} // namespace osc_request_test

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <cstring>
+#include <set>
+
+#include <doctest/doctest.h>
+
+#include "service_rig.hpp"
+
+namespace service_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+const json stroke{{"path", "M 0 0 L 40 40"}, {"options", {{"algorithm", "continuous"}, {"duration", 0.1}}}};
+
+json with(json params, const char* name, const json& value)
+{
+    params[name] = value;
+    return params;
+}
+
+double peak_of(const fake_dac& card)
+{
+    const auto bytes = card.captured();
+    double most = 0.0;
+    for (std::size_t i = 0; i + 4 <= bytes.size(); i += 4) {
+        std::int32_t v = 0;
+        std::memcpy(&v, bytes.data() + i, sizeof v);
+        most = std::max(most, std::abs(static_cast<double>(v)) / 2147483648.0);
+    }
+    return 20.0 * std::log10(most);
+}
+
+} // namespace
+
+TEST_CASE("a stroke: the reply, its beginning, its end, each once and in this order")
+{
+    service_rig rig;
+    rig.plug();
+    rig.start();
+    const auto c = rig.client();
+    const json n = rig.ok(c, "play", stroke)["stroke"];
+    CHECK(c.box->of_stroke(n).empty()); // none came before the reply
+    const json end = rig.end_of(c, n);
+    CHECK(end["state"] == "finished");
+    CHECK(end["frames"] == 4800);
+    const auto told = c.box->of_stroke(n);
+    REQUIRE(told.size() == 2);
+    CHECK(told[0]["state"] == "started");
+    CHECK(told[0]["frames"] == 0);
+    CHECK(told[0]["started_s"].is_number());
+}
+
+TEST_CASE("a batch's reply comes before what it began is told of")
+{
+    service_rig rig;
+    rig.plug();
+    rig.start();
+    const auto c = rig.client();
+    json batch = json::array();
+    for (int i = 0; i < 20; ++i)
+        batch.push_back({{"jsonrpc", "2.0"}, {"id", 1000 + i}, {"method", "play"}, {"params", stroke}});
+    rig.send(c, batch);
+    rig.until([&] { return !c.box->all.empty(); });
+    REQUIRE(c.box->all.front().is_array());
+    std::set<int> numbers;
+    for (const json& r : c.box->all.front())
+        numbers.insert(r["result"]["stroke"].get<int>());
+    CHECK(numbers.size() == 20);
+    for (const int n : numbers)
+        CHECK(rig.end_of(c, n)["state"] == "finished");
+}
+
+TEST_CASE("all clients together stay below the ceiling on every channel")
+{
+    service_rig rig;
+    fake_dac& card = rig.plug();
+    rig.start();
+    const auto a = rig.client();
+    const auto b = rig.client();
+    std::vector<json> ends;
+    const json x = rig.ok(a, "drive", {{"tactor", 4}, {"duration_s", 0.2}})["stroke"];
+    const json y = rig.ok(b, "drive", {{"tactor", 4}, {"duration_s", 0.2}})["stroke"];
+    const json live = rig.ok(b, "begin", {{"timeout_s", 86400}})["stroke"];
+    CHECK(rig.ok(b, "to", {{"stroke", live}, {"x_mm", 20}, {"y_mm", 20}, {"intensity", 1000}}).empty());
+    rig.end_of(a, x);
+    rig.end_of(b, y);
+    rig.ok(b, "end", {{"stroke", live}});
+    rig.end_of(b, live);
+    CHECK(peak_of(card) <= -12.0 + 0.01);
+    CHECK(peak_of(card) > -12.5);
+}
+
+TEST_CASE("other people's strokes are not touched, but stop is everybody's")
+{
+    service_rig rig;
+    rig.plug();
+    rig.start();
+    const auto a = rig.client();
+    const auto b = rig.client();
+    const json n = rig.ok(a, "play", with(stroke, "start", "armed"))["stroke"];
+    CHECK(rig.code(b, "cancel", {{"stroke", n}}) == -32002);
+    CHECK(rig.code(b, "end", {{"stroke", n}}) == -32002);
+    CHECK(rig.code(a, "end", {{"stroke", n}}) == -32002); // it is not live
+    CHECK(rig.ok(b, "stop").empty());
+    CHECK(rig.end_of(a, n)["state"] == "cancelled");
+    CHECK(b.box->of_stroke(n).empty());
+    CHECK(rig.ok(b, "fire")["count"] == 0);
+}
+
+TEST_CASE("one tactor alone has a start, too")
+{
+    service_rig rig;
+    rig.plug();
+    rig.start();
+    const auto c = rig.client();
+    const json drive{{"tactor", 4}, {"duration_s", 0.05}};
+    const json n = rig.ok(c, "drive", with(drive, "start", "armed"))["stroke"];
+    CHECK(rig.ok(c, "status")["strokes"][0]["state"] == "armed");
+    CHECK(rig.ok(c, "fire")["count"] == 1);
+    CHECK(rig.end_of(c, n)["state"] == "finished");
+    CHECK(rig.call(c, "drive", with(drive, "start", "soon"))["error"]["data"]["what"] == "start");
+    CHECK(rig.call(c, "drive", with(drive, "start", {{"delay_s", -1}}))["error"]["data"]["what"] ==
+          "start.delay_s");
+}
+
+TEST_CASE("stop holds for what is being planned, too")
+{
+    service_rig rig;
+    rig.plug();
+    rig.start();
+    const auto c = rig.client();
+    rig.send(c, {{"jsonrpc", "2.0"}, {"id", 1000}, {"method", "play"}, {"params", stroke}});
+    rig.send(c, {{"jsonrpc", "2.0"}, {"id", 1001}, {"method", "stop"}});
+    rig.until([&] { return c.box->reply(1000).has_value(); });
+    const json n = (*c.box->reply(1000))["result"]["stroke"];
+    const json end = rig.end_of(c, n);
+    CHECK(end["state"] == "cancelled");
+    CHECK(end["frames"] == 0);
+}
+
+TEST_CASE("a client that goes: its played strokes play on, also those that were not planned yet")
+{
+    service_rig rig;
+    rig.plug();
+    rig.start();
+    const auto gone = rig.client();
+    const auto watcher = rig.client();
+    rig.ok(watcher, "subscribe", {{"events", {"strokes"}}});
+    const json live = rig.ok(gone, "begin", {{"timeout_s", 86400}})["stroke"];
+    rig.ok(gone, "to", {{"stroke", live}, {"x_mm", 20}, {"y_mm", 20}});
+    for (int i = 0; i < 5; ++i)
+        rig.send(gone, {{"jsonrpc", "2.0"}, {"id", i}, {"method", "play"}, {"params", stroke}});
+    rig.all->disconnect(gone.number);
+    rig.until([&] {
+        std::size_t finished = 0;
+        for (const json& m : watcher.box->all)
+            finished += m.contains("method") && m["params"]["state"] == "finished" ? 1 : 0;
+        return finished == 6;
+    });
+    CHECK(watcher.box->end_of(live).has_value());
+    CHECK(rig.ok(watcher, "status")["clients"] == 1);
+}
+
+TEST_CASE("many points and many strokes are refused, not queued")
+{
+    service_rig rig([](server::service_options& o, server::stream_options&) {
+        o.now_ns = [] { return std::int64_t{1'000'000'000}; };
+    });
+    rig.plug();
+    rig.start();
+    const auto c = rig.client();
+    const json n = rig.ok(c, "begin", {{"timeout_s", 86400}})["stroke"];
+    const json point{{"stroke", n}, {"x_mm", 1}, {"y_mm", 1}};
+    for (int i = 0; i < 2000; ++i)
+        REQUIRE(rig.code(c, "to", point) == 0);
+    CHECK(rig.code(c, "to", point) == -32001);
+    for (int i = 0; i < 3; ++i)
+        rig.ok(c, "begin", {{"timeout_s", 86400}});
+    CHECK(rig.code(c, "begin") == -32001);
+    for (int i = 0; i < 60; ++i)
+        rig.ok(c, "play", with(stroke, "start", "armed"));
+    CHECK(rig.code(c, "play", stroke) == -32001);
+    rig.ok(c, "stop");
+    rig.until([&] { return rig.code(c, "play", stroke) == 0; });
+}
+
+TEST_CASE("max_stroke_s holds for live strokes, too, however many points come")
+{
+    service_rig rig([](server::service_options& o, server::stream_options&) { o.limits.max_stroke_s = 0.2; });
+    rig.plug();
+    rig.start();
+    const auto c = rig.client();
+    const json n = rig.ok(c, "begin", {{"timeout_s", 86400}})["stroke"];
+    const json point{
+        {"jsonrpc", "2.0"}, {"method", "to"}, {"params", {{"stroke", n}, {"x_mm", 1}, {"y_mm", 1}}}};
+    rig.send(c, point);
+    const json end = rig.end_of(c, n);
+    CHECK(end["state"] == "interrupted");
+    CHECK(end["reason"] == "it has lasted as long as it may");
+    CHECK(end["frames"] >= 9600);
+    CHECK(end["frames"] <= 9600 + 2 * 480);
+    CHECK(rig.ok(c, "status")["strokes"].empty());
+    CHECK_FALSE(rig.ok(c, "begin").empty()); // its place is free
+}
+
+TEST_CASE("smooth_s: an end waits until the last point is reached")
+{
+    service_rig rig;
+    rig.plug();
+    rig.start();
+    const auto c = rig.client();
+    for (const json& bad : {json(-0.1), json(1.1), json("0.1")})
+        CHECK(rig.call(c, "begin", {{"smooth_s", bad}})["error"]["data"]["what"] == "smooth_s");
+    const json n = rig.ok(c, "begin", {{"timeout_s", 86400}, {"smooth_s", 0.5}})["stroke"];
+    rig.ok(c, "to", {{"stroke", n}, {"x_mm", 1}, {"y_mm", 1}});
+    // It has begun, and periods have gone by since.
+    rig.until([&] { return !c.box->of_stroke(n).empty(); });
+    rig.end_of(c, rig.ok(c, "drive", {{"tactor", 8}, {"duration_s", 0.05}})["stroke"]);
+    rig.ok(c, "to", {{"stroke", n}, {"x_mm", 39}, {"y_mm", 39}});
+    rig.ok(c, "end", {{"stroke", n}});
+    const json end = rig.end_of(c, n);
+    CHECK(end["state"] == "finished");
+    CHECK(end["frames"] >= 24'000);
+}
+
+TEST_CASE("over a network hello comes first, and the token where one is owed")
+{
+    service_rig rig([](server::service_options& o, server::stream_options&) { o.token = "right"; });
+    rig.plug();
+    rig.start();
+    const auto post = rig.client(server::client_kind::network);
+    CHECK_FALSE(rig.all->receive(post.number, "POST / HTTP/1.1"));
+    CHECK(post.box->all.empty());
+    const auto c = rig.client(server::client_kind::network);
+    CHECK(rig.code(c, "hello") == -32003);
+    CHECK(rig.code(c, "status") == -32003);
+    CHECK(rig.code(c, "hello", {{"token", "wrong"}}) == -32003);
+    CHECK_FALSE(c.box->finished);
+    CHECK(rig.code(c, "hello", {{"token", "righ"}}) == -32003);
+    CHECK(c.box->finished);
+    const auto d = rig.client(server::client_kind::network);
+    CHECK(rig.code(d, "hello", {{"token", "right"}}) == 0);
+    CHECK(rig.code(d, "status") == 0);
+    CHECK(rig.code(rig.client(), "status") == 0);
+}
+
+TEST_CASE("places: some are for the socket of this machine alone")
+{
+    service_rig rig([](server::service_options& o, server::stream_options&) {
+        o.limits.max_clients = 3;
+        o.limits.kept_clients = 2;
+    });
+    using server::client_kind;
+    CHECK(rig.all->has_place(client_kind::network));
+    const auto c = rig.client(client_kind::network);
+    CHECK_FALSE(rig.all->has_place(client_kind::network));
+    CHECK(rig.all->has_place(client_kind::local));
+    rig.all->disconnect(c.number);
+    CHECK(rig.all->has_place(client_kind::network));
+}
+
+} // namespace service_test

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+// Cards that come and go, and the end.
+#include <atomic>
+#include <future>
+
+#include <doctest/doctest.h>
+
+#include "service_rig.hpp"
+
+namespace service_faults_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+const json brief{{"path", "M 0 0 L 40 40"}, {"options", {{"algorithm", "continuous"}, {"duration", 0.1}}}};
+const json armed{{"path", "M 0 0 L 40 40"}, {"start", "armed"}};
+
+} // namespace
+
+TEST_CASE("no card at the start, then one, then another in its place")
+{
+    service_rig rig;
+    rig.start();
+    const auto c = rig.client();
+    rig.ok(c, "subscribe", {{"events", {"stream"}}});
+    rig.until([&] { return rig.all->output().is_out(); });
+    CHECK(rig.code(c, "play", brief) == -32000);
+    CHECK(rig.code(c, "drive", {{"tactor", 0}}) == -32000);
+    CHECK(rig.code(c, "begin") == -32000);
+    CHECK(rig.code(c, "plan", brief) == 0);
+    CHECK(rig.ok(c, "hello")["stream"]["format"].is_null());
+    CHECK(rig.ok(c, "status")["stream"]["state"] == "lost");
+    rig.plug();
+    rig.until([&] { return rig.all->output().state() == server::stream_state::running; });
+    CHECK(rig.ok(c, "hello")["stream"]["format"] == "s32");
+    CHECK(rig.end_of(c, rig.ok(c, "play", brief)["stroke"])["state"] == "finished");
+
+    const json played = rig.ok(c, "play", armed)["stroke"];
+    const json live = rig.ok(c, "begin", {{"timeout_s", 86400}})["stroke"];
+    rig.unplug();
+    for (const json& n : {played, live}) {
+        const json end = rig.end_of(c, n);
+        CHECK(end["state"] == "interrupted");
+        CHECK(end["reason"] != "");
+    }
+    rig.until([&] { return rig.all->output().state() == server::stream_state::lost; });
+    CHECK(rig.code(c, "to", {{"stroke", live}, {"x_mm", 1}, {"y_mm", 1}}) == -32002);
+    rig.plug();
+    rig.until([&] { return rig.all->output().state() == server::stream_state::running; });
+    const json again = rig.ok(c, "play", brief)["stroke"];
+    CHECK(again.get<int>() > live.get<int>());
+    CHECK(rig.end_of(c, again)["state"] == "finished");
+    const auto told = c.box->streams();
+    REQUIRE(told.size() >= 3);
+    CHECK(told.back() == "running");
+    CHECK(c.box->of_stroke(played).size() == 1);
+}
+
+TEST_CASE("at the end each number has had exactly one end, whoever is still there")
+{
+    service_rig rig;
+    rig.plug();
+    rig.start();
+    const auto c = rig.client();
+    std::vector<json> numbers;
+    for (int i = 0; i < 10; ++i)
+        numbers.push_back(rig.ok(c, "play", i % 2 == 0 ? armed : brief)["stroke"]);
+    numbers.push_back(rig.ok(c, "begin", {{"timeout_s", 86400}})["stroke"]);
+    for (int i = 0; i < 5; ++i)
+        rig.send(c, {{"jsonrpc", "2.0"}, {"id", 5000 + i}, {"method", "play"}, {"params", brief}});
+    rig.close();
+    for (int i = 0; i < 5; ++i) {
+        REQUIRE(c.box->reply(5000 + i).has_value());
+        const json r = *c.box->reply(5000 + i);
+        if (r.contains("result"))
+            numbers.push_back(r["result"]["stroke"]);
+        else
+            CHECK(r["error"]["code"] == -32000);
+    }
+    for (const json& n : numbers) {
+        int ends = 0;
+        for (const json& m : c.box->of_stroke(n))
+            ends += m["state"] != "started" ? 1 : 0;
+        CHECK(ends == 1);
+    }
+    CHECK(c.box->streams() == std::vector<std::string>{"closing"});
+    CHECK(rig.cards.back().closed());
+}
+
+TEST_CASE("an idle stream is closed, and opened by the next stroke")
+{
+    service_rig rig([](server::service_options&, server::stream_options& s) { s.idle_stop_s = 0.001; });
+    rig.plug();
+    rig.start();
+    const auto c = rig.client();
+    rig.sleep_and_plug();
+    CHECK(rig.end_of(c, rig.ok(c, "drive", {{"tactor", 0}, {"duration_s", 0.1}})["stroke"])["state"] ==
+          "finished");
+}
+
+TEST_CASE("stop reaches what waits for an idle stream to start")
+{
+    std::promise<void> gate;
+    std::atomic<int> opened{0};
+    service_rig rig([&](server::service_options&, server::stream_options& s) {
+        s.idle_stop_s = 0.001;
+        s.open = [&, open = s.open, started = gate.get_future().share()] {
+            if (opened++ == 1)
+                started.wait();
+            return open();
+        };
+    });
+    rig.plug();
+    rig.start();
+    const auto c = rig.client();
+    rig.sleep_and_plug();
+    const std::vector<std::pair<std::string, json>> asked{
+        {"begin", json::object()}, {"play", brief}, {"play", armed}, {"drive", {{"tactor", 0}}}};
+    for (std::size_t i = 0; i < asked.size(); ++i)
+        rig.send(c, {{"jsonrpc", "2.0"},
+                     {"id", 1000 + static_cast<int>(i)},
+                     {"method", asked[i].first},
+                     {"params", asked[i].second}});
+    rig.ok(c, "stop");
+    gate.set_value();
+    for (int id = 1000; id < 1004; ++id) {
+        CAPTURE(asked[static_cast<std::size_t>(id - 1000)].first);
+        rig.until([&] { return c.box->reply(id).has_value(); });
+        const json n = (*c.box->reply(id))["result"]["stroke"];
+        const json end = rig.end_of(c, n);
+        CHECK(end["state"] == "cancelled");
+        CHECK(end["reason"] == "stopped");
+        CHECK(end["frames"] == 0);
+        CHECK(c.box->of_stroke(n).size() == 1);
+        CHECK(rig.code(c, "to", {{"stroke", n}, {"x_mm", 1}, {"y_mm", 1}}) == -32002);
+    }
+    // What is asked for after the stop begins.
+    CHECK(rig.end_of(c, rig.ok(c, "play", brief)["stroke"])["state"] == "finished");
+    CHECK(rig.ok(c, "status")["strokes"].empty());
+}
+
+} // namespace service_faults_test

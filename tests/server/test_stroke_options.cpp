@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include "server/faults.hpp"
+#include "server/stroke_options.hpp"
+#include "server/stroke_source.hpp"
+
+namespace stroke_options_test {
+
+using namespace tactor;
+using namespace tactor::server;
+using net::json;
+
+namespace {
+
+template <typename F>
+net::rpc_fault fault_from(F make)
+{
+    try {
+        make();
+    } catch (const fault_error& e) {
+        return e.fault();
+    }
+    FAIL("nothing was refused");
+    return {};
+}
+
+planning palm()
+{
+    planning p;
+    p.tactors = preset_array("palm-3x3");
+    return p;
+}
+
+std::string what_of(const json& params)
+{
+    const planning p = palm();
+    return fault_from([&] { make_planned(p, layout(p.tactors), params); }).what;
+}
+
+} // namespace
+
+TEST_CASE("options are put over the owner's, each with its type")
+{
+    stroke_settings owner;
+    owner.speed_mm_s = 80.0;
+    owner.render.sl_db = 7.0;
+    const stroke_settings s = with_options(owner,
+                                           {{"algorithm", "tactile-brush"},
+                                            {"phantom", "log"},
+                                            {"duration", 2},
+                                            {"soa", 0.06},
+                                            {"burst", 0.05},
+                                            {"slope", 0.3},
+                                            {"intercept", 0.04},
+                                            {"timing", "fit"},
+                                            {"outside", "clamp"},
+                                            {"snap", true},
+                                            {"drop_points", true},
+                                            {"overlap", "max"},
+                                            {"carrier", 200},
+                                            {"phase", "burst"},
+                                            {"ramp", 0.001},
+                                            {"waveform", "noise:50-300"},
+                                            {"noise_seed", 5},
+                                            {"am", "20:0.5"},
+                                            {"envelope", "tukey:0.25"},
+                                            {"intensity_scale", "stevens"},
+                                            {"stevens_exponent", 0.9},
+                                            {"level_dbfs", -20}},
+                                           options_for::planned);
+    CHECK(s.plan.algorithm == algorithm_kind::tactile_brush);
+    CHECK(s.plan.phantom == from_string<phantom_kind>("log"));
+    CHECK(s.duration_s == 2.0);
+    CHECK_FALSE(s.speed_mm_s);
+    CHECK(s.plan.soa_s == 0.06);
+    CHECK(s.plan.profile.max_soa_s == doctest::Approx(0.04 / 0.7));
+    CHECK(s.plan.timing == timing_kind::fit);
+    CHECK(s.plan.outside == outside_kind::clamp);
+    CHECK((s.plan.snap && s.plan.drop_points));
+    CHECK(s.plan.overlap == overlap_kind::max);
+    CHECK(s.plan.carrier_hz == 200.0);
+    CHECK(s.render.phase == phase_kind::burst);
+    CHECK(s.render.ramp_s == 0.001);
+    CHECK(waveform_text(s.plan.wave) == "noise:50-300");
+    CHECK(s.plan.wave.seed == 5);
+    CHECK(s.plan.am == modulation{20.0, 0.5});
+    CHECK(envelope_text(s.render.envelope) == "tukey:0.25");
+    CHECK(s.plan.scale == intensity_scale{scale_kind::stevens, 0.9, 0.0});
+    CHECK(s.render.level_dbfs == -20.0);
+    CHECK_FALSE(s.render.sl_db);
+}
+
+TEST_CASE("what is refused names its parameter")
+{
+    const json path{{"path", "M 0 0 L 40 40"}};
+    const auto option = [&](const char* name, const json& value) {
+        json p = path;
+        p["options"] = {{name, value}};
+        return what_of(p);
+    };
+    for (const char* name : {"soa", "burst", "slope", "carrier", "ramp", "level_dbfs", "sl", "duration"}) {
+        CHECK(option(name, "1") == std::string("options.") + name);
+        CHECK(option(name, 1e300) == std::string("options.") + name);
+        CHECK(option(name, nullptr) == std::string("options.") + name);
+    }
+    CHECK(option("soa", 0.5) == "options.soa");
+    CHECK(option("soa", 0.01) == "options.soa");
+    CHECK(option("burst", 0.5) == "options.burst");
+    CHECK(option("carrier", 100000) == "options.carrier");
+    CHECK(option("max_drive_s", 1) == "options.max_drive_s");
+    for (const char* wave : {"sqare", "./grain.wav", "/dev/zero", "noise:./x.wav", "noise:50-30000", ""})
+        CHECK(option("waveform", wave) == "options.waveform");
+    CHECK(option("noise_seed", 1.5) == "options.noise_seed");
+    CHECK(option("am", "x") == "options.am");
+    CHECK(option("envelope", "tukey:2") == "options.envelope");
+    CHECK(option("envelope", "linear:0.5") == "options.envelope");
+    CHECK(option("intensity_scale", "sl") == "options.intensity_scale");
+    CHECK(what_of({{"path", "M 0 0 L 400 0"}}) == "path");
+    CHECK(what_of({{"toml", "stroke"}}) == "toml");
+    CHECK(what_of({{"csv", "t_s,x_mm,y_mm\n0,0,0\n"}}) == "csv");
+}
+
+TEST_CASE("messages speak the protocol's words")
+{
+    const planning p = palm();
+    const auto f = fault_from([&] {
+        make_planned(p, layout(p.tactors),
+                     {{"path", "M 0 0 L 400 0"}, {"options", {{"algorithm", "continuous"}}}});
+    });
+    CHECK(f.hint.find("options.outside") != std::string::npos);
+    const auto g = fault_from([&] { make_planned(p, layout(p.tactors), {{"toml", "\n[stroke]\nx = 1\n"}}); });
+    CHECK(g.why.substr(0, 2) == "3:");
+}
+
+TEST_CASE("the ceiling holds for level, intensity and dB SL")
+{
+    planning p = palm();
+    for (tactor_spec& t : p.tactors.tactors)
+        t.threshold_dbfs = -40.0;
+    const layout faces(p.tactors);
+    const auto plays = [&](const json& params) {
+        try {
+            make_planned(p, faces, params);
+            return true;
+        } catch (const fault_error&) {
+            return false;
+        }
+    };
+    const auto path = [](const json& options) {
+        return json{{"path", "M 0 0 L 40 40"}, {"options", options}};
+    };
+    CHECK(plays(path({{"level_dbfs", -12}})));
+    CHECK_FALSE(plays(path({{"level_dbfs", -11.99}})));
+    CHECK(plays(path({{"sl", 28}})));
+    CHECK_FALSE(plays(path({{"sl", 28.01}})));
+    const auto points = [](double intensity, double level) {
+        return json{{"points", {{0, 0, 0}, {0.5, 20, 20, intensity}, {1, 40, 40}}},
+                    {"options", {{"algorithm", "continuous"}, {"level_dbfs", level}}}};
+    };
+    CHECK(plays(points(1.0, -12)));
+    CHECK_FALSE(plays(points(1.1, -12)));
+    CHECK(plays(points(1.9, -18)));
+    CHECK_FALSE(plays(points(2.1, -18)));
+    // Half of the amplitude is 6 dB less than -6 dBFS, half of 34 dB SL is 17 dB less.
+    const auto half = [](const char* scale) {
+        return json{{"points", {{0, 0, 0, 0.5}, {1, 40, 40, 0.5}}},
+                    {"options", {{"algorithm", "continuous"}, {"sl", 34}, {"intensity_scale", scale}}}};
+    };
+    CHECK(plays(half("linear")));
+    CHECK(plays(half("sl")));
+    p.max_level_dbfs = -20.0;
+    CHECK_FALSE(plays(half("linear"))); // -12 dBFS
+    CHECK_FALSE(plays(half("stevens")));
+    CHECK(plays(half("sl"))); // -23 dBFS
+}
+
+} // namespace stroke_options_test

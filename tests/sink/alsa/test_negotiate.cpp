@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: MIT
+// What a PCM is asked for, what it makes of it, and what is said when it cannot.
+#include <cerrno>
+#include <string>
+
+#include <unistd.h>
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <tactor/alsa.hpp>
+#include <tactor/error.hpp>
+
+#include "fake_dac.hpp"
+#include "sink/alsa/adopt.hpp"
+#include "sink/alsa/classify.hpp"
+#include "sink/alsa/error_text.hpp"
+
+namespace negotiate_test {
+
+using namespace tactor;
+
+namespace {
+
+// Two devices of four channels as one of exactly eight.
+std::string eight_channels()
+{
+    std::string s = "pcm.n { type null }\n"
+                    "pcm.t { type multi slaves.a { pcm n channels 4 } slaves.b { pcm n channels 4 }\n";
+    for (int i = 0; i < 8; ++i)
+        s += fmt::format("bindings.{} {{ slave {} channel {} }}\n", i, i < 4 ? 'a' : 'b', i % 4);
+    return s + "}\n";
+}
+
+const std::string only_s16 = "pcm.n { type null } pcm.t { type linear slave { pcm n format S16_LE } }";
+const std::string stereo_44100 =
+    "pcm.n { type null } pcm.t { type plug slave { pcm n rate 44100 channels 2 } }";
+
+alsa_options configured(const std::string& text, unsigned channels = 9)
+{
+    alsa_options o;
+    o.pcm = "t";
+    o.channels = channels;
+    o.config_text = text;
+    return o;
+}
+
+struct failure {
+    error_kind kind = error_kind::runtime;
+    std::string text;
+
+    bool says(const std::string& part) const { return text.find(part) != std::string::npos; }
+};
+
+template <typename F>
+failure failure_of(F f)
+{
+    try {
+        f();
+    } catch (const error& e) {
+        return {e.kind(), e.what()};
+    }
+    FAIL("no error");
+    return {};
+}
+
+failure failure_of_open(const alsa_options& o)
+{
+    return failure_of([&] { static_cast<void>(open_alsa(o)); });
+}
+
+} // namespace
+
+TEST_CASE("null takes what is asked, in the first format of the preference")
+{
+    alsa_options o;
+    o.channels = 9;
+    const auto s = open_alsa(o);
+    CHECK(s->setup().name == "null");
+    CHECK(s->setup().channels == 9);
+    CHECK(s->setup().rate == 48000);
+    CHECK(s->setup().format == format_kind::s32);
+    CHECK(s->setup().period_frames == 96);
+    CHECK(s->setup().buffer_frames == 288);
+}
+
+TEST_CASE("a format that is asked for is the format that is used")
+{
+    for (const format_kind f :
+         {format_kind::float32, format_kind::s16, format_kind::s24_3, format_kind::s24_4, format_kind::s32}) {
+        alsa_options o;
+        o.channels = 1;
+        o.format = f;
+        CHECK(open_alsa(o)->setup().format == f);
+    }
+}
+
+TEST_CASE("a device of exactly eight channels takes eight, and says so when asked for nine")
+{
+    CHECK(open_alsa(configured(eight_channels(), 8))->setup().channels == 8);
+    const failure e = failure_of_open(configured(eight_channels(), 9));
+    CHECK(e.kind == error_kind::not_available);
+    CHECK(e.says("PCM \"t\": cannot play 9 channels at 48000 Hz in s32 or float"));
+    CHECK(e.says("refused: channels"));
+    CHECK(e.says("channels 8, rates any Hz, formats s32 float"));
+}
+
+TEST_CASE("a format that the device does not have is refused by name")
+{
+    alsa_options o = configured(only_s16);
+    // A linear plugin converts among integers, which NO_AUTO_FORMAT does not stop: its owner asked for it.
+    CHECK(open_alsa(o)->setup().format == format_kind::s32);
+    o.format = format_kind::float32;
+    const failure e = failure_of_open(o);
+    CHECK(e.kind == error_kind::not_available);
+    CHECK(e.says("9 channels at 48000 Hz in float"));
+    CHECK(e.says("refused: format"));
+}
+
+TEST_CASE("plug neither resamples nor mixes channels behind the user's back")
+{
+    const failure e = failure_of_open(configured(stereo_44100));
+    CHECK(e.kind == error_kind::not_available);
+    CHECK(e.says("refused: channels, rate"));
+    CHECK(e.says("channels 2, rates 44100 Hz"));
+    alsa_options o = configured(stereo_44100, 2);
+    o.rate = 44100;
+    CHECK(open_alsa(o)->setup().rate == 44100);
+}
+
+TEST_CASE("a PCM that does not exist is said to be none")
+{
+    for (const char* name : {"no-such-pcm", "hw:CARD=NoSuchCard", "hw:31", "", "null:1,2,3,4"}) {
+        CAPTURE(name);
+        alsa_options o;
+        o.pcm = name;
+        o.channels = 9;
+        const failure e = failure_of_open(o);
+        CHECK(e.kind == error_kind::not_available);
+        CHECK(e.says("PCM \"" + std::string(name) + "\": "));
+        CHECK(e.says("tactor devices"));
+    }
+    alsa_options o;
+    o.pcm = "no-such-pcm";
+    o.channels = 9;
+    CHECK(failure_of_open(o).says("no such PCM"));
+}
+
+TEST_CASE("opening prints nothing")
+{
+    std::FILE* catcher = std::tmpfile();
+    REQUIRE(catcher != nullptr);
+    const int before = ::dup(STDERR_FILENO);
+    ::dup2(::fileno(catcher), STDERR_FILENO);
+    alsa_options o;
+    o.pcm = "hw:CARD=NoSuchCard";
+    o.channels = 1;
+    const failure e = failure_of_open(o);
+    ::dup2(before, STDERR_FILENO);
+    ::close(before);
+    CHECK(std::ftell(catcher) == 0);
+    CHECK(::lseek(::fileno(catcher), 0, SEEK_END) == 0);
+    std::fclose(catcher);
+    CHECK(e.says("NoSuchCard"));
+}
+
+TEST_CASE("configuration text that ALSA cannot read is bad input")
+{
+    const failure e = failure_of_open(configured("pcm.t { type "));
+    CHECK(e.kind == error_kind::bad_input);
+    CHECK(e.says("ALSA configuration text"));
+    CHECK(failure_of_open(configured("pcm.other { type null }")).kind == error_kind::not_available);
+    CHECK(failure_of_open(configured("pcm.t { type no_such_type }")).kind == error_kind::not_available);
+}
+
+TEST_CASE("numbers that no PCM has are bad input")
+{
+    const auto with = [](auto change) {
+        alsa_options o;
+        o.channels = 9;
+        change(o);
+        return failure_of_open(o).kind;
+    };
+    CHECK(with([](alsa_options& o) { o.channels = 0; }) == error_kind::bad_input);
+    CHECK(with([](alsa_options& o) { o.channels = 1025; }) == error_kind::bad_input);
+    CHECK(with([](alsa_options& o) { o.rate = 0; }) == error_kind::bad_input);
+    CHECK(with([](alsa_options& o) { o.rate = 4'000'000'000; }) == error_kind::bad_input);
+    CHECK(with([](alsa_options& o) { o.period_frames = 0; }) == error_kind::bad_input);
+    CHECK(with([](alsa_options& o) { o.period_frames = 4'000'000'000; }) == error_kind::bad_input);
+    CHECK(with([](alsa_options& o) { o.periods = 1; }) == error_kind::bad_input);
+    CHECK(with([](alsa_options& o) { o.periods = 4'000'000'000; }) == error_kind::bad_input);
+}
+
+TEST_CASE("a device of a card: formats in order of preference, rate and channels exact")
+{
+    const auto open = [](const test::fake_dac_options& d, alsa_options o) {
+        test::fake_dac dac(d);
+        o.pcm = "card";
+        return pcm::adopt(dac.pcm(), o)->setup();
+    };
+    alsa_options o;
+    o.channels = 8;
+    CHECK(open({.formats = {SND_PCM_FORMAT_S16_LE, SND_PCM_FORMAT_FLOAT_LE}}, o).format ==
+          format_kind::float32);
+    CHECK(open({.formats = {SND_PCM_FORMAT_S16_LE, SND_PCM_FORMAT_S24_LE}}, o).format == format_kind::s24_4);
+    CHECK(open({.formats = {SND_PCM_FORMAT_S16_LE}}, o).format == format_kind::s16);
+
+    const failure nothing = failure_of([&] { open({.formats = {SND_PCM_FORMAT_U8}}, o); });
+    CHECK(nothing.says("refused: format"));
+    CHECK(nothing.says("none that tactor plays"));
+    o.channels = 65;
+    o.rate = 44100;
+    const failure e = failure_of([&] { open({}, o); });
+    CHECK(e.says("refused: channels, rate"));
+    CHECK(e.says("channels 1 to 64, rates 48000 Hz, formats s32 float s16"));
+}
+
+TEST_CASE("a device that rounds the period says what it made of it")
+{
+    test::fake_dac dac({.least_period_bytes = 4096});
+    alsa_options o;
+    o.channels = 8;
+    const stream_setup s = pcm::adopt(dac.pcm(), o)->setup();
+    CHECK(s.period_frames == 128);
+    CHECK(s.buffer_frames % s.period_frames == 0);
+    CHECK(s.buffer_frames >= 2 * s.period_frames);
+}
+
+TEST_CASE("an adopted PCM is closed with its sink, and when it does not fit")
+{
+    test::fake_dac dac;
+    alsa_options o;
+    o.channels = 8;
+    pcm::adopt(dac.pcm(), o).reset();
+    CHECK(dac.closed());
+    test::fake_dac other;
+    o.channels = 65;
+    CHECK_THROWS_AS(pcm::adopt(other.pcm(), o), error);
+    CHECK(other.closed());
+}
+
+TEST_CASE("errors of opening come with advice")
+{
+    CHECK(std::string(pcm::open_error("x", -EBUSY, "").what()).find("another program") != std::string::npos);
+    CHECK(std::string(pcm::open_error("x", -EACCES, "").what()).find("group audio") != std::string::npos);
+    CHECK(std::string(pcm::open_error("x", -ENOENT, "").what()).find("tactor devices") != std::string::npos);
+    CHECK(std::string(pcm::open_error("x", -ENODEV, "why").what()).find("why") != std::string::npos);
+    CHECK(pcm::open_error("x", -EIO, "").kind() == error_kind::not_available);
+}
+
+TEST_CASE("every result of a write has its meaning")
+{
+    using pcm::of_error;
+    CHECK(of_error(-EAGAIN, SND_PCM_STATE_RUNNING) == io_kind::again);
+    CHECK(of_error(-EINTR, SND_PCM_STATE_RUNNING) == io_kind::again);
+    CHECK(of_error(-EPIPE, SND_PCM_STATE_XRUN) == io_kind::xrun);
+    CHECK(of_error(-EPIPE, SND_PCM_STATE_RUNNING) == io_kind::xrun);
+    CHECK(of_error(-EPIPE, SND_PCM_STATE_DISCONNECTED) == io_kind::lost);
+    CHECK(of_error(-EPIPE, -ENODEV) == io_kind::lost);
+    CHECK(of_error(-ESTRPIPE, SND_PCM_STATE_SUSPENDED) == io_kind::suspended);
+    CHECK(of_error(-ENODEV, SND_PCM_STATE_RUNNING) == io_kind::lost);
+    CHECK(of_error(-ENOTTY, SND_PCM_STATE_RUNNING) == io_kind::lost);
+    CHECK(of_error(-EBADFD, SND_PCM_STATE_XRUN) == io_kind::xrun);
+    CHECK(of_error(-EBADFD, SND_PCM_STATE_SETUP) == io_kind::xrun);
+    CHECK(of_error(-EBADFD, SND_PCM_STATE_SUSPENDED) == io_kind::suspended);
+    CHECK(of_error(-EBADFD, SND_PCM_STATE_DISCONNECTED) == io_kind::lost);
+    CHECK(of_error(-EBADFD, SND_PCM_STATE_RUNNING) == io_kind::failed);
+    CHECK(of_error(-EIO, SND_PCM_STATE_RUNNING) == io_kind::failed);
+    CHECK(of_error(-ENOSPC, SND_PCM_STATE_RUNNING) == io_kind::failed);
+}
+
+TEST_CASE("a full device that has not been started takes nothing and says so")
+{
+    test::fake_dac dac;
+    alsa_options o;
+    o.channels = 2;
+    const auto s = pcm::adopt(dac.pcm(), o);
+    REQUIRE(s->prepare() == io_kind::ok);
+    const std::vector<std::byte> silence(1000 * 8);
+    CHECK(s->write(silence.data(), 1000).frames == s->setup().buffer_frames);
+    const io_result r = s->write(silence.data(), 10);
+    CHECK(r.status == io_kind::again);
+    CHECK(r.frames == 0);
+    CHECK_FALSE(s->position().valid);
+    REQUIRE(s->start() == io_kind::ok);
+    CHECK(s->write(silence.data(), 10).status == io_kind::again);
+    dac.advance(96);
+    CHECK(s->position().valid);
+    CHECK(s->position().written == 288);
+    CHECK(s->position().played == 96);
+    CHECK(s->room().frames == 96);
+    s->drop();
+    CHECK_FALSE(dac.running());
+}
+
+} // namespace negotiate_test

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+// The bytes of WAV files that must not change unnoticed. If one differs, something that users hear or see
+// differs: say so in NEWS.md, and put the number that the failure prints here.
+#include <clocale>
+#include <cstdint>
+#include <locale>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include <tactor/plan.hpp>
+#include <tactor/stroke.hpp>
+#include <tactor/wav.hpp>
+
+#include "../../synth/pieces.hpp"
+#include "folder.hpp"
+
+namespace golden_test {
+
+using namespace tactor;
+
+namespace {
+
+struct golden {
+    algorithm_kind algorithm;
+    phase_kind phase;
+    format_kind format;
+    std::uint64_t digest;
+};
+
+const golden all_golden[] = {
+    // Until the carrier ran through the stroke, these were what everybody got.
+    {algorithm_kind::park2016, phase_kind::burst, format_kind::float32, 0xc946580a297d916aU},
+    {algorithm_kind::park2016, phase_kind::burst, format_kind::s16, 0x8af13b4bca8b7500U},
+    {algorithm_kind::park2016, phase_kind::burst, format_kind::s24_3, 0x2103b24f6d27edcbU},
+    {algorithm_kind::park2016, phase_kind::burst, format_kind::s32, 0xf95615bd3d77b174U},
+    {algorithm_kind::tactile_brush, phase_kind::burst, format_kind::float32, 0xcaa84436c5e4fe25U},
+    {algorithm_kind::tactile_brush, phase_kind::burst, format_kind::s16, 0x77551240e3a72c21U},
+    {algorithm_kind::tactile_brush, phase_kind::burst, format_kind::s24_3, 0xa10a3bd23ecf835bU},
+    {algorithm_kind::tactile_brush, phase_kind::burst, format_kind::s32, 0xe5959743f9673606U},
+    {algorithm_kind::continuous, phase_kind::burst, format_kind::float32, 0xa1b19d0e79f0cbcbU},
+    {algorithm_kind::continuous, phase_kind::burst, format_kind::s16, 0x8fb1701e87184617U},
+    {algorithm_kind::continuous, phase_kind::burst, format_kind::s24_3, 0x9c0b3468dd63677bU},
+    {algorithm_kind::continuous, phase_kind::burst, format_kind::s32, 0xf980c8980dc59b09U},
+    // The default.
+    {algorithm_kind::park2016, phase_kind::stroke, format_kind::float32, 0x1b9237ef876a1639U},
+    {algorithm_kind::park2016, phase_kind::stroke, format_kind::s16, 0xbbaf86334e325f68U},
+    {algorithm_kind::park2016, phase_kind::stroke, format_kind::s24_3, 0xad37ca6f73a37367U},
+    {algorithm_kind::park2016, phase_kind::stroke, format_kind::s32, 0xb2a65538496e3964U},
+    {algorithm_kind::tactile_brush, phase_kind::stroke, format_kind::float32, 0xdaf734485f4d666bU},
+    {algorithm_kind::tactile_brush, phase_kind::stroke, format_kind::s16, 0xbda9645a0e67dc51U},
+    {algorithm_kind::tactile_brush, phase_kind::stroke, format_kind::s24_3, 0x966dd564a5aad884U},
+    {algorithm_kind::tactile_brush, phase_kind::stroke, format_kind::s32, 0x3431fbe00f8d7528U},
+    {algorithm_kind::continuous, phase_kind::stroke, format_kind::float32, 0xa1b19d0e79f0cbcbU},
+    {algorithm_kind::continuous, phase_kind::stroke, format_kind::s16, 0x8fb1701e87184617U},
+    {algorithm_kind::continuous, phase_kind::stroke, format_kind::s24_3, 0x9c0b3468dd63677bU},
+    {algorithm_kind::continuous, phase_kind::stroke, format_kind::s32, 0xf980c8980dc59b09U},
+};
+
+std::string file_of(const folder& dir, algorithm_kind algorithm, format_kind f,
+                    const render_options& sound = {})
+{
+    const array a = preset_array("palm-3x3");
+    plan_options o;
+    o.algorithm = algorithm;
+    // Motion 1 starts 4 mm below a row of the grid, and crosses one twice in less time than two bursts need.
+    o.snap = true;
+    o.drop_points = true;
+    const score s(a, {{make_plan(a, preset_stroke("park2016-1"), o), {}}}, sound);
+    write_wav(s, f, dir / "a.wav");
+    return dir.bytes("a.wav");
+}
+
+std::uint64_t digest_of(const std::string& bytes)
+{
+    return pieces::digest(std::as_bytes(std::span(bytes)));
+}
+
+struct comma : std::numpunct<char> {
+    char do_decimal_point() const override { return ','; }
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+};
+
+/// A comma as decimal point, in C where the system has such a locale and in C++ always.
+class comma_locale {
+public:
+    comma_locale() : before_(std::locale::global(std::locale(std::locale(), new comma)))
+    {
+        for (const char* name :
+             {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "fr_FR.utf8", "de_DE", "fr_FR"}) {
+            if (std::setlocale(LC_ALL, name) != nullptr) {
+                break;
+            }
+        }
+    }
+    ~comma_locale()
+    {
+        std::setlocale(LC_ALL, "C");
+        std::locale::global(before_);
+    }
+    comma_locale(const comma_locale&) = delete;
+    comma_locale& operator=(const comma_locale&) = delete;
+
+private:
+    std::locale before_;
+};
+
+} // namespace
+
+TEST_CASE("the bytes of park2016-1 are those of the last release, in any locale")
+{
+    const folder dir;
+    for (const golden& g : all_golden) {
+        CAPTURE(std::string(to_string(g.algorithm)));
+        CAPTURE(std::string(to_string(g.format)));
+        CAPTURE(std::string(to_string(g.phase)));
+        render_options sound;
+        sound.phase = g.phase;
+        CHECK(digest_of(file_of(dir, g.algorithm, g.format, sound)) == g.digest);
+        const comma_locale with_comma;
+        CHECK(digest_of(file_of(dir, g.algorithm, g.format, sound)) == g.digest);
+    }
+}
+
+TEST_CASE("park2016-1 is 70560 frames of 9 channels")
+{
+    const folder dir;
+    CHECK(file_of(dir, algorithm_kind::park2016, format_kind::s16).size() == 44 + 70560 * 9 * 2);
+}
+
+} // namespace golden_test

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: MIT
+"""R computes what `tactor analyze` prints, for all studies of studies.py.
+
+Usage: check_r.py TOOL [--write]   --write: keeps what R says in golden/, which the suite compares with, without R.
+Compares R with golden/, and the tool with R: within 1e-8 max(1, |value|), Tukey's p within 1e-6. Then fits the models
+that --format tsv names, where lme4 is there. Ends with a line that counts.
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import studies
+
+HERE = pathlib.Path(__file__).resolve().parent
+GOLDEN = HERE / "golden"
+
+
+def flat(value, at=""):
+    """The places of all numbers and nulls in JSON."""
+    if isinstance(value, dict):
+        for k, v in value.items():
+            yield from flat(v, f"{at}.{k}" if at else k)
+    elif isinstance(value, list):
+        for i, v in enumerate(value):
+            yield from flat(v, f"{at}.{i}")
+    else:
+        yield at, value
+
+
+def read(text):
+    """Place -> number or None, of what analyze.R prints."""
+    rows = (line.split("\t") for line in text.splitlines() if not line.startswith("#"))
+    return {place: None if value == "NA" else float(value) for place, value in rows}
+
+
+def differences(expected, told):
+    """What is not the same; `told` is JSON."""
+    mine = dict(flat(told))
+    for place, value in expected.items():
+        # An interval that is not there is null as a whole.
+        got = mine.get(place, mine.get(place.rsplit(".", 1)[0], "nothing"))
+        if value is None or not isinstance(got, (int, float)):
+            if got != value:
+                yield f"{place}: {got}, R: {value}"
+            continue
+        near = 1e-6 if ".tukey." in place and place.endswith(".p") else 1e-8 * max(1, abs(value))
+        if not abs(got - value) <= near:
+            yield f"{place}: {got}, R: {value}"
+
+
+def run(*command):
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False)
+    if done.returncode:
+        print(done.stdout[-500:], done.stderr[-2000:], sep="\n")
+        raise RuntimeError(f"{command[0]}: status {done.returncode}")
+    return done.stdout
+
+
+
+def check(tool, name, folder, write):
+    told = json.loads(run(tool, "analyze", folder / name, "--format", "json"))
+    text = run("Rscript", HERE / "analyze.R", folder / name, folder / f"{name}.runs")
+    if write:
+        version = run("Rscript", "-e", 'cat(R.version.string, "car", as.character(packageVersion("car")))')
+        (GOLDEN / f"{name}.tsv").write_text(f"# analyze.R, {version}\n{text}")
+    golden = read((GOLDEN / f"{name}.tsv").read_text(encoding="utf-8"))
+    r = read(text)
+    assert len(r) > 100, f"R said {len(r)} numbers"
+    bad = list(differences(golden, {k: v for k, v in r.items()}))
+    bad += [f"golden/{name}.tsv lacks {k}" for k in r.keys() - golden.keys()]
+    return bad + list(differences(r, told))
+
+
+FIT = """
+lines <- readLines("trials.tsv")
+said <- sub("^# ", "", grep("^# [a-z]+(4|\\\\()|^# d <-|^# library", lines, value = TRUE))
+for (line in said) suppressMessages(suppressWarnings(eval(parse(text = line))))
+stopifnot(length(said) >= 4, nrow(d) == sum(!grepl("^#", lines)) - 1)
+cat("fitted", length(said) - 2)
+"""
+
+
+def check_models(tool, name, folder):
+    (folder / "trials.tsv").write_text(run(tool, "analyze", folder / name, "--format", "tsv"))
+    said = subprocess.run(["Rscript", "-e", FIT], cwd=folder, capture_output=True, text=True, check=False)
+    return [] if "fitted" in said.stdout else [f"--format tsv: {said.stdout} {said.stderr[-1500:]}"]
+
+
+def main():
+    tool, write = pathlib.Path(sys.argv[1]).resolve(), "--write" in sys.argv
+    has_lme4 = subprocess.run(["Rscript", "-e", "library(lme4)"], capture_output=True, check=False).returncode == 0
+    passed = failed = skipped = 0
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = pathlib.Path(temporary)
+        for name, make in studies.STUDIES.items():
+            make(folder / name)
+            studies.for_r(folder / name, folder / f"{name}.runs")
+            cases = {name: lambda n=name: check(tool, n, folder, write)}
+            if has_lme4:
+                cases[f"{name}, models"] = lambda n=name: check_models(tool, n, folder)
+            else:
+                print(f"SKIPPED: {name}, models: lme4 is not here")
+                skipped += 1
+            for what, case in cases.items():
+                bad = case()
+                for line in bad[:20]:
+                    print(line)
+                if bad:
+                    print(f"FAILED: {what}")
+                failed += bool(bad)
+                passed += not bad
+    print(f"{passed} passed, {failed} failed, {skipped} skipped")
+    return 1 if failed or not passed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

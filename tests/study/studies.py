@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: MIT
+"""Makes the folders of small studies, the same on every machine: those that R analyses, too.
+
+Usage: studies.py FOLDER [--R]   writes FOLDER/NAME for each; with --R also FOLDER/NAME.runs, what analyze.R reads of
+the definition: a line for each run, its name, task, motions, methods, with tabs between and "," in lists.
+"""
+import json
+import pathlib
+import re
+import sys
+
+COLUMNS = ("onset duration trial attempt motion method_1 method_2 response response_time rating void xruns stream "
+           "frame_1 frame_2 plan_1 plan_2").split()
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+class Numbers:
+    """A small generator of our own (Lehmer's), so that no library's version changes a study."""
+
+    def __init__(self, seed):
+        self.state = seed
+
+    def unit(self):
+        self.state = self.state * 48271 % 2147483647
+        return self.state / 2147483647
+
+    def below(self, n):
+        return min(n - 1, int(self.unit() * n))
+
+    def shuffled(self, items):
+        items = list(items)
+        for i in range(len(items) - 1, 0, -1):
+            k = self.below(i + 1)
+            items[i], items[k] = items[k], items[i]
+        return items
+
+    def normal(self):
+        return sum(self.unit() for _ in range(12)) - 6
+
+
+def run(name, task, trials, motions=None, methods=None, scale=None):
+    return {"name": name, "task": task, "trials": trials} | {
+        k: v for k, v in (("motions", motions), ("methods", methods), ("scale", scale)) if v}
+
+
+def definition(name, motions, methods, runs):
+    text = f'[experiment]\nname = "{name}"\n'
+    for kind, names in (("motion", motions), ("method", methods)):
+        text += "".join(f'[[{kind}]]\nname = "{n}"\n' for n in names)
+    for r in runs:
+        text += "[[run]]\n" + "".join(f"{k} = {json.dumps(v)}\n" for k, v in r.items())
+    return text
+
+
+def cells(r, motions, methods):
+    """What the trials of a run are of, as often as each other."""
+    ms, ns = r.get("motions", motions), [m for m in methods if m in r.get("methods", methods)]
+    pairs = [(ns[0], ns[1]), (ns[1], ns[0])] if r["task"] == "choose" else [(n, "n/a") for n in ns]
+    return [(m, *p) for m in ms for p in pairs]
+
+
+def table(rows):
+    return "\t".join(COLUMNS) + "\n" + "".join(
+        "\t".join(str(row.get(c, "n/a")) for c in COLUMNS) + "\n" for row in rows)
+
+
+def write_study(folder, text, people, answers, simulated=False, void=None):
+    """answers(code, run, cell, n) is the answer of the n-th trial of a cell, or None where there is none."""
+    motions, methods = ([n for k, n in re.findall(r'\[\[(\w+)\]\]\nname = "(.*)"', text) if k == kind]
+                        for kind in ("motion", "method"))
+    (folder / "sourcedata").mkdir(parents=True)
+    (folder / "participants.tsv").write_text("participant_id\tage\tsex\thandedness\n" + "".join(
+        f"sub-{c}\tn/a\tn/a\tn/a\n" for c in people))
+    shuffle = Numbers(4711)
+    for code in people:
+        beh, source = folder / f"sub-{code}/beh", folder / f"sourcedata/sub-{code}"
+        beh.mkdir(parents=True)
+        source.mkdir()
+        (source / "session.json").write_text(json.dumps({"simulated": simulated, "experiment": {"text": text}}))
+        for r in runs_of(text):
+            rows, seen = [], {}
+            every = cells(r, motions, methods)
+            for cell in shuffle.shuffled(every * (r["trials"] // len(every))):
+                n = seen[cell] = seen.get(cell, -1) + 1
+                answer = answers(code, r, cell, n)
+                if answer is None:
+                    continue
+                row = {"trial": len(rows) + 1, "attempt": 1, "motion": cell[0], "method_1": cell[1],
+                       "method_2": cell[2], "response": answer, "response_time": 0.5 + n / 8, "void": "false"}
+                row |= {"rating": answer} if r["task"] == "rate" else {}
+                rows.append(row)
+            # Trials that were not good come again at the end.
+            for row in [r for r in rows if void and r["trial"] % void == 0]:
+                rows.append(row | {"attempt": 2})
+                row |= {"void": "true", "response": "n/a", "rating": "n/a", "response_time": "n/a"}
+            if rows:
+                name = re.sub(r"[^0-9A-Za-z]", "", r["name"])
+                (beh / f"sub-{code}_task-{name}_beh.tsv").write_text(table(rows))
+                (folder / f"task-{name}_beh.json").write_text(json.dumps({"TaskName": r["name"]}))
+
+
+def runs_of(text):
+    """The runs of a definition, without a reader of TOML (Python 3.11 has one, 3.10 not)."""
+    runs = []
+    for part in text.split("[[run]]\n")[1:]:
+        runs.append({k: json.loads(v) for k, v in re.findall(
+            r"^(name|task|trials|motions|methods|scale) = (.*)$", part, re.M)})
+    return runs
+
+
+def likes(numbers, strength):
+    """Answers of somebody who prefers the last method by `strength` (choose), and rates so."""
+    def answer(_, r, cell, __):
+        effect = strength(cell[0])
+        if r["task"] == "choose":
+            last = numbers.unit() < 0.5 + effect / 4
+            return (1 if cell[1] == r["last"] else 2) if last else (2 if cell[1] == r["last"] else 1)
+        lift = effect if cell[1] == r["last"] else 0
+        return max(1, min(r.get("scale", 5), round(2.6 + lift + 0.9 * numbers.normal())))
+    return answer
+
+
+def with_last(answers, last):
+    return lambda code, r, cell, n: answers(code, r | {"last": last}, cell, n)
+
+
+FOUR = [f"motion-{i}" for i in range(1, 5)]
+TWO = ["tactile-brush", "park2016"]
+
+
+def simulated(folder):
+    """The shipped experiment, twelve people, some trials void."""
+    text = (ROOT / "examples/experiments/park2016.toml").read_text(encoding="utf-8")
+    numbers = Numbers(2016)
+    own = {f"{i:02}": 0.4 * numbers.normal() for i in range(1, 13)}
+    push = {m: 0.9 + 0.25 * i for i, m in enumerate(FOUR)}
+
+    def answers(code, r, cell, n):
+        return likes(numbers, lambda m: max(-1.5, min(1.8, push[m] + own[code])))(code, r | {"last": "park2016"}, cell, n)
+    write_study(folder, text, list(own), answers, simulated=True, void=13)
+
+
+def ties(folder):
+    """Few trials: many participants have the same figures, and some differences are 0."""
+    text = definition("ties", FOUR, TWO, [run("taste", "choose", 16), run("marks", "rate", 16, scale=3)])
+    numbers = Numbers(77)
+    answers = likes(numbers, lambda m: 0.5 if m != "motion-2" else -0.2)
+    write_study(folder, text, [f"{i}" for i in range(1, 9)], with_last(answers, "park2016"))
+
+
+def missing(folder):
+    """One has no trial of the first run, another lacks a cell of the second, a third has not come."""
+    text = definition("missing", FOUR, TWO, [run("taste", "choose", 40), run("marks", "rate", 40)])
+    numbers = Numbers(5)
+    base = with_last(likes(numbers, lambda m: 0.8 + 0.2 * FOUR.index(m)), "park2016")
+
+    def answers(code, r, cell, n):
+        answer = base(code, r, cell, n)
+        absent = (code, r["name"]) == ("C3", "taste") or \
+            (code, r["name"], *cell[:2]) == ("E5", "marks", "motion-4", "tactile-brush")
+        return None if absent else answer
+    write_study(folder, text, ["A1", "B2", "C3", "D4", "E5", "F6", "G7"], answers)
+    with (folder / "participants.tsv").open("a") as f:
+        f.write("sub-Late\t24\tn/a\tn/a\n")
+
+
+def constant(folder):
+    """Everybody always chooses the last method for one motion, and rates one cell the same."""
+    text = definition("constant", FOUR, TWO, [run("taste", "choose", 40), run("marks", "rate", 40)])
+    numbers = Numbers(31)
+    base = with_last(likes(numbers, lambda m: 0.7), "park2016")
+
+    def answers(code, r, cell, n):
+        answer = base(code, r, cell, n)
+        if cell[0] == "motion-3" and r["task"] == "choose":
+            return 1 if cell[1] == "park2016" else 2
+        if cell[:2] == ("motion-1", "park2016") and r["task"] == "rate":
+            return 4
+        return answer
+    write_study(folder, text, [f"0{i}" for i in range(1, 7)], answers)
+
+
+def two_levels(folder):
+    """Two motions only, where nothing can fail to be spherical."""
+    text = definition("two-levels", FOUR[:2], TWO, [run("taste", "choose", 20), run("marks", "rate", 20, scale=7)])
+    numbers = Numbers(12345)
+    write_study(folder, text, [f"p{i}" for i in range(5)], with_last(likes(numbers, lambda m: 0.9), "park2016"))
+
+
+def few(folder):
+    """Three people and four motions: no Mauchly."""
+    text = definition("few", FOUR, TWO, [run("taste", "choose", 40), run("marks", "rate", 40)])
+    numbers = Numbers(999)
+    write_study(folder, text, ["x1", "x2", "x3"], with_last(likes(numbers, lambda m: 0.6), "park2016"))
+
+
+def three_by_three(folder):
+    """Three methods, three motions, and a run in which motions are told apart."""
+    methods = [*TWO, "continuous"]
+    text = definition("three", FOUR[:3], methods, [run("marks", "rate", 27, scale=9), run("which", "identify", 36),
+                                                   run("pair", "choose", 12, methods=["continuous", "tactile-brush"])])
+    numbers = Numbers(271828)
+    base = with_last(likes(numbers, lambda m: 0.9), "continuous")
+
+    def answers(code, r, cell, n):
+        if r["task"] != "identify":
+            return base(code, r, cell, n)
+        right = numbers.unit() < (0.45 if cell[1] == "tactile-brush" else 0.7)
+        return cell[0] if right else FOUR[numbers.below(3)]
+    write_study(folder, text, [f"s{i}" for i in range(1, 11)], answers)
+
+
+STUDIES = {"simulated": simulated, "ties": ties, "missing": missing, "constant": constant, "two-levels": two_levels,
+           "few": few, "three-by-three": three_by_three}
+
+
+def for_r(folder, file):
+    """What analyze.R reads of the definition."""
+    text = json.loads(next(folder.glob("sourcedata/sub-*/session.json")).read_text())["experiment"]["text"]
+    motions, methods = ([n for k, n in re.findall(r'\[\[(\w+)\]\]\nname = "(.*)"', text) if k == kind]
+                        for kind in ("motion", "method"))
+    file.write_text("".join("\t".join((
+        r["name"], r["task"], ",".join(m for m in motions if m in r.get("motions", motions)),
+        ",".join(m for m in methods if m in r.get("methods", methods)))) + "\n" for r in runs_of(text)))
+
+
+def main():
+    target = pathlib.Path(sys.argv[1])
+    for name, make in STUDIES.items():
+        make(target / name)
+        if "--R" in sys.argv:
+            for_r(target / name, target / f"{name}.runs")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,432 @@
+// SPDX-License-Identifier: MIT
+#include "study/calibrate/calibration.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include <tactor/error.hpp>
+
+#include "folder.hpp"
+#include "has.hpp"
+#include "study/calibrate/log.hpp"
+#include "study/calibrate/observer.hpp"
+#include "study/calibrate/result.hpp"
+
+namespace tactor::study::test_calibration {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string text_of(const fs::path& file)
+{
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void put(const fs::path& file, const std::string& text)
+{
+    std::ofstream(file, std::ios::binary) << text;
+}
+
+calibration_settings settings()
+{
+    calibration_settings s;
+    s.participant = "P07";
+    s.tactors = {2, 0};
+    s.ceilings_dbfs = {0.0, -3.0};
+    s.staircase.reversals = 4;
+    s.staircase.discard = 2;
+    s.practice = 2;
+    s.seed = 5;
+    s.simulate = "threshold=-30,spread=2";
+    s.date = "2026-11-21";
+    return s;
+}
+
+const observer_settings who{{-30.0}, 2.0, 0.0};
+
+struct outcome {
+    std::string log;
+    std::string tables;
+};
+
+// A session, or the rest of one.
+outcome run(const fs::path& log, bool resume, calibration_settings s = settings(), std::size_t most = 10000)
+{
+    calibration_log lines(log, resume, s);
+    calibration c(s);
+    observer o(who, s);
+    replay(c, lines, &o);
+    for (std::size_t i = 0; i < most && !c.done(); ++i)
+        lines.append(c.answer(o.answer(c.next())));
+    return {text_of(log), calibration_text(s, c.thresholds())};
+}
+
+std::string refusal(const fs::path& log, bool resume, const calibration_settings& s = settings())
+{
+    try {
+        run(log, resume, s);
+    } catch (const error& e) {
+        return e.what();
+    }
+    return "no error";
+}
+
+TEST_CASE("the same seed gives the same session, another seed another")
+{
+    const folder f;
+    const outcome a = run(f / "a.tsv", false);
+    const outcome b = run(f / "b.tsv", false);
+    CHECK(a.log == b.log);
+    CHECK(a.tables == b.tables);
+    calibration_settings other = settings();
+    other.seed = 6;
+    CHECK(run(f / "c.tsv", false, other).log != a.log);
+    CHECK(has(a.log, "1\t2\t-20\t"));
+}
+
+TEST_CASE("a log cut off anywhere goes on as if nothing had been")
+{
+    const folder f;
+    const outcome whole = run(f / "a.tsv", false);
+    const std::string began = text_of(f / "a.json");
+    // Each byte of header, first and last trials; between, each seventh: sooner or later each place in a
+    // line.
+    const std::size_t size = whole.log.size();
+    for (std::size_t bytes = 0; bytes <= size; bytes += bytes < 300 || size - bytes <= 300 ? 1 : 7) {
+        CAPTURE(bytes);
+        put(f / "b.tsv", whole.log.substr(0, bytes));
+        put(f / "b.json", began);
+        calibration_settings later = settings();
+        later.date = "2026-11-30";
+        const outcome again = run(f / "b.tsv", true, later);
+        REQUIRE(again.log == whole.log);
+        REQUIRE(again.tables == whole.tables);
+    }
+}
+
+TEST_CASE("what was killed before its first byte can go on, too")
+{
+    const folder f;
+    const outcome whole = run(f / "a.tsv", false);
+    CHECK(run(f / "none.tsv", true).log == whole.log); // not even begun
+    put(f / "log.tsv", "");
+    CHECK(run(f / "log.tsv", true).log == whole.log); // the log is made first
+    fs::copy(f / "a.json", f / "beside.json");
+    CHECK(run(f / "beside.tsv", true).log == whole.log);
+}
+
+TEST_CASE("where nothing was answered a session is begun anew, on other terms too")
+{
+    const folder f;
+    run(f / "a.tsv", false, settings(), 0);
+    calibration_settings other = settings();
+    other.carrier_hz = 100.0;
+    const outcome again = run(f / "a.tsv", false, other);
+    CHECK(has(again.tables, "carrier_hz = 100\n"));
+    CHECK(has(text_of(f / "a.json"), "\"carrier_hz\": 100.0"));
+    put(f / "b.json", "{\"mine\": 1}");
+    CHECK(has(refusal(f / "b.tsv", false), "b.json: it does not say how"));
+    CHECK(text_of(f / "b.json") == "{\"mine\": 1}");
+}
+
+TEST_CASE("a person's answers and times come back from the log")
+{
+    const folder f;
+    calibration_settings s = settings();
+    s.simulate.clear();
+    {
+        calibration_log log(f / "a.tsv", false, s);
+        calibration c(s);
+        for (unsigned i = 0; i < 9; ++i)
+            log.append(
+                c.answer({.interval = 1 + i % 2, .response_time_s = 0.25 * i, .onset_frame = 48000 * i}));
+    }
+    const std::string before = text_of(f / "a.tsv");
+    calibration_log log(f / "a.tsv", true, s);
+    calibration c(s);
+    replay(c, log, nullptr);
+    CHECK(c.next().number == 10);
+    CHECK(text_of(f / "a.tsv") == before);
+}
+
+TEST_CASE("what is not of the session is refused with its line")
+{
+    const folder f;
+    const outcome whole = run(f / "a.tsv", false);
+    CHECK(has(refusal(f / "a.tsv", false), "there is such a file already"));
+    const std::string first = whole.log.substr(0, whole.log.find("\n2\t"));
+    put(f / "a.tsv", first + "\n2\t2\t-19\t1\t1\ttrue\tfalse\ttrue\tn/a\tn/a\n");
+    CHECK(has(refusal(f / "a.tsv", true), "a.tsv:3: this is not how the session went"));
+    put(f / "a.tsv", whole.log + "999\n");
+    CHECK(has(refusal(f / "a.tsv", true), "the session ends before this line"));
+    put(f / "a.tsv", "name\tvalue\n");
+    CHECK(has(refusal(f / "a.tsv", true), "it is no log"));
+    CHECK(text_of(f / "a.tsv") == "name\tvalue\n");
+    put(f / "a.tsv", "no line");
+    CHECK(has(refusal(f / "a.tsv", true), "it is no log"));
+    CHECK(text_of(f / "a.tsv") == "no line");
+    put(f / "a.tsv", whole.log);
+    calibration_settings other = settings();
+    other.carrier_hz = 200.0;
+    CHECK(has(refusal(f / "a.tsv", true, other), "begun with carrier_hz 250.0, and 200.0 is asked for"));
+    put(f / "a.json", "[]");
+    CHECK(has(refusal(f / "a.tsv", true), "does not say how"));
+    fs::remove(f / "a.json");
+    CHECK(has(refusal(f / "a.tsv", true), "a.json: it is missing"));
+    fs::create_directory(f / "d.tsv");
+    CHECK(has(refusal(f / "d.tsv", true), "d.tsv: "));
+}
+
+TEST_CASE("two sessions do not write one log")
+{
+    const folder f;
+    calibration_settings s = settings();
+    const calibration_log first(f / "a.tsv", false, s);
+    CHECK(has(refusal(f / "a.tsv", true), "another session is writing it"));
+    CHECK(has(refusal(f / "a.tsv", false), "another session is writing it"));
+}
+
+TEST_CASE("practice trials come first and do not count")
+{
+    calibration c(settings());
+    for (unsigned i = 0; i < 2; ++i) {
+        CHECK(c.next().practice);
+        CHECK(c.next().level_dbfs == -20.0);
+        c.answer({.interval = 3 - c.next().interval});
+    }
+    CHECK(!c.next().practice);
+    CHECK(c.next().level_dbfs == -20.0);
+    while (c.thresholds().empty())
+        c.answer({.interval = c.next().level_dbfs > -40.0 ? c.next().interval : 3 - c.next().interval});
+    CHECK(c.thresholds().front().trials + 3 == c.next().number);
+}
+
+TEST_CASE("adjustment: six series from 15 dB above and below, mean and deviation")
+{
+    calibration_settings s = settings();
+    s.method = calibration_method::adjustment;
+    s.practice = 0;
+    calibration c(s);
+    const double set[] = {-30, -31, -29, -32, -30, -28};
+    const double starts[] = {-5, -45, -16, -44, -17, -45};
+    for (unsigned i = 0; i < 6; ++i) {
+        CHECK(c.next().interval == 0);
+        CHECK(c.next().level_dbfs == starts[i]);
+        const calibration_record r = c.answer({.set_dbfs = set[i]});
+        CHECK(r.response == "set");
+        CHECK(r.trial.level_dbfs == set[i]);
+    }
+    REQUIRE(c.thresholds().size() == 1);
+    CHECK(*c.thresholds().front().threshold_dbfs == -30.0);
+    CHECK(*c.thresholds().front().sd_db == doctest::Approx(std::sqrt(2.0)));
+    CHECK(c.next().level_dbfs == -5.0); // the next tactor begins anew
+    c.answer({});
+    REQUIRE(c.done());
+    CHECK(!c.thresholds().back().threshold_dbfs);
+    CHECK(c.thresholds().back().end == staircase_end::not_felt);
+}
+
+TEST_CASE("simulated adjustment finds the threshold")
+{
+    calibration_settings s = settings();
+    s.method = calibration_method::adjustment;
+    s.practice = 0;
+    double sum = 0.0;
+    for (s.seed = 0; s.seed < 200; ++s.seed) {
+        calibration c(s);
+        observer o(who, s);
+        while (!c.done())
+            c.answer(o.answer(c.next()));
+        sum += *c.thresholds().front().threshold_dbfs;
+    }
+    CHECK(std::abs(sum / 200 + 30.0) < 0.3);
+}
+
+TEST_CASE("the result is an array file that says the whole array")
+{
+    const setup from = parse_setup(R"([array]
+name = "a \"desk\""
+[[tactor]]
+x_mm = 0.1
+y_mm = -2.5
+gain_db = -3
+threshold_dbfs = [[100, -30], [250, -50]]
+[[tactor]]
+x_mm = 20
+y_mm = 0
+channel = 4
+max_dbfs = -6.5
+polarity = -1
+actuator = "lra"
+rise_ms = 12.5
+threshold_dbfs = -40
+[[tactor]]
+x_mm = 40
+y_mm = 0
+channel = 5
+threshold_dbfs = [[100, -30.5], [250, -50]]
+[output]
+pcm = "hw:CARD=Tactor"
+rate = 44100
+channels = 8
+period_frames = 128
+periods = 4
+[amplifier]
+line = { chip = "pinctrl-rp1", offset = 17 }
+active_low = true
+settle_ms = 25
+[sync]
+out = { name = "GPIO5", pulse_ms = 2.5 }
+channel = 7
+in = { name = "GPIO6", edge = "falling", debounce_ms = 3, pull = "up" }
+[limits]
+max_drive_s = 3
+[defaults]
+carrier = 200
+phantom = "linear"
+snap = true
+)",
+                                   "desk.toml");
+    const tactor_threshold felt{.tactor = 0,
+                                .threshold_dbfs = -44.125,
+                                .sd_db = 0.5,
+                                .trials = 70,
+                                .reversals_dbfs = {-44, -45},
+                                .check_right = 10};
+    const tactor_threshold not_felt{.tactor = 1, .end = staircase_end::not_felt, .trials = 20};
+    const array now = with_thresholds(*from.array, from.calibration, {}, {felt, not_felt});
+    const std::string text = array_text(now, from) + calibration_text(settings(), {felt, not_felt});
+    const setup read = parse_setup(text, "me.toml");
+    REQUIRE(read.array);
+    CHECK(read.array->name == "a \"desk\"");
+    REQUIRE(read.array->tactors.size() == 3);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const tactor_spec& a = now.tactors[i];
+        const tactor_spec& b = read.array->tactors[i];
+        CHECK(a.position.x_mm == b.position.x_mm);
+        CHECK(a.position.y_mm == b.position.y_mm);
+        CHECK(a.channel == b.channel);
+        CHECK(a.gain_db == b.gain_db);
+        CHECK(a.max_dbfs == b.max_dbfs);
+        CHECK(a.threshold_dbfs == b.threshold_dbfs);
+        CHECK(a.polarity == b.polarity);
+        CHECK(a.actuator == b.actuator);
+        CHECK(a.thresholds == b.thresholds);
+        CHECK(a.rise_s == b.rise_s);
+    }
+    // What is measured takes the place of a list; who is not asked keeps it.
+    CHECK(read.array->tactors[0].thresholds.empty());
+    CHECK(read.array->tactors[2].thresholds == std::vector<threshold_point>{{100.0, -30.5}, {250.0, -50.0}});
+    CHECK(*read.array->tactors[0].threshold_dbfs == -44.125);
+    CHECK(!read.array->tactors[1].threshold_dbfs);
+    // Nothing is lost: written again, it is the same.
+    CHECK(array_text(*read.array, read) == array_text(now, from));
+    CHECK(*read.output.channels == 8);
+    CHECK(read.sync->in->name == "GPIO6");
+    CHECK(read.sync->debounce_s == doctest::Approx(0.003));
+    CHECK(read.defaults == from.defaults);
+}
+
+TEST_CASE("one participant's calibrations at several carriers come to lists by frequency")
+{
+    array a;
+    for (unsigned i = 0; i < 4; ++i)
+        a.tactors.push_back({.position = {10.0 * i, 0.0}, .channel = i});
+    a.tactors[0].threshold_dbfs = -20.0;
+    a.tactors[1].threshold_dbfs = -21.0;
+    a.tactors[2].thresholds = {{60.0, -10.0}, {250.0, -33.0}};
+    calibration_settings s;
+    s.participant = "P07";
+    s.carrier_hz = 250.0;
+    const std::vector<tactor_threshold> measured{{.tactor = 0, .threshold_dbfs = -41.0},
+                                                 {.tactor = 2, .threshold_dbfs = -42.0},
+                                                 {.tactor = 3, .threshold_dbfs = -43.0}};
+    using points = std::vector<threshold_point>;
+    const calibration_origin before{"P07", 100.0, false};
+
+    const array both = with_thresholds(a, before, s, measured);
+    CHECK(both.tactors[0].thresholds == points{{100.0, -20.0}, {250.0, -41.0}});
+    CHECK_FALSE(both.tactors[0].threshold_dbfs);
+    CHECK(both.tactors[1].thresholds == points{{100.0, -21.0}}); // it was measured there, and not here
+    CHECK(both.tactors[2].thresholds == points{{60.0, -10.0}, {250.0, -42.0}});
+    CHECK(both.tactors[3].threshold_dbfs == -43.0);
+    CHECK(threshold_at(both.tactors[0], 100.0) == -20.0);
+
+    const array again = with_thresholds(a, calibration_origin{"P07", 250.0, false}, s, measured);
+    CHECK(again.tactors[0].threshold_dbfs == -41.0);
+    CHECK(again.tactors[0].thresholds.empty());
+    CHECK(again.tactors[1].threshold_dbfs == -21.0);
+
+    const std::vector<tactor_threshold> not_felt{{.tactor = 0}, {.tactor = 2}};
+    const array less = with_thresholds(a, before, s, not_felt);
+    CHECK(less.tactors[0].thresholds == points{{100.0, -20.0}});
+    CHECK(less.tactors[2].thresholds == points{{60.0, -10.0}});
+
+    // Nobody else's, and nothing that nobody felt.
+    for (const auto& other : {calibration_origin{"P08", 100.0, false}, {"P07", 100.0, true}}) {
+        const array fresh = with_thresholds(a, other, s, measured);
+        CHECK(fresh.tactors[0].threshold_dbfs == -41.0);
+        CHECK(fresh.tactors[0].thresholds.empty());
+        CHECK(fresh.tactors[2].thresholds.empty());
+    }
+}
+
+TEST_CASE("the tables of a calibration are checked where they are read")
+{
+    const std::string good = calibration_text(settings(), {{.tactor = 8, .threshold_dbfs = -30.0}});
+    const auto said = [](std::string text) {
+        try {
+            static_cast<void>(parse_setup("[array]\npreset = \"palm-3x3\"\n" + text, "me.toml"));
+        } catch (const error& e) {
+            return std::string(e.what());
+        }
+        return std::string("no error");
+    };
+    const auto changed = [&](const std::string& from, const std::string& to) {
+        std::string text = good;
+        REQUIRE(has(text, from));
+        return said(text.replace(text.find(from), from.size(), to));
+    };
+    CHECK(said(good) == "no error");
+    CHECK(has(changed("seed", "sead"), "sead"));
+    CHECK(has(changed("tactor = 8", "tactor = 9"), "tactor is 9"));
+    CHECK(has(changed("1up3down", "1up4down"), "1up4down"));
+    CHECK(has(changed("threshold_dbfs = -30", "threshold_dbfs = 3"), "threshold_dbfs is 3"));
+    CHECK(has(changed("trials", "trails"), "trails"));
+    CHECK(has(changed("participant = \"P07\"\n", ""), "participant"));
+    CHECK(has(said(good + "\n[[calibration.tactor]]\ntactor = 8\ntrials = 1\n"), "has an entry already"));
+    CHECK_THROWS_AS(parse_setup(good, "me.toml"), error);
+}
+
+TEST_CASE("simulate says what is wrong with it")
+{
+    const auto said = [](std::string_view text) {
+        try {
+            parse_observer(text, {2, 0}, 4);
+        } catch (const error& e) {
+            return std::string(e.what());
+        }
+        return std::string("no error");
+    };
+    CHECK(parse_observer("threshold=-45,-50,spread=1", {2, 0}, 4).thresholds_dbfs ==
+          std::vector<double>{-45, -50});
+    CHECK(parse_observer("lapse=0.02,threshold=-1,-2,-3,-4", {2, 0}, 4).thresholds_dbfs ==
+          std::vector<double>{-3, -1});
+    CHECK(has(said(""), "has no ="));
+    CHECK(has(said("spread=2"), "threshold is missing"));
+    CHECK(has(said("threshold=-45,spread=0"), "spread is 0"));
+    CHECK(has(said("threshold=-45,lapse=0.6"), "lapse is 0.6"));
+    CHECK(has(said("threshold=low"), "\"low\" is not a number"));
+    CHECK(has(said("threshold=-45,threshold=-46"), "said twice"));
+    CHECK(has(said("threshold=1,2,3"), "3 thresholds for 2 tactors"));
+    CHECK(has(said("sigma=1,threshold=-45"), "\"sigma\" is not known"));
+}
+
+} // namespace
+} // namespace tactor::study::test_calibration

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+#include "study/experiment/definition.hpp"
+
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include "has.hpp"
+#include "message_of.hpp"
+
+namespace tactor::study::test_definition {
+namespace {
+
+const std::string head = "[experiment]\nname = \"e\"\n";
+const std::string motion = "[[motion]]\nname = \"m\"\npreset = \"park2016-1\"\n";
+const std::string methods = "[[method]]\nname = \"a\"\nalgorithm = \"tactile-brush\"\n"
+                            "[[method]]\nname = \"b\"\nalgorithm = \"park2016\"\n";
+const std::string run = "[[run]]\nname = \"r\"\ntask = \"choose\"\nattribute = \"similarity\"\ntrials = 4\n";
+
+experiment_definition read(const std::string& text)
+{
+    return read_definition(text, "e.toml", {});
+}
+
+std::string refusal(const std::string& text)
+{
+    return message_of([&] { read(text); });
+}
+
+TEST_CASE("the shipped experiment is the paper's")
+{
+    const experiment_definition d = load_definition("park2016");
+    CHECK(d.array == "palm-3x3");
+    CHECK(!d.level_dbfs);
+    CHECK(d.sl_db == 7.0);
+    CHECK(d.gap_s == 1.0);
+    REQUIRE(d.runs.size() == 4);
+    for (const run_definition& r : d.runs) {
+        CHECK(r.outline.trials == 40);
+        CHECK(r.motions == std::vector<std::size_t>{0, 1, 2, 3});
+        CHECK(r.methods == std::vector<std::size_t>{0, 1});
+        CHECK(r.animation == (r.attribute == "similarity"));
+    }
+    CHECK(d.runs[2].outline.task == task_kind::rate);
+    CHECK(d.runs[2].outline.scale == 5);
+    CHECK(d.methods[0].options.algorithm == algorithm_kind::tactile_brush);
+    CHECK(d.text == shipped_experiment("park2016"));
+    CHECK(d.masking.noise == noise_kind::white);
+}
+
+TEST_CASE("what is not said is the default")
+{
+    const experiment_definition d = read(head + motion + methods + run);
+    CHECK(d.title == "e");
+    CHECK(d.sl_db == 7.0);
+    CHECK(d.gap_s == 1.0);
+    CHECK(!d.seed);
+    CHECK(!d.array);
+    CHECK(d.masking.noise == noise_kind::none);
+    for (const page_word& w : page_words_in_english())
+        CHECK(d.page[w.key] == w.english);
+    CHECK(d.runs[0].practice == 0);
+    CHECK(!d.runs[0].question.empty());
+    CHECK(d.runs[0].break_s == 0.0);
+}
+
+TEST_CASE("a motion says what a stroke may say, with the unit in the key or without")
+{
+    const auto duration = [](const std::string& m) {
+        return read(head + "[[motion]]\nname = \"m\"\n" + m + methods + run)
+            .motions[0]
+            .drawn.motion.duration_s();
+    };
+    CHECK(duration("preset = \"park2016-1\"\nduration = 2.8\n") == 2.8);
+    CHECK(duration("preset = \"park2016-1\"\nduration_s = 2.8\n") == 2.8);
+    CHECK(duration("path = \"M0 0H40\"\nspeed = 20\n") == doctest::Approx(2.0));
+    CHECK(duration("path = \"M0 0H30\"\n") == doctest::Approx(0.5)); // 60 mm/s
+}
+
+TEST_CASE("a method says what options of a plan may say")
+{
+    const experiment_definition d =
+        read(head + motion +
+             "[[method]]\nname = \"a\"\nalgorithm = \"continuous\"\nphantom = \"gaussian\"\ncarrier = 200\n"
+             "[[method]]\nname = \"b\"\nsoa = 0.06\nslope = 0.3\nintercept = 0.04\ndrop-points = true\nsnap "
+             "= true\n" +
+             run);
+    CHECK(d.methods[0].options.phantom == phantom_kind::gaussian);
+    CHECK(d.methods[0].options.carrier_hz == 200.0);
+    CHECK(d.methods[1].options.soa_s == 0.06);
+    CHECK(d.methods[1].options.profile.max_soa_s == doctest::Approx(0.04 / 0.7));
+    CHECK(d.methods[1].options.drop_points);
+    CHECK(d.methods[1].options.snap);
+}
+
+TEST_CASE("what is wrong is said with its line")
+{
+    const auto says = [](const std::string& text, const char* where, const char* what) {
+        const std::string message = refusal(text);
+        CHECK_MESSAGE(has(message, where), message);
+        CHECK_MESSAGE(has(message, what), message);
+    };
+    says(head + "gap = 1\n" + motion + methods + run, "e.toml:3:", "did you mean 'gap_s'");
+    says(head + motion + methods + run + "trails = 3\n", "e.toml:17:", "did you mean 'trials'");
+    says(motion + methods + run, "e.toml", "no [experiment]");
+    says(head + methods + run, "e.toml", "no [[motion]]");
+    says(head + motion + run, "e.toml", "no [[method]]");
+    says(head + motion + methods, "e.toml", "no [[run]]");
+    says(head + "level = { sl_db = 7, dbfs = -18 }\n" + motion + methods + run, "e.toml:3:", "both");
+    says(head + "level = { dbfs = 3 }\n" + motion + methods + run, "e.toml:3:", "dbfs is 3");
+    says(head + "seed = -1\n" + motion + methods + run, "e.toml:3:", "seed is -1");
+    says(head + "array = \"palm-9x9\"\n" + motion + methods + run, "e.toml:3:", "palm-9x9");
+    says(head + "[page]\nlanguage = 7\n" + motion + methods + run, "e.toml:4:", "language");
+    says(head + "[page]\nfell = \"?\"\n" + motion + methods + run, "e.toml:4:", "did you mean 'felt'");
+    says(head + "[masking]\nnoise = \"brown\"\n" + motion + methods + run, "e.toml:4:", "brown");
+    says(head + "[[motion]]\nname = \"m\"\npreset = \"park2016-9\"\n" + methods + run,
+         "e.toml:5:", "park2016-9");
+    says(head + "[[motion]]\nname = \"m\"\npreset = \"park2016-1\"\npath = \"M0 0H9\"\n" + methods + run,
+         "e.toml:6:", "both preset and path");
+    says(head + "[[motion]]\nname = \"m\"\npreset = \"park2016-1\"\nduration = 1\nspeed = 9\n" + methods +
+             run,
+         "e.toml:7:", "both duration and speed");
+    says(head + "[[motion]]\nname = \"m\"\npreset = \"park2016-1\"\nspeed = 9\nspeed_mm_s = 9\n" + methods +
+             run,
+         "e.toml:7:", "both speed and speed_mm_s");
+    says(head + "[[motion]]\nname = \"m\"\nfile = \"none.csv\"\n" + methods + run, "e.toml:5:", "none.csv");
+    says(head + "[[motion]]\nname = \"a\\tb\"\npreset = \"park2016-1\"\n" + methods + run,
+         "e.toml:4:", "tabs");
+    says(head + motion + "[[method]]\nname = \"a\"\nalgorithm = \"brush\"\n" + run,
+         "e.toml:8:", "tactile-brush");
+    says(head + motion + "[[method]]\nname = \"a\"\n" + run, "e.toml", "1 methods to choose from");
+    says(head + motion + methods + "[[run]]\nname = \"r\"\ntask = \"guess\"\ntrials = 4\n",
+         "e.toml:14:", "guess");
+    says(head + motion + methods + "[[run]]\nname = \"r\"\ntask = \"rate\"\ntrials = 4\n",
+         "e.toml:12:", "no attribute");
+    says(head + motion + methods + run + "scale = 7\n", "e.toml:17:", "scale is of runs that rate");
+    says(head + motion + methods + "[[run]]\nname = \"r\"\ntask = \"rate\"\nattribute = \"similarity\"\n",
+         "e.toml:12:", "no trials");
+    says(head + motion + methods + run + "methods = [\"a\", \"c\"]\n", "e.toml:17:", "not defined");
+    says(head + motion + methods + run + run, "e.toml:18:", "one name");
+}
+
+TEST_CASE("an experiment that is not there lists those that are")
+{
+    CHECK(has(message_of([] { load_definition("park2017"); }), "park2016, or a file"));
+    CHECK(has(message_of([] { load_definition("./none.toml"); }), "none.toml"));
+}
+
+} // namespace
+} // namespace tactor::study::test_definition

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: MIT
+#include "study/calibrate/staircase.hpp"
+
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include "study/calibrate/calibration.hpp"
+#include "study/calibrate/observer.hpp"
+
+namespace tactor::study::test_staircase {
+namespace {
+
+// Right for '1', wrong for '0'; the level of each trial.
+std::vector<double> levels(staircase& s, std::string_view answers)
+{
+    std::vector<double> all;
+    for (const char a : answers) {
+        all.push_back(s.level_dbfs());
+        s.answer(a == '1');
+    }
+    return all;
+}
+
+TEST_CASE("three right go down, one wrong up, and each step begins to count anew")
+{
+    staircase s({});
+    CHECK(levels(s, "1110111") == std::vector<double>{-20, -20, -20, -24, -20, -20, -20});
+    CHECK(s.reversals_dbfs() == std::vector<double>{-24, -20});
+    CHECK(s.level_dbfs() == -22); // the step at the second reversal is the new one
+    staircase two({.right_for_down = 2});
+    CHECK(levels(two, "1101") == std::vector<double>{-20, -20, -24, -20});
+    two.answer(true);
+    CHECK(two.level_dbfs() == -22);
+}
+
+TEST_CASE("steps become smaller with every second reversal, and the last stays")
+{
+    staircase s({.right_for_down = 2});
+    // down, up, down, ...: each a reversal from the second on
+    const auto all = levels(s, "110110110110110");
+    CHECK(s.reversals_dbfs() == std::vector<double>{-24, -20, -22, -20, -21, -20, -21, -20, -21});
+    CHECK(s.level_dbfs() == -20);
+    CHECK(all.size() == 15);
+}
+
+TEST_CASE("a step that the ceiling blocks counts as up")
+{
+    staircase s({.right_for_down = 2, .start_dbfs = -2.0, .ceiling_dbfs = -1.0});
+    CHECK(levels(s, "0") == std::vector<double>{-2});
+    CHECK(s.level_dbfs() == -1);
+    s.answer(false);
+    CHECK(s.level_dbfs() == -1);
+    CHECK(s.reversals_dbfs().empty());
+    s.answer(true);
+    s.answer(true); // down after a blocked step up: that is a turn
+    CHECK(s.reversals_dbfs() == std::vector<double>{-1});
+    CHECK(s.level_dbfs() == -5);
+}
+
+TEST_CASE("fewer than eight right of the last ten at the ceiling: not felt")
+{
+    staircase s({.start_dbfs = 0.0});
+    levels(s, "100101010");
+    CHECK(!s.end());
+    s.answer(true);
+    REQUIRE(s.end());
+    CHECK(*s.end() == staircase_end::not_felt);
+    CHECK(s.trials() == 10);
+    CHECK(!s.check_right());
+}
+
+TEST_CASE("what is right where nothing is left to feel has no threshold")
+{
+    staircase s({.start_dbfs = -140.0});
+    while (!s.end())
+        s.answer(true);
+    CHECK(*s.end() == staircase_end::below_range);
+    CHECK(!s.threshold());
+    CHECK(s.trials() < 30);
+}
+
+TEST_CASE("mean, deviation and halves of the reversals that count")
+{
+    const std::vector<double> r{-40, -10, -30, -20, -31, -29, -32, -28};
+    const reversal_mean m = mean_of(r, 4);
+    CHECK(m.mean_dbfs == -30.0);
+    CHECK(m.sd_db == doctest::Approx(std::sqrt(10.0 / 3.0)));
+    CHECK(m.halves_db == 0.0);
+    CHECK(mean_of(r, 6).halves_db == doctest::Approx(std::abs((-30 - 20 - 31) / 3.0 + (29 + 32 + 28) / 3.0)));
+}
+
+// Answers so that the staircase turns at each step: right until it goes down, then wrong.
+void turn(staircase& s, std::size_t reversals, double drift_db)
+{
+    while (s.reversals_dbfs().size() < reversals && !s.checking()) {
+        const double aim = -20.0 + drift_db * static_cast<double>(s.reversals_dbfs().size());
+        s.answer(s.level_dbfs() > aim);
+    }
+}
+
+TEST_CASE("of an odd number that counts the earliest is dropped too")
+{
+    staircase s({.reversals = 11, .discard = 4});
+    turn(s, 11, 0.0);
+    REQUIRE(s.checking());
+    CHECK(s.threshold()->mean_dbfs == mean_of(s.reversals_dbfs(), 6).mean_dbfs);
+}
+
+TEST_CASE(
+    "two more reversals while the halves differ by more than 2 dB, 24 at most, and the last eight count")
+{
+    staircase s({});
+    turn(s, 24, -1.2); // a threshold that falls all the time
+    REQUIRE(s.checking());
+    CHECK(s.reversals_dbfs().size() == most_reversals);
+    CHECK(s.threshold()->halves_db > 2.0);
+    CHECK(s.threshold()->mean_dbfs == mean_of(s.reversals_dbfs(), 8).mean_dbfs);
+
+    staircase steady({});
+    turn(steady, 24, 0.0);
+    CHECK(steady.reversals_dbfs().size() == 12);
+    CHECK(steady.threshold()->mean_dbfs == mean_of(steady.reversals_dbfs(), 8).mean_dbfs);
+
+    staircase once({});
+    std::vector<double> halves;
+    while (!once.checking()) {
+        // A jump of the threshold after the eighth reversal is behind the last eight at the sixteenth.
+        const double aim = once.reversals_dbfs().size() < 8 ? -20.0 : -26.0;
+        if (once.answer(once.level_dbfs() > aim) && once.reversals_dbfs().size() >= 12 &&
+            once.reversals_dbfs().size() % 2 == 0)
+            halves.push_back(mean_of(once.reversals_dbfs(), 8).halves_db);
+    }
+    CHECK(halves.size() >= 2);
+    for (std::size_t i = 0; i < halves.size(); ++i)
+        CHECK((halves[i] > 2.0) == (i + 1 < halves.size()));
+}
+
+TEST_CASE("ten check trials, 6 dB above the threshold or at the ceiling, decide")
+{
+    for (const double ceiling : {0.0, -18.0}) {
+        staircase s({.ceiling_dbfs = ceiling});
+        turn(s, 12, 0.0);
+        REQUIRE(s.checking());
+        CHECK(s.level_dbfs() == doctest::Approx(std::min(s.threshold()->mean_dbfs + 6.0, ceiling)));
+        const std::size_t before = s.trials();
+        staircase t = s;
+        levels(s, "1111100111");
+        CHECK(s.trials() == before + 10);
+        CHECK(*s.end() == staircase_end::felt);
+        CHECK(*s.check_right() == 8);
+        levels(t, "1111100101");
+        CHECK(*t.end() == staircase_end::not_felt);
+        CHECK(*t.check_right() == 7);
+    }
+}
+
+calibration_settings session(unsigned right_for_down, std::uint32_t seed)
+{
+    calibration_settings s;
+    s.participant = "sim";
+    s.tactors = {0};
+    s.ceilings_dbfs = {0.0};
+    s.staircase.right_for_down = right_for_down;
+    s.seed = seed;
+    return s;
+}
+
+tactor_threshold measured(unsigned right_for_down, std::uint32_t seed, const observer_settings& who)
+{
+    calibration c(session(right_for_down, seed));
+    observer o(who, c.settings());
+    while (!c.done())
+        c.answer(o.answer(c.next()));
+    return c.thresholds().front();
+}
+
+// The level at which an observer is right in that part of the trials, by halving.
+double level_for(const observer_settings& o, double part)
+{
+    double low = -200.0;
+    double high = 100.0;
+    for (int i = 0; i < 100; ++i) {
+        const double middle = (low + high) / 2.0;
+        (right_at(o, o.thresholds_dbfs.front(), middle) < part ? low : high) = middle;
+    }
+    return high;
+}
+
+TEST_CASE("a thousand observers' thresholds are what the rule targets")
+{
+    struct sort {
+        unsigned right_for_down;
+        double spread_db;
+        double lapse;
+        double within_db;
+    };
+    for (const sort& k : {sort{3, 2.0, 0.0, 0.5}, sort{2, 2.0, 0.0, 0.5}, sort{3, 1.0, 0.0, 0.5},
+                          sort{2, 1.0, 0.0, 0.5}, sort{3, 2.0, 0.05, 1.0}, sort{2, 2.0, 0.05, 1.0}}) {
+        const observer_settings who{{-45.0}, k.spread_db, k.lapse};
+        const double target = level_for(who, std::pow(0.5, 1.0 / k.right_for_down));
+        double sum = 0.0;
+        double squares = 0.0;
+        double trials = 0.0;
+        int felt = 0;
+        for (std::uint32_t seed = 0; seed < 1000; ++seed) {
+            const tactor_threshold t = measured(k.right_for_down, seed, who);
+            trials += static_cast<double>(t.trials);
+            if (!t.threshold_dbfs)
+                continue;
+            ++felt;
+            sum += *t.threshold_dbfs;
+            squares += *t.threshold_dbfs * *t.threshold_dbfs;
+        }
+        const double mean = sum / felt;
+        const double sd = std::sqrt(squares / felt - mean * mean);
+        MESSAGE(fmt::format(
+            "1up{}down, spread {} dB, lapse {}: {} felt, mean {:.3f} dBFS, target {:.3f}, off "
+            "{:+.3f} dB, sd {:.3f} dB, {:.1f} trials",
+            k.right_for_down, k.spread_db, k.lapse, felt, mean, target, mean - target, sd, trials / 1000.0));
+        CHECK(std::abs(mean - target) < k.within_db);
+        CHECK(felt >= 900);
+        CHECK(sd < 3.0);
+    }
+}
+
+TEST_CASE("who never feels anything comes out so")
+{
+    for (const unsigned right_for_down : {3U, 2U}) {
+        int not_felt = 0;
+        for (std::uint32_t seed = 0; seed < 1000; ++seed)
+            not_felt += measured(right_for_down, seed, {{1000.0}, 2.0, 0.0}).end == staircase_end::not_felt;
+        MESSAGE(fmt::format("1up{}down: {} of 1000 not felt", right_for_down, not_felt));
+        CHECK(not_felt >= 970);
+    }
+}
+
+} // namespace
+} // namespace tactor::study::test_staircase

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// Messages are part of the interface: tests compare them.
+#pragma once
+
+#include <string>
+
+#include <tactor/error.hpp>
+
+/// What a call complains of, or "" if it does not. Other exceptions go through and fail the test.
+template <class F>
+std::string message_of(F call)
+{
+    try {
+        call();
+    } catch (const tactor::error& e) {
+        return e.kind() == tactor::error_kind::bad_input ? e.what()
+                                                         : std::string("another kind: ") + e.what();
+    }
+    return {};
+}

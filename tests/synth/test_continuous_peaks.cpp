@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+// What continuous strokes ask of the tactors is bounded, however long they are.
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <tactor/error.hpp>
+#include <tactor/phantom.hpp>
+
+#include "own_curve.hpp"
+#include "pieces.hpp"
+
+namespace continuous_peaks_test {
+
+using namespace tactor;
+
+namespace {
+
+const array palm = preset_array("palm-3x3");
+
+plan continuous(std::vector<timed_point> points, plan_options o = {})
+{
+    o.algorithm = algorithm_kind::continuous;
+    return make_plan(palm, {"", trajectory::timed(std::move(points)), {}, {}, {}}, o);
+}
+
+/// The same plan, of which nothing is known but its values.
+plan opaque(plan p)
+{
+    p.curve = test::make_curve(p.stroke_duration_s, [c = *p.curve](double t, burst& out) { c.at(t, out); });
+    return p;
+}
+
+std::string refusal(std::vector<placed_plan> plans, double level_dbfs)
+{
+    render_options o;
+    o.level_dbfs = level_dbfs;
+    try {
+        score(palm, std::move(plans), o);
+    } catch (const error& e) {
+        CHECK(e.kind() == error_kind::bad_input);
+        return e.what();
+    }
+    return {};
+}
+
+/// Intensity 0.5 on the way over the array, but for 8 ms round a time.
+std::vector<timed_point> with_spike(double duration_s, double at_s, double intensity)
+{
+    const auto place = [&](double t) { return point{40.0 * t / duration_s, 20.0}; };
+    std::vector<timed_point> points{{0.0, place(0.0), 0.5}};
+    for (const auto& [off, i] : {std::pair{-0.004, 0.5}, {0.0, intensity}, {0.004, 0.5}})
+        points.push_back({at_s + off, place(at_s + off), i});
+    points.push_back({duration_s, place(duration_s), 0.5});
+    return points;
+}
+
+} // namespace
+
+TEST_CASE("a spike of 8 ms is found in strokes of ten seconds to a day, and let pass where it does no harm")
+{
+    std::mt19937_64 random(11);
+    for (const double duration : {10.0, 1048.0, 1049.0, 2000.0, 3600.0, 86400.0}) {
+        for (int n = 0; n < 20; ++n) {
+            std::uniform_int_distribution<int> ms(5, static_cast<int>(duration * 1000.0) - 5);
+            const double at = ms(random) * 0.001;
+            CAPTURE(duration);
+            CAPTURE(at);
+            const plan p = continuous(with_spike(duration, at, 1000.0));
+            CHECK(refusal({{p, {}}}, -40.0).find("dBFS, above full scale (0 dBFS)") != std::string::npos);
+            CHECK(refusal({{p, {}}}, -60.0).empty());
+        }
+    }
+    // On a tactor all of it is that tactor's, and it is said how much that is.
+    const plan p = continuous(with_spike(3600.0, 1800.0, 1000.0));
+    CHECK(refusal({{p, {}}}, -40.0).find("tactor 4: would be driven at 20 dBFS, above full scale") !=
+          std::string::npos);
+}
+
+TEST_CASE("spans are left out only where nothing in them is above a limit: as if every point was looked at")
+{
+    std::mt19937_64 random(12);
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    int refused = 0;
+    for (int n = 0; n < 120; ++n) {
+        CAPTURE(n);
+        std::vector<timed_point> points;
+        for (double t = 0.0; t < 1.0 + unit(random); t += 1e-4 + 0.2 * std::pow(unit(random), 3.0))
+            points.push_back({t, {40.0 * unit(random), 40.0 * unit(random)}, 1.7 * unit(random)});
+        points.push_back({2.5, {20.0, 20.0}, 0.0});
+        plan_options o;
+        o.phantom = static_cast<phantom_kind>(n % 5);
+        plan p = continuous(points, o);
+        if (n % 3 == 0) {
+            const stroke s{"", trajectory::timed(points).with_duration(0.7).with_intensity(0.9), {}, {}, {}};
+            o.algorithm = algorithm_kind::continuous;
+            p = make_plan(palm, s, o);
+        }
+        const double level = -6.0 * unit(random);
+        const std::string said = refusal({{p, {}}}, level);
+        CHECK(said == refusal({{opaque(p), {}}}, level));
+        refused += said.empty() ? 0 : 1;
+    }
+    CHECK(refused > 20);
+    CHECK(refused < 100);
+}
+
+TEST_CASE("of a plan of one's own every control point is looked at")
+{
+    std::uint64_t looks = 0;
+    double spike_s = 0.0;
+    plan p;
+    p.total_s = p.stroke_duration_s = 1500.0;
+    p.curve = test::make_curve(1500.0, [&](double t, burst& out) {
+        ++looks;
+        out.drives = {{3, std::abs(t - spike_s) < 0.0005 ? 1000.0 : 0.5}};
+    });
+    spike_s = -1.0;
+    CHECK(refusal({{p, {}}}, -40.0).empty());
+    CHECK(looks >= 1'500'001);
+    for (const double at : {0.0, 0.001, 1048.577, 1499.999, 1500.0}) {
+        CAPTURE(at);
+        spike_s = at;
+        CHECK(refusal({{p, {}}}, -40.0).find("tactor 3: would be driven at 20 dBFS") != std::string::npos);
+    }
+}
+
+TEST_CASE("strokes that are harmless alone are added up where they overlap, after hours too")
+{
+    for (const double rest : {1.0, 5000.0, 80000.0}) {
+        CAPTURE(rest);
+        // Silent for long, then a second on the middle tactor.
+        const plan late = continuous({{0.0, {20.0, 20.0}, 0.0},
+                                      {rest, {20.0, 20.0}, 0.0},
+                                      {rest + 0.5, {20.0, 20.0}, 0.7},
+                                      {rest + 1.0, {20.0, 20.0}, 0.0}});
+        const auto with = [&](double amplitude, double at) {
+            plan p = pieces::make_plan({pieces::make_burst(0.0, 0.07, {{4, amplitude}})});
+            return refusal({{late, 0.0}, {p, at}}, 0.0);
+        };
+        CHECK(with(0.29, rest).empty());
+        CHECK(with(0.31, rest).find("tactor 4: would be driven at 0.08") != std::string::npos);
+        CHECK(with(0.31, 0.1).find("tactor 4") != std::string::npos); // both go on at once: taken together
+        CHECK(with(0.99, rest + 1.0).empty());
+    }
+}
+
+} // namespace continuous_peaks_test

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: MIT
+// Limits on the power of the array and on the time that a tactor is driven.
+#include "synth/guard/guard.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <doctest/doctest.h>
+
+#include <tactor/error.hpp>
+
+#include "pieces.hpp"
+#include "synth/mix/mixer.hpp"
+
+namespace guard_test {
+
+using namespace tactor;
+using namespace pieces;
+
+namespace {
+
+constexpr unsigned rate = 8000;
+
+/// Bursts (onset, duration) of full scale on the first `tactors` of as many, and silence until `total_s`.
+score loud(unsigned tactors, std::vector<std::pair<double, double>> times, double total_s,
+           std::optional<drive_limits> limits, double level_dbfs = 0.0)
+{
+    std::vector<burst> bursts;
+    for (const auto& [onset, duration] : times) {
+        std::vector<drive> drives;
+        for (unsigned i = 0; i < tactors; ++i) {
+            drives.push_back({i, 1.0});
+        }
+        bursts.push_back(make_burst(onset, duration, drives));
+    }
+    plan p = make_plan(std::move(bursts));
+    p.total_s = p.stroke_duration_s = total_s;
+    render_options o;
+    o.rate = rate;
+    o.level_dbfs = level_dbfs;
+    o.limits = limits;
+    return {row(tactors), {{p, {}}}, o};
+}
+
+double largest_step(const std::vector<double>& x)
+{
+    double most = 0.0;
+    for (std::size_t i = 1; i < x.size(); ++i) {
+        most = std::max(most, std::abs(x[i] - x[i - 1]));
+    }
+    return most;
+}
+
+double largest(const std::vector<double>& x, double from_s, double to_s)
+{
+    double most = 0.0;
+    for (auto i = static_cast<std::size_t>(from_s * rate); i < static_cast<std::size_t>(to_s * rate); ++i) {
+        most = std::max(most, std::abs(x[i]));
+    }
+    return most;
+}
+
+drive_limits no_longest(double power_dbfs)
+{
+    return {
+        .power_dbfs = power_dbfs, .max_drive_s = std::numeric_limits<double>::infinity(), .window_s = 10.0};
+}
+
+} // namespace
+
+TEST_CASE("what is within the limits has the same bytes with them and without")
+{
+    for (const unsigned tactors : {1U, 3U}) {
+        const std::vector<std::pair<double, double>> times{{0.0, 2.5}, {3.0, 2.5}};
+        for (const format_kind f : all_formats) {
+            CHECK((render(loud(tactors, times, 6.0, drive_limits{}), f) ==
+                   render(loud(tactors, times, 6.0, {}), f)));
+        }
+    }
+    // Nine at the default level are below the power of three at full scale.
+    CHECK((render(loud(9, {{0.0, 1.0}}, 1.0, drive_limits{}, -12.0), format_kind::s32) ==
+           render(loud(9, {{0.0, 1.0}}, 1.0, {}, -12.0), format_kind::s32)));
+}
+
+TEST_CASE("more power than allowed is held down from the first wave on, and without a step")
+{
+    for (const unsigned tactors : {4U, 9U, 64U}) {
+        const score s = loud(tactors, {{0.1, 0.5}}, 0.7, no_longest(4.771212547196624));
+        std::vector<std::vector<double>> x;
+        for (unsigned c = 0; c < tactors; ++c) {
+            x.push_back(channel(s, c));
+        }
+        double most = 0.0;
+        for (std::size_t i = 0; i < x[0].size(); ++i) {
+            double sum = 0.0;
+            for (const auto& c : x) {
+                sum += c[i] * c[i];
+            }
+            most = std::max(most, sum);
+        }
+        CAPTURE(tactors);
+        CHECK(most <= 3.0 * (1.0 + 1e-6));
+        CHECK(most > 2.9);
+        const double wave = 2.0 * std::sin(pi * 250.0 / rate);
+        CHECK(largest_step(x[0]) <= wave);
+    }
+}
+
+TEST_CASE("the gain is back a while after the loud part")
+{
+    const score s = loud(9, {{0.0, 0.2}, {1.2, 0.1}}, 1.4, no_longest(4.771212547196624));
+    plan quiet = make_plan(
+        {make_burst(0.0, 0.2, {{0, 1.0}, {1, 1.0}, {2, 1.0}, {3, 1.0}}), make_burst(1.2, 0.1, {{0, 1.0}})});
+    render_options o;
+    o.rate = rate;
+    o.level_dbfs = 0.0;
+    o.limits = no_longest(4.771212547196624);
+    const std::vector<double> x = channel(score(row(4), {{quiet, {}}}, o), 0);
+    CHECK(largest(x, 0.05, 0.2) < 0.9);
+    CHECK(largest(x, 1.2, 1.3) == doctest::Approx(1.0));
+}
+
+TEST_CASE("a tactor that is driven for five seconds passes, longer than that fades out")
+{
+    const std::vector<double> five = channel(loud(1, {{1.03, 5.0}}, 8.0, drive_limits{}), 0);
+    CHECK((five == channel(loud(1, {{1.03, 5.0}}, 8.0, {}), 0)));
+
+    const std::vector<double> x = channel(loud(1, {{1.03, 20.0}}, 22.0, drive_limits{}), 0);
+    CHECK(largest(x, 1.1, 6.02) == doctest::Approx(1.0));
+    CHECK(largest(x, 6.06, 10.0) == 0.0);
+    CHECK(largest_step(x) <= 2.0 * std::sin(pi * 250.0 / rate) + 1e-3);
+    // Half of it has left the window 12.5 s after the beginning or a little later.
+    CHECK(largest(x, 13.8, 14.0) == doctest::Approx(1.0));
+}
+
+TEST_CASE("no window of ten seconds has more than five of drive, whatever the pattern")
+{
+    std::mt19937_64 random(17);
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    for (int run = 0; run < 20; ++run) {
+        std::vector<std::pair<double, double>> times;
+        double t = unit(random);
+        while (t < 50.0) {
+            const double d = 0.05 + 3.0 * unit(random);
+            times.emplace_back(t, d);
+            t += d + 2.0 * unit(random) * unit(random);
+        }
+        const std::vector<double> x = channel(loud(1, times, t + 1.0, drive_limits{}), 0);
+        // Sounding in 4 ms (one cycle) pieces.
+        const std::size_t piece = rate / 250;
+        std::vector<unsigned> sounds;
+        for (std::size_t i = 0; i + piece <= x.size(); i += piece) {
+            double most = 0.0;
+            for (std::size_t j = i; j < i + piece; ++j) {
+                most = std::max(most, std::abs(x[j]));
+            }
+            sounds.push_back(most > 0.01 ? 1 : 0);
+        }
+        unsigned sum = 0;
+        unsigned most = 0;
+        for (std::size_t i = 0; i < sounds.size(); ++i) {
+            sum += sounds[i];
+            sum -= i >= 2500 ? sounds[i - 2500] : 0;
+            most = std::max(most, sum);
+        }
+        // One fade, and each burst has two edges.
+        CHECK(most * 0.004 < 5.0 + 0.02 + 0.1);
+        CHECK(most * 0.004 > 3.5);
+    }
+}
+
+TEST_CASE("limits act in the same frames whatever the block sizes")
+{
+    std::mt19937_64 random(23);
+    drive_limits l;
+    l.max_drive_s = 0.3;
+    l.window_s = 1.0;
+    l.power_dbfs = 1.0;
+    const score s = loud(5, {{0.05, 0.4}, {0.46, 0.7}, {1.3, 0.2}, {1.9, 0.9}}, 3.0, l);
+    const auto whole = render(s, format_kind::s32);
+    CHECK((whole !=
+           render(loud(5, {{0.05, 0.4}, {0.46, 0.7}, {1.3, 0.2}, {1.9, 0.9}}, 3.0, {}), format_kind::s32)));
+    for (const std::size_t largest_block : {1, 7, 64, 65, 96, 128, 1000}) {
+        CHECK((whole == render(
+                            s, format_kind::s32, [&] { return 1 + random() % largest_block; }, s.frames())));
+    }
+}
+
+TEST_CASE("an epoch's end does not give a tactor its time back")
+{
+    drive_limits l;
+    l.max_drive_s = 0.5;
+    l.window_s = 1.0;
+    synth::mixer m(std::vector<double>(1, 1.0), format_kind::float32, 8, synth::guards_of(l, rate));
+    synth::drive_event e;
+    e.length = e.window = rate;
+    e.cycles_per_frame = 250.0 / rate;
+    e.drives = 1;
+    e.drive[0] = {1.0, 1.0, 0};
+    std::vector<float> x(rate);
+    for (int epoch = 0; epoch < 2; ++epoch) {
+        CHECK(m.add(e));
+        m.process(rate / 2 - 100, reinterpret_cast<std::byte*>(x.data()));
+        m.reset();
+    }
+    CHECK(m.drives_cut() == 1);
+}
+
+TEST_CASE("weak drives do not count, and limits that are none are told")
+{
+    CHECK((channel(loud(1, {{0.0, 20.0}}, 20.0, drive_limits{}, -41.0), 0) ==
+           channel(loud(1, {{0.0, 20.0}}, 20.0, {}, -41.0), 0)));
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const drive_limits& l :
+         {drive_limits{.power_dbfs = nan}, drive_limits{.max_drive_s = 0.0}, drive_limits{.max_drive_s = nan},
+          drive_limits{.window_s = nan}, drive_limits{.window_s = 1e9}, drive_limits{.power_dbfs = -500.0}}) {
+        CHECK_THROWS_AS(loud(1, {{0.0, 0.1}}, 0.1, l), error);
+    }
+}
+
+TEST_CASE("what is not a number reaches no format")
+{
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const double inf = std::numeric_limits<double>::infinity();
+    for (const format_kind f : all_formats) {
+        synth::mixer m(std::vector<double>{1.0, 0.5, nan}, f, 64, synth::guards_of({}, 48000));
+        for (const double a : {nan, inf, -inf, 1e308, -1e308, 1e200}) {
+            for (std::uint32_t c = 0; c < 3; ++c) {
+                synth::drive_event e;
+                e.length = e.window = 400;
+                e.cycles_per_frame = c == 2 ? nan : 250.0 / 48000.0;
+                e.drives = 2;
+                e.drive[0] = {a, a, c};
+                e.drive[1] = {-a, a, 1};
+                m.add(e);
+            }
+        }
+        std::vector<std::byte> out(480 * 3 * bytes_of(f));
+        m.process(480, out.data());
+        for (std::size_t i = 0; i < 480 * 3; ++i) {
+            if (f == format_kind::float32) {
+                const float v = sample<float>(out, i);
+                REQUIRE(std::abs(v) <= (i % 3 == 1 ? 0.5F : i % 3 == 2 ? 0.0F : 1.0F));
+            } else {
+                const auto v = std::abs(static_cast<double>(integer(out, f, i))) / scale_of(f);
+                REQUIRE(v <= (i % 3 == 1 ? 0.5 : i % 3 == 2 ? 0.0 : 1.0));
+            }
+        }
+    }
+}
+
+} // namespace guard_test

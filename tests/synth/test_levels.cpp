@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include <tactor/error.hpp>
+
+#include "own_curve.hpp"
+#include "pieces.hpp"
+
+namespace levels_test {
+
+using namespace tactor;
+using namespace pieces;
+
+namespace {
+
+const plan one = make_plan({make_burst(0.0, 0.07, {{0, 0.6}, {1, 0.8}})});
+
+double peak(const score& s, unsigned c)
+{
+    double p = 0.0;
+    for (const double x : channel(s, c)) {
+        p = std::max(p, std::abs(x));
+    }
+    return p;
+}
+
+std::string message(const std::function<void()>& f)
+{
+    try {
+        f();
+    } catch (const error& e) {
+        CHECK(e.kind() == error_kind::bad_input);
+        return e.what();
+    }
+    return "no error";
+}
+
+bool holds(const std::string& text, const std::string& part)
+{
+    if (text.find(part) == std::string::npos) {
+        MESSAGE(text);
+        return false;
+    }
+    return true;
+}
+
+} // namespace
+
+TEST_CASE("the level is -12 dBFS unless told, and gain_db is added to it")
+{
+    array a = row(2);
+    a.tactors[1].gain_db = -6.0;
+    const score s(a, {{one, {}}}, {});
+    CHECK(peak(s, 0) == doctest::Approx(0.6 * std::pow(10.0, -0.6)));
+    CHECK(peak(s, 1) == doctest::Approx(0.8 * std::pow(10.0, -0.9)));
+    a.tactors[1].gain_db = 6.0;
+    CHECK(peak(score(a, {{one, {}}}, {}), 1) == doctest::Approx(0.8 * std::pow(10.0, -0.3)));
+}
+
+TEST_CASE("a sensation level is above each tactor's threshold, without gain_db")
+{
+    array a = row(2);
+    a.tactors[0].threshold_dbfs = -40.0;
+    a.tactors[1].threshold_dbfs = -30.0;
+    a.tactors[1].gain_db = 3.0;
+    render_options o;
+    o.sl_db = 7.0;
+    const score s(a, {{one, {}}}, o);
+    CHECK(peak(s, 0) == doctest::Approx(0.6 * std::pow(10.0, -33.0 / 20.0)));
+    CHECK(peak(s, 1) == doctest::Approx(0.8 * std::pow(10.0, -23.0 / 20.0)));
+    a.tactors[1].threshold_dbfs.reset();
+    a.tactors[1].where = {"palm.toml", 7, 1};
+    CHECK(holds(message([&] { score(a, {{one, {}}}, o); }), "palm.toml:7:1: tactor 1 has no threshold_dbfs"));
+    a.tactors[1].threshold_dbfs = -3.0;
+    CHECK(holds(message([&] { score(a, {{one, {}}}, o); }), "full scale"));
+}
+
+TEST_CASE("polarity turns a channel round")
+{
+    array a = row(2);
+    a.tactors[1].polarity = -1;
+    const score s(a, {{make_plan({make_burst(0.0, 0.07, {{0, 0.5}, {1, 0.5}})}), {}}}, {});
+    const auto x = channel(s, 0);
+    const auto y = channel(s, 1);
+    CHECK(peak(s, 0) > 0.1);
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        REQUIRE(x[k] == -y[k]);
+    }
+}
+
+TEST_CASE("levels that cannot be are refused")
+{
+    render_options o;
+    for (const double level : {0.1, 1e9, std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+        o.level_dbfs = level;
+        CHECK(holds(message([&] { score(row(2), {{one, {}}}, o); }), "level_dbfs"));
+    }
+    array a = row(2);
+    a.tactors[1].gain_db = 12.5;
+    a.tactors[1].where = {"palm.toml", 7, 1};
+    const std::string text = message([&] { score(a, {{one, {}}}, {}); });
+    CHECK(holds(text, "palm.toml:7:1"));
+    CHECK(holds(text, "0.5 dBFS"));
+    a.tactors[1].gain_db = 12.0;
+    CHECK(message([&] { score(a, {{one, {}}}, {}); }) == "no error");
+}
+
+TEST_CASE("a tactor's limit is compared with what the score gives it")
+{
+    array a = row(2);
+    a.tactors[1].max_dbfs = -14.0;
+    a.tactors[1].where = {"palm.toml", 9, 1};
+    // 0.8 at -12 dBFS is -13.94 dBFS.
+    const std::string text = message([&] { score(a, {{one, {}}}, {}); });
+    CHECK(holds(text, "palm.toml:9:1: tactor 1 would be driven at -13.94 dBFS"));
+    CHECK(holds(text, "limit of -14 dBFS"));
+    CHECK(holds(text, "by 0.07 dB or more"));
+    a.tactors[1].max_dbfs = -13.93;
+    CHECK(message([&] { score(a, {{one, {}}}, {}); }) == "no error");
+    a.tactors[0].max_dbfs = -13.0;
+    CHECK(message([&] { score(a, {{one, {}}, {one, {}}}, {}); }) == "no error");
+    CHECK(holds(message([&] { score(a, {{one, {}}, {one, 0.03}}, {}); }), "tactor 0"));
+}
+
+TEST_CASE("a sensation level that is too high says threshold and what is missing")
+{
+    array a = row(2);
+    a.tactors[0].threshold_dbfs = -30.0;
+    a.tactors[1].threshold_dbfs = -6.0;
+    a.tactors[1].where = {"me.toml", 9, 1};
+    render_options o;
+    o.sl_db = 9.0; // 0.8 of it: 7.06 dB above -6 dBFS
+    const std::string text = message([&] { score(a, {{one, {}}}, o); });
+    CHECK(holds(text,
+                "me.toml:9:1: tactor 1 would be driven at 1.062 dBFS, above full scale (0 dBFS): with its "
+                "threshold of -6 dBFS 1.07 dB are missing"));
+    CHECK(holds(text, "lower sl_db by 1.07 dB or more"));
+    a.tactors[1].max_dbfs = -3.0;
+    CHECK(holds(message([&] {
+                    score(a, {{one, {}}}, o);
+                }),
+                "above its limit of -3 dBFS (max_dbfs): with its threshold of -6 dBFS 4.07 dB are missing"));
+}
+
+TEST_CASE("strokes that add up beyond full scale are refused, one at full scale is not")
+{
+    const plan full = make_plan({make_burst(0.0, 0.07, {{0, 1.0}}), make_burst(0.07, 0.07, {{0, 1.0}})});
+    render_options o;
+    o.level_dbfs = 0.0;
+    for (const unsigned rate : {8000U, 22050U, 44100U, 48000U}) {
+        o.rate = rate;
+        CHECK(message([&] { score(row(1), {{full, {}}, {full, {}}}, o); }) == "no error");
+        CHECK(holds(message([&] {
+                        score(row(1), {{full, {}}, {full, 0.1}}, o);
+                    }),
+                    "6.021 dBFS, above full scale"));
+    }
+    const plan loud = make_plan({make_burst(0.0, 0.07, {{0, 1.5}}, 1.5)});
+    CHECK(holds(message([&] { score(row(1), {{loud, {}}}, o); }), "3.522 dBFS"));
+}
+
+TEST_CASE("overlaps in one plan count by their rule")
+{
+    plan p = make_plan({make_burst(0.0, 0.1, {{0, 0.8}}), make_burst(0.05, 0.1, {{0, 0.8}})});
+    render_options o;
+    o.level_dbfs = 0.0;
+    CHECK(message([&] { score(row(1), {{p, {}}}, o); }) == "no error");
+    p.overlap = overlap_kind::sum;
+    CHECK(holds(message([&] { score(row(1), {{p, {}}}, o); }), "4.082 dBFS"));
+    p.overlap = overlap_kind::max;
+    CHECK(message([&] { score(row(1), {{p, {}}}, o); }) == "no error");
+}
+
+TEST_CASE("continuous strokes are held to the limits too")
+{
+    array a = row(3);
+    a.tactors[1].max_dbfs = -12.1;
+    CHECK(holds(message([&] { score(a, {{make_continuous(3, 0.5), {}}}, {}); }), "tactor 1"));
+    a.tactors[1].max_dbfs = -12.0;
+    CHECK(message([&] { score(a, {{make_continuous(3, 0.5), {}}}, {}); }) == "no error");
+    plan bad = make_continuous(3, 0.5);
+    bad.curve = tactor::test::make_curve(0.5, [](double, burst& out) {
+        out.drives.assign(1, {0, std::nan("")});
+    });
+    CHECK(holds(message([&] { score(a, {{bad, {}}}, {}); }), "nan"));
+    bad.curve = tactor::test::make_curve(0.5, [](double, burst& out) { out.drives.assign(1, {3, 0.5}); });
+    CHECK(holds(message([&] { score(a, {{bad, {}}}, {}); }), "tactor 3"));
+}
+
+TEST_CASE("options that cannot be rendered are refused")
+{
+    const auto with = [](auto change) {
+        return message([&] {
+            render_options o;
+            plan p = one;
+            std::optional<double> start;
+            change(o, p, start);
+            score(row(2), {{p, start}}, o);
+        });
+    };
+    CHECK(holds(with([](auto& o, auto&, auto&) { o.rate = 7999; }), "7999"));
+    CHECK(holds(with([](auto& o, auto&, auto&) { o.rate = 768001; }), "768001"));
+    CHECK(holds(with([](auto& o, auto&, auto&) { o.channels = 1; }), "too few"));
+    CHECK(holds(with([](auto& o, auto&, auto&) { o.channels = 16385; }), "16385"));
+    CHECK(holds(with([](auto& o, auto&, auto&) { o.ramp_s = -0.001; }), "ramp_s"));
+    CHECK(holds(with([](auto& o, auto&, auto&) { o.ramp_s = std::nan(""); }), "ramp_s"));
+    for (const double hz : {24000.0, 1e9, 0.0, -250.0, std::nan("")}) {
+        CHECK(holds(with([hz](auto&, auto& p, auto&) { p.carrier_hz = hz; }), "48000 Hz"));
+    }
+    CHECK(with([](auto&, auto& p, auto&) { p.carrier_hz = 23999.0; }) == "no error");
+    for (const double s : {-0.1, 1e300, std::nan("")}) {
+        CHECK(holds(with([s](auto&, auto&, auto& start) { start = s; }), "start"));
+        CHECK(holds(with([s](auto&, auto& p, auto&) { p.total_s = s; }), "lasts"));
+        CHECK(holds(with([s](auto&, auto& p, auto&) { p.bursts[0].onset_s = s; }), "burst 1"));
+        CHECK(holds(with([s](auto&, auto& p, auto&) { p.bursts[0].duration_s = s; }), "burst 1"));
+    }
+    CHECK(holds(with([](auto&, auto& p, auto&) { p.bursts[0].drives[1].amplitude = std::nan(""); }), "nan"));
+    CHECK(holds(with([](auto&, auto& p, auto&) { p.bursts[0].drives[1].tactor = 2; }), "tactor 2"));
+}
+
+} // namespace levels_test

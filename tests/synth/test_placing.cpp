@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: MIT
+// Where plans lie in a score, and the events that come out of it.
+#include <algorithm>
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include <tactor/error.hpp>
+
+#include "own_curve.hpp"
+#include "pieces.hpp"
+#include "rounds.hpp"
+#include "synth/score/event_source.hpp"
+
+namespace placing_test {
+
+using namespace tactor;
+using namespace pieces;
+
+TEST_CASE("plans follow each other unless they are placed")
+{
+    const plan p = make_plan({make_burst(0.01, 0.0413, {{0, 0.5}})});
+    render_options o;
+    o.rate = 44100;
+    const score s(row(2), {{p, {}}, {p, {}}, {p, 0.02}, {p, {}}}, o);
+    const auto length = static_cast<std::uint64_t>(std::llround(0.0513 * 44100));
+    CHECK((s.starts() == std::vector<std::uint64_t>{0, length, 882, 882 + length}));
+    CHECK(s.frames() == 882 + 2 * length);
+    CHECK(s.plans().size() == 4);
+    CHECK(s.rate() == 44100);
+    CHECK(s.channels() == 2);
+}
+
+TEST_CASE("starts count from the start or the end of plans before")
+{
+    const plan p = make_plan({make_burst(0.0, 0.05, {{0, 0.5}})});
+    const plan longer = make_plan({make_burst(0.0, 0.2, {{1, 0.5}})});
+    constexpr auto start = start_from_kind::start;
+    constexpr auto end = start_from_kind::end;
+    const std::vector<placed_plan> plans{{p, 0.1},
+                                         {longer, 0.01, {start, 1}},
+                                         {p, 0.0, {end, 1}},
+                                         {p, 0.02, {end, 3}},
+                                         {p, -0.05, {end, 1}},
+                                         {p, 0.03, {start, 5}},
+                                         {p, 0.5, {end, 99}}};
+    const score s(row(2), plans);
+    CHECK((s.starts() == std::vector<std::uint64_t>{4800, 5280, 14880, 18240, 18240, 6240, 44640}));
+    const std::vector<double> seconds = starts_of(plans);
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+        CHECK(std::llround(seconds[i] * 48000.0) == static_cast<long long>(s.starts()[i]));
+        CHECK(s.plans()[i].anchor == plans[i].anchor);
+    }
+    CHECK_THROWS_AS(score(row(2), {{p, {}}, {p, -0.1, {end, 1}}}), error);
+}
+
+TEST_CASE("strokes that are planned while they are placed have the samples of their plans")
+{
+    const array a = preset_array("palm-3x3");
+    const layout l(a);
+    stroke first = preset_stroke("park2016-1");
+    stroke second = preset_stroke("park2016-3");
+    first.motion = first.motion.with_duration(150.0); // more bursts than are handed over at once
+    second.start_s = 0.35;
+    second.carrier_hz = 180.0;
+    for (const algorithm_kind algorithm : values_of<algorithm_kind>()) {
+        plan_options how;
+        how.algorithm = algorithm;
+        how.profile.max_soa_s = 0.2;
+        first.motion = first.motion.with_duration(algorithm == algorithm_kind::park2016 ? 150.0 : 1.4);
+        render_options o;
+        o.level_dbfs = -30.0;
+        score_builder made(a, o);
+        std::vector<placed_plan> plans;
+        for (const stroke& s : {first, second}) {
+            made.add(l, s, how);
+            plans.push_back({make_plan(a, l, s, how), s.start_s});
+        }
+        const score both = made.take();
+        const score expected(a, plans, o);
+        for (std::size_t i = 0; i < plans.size(); ++i) {
+            plans[i].schedule.bursts.clear(); // they are not kept twice
+            CHECK(both.plans()[i].schedule == plans[i].schedule);
+            CHECK(both.plans()[i].start_s == plans[i].start_s);
+        }
+        CHECK(both.starts() == expected.starts());
+        CHECK(both.frames() == expected.frames());
+        const auto block = [] { return 4096; };
+        const auto frames = static_cast<std::size_t>(both.frames());
+        const bool same = render(both, format_kind::float32, block, frames) ==
+                          render(expected, format_kind::float32, block, frames);
+        CHECK(same);
+        CHECK(made.take().frames() == 0); // it begins anew
+    }
+}
+
+TEST_CASE("a stroke that cannot be planned or rendered is refused while it is added")
+{
+    const array a = preset_array("palm-3x3");
+    const layout l(a);
+    score_builder made(a, {});
+    stroke s = preset_stroke("park2016-1");
+    s.carrier_hz = 30000.0;
+    CHECK_THROWS_AS(made.add(l, s, {}), error);
+    s.carrier_hz = 250.0;
+    CHECK_THROWS_AS(made.add(l, s, {.soa_s = 1.0}), error);
+    s.start_s = -1.0;
+    CHECK_THROWS_AS(made.add(l, s, {}), error);
+}
+
+TEST_CASE("a score without plans has no frames and renders silence")
+{
+    const score s(row(2), {}, {});
+    CHECK(s.frames() == 0);
+    const auto x = render(
+        s, format_kind::s16, [] { return 64; }, 100);
+    CHECK(std::all_of(x.begin(), x.end(), [](std::byte b) { return b == std::byte{0}; }));
+}
+
+TEST_CASE("spare channels are silent and channels follow the map")
+{
+    array a = row(2);
+    a.tactors[0].channel = 3;
+    render_options o;
+    o.channels = 6;
+    const score s(a, {{make_plan({make_burst(0.0, 0.07, {{0, 0.5}, {1, 0.25}})}), {}}}, o);
+    CHECK(s.channels() == 6);
+    for (const unsigned c : {0U, 2U, 4U, 5U}) {
+        const auto x = channel(s, c);
+        CHECK(std::all_of(x.begin(), x.end(), [](double v) { return v == 0.0; }));
+    }
+    CHECK(channel(s, 3)[48] == doctest::Approx(0.5 * std::pow(10.0, -0.6)));
+    CHECK(channel(s, 1)[48] == doctest::Approx(0.25 * std::pow(10.0, -0.6)));
+}
+
+TEST_CASE("events come in order of start and cover exactly what sounds")
+{
+    std::mt19937_64 random(21);
+    for (int i = 0; i < tactor::test::rounds(50); ++i) {
+        render_options o;
+        o.level_dbfs = -30.0;
+        o.phase = i % 2 == 0 ? phase_kind::burst : phase_kind::stroke;
+        const score s(row(9),
+                      {{make_random(random, 9, 40, 0.5), {}},
+                       {make_continuous(9, 0.2), 0.3},
+                       {make_random(random, 9, 10, 0.2), 0.1}},
+                      o);
+        synth::event_source source(s);
+        std::uint64_t last = 0;
+        std::uint64_t end = 0;
+        while (const synth::drive_event* e = source.peek()) {
+            REQUIRE(e->start >= last);
+            REQUIRE(e->length > 0);
+            REQUIRE(e->drives > 0);
+            REQUIRE(e->drives <= synth::drives_per_event);
+            REQUIRE(e->score == 0);
+            last = e->start;
+            end = std::max(end, e->start + e->length);
+            source.pop();
+        }
+        CHECK(end <= s.frames());
+        CHECK(end + 2 >= s.frames());
+        source.pop();
+        CHECK(source.peek() == nullptr);
+    }
+}
+
+TEST_CASE("a burst of more tactors than an event holds is several events of one carrier")
+{
+    std::vector<drive> drives;
+    for (unsigned i = 0; i < 9; ++i) {
+        drives.push_back({i, 0.1 * (i + 1)});
+    }
+    const score s(row(9), {{make_plan({make_burst(0.01, 0.07, drives)}), {}}}, {});
+    synth::event_source source(s);
+    unsigned next = 0;
+    for (const unsigned n : {4U, 4U, 1U}) {
+        const synth::drive_event* e = source.peek();
+        REQUIRE(e != nullptr);
+        CHECK(e->start == 480);
+        CHECK(e->length == 3360);
+        CHECK(e->drives == n);
+        for (unsigned i = 0; i < n; ++i) {
+            CHECK(e->drive[i].channel == next++);
+        }
+        source.pop();
+    }
+    CHECK(source.peek() == nullptr);
+}
+
+TEST_CASE("a drive longer than an event goes on in the next without a seam")
+{
+    render_options o;
+    o.rate = 768000;
+    const score s(row(1), {{make_plan({make_burst(0.0, 3000.0, {{0, 1.0}})}), {}}}, o);
+    REQUIRE(s.frames() == 2304000000U);
+    synth::event_source source(s);
+    std::uint64_t at = 0;
+    while (const synth::drive_event* e = source.peek()) {
+        CHECK(e->start == at);
+        CHECK(e->phase_frame == at);
+        CHECK(e->ramp_position == at);
+        CHECK(e->window == s.frames());
+        at += e->length;
+        source.pop();
+    }
+    CHECK(at == s.frames());
+}
+
+TEST_CASE("continuous strokes are linear between control points, one carrier throughout")
+{
+    for (const unsigned rate : {8000U, 44100U, 48000U}) {
+        const double duration = 0.2504;
+        const double hz = 180.0;
+        const plan p = make_continuous(3, duration, hz);
+        render_options o;
+        o.rate = rate;
+        o.level_dbfs = 0.0;
+        o.ramp_s = 0.01;
+        const score s(row(3), {{p, {}}}, o);
+        const auto n = static_cast<std::int64_t>(std::llround(duration * rate));
+        REQUIRE(s.frames() == static_cast<std::uint64_t>(n));
+        for (unsigned c = 0; c < 3; ++c) {
+            const auto x = channel(s, c);
+            const auto amplitude = [&](double t) {
+                burst b;
+                p.curve->at(std::min(t, duration), b);
+                for (const drive& d : b.drives) {
+                    if (d.tactor == c) {
+                        return d.amplitude;
+                    }
+                }
+                return 0.0;
+            };
+            std::int64_t step = 0;
+            for (std::int64_t k = 0; k < n; ++k) {
+                const auto frame_of = [&](std::int64_t i) {
+                    return std::min(
+                        n, static_cast<std::int64_t>(std::llround(static_cast<double>(i) * 0.001 * rate)));
+                };
+                while (frame_of(step + 1) <= k) {
+                    ++step;
+                }
+                const auto from = static_cast<double>(frame_of(step));
+                const auto to = static_cast<double>(frame_of(step + 1));
+                const double a = amplitude(0.001 * static_cast<double>(step));
+                const double b = amplitude(0.001 * static_cast<double>(step + 1));
+                const double e = a + (b - a) * (static_cast<double>(k) - from) / (to - from);
+                const double exact = e * window(k, n, std::llround(0.01 * rate)) *
+                                     std::sin(2.0 * pi * hz * static_cast<double>(k) / rate);
+                REQUIRE(std::abs(x[static_cast<std::size_t>(k)] - exact) < 1e-6);
+            }
+        }
+    }
+}
+
+TEST_CASE("a continuous stroke may be silent in part or throughout")
+{
+    plan p = make_continuous(3, 0.2);
+    p.curve = test::make_curve(0.2, [](double t, burst& out) {
+        out.drives.clear();
+        if (t > 0.1) {
+            out.drives.push_back({1, 1.0});
+        }
+    });
+    const score s(row(3), {{p, {}}}, {});
+    const auto x = channel(s, 1);
+    CHECK(std::all_of(x.begin(), x.begin() + 4800, [](double v) { return v == 0.0; }));
+    CHECK(std::any_of(x.begin() + 4800, x.end(), [](double v) { return v > 0.2; }));
+    p.curve = test::make_curve(0.2, [](double, burst& out) { out.drives.clear(); });
+    const score nothing(row(3), {{p, {}}, {p, 0.0}}, {});
+    CHECK(nothing.frames() == 9600);
+    synth::event_source source(nothing);
+    CHECK(source.peek() == nullptr);
+}
+
+} // namespace placing_test

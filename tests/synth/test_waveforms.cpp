@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: MIT
+// What vibrates has no frequency that it should not have, and keeps within what a sine may do.
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <tactor/error.hpp>
+
+#include "core/access.hpp"
+#include "count_allocations.hpp"
+#include "has.hpp"
+#include "message_of.hpp"
+#include "tones.hpp"
+
+namespace waveforms_test {
+
+using namespace tactor;
+using namespace tones;
+using namespace pieces;
+
+namespace {
+
+constexpr waveform_kind shapes[] = {waveform_kind::square, waveform_kind::triangle, waveform_kind::sawtooth};
+
+} // namespace
+
+TEST_CASE("no harmonic folds back at half the rate: aliases are 80 dB down and more")
+{
+    // None of them divides the rate: what folded back would lie between the harmonics.
+    for (const waveform_kind k : shapes) {
+        for (const double hz : {20.3, 61.7, 250.7, 441.3, 997.1}) {
+            CAPTURE(std::string(to_string(k)));
+            CAPTURE(hz);
+            CHECK(stray_db(lines(played(tone(shape(k), hz))), hz) < -80.0);
+        }
+    }
+}
+
+TEST_CASE("the harmonics below half the rate are those of the shape")
+{
+    for (const double hz : {100.1, 250.7, 997.1}) {
+        for (const waveform_kind k : shapes) {
+            const auto x = lines(played(tone(shape(k), hz)));
+            const double first = strongest(x, hz);
+            for (int h = 2; h * hz < 0.5 * rate - 10.0; ++h) {
+                CAPTURE(std::string(to_string(k)));
+                CAPTURE(h);
+                const bool there = k == waveform_kind::sawtooth || h % 2 == 1;
+                const double expected = !there ? 0.0 : k == waveform_kind::triangle ? 1.0 / h / h : 1.0 / h;
+                REQUIRE(std::abs(strongest(x, h * hz) / first - expected) < 3e-4 + 0.03 * expected);
+            }
+        }
+    }
+}
+
+TEST_CASE("a wave's peak is the amplitude that was asked for")
+{
+    std::vector<float> samples{0.0F, 0.1F, 0.3F, -0.2F, 0.05F, -0.1F, 0.2F};
+    std::vector<waveform> all{noise(50, 500), noise(100, 110), recorded(samples, texture_kind::cycle),
+                              recorded(samples, texture_kind::time)};
+    for (const waveform_kind k : shapes) {
+        all.push_back(shape(k));
+    }
+    for (const waveform& w : all) {
+        CAPTURE(waveform_text(w));
+        const double peak = greatest(played(tone(w, 100.0, 6.0), -6.0));
+        const double asked = std::pow(10.0, -6.0 / 20.0);
+        CHECK(peak <= asked * (1.0 + 1e-6));
+        CHECK(peak >= asked * 0.97);
+    }
+}
+
+TEST_CASE("noise lies between its frequencies, and its seed says which it is")
+{
+    const auto x = lines(played(tone(noise(100, 300), 250.0)));
+    const double most = *std::max_element(x.begin(), x.end());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const double hz = static_cast<double>(i) * line_hz;
+        if (hz < 100.0 - 8.0 * line_hz || hz > 300.0 + 8.0 * line_hz) {
+            REQUIRE(x[i] < 1e-4 * most);
+        }
+    }
+    CHECK(played(tone(noise(100, 300, 1), 250.0)) == played(tone(noise(100, 300, 1), 200.0)));
+    CHECK(played(tone(noise(100, 300, 1), 250.0)) != played(tone(noise(100, 300, 2), 250.0)));
+}
+
+TEST_CASE("modulation has two sidebands and keeps the peak")
+{
+    plan p = tone(shape(waveform_kind::sine), 250.0);
+    p.am = {30.0, 0.5};
+    const auto raw = played(p);
+    CHECK(greatest(raw) <= 1.0 + 1e-6);
+    const auto x = lines(raw);
+    const double carrier = strongest(x, 250.0);
+    CHECK(carrier == doctest::Approx(1.0 / 1.5).epsilon(1e-3));
+    CHECK(strongest(x, 220.0) / carrier == doctest::Approx(0.25).epsilon(1e-3));
+    CHECK(strongest(x, 280.0) / carrier == doctest::Approx(0.25).epsilon(1e-3));
+    for (std::size_t k = 0; k < 48000; k += 7) {
+        const double t = static_cast<double>(k) / rate;
+        const double exact = (1.0 + 0.5 * std::sin(2 * pi * 30.0 * t)) / 1.5 * std::sin(2 * pi * 250.0 * t);
+        REQUIRE(std::abs(raw[k] - exact) < 1e-6);
+    }
+    // The sidebands of harmonics do not fold back either.
+    plan q = tone(shape(waveform_kind::sawtooth), 997.1);
+    q.am = {313.0, 1.0};
+    const auto y = lines(played(q));
+    double stray = 0.0;
+    for (std::size_t i = 0; i < y.size(); ++i) {
+        const double hz = static_cast<double>(i) * line_hz;
+        bool known = false;
+        for (const double side : {-313.0, 0.0, 313.0}) {
+            const double h = (hz - side) / 997.1;
+            known = known || std::abs(h - std::round(h)) * 997.1 <= 8.0 * line_hz;
+        }
+        stray = known ? stray : std::max(stray, y[i]);
+    }
+    CHECK(stray < 1e-4 * *std::max_element(y.begin(), y.end()));
+}
+
+TEST_CASE("blocks make no difference to any wave")
+{
+    std::mt19937_64 random(5);
+    std::vector<waveform> all{noise(50, 500), recorded({0.0F, 1.0F, -1.0F, 0.5F}, texture_kind::cycle),
+                              recorded({0.0F, 1.0F, -1.0F, 0.5F}, texture_kind::time),
+                              shape(waveform_kind::sine)};
+    for (const waveform_kind k : shapes) {
+        all.push_back(shape(k));
+    }
+    for (const waveform& w : all) {
+        plan p = make_random(random, 3, 20, 0.3);
+        p.wave = w;
+        p.am = {37.0, 0.7};
+        p.course = {{0.0, 80.0}, {0.1, 300.0}, {0.1, 120.0}, {0.25, 240.0}};
+        render_options o;
+        o.level_dbfs = -30.0;
+        o.limits.emplace();
+        const score s(row(3), p, o);
+        const auto whole = render(s, format_kind::float32);
+        CHECK(whole == render(
+                           s, format_kind::float32, [&] { return 1 + random() % 700; }, s.frames()));
+    }
+}
+
+TEST_CASE("the limit on the power counts what a wave really has")
+{
+    constexpr double three = 2.9999999999;
+    for (const waveform_kind k : {waveform_kind::square, waveform_kind::sawtooth, waveform_kind::sine}) {
+        plan p = pieces::make_plan({make_burst(0.0, 1.0, {{0, 1.0}, {1, 1.0}, {2, 1.0}})}, 250.0);
+        p.wave = shape(k);
+        render_options o;
+        o.level_dbfs = 0.0;
+        o.limits.emplace();
+        const score s(row(3), p, o);
+        const auto bytes = render(s, format_kind::float32);
+        double sum = 0.0; // twice the mean square: a sine at full scale has 1
+        for (std::size_t i = 24000; i < 33600; ++i) {
+            for (unsigned c = 0; c < 3; ++c) {
+                const auto x = static_cast<double>(sample<float>(bytes, 3 * i + c));
+                sum += 2.0 * x * x / 9600.0;
+            }
+        }
+        CAPTURE(std::string(to_string(k)));
+        CHECK(sum <= three * (1.0 + 1e-3));
+        // Neither is more taken away than must be.
+        CHECK(sum > (k == waveform_kind::sawtooth ? 1.4 : 2.9));
+    }
+}
+
+COUNTING_TEST_CASE("waves are played without allocating")
+{
+    plan p = make_continuous(9, 0.8);
+    p.course = {{0.0, 80.0}, {0.5, 300.0}};
+    p.am = {20.0, 1.0};
+    std::vector<placed_plan> plans;
+    for (const waveform& w : {shape(waveform_kind::square), noise(20, 900), shape(waveform_kind::sine)}) {
+        p.wave = w;
+        plans.push_back({p, 0.0});
+    }
+    render_options o;
+    o.level_dbfs = -20.0;
+    o.limits.emplace();
+    const score s(row(9), plans, o);
+    renderer r(s, format_kind::float32);
+    std::vector<std::byte> out(500 * s.channels() * 4);
+    const test::count_allocations count;
+    while (r.position() < s.frames()) {
+        r.process(500, out.data());
+    }
+    CHECK(count.calls() == 0);
+}
+
+TEST_CASE("the phase of a carrier that changes is its integral, to 1e-9 cycles after an hour")
+{
+    // 100 to 300 Hz in the first 20 minutes, back to 150 Hz in the rest.
+    plan p = tone(shape(waveform_kind::sine), 250.0, 3600.0);
+    p.course = {{0.0, 100.0}, {1200.0, 300.0}, {3600.0, 150.0}};
+    render_options o;
+    o.level_dbfs = 0.0;
+    o.ramp_s = 0.0;
+    const score s(row(1), p, o);
+    const synth::timbre& t = *detail::access::of(s).sounds.front();
+    double worst = 0.0;
+    for (std::int64_t k = 0; k < std::int64_t{3600} * rate; k += 7919 * 61) {
+        double x = 0.0;
+        double y = 0.0;
+        t.fill(k, 1, &x, synth::wave::sine);
+        t.fill(k, 1, &y, synth::wave::cosine);
+        const long double at = static_cast<long double>(k) / rate;
+        const long double cycles = at <= 1200.0L ? 100.0L * at + at * at * (200.0L / 2400.0L)
+                                                 : 240000.0L + 300.0L * (at - 1200.0L) -
+                                                       (at - 1200.0L) * (at - 1200.0L) * (150.0L / 4800.0L);
+        const double part = static_cast<double>(cycles - std::floor(cycles));
+        double off = std::atan2(x, y) / (2 * pi) - part;
+        off -= std::round(off);
+        worst = std::max(worst, std::abs(off));
+    }
+    CHECK(worst < 1e-9);
+}
+
+TEST_CASE("a carrier along the path is where its list says, and goes on without a jump")
+{
+    stroke s{"", trajectory::timed({{0.0, {0, 0}}, {1.0, {10, 0}}, {3.0, {40, 0}}}), {}, {}, {}};
+    s.carrier_profile = {{0.1, 100.0}, {0.5, 200.0}, {1.0, 50.0}};
+    const plan p = make_plan(row(3), s, {.algorithm = algorithm_kind::continuous});
+    // 4 mm after 0.4 s, 10 mm (half-way to the next point) after 1 s, 20 mm after 1.6667 s.
+    REQUIRE(p.course.size() == 5);
+    CHECK(p.course[0] == carrier_point{0.0, 100.0});
+    CHECK(p.course[1].t_s == doctest::Approx(0.4));
+    CHECK(p.course[2] == carrier_point{1.0, 137.5});
+    CHECK(p.course[3].t_s == doctest::Approx(5.0 / 3.0));
+    CHECK(p.course[3].hz == 200.0);
+    CHECK(p.course[4] == carrier_point{3.0, 50.0});
+    s.carrier_profile = {{0.5, 100.0}, {0.5, 200.0}};
+    CHECK(has(message_of([&] { static_cast<void>(make_plan(row(3), s, {})); }), "carrier_profile"));
+    s.carrier_profile = {{0.5, 0.5}};
+    CHECK(has(message_of([&] { static_cast<void>(make_plan(row(3), s, {})); }), "not a carrier"));
+}
+
+TEST_CASE("waves that cannot be rendered are refused with what to do")
+{
+    const auto refused = [](const waveform& w, const modulation& m, const std::string& part,
+                            unsigned at_rate = rate) {
+        plan p = tone(w, 250.0, 0.1);
+        p.am = m;
+        return has(message_of([&] { static_cast<void>(played(p, 0.0, at_rate)); }), part);
+    };
+    CHECK(refused(noise(500, 100), {}, "noise from 500 to 100"));
+    CHECK(refused(noise(0.0, 100), {}, "noise from 0 to 100"));
+    CHECK(refused(noise(50, std::nan("")), {}, "noise from 50"));
+    CHECK(refused(noise(50, 30000), {}, "half the rate"));
+    CHECK(refused(noise(50, 3990), {200.0, 1.0}, "half the rate", 8000));
+    CHECK(refused(shape(waveform_kind::sine), {-1.0, 1.0}, "cannot modulate"));
+    CHECK(refused(shape(waveform_kind::sine), {30.0, 1.5}, "not a depth"));
+    CHECK(refused(shape(waveform_kind::sine), {3900.0, 1.0}, "half the rate", 8000));
+    CHECK(refused(shape(waveform_kind::recording), {}, "no samples"));
+    CHECK(refused(recorded({0.5F}, texture_kind::cycle), {}, "1 sample"));
+    CHECK(refused(recorded({0.0F, std::nanf("")}, texture_kind::time), {}, "no number"));
+    std::vector<float> samples(4000000, 1.0F);
+    samples[0] = 0.5F;
+    CHECK(refused(recorded(samples, texture_kind::time, 100.0), {}, "too long"));
+    samples.resize(70000);
+    CHECK(refused(recorded(samples, texture_kind::length), {}, "too many"));
+}
+
+} // namespace waveforms_test
