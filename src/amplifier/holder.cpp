@@ -22,11 +22,6 @@
 namespace tactor::gpio {
 namespace {
 
-// A holder that does not answer for so long is taken for lost. It runs for microseconds at a time.
-constexpr int answer_ms = 500;
-constexpr int start_ms = 5000;
-constexpr unsigned most_unanswered = 10; // beats, at 50 ms each
-
 int open_pidfd(pid_t pid) noexcept
 {
     return static_cast<int>(::syscall(SYS_pidfd_open, pid, 0U)); // Linux 5.3
@@ -124,8 +119,9 @@ std::vector<int> kept_descriptors(const held_line& line, const holder_job& job)
 
 } // namespace
 
-holder_link::holder_link(int socket, std::int32_t pid, std::function<bool()> rescue)
-    : socket_(socket), pid_(pid), process_(open_pidfd(pid)), rescue_(std::move(rescue))
+holder_link::holder_link(int socket, std::int32_t pid, std::function<bool()> rescue,
+                         const holder_limits& limits)
+    : socket_(socket), pid_(pid), process_(open_pidfd(pid)), rescue_(std::move(rescue)), limits_(limits)
 {
 }
 
@@ -136,7 +132,7 @@ holder_link::~holder_link()
         set(false);
     if (!gone_) {
         ::shutdown(socket_, SHUT_WR);
-        if (!wait_for(socket_, 0, answer_ms)) // the end of the holder's side
+        if (!wait_for(socket_, 0, limits_.answer_ms)) // the end of the holder's side
             give_up();
     }
     close_if_open(process_);
@@ -161,7 +157,7 @@ bool holder_link::beat() noexcept
 {
     while (!gone_ && receive()) {
     }
-    if (!gone_ && unanswered_ >= most_unanswered)
+    if (!gone_ && unanswered_ >= limits_.unanswered)
         give_up();
     return !gone_ && send(message_kind::beat) && !lapsed_;
 }
@@ -179,7 +175,7 @@ bool holder_link::send(message_kind kind) noexcept
 
 bool holder_link::await_answer(message_kind kind) noexcept
 {
-    const std::int64_t until = rt::monotonic_ms() + answer_ms;
+    const std::int64_t until = rt::monotonic_ms() + limits_.answer_ms;
     while (!gone_) {
         while (const auto m = receive()) {
             if (m->kind != kind || m->number != number_)
@@ -219,7 +215,7 @@ void holder_link::give_up() noexcept
     gone_ = true;
     if (process_ >= 0) {
         ::syscall(SYS_pidfd_send_signal, process_, SIGKILL, nullptr, 0U);
-        wait_for(process_, POLLIN, answer_ms);
+        wait_for(process_, POLLIN, limits_.answer_ms);
     }
     rescued_ = switch_off_here();
 }
@@ -233,7 +229,8 @@ bool holder_link::switch_off_here() noexcept
     }
 }
 
-std::unique_ptr<holder_link> start_holder(const held_line& line, std::function<bool()> rescue)
+std::unique_ptr<holder_link> start_holder(const held_line& line, std::function<bool()> rescue,
+                                          const holder_limits& limits)
 {
     std::array<int, 2> ends{};
     if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0)
@@ -242,7 +239,7 @@ std::unique_ptr<holder_link> start_holder(const held_line& line, std::function<b
     descriptor theirs(ends[1]);
     const descriptor player(open_pidfd(::getpid()));
 
-    holder_job job{line.set, line.line, theirs.get(), player.get(), ours.get(), nullptr, 0};
+    holder_job job{line.set, line.line, theirs.get(), player.get(), ours.get(), nullptr, 0, limits};
     std::vector<int> keep = kept_descriptors(line, job);
     job.keep = keep.empty() ? nullptr : keep.data();
     job.keep_count = static_cast<unsigned>(keep.size());
@@ -251,10 +248,10 @@ std::unique_ptr<holder_link> start_holder(const held_line& line, std::function<b
     theirs.reset();
 
     message hello;
-    if (!wait_for(ours.get(), POLLIN, start_ms) ||
+    if (!wait_for(ours.get(), POLLIN, limits.start_ms) ||
         ::recv(ours.get(), &hello, sizeof hello, MSG_DONTWAIT) != static_cast<ssize_t>(sizeof hello))
         fail("no greeting", ETIMEDOUT);
-    return std::make_unique<holder_link>(ours.release(), hello.pid, std::move(rescue));
+    return std::make_unique<holder_link>(ours.release(), hello.pid, std::move(rescue), limits);
 }
 
 } // namespace tactor::gpio

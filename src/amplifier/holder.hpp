@@ -27,7 +27,7 @@ struct held_line {
 /// A line in the hands of a holder. One thread at a time.
 class holder_link final : public enable_line {
 public:
-    holder_link(int socket, std::int32_t pid, std::function<bool()> rescue);
+    holder_link(int socket, std::int32_t pid, std::function<bool()> rescue, const holder_limits& limits);
     ~holder_link() override;
     holder_link(const holder_link&) = delete;
     holder_link& operator=(const holder_link&) = delete;
@@ -48,6 +48,7 @@ private:
     pid_t pid_;
     int process_; ///< pidfd of the holder
     std::function<bool()> rescue_;
+    holder_limits limits_;
     std::uint8_t number_ = 0;
     unsigned unanswered_ = 0;
     bool lapsed_ = false;
@@ -60,6 +61,7 @@ private:
 /// in the holder's hands when this returns, and the caller then gives up its own copy.
 /// `rescue` is called when the holder was lost: switch the line off, true if that worked.
 /// \throws error (not_available).
-std::unique_ptr<holder_link> start_holder(const held_line& line, std::function<bool()> rescue);
+std::unique_ptr<holder_link> start_holder(const held_line& line, std::function<bool()> rescue,
+                                          const holder_limits& limits = {});
 
 } // namespace tactor::gpio

@@ -115,7 +115,7 @@ private:
         pollfd fds[2] = {{job_.socket, POLLIN, 0}, {job_.player, POLLIN, 0}};
         std::int64_t timeout = -1;
         if (on_) {
-            timeout = heard_ms_ + silence_ms - rt::monotonic_ms();
+            timeout = heard_ms_ + job_.limits.silence_ms - rt::monotonic_ms();
             timeout = timeout < 0 ? 0 : timeout;
         }
         const int n = ::poll(fds, 2, static_cast<int>(timeout));
@@ -150,7 +150,7 @@ private:
 
     void check_silence() noexcept
     {
-        if (!on_ || rt::monotonic_ms() - heard_ms_ < silence_ms)
+        if (!on_ || rt::monotonic_ms() - heard_ms_ < job_.limits.silence_ms)
             return;
         on_ = !job_.set(job_.line, false);
         heard_ms_ = rt::monotonic_ms(); // when it failed: again after the same time

@@ -9,8 +9,16 @@
 
 namespace tactor::gpio {
 
-/// Without a command or a beat for so long, a line that is on goes off. Beats come every 50 ms.
-inline constexpr int silence_ms = 150;
+/// How long the two wait for each other. What ships is the default; tests of what does not hang on time wait
+/// longer.
+struct holder_limits {
+    int silence_ms =
+        150; ///< without a command or a beat for so long, a line that is on goes off; beats come every 50 ms
+    int answer_ms = 500;      ///< a holder that does not answer for so long is taken for lost; it runs for
+                              ///< microseconds at a time
+    int start_ms = 5000;      ///< until its greeting
+    unsigned unanswered = 10; ///< so many beats, and it is lost, too
+};
 
 /// Message kinds, player to holder and back. Each command is answered with its own kind and number.
 enum class message_kind : std::uint8_t {
@@ -37,6 +45,7 @@ struct holder_job {
     int player_socket = -1;  ///< the player's end, to be closed
     int* keep = nullptr;     ///< descriptors that `set` needs, sorted; null: not known, close nothing
     unsigned keep_count = 0; ///< how many
+    holder_limits limits = {};
 };
 
 /// The holder's whole life, in the process that forked off. Ends with the process.

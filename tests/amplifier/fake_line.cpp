@@ -81,7 +81,8 @@ std::optional<switched> fake_line::next(int timeout_ms) const
     return s;
 }
 
-player::player(fake_line& line, const body& b, const std::function<void()>& before)
+player::player(fake_line& line, const gpio::holder_limits& limits, const body& b,
+               const std::function<void()>& before)
 {
     const auto ends = make_pipe();
     const auto tell = [&](int n) {
@@ -93,7 +94,8 @@ player::player(fake_line& line, const body& b, const std::function<void()>& befo
         [&]() noexcept { // nothing may get out into the test's own loop
             die_quietly();
             before();
-            auto h = gpio::start_holder(line.held(), [] { return true; });
+            auto h = gpio::start_holder(
+                line.held(), [] { return true; }, limits);
             tell(h->pid());
             if (h->set(true))
                 b(*h, tell);
@@ -118,7 +120,7 @@ player::~player()
 int player::told() const
 {
     int n = -1;
-    if (!readable(told_, 5000) || ::read(told_, &n, sizeof n) != static_cast<ssize_t>(sizeof n))
+    if (!readable(told_, hangs_ms) || ::read(told_, &n, sizeof n) != static_cast<ssize_t>(sizeof n))
         return -1;
     return n;
 }
@@ -158,7 +160,7 @@ int open_pidfd(pid_t pid)
 
 bool ends(int pidfd)
 {
-    return readable(pidfd, 5000);
+    return readable(pidfd, hangs_ms);
 }
 
 std::string status_of(pid_t pid, const std::string& field)

