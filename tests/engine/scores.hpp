@@ -15,6 +15,10 @@ namespace tactor::test {
 
 inline constexpr unsigned rate = 48000;
 
+/// Of a stroke that is still there when a test gets to it, on a clock that runs a hundred times as fast as
+/// time. Below 2^32 frames.
+inline constexpr double endless_s = 80'000.0;
+
 /// Nine channels, 3 x 3.
 inline array palm()
 {

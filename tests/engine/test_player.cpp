@@ -81,8 +81,8 @@ TEST_CASE("cancel and stop from another thread than the one that waits")
 {
     fake_dac dac;
     player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
-    const stroke_id id = p.submit(tone(100.0));
-    const stroke_id other = p.submit(tone(100.0, 3));
+    const stroke_id id = p.submit(tone(endless_s));
+    const stroke_id other = p.submit(tone(endless_s, 3));
     const running_clock clock(dac);
     std::thread canceller([&] { CHECK(p.cancel(id)); });
     const auto r = p.wait(id);
@@ -107,8 +107,8 @@ TEST_CASE("a player that is destroyed while strokes sound reports them as interr
     {
         player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
         p.on_report([&](const stroke_report& r) { told.push_back(r); });
-        p.submit(tone(100.0));
-        p.submit(tone(100.0), start_at::frame(48'000'000));
+        p.submit(tone(endless_s));
+        p.submit(tone(endless_s), start_at::frame(4'000'000'000));
     }
     REQUIRE(told.size() == 2);
     for (const stroke_report& r : told) {
@@ -166,7 +166,7 @@ TEST_CASE("an unplugged device ends the waits and the stream")
 {
     fake_dac dac;
     player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
-    const stroke_id id = p.submit(tone(100.0));
+    const stroke_id id = p.submit(tone(endless_s));
     dac.disconnect();
     const auto r = p.wait(id);
     REQUIRE(r);
@@ -186,7 +186,7 @@ TEST_CASE("an xrun is counted and survived")
 {
     fake_dac dac;
     player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
-    const stroke_id id = p.submit(tone(100.0));
+    const stroke_id id = p.submit(tone(endless_s));
     run_until(dac, 288, [&] { return p.position().stroke == id; });
     dac.advance(10'000);
     const auto r = p.wait(id);
@@ -205,7 +205,7 @@ TEST_CASE("a wait can time out, and one for an unknown stroke does not block")
     fake_dac dac;
     player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
     CHECK_FALSE(p.wait({17}));
-    const stroke_id id = p.submit(tone(100.0));
+    const stroke_id id = p.submit(tone(endless_s));
     CHECK_FALSE(p.wait(id, 1e-9));
     CHECK(p.cancel(id));
     const running_clock clock(dac);

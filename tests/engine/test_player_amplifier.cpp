@@ -69,8 +69,8 @@ TEST_CASE("the player switches its amplifier on once, plays, and off once")
         // On a machine that is too busy the watchdog may have had to do something.
         if (stalls == 0)
             CHECK(report->state == state_kind::finished);
-        CHECK_FALSE(state->log.back());
     }
+    CHECK_FALSE(state->log.back());
     if (stalls == 0)
         CHECK(state->log == std::vector<bool>{true, false});
     for (std::size_t i = 0; i < state->log.size(); ++i)

@@ -98,7 +98,7 @@ TEST_CASE("a handler may destroy the player: what is left is reported from withi
             raise_flag(gone);
         };
         const stroke_id armed = p->submit(tone(0.01), start_at::trigger());
-        const stroke_id sounding = p->submit(tone(100.0));
+        const stroke_id sounding = p->submit(tone(endless_s));
         const stroke_id first = p->submit(tone(0.01), start_at::trigger());
         if (own) {
             for (const stroke_id id : {armed, sounding, first})
@@ -134,7 +134,7 @@ TEST_CASE("a handler may destroy a player whose device is gone, and one that was
             p.reset();
             raise_flag(gone);
         });
-        const stroke_id id = p->submit(tone(100.0));
+        const stroke_id id = p->submit(tone(endless_s));
         if (unplugged)
             dac.disconnect();
         else
@@ -178,7 +178,7 @@ TEST_CASE("a handler that throws ends the stream, with the reason, and not the p
         const std::string why = "a handler of the program threw: no such file";
         std::atomic<int> others{0};
         const auto throws = [](const stroke_report&) { throw std::runtime_error("no such file"); };
-        const stroke_id longer = p.submit(tone(100.0));
+        const stroke_id longer = p.submit(tone(endless_s));
         const stroke_id armed = p.submit(tone(0.01), start_at::trigger());
         const stroke_id id = p.submit(tone(100.0, 3));
         if (own)
@@ -265,7 +265,7 @@ TEST_CASE("after the end all members may be called, and an empty function is ref
     player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
     CHECK_THROWS_AS(p.on_end({1}, {}), error);
     live_stroke live = p.begin();
-    const stroke_id id = p.submit(tone(100.0));
+    const stroke_id id = p.submit(tone(endless_s));
     p.stop();
     p.stop();
     CHECK_THROWS_AS(p.submit(tone(0.01)), error);

@@ -236,7 +236,7 @@ TEST_CASE("Asio: callbacks in the caller's executor")
         done.push_back(r);
     };
     async_play(p, tone(0.01), start_at::now(), boost::asio::bind_executor(context, ran));
-    const stroke_id id = p.submit(tone(100.0));
+    const stroke_id id = p.submit(tone(endless_s));
     async_wait(p, id, boost::asio::bind_executor(context, ran));
     async_play(p, random_score(1, 1, 10), {},
                boost::asio::bind_executor(
@@ -261,7 +261,8 @@ TEST_CASE("Asio: futures, and a stroke that is not known")
     std::future<stroke_report> b = async_wait(p, stroke_id{99}, boost::asio::use_future);
     CHECK(a.get().state == state_kind::finished);
     CHECK_THROWS_AS(b.get(), error);
-    std::future<stroke_report> c = async_play(p, tone(100.0), start_at::trigger(), boost::asio::use_future);
+    std::future<stroke_report> c =
+        async_play(p, tone(endless_s), start_at::trigger(), boost::asio::use_future);
     p.stop();
     CHECK(c.get().state == state_kind::cancelled);
 }

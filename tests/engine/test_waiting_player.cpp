@@ -43,7 +43,7 @@ TEST_CASE("cancel() is reported without a frame being played")
     fake_dac dac;
     player p(pcm::adopt(dac.pcm(), nine()), palm(), patient(), slow_amplifier());
     const stroke_id score = p.submit(tone(1.0));
-    const live_stroke live = p.begin();
+    const live_stroke live = p.begin({.timeout_s = 86400.0});
     CHECK_FALSE(p.wait(score, 1e-9));
     CHECK(p.cancel(score));
     CHECK(p.cancel(live.id()));
@@ -63,7 +63,7 @@ TEST_CASE("stop() reports what waits before the amplifier has settled")
     fake_dac dac;
     player p(pcm::adopt(dac.pcm(), nine()), palm(), patient(), slow_amplifier());
     const stroke_id score = p.submit(tone(1.0));
-    const live_stroke live = p.begin();
+    const live_stroke live = p.begin({.timeout_s = 86400.0});
     const running_clock clock(dac);
     const auto before = std::chrono::steady_clock::now();
     p.stop();

@@ -85,6 +85,7 @@ public:
         o.plans.tactors = preset_array("palm-3x3");
         o.plans.owner.render.channels = 9;
         o.version = "test";
+        o.limits.max_stroke_s = 86400.0; // of a clock that runs as fast as it can
         o.plan_text = [](const server::planned& p, std::size_t) { return "{\"name\":\"" + p.name + "\"}"; };
         o.now_ns = [] {
             timespec now{};

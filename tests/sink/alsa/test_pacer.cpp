@@ -77,8 +77,8 @@ TEST_CASE("time that runs backwards plays nothing back")
 TEST_CASE("the timer becomes readable when a period fits")
 {
     rt::pacer p(48000, 288, 96);
-    p.start(288);
     const std::int64_t begun = rt::monotonic_ns();
+    p.start(288);
     p.arm();
     pollfd fd{.fd = p.fd(), .events = POLLIN, .revents = 0};
     while (!p.due()) {
@@ -86,9 +86,9 @@ TEST_CASE("the timer becomes readable when a period fits")
         p.arm();
     }
     CHECK(p.room() >= 96);
-    // 96 frames are 2 ms, and it started a little before `begun`.
-    CHECK(rt::monotonic_ns() - begun > 1'000'000);
-    CHECK(::poll(&fd, 1, 0) == (p.room() >= 96 ? ::poll(&fd, 1, 0) : 0));
+    CHECK(rt::monotonic_ns() - begun >= 2'000'000); // 96 frames
+    p.arm();
+    CHECK(::poll(&fd, 1, 10'000) == 1); // the room is still there
 }
 
 namespace {
