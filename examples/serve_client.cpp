@@ -61,7 +61,7 @@ try {
         stroke_of(call(server, "play", R"({"stroke":"park2016-1","options":{"duration":0.7}})"));
     std::printf("park2016-1: %s\n", wait(server, played).c_str());
 
-    const std::string live = stroke_of(call(server, "begin", "{}"));
+    const std::string live = stroke_of(call(server, "begin", R"({"timeout_s":60})"));
     for (int i = 0; i < 100; ++i) {
         const double angle = 2.0 * std::numbers::pi * i / 100;
         server << R"({"jsonrpc":"2.0","method":"to","params":{"stroke":)" << live << R"(,"x_mm":)"

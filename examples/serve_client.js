@@ -44,7 +44,7 @@ async function main() {
   const { stroke } = await call('play', { stroke: 'park2016-1' });
   console.log(`park2016-1: ${await end(stroke).told}`);
 
-  const live = (await call('begin', { options: { phantom: 'barycentric' } })).stroke;
+  const live = (await call('begin', { timeout_s: 60, options: { phantom: 'barycentric' } })).stroke;
   for (let i = 0; i < 50; ++i, await pause(10)) {
     const angle = 2 * Math.PI * i / 50;
     tell('to', { stroke: live, x_mm: 20 + 10 * Math.cos(angle), y_mm: 20 + 10 * Math.sin(angle) });

@@ -3,6 +3,7 @@
 import json
 import re
 import signal
+import socket
 
 from experiments import ExperimentTest, read_table
 from harness import main
@@ -276,6 +277,13 @@ class WhoMay(PageTest):
         s = self.start()
         self.refused(3, *self.args("--page", s.address.rpartition(":")[2]), says=("--page", s.address))
         self.assertFalse((self.dir / "study/sourcedata").exists())
+
+    def test_a_page_on_ipv6(self):
+        try:
+            with socket.socket(socket.AF_INET6) as probe:
+                probe.bind(("::1", 0))
+        except OSError:
+            self.skipTest("this machine has no IPv6")
         again = Session(self, self.args("--page", "[::1]:0"))
         self.assertRegex(again.address, r"^\[::1\]:")
 

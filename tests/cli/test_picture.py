@@ -20,7 +20,7 @@ except ImportError:
     print("SKIPPED: the live picture: python3-pyte is not here\n0 passed, 0 failed, 1 skipped")
     sys.exit(0)
 
-from harness import TOOL, ToolTest, main  # noqa: E402
+from harness import PATIENCE_S, TOOL, ToolTest, main  # noqa: E402
 
 LONG = ("play", "--path", "M 0 10 L 40 30", "--duration", "3600", "-D", "null")
 SHORT = ("play", "--path", "M 0 10 L 40 30", "--duration", "0.5", "-D", "null")
@@ -56,7 +56,7 @@ class Window:
         self.screen.resize(rows, columns)
         self.set_size(columns, rows)
 
-    def read(self, timeout=30):
+    def read(self, timeout=PATIENCE_S):
         """Takes what has been written; false when the other end is closed."""
         if not select.select([self.primary], [], [], timeout)[0]:
             raise AssertionError(f"nothing comes:\n{self.text()}")
@@ -69,13 +69,13 @@ class Window:
         return bool(data)
 
     def until(self, condition):
-        deadline = time.monotonic() + 30
+        deadline = time.monotonic() + PATIENCE_S
         while not condition(self):
             assert time.monotonic() < deadline, f"never:\n{self.text()}"
             assert self.read(), f"it ended early:\n{self.text()}"
 
     def to_the_end(self):
-        deadline = time.monotonic() + 30
+        deadline = time.monotonic() + PATIENCE_S
         while self.read():
             assert time.monotonic() < deadline, f"it goes on:\n{self.text()}"
         self.process.wait()
@@ -108,7 +108,7 @@ class Picture(ToolTest):
         self.assertIn("9 channels", w.lines()[0])
 
     def test_the_touch_is_where_the_stroke_is(self):
-        w = Window(self, ("play", "--path", "M 0 0 L 40 40", "--duration", "1", "-D", "null"), 80, 24)
+        w = Window(self, ("play", "--path", "M 0 0 L 40 40", "--duration", "4", "-D", "null"), 80, 24)
         seen = []
 
         def look(w):
@@ -158,11 +158,9 @@ class Picture(ToolTest):
         for columns, rows in ((60, 15), (30, 8), (120, 50), (80, 24)):
             w.resize(columns, rows)
             before = len(w.raw)
-            w.until(lambda w, before=before: len(w.raw) > before + 3000 and has_picture(w))
-            # One picture, and its last line is above the cursor.
-            self.assertEqual(len(re.findall(TIME, w.text())), 1, w.text())
-            self.assertRegex(w.lines()[w.screen.cursor.y - 1], TIME)
-            self.assertEqual(w.screen.cursor.x, 0)
+            # One picture, and its last line is above the cursor, once what was drawn for the old size has been read.
+            w.until(lambda w, before=before: len(w.raw) > before + 3000 and has_picture(w) and len(re.findall(TIME, w.text())) == 1
+                    and re.search(TIME, w.lines()[w.screen.cursor.y - 1]) and w.screen.cursor.x == 0)
         self.process_ends(w, signal.SIGINT, 130)
 
     def process_ends(self, w, number, status):
@@ -213,7 +211,7 @@ class Picture(ToolTest):
         os.close(w.primary)
         w.primary = -1
         w.process.send_signal(signal.SIGHUP)
-        w.process.wait(timeout=30)
+        w.process.wait(timeout=PATIENCE_S)
         self.assertIn(w.process.returncode, (1, 129))
 
     def test_plain_where_that_is_asked_for(self):

@@ -9,7 +9,7 @@ import subprocess
 import time
 import unittest
 
-from harness import GRID, SANITIZED, TOOL, ToolTest, Wav, main
+from harness import GRID, PATIENCE_S, SANITIZED, TOOL, ToolTest, Wav, main
 
 
 class Play(ToolTest):
@@ -82,7 +82,7 @@ class Play(ToolTest):
             while not (self.dir / "out.raw").exists() or (self.dir / "out.raw").stat().st_size < 200000:
                 self.assertIsNone(p.poll())
             p.send_signal(number)
-            p.communicate(timeout=30)
+            p.communicate(timeout=PATIENCE_S)
             self.assertEqual(p.returncode, status)
             raw = memoryview((self.dir / "out.raw").read_bytes()).cast("h")
             self.assertEqual(set(raw[-9:]), {0})
@@ -204,12 +204,13 @@ class Play(ToolTest):
         self.refused(3, "play", *self.SHORT, "-D", "nowhere", "--log", "play.log", says=["nowhere"])
 
     def test_ctrl_c_does_not_wait_for_a_buffer_of_a_minute(self):
-        p = subprocess.Popen([TOOL, "play", "park2016-1", "-D", "null", "--period-frames", "1048576"], cwd=self.dir,
+        p = subprocess.Popen([TOOL, "play", "park2016-1", "-D", "null", "--period-frames", "1048576",
+                              "--rate", "8000"], cwd=self.dir,
                              env=self.env, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-        self.assertIn(b"latency 65536.0 ms", p.stdout.readline())
+        self.assertIn(b"latency 393216.0 ms", p.stdout.readline())
         p.send_signal(signal.SIGINT)
-        # 0.4 s on a quiet machine; the period takes 22 s, the buffer 65 s.
-        out, _ = p.communicate(timeout=15)
+        # 0.4 s on a quiet machine; the period takes 131 s, the buffer 393 s.
+        out, _ = p.communicate(timeout=120)
         self.assertEqual(p.returncode, 130)
         self.assertIn(b"park2016-1: cancelled", out)
 
@@ -220,7 +221,7 @@ class Play(ToolTest):
         while not (self.dir / "out.raw").exists() or (self.dir / "out.raw").stat().st_size < 200000:
             self.assertIsNone(p.poll())
         p.send_signal(signal.SIGINT)
-        out, _ = p.communicate(timeout=30)
+        out, _ = p.communicate(timeout=PATIENCE_S)
         self.assertEqual(p.returncode, 130)
         self.assertEqual([s["state"] for s in json.loads(out)["strokes"]], ["cancelled", "not played"])
 

@@ -9,7 +9,7 @@ import signal
 import subprocess
 import unittest
 
-from harness import SANITIZED, TOOL, ToolTest, Wav, main
+from harness import PATIENCE_S, SANITIZED, TOOL, ToolTest, Wav, main
 
 LEVEL = 10 ** (-12 / 20)
 FORMATS = {"float": (3, 32), "s16": (1, 16), "s24": (1, 24), "s32": (1, 32)}
@@ -181,7 +181,7 @@ class Files(ToolTest):
         while not any(p.suffix != ".conf" for p in self.dir.iterdir()):
             self.assertIsNone(process.poll())
         process.send_signal(signal.SIGINT)
-        process.communicate(timeout=60)
+        process.communicate(timeout=PATIENCE_S)
         self.assertEqual(process.returncode, 130)
         self.assertEqual(self.leftovers(), [])
 

@@ -146,42 +146,25 @@ class ServeOsc(ToolTest):
         self.assertEqual(a.next(), ["/tactor/stroke", 3, "started"])
         self.assertEqual(a.next(), ["/tactor/stroke", 3, "interrupted"])
 
-    def began_at_a_time_tag(self):
-        """How much later than said a play, a drive and a live stroke began, s; the time of a period, s; and how often the stream ran dry."""
+    def test_what_has_a_time_tag_does_not_begin_before_it(self):
         s = self.serve()
         watcher = s.client()
         watcher.ok("subscribe", events=["strokes"])
-        period_s = watcher.ok("hello")["stream"]["period_frames"] / watcher.ok("hello")["stream"]["rate"]
+        stream = watcher.ok("hello")["stream"]
         a = Sender(self, s)
         then = time.time() + 0.6
         a.raw(bundle(then, message("/tactor/play", 1, DRAWING, "duration=0.05"), message("/tactor/drive", 0, 0.5, 0.02),
-                     message("/tactor/begin", 2, "timeout_s=5"), message("/tactor/to", 2, 20, 20)))
-        began = []
-        while len(began) < 3:
+                     message("/tactor/begin", 2, "timeout_s=3600"), message("/tactor/to", 2, 20, 20)))
+        for _ in range(3):
             p = watcher.notification(lambda m: m["params"].get("state") == "started")["params"]
-            began.append(p["started_unix_s"] - then)
-        states = sorted(a.next()[1:] for _ in range(3))
-        self.assertEqual(states, [[0, "started"], [1, "started"], [2, "started"]])
-        return sorted(began, key=abs), period_s, watcher.ok("status")["stream"]["xruns"]
-
-    def test_time_tags_say_when_the_first_sample_is_at_the_dac(self):
-        # Where the machine let the stream run dry, what came after that is late, and says when.
-        for _ in range(20):
-            began, period_s, xruns = self.began_at_a_time_tag()
-            if xruns == 0:
-                break
-        self.assertEqual(xruns, 0)
-        # play and drive to the sample, as far as the two clocks' readings agree; the live stroke to a period, and later where the
-        # machine lets the service wait for its turn.
-        self.assertLess(abs(began[0]), 0.001)
-        self.assertLess(abs(began[1]), 0.001)
-        self.assertGreater(began[2], -1.5 * period_s - 0.002)
-        self.assertLess(began[2], 0.25)
+            # The live stroke to a period; how late, and how exactly, is for timed/test_osc_times.py.
+            self.assertGreater(p["started_unix_s"] - then, -1.5 * stream["period_frames"] / stream["rate"] - 0.002)
+        self.assertEqual(sorted(a.next()[1:] for _ in range(3)), [[0, "started"], [1, "started"], [2, "started"]])
 
     def test_far_times_are_refused_and_the_past_is_now(self):
         a = Sender(self, self.serve())
-        a.raw(bundle(time.time() + 70, message("/tactor/play", 1, DRAWING)))
-        self.assertRegex(a.next()[2], r"^time tag: it is (69\.\d|70\.0) s ahead")
+        a.raw(bundle(time.time() + 3600, message("/tactor/play", 1, DRAWING)))
+        self.assertRegex(a.next()[2], r"^time tag: it is 3[56]\d\d\.\d s ahead")
         for when in (time.time() - 1000, None, -2208988800):
             a.raw(bundle(when, message("/tactor/play", 1, DRAWING, "duration=0.02")))
             self.assertEqual(a.next(), ["/tactor/stroke", 1, "started"])

@@ -151,7 +151,7 @@ class Web(ToolTest):
         s = self.serve()
         p = self.websocket(s)
         self.assertEqual(p.call("hello")["result"]["protocol"], "tactor/1")
-        number = p.call("begin")["result"]["stroke"]
+        number = p.call("begin", timeout_s=86400)["result"]["stroke"]
         p.frame(TEXT, json.dumps({"jsonrpc": "2.0", "method": "to", "params": {"stroke": number, "x_mm": 5, "y_mm": 5}}).encode())
         self.assertEqual(p.message()["params"]["state"], "started")
         p.frame(TEXT, json.dumps({"jsonrpc": "2.0", "method": "end", "params": {"stroke": number}}).encode())

@@ -9,7 +9,7 @@ import struct
 import subprocess
 import termios
 
-from harness import GRID, TOOL, ToolTest, main
+from harness import GRID, PATIENCE_S, TOOL, ToolTest, main
 
 
 class Walk(ToolTest):
@@ -146,7 +146,7 @@ class Walk(ToolTest):
             shown += self.read_until(fd, f"tactor {i} (channel {i}): which did you feel?")
             os.write(fd, f"{i ^ 1}\n".encode())
         self.read_until(fd, "Written: felt.toml")
-        self.assertEqual(p.wait(timeout=30), 0)
+        self.assertEqual(p.wait(timeout=PATIENCE_S), 0)
         self.assertIn("█", shown)
         self.assertEqual(self.channels("felt.toml"), [1, 0])
 
@@ -158,7 +158,7 @@ class Walk(ToolTest):
             self.read_until(fd, at)
             p.send_signal(signal.SIGINT)
             # Nobody reads the terminal any more: what is left to be said is little.
-            self.assertEqual(p.wait(timeout=30), 130)
+            self.assertEqual(p.wait(timeout=PATIENCE_S), 130)
             self.assertFalse((self.dir / "felt.toml").exists())
             raw = memoryview((self.dir / "out.raw").read_bytes()).cast("h")
             self.assertEqual(set(raw[-2:]), {0})

@@ -12,7 +12,7 @@ import sys
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
-from harness import ROOT, ToolTest, Wav, main  # noqa: E402
+from harness import PATIENCE_S, ROOT, ToolTest, Wav, main  # noqa: E402
 from serving import Server  # noqa: E402
 
 EXAMPLES = pathlib.Path(sys.argv[3]).resolve()
@@ -41,7 +41,7 @@ class Examples(ToolTest):
 
     def run_example(self, name, *args, status=0):
         p = self.start(name, *args)
-        out, err = p.communicate(timeout=60)
+        out, err = p.communicate(timeout=PATIENCE_S)
         self.assertEqual(p.returncode, status, err)
         return out if status == 0 else err
 
@@ -107,7 +107,7 @@ class Examples(ToolTest):
             # A second touch, which the end of the events ends.
             finger.write(events(touch(4095, 0, (KEY, BTN_TOUCH, 1))))
             until(lambda: self.heard(raw, 2))
-        self.assertEqual(p.communicate(timeout=30), ("finished\nfinished\n", ""))
+        self.assertEqual(p.communicate(timeout=PATIENCE_S), ("finished\nfinished\n", ""))
         self.assertEqual(p.returncode, 0)
 
     def test_live_touch_follows_a_mouse_in_a_recording(self):
@@ -120,7 +120,7 @@ class Examples(ToolTest):
         p = self.start("asio_server", 0)
         port = int(re.fullmatch(r"listening on port (\d+)\n", p.stdout.readline())[1])
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as s:
-            s.settimeout(30)
+            s.settimeout(PATIENCE_S)
             for request in ("park2016-1", "park2016-2", "park2016-9"):
                 s.sendto(request.encode(), ("127.0.0.1", port))
             answers = sorted(s.recv(1000).decode() for _ in range(3))
@@ -128,7 +128,7 @@ class Examples(ToolTest):
             self.assertIn("park2016-4", answers[2])  # the presets that there are
             s.sendto(b"park2016-3", ("127.0.0.1", port))
         p.send_signal(signal.SIGTERM)
-        self.assertEqual(p.communicate(timeout=30), ("", ""))
+        self.assertEqual(p.communicate(timeout=PATIENCE_S), ("", ""))
         self.assertEqual(p.returncode, 0)
 
     def test_udp_sink_sends_what_render_writes(self):
@@ -140,7 +140,7 @@ class Examples(ToolTest):
             while p.poll() is None or select.select([s], [], [], 0)[0]:
                 if select.select([s], [], [], 0.01)[0]:
                     datagrams.append(s.recv(2000))
-        self.assertEqual(p.communicate(timeout=30), ("finished\n", ""))
+        self.assertEqual(p.communicate(timeout=PATIENCE_S), ("finished\n", ""))
         first = [struct.unpack("<Q", d[:8])[0] for d in datagrams]
         self.assertEqual(first, list(range(0, 48 * len(first), 48)))
         self.ok("render", "park2016-1", "--sample-format", "s16", "-o", "o.wav")
@@ -158,7 +158,7 @@ class Examples(ToolTest):
         server = Server(self)
         for stroke, said in (("park2016-1", "finished\n"), ("nonsense", "refused: ")):
             r = subprocess.run([ROOT / "examples/serve_client.sh", server.where["socket"], stroke], capture_output=True, text=True,
-                               check=False, timeout=60)
+                               check=False, timeout=PATIENCE_S)
             self.assertEqual(r.returncode, 0, r.stderr)
             self.assertTrue(r.stdout.startswith(said), r.stdout)
 
@@ -166,7 +166,7 @@ class Examples(ToolTest):
         server = Server(self)
         for socket, status, said in ((server.where["socket"], 0, ("park2016-1: finished\ncircle: finished\n", "")),
                                      (self.dir / "nowhere", 1, ("", f"serve_client: connect ENOENT {self.dir}/nowhere\n"))):
-            r = subprocess.run(["node", ROOT / "examples/serve_client.js", socket], capture_output=True, text=True, check=False, timeout=60)
+            r = subprocess.run(["node", ROOT / "examples/serve_client.js", socket], capture_output=True, text=True, check=False, timeout=PATIENCE_S)
             self.assertEqual((r.returncode, r.stdout, r.stderr), (status, *said))
 
     @unittest.skipUnless(os.environ.get("TACTOR_OSC") == "true", "this build has no OSC")

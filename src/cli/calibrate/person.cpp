@@ -160,16 +160,17 @@ study::calibration_answer person::choose(const study::calibration_trial& t)
     const score s = trial_score(t.tactor, t.level_dbfs, t.interval == 1 ? lead_s : second_s, total_s);
     show(fmt::format("trial {}{}:", t.number, t.practice ? " (practice)" : ""));
     unsigned shown = 0;
-    std::optional<noise_around> noise(stage_);
-    const given_stimulus p = play(t, s, [&](double at_s) {
-        const unsigned now = at_s >= second_s ? 2 : at_s >= lead_s ? 1 : 0;
+    const auto show_until = [&](unsigned now) {
         for (; shown < now; ++shown) {
             show(fmt::format(" interval {}", shown + 1));
             on_page({.name = "stimulus", .text = fmt::format("Interval {}", shown + 1)});
         }
+    };
+    std::optional<noise_around> noise(stage_);
+    const given_stimulus p = play(t, s, [&](double at_s) {
+        show_until(at_s >= second_s ? 2 : at_s >= lead_s ? 1 : 0);
     });
-    for (; shown < 2; ++shown) // the process was too slow to look
-        show(fmt::format(" interval {}", shown + 1));
+    show_until(2); // where the process was too slow to look
     noise.reset();
     keys_.forget();
     on_page(choose_screen());
