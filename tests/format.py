@@ -20,10 +20,14 @@ def run(*args):
 
 
 def unformatted(files):
+    """One run for all: a tenth of the time."""
+    status, _, said = run("clang-format", "--dry-run", "-Werror", *map(str, files))
+    found = {m[1]: m[0] for m in reversed(list(re.finditer(r"^(/.*?):\d+:\d+: error: .*", said, re.M)))}
     for f in files:
-        status, _, said = run("clang-format", "--dry-run", "-Werror", str(f))
-        if status:
-            yield f"{f}: not formatted: clang-format -i {f} ({said.splitlines()[0]})"
+        if str(f) in found:
+            yield f"{f}: not formatted: clang-format -i {f} ({found[str(f)]})"
+    if status and not found:
+        yield f"clang-format: {said.strip()}"
 
 
 def unclean(page):
