@@ -12,12 +12,14 @@ namespace tactor::gpio {
 /// How long the two wait for each other. What ships is the default; tests of what does not hang on time wait
 /// longer.
 struct holder_limits {
-    int silence_ms =
-        150; ///< without a command or a beat for so long, a line that is on goes off; beats come every 50 ms
-    int answer_ms = 500;      ///< a holder that does not answer for so long is taken for lost; it runs for
-                              ///< microseconds at a time
-    int start_ms = 5000;      ///< until its greeting
-    unsigned unanswered = 10; ///< so many beats, and it is lost, too
+    /// Without a command or a beat for so long, a line that is on goes off. Beats come every 50 ms.
+    int silence_ms = 150;
+    /// A holder that does not answer for so long is taken for lost. It runs for microseconds at a time.
+    int answer_ms = 500;
+    /// Until its greeting.
+    int start_ms = 5000;
+    /// So many beats without an answer, and it is lost, too.
+    unsigned unanswered = 10;
 };
 
 /// Message kinds, player to holder and back. Each command is answered with its own kind and number.

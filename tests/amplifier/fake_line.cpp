@@ -140,6 +140,16 @@ void keep_beating(gpio::holder_link& h, const std::function<void(int)>&)
     }
 }
 
+void keep_beating_with_a_child(gpio::holder_link& h, const std::function<void(int)>& tell)
+{
+    const pid_t other = ::fork();
+    if (other == 0)
+        for (;;)
+            ::pause();
+    tell(other);
+    keep_beating(h, tell);
+}
+
 void die_quietly()
 {
     const rlimit no_core{0, 0};

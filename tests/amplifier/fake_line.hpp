@@ -18,8 +18,10 @@ namespace tactor::test {
 /// What is waited for comes, however busy the machine is; what does not come in so long hangs.
 inline constexpr int hangs_ms = 300'000;
 
-/// For what does not hang on time: however busy the machine is, nobody takes the other for lost.
-inline constexpr gpio::holder_limits patient{hangs_ms, hangs_ms, hangs_ms, 1'000'000};
+/// For what does not hang on time: however busy the machine is, nobody takes the other for lost, and a line
+/// that goes off while a test waits did not do so for silence.
+inline constexpr gpio::holder_limits patient{
+    .silence_ms = 86'400'000, .answer_ms = hangs_ms, .start_ms = hangs_ms, .unanswered = 1'000'000};
 
 /// CLOCK_MONOTONIC in ns.
 std::int64_t now_ns() noexcept;
@@ -86,6 +88,10 @@ private:
 
 /// Beats every 50 ms for ever.
 void keep_beating(gpio::holder_link& h, const std::function<void(int)>& tell);
+
+/// The same, and another process has all of the player's descriptors: its number is told, and it waits to be
+/// killed.
+void keep_beating_with_a_child(gpio::holder_link& h, const std::function<void(int)>& tell);
 
 /// For a new process: no core file, and none of the handlers with which doctest reports a crash.
 void die_quietly();

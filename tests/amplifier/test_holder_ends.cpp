@@ -107,14 +107,7 @@ TEST_CASE("a terminal that is closed leaves the line off" * doctest::skip(no_ter
 TEST_CASE("another process that keeps the player's descriptors open does not keep the line on")
 {
     fake_line line;
-    const player p(line, patient, [](gpio::holder_link& h, const std::function<void(int)>& tell) {
-        const pid_t other = ::fork();
-        if (other == 0)
-            for (;;)
-                ::pause();
-        tell(other);
-        keep_beating(h, tell);
-    });
+    const player p(line, patient, keep_beating_with_a_child);
     const pid_t other = p.told();
     REQUIRE(other > 0);
     p.signal(SIGKILL);

@@ -2,6 +2,7 @@
 """OSC 1.0 for the tests: packets, written and read by hand, so that no other reader's mistakes are ours."""
 import socket
 import struct
+import time
 
 from harness import PATIENCE_S
 
@@ -79,3 +80,18 @@ class Sender:
             found = read(self.socket.recv(65536))
             if address is None or found[0] == address:
                 return found
+
+
+def begun_by_a_time_tag(test, server):
+    """How much later than said a play, a drive and a live stroke of one bundle began, s; and the time of a period, s."""
+    watcher = server.client()
+    watcher.ok("subscribe", events=["strokes"])
+    stream = watcher.ok("hello")["stream"]
+    a = Sender(test, server)
+    then = time.time() + 0.6
+    a.raw(bundle(then, message("/tactor/play", 1, "M 0 0 L 40 40", "duration=0.05"), message("/tactor/drive", 0, 0.5, 0.02),
+                 message("/tactor/begin", 2, "timeout_s=3600"), message("/tactor/to", 2, 20, 20)))
+    began = [watcher.notification(lambda m: m["params"].get("state") == "started")["params"]["started_unix_s"] - then
+             for _ in range(3)]
+    test.assertEqual(sorted(a.next()[1:] for _ in range(3)), [[0, "started"], [1, "started"], [2, "started"]])
+    return began, stream["period_frames"] / stream["rate"]

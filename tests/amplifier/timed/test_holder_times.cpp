@@ -89,14 +89,7 @@ TEST_CASE(
     "another process that keeps the player's descriptors open does not keep the line on until silence would")
 {
     fake_line line;
-    const player p(line, shipped, [](gpio::holder_link& h, const std::function<void(int)>& tell) {
-        const pid_t other = ::fork();
-        if (other == 0)
-            for (;;)
-                ::pause();
-        tell(other);
-        keep_beating(h, tell);
-    });
+    const player p(line, shipped, keep_beating_with_a_child);
     const pid_t other = p.told();
     REQUIRE(other > 0);
     p.signal(SIGKILL);

@@ -1,30 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""OSC's time tags on two real clocks: the senders' and the DAC's."""
-import time
-
+"""OSC's time tags on two real clocks: the sender's and the DAC's."""
 from harness import main
-from osc import Sender, bundle, message
+from osc import begun_by_a_time_tag
 from serving import ServeTest
-
-DRAWING = "M 0 0 L 40 40"
 
 
 class OscTimes(ServeTest):
     def test_time_tags_say_when_the_first_sample_is_at_the_dac(self):
-        s = self.serve("--osc", "0")
-        watcher = s.client()
-        watcher.ok("subscribe", events=["strokes"])
-        period_s = watcher.ok("hello")["stream"]["period_frames"] / watcher.ok("hello")["stream"]["rate"]
-        a = Sender(self, s)
-        then = time.time() + 0.6
-        a.raw(bundle(then, message("/tactor/play", 1, DRAWING, "duration=0.05"), message("/tactor/drive", 0, 0.5, 0.02),
-                     message("/tactor/begin", 2, "timeout_s=5"), message("/tactor/to", 2, 20, 20)))
-        began = []
-        while len(began) < 3:
-            p = watcher.notification(lambda m: m["params"].get("state") == "started")["params"]
-            began.append(p["started_unix_s"] - then)
-        states = sorted(a.next()[1:] for _ in range(3))
-        self.assertEqual(states, [[0, "started"], [1, "started"], [2, "started"]])
+        began, period_s = begun_by_a_time_tag(self, self.serve("--osc", "0"))
         began.sort(key=abs)
         # play and drive to the sample, as far as the two clocks' readings agree; the live stroke to a period, and later where the
         # machine lets the service wait for its turn.
