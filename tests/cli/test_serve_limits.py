@@ -146,9 +146,12 @@ class Limits(ServeTest):
             try:
                 c.raw(b'{"jsonrpc":"2.0","id":1,"method":"status"}\n{')
             except (BrokenPipeError, ConnectionResetError):
+                c.close()
                 continue
             m = c.next()
             answered = m is not None and "result" in m
+            if not answered:
+                c.close()
         self.check_error(c.next()["error"], -32001, "max_message_s")
         self.assertIsNone(c.next())
 

@@ -226,6 +226,7 @@ class Web(ToolTest):
             if status == 101:
                 break
             self.assertEqual(status, 503)
+            p.socket.close()  # there may be more of them than descriptors
 
     def test_the_end_is_told(self):
         s = self.serve()
