@@ -53,7 +53,7 @@ TEST_CASE("pulses come in order of their frames, those of other epochs and ended
     CHECK(p.add({2}, 300, line_of(1, 0)));
     CHECK(p.add({3}, 700, line_of(1, 0)));
     CHECK(next(board, 1) == pulse{1, 300, 2});
-    p.forget({2});
+    p.forget({2}, false);
     CHECK(next(board, 1) == pulse{1, 500, 1});
     CHECK(board.take(*board.next(line_of(1, 0))));
     CHECK(next(board, 1) == pulse{1, 700, 3});
@@ -73,11 +73,28 @@ TEST_CASE("what was seen waiting and has been called off since is not to be had 
     p.add({1}, 500, line_of(1, 0));
     const auto seen = board.next(line_of(1, 0));
     REQUIRE(seen);
-    p.forget({1});
+    p.forget({1}, false);
     CHECK_FALSE(board.take(*seen));
     p.add({2}, 600, line_of(1, 0)); // in the same place
     CHECK_FALSE(board.take(*seen));
     CHECK(next(board, 1) == pulse{1, 600, 2});
+}
+
+TEST_CASE("a stroke that was played before anybody took its pulse has missed it")
+{
+    engine::pulse_board board;
+    engine::pulse_plan p(board);
+    for (std::uint32_t n = 1; n <= engine::pulse_board::places + 2; ++n)
+        p.add({n}, n, line_of(1, 0));
+    p.forget({3}, true);
+    CHECK(p.missed() == 1);
+    p.forget({engine::pulse_board::places + 2}, true); // not on the board yet
+    CHECK(p.missed() == 2);
+    p.forget({4}, false); // it was cancelled before its first frame
+    REQUIRE(board.take(*board.next(line_of(1, 0))));
+    p.forget({1}, true); // it has been sent
+    p.forget({1}, true);
+    CHECK(p.missed() == 2);
 }
 
 TEST_CASE("more pulses than places, in any order of planning, come all and in order")
@@ -89,8 +106,8 @@ TEST_CASE("more pulses than places, in any order of planning, come all and in or
     std::shuffle(frames.begin(), frames.end(), std::mt19937(3)); // NOLINT(cert-msc51-cpp)
     for (const std::uint64_t f : frames)
         p.add({static_cast<std::uint32_t>(f)}, f, line_of(1, 0));
-    p.forget({7});
-    p.forget({900}); // not on the board yet
+    p.forget({7}, false);
+    p.forget({900}, false); // not on the board yet
     for (std::uint64_t f = 1; f <= frames.size(); ++f) {
         if (f == 7 || f == 900)
             continue;
@@ -126,7 +143,7 @@ TEST_CASE("planned by one thread and sent by another: each pulse once at most, n
     for (std::uint32_t n = 1; n <= last; ++n) {
         p.add({n}, 3 * std::uint64_t{n}, line_of(1, 0));
         if (n % 3 == 0)
-            p.forget({n - n % 5});
+            p.forget({n - n % 5}, false);
     }
     // An empty board takes what waits, if anything does.
     for (bool empty = false, any = true; !empty || any;) {

@@ -188,7 +188,7 @@ void feeder::handle(const report& r)
         return;
     active& a = *s->use;
     if (r.what != report::kind::begun && ended_)
-        ended_(a.id);
+        ended_(a.id, r.what == report::kind::over && r.frame > 0);
     switch (r.what) {
     case report::kind::begun:
         return begun(a, r.frame);

@@ -42,9 +42,9 @@ public:
     bool cancel(stroke_id id);
 
     /// `begins`: called for each stroke that begins, with the frame of the stream; `ended` for each that
-    /// goes no further: it ended, or an xrun came before it had begun.
+    /// goes no further, with whether any of it was played: it ended, or an xrun came before it had begun.
     void on_first_frames(std::function<void(stroke_id, std::uint64_t)> begins,
-                         std::function<void(stroke_id)> ended)
+                         std::function<void(stroke_id, bool)> ended)
     {
         begins_ = std::move(begins);
         ended_ = std::move(ended);
@@ -157,7 +157,7 @@ private:
     std::list<first_frame> beginnings_;
     bool keeps_beginnings_ = false;
     std::function<void(stroke_id, std::uint64_t)> begins_;
-    std::function<void(stroke_id)> ended_;
+    std::function<void(stroke_id, bool)> ended_;
     bool urgent_ = false;
     bool stream_over_ = false;
     bool closing_ = false;

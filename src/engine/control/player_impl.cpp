@@ -201,7 +201,7 @@ void player::impl::start_lines(const player_options& o)
         link, *lines.sync_out, std::int64_t{frames_of(lines.pulse_s, 1'000'000, "pulse")} * 1000, t);
     feed.on_first_frames(
         [this](stroke_id id, std::uint64_t frame) { pulses->add(id, frame, link.clock.load()); },
-        [this](stroke_id id) { pulses->forget(id); });
+        [this](stroke_id id, bool was_played) { pulses->forget(id, was_played); });
 }
 
 void player::impl::check_start(const player_options& o)

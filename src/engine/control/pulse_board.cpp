@@ -58,18 +58,20 @@ std::optional<pulse> pulse_board::offer(const pulse& p) noexcept
 }
 
 template <typename Unwanted>
-void pulse_board::remove(Unwanted unwanted) noexcept
+std::size_t pulse_board::remove(Unwanted unwanted) noexcept
 {
+    std::size_t removed = 0;
     for (std::size_t n = 0; n < places; ++n) {
         const std::uint32_t turn = places_[n].turn.load(std::memory_order_acquire);
-        if (is_taken(turn) && unwanted(read(places_[n])))
-            end_turn(n, turn);
+        if (is_taken(turn) && unwanted(read(places_[n])) && end_turn(n, turn))
+            ++removed;
     }
+    return removed;
 }
 
-void pulse_board::forget(stroke_id id) noexcept
+std::size_t pulse_board::forget(stroke_id id) noexcept
 {
-    remove([id](const pulse& p) { return p.id == id; });
+    return remove([id](const pulse& p) { return p.id == id; });
 }
 
 void pulse_board::forget_other_epochs(std::uint64_t epoch) noexcept

@@ -43,7 +43,8 @@ public:
     /// Puts a pulse where it can be sent. Gives back what found no place: nothing, a later pulse that made
     /// way, or `p` itself.
     std::optional<pulse> offer(const pulse& p) noexcept;
-    void forget(stroke_id id) noexcept;
+    /// How many there were that nobody took.
+    std::size_t forget(stroke_id id) noexcept;
     void forget_other_epochs(std::uint64_t epoch) noexcept;
 
     // Who sends.
@@ -67,7 +68,7 @@ private:
     static void fill(place& p, const pulse& what, std::uint32_t turn) noexcept;
     bool end_turn(std::size_t n, std::uint32_t turn) noexcept;
     template <typename Unwanted>
-    void remove(Unwanted unwanted) noexcept;
+    std::size_t remove(Unwanted unwanted) noexcept;
 
     std::array<place, places> places_{};
 };

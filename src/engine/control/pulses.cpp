@@ -6,10 +6,11 @@
 
 namespace tactor::engine {
 
-void pulse_plan::forget(stroke_id id)
+void pulse_plan::forget(stroke_id id, bool was_played)
 {
-    std::erase_if(waiting_, [id](const pulse& p) { return p.id == id; });
-    board_.forget(id);
+    const std::size_t left =
+        std::erase_if(waiting_, [id](const pulse& p) { return p.id == id; }) + board_.forget(id);
+    missed_ += was_played ? left : 0;
     hand_over();
 }
 
@@ -42,10 +43,8 @@ bool pulse_plan::hand_over()
 
 bool pulse_emitter::await(std::int64_t due_ns) noexcept
 {
-    if (time_.now() - due_ns > latest_pulse_ns) {
-        ++stats_.missed;
+    if (time_.now() - due_ns > latest_pulse_ns)
         return false;
-    }
     time_.sleep_until(due_ns - cost_ns_);
     return true;
 }

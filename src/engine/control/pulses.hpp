@@ -31,14 +31,17 @@ public:
     /// A stroke's first sample at a frame of the epoch that runs, which `line` tells; what belongs to others
     /// is forgotten. False where that frame is not to come in it.
     bool add(stroke_id id, std::uint64_t frame, const clock_line& line);
-    /// The stroke has ended: what it has not come to does not happen.
-    void forget(stroke_id id);
+    /// The stroke has ended: what it has not come to does not happen. Where its first frame was played, that
+    /// is a pulse that was missed.
+    void forget(stroke_id id, bool was_played);
     /// Hands over what has a place by now. False where there was nothing to hand over.
     bool hand_over();
+    std::uint64_t missed() const noexcept { return missed_; }
 
 private:
     pulse_board& board_;
     std::set<pulse> waiting_; ///< for a place
+    std::uint64_t missed_ = 0;
 };
 
 /// What the emitter needs of time.
@@ -62,11 +65,12 @@ public:
     {
     }
 
-    /// Sleeps until the line is to be switched for a pulse at `due_ns`. False when that was too long ago:
-    /// missed.
+    /// Sleeps until the line is to be switched for a pulse at `due_ns`. False when that was too long ago.
     bool await(std::int64_t due_ns) noexcept;
     /// Sends what was awaited. Blocks until the pulse is over.
     void send(std::int64_t due_ns) noexcept;
+    /// Counts what came too late.
+    void miss() noexcept { ++stats_.missed; }
     const pulse_stats& stats() const noexcept { return stats_; }
 
 private:

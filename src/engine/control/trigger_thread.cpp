@@ -61,6 +61,13 @@ void trigger_thread::hand_over()
         wake_.signal();
 }
 
+pulse_stats trigger_thread::stats() noexcept
+{
+    pulse_stats s = stats_.load();
+    s.missed += plan_.missed();
+    return s;
+}
+
 void trigger_thread::run() noexcept
 {
     while (!over_.load(std::memory_order_acquire))
@@ -81,10 +88,14 @@ std::int64_t trigger_thread::step() noexcept
     const std::int64_t left = due - real_time().now() - pulse_lead_ns;
     if (left > 0)
         return std::min(left, longest_wait_ns);
-    // It may have been called off meanwhile, and an xrun may have ended its epoch.
     const bool in_time = emitter_.await(due);
-    if (board_.take(*p) && in_time && link_.sync_clock.load().epoch == p->what.epoch)
-        emitter_.send(due);
+    // It may have been called off meanwhile, and an xrun may have ended its epoch.
+    if (board_.take(*p)) {
+        if (!in_time)
+            emitter_.miss();
+        else if (link_.sync_clock.load().epoch == p->what.epoch)
+            emitter_.send(due);
+    }
     stats_.store(emitter_.stats());
     link_.to_control.signal();
     return 0;

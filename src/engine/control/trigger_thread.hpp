@@ -29,10 +29,10 @@ public:
 
     /// A pulse when this frame of the stream is at the DAC, in the epoch that runs now as `clock` says.
     void add(stroke_id id, std::uint64_t frame, const clock_line& clock);
-    void forget(stroke_id id) { plan_.forget(id); }
+    void forget(stroke_id id, bool was_played) { plan_.forget(id, was_played); }
     /// link::to_control has been signalled: there may be places for pulses that had none.
     void hand_over();
-    const pulse_stats& stats() noexcept { return stats_.load(); }
+    pulse_stats stats() noexcept;
 
 private:
     void run() noexcept;
