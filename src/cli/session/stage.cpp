@@ -117,7 +117,7 @@ given_stimulus stage::give(const std::string& name, const score& s, double lead_
         g.flaw = r.state == state_kind::cancelled ? "it was cut off" : r.reason;
     else if (g.xruns > 0)
         g.flaw = "an xrun";
-    else if (masker_ && (masker_->breaks() != breaks || masker_->ended() != io_kind::ok))
+    else if (masker_ && (masker_->breaks() != breaks || noise_ended() != io_kind::ok))
         g.flaw = "the masking noise stood still";
     return g;
 }

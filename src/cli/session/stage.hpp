@@ -56,6 +56,9 @@ public:
     bool fade_in();
     void fade_out() noexcept;
 
+    /// Why the noise has ended; `ok` while it goes on, and where there is none.
+    io_kind noise_ended() const noexcept { return masker_ ? masker_->ended() : io_kind::ok; }
+
     /// Lets so much of the stream's time pass; the watcher is told how much has, and returns false to end it
     /// before. False where the stream has ended meanwhile. \throws left.
     bool pass(double seconds, const std::function<bool(double passed_s)>& watch);

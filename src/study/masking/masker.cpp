@@ -12,9 +12,8 @@
 namespace tactor::study {
 namespace {
 
-constexpr int look_ms = 20;                 // a stream that stands still is looked at so often
-constexpr std::chrono::seconds patience(5); // and the fade
-constexpr int masking_priority = 60;        // below the array's audio thread
+constexpr int look_ms = 20;          // a stream that stands still is looked at so often
+constexpr int masking_priority = 60; // below the array's audio thread
 
 masking_options checked(const masking_options& o)
 {
@@ -31,7 +30,7 @@ masking_options checked(const masking_options& o)
 
 masker::masker(std::unique_ptr<sink> s, const masking_options& o)
     : sink_(std::move(s)),
-      patience_(patience + std::chrono::duration<double>(o.fade_s)),
+      patience_(o.patience_s + o.fade_s),
       stream_(*sink_, checked(o)),
       fds_(sink_->max_descriptors() + 1)
 {
@@ -70,14 +69,17 @@ bool masker::poll_descriptor(int descriptor, int timeout_ms)
 bool masker::wait_for(masking_state s, const waiter& wait)
 {
     const auto until = std::chrono::steady_clock::now() + patience_;
-    while (ended_ == io_kind::ok && std::chrono::steady_clock::now() < until) {
+    for (;;) {
+        // The state before the time: it may have come while this thread had no processor.
+        const bool late = std::chrono::steady_clock::now() >= until;
+        if (ended_ != io_kind::ok)
+            return false;
         if (state_ == s)
             return true;
-        if (!wait(told_.fd(), look_ms))
+        if (late || !wait(told_.fd(), look_ms))
             return false;
         told_.consume();
     }
-    return false;
 }
 
 io_kind masker::wait() noexcept

@@ -34,8 +34,8 @@ public:
     void fade_out() noexcept { want(false); }
     /// Waits for a descriptor to be readable, or a time; false where somebody does not want to wait any more.
     using waiter = std::function<bool(int descriptor, int timeout_ms)>;
-    /// Blocks until that is at the DAC. False where the device has failed, takes 5 s longer than the fade, or
-    /// the waiter gave up.
+    /// Blocks until that is at the DAC. False where the device has failed, takes masking_options::patience_s
+    /// longer than the fade, or the waiter gave up.
     bool wait_for(masking_state s, const waiter& wait = poll_descriptor);
 
     /// How often the stream stood still: where it differs after a stimulus, noise did not cover it.

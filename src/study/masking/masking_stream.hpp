@@ -20,6 +20,7 @@ struct masking_options {
     double level_dbfs = -30.0; ///< see noise
     double fade_s = 0.05;      ///< raised cosine, in and out
     std::string seed = {};
+    double patience_s = 5.0; ///< masker: so much longer than the fade may take
 };
 
 /// What is at the DAC.
