@@ -14,6 +14,7 @@
 #include <tactor/error.hpp>
 #include <tactor/player.hpp>
 
+#include "clock_runner.hpp"
 #include "folder.hpp"
 #include "player_support.hpp"
 #include "scores.hpp"
@@ -64,7 +65,7 @@ TEST_CASE("what a file PCM receives is silence, the renderer's bytes without a g
         const score a = random_score(5, 6);
         const score b = random_score(6, 2);
         {
-            player p(open_alsa(o), palm());
+            player p(open_alsa(o), palm(), patient());
             CHECK_FALSE(p.setup().has_clock);
             const stroke_id id = p.submit(a);
             REQUIRE(p.wait(id));
@@ -118,7 +119,7 @@ TEST_CASE("null paces a stroke in real time, multi of nulls too")
         "6 { slave a channel 6 } 7 { slave a channel 7 } 8 { slave b channel 0 } } }\n";
     for (const bool many : {false, true}) {
         CAPTURE(many);
-        player p(open_alsa(many ? configured(multi) : nine()), palm());
+        player p(open_alsa(many ? configured(multi) : nine()), palm(), patient());
         const auto begun = std::chrono::steady_clock::now();
         const auto r = p.wait(p.submit(tone(0.1)));
         REQUIRE(r);

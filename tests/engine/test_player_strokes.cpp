@@ -62,7 +62,11 @@ public:
             return std::nullopt;
         return e;
     }
-    void edge(std::int64_t time_ns) { REQUIRE(::write(fds_[1], &time_ns, sizeof time_ns) == sizeof time_ns); }
+    // Both are there at once.
+    void edges(const std::array<std::int64_t, 2>& times_ns)
+    {
+        REQUIRE(::write(fds_[1], times_ns.data(), sizeof times_ns) == sizeof times_ns);
+    }
     // Readable for ever, without an edge.
     void break_off()
     {
@@ -91,8 +95,7 @@ TEST_CASE("an edge fires what is armed: at its time and the delay, for all at on
         const stroke_id b = p.submit(tone(0.01, 3), start_at::trigger());
         CHECK_FALSE(p.wait(a, 0.0));
         const std::int64_t t = now_ns();
-        trigger.edge(t);
-        trigger.edge(t + 1'000'000'000); // there is nothing left to start
+        trigger.edges({t, t + 1'000'000'000}); // there is nothing left for the second to start
         const auto ra = p.wait(a);
         const auto rb = p.wait(b);
         REQUIRE(ra);

@@ -198,6 +198,7 @@ public:
     std::optional<server::service> all;
     std::list<fake_dac> cards;
     std::list<running_clock> clocks; ///< of the last card; ends before it
+    running_clock::capture_kind captures = running_clock::capture_kind::dropped; ///< of the next card
     bool closed = false;
 
 private:
@@ -216,7 +217,7 @@ private:
         o.channels = 9;
         o.format = format_kind::s32;
         std::unique_ptr<sink> s = pcm::adopt(card.pcm(), o);
-        clocks.emplace_back(card);
+        clocks.emplace_back(card, captures);
         return s;
     }
 

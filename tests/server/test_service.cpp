@@ -77,11 +77,11 @@ TEST_CASE("a batch's reply comes before what it began is told of")
 TEST_CASE("all clients together stay below the ceiling on every channel")
 {
     service_rig rig;
+    rig.captures = running_clock::capture_kind::kept;
     fake_dac& card = rig.plug();
     rig.start();
     const auto a = rig.client();
     const auto b = rig.client();
-    std::vector<json> ends;
     const json x = rig.ok(a, "drive", {{"tactor", 4}, {"duration_s", 0.2}})["stroke"];
     const json y = rig.ok(b, "drive", {{"tactor", 4}, {"duration_s", 0.2}})["stroke"];
     const json live = rig.ok(b, "begin", {{"timeout_s", 86400}})["stroke"];

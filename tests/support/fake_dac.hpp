@@ -81,6 +81,8 @@ public:
 
     /// Reserves memory for what will be captured; no more than that is kept.
     void reserve_capture(std::size_t bytes);
+    /// Keeps what has been captured, and no more.
+    void stop_capture();
 
 private:
     struct callbacks;

@@ -80,4 +80,10 @@ void fake_dac::reserve_capture(std::size_t bytes)
     capture_limit_ = bytes;
 }
 
+void fake_dac::stop_capture()
+{
+    const std::lock_guard lock(mutex_);
+    capture_limit_ = captured_.size();
+}
+
 } // namespace tactor::test
