@@ -24,7 +24,7 @@ LIVE_AT_ONCE = 12  # of the 16 that sound at once
 POINTS = 42  # of a live stroke, which makes a thousand a second of all
 POINT_S = 0.012
 MOST_MEMORY_KIB = 4096  # that a second part may add: what the allocator keeps differs from run to run
-MOST_PARTS = 4  # what leaks adds to each; where the machine stood still, messages waited once
+MOST_PARTS = 12  # what leaks adds to each; where the machine stood still, messages waited once
 PATIENCE_S = 120
 ENDS = ("finished", "cancelled", "interrupted")
 STROKE = {"path": "M 0 0 L 40 40", "options": {"algorithm": "continuous", "duration": 0.1, "level_dbfs": -40}}
@@ -164,6 +164,7 @@ async def load(process, path, seconds, checks):
     watcher = Client()
     for c in [*clients, watcher]:
         await c.connect(path)
+        await c.call("hello")  # who says nothing for seconds is sent away
     stream = (await watcher.call("hello"))["stream"]
     memory, used = [], processor_s(process)
     wanted = 0
