@@ -35,7 +35,8 @@ class Timed(unittest.TextTestResult):
 
     @classmethod
     def again(cls, test):
-        return cls.attempt < ATTEMPTS and getattr(whole(test), "stalled_s", 0.0) > 0.0
+        t = whole(test)
+        return cls.attempt < ATTEMPTS and getattr(t, "tried_again", True) and getattr(t, "stalled_s", 0.0) > 0.0
 
     def printErrorList(self, flavour, errors):
         for e in errors:

@@ -42,6 +42,7 @@ class Capture:
 
     def __init__(self, folder, channels, sample_format, subdevice=0):
         self.path = folder / f"capture{subdevice}.raw"
+        self.path.unlink(missing_ok=True)  # of a recording before: whether it is there says that this one runs
         self.frame_bytes = channels * {"S16_LE": 2, "S32_LE": 4}[sample_format]
         self.process = subprocess.Popen(
             ["arecord", "-q", "-D", BACK.format(subdevice), "-t", "raw", "-f", sample_format, "-c", str(channels),
@@ -52,7 +53,8 @@ class Capture:
 
     def stop(self):
         self.process.terminate()
-        self.process.communicate(timeout=30)
+        said = self.process.communicate(timeout=30)[1]
+        self.overruns = said.count(b"overrun!!!")
         data = self.path.read_bytes()
         return data[:len(data) - len(data) % self.frame_bytes]
 

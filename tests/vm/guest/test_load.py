@@ -1,29 +1,45 @@
 # SPDX-License-Identifier: MIT
-"""Minutes of play on a real kernel while another process loads the CPU. TACTOR_VM_MINUTES, default 10."""
+"""Minutes of play on a real kernel while another process loads the processor. TACTOR_VM_MINUTES, default 10.
+
+An emulated processor on a shared host may be without the host's for longer than any buffer: how many xruns there were is a
+figure to be read. What must hold is what becomes of them.
+"""
 import json
 import os
 import subprocess
 import sys
 
-from rig import RigTest
+from rig import AmplifierTest, wait_for
 
-# What an emulated processor on a shared host can hold: it may be without the host's for a tenth of a second.
 PERIOD, PERIODS = 480, 32
+STROKE_S = 20.0
 
 
-class Load(RigTest):
-    def test_no_xrun_in_minutes_of_play_under_load(self):
+class Load(AmplifierTest):
+    def test_minutes_of_play_under_load(self):
         minutes = float(os.environ.get("TACTOR_VM_MINUTES", "10"))
-        array = self.grid()
+        # An xrun ends one stroke, not the run.
+        strokes = max(2, round(60 * minutes / STROKE_S))
         busy = subprocess.Popen([sys.executable, "-c", "while True: sum(i * i for i in range(10000))"])
         try:
-            r = self.tool("play", "--path", "M 0 10 L 40 30 L 0 30 Z", "--duration", str(minutes * 60), "--array", array,
-                          "--period-frames", str(PERIOD), "--periods", str(PERIODS), "--format", "json", timeout=minutes * 60 + 300)
+            p = self.start("play", *["park2016-1"] * strokes, "--duration", STROKE_S, "--array", self.array,
+                           "--period-frames", PERIOD, "--periods", PERIODS, "--format", "json")
+            wait_for(lambda: self.on() or p.poll() is not None, "the amplifier is switched on", 60)
+            out, err = p.communicate(timeout=60 * minutes + 600)
         finally:
             busy.kill()
             busy.wait()
-        self.assertEqual(r.returncode, 0, r.stderr)
-        report = json.loads(r.stdout)
-        print(f"{minutes:g} minutes at {PERIODS} periods of {PERIOD} frames under load: {json.dumps(report['counters'])}")
-        self.assertEqual(report["counters"]["xruns"], 0)
-        self.assertEqual([s["state"] for s in report["strokes"]], ["finished"])
+        self.assertFalse(self.on())
+        report = json.loads(out)
+        counters, played = report["counters"], report["strokes"]
+        print(f"{minutes:g} minutes at {PERIODS} periods of {PERIOD} frames under load: {json.dumps(counters)}")
+        cut = [s for s in played if s["state"] != "finished"]
+        self.assertEqual(len(played), strokes)
+        self.assertLess(len(cut), strokes, err)
+        # Each xrun is told, with its length, and ends the stroke that it falls into; nothing else ends one.
+        for s in cut:
+            self.assertEqual((s["state"], s["reason"]), ("interrupted", "xrun: the device ran dry"), s)
+        self.assertLessEqual(len(cut), counters["xruns"], err)
+        self.assertEqual(len(counters["xrun_s"]), counters["xruns"])
+        # The amplifier goes off where the stream stands still for long, and whenever it shall.
+        self.assertEqual((counters["off_failures"], counters["left_on"]), (0, False))
