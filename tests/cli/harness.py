@@ -10,6 +10,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 TOOL = pathlib.Path(sys.argv[1]).resolve()
@@ -78,6 +79,14 @@ class ToolTest(unittest.TestCase):
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(text if isinstance(text, bytes) else text.encode())
         return path
+
+    def until(self, condition, process=None):
+        """Looks again and again for what nothing announces, for as long as the process runs that is to bring it about."""
+        deadline = time.monotonic() + PATIENCE_S
+        while not condition():
+            self.assertTrue(process is None or process.poll() is None, "it ended early")
+            self.assertLess(time.monotonic(), deadline, "it hangs")
+            time.sleep(0.01)
 
     def run_tool(self, *args, stdin="", env=None, timeout=PATIENCE_S, before=None):
         """before: called in the process before it becomes the tool."""

@@ -9,7 +9,7 @@ from experiments import ExperimentTest, read_table
 from harness import main
 from pages import Session
 from test_experiment_person import DESK, SHORT
-from websocket import BINARY, TEXT, Peer
+from websocket import BINARY, TEXT, Peer, framed
 
 
 class PageTest(ExperimentTest):
@@ -148,10 +148,11 @@ class OnceAndNoMore(PageTest):
         s = self.start()
         p = s.participant()
         p.begin()
-        old = p.answer("question", 1)["ask"]
-        # The practice's answer again, and one from before the question: neither is the first trial's.
-        p.say(ask=old, answer=2)
-        p.say(ask=old + 1, answer=2)
+        old = p.until("question")["ask"]
+        # The practice's answer again, and one from before the question: neither is the first trial's. All at once, for later the
+        # question is there.
+        p.send(b"".join(framed(TEXT, json.dumps({"ask": ask, "answer": answer}).encode())
+                        for ask, answer in ((old, 1), (old, 2), (old + 1, 2))))
         p.until("stimulus", asked=False)
         # Reload in mid-trial: the present state.
         p.socket.close()

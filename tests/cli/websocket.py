@@ -12,6 +12,22 @@ GUID = b"258EAFA5-E914-47DA-95CA-C5AB0DC85B11"
 CONTINUATION, TEXT, BINARY, CLOSE, PING, PONG = 0, 1, 2, 8, 9, 10
 
 
+def framed(kind, payload=b"", last=True, masked=True):
+    size = len(payload)
+    head = bytes([kind | (0x80 if last else 0)])
+    mask = 0x80 if masked else 0
+    if size < 126:
+        head += bytes([mask | size])
+    elif size < 65536:
+        head += struct.pack("!BH", mask | 126, size)
+    else:
+        head += struct.pack("!BQ", mask | 127, size)
+    if not masked:
+        return head + payload
+    secret = os.urandom(4)
+    return head + secret + bytes(b ^ secret[i % 4] for i, b in enumerate(payload))
+
+
 class Peer:
     """A connection to host:port, byte by byte."""
 
@@ -63,19 +79,7 @@ class Peer:
         return status
 
     def frame(self, kind, payload=b"", last=True, masked=True):
-        size = len(payload)
-        head = bytes([kind | (0x80 if last else 0)])
-        mask = 0x80 if masked else 0
-        if size < 126:
-            head += bytes([mask | size])
-        elif size < 65536:
-            head += struct.pack("!BH", mask | 126, size)
-        else:
-            head += struct.pack("!BQ", mask | 127, size)
-        if not masked:
-            return self.send(head + payload)
-        secret = os.urandom(4)
-        return self.send(head + secret + bytes(b ^ secret[i % 4] for i, b in enumerate(payload)))
+        self.send(framed(kind, payload, last, masked))
 
     def next_frame(self):
         first, second = self.take(2)
@@ -94,7 +98,8 @@ class Peer:
             kind, payload = self.next_frame()
             if kind == TEXT:
                 return payload
-            assert kind != CLOSE, payload
+            if kind == CLOSE:
+                raise EOFError(payload)
 
     def end(self):
         """The close frame's code; None for none."""
