@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The examples do what their first lines say, without hardware."""
+import contextlib
 import os
 import pathlib
 import re
@@ -18,6 +19,7 @@ from serving import Server  # noqa: E402
 EXAMPLES = pathlib.Path(sys.argv[3]).resolve()
 SYN, KEY, REL, ABS = 0, 1, 2, 3
 BTN_LEFT, BTN_TOUCH = 0x110, 0x14a
+SO_RCVBUFFORCE = 33  # asm-generic/socket.h
 
 
 def events(*steps):
@@ -82,33 +84,43 @@ class Examples(ToolTest):
 
     def heard(self, file, channel):
         """Whether a raw file of nine channels of s32 has sound on a channel in its last 0.1 s."""
-        samples = memoryview(file.read_bytes()[-4800 * 36:])
+        if not file.exists():
+            return False
+        with open(file, "rb") as f:
+            f.seek(max(0, os.fstat(f.fileno()).st_size // 36 - 4800) * 36)
+            samples = memoryview(f.read(4800 * 36))
         samples = samples[:len(samples) // 36 * 36].cast("i")
         return any(samples[channel::9])
 
-    def test_live_touch_follows_a_finger(self):
+    def live_touches(self):
+        """How the strokes of two touches ended: down in one corner, at rest, to the other, up; and once more."""
         raw, pipe = self.dir / "out.raw", self.dir / "events"
         os.mkfifo(pipe)
         p = self.start("live_touch", pipe, f"raw:{raw}")
-
-        def until(condition):
-            while not condition():
-                self.assertIsNone(p.poll())
-
         with open(pipe, "wb", buffering=0) as finger:
-            # Down in one corner, where it rests: the stroke must live on without events. Then to the other.
             finger.write(events(touch(0, 0, (KEY, BTN_TOUCH, 1))))
-            until(lambda: raw.exists() and self.heard(raw, 0))
+            self.until(lambda: self.heard(raw, 0), p)
+            # A second of rest, twice what a stroke without points lives.
+            size = raw.stat().st_size
+            self.until(lambda: raw.stat().st_size > size + 48000 * 36, p)
             self.assertFalse(self.heard(raw, 8))
             finger.write(events(touch(4095, 4095)))
-            until(lambda: self.heard(raw, 8) and not self.heard(raw, 0))
+            self.until(lambda: self.heard(raw, 8) and not self.heard(raw, 0), p)
             finger.write(events([(KEY, BTN_TOUCH, 0)]))
-            until(lambda: not self.heard(raw, 8))
+            self.until(lambda: not self.heard(raw, 8), p)
             # A second touch, which the end of the events ends.
             finger.write(events(touch(4095, 0, (KEY, BTN_TOUCH, 1))))
-            until(lambda: self.heard(raw, 2))
-        self.assertEqual(p.communicate(timeout=PATIENCE_S), ("finished\nfinished\n", ""))
-        self.assertEqual(p.returncode, 0)
+            self.until(lambda: self.heard(raw, 2), p)
+        out, err = p.communicate(timeout=PATIENCE_S)
+        self.assertEqual((p.returncode, err), (0, ""))
+        return out.splitlines()
+
+    def test_live_touch_follows_a_finger(self):
+        ends = self.live_touches()
+        # Where the program itself comes to its turn too late, a stroke is interrupted, and the next one goes on:
+        # that a finger at rest keeps one alive is for timed/test_live_touch.py to say.
+        self.assertGreaterEqual(len(ends), 2)
+        self.assertLessEqual(set(ends), {"finished", "interrupted"})
 
     def test_live_touch_follows_a_mouse_in_a_recording(self):
         left = [(KEY, BTN_LEFT, 1)], [(REL, 0, -1000), (REL, 1, 1000)], [(KEY, BTN_LEFT, 0)]
@@ -133,20 +145,31 @@ class Examples(ToolTest):
 
     def test_udp_sink_sends_what_render_writes(self):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as s:
-            s.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 22)
+            # Room for all of them, however late this reads. Only root may have as much.
+            with contextlib.suppress(PermissionError):
+                s.setsockopt(socket.SOL_SOCKET, SO_RCVBUFFORCE, 1 << 24)
+            room_for_all = s.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF) >= 1 << 24
             s.bind(("127.0.0.1", 0))
             p = self.start("udp_sink", "127.0.0.1", s.getsockname()[1])
-            datagrams = []
+            datagrams = {}
             while p.poll() is None or select.select([s], [], [], 0)[0]:
                 if select.select([s], [], [], 0.01)[0]:
-                    datagrams.append(s.recv(2000))
+                    d = s.recv(2000)
+                    datagrams[struct.unpack("<Q", d[:8])[0]] = d[8:]
         self.assertEqual(p.communicate(timeout=PATIENCE_S), ("finished\n", ""))
-        first = [struct.unpack("<Q", d[:8])[0] for d in datagrams]
-        self.assertEqual(first, list(range(0, 48 * len(first), 48)))
         self.ok("render", "park2016-1", "--sample-format", "s16", "-o", "o.wav")
-        sound = b"".join(d[8:] for d in datagrams).strip(b"\0")
-        self.assertIn(sound, Wav(self.dir / "o.wav").data)
-        self.assertGreater(len(sound), 18 * 48000)
+        data = Wav(self.dir / "o.wav").data
+        # Each at its number; what did not fit into a smaller buffer is lost.
+        numbers = range(0, max(datagrams) + 48, 48)
+        self.assertLessEqual(set(datagrams), set(numbers))
+        self.assertEqual({len(d) for d in datagrams.values()}, {48 * 18})
+        if room_for_all:
+            self.assertEqual(set(datagrams), set(numbers))
+            sound = b"".join(datagrams[n] for n in numbers).strip(b"\0")
+            self.assertIn(sound, data)
+            self.assertGreater(len(sound), 18 * 48000)
+        for d in datagrams.values():
+            self.assertIn(d.strip(b"\0"), data)
         self.assertIn("usage", self.run_example("udp_sink", status=2))
 
     def test_serve_client(self):
@@ -179,8 +202,13 @@ class Examples(ToolTest):
         self.addCleanup(pd.stderr.close)
         self.addCleanup(pd.wait)
         self.addCleanup(pd.kill)
-        said = [line.strip() for line in iter(pd.stderr.readline, "print: tactor stroke 1 finished\n")]
+        said = []
+        for line in pd.stderr:
+            said.append(line.strip())
+            if said[-1] == "print: tactor stroke 1 finished":
+                break
         self.assertIn("print: tactor stroke 1 started", said)
+        self.assertEqual(said[-1], "print: tactor stroke 1 finished")
 
 
 if __name__ == "__main__":
