@@ -15,7 +15,8 @@
 namespace tactor::cli {
 namespace {
 
-constexpr int patience_ms = 200;
+// For whoever reads slowly. A terminal that takes nothing holds up the line that is printed next, anyway.
+constexpr int patience_ms = 2000;
 
 std::string environment_or_empty(const char* name)
 {
