@@ -7,6 +7,8 @@ import select
 import signal
 import stat
 import subprocess
+import termios
+import time
 
 from harness import PATIENCE_S, TOOL, ToolTest, Wav, main
 
@@ -26,6 +28,7 @@ class Output(ToolTest):
             if int(blocked.split()[1], 16) & 1 << (signal.SIGINT - 1):
                 return
             self.assertIsNone(process.poll())
+            time.sleep(0.01)
 
     def leftovers(self):
         return sorted(p.name for p in self.dir.iterdir() if p.name != "alsa.conf")
@@ -134,12 +137,17 @@ class Files(Output):
         self.assertEqual(self.leftovers(), [])
 
     def test_quit_leaves_nothing(self):
-        process = self.start("render", "--path", "M 0 10 L 40 30", "--duration", "7200", "-o", "long.wav")
-        while not self.leftovers():
-            self.assertIsNone(process.poll())
+        # It stands still where it says how far it is: the terminal is stopped.
+        terminal, side = pty.openpty()
+        self.addCleanup(os.close, terminal)
+        termios.tcflow(side, termios.TCOOFF)
+        process = subprocess.Popen([TOOL, "render", "--path", "M 0 10 L 40 30", "--duration", "7200", "-o", "long.wav"], cwd=self.dir,
+                                   env=self.env, stdout=subprocess.DEVNULL, stderr=side)
+        self.until(self.leftovers, process)
         process.send_signal(signal.SIGQUIT)
-        process.communicate(timeout=PATIENCE_S)
-        self.assertEqual(process.returncode, 128 + signal.SIGQUIT)
+        termios.tcflow(side, termios.TCOON)
+        os.close(side)
+        self.assertEqual(process.wait(timeout=PATIENCE_S), 128 + signal.SIGQUIT)
         self.assertEqual(self.leftovers(), [])
 
 
@@ -180,15 +188,22 @@ class People(Output):
     def test_the_progress_line_shows_names_too(self):
         terminal, side = pty.openpty()
         self.addCleanup(os.close, terminal)
+        os.mkfifo(self.dir / f"l{ESCAPE}.wav")
         process = subprocess.Popen([TOOL, "render", "--path", "M 0 10 L 40 30", "--duration", "7200", "-o", f"l{ESCAPE}.wav"],
                                    cwd=self.dir, env=self.env, stdout=subprocess.DEVNULL, stderr=side)
         os.close(side)
         said = b""
-        while b"%" not in said:
-            select.select([terminal], [], [])
-            said += os.read(terminal, 4096)
-        process.send_signal(signal.SIGINT)
-        self.assertEqual(process.wait(timeout=PATIENCE_S), 130)
+        # Read until it says how far it is; it waits for more to be read.
+        with open(self.dir / f"l{ESCAPE}.wav", "rb", buffering=0) as reader:
+            while b"%" not in said:
+                ready = select.select([terminal, reader], [], [], PATIENCE_S)[0]
+                self.assertTrue(ready, said)
+                if reader in ready:
+                    self.assertTrue(reader.read(1 << 16))
+                if terminal in ready:
+                    said += os.read(terminal, 4096)
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.wait(timeout=PATIENCE_S), 130)
         self.assertIn(b"l\\x1b[31m.wav: ", said)
 
 
