@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: MIT
+"""What two clocks, or a machine that does nothing else, must agree on: noise over stimuli, strokes in a row, no page fault."""
+import json
+import unittest
+
+import test_calibrate
+import test_experiment_person
+from experiments import read_table
+from harness import SANITIZED, ToolTest, main
+from serving import ServeTest
+
+
+class Trials(test_calibrate.CalibrateTest):
+    noise_of, pieces = test_calibrate.Person.noise_of, test_calibrate.Person.pieces
+
+    def test_noise_covers_both_intervals_of_each_trial(self):
+        self.refused(1, *test_calibrate.Person.ARGS, "--masker", "raw:noise.raw", "--masker-dbfs", -20, stdin="1\n2\n",
+                     says=["trial 3: no answer"])
+        pieces = self.pieces(self.noise_of("noise.raw"))
+        # Three trials: half a second before interval 1, two intervals of 50 ms, half a second between.
+        self.assertGreaterEqual(sum(pieces), 3 * 109)
+        self.assertLessEqual(len(pieces), 3)
+        self.assertGreaterEqual(min(pieces), 109)
+
+
+class Sessions(test_experiment_person.PersonTest):
+    noisy, covered = test_experiment_person.Masking.noisy, test_experiment_person.Masking.covered
+
+    def test_noise_around_each_stimulus(self):
+        self.ok(*self.args("--masker", "raw:noise.raw", definition=self.noisy()), stdin=test_experiment_person.ByLines.ANSWERS)
+        pieces = self.covered("noise.raw")
+        # Two tactors of the walk (0.65 s), three pairs and two single stimuli after half a second each; without
+        # answers to wait for, neighbours may run into one.
+        least = 2 * 65 + 100 * sum(0.5 + float(r["duration"]) for r in
+                                   read_table(self.dir / "study/sourcedata/sub-01/practice.tsv")
+                                   + self.rows("01", "pairs") + self.rows("01", "marks"))
+        self.assertGreaterEqual(sum(pieces), least - 7)
+        self.assertGreaterEqual(min(pieces), 64)
+
+    def test_noise_through_the_run(self):
+        self.ok(*self.args("--masker", "raw:noise.raw", definition=self.noisy('while = "run"\n')), stdin=test_experiment_person.ByLines.ANSWERS)
+        pieces = self.covered("noise.raw")
+        whole = [100 * (float(r["onset"]) + float(r["duration"])) for r in
+                 (self.rows("01", "pairs")[-1], self.rows("01", "marks")[-1])]
+        for run in whole:  # from its first sample to its last, in one piece
+            self.assertTrue([p for p in pieces if p >= run], (pieces, whole))
+
+    def test_noise_while_its_level_is_checked(self):
+        self.ok("experiment", self.noisy(), "--check-noise", "-D", "null", "--masker", "raw:noise.raw", stdin="s\ns\nn\nx\nn\nq\n")
+        self.assertGreaterEqual(sum(self.covered("noise.raw")), 40)
+
+
+class Served(ServeTest):
+    def test_strokes_of_a_file_follow_each_other(self):
+        c = self.serve().client()
+        toml = "".join(f"[[stroke]]\npath = 'M 0 0 L 40 {y}'\nduration_s = 0.1\n" for y in (0, 10, 20))
+        numbers = c.ok("play", toml=toml, options={"algorithm": "continuous"})["strokes"]
+        starts = [c.stroke(n, "started")["started_s"] for n in numbers]
+        self.assertAlmostEqual(starts[2] - starts[0], 0.2, delta=0.001)
+
+
+class Memory(ToolTest):
+    @unittest.skipIf(SANITIZED, "a sanitizer's own memory is not locked")
+    def test_with_locked_memory_the_audio_thread_meets_no_page_fault(self):
+        counters = json.loads(self.ok("play", "--path", "M 0 10 L 40 30", "--duration", "0.3", "--format", "json").stdout)["counters"]
+        if not counters["locked_memory"]:
+            self.skipTest("memory cannot be locked here")
+        self.assertEqual((counters["minor_faults"], counters["major_faults"]), (0, 0))
+
+
+if __name__ == "__main__":
+    main()
