@@ -3,6 +3,7 @@
 import ctypes
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import tempfile
@@ -64,6 +65,6 @@ class Disk:
         assert done.returncode == 0, done.stderr
 
     def files(self):
-        """Names, and what is in them, but for what fills it."""
-        return {str(p.relative_to(self.path)): p.read_bytes() for p in sorted(self.path.rglob("*"))
+        """Names, and what is in them, but for what fills it and the day, which may end meanwhile."""
+        return {str(p.relative_to(self.path)): re.sub(rb'(?m)^( *"date": |date = )"\d{4}-\d\d-\d\d"', b"", p.read_bytes()) for p in sorted(self.path.rglob("*"))
                 if p.is_file() and not p.name.startswith("filler")}

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """tactor check on ALSA's null and file devices."""
 import json
+import re
 
 from harness import GRID, ToolTest, main
 
@@ -29,7 +30,10 @@ class Check(ToolTest):
     def test_text_is_plain_and_fits_80_columns(self):
         out = self.ok("check", "-D", "null").stdout
         self.assertNotIn("\033", out)
-        self.assertLessEqual(max(map(len, out.splitlines())), 79)
+        # But for what others on this machine chose, as the socket of a service that runs now.
+        ours = re.sub(r"(?m)^\w+ +service .*\n(?: .*\n)*", "", out)
+        self.assertLess(len(ours), len(out))
+        self.assertLessEqual(max(map(len, ours.splitlines())), 79)
         self.assertRegex(out, r"(?m)^ok       array +palm-3x3: 9 tactors, 3 x 3, 40 x 40 mm")
         self.assertRegex(out, r"\n\n0 errors, \d+ warnings?, \d+ ok\n$")
 
