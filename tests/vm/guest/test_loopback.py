@@ -17,6 +17,19 @@ def wav_data(path):
     return data[at + 8:]
 
 
+def difference(heard, data, frame):
+    """Where they begin to differ, and what follows: so many frames too few, too many, or other ones."""
+    at = next((n for n in range(0, len(data), frame) if heard[n:n + frame] != data[n:n + frame]), None)
+    if at is None:
+        return ""
+    some = 100 * frame
+    lost = data.find(heard[at:at + some], at)
+    twice = heard.find(data[at:at + some], at)
+    what = f"{(lost - at) // frame} frames are missing" if lost >= 0 else \
+        f"{(twice - at) // frame} frames come between" if twice >= 0 else "other frames follow"
+    return f"from frame {at // frame} of {len(data) // frame} on {what}"
+
+
 RECORDINGS = 5  # at most
 
 
@@ -47,8 +60,8 @@ class Loopback(RigTest):
         lead = next(i for i, v in enumerate(data) if v) // frame
         start = next(i for i, v in enumerate(got) if v) // frame - lead
         heard = got[start * frame:start * frame + len(data)]
+        self.assertEqual(difference(heard, data, frame), "", f"{channels} channels {name}")
         self.assertEqual(len(heard), len(data))
-        self.assertTrue(heard == data, f"{channels} channels {name}")
         print(f"{channels} channels {name}: {len(data) // frame} frames identical in recording {made}, device {OUT.format(0)}, "
               f"{PERIODS} periods of {PERIOD}")
 
