@@ -21,7 +21,14 @@ namespace tactor {
 namespace pcm {
 namespace {
 
-std::unique_ptr<sink> configure(handle h, const alsa_options& o)
+bool is_on_card(snd_pcm_t* p)
+{
+    snd_pcm_info_t* info = nullptr;
+    snd_pcm_info_alloca(&info);
+    return snd_pcm_info(p, info) == 0 && snd_pcm_info_get_card(info) >= 0;
+}
+
+std::unique_ptr<sink> configure(handle h, const alsa_options& o, bool as_card = false)
 try {
     const library_messages silent;
     stream_setup s = negotiate(h.get(), o);
@@ -34,7 +41,8 @@ try {
                     : fmt::format("; {} of {} were wished", o.periods, o.period_frames));
     if (s.batch)
         detail::log(o.log, log_kind::debug, "PCM \"{}\": its position moves by whole periods", o.pcm);
-    return std::make_unique<pcm_sink>(std::move(h), std::move(s));
+    const bool on_card = as_card || is_on_card(h.get());
+    return std::make_unique<pcm_sink>(std::move(h), std::move(s), on_card);
 } catch (const error&) {
     throw;
 } catch (const std::system_error& e) {
@@ -43,11 +51,11 @@ try {
 
 } // namespace
 
-std::unique_ptr<sink> adopt(snd_pcm_t* p, const alsa_options& o)
+std::unique_ptr<sink> adopt(snd_pcm_t* p, const alsa_options& o, bool as_card)
 {
     handle h(p);
     check(o);
-    return configure(std::move(h), o);
+    return configure(std::move(h), o, as_card);
 }
 
 } // namespace pcm

@@ -10,12 +10,13 @@
 
 namespace tactor::pcm {
 
-pcm_sink::pcm_sink(handle h, stream_setup s)
+pcm_sink::pcm_sink(handle h, stream_setup s, bool on_card)
     : handle_(std::move(h)),
       setup_(std::move(s)),
       status_(make_status()),
       pacer_(setup_.rate, setup_.buffer_frames, setup_.period_frames),
-      max_descriptors_(static_cast<std::size_t>(std::max(1, snd_pcm_poll_descriptors_count(handle_.get()))))
+      max_descriptors_(static_cast<std::size_t>(std::max(1, snd_pcm_poll_descriptors_count(handle_.get())))),
+      on_card_(on_card)
 {
 }
 
@@ -27,6 +28,7 @@ io_kind pcm_sink::prepare() noexcept
         snd_pcm_drop(handle_.get());
     written_ = 0;
     played_ = 0;
+    went_round_ = false;
     const int code = snd_pcm_prepare(handle_.get());
     return code < 0 ? of_error(code, state()) : io_kind::ok;
 }
@@ -43,7 +45,14 @@ io_kind pcm_sink::start() noexcept
     }
     if (paced_)
         pacer_.start(written_);
+    looked_ns_ = rt::monotonic_ns();
+    at_ = 0;
     return io_kind::ok;
+}
+
+std::int64_t pcm_sink::ns_of(std::uint64_t frames) const noexcept
+{
+    return static_cast<std::int64_t>(frames * 1'000'000'000 / setup_.rate);
 }
 
 // A DAC cannot have played all of a full buffer and still run: that would have been an xrun.
@@ -123,7 +132,19 @@ io_result pcm_sink::room() noexcept
     const snd_pcm_sframes_t n = snd_pcm_avail_update(handle_.get());
     if (n < 0)
         return {of_error(n, state()), 0, static_cast<int>(n)};
+    look(n);
+    if (on_card_ && went_round_)
+        return {io_kind::xrun, 0, -EPIPE};
     return {io_kind::ok, static_cast<std::size_t>(n), 0};
+}
+
+void pcm_sink::look(snd_pcm_sframes_t room) noexcept
+{
+    const std::int64_t now = rt::monotonic_ns();
+    const std::int64_t at = static_cast<std::int64_t>(written_) - setup_.buffer_frames + room;
+    went_round_ = went_round_ || (at != at_ && now - looked_ns_ >= ns_of(setup_.buffer_frames));
+    looked_ns_ = now;
+    at_ = at;
 }
 
 // A multi of nulls fills up before its start and breaks after it; a fresh one takes frames again.
@@ -171,13 +192,14 @@ stream_position pcm_sink::position() noexcept
     // The delay may include the DAC's own, which at the start is more than was written.
     if (queued <= written_)
         played_ = std::max(played_, written_ - queued);
+    look(static_cast<snd_pcm_sframes_t>(snd_pcm_status_get_avail(status_.get())));
     snd_htimestamp_t stamp{};
     snd_pcm_status_get_htstamp(status_.get(), &stamp);
     const std::int64_t at = rt::to_ns(stamp);
     // Plugins may leave the stamp empty or in another clock.
     const bool sane = at <= now && now - at < 1'000'000'000;
     seen_ns_ = sane ? at : now;
-    dry_ns_ = seen_ns_ + static_cast<std::int64_t>(queued * 1'000'000'000 / setup_.rate);
+    dry_ns_ = seen_ns_ + ns_of(queued);
     return {written_, played_, seen_ns_, true};
 }
 

@@ -13,9 +13,15 @@
 namespace tactor::pcm {
 
 /// Frames go to snd_pcm_writei(). A device that turns out at start() to have no clock is paced by a timer.
+///
+/// A card plays its buffer round and round, and tells the kernel where in it. Where nobody asked for a whole
+/// buffer (interrupts were off, the processor or the machine stood still), the round is not in the position,
+/// and nothing says xrun: a stream that moved, and that was not looked at for so long, has run dry here,
+/// whatever the kernel says.
 class pcm_sink final : public sink {
 public:
-    pcm_sink(handle h, stream_setup s);
+    /// `on_card`: what plays is a card of the kernel's.
+    pcm_sink(handle h, stream_setup s, bool on_card);
 
     const stream_setup& setup() const noexcept override { return setup_; }
     io_kind prepare() noexcept override;
@@ -34,6 +40,8 @@ private:
     int state() noexcept { return static_cast<int>(snd_pcm_state(handle_.get())); }
     long write_paced(const std::byte* data, std::size_t frames) noexcept;
     bool runs_without_clock() noexcept;
+    std::int64_t ns_of(std::uint64_t frames) const noexcept;
+    void look(snd_pcm_sframes_t room) noexcept;
 
     handle handle_;
     stream_setup setup_;
@@ -42,8 +50,12 @@ private:
     std::size_t max_descriptors_;
     std::uint64_t written_ = 0;
     std::uint64_t played_ = 0;
-    std::int64_t seen_ns_ = 0; ///< when the stream was last seen running
-    std::int64_t dry_ns_ = 0;  ///< when it runs dry, as seen then
+    std::int64_t seen_ns_ = 0;   ///< when the stream was last seen running
+    std::int64_t dry_ns_ = 0;    ///< when it runs dry, as seen then
+    std::int64_t looked_ns_ = 0; ///< when its position was last asked for, ...
+    std::int64_t at_ = 0;        ///< ... which was this
+    bool went_round_ = false;    ///< since prepare()
+    bool on_card_ = false;
     bool paced_ = false;
     int poll_error_ = 0; ///< of the latest descriptors()
 };

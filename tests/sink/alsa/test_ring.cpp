@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// A card's buffer is a ring: a stream that nobody looked at for a whole one has run dry, whatever the kernel
+// says.
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <tactor/alsa.hpp>
+
+#include "fake_dac.hpp"
+#include "rt/clock.hpp"
+#include "sink/alsa/adopt.hpp"
+
+namespace ring_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+// A stream that runs, with a full buffer.
+struct stream {
+    explicit stream(bool as_card) : out(pcm::adopt(dac.pcm(), options(), as_card)) { start(); }
+
+    static alsa_options options()
+    {
+        alsa_options o;
+        o.channels = 2;
+        o.format = format_kind::s16;
+        return o;
+    }
+    void start()
+    {
+        REQUIRE(out->prepare() == io_kind::ok);
+        const std::vector<std::byte> silence(std::size_t{out->setup().buffer_frames} * 4);
+        REQUIRE(out->write(silence.data(), out->setup().buffer_frames).frames == out->setup().buffer_frames);
+        REQUIRE(out->start() == io_kind::ok);
+    }
+    // For as long as the buffer lasts at the rate.
+    void pass() const
+    {
+        const std::int64_t until =
+            rt::monotonic_ns() + std::int64_t{out->setup().buffer_frames} * 1'000'000'000 / out->setup().rate;
+        while (rt::monotonic_ns() < until) {
+        }
+    }
+
+    fake_dac dac;
+    std::unique_ptr<sink> out;
+};
+
+} // namespace
+
+TEST_CASE("a card whose position moved, unseen for a whole buffer, has had an xrun")
+{
+    stream s(true);
+    s.pass();
+    s.dac.advance(96); // of the round before it the position tells nothing
+    const io_result r = s.out->room();
+    CHECK(r.status == io_kind::xrun);
+    CHECK(s.out->xrun_ns() >= 0);
+    CHECK(s.out->room().status == io_kind::xrun); // until it is made ready again
+    s.start();
+    s.pass();
+    CHECK(s.out->room().status == io_kind::ok); // it stands still
+    s.pass();
+    s.dac.advance(96);
+    CHECK(s.out->position().valid); // who looks first does not hide it
+    CHECK(s.out->room().status == io_kind::xrun);
+}
+
+TEST_CASE("what has no ring of a card is believed")
+{
+    stream s(false);
+    s.pass();
+    s.dac.advance(96);
+    CHECK(s.out->room().status == io_kind::ok);
+}
+
+} // namespace ring_test
