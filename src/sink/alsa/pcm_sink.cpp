@@ -52,7 +52,7 @@ io_kind pcm_sink::start() noexcept
 
 std::int64_t pcm_sink::ns_of(std::uint64_t frames) const noexcept
 {
-    return static_cast<std::int64_t>(frames * 1'000'000'000 / setup_.rate);
+    return static_cast<std::int64_t>(frames) * rt::ns_per_s / setup_.rate;
 }
 
 // A DAC cannot have played all of a full buffer and still run: that would have been an xrun.
@@ -132,17 +132,16 @@ io_result pcm_sink::room() noexcept
     const snd_pcm_sframes_t n = snd_pcm_avail_update(handle_.get());
     if (n < 0)
         return {of_error(n, state()), 0, static_cast<int>(n)};
-    look(n);
-    if (on_card_ && went_round_)
+    look(rt::monotonic_ns(), n);
+    if (went_round_)
         return {io_kind::xrun, 0, -EPIPE};
     return {io_kind::ok, static_cast<std::size_t>(n), 0};
 }
 
-void pcm_sink::look(snd_pcm_sframes_t room) noexcept
+void pcm_sink::look(std::int64_t now, snd_pcm_sframes_t room) noexcept
 {
-    const std::int64_t now = rt::monotonic_ns();
     const std::int64_t at = static_cast<std::int64_t>(written_) - setup_.buffer_frames + room;
-    went_round_ = went_round_ || (at != at_ && now - looked_ns_ >= ns_of(setup_.buffer_frames));
+    went_round_ = went_round_ || (on_card_ && at != at_ && now - looked_ns_ >= ns_of(setup_.buffer_frames));
     looked_ns_ = now;
     at_ = at;
 }
@@ -192,12 +191,12 @@ stream_position pcm_sink::position() noexcept
     // The delay may include the DAC's own, which at the start is more than was written.
     if (queued <= written_)
         played_ = std::max(played_, written_ - queued);
-    look(static_cast<snd_pcm_sframes_t>(snd_pcm_status_get_avail(status_.get())));
+    look(now, static_cast<snd_pcm_sframes_t>(snd_pcm_status_get_avail(status_.get())));
     snd_htimestamp_t stamp{};
     snd_pcm_status_get_htstamp(status_.get(), &stamp);
     const std::int64_t at = rt::to_ns(stamp);
     // Plugins may leave the stamp empty or in another clock.
-    const bool sane = at <= now && now - at < 1'000'000'000;
+    const bool sane = at <= now && now - at < rt::ns_per_s;
     seen_ns_ = sane ? at : now;
     dry_ns_ = seen_ns_ + ns_of(queued);
     return {written_, played_, seen_ns_, true};

@@ -41,7 +41,7 @@ private:
     long write_paced(const std::byte* data, std::size_t frames) noexcept;
     bool runs_without_clock() noexcept;
     std::int64_t ns_of(std::uint64_t frames) const noexcept;
-    void look(snd_pcm_sframes_t room) noexcept;
+    void look(std::int64_t now, snd_pcm_sframes_t room) noexcept;
 
     handle handle_;
     stream_setup setup_;
