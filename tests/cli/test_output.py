@@ -8,7 +8,6 @@ import signal
 import stat
 import subprocess
 import termios
-import time
 
 from harness import PATIENCE_S, TOOL, ToolTest, Wav, main
 
@@ -22,13 +21,10 @@ class Output(ToolTest):
 
     def await_blocked_signals(self, process):
         """Until the tool takes signals itself: SIGINT stands among those that it blocks."""
-        while True:
+        def blocked():
             with open(f"/proc/{process.pid}/status", encoding="ascii") as f:
-                blocked = next(line for line in f if line.startswith("SigBlk:"))
-            if int(blocked.split()[1], 16) & 1 << (signal.SIGINT - 1):
-                return
-            self.assertIsNone(process.poll())
-            time.sleep(0.01)
+                return int(next(line for line in f if line.startswith("SigBlk:")).split()[1], 16)
+        self.until(lambda: blocked() & 1 << (signal.SIGINT - 1), process)
 
     def leftovers(self):
         return sorted(p.name for p in self.dir.iterdir() if p.name != "alsa.conf")

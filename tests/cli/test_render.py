@@ -178,8 +178,7 @@ class Files(ToolTest):
 
     def test_ctrl_c_ends_a_long_render_and_leaves_nothing(self):
         process = subprocess.Popen([TOOL, *self.LONG], cwd=self.dir, env=self.env, stderr=subprocess.PIPE, text=True)
-        while not any(p.suffix != ".conf" for p in self.dir.iterdir()):
-            self.assertIsNone(process.poll())
+        self.until(self.leftovers, process)
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=PATIENCE_S)
         self.assertEqual(process.returncode, 130)
