@@ -38,12 +38,15 @@ class Browser:
         self.last += 1
         self.channel.frame(TEXT, json.dumps({"id": self.last, "method": method, "params": params}
                                      | ({"sessionId": session} if session else {})).encode())
-        while True:
-            m = json.loads(self.channel.text())
-            if m.get("id") == self.last:
-                assert "error" not in m, (method, m)
-                return m["result"]
+        while (m := json.loads(self.channel.text())).get("id") != self.last:
             self.events.append(m)
+        assert "error" not in m, (method, m)
+        return m["result"]
+
+    def await_event(self, method, session, since):
+        """One of the events from number `since` on."""
+        while not any(e.get("method") == method and e.get("sessionId") == session for e in self.events[since:]):
+            self.events.append(json.loads(self.channel.text()))
 
     def open(self, address, size=(1280, 800)):
         return Page(self, address, size)
@@ -67,6 +70,12 @@ class Page:
 
     def call(self, method, **params):
         return self.browser.call(method, self.session, **params)
+
+    def reload(self):
+        """Until nothing of the document before is left."""
+        since = len(self.browser.events)
+        self.call("Page.reload")
+        self.browser.await_event("Page.frameNavigated", self.session, since)
 
     def value(self, expression):
         r = self.call("Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True)

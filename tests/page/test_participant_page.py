@@ -177,16 +177,16 @@ class ParticipantPage(BrowserTest, ExperimentTest):
         s = self.start()
         p = self.open(s)
         self.asked(p, "consent")
-        p.call("Page.reload")
+        p.reload()
         ask = self.click(p, "consent", 1)
         for _ in (0, 1):
             ask = self.click(p, "walk", 1, ask)
         ask = self.click(p, "introduce", 1, ask)
         ask = self.click(p, "question", 1, ask)  # practice
         p.until("state.screen === 'stimulus'")
-        p.call("Page.reload")  # in mid-trial
+        p.reload()  # in mid-trial
         ask = self.asked(p, "question", ask)
-        p.call("Page.reload")  # while it is asked
+        p.reload()  # while it is asked
         self.assertEqual(self.asked(p, "question"), ask)
         second = self.open(s, size=SIZES[1])
         self.assertEqual(self.asked(second, "question"), ask)
@@ -195,15 +195,16 @@ class ParticipantPage(BrowserTest, ExperimentTest):
         p.key("Digit1", "1")
         second.call("Page.bringToFront")
         # A lost connection: said, and found again by itself; what was asked is asked still.
-        second.value("socket.close()")
-        second.until("!document.querySelector('#offline').hidden || state.ask")
+        self.assertTrue(second.value("""new Promise(done => {
+            socket.addEventListener("close", () => done(!document.querySelector("#offline").hidden));
+            socket.close(); })"""))
         self.assertEqual(self.asked(second, "question"), ask)
         second.until("document.querySelector('#offline').hidden")
         # Doubled: by hand, beside the page's own guard.
         second.value(f"socket.send('{{\"ask\":{ask},\"answer\":2}}'); socket.send('{{\"ask\":{ask},\"answer\":1}}')")
         ask = self.asked(second, "question", ask)
-        for _ in range(3):
-            second.key("Digit1", "1")
+        # At once, so that nothing that they could answer comes in between.
+        second.value("for (let i = 0; i < 3; i++) dispatchEvent(new KeyboardEvent('keydown', {key: '1'}))")
         ask = self.click(second, "introduce", 1, ask)
         for _ in (1, 2):
             ask = self.tap(second, "question", 2, ask)
