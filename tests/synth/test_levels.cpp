@@ -164,6 +164,49 @@ TEST_CASE("strokes that add up beyond full scale are refused, one at full scale 
     CHECK(holds(message([&] { score(row(1), {{loud, {}}}, o); }), "3.522 dBFS"));
 }
 
+TEST_CASE("a burst of one frame counts, and so does one frame in which two sound")
+{
+    array a = row(1);
+    a.tactors[0].max_dbfs = -12.0;
+    render_options o;
+    o.rate = 8000;
+    o.ramp_s = 0.0;
+    const double frame_s = 1.0 / o.rate;
+    const auto one_at = [](double onset_s, double duration_s) {
+        return make_plan({make_burst(onset_s, duration_s, {{0, 1.0}})});
+    };
+    CHECK(message([&] { score(a, {{one_at(0.0, frame_s), 0.0}}, o); }) == "no error");
+    CHECK(holds(message([&] {
+                    score(a, {{make_plan({make_burst(0.0, frame_s, {{0, 1000.0}}, 1000.0)}), 0.0}}, o);
+                }),
+                "tactor 0: would be driven at 48 dBFS"));
+    CHECK(message([&] {
+              score(a, {{one_at(0.0, 4 * frame_s), 0.0}, {one_at(0.0, frame_s), 4 * frame_s}}, o);
+          }) == "no error");
+    for (const double start_s : {0.0, 2 * frame_s, 3 * frame_s}) {
+        CAPTURE(start_s);
+        CHECK(holds(message([&] {
+                        score(a, {{one_at(0.0, 4 * frame_s), 0.0}, {one_at(0.0, frame_s), start_s}}, o);
+                    }),
+                    "tactor 0: would be driven at -5.979 dBFS"));
+        CHECK(
+            holds(message([&] {
+                      score(a, {{make_continuous(1, 4 * frame_s), 0.0}, {one_at(0.0, frame_s), start_s}}, o);
+                  }),
+                  "tactor 0: would be driven at -5.979 dBFS"));
+    }
+    // A ramp begins with a frame of zero: what rounding lets overlap by one is not heard together.
+    o.ramp_s = 0.001;
+    const double burst_s = 200 * frame_s;
+    CHECK(message([&] {
+              score(a, {{one_at(0.0, burst_s), 0.0}, {one_at(0.0, burst_s), burst_s - frame_s}}, o);
+          }) == "no error");
+    CHECK(holds(message([&] {
+                    score(a, {{one_at(0.0, burst_s), 0.0}, {one_at(0.0, burst_s), burst_s - 2 * frame_s}}, o);
+                }),
+                "tactor 0"));
+}
+
 TEST_CASE("overlaps in one plan count by their rule")
 {
     plan p = make_plan({make_burst(0.0, 0.1, {{0, 0.8}}), make_burst(0.05, 0.1, {{0, 0.8}})});

@@ -14,22 +14,23 @@ namespace tactor::synth {
 namespace {
 
 /// For each item whether another one may sound together with it; markers do not count. Items go by start.
-std::vector<bool> overlapping(const std::deque<item>& items)
+std::vector<bool> overlapping(const item_list& list)
 {
+    const std::deque<item>& items = list.items;
     std::vector<bool> overlaps(items.size(), false);
     std::uint64_t end = 0; // of those before
     std::size_t longest = 0;
     for (std::size_t i = 0; i < items.size(); ++i) {
         const item& it = items[i];
-        if (it.kind == item_kind::marker || it.length <= 1) {
+        if (it.kind == item_kind::marker) {
             continue;
         }
-        if (it.start < end) {
+        if (list.heard_from(it) < end) {
             overlaps[i] = true;
             overlaps[longest] = true;
         }
-        if (it.end() - 1 > end) {
-            end = it.end() - 1;
+        if (it.end() > end) {
+            end = it.end();
             longest = i;
         }
     }
@@ -49,7 +50,7 @@ double harmless_intensity(const score::impl& s, const array& a)
 } // namespace
 
 continuous_items::continuous_items(const score::impl& s, const array& a)
-    : score_(s), harmless_(harmless_intensity(s, a)), overlaps_(overlapping(s.list.items))
+    : score_(s), harmless_(harmless_intensity(s, a)), overlaps_(overlapping(s.list))
 {
 }
 

@@ -35,14 +35,13 @@ class sweep {
 public:
     explicit sweep(std::size_t tactors) : sums_(tactors), peaks_(tactors) {}
 
-    /// The last frame does not count: of two bursts that touch, rounding may put the end of one into the
-    /// first frame of the other.
-    void note(std::size_t tactor, const item& it, double peak)
+    /// `from`: as item_list::heard_from().
+    void note(std::size_t tactor, const item& it, std::uint64_t from, double peak)
     {
-        if (peak > 0.0 && it.length > 1) {
+        if (peak > 0.0 && from < it.end()) {
             pass(it.start);
-            add({it.start, peak, tactor});
-            add({it.end() - 1, -peak, tactor});
+            add({from, peak, tactor});
+            add({it.end(), -peak, tactor});
         }
     }
 
@@ -96,14 +95,15 @@ std::vector<double> peaks_of(const score::impl& s, const continuous_peaks_of& co
     const item_list& list = s.list;
     for (std::size_t i = 0; i < list.items.size(); ++i) {
         const item& it = list.items[i];
+        const std::uint64_t from = list.heard_from(it);
         switch (it.kind) {
         case item_kind::joined:
-            all.note(it.tactor, it, joined_peak(s, i));
+            all.note(it.tactor, it, from, joined_peak(s, i));
             break;
         case item_kind::continuous: {
             const std::vector<double>& peaks = continuous(i);
             for (std::size_t k = 0; k < peaks.size(); ++k) {
-                all.note(k, it, peaks[k]);
+                all.note(k, it, from, peaks[k]);
             }
             break;
         }
@@ -113,7 +113,7 @@ std::vector<double> peaks_of(const score::impl& s, const continuous_peaks_of& co
             for (std::size_t k = it.first; k < it.first + it.count; ++k) {
                 const std::size_t tactor = list.drive_tactors[k];
                 const double gain = s.tactors[tactor].gain * s.equalised(tactor, it.plan, it.start);
-                all.note(tactor, it, std::abs(list.drive_amplitudes[k] * gain));
+                all.note(tactor, it, from, std::abs(list.drive_amplitudes[k] * gain));
             }
             break;
         }

@@ -60,6 +60,14 @@ struct item_list {
     std::deque<std::uint16_t> drive_tactors;
     std::deque<double> drive_amplitudes;
     std::vector<item_member> members;
+
+    /// The first frame in which an item may be heard: a ramp begins with a zero. Of two bursts that touch,
+    /// rounding may put that frame into the end of the other.
+    std::uint64_t heard_from(const item& it) const noexcept
+    {
+        const std::uint32_t ramp = it.kind == item_kind::joined ? members[it.first].ramp : it.ramp;
+        return it.start + (ramp > 0 ? 1 : 0);
+    }
 };
 
 } // namespace tactor::synth
