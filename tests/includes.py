@@ -39,7 +39,7 @@ PUBLIC = {
 USES_ALL_PUBLIC = {"cli", "plot", "python", "server", "study"}
 # What those may know of the library's inside, which is in the tool: no program that embeds it needs these.
 INSIDE = {
-    "cli": {"core/split.hpp", "core/suggest.hpp", "files/channel_map.hpp", "files/stroke/text.hpp", "files/text_file.hpp", "percept/summaries.hpp", "rt/advice.hpp", "rt/clock.hpp", "rt/event_fd.hpp", "synth/score/sounding_now.hpp"},
+    "cli": {"core/split.hpp", "core/suggest.hpp", "files/channel_map.hpp", "files/output_file.hpp", "files/stroke/text.hpp", "files/text_file.hpp", "percept/summaries.hpp", "rt/advice.hpp", "rt/clock.hpp", "rt/event_fd.hpp", "synth/score/sounding_now.hpp"},
     "study": {"core/split.hpp", "files/output_file.hpp", "files/text_file.hpp", "files/toml_reader.hpp", "rt/event_fd.hpp", "rt/thread.hpp", "synth/mix/converter.hpp"},
     "plot": {"core/split.hpp", "files/output_file.hpp", "synth/mix/sample_ranges.hpp"},
     "python": {"core/access.hpp", "core/path/impl.hpp", "core/path/outline.hpp", "core/profile.hpp",

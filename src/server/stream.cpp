@@ -15,6 +15,7 @@ namespace tactor::server {
 namespace {
 
 constexpr double longest_pause_s = 5.0;
+constexpr double going_pause_s = 0.5;
 
 std::chrono::steady_clock::duration duration(double seconds)
 {
@@ -102,8 +103,10 @@ stream::stream(boost::asio::io_context& io, stream_options o, handlers h)
       watch_(std::make_shared<watch>(io)),
       peaks_(std::make_shared<level_peaks>(std::max(options_.wished.channels, options_.tactors.channels()))),
       setup_(options_.wished),
+      driven_(options_.player.driven),
       again_(io),
-      idle_(io)
+      idle_(io),
+      going_(io)
 {
     watch_->owner = this;
 }
@@ -257,6 +260,8 @@ void stream::retire(std::function<void()> then)
             retiring_ = false;
             add(before_, last);
             driven_ = driven;
+            if (options_.settled)
+                options_.settled(driven_);
             if (!waiting_.empty() && !closing_)
                 open();
             if (then)
@@ -285,10 +290,24 @@ bool stream::progresses()
     return player_->stats().periods != std::exchange(seen_periods_, player_->stats().periods);
 }
 
+void stream::tell_going()
+{
+    going_.cancel();
+    if (!busy_ || player_ == nullptr || !options_.going)
+        return;
+    options_.going(setup_.channels);
+    going_.expires_after(duration(going_pause_s));
+    going_.async_wait([this](const boost::system::error_code& e) {
+        if (!e)
+            tell_going();
+    });
+}
+
 void stream::busy(bool is)
 {
     busy_ = is;
     idle_.cancel();
+    tell_going();
     if (is || options_.idle_stop_s <= 0.0 || player_ == nullptr || closing_)
         return;
     idle_.expires_after(duration(options_.idle_stop_s));

@@ -35,9 +35,13 @@ struct stream_options {
     /// Lines for one player; may be empty.
     std::function<player_lines()> lines = {};
     array tactors = {};         ///< with the limits that hold for all clients together
-    player_options player = {}; ///< but `driven` and `log`
+    player_options player = {}; ///< but `log`; `driven` of whoever played before
     log_function log = {};
     std::function<void(stream_state, const std::string& reason)> changed = {}; ///< for the owner
+    /// Twice a second while strokes go on, that so many channels may be driven.
+    std::function<void(unsigned channels)> going = {};
+    /// What the array was given lately, each time that the device is closed.
+    std::function<void(const drive_history&)> settled = {};
     stream_setup wished = {}; ///< what hello tells before the device was ever there
     bool has_amplifier = false;
     double idle_stop_s = 0.0; ///< 0: never
@@ -99,6 +103,7 @@ private:
     void set(stream_state s, std::string reason);
     void retry();
     void tell_waiting();
+    void tell_going();
 
     boost::asio::io_context& io_;
     stream_options options_;
@@ -122,6 +127,7 @@ private:
     std::uint64_t seen_periods_ = 0;
     boost::asio::steady_timer again_;
     boost::asio::steady_timer idle_;
+    boost::asio::steady_timer going_;
     boost::asio::thread_pool worker_{1}; ///< opens and closes, which blocks
 };
 

@@ -72,7 +72,7 @@ class ToolTest(unittest.TestCase):
         self.write("alsa.conf", ALSA_CONFIG)
         self.env = {k: v for k, v in os.environ.items() if k not in ("TACTOR_CONFIG", "DISPLAY")}
         self.env |= {"XDG_CONFIG_HOME": str(self.dir / "none"), "ALSA_CONFIG_PATH": str(self.dir / "alsa.conf"),
-                     "LC_ALL": "C"}
+                     "RUNTIME_DIRECTORY": "", "XDG_RUNTIME_DIR": "", "LC_ALL": "C"}
 
     def write(self, name, text):
         path = self.dir / name

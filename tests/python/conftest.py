@@ -24,7 +24,7 @@ class Tool:
         self.folder = folder
 
     def __call__(self, *arguments, status=0):
-        env = {**os.environ, "TACTOR_CONFIG": os.devnull}
+        env = {**os.environ, "TACTOR_CONFIG": os.devnull, "XDG_RUNTIME_DIR": ""}
         r = subprocess.run([self.program, *map(str, arguments)], cwd=self.folder, env=env, capture_output=True, text=True, check=False)
         assert r.returncode == status, r.stderr
         return r.stdout if status == 0 else r.stderr

@@ -19,7 +19,7 @@ pytestmark = pytest.mark.unsanitized
 
 
 def run(program, *arguments, cwd=None, **environment):
-    env = {**os.environ, "TACTOR_CONFIG": os.devnull, **environment}
+    env = {**os.environ, "TACTOR_CONFIG": os.devnull, "XDG_RUNTIME_DIR": "", **environment}
     r = subprocess.run([sys.executable, program, *map(str, arguments)], cwd=cwd, env=env, capture_output=True, text=True, timeout=120, check=False)
     assert (r.returncode, r.stderr) == (0, "")
     return r.stdout

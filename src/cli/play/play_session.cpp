@@ -22,6 +22,7 @@ namespace {
 
 constexpr int frame_ms = 40;   // of the picture: 25 a second
 constexpr int settled_ms = 10; // more than one turn of the audio thread takes
+constexpr int kept_ms = 1000;  // how often it is kept that the array is driven
 
 } // namespace
 
@@ -32,7 +33,9 @@ play_session::play_session(const alsa_options& device, const play_options& o, co
       source_(std::move(source)),
       lines_(o.no_gpio ? tactor::setup{} : e.config, o.arm, o.sync_delay_ms * 1e-3),
       log_(o.verbose, o.log),
-      device_(device)
+      device_(device),
+      kept_(device.pcm, limits_of(o, e)),
+      driven_(kept_.before())
 {
     device_.log = log_.function();
     std::unique_ptr<sink> s = source_.open(device_);
@@ -51,6 +54,23 @@ play_session::play_session(const alsa_options& device, const play_options& o, co
             locked_ ? "" : fmt::format("memory is not locked ({})", refused), advice());
 }
 
+play_session::~play_session()
+{
+    try {
+        end_stream();
+    } catch (const std::exception&) { // NOLINT(bugprone-empty-catch): what is kept counts too much then
+    }
+}
+
+void play_session::end_stream()
+{
+    if (!std::exchange(streams_, false))
+        return;
+    player_->stop();
+    driven_ = player_->history();
+    kept_.settled(driven_);
+}
+
 void play_session::start(std::unique_ptr<sink> s)
 {
     player_options o = source_.player;
@@ -61,6 +81,7 @@ void play_session::start(std::unique_ptr<sink> s)
     player_ = std::make_unique<player>(std::move(s), environment_.tactors, o, lines_.lend());
     player_->on_report([this](const stroke_report&) { ended_.signal(); });
     setup_ = player_->setup();
+    streams_ = true;
 }
 
 bool play_session::sleep(int fd, int timeout_ms, int also)
@@ -128,7 +149,9 @@ stroke_report play_session::play(const piece& p, const score& s, const watcher& 
         }
         if (follower)
             picture.draw(follower->at(t), t, total);
-        const bool go_on = sleep(ended_.fd(), picture.active() || watch ? frame_ms : -1);
+        if (!options_.arm || where.stroke == id)
+            kept_.going(setup_.channels);
+        const bool go_on = sleep(ended_.fd(), picture.active() || watch ? frame_ms : kept_ms);
         ended_.consume();
         if (!go_on) {
             player_->stop();
@@ -141,12 +164,15 @@ stroke_report play_session::live(const live_options& o, live_lines& lines)
 {
     live_stroke stroke = player_->begin(o);
     bool ended = false;
+    bool begun = false;
     for (;;) {
         if (const auto report = player_->wait(stroke.id(), 0.0))
             return *report;
         try {
-            while (const auto p = lines.next())
+            while (const auto p = lines.next()) {
                 stroke.to(p->position.x_mm, p->position.y_mm, p->intensity);
+                begun = true;
+            }
         } catch (const error&) {
             stroke.cancel();
             player_->stop();
@@ -154,7 +180,9 @@ stroke_report play_session::live(const live_options& o, live_lines& lines)
         }
         if (lines.over() && !std::exchange(ended, true))
             stroke.end();
-        const bool go_on = sleep(ended_.fd(), -1, lines.over() ? -1 : lines.descriptor());
+        if (begun)
+            kept_.going(setup_.channels);
+        const bool go_on = sleep(ended_.fd(), kept_ms, lines.over() ? -1 : lines.descriptor());
         ended_.consume();
         if (!go_on) {
             player_->stop();
@@ -173,8 +201,7 @@ bool play_session::reopen()
     say(stderr, "tactor: waiting for \"{}\" to come back (Ctrl-C ends)\n", device_.pcm);
     if (player_ != nullptr) {
         add_stats(before_, player_->stats());
-        player_->stop();
-        driven_ = player_->history();
+        end_stream();
     }
     const auto until = clock::now() + std::chrono::duration<double>(options_.reopen_s);
     const auto pause = [&](double wait_s) {
@@ -204,7 +231,7 @@ void play_session::finish(run_report& r)
     r.device = setup_;
     r.stats = before_;
     if (player_ != nullptr) {
-        player_->stop();
+        end_stream();
         r.device = player_->setup();
         add_stats(r.stats, player_->stats());
     }

@@ -17,6 +17,7 @@
 #include "cli/play/play_log.hpp"
 #include "cli/play/play_options.hpp"
 #include "cli/play/play_report.hpp"
+#include "cli/session/kept_drive.hpp"
 #include "rt/event_fd.hpp"
 
 namespace tactor::cli {
@@ -32,6 +33,9 @@ public:
     /// Opens lines and device, settles real time and starts the stream. \throws error.
     play_session(const alsa_options& device, const play_options& o, const environment& e,
                  stream_source source = {});
+    ~play_session();
+    play_session(const play_session&) = delete;
+    play_session& operator=(const play_session&) = delete;
 
     const stream_setup& setup() const noexcept { return setup_; }
 
@@ -76,6 +80,8 @@ private:
     void settle_realtime();
     /// False when a signal has come.
     bool sleep(int fd, int timeout_ms, int also = -1);
+    /// Ends the player's stream, and keeps what it gave the array.
+    void end_stream();
 
     play_options options_;
     const environment& environment_;
@@ -88,8 +94,10 @@ private:
     stream_setup setup_;
     std::unique_ptr<player> player_;
     stroke_id playing_ = {};
-    player_stats before_;  ///< of the players before this one
-    drive_history driven_; ///< what they gave the array lately
+    player_stats before_; ///< of the players before this one
+    kept_drive kept_;     ///< what they gave the array lately, and runs before
+    drive_history driven_;
+    bool streams_ = false;
     unsigned reopened_ = 0;
     bool locked_ = false;
     int signal_ = 0;

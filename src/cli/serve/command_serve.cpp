@@ -25,6 +25,7 @@
 #include "cli/say.hpp"
 #include "cli/serve/owner.hpp"
 #include "cli/serve/plan_record.hpp"
+#include "cli/session/kept_drive.hpp"
 #include "rt/advice.hpp"
 #include "rt/clock.hpp"
 #include "server/server.hpp"
@@ -206,6 +207,10 @@ int serve(settings& s, owners_defaults& defaults, const play_options& play, cons
                                                     play.sync_delay_ms * 1e-3);
     settle_realtime(play);
     server::stream_options stream = stream_of(device, play, e, lines);
+    kept_drive kept(device.pcm, stream.player.limits);
+    stream.player.driven = kept.before();
+    stream.going = [&kept](unsigned channels) { kept.going(channels); };
+    stream.settled = [&kept](const drive_history& h) { kept.settled(h); };
     stream.tactors = limited(e.tactors, service.plans.max_level_dbfs);
     stream.changed = tell_owner();
     stream.idle_stop_s = serve.idle_stop_s.value_or(0.0);

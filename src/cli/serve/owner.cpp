@@ -13,38 +13,25 @@
 #include <unistd.h>
 
 #include "cli/say.hpp"
+#include "cli/session/runtime_folder.hpp"
 
 namespace tactor::cli {
 namespace {
 
 constexpr const char* socket_name = "/tactor.sock";
 
-std::string variable(const char* name)
-{
-    const char* v = std::getenv(name);
-    return v == nullptr ? "" : v;
-}
-
-// systemd's may be several, in a list.
-std::string runtime_folder()
-{
-    const std::string all = variable("RUNTIME_DIRECTORY");
-    return all.substr(0, all.find(':'));
-}
-
 // Of the system, where a service manager gives a folder that is not below the user's own.
 bool is_systems()
 {
-    const std::string given = runtime_folder();
+    const std::string given = service_folder();
     const std::string users = variable("XDG_RUNTIME_DIR");
     return !given.empty() && (users.empty() || !given.starts_with(users + "/"));
 }
 
 std::string default_socket()
 {
-    for (const std::string& folder : {runtime_folder(), variable("XDG_RUNTIME_DIR")})
-        if (!folder.empty())
-            return folder + socket_name;
+    if (const std::string folder = runtime_folder(); !folder.empty())
+        return folder + socket_name;
     throw error(error_kind::bad_input, "socket",
                 "neither RUNTIME_DIRECTORY nor XDG_RUNTIME_DIR says in which folder",
                 "name one with --socket PATH, or under [serve] in the configuration");

@@ -42,16 +42,6 @@ std::uint64_t horizon_frames(const player_options& o, const stream_setup& s)
     return std::max<std::uint64_t>(frames_of(o.horizon_s, s.rate, "horizon"), least);
 }
 
-// As of now: what went by since counts as silence.
-synth::drive_history as_of_now(const drive_history::impl* h)
-{
-    if (h == nullptr)
-        return {};
-    synth::drive_history driven = h->channels;
-    driven.pass(static_cast<double>(rt::monotonic_ns() - h->taken_ns) * 1e-9);
-    return driven;
-}
-
 engine::loop_options loop_options(const player_options& o, const drive_history::impl* before,
                                   const stream_setup& s, bool amplifier)
 {
@@ -64,7 +54,7 @@ engine::loop_options loop_options(const player_options& o, const drive_history::
     l.stall_ns = std::max(periods, asked);
     l.amplifier = amplifier;
     l.guards = synth::guards_of(o.limits, s.rate);
-    l.driven = as_of_now(before);
+    l.driven = before != nullptr ? before->until_now() : synth::drive_history{};
     return l;
 }
 

@@ -21,20 +21,15 @@
 #include "engine/audio/audio_thread.hpp"
 #include "engine/control/amplifier_thread.hpp"
 #include "engine/control/control_thread.hpp"
+#include "engine/control/drive_history.hpp"
 #include "engine/control/feeder.hpp"
 #include "engine/control/stream_log.hpp"
 #include "engine/control/trigger_thread.hpp"
 #include "engine/link.hpp"
-#include "synth/guard/drive_history.hpp"
 
 namespace tactor {
 
 /// Shared with the control thread while that is at work, so that a handler can destroy the player.
-struct drive_history::impl {
-    synth::drive_history channels;
-    std::int64_t taken_ns = 0; ///< CLOCK_MONOTONIC
-};
-
 struct player::impl : std::enable_shared_from_this<player::impl> {
     using report_handler = std::function<void(const stroke_report&)>;
     using begin_handler = std::function<void(stroke_id, std::optional<std::int64_t>)>;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "synth/mix/sincos.hpp"
 
@@ -66,6 +67,7 @@ void drive_guard::drive(std::size_t channel, std::uint64_t from, std::uint64_t t
     auto at = static_cast<std::int64_t>(from);
     while (at < end) {
         if (at >= c.closed_at && at < c.opens_at) {
+            cuts_ += std::exchange(c.was_closed, false) ? 1 : 0;
             at = c.opens_at; // counted when it was closed
             continue;
         }
@@ -160,6 +162,9 @@ drive_history drive_guard::history(std::uint64_t clock) const
         h.channels[i].opens_s = seconds(c.opens_at - now);
         for (std::size_t k = 0; k < c.count; ++k) {
             const stretch& s = c.at(k);
+            if (s.end <= now - window_) {
+                continue;
+            }
             h.channels[i].stretches.push_back(
                 {seconds(s.begin - now), seconds(s.end - now), seconds(s.driven)});
         }
@@ -178,6 +183,7 @@ void drive_guard::resume(const drive_history& h) noexcept
         }
         c.opens_at = std::max(-fade_, up(h.channels[i].opens_s));
         c.closed_at = std::min(c.opens_at, -fade_);
+        c.was_closed = c.opens_at > 0;
     }
 }
 

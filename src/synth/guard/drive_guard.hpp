@@ -42,10 +42,10 @@ public:
     /// Applies what came of it to the block, and to the squared envelope from its frame `known` on.
     void apply(std::size_t channel, std::uint64_t clock, unsigned n, double* x, double* envelope,
                unsigned known) const noexcept;
-    /// How often a channel was cut.
+    /// How often a channel was cut; where another guard had cut it, once it is driven again before it may be.
     std::uint64_t cuts() const noexcept { return cuts_; }
 
-    /// What was counted until frame `clock`. Allocates.
+    /// What was counted until frame `clock` and is still in the window. Allocates.
     drive_history history(std::uint64_t clock) const;
     /// Goes on from it with frame 0; before the first drive.
     void resume(const drive_history& h) noexcept;
@@ -67,6 +67,7 @@ private:
         std::int64_t sum = 0; ///< of what the stretches hold
         std::int64_t closed_at = 0;
         std::int64_t opens_at = 0;
+        bool was_closed = false; ///< by another guard, and nothing was driven into that yet
 
         stretch& at(std::size_t i) noexcept { return ring[(first + i) % ring.size()]; }
         const stretch& at(std::size_t i) const noexcept { return ring[(first + i) % ring.size()]; }

@@ -4,6 +4,7 @@
 /// does not give a tactor its time back.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace tactor::synth {
@@ -23,17 +24,22 @@ struct drive_history {
     };
     std::vector<channel> channels = {}; ///< none where there is no limit
 
-    /// So much time went by in silence since.
-    void pass(double seconds) noexcept
-    {
-        for (channel& c : channels) {
-            c.opens_s -= seconds;
-            for (stretch& s : c.stretches) {
-                s.begin_s -= seconds;
-                s.end_s -= seconds;
-            }
-        }
-    }
+    /// So much time went by in silence since: what was still to come then came, as far as it went by.
+    void pass(double seconds) noexcept;
+    /// What is still to come does not.
+    void end_now() noexcept;
+    /// Each of so many channels is driven from now on for so long.
+    void add_ahead(std::size_t n, double seconds);
+    /// Whether no channel is known to have been driven.
+    bool empty() const noexcept;
 };
+
+/// Of an array that two have driven, taken at the same moment: what one alone says and what both say. No
+/// channel counts as driven for longer than there was time.
+drive_history together(const drive_history& a, const drive_history& b);
+
+/// At most so many stretches a channel, neighbours taken together: what counts leaves the window later then,
+/// never sooner. `most` is 1 at least.
+void coarsen(drive_history& h, std::size_t most);
 
 } // namespace tactor::synth

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#include "cli/session/runtime_folder.hpp"
+
+#include <cstdlib>
+
+namespace tactor::cli {
+
+std::string variable(const char* name)
+{
+    const char* v = std::getenv(name);
+    return v == nullptr ? "" : v;
+}
+
+std::string service_folder()
+{
+    const std::string all = variable("RUNTIME_DIRECTORY");
+    return all.substr(0, all.find(':'));
+}
+
+std::string runtime_folder()
+{
+    const std::string given = service_folder();
+    return given.empty() ? variable("XDG_RUNTIME_DIR") : given;
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: MIT
+"""How long a tactor was driven counts on from one run of a user to the next on the same device. Windows last an hour: no
+machine is so slow that time itself would give it back."""
+import json
+import subprocess
+import time
+
+from harness import ALSA_CONFIG, TOOL, ToolTest, main
+from serving import Server
+
+LIMITS = ("--max-drive-s", "0.5", "--drive-window-s", "3600")
+STILL = ("--path", "M 0 0 L 0.001 0", "--algorithm", "continuous")  # one tactor, all the time
+
+
+class KeptDrive(ToolTest):
+    def setUp(self):
+        super().setUp()
+        self.runtime = self.dir / "run"
+        self.runtime.mkdir(mode=0o700)
+        self.env["XDG_RUNTIME_DIR"] = str(self.runtime)
+
+    def cuts(self, *args, seconds=0.3, limits=LIMITS, **more):
+        r = self.ok("play", *STILL, "--duration", seconds, *limits, "--format", "json", *args, **more)
+        return json.loads(r.stdout)["counters"]["drives_cut"]
+
+    def kept(self):
+        return sorted(self.runtime.rglob("driven-*"))
+
+    def test_two_runs_count_together(self):
+        self.assertEqual(self.cuts("-D", "null"), 0)
+        self.assertEqual([f.name for f in self.kept()], ["driven-null"])
+        self.assertEqual(self.kept()[0].parent.stat().st_mode & 0o777, 0o700)
+        self.assertEqual(self.cuts("-D", "null", env={"XDG_RUNTIME_DIR": str(self.dir)}), 0)  # another user
+        self.assertEqual(self.cuts("-D", "null"), 1)
+        self.write("alsa.conf", ALSA_CONFIG + 'pcm."the/other" { type null }\n')
+        self.assertEqual(self.cuts("-D", "the/other"), 0)
+        self.assertEqual([f.name for f in self.kept()], ["driven-null", "driven-the%2Fother"])
+
+    def test_nothing_is_written_where_nothing_is_driven(self):
+        self.ok("plan", "park2016-1")
+        self.ok("render", "park2016-1", "-o", "x.wav")
+        self.ok("play", "--live", "-", "-D", "null")
+        self.refused(3, "play", *STILL, "-D", "nowhere")
+        self.refused(2, "play", *STILL, "--max-drive-s", "0", "-D", "null")
+        self.assertEqual(self.kept(), [])
+
+    def test_a_file_that_is_torn_counts_as_none(self):
+        self.assertEqual(self.cuts("-D", "null"), 0)
+        file = self.kept()[0]
+        whole = file.read_bytes()
+        for torn in (b"", whole[:-1], whole[:len(whole) // 2], b"\xff\x00" * 4096, b"tactor-driven 1 - 0 9\nend\n",
+                     whole.replace(b" 9\n", b" 99999999\n", 1), whole.replace(b"\n0 ", b"\n7777 ", 1)):
+            with self.subTest(torn[:80]):
+                file.write_bytes(torn)
+                self.assertEqual(self.cuts("-D", "null"), 0)
+                self.assertNotEqual(file.read_bytes(), torn)
+
+    def test_a_folder_of_others_is_not_used(self):
+        folder = self.runtime / "tactor"
+        folder.mkdir()
+        folder.chmod(0o777)
+        self.assertEqual([self.cuts("-D", "null") for _ in range(2)], [0, 0])
+        self.assertEqual(self.kept(), [])
+        folder.rmdir()
+        folder.symlink_to(self.dir)
+        self.assertEqual(self.cuts("-D", "null"), 0)
+        self.assertEqual(self.kept(), [])
+
+    def test_what_cannot_be_kept_is_said_and_played(self):
+        self.assertEqual(self.cuts("-D", "null"), 0)
+        file = self.kept()[0]
+        file.unlink()
+        file.mkdir()
+        r = self.ok("play", *STILL, "--duration", "0.1", "-D", "null")
+        self.assertIn("played 0.100 s", r.stdout)
+        self.assertEqual(r.stderr.count("the next run will not know for how long the array was driven"), 1, r.stderr)
+
+    def test_a_run_that_was_killed_counts_too(self):
+        for stroke in ((*STILL, "--duration", "300"), ("--live", "-")):
+            with self.subTest(stroke[0]):
+                p = subprocess.Popen([TOOL, "play", *stroke, "-D", "null"], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
+                                     stderr=subprocess.DEVNULL, cwd=self.dir, env=self.env)
+                p.stdin.write(b"0 0 0\n")
+                p.stdin.flush()
+                self.until(self.kept, p)
+                began = time.monotonic()
+                p.kill()
+                p.communicate()
+                self.until(lambda: time.monotonic() > began + 0.6)
+                self.assertEqual(self.cuts("-D", "null", seconds=0.1), 1)
+                self.kept()[0].unlink()
+
+    def test_without_a_limit_it_is_kept_when_the_array_was_driven(self):
+        self.assertEqual(self.cuts("-D", "null", seconds=1.0, limits=("--max-drive-s", "3600", "--drive-window-s", "10")), 0)
+        self.assertEqual(self.cuts("-D", "null", seconds=0.1), 1)
+
+    def test_a_service_counts_what_was_before_and_is_counted(self):
+        self.assertEqual(self.cuts("-D", "null"), 0)
+        s = Server(self, config="[limits]\nmax_drive_s = 0.5\nwindow_s = 3600\n", env={"XDG_RUNTIME_DIR": str(self.runtime)})
+        self.ok("play", *STILL, "--duration", "0.3", "--socket", s.where["socket"])
+        self.assertEqual(s.terminate()[0], 0)
+        self.assertEqual(self.cuts("-D", "null", seconds=0.1), 1)  # it was cut there, and is not open again
+
+
+if __name__ == "__main__":
+    main()
