@@ -14,9 +14,6 @@
 #include <vector>
 
 #include <doctest/doctest.h>
-#include <fcntl.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <tactor/alsa.hpp>
 #include <tactor/array.hpp>
@@ -37,6 +34,7 @@
 
 #include "clock_runner.hpp"
 #include "count_allocations.hpp"
+#include "descriptors_left.hpp"
 #include "folder.hpp"
 #include "has.hpp"
 #include "player_support.hpp"
@@ -49,41 +47,6 @@ using namespace tactor;
 using namespace tactor::test;
 
 namespace {
-
-// Leaves the process so many descriptors, as long as it lives.
-class descriptors_left {
-public:
-    explicit descriptors_left(unsigned n)
-    {
-        REQUIRE(::getrlimit(RLIMIT_NOFILE, &before_) == 0);
-        rlimit few = before_;
-        few.rlim_cur = 256;
-        REQUIRE(::setrlimit(RLIMIT_NOFILE, &few) == 0);
-        for (int fd = ::dup(0); fd >= 0; fd = ::dup(0))
-            taken_.push_back(fd);
-        REQUIRE(taken_.size() > n);
-        for (unsigned i = 0; i < n; ++i)
-            release();
-    }
-    ~descriptors_left()
-    {
-        while (!taken_.empty())
-            release();
-        ::setrlimit(RLIMIT_NOFILE, &before_);
-    }
-    descriptors_left(const descriptors_left&) = delete;
-    descriptors_left& operator=(const descriptors_left&) = delete;
-
-private:
-    void release()
-    {
-        ::close(taken_.back());
-        taken_.pop_back();
-    }
-
-    rlimit before_{};
-    std::vector<int> taken_;
-};
 
 std::ptrdiff_t open_descriptors()
 {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/refused.hpp"
+#include "sink/alsa/configuration.hpp"
 #include "sink/alsa/devices/names.hpp"
 #include "sink/alsa/error_text.hpp"
 #include "sink/alsa/library_messages.hpp"
@@ -68,9 +69,12 @@ handle open(const alsa_options& o)
     int code = 0;
     surroundings there;
     if (o.config_text.empty()) {
-        code = snd_pcm_open(&p, o.pcm.c_str(), SND_PCM_STREAM_PLAYBACK, mode);
+        const system_configuration system;
+        code = system.refused();
+        if (code == 0)
+            code = snd_pcm_open(&p, o.pcm.c_str(), SND_PCM_STREAM_PLAYBACK, mode);
         if (code < 0)
-            there.pcms = defined_pcms();
+            there.pcms = defined_pcms(system.get());
     } else {
         const configuration c = parse(o.config_text, said);
         code = snd_pcm_open_lconf(&p, o.pcm.c_str(), SND_PCM_STREAM_PLAYBACK, mode, c.get());

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string_view>
 
+#include "sink/alsa/configuration.hpp"
 #include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/handle.hpp"
 #include "sink/alsa/library_messages.hpp"
@@ -61,19 +62,14 @@ std::vector<std::string> defined_pcms(snd_config_t* top)
     return names;
 }
 
-std::vector<std::string> defined_pcms()
-{
-    return defined_pcms(system_configuration().get());
-}
-
 std::vector<known_name> known_names()
 {
     const library_messages silent;
-    std::vector<known_name> names = hinted();
-    const system_configuration system;
+    const system_configuration system; // before the hints, which read it whatever there is to read it with
     snd_config_t* pcms = nullptr;
     if (system.get() == nullptr || snd_config_search(system.get(), "pcm", &pcms) < 0)
-        return names;
+        return {};
+    std::vector<known_name> names = hinted();
     each_member(pcms, [&](const std::string& id, snd_config_t* definition) {
         const auto same = [&](const known_name& n) { return n.name == id; };
         if (stands_alone(definition) && std::none_of(names.begin(), names.end(), same))

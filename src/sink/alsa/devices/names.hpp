@@ -21,6 +21,5 @@ std::vector<known_name> known_names();
 
 /// All that a configuration defines under `pcm`, those that need arguments too; for those who mistyped one.
 std::vector<std::string> defined_pcms(snd_config_t* top);
-std::vector<std::string> defined_pcms();
 
 } // namespace tactor::pcm

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "sink/alsa/configuration.hpp"
 #include "sink/alsa/handle.hpp"
 #include "sink/alsa/library_messages.hpp"
 

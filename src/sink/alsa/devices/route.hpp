@@ -10,24 +10,6 @@
 
 namespace tactor::pcm {
 
-/// ALSA's configuration as snd_pcm_open() finds it, kept from being reread meanwhile.
-class system_configuration {
-public:
-    system_configuration() { snd_config_update_ref(&top_); }
-    ~system_configuration()
-    {
-        if (top_ != nullptr)
-            snd_config_unref(top_);
-    }
-    system_configuration(const system_configuration&) = delete;
-    system_configuration& operator=(const system_configuration&) = delete;
-    /// Null where there is none.
-    snd_config_t* get() const noexcept { return top_; }
-
-private:
-    snd_config_t* top_ = nullptr;
-};
-
 /// The members of a compound by name; none of anything else.
 template <typename Visit>
 void each_member(snd_config_t* compound, Visit visit)

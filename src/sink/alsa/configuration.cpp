@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "sink/alsa/configuration.hpp"
+
+#include <cerrno>
+
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include "sink/alsa/library_messages.hpp"
+
+namespace tactor::pcm {
+namespace {
+
+// The negative errno for which no file could be opened; else 0. (One is enough: a file that is opened while
+// another is, and fails, makes libasound give the whole configuration up.)
+int lack_of_descriptors() noexcept
+{
+    const int fd = ::eventfd(0, EFD_CLOEXEC);
+    if (fd < 0)
+        return -errno;
+    ::close(fd);
+    return 0;
+}
+
+bool defines_pcms(snd_config_t* top)
+{
+    snd_config_t* pcms = nullptr;
+    return top != nullptr && snd_config_search(top, "pcm", &pcms) == 0;
+}
+
+} // namespace
+
+system_configuration::system_configuration() : refused_(lack_of_descriptors())
+{
+    const library_messages silent;
+    if (refused_ != 0)
+        return;
+    snd_config_update_ref(&top_);
+    if (defines_pcms(top_))
+        return;
+    // Read when there were no descriptors, by another part of the program, or truly empty.
+    if (top_ != nullptr)
+        snd_config_unref(top_);
+    top_ = nullptr;
+    snd_config_update_free_global();
+    snd_config_update_ref(&top_);
+}
+
+system_configuration::~system_configuration()
+{
+    if (top_ != nullptr)
+        snd_config_unref(top_);
+}
+
+} // namespace tactor::pcm

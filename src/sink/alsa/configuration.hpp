@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// ALSA's configuration, as the system has it.
+#pragma once
+
+#include <alsa/asoundlib.h>
+
+namespace tactor::pcm {
+
+/// ALSA's configuration as snd_pcm_open() finds it, kept from being reread meanwhile. Not read without a free
+/// descriptor: libasound goes without the files that it cannot open, and keeps that until one changes.
+class system_configuration {
+public:
+    system_configuration();
+    ~system_configuration();
+    system_configuration(const system_configuration&) = delete;
+    system_configuration& operator=(const system_configuration&) = delete;
+
+    /// Null where there is none, or where it was not read.
+    snd_config_t* get() const noexcept { return top_; }
+    /// The negative errno for which it was not read; else 0.
+    int refused() const noexcept { return refused_; }
+
+private:
+    snd_config_t* top_ = nullptr;
+    int refused_;
+};
+
+} // namespace tactor::pcm

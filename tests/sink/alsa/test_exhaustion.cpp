@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+// ALSA's configuration where descriptors run out: what could not be read is not kept for read.
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include <alsa/asoundlib.h>
+#include <doctest/doctest.h>
+
+#include <tactor/alsa.hpp>
+#include <tactor/devices.hpp>
+#include <tactor/error.hpp>
+
+#include "descriptors_left.hpp"
+#include "folder.hpp"
+#include "has.hpp"
+#include "sink/alsa/library_messages.hpp"
+
+namespace alsa_exhaustion_test {
+
+using namespace tactor;
+
+namespace {
+
+// A configuration as the system's: a file that loads the user's, if it can, which includes another. Not read
+// yet.
+class own_configuration {
+public:
+    own_configuration()
+    {
+        const auto included = here_.write("included.conf", "pcm.mine { type plug slave.pcm null }\n");
+        const auto users = here_.write("asoundrc", "<" + included.string() + ">\n");
+        const auto top = here_.write("alsa.conf", "@hooks [ { func load files [ \"" + users.string() +
+                                                      "\" ] errors false } ]\npcm.null { type null }\n");
+        if (const char* p = std::getenv(variable))
+            before_ = p;
+        ::setenv(variable, top.c_str(), 1);
+        snd_config_update_free_global();
+    }
+    ~own_configuration()
+    {
+        if (before_.empty())
+            ::unsetenv(variable);
+        else
+            ::setenv(variable, before_.c_str(), 1);
+        snd_config_update_free_global();
+    }
+    own_configuration(const own_configuration&) = delete;
+    own_configuration& operator=(const own_configuration&) = delete;
+
+private:
+    static constexpr const char* variable = "ALSA_CONFIG_PATH";
+
+    folder here_;
+    std::string before_;
+};
+
+alsa_options of(const char* pcm)
+{
+    return {.pcm = pcm, .channels = 9};
+}
+
+// With so many descriptors: whether it opened.
+bool opens_with(unsigned descriptors, const char* pcm)
+{
+    const test::descriptors_left few(descriptors);
+    try {
+        static_cast<void>(open_alsa(of(pcm)));
+        return true;
+    } catch (const error& e) {
+        CHECK(e.kind() == error_kind::runtime);
+        has(e.what(), "Too many open files");
+        has(e.what(), "ulimit -n");
+        return false;
+    }
+}
+
+} // namespace
+
+TEST_CASE("a PCM that could not be opened for want of descriptors opens when there are some")
+{
+    for (const char* pcm : {"null", "mine"}) {
+        CAPTURE(pcm);
+        bool opened = false;
+        for (unsigned n = 0; !opened; ++n) {
+            CAPTURE(n);
+            REQUIRE(n < 20);
+            const own_configuration fresh;
+            opened = opens_with(n, pcm);
+            CHECK(open_alsa(of("mine"))->setup().channels == 9);
+        }
+    }
+}
+
+TEST_CASE("what asks for names without descriptors leaves nothing broken behind")
+{
+    for (unsigned n = 0; n < 10; ++n) {
+        CAPTURE(n);
+        const own_configuration fresh;
+        {
+            const test::descriptors_left few(n);
+            static_cast<void>(route_of("mine"));
+            static_cast<void>(list_pcms());
+        }
+        CHECK(route_of("mine").types == std::vector<std::string>{"plug", "null"});
+        CHECK(open_alsa(of("mine"))->setup().channels == 9);
+    }
+}
+
+TEST_CASE("a configuration that another part of the program could not read is read anew")
+{
+    const own_configuration fresh;
+    {
+        const test::descriptors_left none(0);
+        const pcm::library_messages silent;
+        snd_config_update();
+    }
+    CHECK(open_alsa(of("mine"))->setup().channels == 9);
+}
+
+} // namespace alsa_exhaustion_test
