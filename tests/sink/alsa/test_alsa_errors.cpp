@@ -133,6 +133,16 @@ TEST_CASE("an unknown PCM names a near one, or all when they are few")
     has(s.says("xyz", -ENOENT), "cards: Headphones, DAC8x");
 }
 
+TEST_CASE("twelve names are all proposed, and more are too many")
+{
+    const fake_system s;
+    s.two_cards();
+    std::vector<std::string> names{"n1", "n2", "n3", "n4", "n5", "n6", "n7", "n8", "n9", "n10", "n11", "n12"};
+    has(s.says("something", -ENOENT, names), "known: n1, n2");
+    names.emplace_back("n13");
+    CHECK(s.says("something", -ENOENT, names).find("known") == std::string::npos);
+}
+
 TEST_CASE("names that are defined in a configuration text are those that are proposed")
 {
     try {
@@ -231,7 +241,7 @@ TEST_CASE("messages within messages are the inner one's, and the outer one goes 
         CHECK(inner.first() == "one");
     }
     CHECK(outer.first() == "");
-    SNDERR("three\n");
+    SNDERR("three \n");
     CHECK(outer.first() == "three");
 }
 

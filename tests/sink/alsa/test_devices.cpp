@@ -39,7 +39,11 @@ TEST_CASE("each playback device of each card is listed by its card's id, cards f
     CHECK(all[2].name == "hw:CARD=DAC8x,DEV=3");
     for (std::size_t i = 0; i < all.size(); ++i)
         CHECK(all[i].hardware == (i < 3));
-    CHECK(named(all, "null").opened);
+    const pcm_info null = named(all, "null");
+    REQUIRE(null.opened);
+    CHECK(null.can->rates_hz.most == no_limit);
+    CHECK(null.can->period_frames.most == no_limit);
+    CHECK(null.can->buffer_frames.most == no_limit);
 }
 
 TEST_CASE("a card's device that cannot be opened says why and stays in the list")
@@ -80,6 +84,8 @@ TEST_CASE("the wanted PCM is found by whatever name it has, and listed where not
         CHECK(named(all, "hw:CARD=DAC8x,DEV=3").wanted);
         CHECK(std::count_if(all.begin(), all.end(), [](const pcm_info& p) { return p.wanted; }) == 1);
     }
+    // What converts is another PCM, on the same device.
+    CHECK(named(pcm::list(s.root(), alsa_options{.pcm = "plughw:2,3", .channels = 8}), "plughw:2,3").wanted);
     const auto all = pcm::list(s.root(), alsa_options{.pcm = "nowhere", .channels = 8});
     CHECK(all.back().name == "nowhere");
     CHECK(all.back().wanted);

@@ -92,6 +92,13 @@ TEST_CASE("a PCM that could not be opened for want of descriptors opens when the
     }
 }
 
+TEST_CASE("who waits for a lost PCM is told of a want of descriptors")
+{
+    const test::descriptors_left none(0);
+    CHECK_THROWS_WITH_AS(static_cast<void>(reopen_alsa(of("null"), [](double) { return true; })),
+                         doctest::Contains("Too many open files"), error);
+}
+
 TEST_CASE("what asks for names without descriptors leaves nothing broken behind")
 {
     for (unsigned n = 0; n < 10; ++n) {

@@ -13,8 +13,8 @@
 
 #include "fake_dac.hpp"
 #include "sink/alsa/adopt.hpp"
-#include "sink/alsa/classify.hpp"
 #include "sink/alsa/error_text.hpp"
+#include "sink/alsa/negotiate.hpp"
 
 namespace negotiate_test {
 
@@ -115,6 +115,7 @@ TEST_CASE("a format that the device does not have is refused by name")
     CHECK(e.kind == error_kind::not_available);
     CHECK(e.says("9 channels at 48000 Hz in float"));
     CHECK(e.says("refused: format"));
+    CHECK(e.says("it can do channels any, rates any Hz, formats s32"));
 }
 
 TEST_CASE("plug neither resamples nor mixes channels behind the user's back")
@@ -191,6 +192,26 @@ TEST_CASE("numbers that no PCM has are bad input")
     CHECK(with([](alsa_options& o) { o.periods = 4'000'000'000; }) == error_kind::bad_input);
 }
 
+TEST_CASE("each number that a PCM can have passes, and the next one does not")
+{
+    const auto least_and_most = [](auto member, unsigned least, unsigned most) {
+        alsa_options o{.channels = 9};
+        for (const unsigned fine : {least, most}) {
+            o.*member = fine;
+            CHECK_NOTHROW(pcm::check(o));
+        }
+        for (const unsigned beyond : {least - 1, most + 1}) {
+            o.*member = beyond;
+            CHECK_THROWS_WITH_AS(pcm::check(o),
+                                 doctest::Contains(fmt::format("give {} to {}", least, most).c_str()), error);
+        }
+    };
+    least_and_most(&alsa_options::channels, 1, 1024);
+    least_and_most(&alsa_options::rate, 1, 768'000);
+    least_and_most(&alsa_options::period_frames, 1, 1U << 20);
+    least_and_most(&alsa_options::periods, 2, 1024);
+}
+
 TEST_CASE("a device of a card: formats in order of preference, rate and channels exact")
 {
     const auto open = [](const test::fake_dac_options& d, alsa_options o) {
@@ -246,51 +267,6 @@ TEST_CASE("errors of opening come with advice")
     CHECK(std::string(pcm::open_error("x", -ENOENT, "").what()).find("tactor devices") != std::string::npos);
     CHECK(std::string(pcm::open_error("x", -ENODEV, "why").what()).find("why") != std::string::npos);
     CHECK(pcm::open_error("x", -EIO, "").kind() == error_kind::not_available);
-}
-
-TEST_CASE("every result of a write has its meaning")
-{
-    using pcm::of_error;
-    CHECK(of_error(-EAGAIN, SND_PCM_STATE_RUNNING) == io_kind::again);
-    CHECK(of_error(-EINTR, SND_PCM_STATE_RUNNING) == io_kind::again);
-    CHECK(of_error(-EPIPE, SND_PCM_STATE_XRUN) == io_kind::xrun);
-    CHECK(of_error(-EPIPE, SND_PCM_STATE_RUNNING) == io_kind::xrun);
-    CHECK(of_error(-EPIPE, SND_PCM_STATE_DISCONNECTED) == io_kind::lost);
-    CHECK(of_error(-EPIPE, -ENODEV) == io_kind::lost);
-    CHECK(of_error(-ESTRPIPE, SND_PCM_STATE_SUSPENDED) == io_kind::suspended);
-    CHECK(of_error(-ENODEV, SND_PCM_STATE_RUNNING) == io_kind::lost);
-    CHECK(of_error(-ENOTTY, SND_PCM_STATE_RUNNING) == io_kind::lost);
-    CHECK(of_error(-EBADFD, SND_PCM_STATE_XRUN) == io_kind::xrun);
-    CHECK(of_error(-EBADFD, SND_PCM_STATE_SETUP) == io_kind::xrun);
-    CHECK(of_error(-EBADFD, SND_PCM_STATE_SUSPENDED) == io_kind::suspended);
-    CHECK(of_error(-EBADFD, SND_PCM_STATE_DISCONNECTED) == io_kind::lost);
-    CHECK(of_error(-EBADFD, SND_PCM_STATE_RUNNING) == io_kind::failed);
-    CHECK(of_error(-EIO, SND_PCM_STATE_RUNNING) == io_kind::failed);
-    CHECK(of_error(-ENOSPC, SND_PCM_STATE_RUNNING) == io_kind::failed);
-}
-
-TEST_CASE("a full device that has not been started takes nothing and says so")
-{
-    test::fake_dac dac;
-    alsa_options o;
-    o.channels = 2;
-    const auto s = pcm::adopt(dac.pcm(), o);
-    REQUIRE(s->prepare() == io_kind::ok);
-    const std::vector<std::byte> silence(1000 * 8);
-    CHECK(s->write(silence.data(), 1000).frames == s->setup().buffer_frames);
-    const io_result r = s->write(silence.data(), 10);
-    CHECK(r.status == io_kind::again);
-    CHECK(r.frames == 0);
-    CHECK_FALSE(s->position().valid);
-    REQUIRE(s->start() == io_kind::ok);
-    CHECK(s->write(silence.data(), 10).status == io_kind::again);
-    dac.advance(96);
-    CHECK(s->position().valid);
-    CHECK(s->position().written == 288);
-    CHECK(s->position().played == 96);
-    CHECK(s->room().frames == 96);
-    s->drop();
-    CHECK_FALSE(dac.running());
 }
 
 } // namespace negotiate_test

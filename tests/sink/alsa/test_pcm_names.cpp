@@ -36,6 +36,7 @@ pcm.behind { type plug slave "recorder" }
 pcm.round { type plug slave.pcm "round" }
 pcm.wide { type multi slaves { a { pcm "wide" } b { pcm "wide" } c { pcm "wide" } d { pcm "wide" } } }
 pcm.odd { type ladspa slave.pcm "hw:0" }
+pcm.hinted { type null hint { type "file" } }
 pcm.desk { type plug slave.pcm { type pipewire } }
 )";
 
@@ -146,6 +147,7 @@ TEST_CASE("the route of a name is what ALSA would go through, by whatever spelli
     }
     // What only recording goes through does nothing.
     CHECK(route("heard") == types{"asym", "null"});
+    CHECK(route("hinted") == types{"null"});
     CHECK(pcm::find_route(nullptr, "hw:0").empty());
 }
 

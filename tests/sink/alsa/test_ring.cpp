@@ -10,6 +10,7 @@
 
 #include <tactor/alsa.hpp>
 
+#include "device_says.hpp"
 #include "fake_dac.hpp"
 #include "rt/clock.hpp"
 #include "sink/alsa/adopt.hpp"
@@ -78,6 +79,19 @@ TEST_CASE("what has no ring of a card is believed")
     s.pass();
     s.dac.advance(96);
     CHECK(s.out->room().status == io_kind::ok);
+}
+
+TEST_CASE("what plays on a card of the kernel's, the first one too, has a ring")
+{
+    for (const int card : {-1, 0, 3}) {
+        CAPTURE(card);
+        const test::device_answers answers{.card = card};
+        const test::device_says it(answers);
+        stream s(false);
+        s.pass();
+        s.dac.advance(96);
+        CHECK(s.out->room().status == (card < 0 ? io_kind::ok : io_kind::xrun));
+    }
 }
 
 } // namespace ring_test
