@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include <tactor/api.hpp>
+
 namespace tactor {
 
 /// A place on the array in millimetres: x to the right, y down, as on a screen.

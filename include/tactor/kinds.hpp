@@ -7,6 +7,8 @@
 #include <span>
 #include <string_view>
 
+#include <tactor/api.hpp>
+
 namespace tactor {
 
 /// The value that to_string() prints so: from_string<phantom_kind>("barycentric").

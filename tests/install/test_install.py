@@ -130,6 +130,18 @@ class Install(FolderTest):
             self.assertIn("hw:CARD=Tactor", told.stderr)
             self.assertEqual(told.returncode, 1)
 
+    def test_each_header_says_before_all_else_that_it_needs_a_newer_language(self):
+        flags = self.flags("--cflags")
+        for header in sorted((self.prefix / "include/tactor").glob("*.hpp")):
+            if header.name == "config.hpp":
+                continue  # numbers for the preprocessor, which any language takes
+            (self.dir / "older.cpp").write_text(f"#include <tactor/{header.name}>\n", encoding="utf-8")
+            r = subprocess.run([*os.environ.get("CXX", "c++").split(), "-std=c++17", "-fsyntax-only", self.dir / "older.cpp",
+                                *flags], capture_output=True, text=True, check=False, env=self.env)
+            errors = [line for line in r.stderr.splitlines() if "error: " in line]
+            self.assertRegex(errors[0], "tactor needs C\\+\\+20: -std=c\\+\\+20", header.name)
+            self.assertEqual(len(errors), 2, r.stderr)  # the second ends it
+
     def test_the_uninstalled_library_is_found(self):
         env = self.env | {"PKG_CONFIG_PATH": str(BUILD / "meson-uninstalled")}
         flags = run("pkg-config", "--cflags", "--libs", "tactor", env=env).split()
