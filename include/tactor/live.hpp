@@ -69,7 +69,8 @@ public:
     /// Bursts: the next burst has this place. It starts one SOA later at most.
     /// With live_options::smooth_s both begin then to move there.
     ///
-    /// False when the stroke has ended; its report says why.
+    /// False when the stroke has ended; its report says why. A phantom model that gives a tactor more than
+    /// the intensity (what the scale makes of it) ends it as interrupted.
     /// \throws error (bad_input): a number that is not finite, an intensity below 0, or (with
     ///         outside_kind::error) a point outside the array. The stroke then stays where it was.
     bool to(double x_mm, double y_mm, double intensity = 1.0);

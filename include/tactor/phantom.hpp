@@ -66,8 +66,9 @@ public:
     /// Name for plans and logs.
     virtual std::string_view name() const noexcept = 0;
     /// Replaces `out` by the drives for a phantom of intensity `a_v` at p, in order of tactor, each amplitude
-    /// finite and > 0. p is inside the hull. Called where plans are made, of a continuous stroke for each
-    /// sample (at most ten million of them), and for each point of a live stroke.
+    /// finite and > 0; above a_v it is played by no live stroke, which ends there. p is inside the hull.
+    /// Called where plans are made, of a continuous stroke for each sample (at most ten million of them), and
+    /// for each point of a live stroke.
     virtual void weights(point p, double a_v, std::vector<drive>& out) const = 0;
 };
 

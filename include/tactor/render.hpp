@@ -191,14 +191,15 @@ public:
     renderer& operator=(renderer&&) noexcept;
 
     /// Writes `frames` interleaved frames to out (frames * channels * bytes_of(format) bytes) and
-    /// goes on; silence after the end, and after a failure(). Allocates nothing.
+    /// goes on; silence after the end. Where a continuous stroke fails, all fades out before that, within
+    /// 10 ms, and silence follows. Allocates nothing but what failure() says.
     void process(std::size_t frames, std::byte* out);
 
     /// Next frame to be rendered.
     std::uint64_t position() const;
 
-    /// Why the rest is silence: for want of memory, say, a continuous stroke could not be followed further.
-    /// Empty while all is well.
+    /// Why the rest is silence: for want of memory, say, a continuous stroke could not be followed further,
+    /// or it asked for more than its levels were checked with. Empty while all is well.
     const std::string& failure() const;
 
 private:

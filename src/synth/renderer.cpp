@@ -9,15 +9,26 @@
 #include "synth/mix/mixer.hpp"
 #include "synth/mix/oscillator.hpp"
 #include "synth/score/event_source.hpp"
+#include "synth/score/frames.hpp"
 #include "synth/score/score.hpp"
 
 namespace tactor {
 
+namespace {
+
+/// In so long a score falls silent whose plan failed, as in the player.
+constexpr double fade_s = 0.01;
+
+} // namespace
+
 struct renderer::impl {
-    /// Room for what sounds at once, and for what begins in the block meanwhile.
+    /// Room for what sounds at once, for what begins in the block meanwhile, and of what can fail for what
+    /// comes after it as well.
     impl(const score& s, format_kind f)
         : source(s),
-          mix(detail::access::of(s).limits, f, detail::access::of(s).open_events + 256,
+          ahead(detail::access::of(s).open_continuous > 0 ? synth::frame_at(fade_s, s.rate()) : 0),
+          mix(detail::access::of(s).limits, f,
+              detail::access::of(s).open_events + 256 + 16 * detail::access::of(s).open_continuous,
               guards(detail::access::of(s))),
           frame_bytes(s.channels() * bytes_of(f))
     {
@@ -41,7 +52,32 @@ struct renderer::impl {
         return until;
     }
 
+    /// What can be mixed at once, up to a frame: where a plan fails is known a fade before it. Few strokes
+    /// are so crowded that there is no room for that; their fade is shorter.
+    std::uint64_t prepare(std::uint64_t until) noexcept
+    {
+        const std::uint64_t at = mix.position();
+        const std::uint64_t known = feed(until + ahead);
+        const std::uint64_t ready =
+            std::min(until, known > at + ahead ? known - ahead : std::max(known, at + 1));
+        if (source.failure().empty()) {
+            return ready;
+        }
+        const std::uint64_t silent = source.failed_at();
+        const std::uint64_t fall = silent - std::min(silent, ahead);
+        if (at < fall) {
+            return std::min(ready, fall);
+        }
+        if (!failed) {
+            failed = true;
+            mix.fade_out(0, static_cast<std::uint32_t>(std::max(silent, at) - at));
+        }
+        return ready;
+    }
+
     synth::event_source source;
+    std::uint64_t ahead; ///< frames that are looked at before they are mixed
+    bool failed = false;
     synth::mixer mix;
     std::size_t frame_bytes;
 };
@@ -75,8 +111,7 @@ void renderer::process(std::size_t frames, std::byte* out)
     while (frames > 0) {
         const std::uint64_t at = r.mix.position();
         const std::uint64_t until = std::min(at + frames, at / stride * stride + stride);
-        const std::uint64_t ready = std::max(r.feed(until), at + 1);
-        const auto n = static_cast<std::size_t>(ready - at);
+        const auto n = static_cast<std::size_t>(r.prepare(until) - at);
         r.mix.process(n, out);
         out += n * r.frame_bytes;
         frames -= n;

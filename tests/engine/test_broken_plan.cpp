@@ -19,7 +19,19 @@ using namespace tactor::test;
 
 namespace {
 
-enum class fault { none, nan, infinite, no_such_tactor, throws, throws_a_number };
+enum class fault {
+    none,
+    nan,
+    infinite,
+    wild,
+    below,
+    just_above,
+    another_tactor,
+    twice,
+    no_such_tactor,
+    throws,
+    throws_a_number
+};
 
 // One second on tactor 4 that is in order while the score is made, and breaks at a time when `broken` is set.
 score made(const std::shared_ptr<fault>& broken, double from_s)
@@ -38,6 +50,21 @@ score made(const std::shared_ptr<fault>& broken, double from_s)
             return;
         case fault::infinite:
             out.drives[0].amplitude = std::numeric_limits<double>::infinity();
+            return;
+        case fault::wild:
+            out.drives[0].amplitude = 1e300;
+            return;
+        case fault::below:
+            out.drives[0].amplitude = -1e300;
+            return;
+        case fault::just_above:
+            out.drives[0].amplitude = 0.500001;
+            return;
+        case fault::another_tactor:
+            out.drives.push_back({5, 0.001});
+            return;
+        case fault::twice:
+            out.drives.push_back({4, 0.5});
             return;
         case fault::no_such_tactor:
             out.drives[0].tactor = 9;
@@ -61,6 +88,11 @@ struct sample {
 constexpr sample samples[] = {
     {fault::nan, "tactor 4 at amplitude nan cannot be rendered"},
     {fault::infinite, "tactor 4 at amplitude inf cannot be rendered"},
+    {fault::wild, "tactor 4 at amplitude 1e+300, above the 0.5 that it was planned with"},
+    {fault::below, "tactor 4 at amplitude -1e+300, above the 0.5 that it was planned with"},
+    {fault::just_above, "tactor 4 at amplitude 0.500001, above the 0.5 that it was planned with"},
+    {fault::another_tactor, "tactor 5 at amplitude 0.001, above the 0 that it was planned with"},
+    {fault::twice, "tactor 4 after tactor 4"},
     {fault::no_such_tactor, "tactor 9 at amplitude 0.5 cannot be rendered"},
     {fault::throws, "the model has no idea"},
     {fault::throws_a_number, "an exception that is no std::exception"},
@@ -103,6 +135,23 @@ TEST_CASE("a plan that fails in mid-stroke interrupts the stroke with the reason
             CHECK_FALSE(r.first_sound(base + report.frames));
         }
     }
+}
+
+TEST_CASE("a rounding more than the plan promised is no failure")
+{
+    double amplitude = 0.5;
+    plan p;
+    p.total_s = p.stroke_duration_s = 0.1;
+    p.curve = test::make_curve(0.1, [&](double, burst& out) { out.drives = {{4, amplitude}}; });
+    render_options o;
+    o.rate = rate;
+    const score music(palm(), {{.schedule = p, .start_s = {}}}, o);
+    amplitude = std::nextafter(0.5, 1.0);
+    rig r;
+    REQUIRE(r.start().status == io_kind::ok);
+    const stroke_id id = r.submit(music);
+    r.play_out();
+    CHECK(r.report(id)->state == state_kind::finished);
 }
 
 TEST_CASE("a plan that fails at its first point is interrupted before it sounds")

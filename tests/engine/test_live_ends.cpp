@@ -2,6 +2,7 @@
 // How live strokes end: by themselves, by request, by silence, with the device.
 #include <cmath>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -177,6 +178,80 @@ TEST_CASE("more live strokes than can sound at once wait their turn; stop and th
         for (auto& s : all)
             CHECK_FALSE(s->to({0.0, 0.0}, 1.0));
     }
+}
+
+namespace {
+
+// All on the middle tactor, as strong as it was asked for, or so much stronger.
+class overdone final : public phantom_model {
+public:
+    std::string_view name() const noexcept override { return "overdone"; }
+    void weights(point, double a_v, std::vector<drive>& out) const override { out = {{4, a_v * factor}}; }
+
+    double factor = 1.0;
+};
+
+} // namespace
+
+TEST_CASE("a model that gives more than it was asked for: faded out, interrupted, with the reason")
+{
+    for (const bool as_bursts : {false, true}) {
+        for (const double smooth_s : {0.0, 0.05}) {
+            CAPTURE(as_bursts);
+            CAPTURE(smooth_s);
+            const auto model = std::make_shared<overdone>();
+            live_options o = as_bursts ? bursts() : live_options{};
+            o.plan.custom_phantom = model;
+            o.smooth_s = smooth_s;
+            live_rig r(o);
+            for (int i = 0; i < 35; ++i) {
+                r.live->to({20.0, 20.0}, 0.5);
+                r.play(96);
+            }
+            model->factor = 1.0 + 1e-10; // its last digits
+            CHECK(r.live->to({20.0, 20.0}, 0.5));
+            r.play(96);
+            model->factor = 1e9;
+            CHECK_FALSE(r.live->to({20.0, 20.0}, 0.5));
+            CHECK_FALSE(r.live->to({20.0, 20.0}, 0.0));
+            const std::uint64_t from = r.status().written;
+            r.play(9600);
+            REQUIRE(r.report({1}));
+            CHECK(r.report({1})->state == state_kind::interrupted);
+            CHECK(r.report({1})->reason ==
+                  "phantom model \"overdone\" gave tactor 4 amplitude 5e+08, above the 0.5 asked for");
+            CHECK_FALSE(r.first_sound(from + 480));
+            CHECK(peak(r.channel(4), 0, SIZE_MAX) <= 0.5 * live_level * (1.0 + 1e-8));
+            CHECK(largest_step(r.channel(4)) < live_level * (2 * 3.1416 * 250 / rate + 1.0 / 48));
+        }
+    }
+}
+
+TEST_CASE(
+    "a model that gives more than it was asked for before the stroke sounds, or while it waits for others")
+{
+    live_rig r;
+    std::vector<std::shared_ptr<live_stroke::impl>> all{r.live};
+    const auto model = std::make_shared<overdone>();
+    model->factor = 1.001;
+    live_options o;
+    o.plan.custom_phantom = model;
+    o.plan.scale = {.kind = scale_kind::stevens, .exponent = 0.5};
+    for (std::size_t i = 0; i < engine::live_places + 3; ++i)
+        all.push_back(r.add(o));
+    CHECK_FALSE(all[1]->to({20.0, 20.0}, 0.1));
+    CHECK_FALSE(all.back()->to({20.0, 20.0}, 0.1));
+    r.play(960);
+    CHECK(r.ended.size() == 2);
+    for (const stroke_id id : {all[1]->id, all.back()->id}) {
+        REQUIRE(r.report(id));
+        CHECK(r.report(id)->state == state_kind::interrupted);
+        CHECK(r.report(id)->frames == 0);
+        // The scale makes 0.01 of 0.1.
+        CHECK(r.report(id)->reason ==
+              "phantom model \"overdone\" gave tactor 4 amplitude 0.01001, above the 0.01 asked for");
+    }
+    CHECK_FALSE(r.first_sound());
 }
 
 COUNTING_TEST_CASE("an hour of a live stroke: no heap in the audio thread, nothing grows")

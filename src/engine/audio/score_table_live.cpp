@@ -50,6 +50,8 @@ void score_table::look_at_wishes(entry& e) noexcept
     switch (e.live->asked()) {
     case live_voice::wish::cancel:
         return want_fade(e, state_kind::cancelled, reason::none);
+    case live_voice::wish::fail:
+        return want_fade(e, state_kind::interrupted, reason::plan);
     case live_voice::wish::end:
         if (e.live->has_news() || (e.base == never && e.live->has_point()) ||
             e.live->moves(mixer_.position()))

@@ -91,6 +91,8 @@ void feeder::look_at_waiting_live(std::uint64_t written)
         const live_voice::wish asked = v.asked();
         if (asked == live_voice::wish::cancel)
             tell({.id = next->first, .state = state_kind::cancelled});
+        else if (asked == live_voice::wish::fail)
+            tell({.id = next->first, .state = state_kind::interrupted, .reason = v.failure()});
         else if (asked == live_voice::wish::end && !v.has_point())
             tell({.id = next->first, .state = state_kind::finished});
         else if (v.starved())
@@ -165,7 +167,9 @@ void feeder::over(const active& a, const report& r)
     stroke_report told{.id = a.id,
                        .state = r.state,
                        .frames = r.frame,
-                       .reason = r.why == reason::plan ? a.failure : text(r.why, r.code),
+                       .reason = r.why != reason::plan ? text(r.why, r.code)
+                                 : a.voice             ? a.voice->failure()
+                                                       : a.failure,
                        .late_s = a.late_s.value_or(0.0),
                        .started_ns = {}};
     if (r.started)

@@ -130,6 +130,10 @@ bool live_stroke::impl::to(point p, double intensity)
                     fmt::format("({:.6g}, {:.6g}) is outside the array", p.x_mm, p.y_mm),
                     "outside_kind::clamp plays the nearest point of the array");
     const bool limited = course_to({inside ? p : faces.nearest(p), intensity}, voice.draft());
+    if (!excess.empty()) {
+        voice.fail(std::move(excess));
+        return false;
+    }
     voice.publish();
     points.fetch_add(1, std::memory_order_relaxed);
     outside_points.fetch_add(inside ? 0 : 1, std::memory_order_relaxed);
@@ -166,13 +170,18 @@ bool live_stroke::impl::course_to(const engine::smoothing::place& p, engine::liv
 
 bool live_stroke::impl::amplitudes_at(point p, double intensity, std::span<double> by_channel)
 {
-    detail::drives_at(*model, faces, p, scale.amplitude(intensity), drives);
+    const double most = scale.amplitude(intensity);
+    detail::drives_at(*model, faces, p, most, drives);
     std::fill(by_channel.begin(), by_channel.end(), 0.0);
     bool limited = false;
     for (const drive& d : drives) {
         const synth::tactor_level& t = levels[d.tactor];
         if (t.channel >= by_channel.size())
             continue;
+        if (d.amplitude > most * (1.0 + 1e-9) && excess.empty())
+            excess = fmt::format(
+                "phantom model \"{}\" gave tactor {} amplitude {:.6g}, above the {:.6g} asked for",
+                model->name(), d.tactor, d.amplitude, most);
         const double asked = t.gain * d.amplitude;
         const double limit = limits[t.channel];
         by_channel[t.channel] = std::clamp(asked, -limit, limit);

@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <tactor/array.hpp>
@@ -26,7 +27,8 @@ struct live_stroke::impl {
     impl(stroke_id number, const array& a, const layout& l, const stream_setup& s, const live_options& o);
 
     bool to(point p, double intensity);
-    /// The amplitudes of a place into one set, by channel; whether a limit held one.
+    /// The amplitudes of a place into one set, by channel; whether a limit held one. What the model gives
+    /// beyond what it was asked for is told in `excess`.
     bool amplitudes_at(point p, double intensity, std::span<double> by_channel);
     /// Those on the way to a place.
     bool course_to(const engine::smoothing::place& p, engine::live_course& course);
@@ -46,6 +48,7 @@ struct live_stroke::impl {
     engine::smoothing smooth;
     std::size_t most_knots;
     std::vector<drive> drives;
+    std::string excess; ///< not empty: the stroke has failed
     std::atomic<std::uint64_t> points{0};
     std::atomic<std::uint64_t> outside_points{0};
     std::atomic<std::uint64_t> limited_points{0};

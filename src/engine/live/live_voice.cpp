@@ -28,10 +28,17 @@ live_voice::live_voice(const live_setup& s)
 
 void live_voice::ask(wish w) noexcept
 {
-    // The first counts, but for a cancel, which may still shorten an end.
+    // The first counts, but for a cancel, which may still shorten an end, and a failure, which has to be
+    // told.
     wish now = asked_.load(std::memory_order_relaxed);
     while (now < w && !asked_.compare_exchange_weak(now, w, std::memory_order_release)) {
     }
+}
+
+void live_voice::fail(std::string why) noexcept
+{
+    failure_ = std::move(why);
+    ask(wish::fail);
 }
 
 void live_voice::wait(std::uint64_t frames) noexcept

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "engine/messages.hpp"
@@ -60,7 +61,7 @@ std::size_t live_drives(std::size_t channels, unsigned period_frames, unsigned r
 /// that no point waits for a plan. What the producer asks for besides is a flag.
 class live_voice {
 public:
-    enum class wish : std::uint32_t { go_on, end, cancel };
+    enum class wish : std::uint32_t { go_on, end, cancel, fail };
 
     explicit live_voice(const live_setup& s);
 
@@ -70,8 +71,13 @@ public:
     /// Frames of the stroke that are rendered: the next is where a point that comes now begins to count.
     std::uint64_t rendered() const noexcept { return rendered_.load(std::memory_order_relaxed); }
 
+    /// Ends it as interrupted, for this reason; once.
+    void fail(std::string why) noexcept;
+
     // Any thread.
     void ask(wish w) noexcept;
+    /// Why; for who has been told that it failed.
+    const std::string& failure() const noexcept { return failure_; }
     bool closed() const noexcept { return closed_.load(std::memory_order_acquire); }
     /// It has ended, or will without further points.
     void close() noexcept { closed_.store(true, std::memory_order_release); }
@@ -120,6 +126,7 @@ private:
     std::atomic<std::uint64_t> rendered_{0};
     std::atomic<wish> asked_{wish::go_on};
     std::atomic<bool> closed_{false};
+    std::string failure_;
 
     ticket ticket_ = 0;
     std::uint64_t base_ = 0;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <span>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -16,12 +17,31 @@ namespace tactor::synth {
 
 namespace {
 
+/// What a plan may give more than it promised: the last digits.
+constexpr double rounding = 1.0 + 1e-9;
+
 /// Empty where all can be played.
 std::string unplayable(const burst& b, std::size_t tactors)
 {
-    for (const drive& d : b.drives) {
+    for (std::size_t i = 0; i < b.drives.size(); ++i) {
+        const drive& d = b.drives[i];
         if (d.tactor >= tactors || !std::isfinite(d.amplitude)) {
             return fmt::format("tactor {} at amplitude {} cannot be rendered", d.tactor, d.amplitude);
+        }
+        if (i > 0 && b.drives[i - 1].tactor >= d.tactor) {
+            return fmt::format("tactor {} after tactor {}", d.tactor, b.drives[i - 1].tactor);
+        }
+    }
+    return {};
+}
+
+/// Empty where no tactor gets more than was promised when its level was held against its limit.
+std::string above(const burst& b, std::span<const double> promised)
+{
+    for (const drive& d : b.drives) {
+        if (std::abs(d.amplitude) > promised[d.tactor] * rounding) {
+            return fmt::format("tactor {} at amplitude {:.6g}, above the {:.6g} that it was planned with",
+                               d.tactor, d.amplitude, promised[d.tactor]);
         }
     }
     return {};
@@ -59,13 +79,16 @@ std::uint64_t control_frame(std::uint64_t k, unsigned rate, std::uint64_t length
     return std::min(length, frame_at(static_cast<double>(k) * continuous_step_s, rate));
 }
 
-bool checked_sample(const plan& p, std::uint64_t k, std::size_t tactors, burst& out,
+bool checked_sample(const plan& p, std::uint64_t k, std::span<const double> promised, burst& out,
                     std::string& failure) noexcept
 {
     const double t = p.curve->time_s(k);
     try {
         p.curve->sample(k, out);
-        const std::string why = unplayable(out, tactors);
+        std::string why = unplayable(out, promised.size());
+        if (why.empty()) {
+            why = above(out, promised);
+        }
         if (!why.empty()) {
             tell(failure, t, why);
             return false;
@@ -92,7 +115,7 @@ bool expander::next_points() noexcept
     }
     control_points& c = *points_;
     std::swap(c.before, c.now.drives);
-    if (!checked_sample(score_->plans[item_->plan].schedule, step_, score_->tactors.size(), c.now,
+    if (!checked_sample(score_->plans[item_->plan].schedule, step_, score_->promised[item_->plan], c.now,
                         c.failure)) {
         failed_ = true;
         return false;

@@ -59,7 +59,7 @@ bool continuous_items::have_bounds()
     const auto& items = score_.list.items;
     for (std::size_t i = 0; i < items.size(); ++i) {
         if (items[i].kind == item_kind::continuous &&
-            !std::all_of(bounds(i).begin(), bounds(i).end(), [](double b) { return std::isfinite(b); })) {
+            !std::all_of(most(i).begin(), most(i).end(), [](double b) { return std::isfinite(b); })) {
             return false;
         }
     }
@@ -67,45 +67,64 @@ bool continuous_items::have_bounds()
 }
 
 /// At the carrier that needs most of each.
-std::vector<tactor_level> continuous_items::levels(std::uint32_t plan) const
+std::vector<double> continuous_items::at_levels(std::size_t number, std::vector<double> amplitudes) const
 {
-    std::vector<tactor_level> all = score_.tactors;
-    for (std::size_t i = 0; i < all.size() && !score_.measured.empty(); ++i) {
-        all[i].gain *= score_.most_equalised(i, plan);
+    const std::uint32_t plan = score_.list.items[number].plan;
+    for (std::size_t i = 0; i < amplitudes.size(); ++i) {
+        amplitudes[i] *= std::abs(score_.tactors[i].gain) * score_.most_equalised(i, plan);
     }
-    return all;
+    return amplitudes;
 }
 
-const std::vector<double>& continuous_items::bounds(std::size_t number)
+const std::vector<double>& continuous_items::most(std::size_t number)
 {
-    const auto there = bounds_.find(number);
-    if (there != bounds_.end()) {
+    const auto there = most_.find(number);
+    if (there != most_.end()) {
         return there->second;
     }
     const auto intensity = greatest_intensity(score_.plans[score_.list.items[number].plan].schedule);
     if (!intensity) {
-        return peaks(number);
+        return looked_at(number);
     }
-    std::vector<double>& bounds = bounds_[number];
-    for (const tactor_level& t : levels(score_.list.items[number].plan)) {
-        bounds.push_back(std::abs(*intensity * t.gain));
-    }
-    return bounds;
+    return most_[number] = std::vector<double>(score_.tactors.size(), *intensity);
 }
 
-const std::vector<double>& continuous_items::peaks(std::size_t number)
+const std::vector<double>& continuous_items::looked_at(std::size_t number)
 {
-    const auto there = peaks_.find(number);
-    if (there != peaks_.end()) {
+    const auto there = looked_at_.find(number);
+    if (there != looked_at_.end()) {
         return there->second;
     }
     const plan& p = score_.plans[score_.list.items[number].plan].schedule;
+    const std::size_t tactors = score_.tactors.size();
     // What is harmless alone may not be together with others.
     const bool equalised = !score_.measured.empty(); // harmless_ does not know of it
-    const std::vector<tactor_level> tactors = levels(score_.list.items[number].plan);
-    return peaks_[number] = overlaps_[number]
-                                ? continuous_peaks(p, tactors, 0.0, most_overlapping_points)
-                                : continuous_peaks(p, tactors, equalised ? 0.0 : harmless_, UINT64_MAX);
+    return looked_at_[number] = overlaps_[number]
+                                    ? continuous_peaks(p, tactors, 0.0, most_overlapping_points)
+                                    : continuous_peaks(p, tactors, equalised ? 0.0 : harmless_, UINT64_MAX);
+}
+
+std::vector<double> continuous_items::bounds(std::size_t number)
+{
+    return at_levels(number, most(number));
+}
+
+std::vector<double> continuous_items::peaks(std::size_t number)
+{
+    return at_levels(number, looked_at(number));
+}
+
+std::vector<std::vector<double>> continuous_items::promised()
+{
+    std::vector<std::vector<double>> all(score_.plans.size());
+    const auto& items = score_.list.items;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        if (items[i].kind == item_kind::continuous) {
+            const auto looked = looked_at_.find(i);
+            all[items[i].plan] = looked != looked_at_.end() ? looked->second : most(i);
+        }
+    }
+    return all;
 }
 
 } // namespace tactor::synth

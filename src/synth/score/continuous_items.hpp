@@ -19,22 +19,28 @@ public:
 
     /// Whether all bounds are finite; otherwise there is something to tell that only a look will find.
     bool have_bounds();
-    /// Upper bounds of peaks(): the greatest intensity at the gain of each tactor. Of a plan that says
-    /// nothing of its intensity, the peaks themselves.
-    const std::vector<double>& bounds(std::size_t number);
-    /// Greatest amplitude of each tactor; see continuous_peaks(). What is harmless is left out of a stroke
-    /// that no other one overlaps.
+    /// Upper bounds of peaks(), linear, by tactor: the greatest intensity at the gain of each. Of a plan that
+    /// says nothing of its intensity, the peaks themselves.
+    std::vector<double> bounds(std::size_t number);
+    /// Greatest level of each tactor, linear; see continuous_peaks(). What is harmless in a stroke that no
+    /// other one overlaps is not looked at.
     /// \throws error (bad_input) for plans that cannot be rendered.
-    const std::vector<double>& peaks(std::size_t number);
+    std::vector<double> peaks(std::size_t number);
+
+    /// The amplitudes behind the peaks that were asked for last, or else behind the bounds, by plan and
+    /// tactor: more must not come. Empty for plans that are not continuous.
+    std::vector<std::vector<double>> promised();
 
 private:
-    std::vector<tactor_level> levels(std::uint32_t plan) const;
+    const std::vector<double>& most(std::size_t number);
+    const std::vector<double>& looked_at(std::size_t number);
+    std::vector<double> at_levels(std::size_t number, std::vector<double> amplitudes) const;
 
     const score::impl& score_;
     double harmless_;
     std::vector<bool> overlaps_; ///< by item
-    std::map<std::size_t, std::vector<double>> bounds_;
-    std::map<std::size_t, std::vector<double>> peaks_;
+    std::map<std::size_t, std::vector<double>> most_;
+    std::map<std::size_t, std::vector<double>> looked_at_;
 };
 
 } // namespace tactor::synth

@@ -15,10 +15,7 @@ namespace {
 
 class look {
 public:
-    look(const plan& p, const std::vector<tactor_level>& tactors)
-        : plan_(p), tactors_(tactors), last_(p.curve->size() - 1), peaks_(tactors.size(), 0.0)
-    {
-    }
+    look(const plan& p, std::size_t tactors) : plan_(p), last_(p.curve->size() - 1), peaks_(tactors, 0.0) {}
 
     /// All control points from a time to another, both included, that were not looked at yet.
     void at_points(double from_s, double to_s)
@@ -35,8 +32,8 @@ public:
     /// As if the target went over every tactor.
     void everywhere(double intensity)
     {
-        for (std::size_t i = 0; i < peaks_.size(); ++i) {
-            peaks_[i] = std::max(peaks_[i], std::abs(intensity * tactors_[i].gain));
+        for (double& peak : peaks_) {
+            peak = std::max(peak, intensity);
         }
     }
 
@@ -48,12 +45,11 @@ private:
         plan_.curve->sample(k, now_);
         check_drives(now_, now_.onset_s, peaks_.size());
         for (const drive& d : now_.drives) {
-            peaks_[d.tactor] = std::max(peaks_[d.tactor], std::abs(d.amplitude * tactors_[d.tactor].gain));
+            peaks_[d.tactor] = std::max(peaks_[d.tactor], std::abs(d.amplitude));
         }
     }
 
     const plan& plan_;
-    const std::vector<tactor_level>& tactors_;
     std::uint64_t last_; ///< control point, at the end or beyond it
     std::uint64_t next_ = 0;
     std::vector<double> peaks_;
@@ -82,8 +78,7 @@ std::optional<double> greatest_intensity(const plan& p)
     return greatest;
 }
 
-std::vector<double> continuous_peaks(const plan& p, const std::vector<tactor_level>& tactors, double harmless,
-                                     std::uint64_t most)
+std::vector<double> continuous_peaks(const plan& p, std::size_t tactors, double harmless, std::uint64_t most)
 {
     look l(p, tactors);
     const trajectory* motion = known(p);
@@ -93,13 +88,11 @@ std::vector<double> continuous_peaks(const plan& p, const std::vector<tactor_lev
     }
     const double looked_s = static_cast<double>(most) * continuous_step_s;
     detail::for_each_span(*motion, [&](const detail::trajectory_span& s) {
-        if (s.intensity <= harmless) {
-            return true;
-        }
-        if (s.from_s < looked_s) {
+        const bool looked_at = !(s.intensity <= harmless);
+        if (looked_at && s.from_s < looked_s) {
             l.at_points(s.from_s, std::min(s.to_s, looked_s));
         }
-        if (s.to_s > looked_s) {
+        if (!looked_at || s.to_s > looked_s) {
             l.everywhere(s.intensity);
         }
         return true;

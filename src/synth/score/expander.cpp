@@ -22,7 +22,7 @@ void expander::begin(const score::impl& s, std::size_t item_number, control_poin
     if (item_->kind == item_kind::continuous) {
         points_->before.clear();
         points_->changes.clear();
-        failed_ = !checked_sample(s.plans[item_->plan].schedule, 0, s.tactors.size(), points_->now,
+        failed_ = !checked_sample(s.plans[item_->plan].schedule, 0, s.promised[item_->plan], points_->now,
                                   points_->failure);
     }
     if (failed_) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -81,12 +82,14 @@ joined_stretch join_members(const item_member* members, std::size_t count, std::
 /// Frame of control point k of a stroke of `length` frames, from its start. Points beyond the end are at it.
 std::uint64_t control_frame(std::uint64_t k, unsigned rate, std::uint64_t length) noexcept;
 
-/// \throws error (bad_input) where a continuous plan drives what is no tactor, or with what is no amplitude.
+/// \throws error (bad_input) where a continuous plan drives what is no tactor, with what is no amplitude, or
+/// out of order.
 void check_drives(const burst& b, double t_s, std::size_t tactors);
 
 /// Sample k of a continuous plan, in order of tactor. False, and why, where it cannot be computed or drives
-/// what is no tactor or with what is no amplitude. Allocates only then.
-bool checked_sample(const plan& p, std::uint64_t k, std::size_t tactors, burst& out,
+/// what is no tactor, with what is no amplitude, or with more than was `promised` for the tactor. Allocates
+/// only then.
+bool checked_sample(const plan& p, std::uint64_t k, std::span<const double> promised, burst& out,
                     std::string& failure) noexcept;
 
 } // namespace tactor::synth

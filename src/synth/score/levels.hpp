@@ -28,7 +28,8 @@ double tactor_limit(const array& a, std::size_t i);
 
 /// Compares what the items ask of each tactor, added up where they sound together, with its limit and with
 /// full scale; continuous strokes too are bounded, not sampled. \throws error (bad_input) with the tactor's
-/// line. Returns what they come to at most, by tactor, linear; nothing where that is known of a part only.
-std::vector<double> check_peaks(const score::impl& s, const array& a, const render_options& o);
+/// line. Returns what they come to at most, by tactor, linear, and leaves in the score what its continuous
+/// plans may not exceed.
+std::vector<double> check_peaks(score::impl& s, const array& a, const render_options& o);
 
 } // namespace tactor::synth

@@ -76,7 +76,7 @@ private:
 };
 
 /// What a continuous item asks of each tactor.
-using continuous_peaks_of = std::function<const std::vector<double>&(std::size_t number)>;
+using continuous_peaks_of = std::function<std::vector<double>(std::size_t number)>;
 
 double joined_peak(const score::impl& s, std::size_t number)
 {
@@ -101,7 +101,7 @@ std::vector<double> peaks_of(const score::impl& s, const continuous_peaks_of& co
             all.note(it.tactor, it, from, joined_peak(s, i));
             break;
         case item_kind::continuous: {
-            const std::vector<double>& peaks = continuous(i);
+            const std::vector<double> peaks = continuous(i);
             for (std::size_t k = 0; k < peaks.size(); ++k) {
                 all.note(k, it, from, peaks[k]);
             }
@@ -150,7 +150,7 @@ void check(const array& a, std::size_t i, double peak, const render_options& o)
 
 } // namespace
 
-std::vector<double> check_peaks(const score::impl& s, const array& a, const render_options& o)
+std::vector<double> check_peaks(score::impl& s, const array& a, const render_options& o)
 {
     continuous_items continuous(s, a);
     const auto within = [&](const std::vector<double>& peaks) {
@@ -163,18 +163,18 @@ std::vector<double> check_peaks(const score::impl& s, const array& a, const rend
     };
     // Nearly always the intensities say that all is well, and hours need not be looked through.
     if (continuous.have_bounds()) {
-        std::vector<double> bounds = peaks_of(
-            s, [&](std::size_t i) -> const auto& { return continuous.bounds(i); });
+        std::vector<double> bounds = peaks_of(s, [&](std::size_t i) { return continuous.bounds(i); });
         if (within(bounds)) {
+            s.promised = continuous.promised();
             return bounds;
         }
     }
-    const std::vector<double> peaks = peaks_of(
-        s, [&](std::size_t i) -> const auto& { return continuous.peaks(i); });
+    std::vector<double> peaks = peaks_of(s, [&](std::size_t i) { return continuous.peaks(i); });
     for (std::size_t i = 0; i < peaks.size(); ++i) {
         check(a, i, peaks[i], o);
     }
-    return {};
+    s.promised = continuous.promised();
+    return peaks;
 }
 
 } // namespace tactor::synth

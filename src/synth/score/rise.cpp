@@ -186,7 +186,7 @@ double lag::fallen(double frames) const noexcept
 bool boost_rises(score::impl& s, const array& a, const std::vector<double>& peaks)
 {
     const auto rises = [](const tactor_spec& t) { return t.rise_s.has_value(); };
-    if (peaks.empty() || std::none_of(a.tactors.begin(), a.tactors.end(), rises)) {
+    if (std::none_of(a.tactors.begin(), a.tactors.end(), rises)) {
         return false;
     }
     const std::size_t before = s.list.items.size();

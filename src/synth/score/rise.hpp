@@ -35,8 +35,8 @@ private:
 
 /// Adds to each burst of a tactor with a rise_s what makes its actuator reach the burst's strength as soon as
 /// its limit allows: a second burst over the first half cycles of the carrier. Only for bursts that sound on
-/// their tactor alone. `peaks`: of each tactor before, linear; what is left to its limit may be used, and
-/// nothing where they are not known. Returns whether there are new items, which stand at the end.
+/// their tactor alone. `peaks`: of each tactor before, linear; what is left to its limit may be used. Returns
+/// whether there are new items, which stand at the end.
 bool boost_rises(score::impl& s, const array& a, const std::vector<double>& peaks);
 
 } // namespace tactor::synth

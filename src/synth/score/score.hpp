@@ -82,6 +82,8 @@ struct score::impl {
     std::vector<synth::tactor_level> tactors; ///< by index
     std::vector<tactor_spec> measured;        ///< thresholds by frequency; empty where they do not count
     std::vector<double> limits;               ///< by channel
+    /// Greatest amplitude by plan and tactor that levels were checked with, of continuous ones.
+    std::vector<std::vector<double>> promised;
     synth::item_list list;
     std::uint64_t frames = 0;
     unsigned channels = 0;
