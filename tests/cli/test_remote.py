@@ -123,6 +123,14 @@ class Remote(ToolTest):
         self.assertIn("standard input:2:", p.stderr.read())
         self.assertIn(watcher.end_of(n)["state"], ("cancelled", "finished"))
 
+    def test_a_stroke_that_the_server_interrupts_is_a_failure(self):
+        s = self.serve(config="[serve]\nmax_stroke_s = 0.1\n")
+        p = self.begun("play", "--live", "-", "--socket", s.where["socket"])
+        p.stdin.write("10 10\n")
+        p.stdin.flush()
+        self.assertEqual(p.wait(PATIENCE_S), 1)
+        self.assertRegex(p.stderr.read(), "tactor: live: interrupted after .* s: it has lasted as long as it may\n")
+
     def test_lines_move_a_live_stroke_here(self):
         r = self.ok("play", "--live", "-", "-D", "null", stdin="10 10\n20 20 0.5\n30, 30\n")
         self.assertIn("live: played", r.stdout)

@@ -4,11 +4,12 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "cli/play/play_session.hpp"
 #include "cli/say.hpp"
 
 namespace tactor::cli {
@@ -72,6 +73,7 @@ public:
         if (n > 1)
             say(fmt::format("\n{}\n", numbered_map(environment_.tactors)));
         walk_answers felt;
+        unfinished_.resize(n);
         while (felt.size() < n) {
             const auto i = static_cast<unsigned>(felt.size());
             sound(i);
@@ -84,6 +86,10 @@ public:
                 felt.pop_back(); // and that one is driven again
             }
         }
+        for (std::size_t i = 0; i < n; ++i)
+            if (!unfinished_[i].empty())
+                throw error(error_kind::runtime, fmt::format("tactor {}", i), unfinished_[i],
+                            "walk again: it did not vibrate as it should have");
         return felt;
     }
 
@@ -111,8 +117,9 @@ private:
             throw interrupted{};
         if (r.state == state_kind::interrupted && session_.lost())
             throw error(error_kind::runtime, p.name, r.reason, "the walk ends here");
-        if (r.state == state_kind::interrupted)
-            say(fmt::format("tactor {}: interrupted: {}\n", i, r.reason));
+        unfinished_[i] = r.state == state_kind::finished ? "" : "interrupted: " + r.reason;
+        if (!unfinished_[i].empty())
+            say(fmt::format("tactor {}: {}\n", i, unfinished_[i]));
     }
 
     struct answer {
@@ -159,14 +166,15 @@ private:
     const walk_options& options_;
     line_reader input_;
     std::FILE* to_;
+    std::vector<std::string> unfinished_; // why, of each tactor; empty: it vibrated to the end
 };
 
 } // namespace
 
 walk_result walk(const alsa_options& device, const environment& e, const render_options& render,
-                 const walk_options& o)
+                 const walk_options& o, stream_source source)
 {
-    play_session session(device, o.play, e);
+    play_session session(device, o.play, e, std::move(source));
     const auto finish = [&] {
         run_report r;
         session.finish(r);

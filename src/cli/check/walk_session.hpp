@@ -7,6 +7,7 @@
 
 #include "cli/check/walk.hpp"
 #include "cli/play/play_options.hpp"
+#include "cli/play/play_session.hpp"
 
 namespace tactor::cli {
 
@@ -24,8 +25,9 @@ struct walk_result {
 
 /// Drives each tactor and asks where it was felt, on standard input. Questions go to standard output, or to
 /// standard error where that is JSON.
-/// \throws error: what play throws; runtime when the walk is left before its end.
+/// \throws error: what play throws; runtime when the walk is left before its end, and in the end where a
+/// tactor was not driven to its end and not again.
 walk_result walk(const alsa_options& device, const environment& e, const render_options& render,
-                 const walk_options& o);
+                 const walk_options& o, stream_source source = {});
 
 } // namespace tactor::cli

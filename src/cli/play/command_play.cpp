@@ -53,21 +53,19 @@ bool play_piece(play_session& session, const piece& p, const score& s, stroke_ou
     }
 }
 
-// What is said of a stroke without its name.
-std::string fate(const play_session& session, const stroke_outcome& out)
-{
-    return describe(out, session.setup().rate).substr(out.name.size() + 2);
-}
-
+// Why the run ends with this stroke. What became of the last is said in the end.
 std::optional<broken_off> judge(const play_session& session, const play_options& o, const stroke_outcome& out,
-                                bool gone, const char* hint)
+                                bool last)
 {
     if (out.report->state != state_kind::interrupted)
         return {};
+    const std::string why = fate(out, session.setup().rate);
     if (o.void_on_xrun)
-        return broken_off{out.name, fate(session, out), "the run is void: --void-on-xrun"};
-    if (gone)
-        return broken_off{out.name, fate(session, out), hint};
+        return broken_off{out.name, why, "the run is void: --void-on-xrun"};
+    if (last)
+        return {};
+    if (session.lost() && !session.waits())
+        return broken_off{out.name, why, wait_hint};
     say(stderr, "tactor: warning: {}\n", describe(out, session.setup().rate));
     return {};
 }
@@ -87,9 +85,7 @@ std::optional<broken_off> play_all(play_session& session, const play_options& o,
         }
         if (session.signal() != 0)
             return {};
-        if (i + 1 == pieces.size())
-            break;
-        if (auto broken = judge(session, o, outcomes[i], session.lost() && !session.waits(), wait_hint))
+        if (auto broken = judge(session, o, outcomes[i], i + 1 == pieces.size()))
             return broken;
     }
     return {};
@@ -128,16 +124,14 @@ int play(settings& s, option_list& options, const play_options& o)
     run_report r;
     for (std::size_t i = 0; i < pieces.size(); ++i)
         r.strokes.push_back({pieces[i].name, scores[i].frames()});
-    auto broken = play_all(session, o, pieces, scores, r.strokes);
+    const auto broken = play_all(session, o, pieces, scores, r.strokes);
     session.finish(r);
-    // A stream that breaks interrupts its stroke first and ends when the amplifier is off: that the last one
-    // was such a case is known only now.
-    if (!broken && session.signal() == 0)
-        broken = judge(session, o, r.strokes.back(), session.broke(), "");
     if (const auto status = tell_end(session, o, e, r))
         return *status;
     if (broken)
         throw error(error_kind::runtime, broken->stroke, broken->why, broken->hint);
+    if (const auto left = unfinished(r))
+        throw error(*left);
     return status_ok;
 }
 

@@ -65,9 +65,8 @@ int play_live(settings& s, option_list& options, const play_options& o)
     session.finish(r);
     if (const auto status = tell_end(session, o, e, r))
         return *status;
-    if (out.report->state == state_kind::interrupted)
-        throw error(error_kind::runtime, "live",
-                    describe(out, session.setup().rate).substr(out.name.size() + 2));
+    if (const auto left = unfinished(r))
+        throw error(*left);
     return status_ok;
 }
 

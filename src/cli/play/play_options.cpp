@@ -112,8 +112,7 @@ void add_stream_options(CLI::App& c, play_options& o)
 void add_play_options(CLI::App& c, play_options& o)
 {
     add_stream_options(c, o);
-    c.add_flag("--void-on-xrun", o.void_on_xrun,
-               "an xrun or a lost device in a stroke ends the run with status 1");
+    c.add_flag("--void-on-xrun", o.void_on_xrun, "an xrun or a lost device in a stroke ends the run");
     c.add_option_function<std::string>(
          "--reopen-s",
          [&o](const std::string& t) {

@@ -114,15 +114,20 @@ void add_stats(player_stats& sum, const player_stats& more)
     sum.xrun_s.insert(sum.xrun_s.end(), more.xrun_s.begin(), more.xrun_s.end());
 }
 
-std::string describe(const stroke_outcome& s, unsigned rate)
+std::string fate(const stroke_outcome& s, unsigned rate)
 {
     if (!s.report)
-        return fmt::format("{}: not played", s.name);
+        return "not played";
     const double t = seconds(s.report->frames, rate);
     if (s.report->state == state_kind::finished)
-        return fmt::format("{}: played {:.3f} s", s.name, t);
-    return fmt::format("{}: {} after {:.3f} s{}{}", s.name, to_string(s.report->state), t,
+        return fmt::format("played {:.3f} s", t);
+    return fmt::format("{} after {:.3f} s{}{}", to_string(s.report->state), t,
                        s.report->reason.empty() ? "" : ": ", s.report->reason);
+}
+
+std::string describe(const stroke_outcome& s, unsigned rate)
+{
+    return fmt::format("{}: {}", s.name, fate(s, rate));
 }
 
 std::string describe(const stream_setup& d)
@@ -149,6 +154,24 @@ std::optional<error> left_on(const player_stats& s)
                  fmt::format("its line cannot be switched off, {} failed: it may be on",
                              counted(s.off_failures, "try", "tries")),
                  "cut the amplifier's supply; then see whether \"tactor off\" works, and what dmesg says");
+}
+
+std::optional<error> unfinished(const run_report& r)
+{
+    const stroke_outcome* last = nullptr;
+    std::size_t n = 0;
+    for (const stroke_outcome& s : r.strokes) {
+        if (s.report && s.report->state == state_kind::finished)
+            continue;
+        last = &s;
+        ++n;
+    }
+    if (last == nullptr)
+        return std::nullopt;
+    std::string why = fate(*last, r.device.rate);
+    if (n > 1)
+        why += fmt::format("; {} of {} did not finish", n, counted(r.strokes.size(), "stroke"));
+    return error(error_kind::runtime, last->name, why);
 }
 
 void print_table(std::FILE* to, const run_report& r)

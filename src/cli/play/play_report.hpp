@@ -31,7 +31,10 @@ struct run_report {
 /// Adds a further player's counters.
 void add_stats(player_stats& sum, const player_stats& more);
 
-/// "name: played 1.4 s", "name: interrupted after 0.2 s: reason".
+/// "played 1.4 s", "interrupted after 0.2 s: reason".
+std::string fate(const stroke_outcome& s, unsigned rate);
+
+/// The same after "name: ".
 std::string describe(const stroke_outcome& s, unsigned rate);
 
 /// "hw:Tactor: 9 channels, 48000 Hz, s32, period 96 of 288 frames, latency 6.0 ms"
@@ -42,6 +45,9 @@ void warn_of_cuts(const drive_limits& l, const player_stats& s);
 
 /// What there is to say, before all else, of an amplifier that may be on.
 std::optional<error> left_on(const player_stats& s);
+
+/// What there is to say in the end of strokes that did not finish; nothing where all of them did.
+std::optional<error> unfinished(const run_report& r);
 
 /// A short table of the counters.
 void print_table(std::FILE* to, const run_report& r);

@@ -53,8 +53,6 @@ public:
 
     /// Whether the device is gone, or failed: nothing can be played until reopen().
     bool lost() const { return player_ == nullptr || player_->ended().has_value(); }
-    /// Whether the stream ended of itself; after finish() this is settled.
-    bool broke() const { return player_ != nullptr && !player_->ended().value_or("").empty(); }
     /// Whether a lost device is waited for.
     bool waits() const noexcept { return options_.reopen_s > 0.0; }
     /// Waits for the device, as long as --reopen-s says. False when it did not come back, or a signal came.

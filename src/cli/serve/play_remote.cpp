@@ -252,9 +252,9 @@ private:
             return;
         const bool cancelled = out.report->state == state_kind::cancelled;
         const bool gone = server_.call("status")["stream"].value("state", "") == "lost";
-        const std::string fate = describe(out, report_.device.rate).substr(out.name.size() + 2);
+        const std::string why = fate(out, report_.device.rate);
         if (cancelled || gone || options_.void_on_xrun)
-            broken_.emplace(error_kind::runtime, out.name, cancelled ? fate + " by somebody else" : fate,
+            broken_.emplace(error_kind::runtime, out.name, cancelled ? why + " by somebody else" : why,
                             options_.void_on_xrun && !cancelled ? "the run is void: --void-on-xrun" : "");
         else if (!last)
             say(stderr, "tactor: warning: {}\n", describe(out, report_.device.rate));
@@ -278,6 +278,8 @@ private:
             return interrupt::status(signal_);
         if (broken_)
             throw error(*broken_);
+        if (const auto left = unfinished(report_))
+            throw error(*left);
         return status_ok;
     }
 

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+// A walk on a device whose clock the test has: what is not driven to its end.
+#include "cli/check/walk_session.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <string>
+#include <thread>
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include "clock_runner.hpp"
+#include "fake_dac.hpp"
+#include "has.hpp"
+#include "message_of.hpp"
+#include "player_support.hpp"
+#include "sink/alsa/adopt.hpp"
+
+namespace walk_session_test {
+
+using namespace tactor;
+using namespace tactor::cli;
+using namespace tactor::test;
+
+namespace {
+
+// A clock that runs as fast as it can, with one xrun as soon as the first burst sounds.
+class stumbling_clock {
+public:
+    explicit stumbling_clock(fake_dac& d)
+        : thread_([this, &d] {
+              std::size_t seen = 0;
+              bool stumbled = false;
+              while (!end_) {
+                  if (d.queued() >= 192)
+                      d.advance_queued(96);
+                  std::this_thread::yield();
+                  if (stumbled)
+                      continue;
+                  const auto fresh = d.captured(seen);
+                  seen = d.captured_frames();
+                  stumbled =
+                      std::any_of(fresh.begin(), fresh.end(), [](auto b) { return b != std::byte{0}; });
+                  if (stumbled)
+                      d.advance(1'000'000);
+              }
+          })
+    {
+    }
+    ~stumbling_clock()
+    {
+        end_ = true;
+        thread_.join();
+    }
+
+private:
+    std::atomic<bool> end_{false};
+    std::thread thread_;
+};
+
+class answers {
+public:
+    explicit answers(const std::string& lines) : before_(::dup(STDIN_FILENO))
+    {
+        int ends[2];
+        REQUIRE(::pipe(ends) == 0);
+        REQUIRE(::write(ends[1], lines.data(), lines.size()) == static_cast<ssize_t>(lines.size()));
+        ::dup2(ends[0], STDIN_FILENO);
+        ::close(ends[0]);
+        ::close(ends[1]);
+    }
+    ~answers()
+    {
+        ::dup2(before_, STDIN_FILENO);
+        ::close(before_);
+    }
+
+private:
+    int before_;
+};
+
+walk_result stumble(bool ask)
+{
+    fake_dac dac;
+    environment e;
+    e.tactors = make_grid("two", 1, 2, 20.0, 20.0);
+    alsa_options device = nine();
+    device.channels = 2;
+    render_options r;
+    r.channels = 2;
+    stream_source source{[&](const alsa_options& o) { return pcm::adopt(dac.pcm(), o); }, patient()};
+    source.player.realtime = false;
+    const stumbling_clock clock(dac);
+    walk_options o;
+    o.ask = ask;
+    return walk(device, e, r, o, source);
+}
+
+} // namespace
+
+TEST_CASE("a walk on which a tactor was not driven to its end fails in the end")
+{
+    const std::string said = message_of([] { stumble(false); });
+    CHECK(has(said, "tactor 0: interrupted: "));
+    CHECK(has(said, "walk again"));
+}
+
+TEST_CASE("one that was driven again, to its end, does not")
+{
+    const answers a("r\n0\n1\n");
+    CHECK(stumble(true).felt == walk_answers{0, 1});
+}
+
+} // namespace walk_session_test
