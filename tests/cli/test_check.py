@@ -82,6 +82,19 @@ class Check(ToolTest):
         _, found = self.check("-D", "null", "--max-drive-s", "2", "--power-dbfs", "0")
         self.assertEqual(found["limits"]["found"], "all together at most +0 dB of one at full scale; each at most 2 s in 10 s")
 
+    def test_limits_that_a_file_lifts_are_warnings(self):
+        for lifted in ("power_dbfs = 60", "max_drive_s = 20", "window_s = 3"):
+            self.write("a.toml", GRID.replace("columns = 2", "columns = 4") + f"[limits]\n{lifted}\n")
+            limits = self.check("--array", "a.toml")[1]["limits"]
+            self.assertEqual(limits["level"], "warning", lifted)
+            self.assertIn(lifted.split()[0], limits["cure"])
+
+    def test_where_somebody_feels_it_no_amplifier_is_a_warning(self):
+        self.assertEqual(self.check("-D", "null")[1]["amplifier"]["level"], "ok")
+        self.assertEqual(self.check("-D", f"raw:{self.dir}/out.raw")[1]["amplifier"]["level"], "ok")
+        # A card, though this machine has none.
+        self.assertEqual(self.check("-D", "hw:CARD=Tactor", status=3)[1]["amplifier"]["level"], "warning")
+
     def test_lines_that_are_not_there_are_status_3(self):
         self.write("a.toml", GRID + '[amplifier]\nline = { chip = "no-such-chip", offset = 17 }\n')
         _, found = self.check("--array", "a.toml", status=3)

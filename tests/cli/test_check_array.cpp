@@ -3,6 +3,7 @@
 #include "cli/check/check_array.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <doctest/doctest.h>
 
@@ -27,6 +28,14 @@ finding array_finding(const array& a, const std::string& check, const settings& 
     environment e;
     e.tactors = a;
     return named(check_array(s, e, settle_limits(e)), check);
+}
+
+finding limits_finding(const limit_settings& l, array a = preset_array("palm-3x3"))
+{
+    environment e;
+    e.tactors = std::move(a);
+    e.config.limits = l;
+    return named(check_array({}, e, settle_limits(e)), "limits");
 }
 
 array with_actuator(actuator_kind kind)
@@ -131,13 +140,31 @@ TEST_CASE("thresholds are looked at: missing ones, and levels that are not above
 
 TEST_CASE("limits are told as they hold")
 {
-    CHECK(array_finding(preset_array("palm-3x3"), "limits").found ==
-          "all together at most +4.77 dB of one at full scale; each at most 5 s in 10 s");
-    environment e;
-    e.tactors = preset_array("palm-3x3");
-    e.config.limits = limit_settings{.power_dbfs = 0.0, .max_drive_s = 20.0};
-    CHECK(named(check_array({}, e, settle_limits(e)), "limits").found ==
-          "all together at most +0 dB of one at full scale; no limit on time");
+    const finding usual = array_finding(preset_array("palm-3x3"), "limits");
+    CHECK(usual.how == level::ok);
+    CHECK(usual.found == "all together at most +4.77 dB of one at full scale; each at most 5 s in 10 s");
+    CHECK(limits_finding({.power_dbfs = 0.0, .max_drive_s = 2.0, .window_s = 4.0}).how == level::ok);
+}
+
+TEST_CASE("a limit that is weaker than by default is a warning that says the default")
+{
+    const finding untimed = limits_finding({.power_dbfs = 0.0, .max_drive_s = 20.0});
+    CHECK(untimed.how == level::warning);
+    CHECK(untimed.found ==
+          "all together at most +0 dB of one at full scale; no limit on time: more than by default");
+    CHECK(has(untimed.cure, "max_drive_s = 5 of window_s = 10"));
+    CHECK(untimed.cure.find("power_dbfs") == std::string::npos);
+    for (const limit_settings& l :
+         {limit_settings{.window_s = 5.0}, limit_settings{.window_s = 9.0}, limit_settings{.window_s = 1.0},
+          limit_settings{.max_drive_s = 3600.0}, limit_settings{.max_drive_s = 60.0, .window_s = 3600.0}})
+        CHECK(limits_finding(l).how == level::warning);
+    const finding loud = limits_finding({.power_dbfs = 60.0});
+    CHECK(loud.how == level::warning);
+    CHECK(has(loud.cure, "power_dbfs = 4.77"));
+    CHECK(loud.cure.find("window_s") == std::string::npos);
+    CHECK(limits_finding({.power_dbfs = 60.0, .max_drive_s = 60.0}).how == level::warning);
+    // Three tactors are what the default lets through: for them it is no limit either.
+    CHECK(limits_finding({.power_dbfs = 60.0}, make_grid("three", 1, 3, 20.0, 20.0)).how == level::ok);
 }
 
 TEST_CASE("actuators that cannot make the bursts are a warning with the reason")

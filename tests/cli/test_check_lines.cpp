@@ -38,7 +38,7 @@ gpio_line_place find(const gpio_line_name& l)
 
 TEST_CASE("lines are free, held or not there")
 {
-    const auto all = check_lines(wired(), find);
+    const auto all = check_lines(wired(), true, find);
     REQUIRE(all.size() == 3);
     CHECK(all[0].check == "amplifier");
     CHECK(all[0].how == level::ok);
@@ -51,12 +51,15 @@ TEST_CASE("lines are free, held or not there")
     CHECK(status_of(all) == 3);
 }
 
-TEST_CASE("an amplifier that is on when low is a warning, none at all a word")
+TEST_CASE("an amplifier that is on when low is a warning, and none at all where somebody feels it")
 {
-    CHECK(check_lines(wired(true), find)[0].how == level::warning);
-    const auto none = check_lines({}, find);
-    REQUIRE(none.size() == 1);
-    CHECK(none[0].how == level::ok);
+    CHECK(check_lines(wired(true), true, find)[0].how == level::warning);
+    for (const bool felt : {true, false}) {
+        const auto none = check_lines({}, felt, find);
+        REQUIRE(none.size() == 1);
+        CHECK(none[0].how == (felt ? level::warning : level::ok));
+        CHECK(none[0].cure.find("tactor-raspberry-pi(7)") != std::string::npos);
+    }
 }
 
 TEST_CASE("bad input comes before a missing device in the exit status, warnings do not count")

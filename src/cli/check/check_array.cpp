@@ -165,6 +165,20 @@ finding check_levels(const render_options& r, const array& a, const plan_options
     return fine("levels", found);
 }
 
+// The defaults of what a file or an option has made weaker.
+std::vector<std::string> lifted(const drive_limits& l, std::size_t tactors)
+{
+    const drive_limits usual;
+    std::vector<std::string> all;
+    const double of_all = 10.0 * std::log10(static_cast<double>(tactors)); // more than that nobody asks for
+    if (std::min(l.power_dbfs, of_all) > usual.power_dbfs)
+        all.push_back(fmt::format("power_dbfs = {:.3g}", usual.power_dbfs));
+    if (l.max_drive_s > usual.max_drive_s || l.max_drive_s / l.window_s > usual.max_drive_s / usual.window_s)
+        all.push_back(
+            fmt::format("max_drive_s = {:.4g} of window_s = {:.4g}", usual.max_drive_s, usual.window_s));
+    return all;
+}
+
 std::string limit_text(const drive_limits& l)
 {
     const std::string power =
@@ -176,6 +190,16 @@ std::string limit_text(const drive_limits& l)
                : fmt::format("{}; no limit on time", power);
 }
 
+finding check_limits(const drive_limits& l, std::size_t tactors)
+{
+    const std::vector<std::string> usual = lifted(l, tactors);
+    if (usual.empty())
+        return fine("limits", limit_text(l));
+    return warning("limits", limit_text(l) + ": more than by default",
+                   fmt::format("[limits] {}, unless actuators, amplifier and skin are known to bear more",
+                               fmt::join(usual, ", ")));
+}
+
 } // namespace
 
 std::vector<finding> check_array(const settings& s, const environment& e, const drive_limits& l)
@@ -185,7 +209,7 @@ std::vector<finding> check_array(const settings& s, const environment& e, const 
                              check_levels(r, e.tactors, s.plan)};
     for (finding& f : check_bursts(s.plan, e.tactors, r.rate))
         all.push_back(std::move(f));
-    all.push_back(fine("limits", limit_text(l)));
+    all.push_back(check_limits(l, e.tactors.tactors.size()));
     return all;
 }
 

@@ -29,12 +29,13 @@ finding check_line(const char* check, const gpio_line_name& name, const line_fin
 
 } // namespace
 
-std::vector<finding> check_lines(const setup& config, const line_finder& find)
+std::vector<finding> check_lines(const setup& config, bool felt, const line_finder& find)
 {
     std::vector<finding> all;
     if (!config.amplifier)
-        all.push_back(fine("amplifier", "no [amplifier]: nothing switches it off",
-                           "wire its enable input to a GPIO line, see tactor-raspberry-pi(7)"));
+        all.push_back({"amplifier", felt ? level::warning : level::ok,
+                       "no [amplifier]: nothing switches it off",
+                       "wire its enable input to a GPIO line, see tactor-raspberry-pi(7)"});
     if (config.amplifier) {
         finding f = check_line("amplifier", config.amplifier->line, find);
         if (f.how == level::ok && config.amplifier->active_low)

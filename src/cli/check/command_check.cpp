@@ -15,6 +15,7 @@
 #include "cli/check/walk_session.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/play/sound_server.hpp"
 #include "cli/say.hpp"
 #include "cli/serve/owner.hpp"
 
@@ -63,7 +64,7 @@ std::vector<finding> check_all(const settings& s, const check_options& o, const 
         all.push_back(failure("device", x));
     }
     if (!o.play.no_gpio)
-        for (finding& f : check_lines(e.config, find_gpio_line))
+        for (finding& f : check_lines(e.config, is_felt(device.pcm), find_gpio_line))
             all.push_back(std::move(f));
     if (e.config.serve) {
         try {

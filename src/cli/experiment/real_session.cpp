@@ -66,8 +66,7 @@ std::string check_server(const std::string& pcm, const char* cure, const experim
 
 void warn_of_null(const std::string& pcm)
 {
-    const std::vector<std::string> types = route_of(pcm).types;
-    if (std::find(types.begin(), types.end(), "null") != types.end())
+    if (!is_felt(pcm))
         say(stderr, "tactor: warning: playing to \"{}\", which nobody feels (-D PCM plays on hardware)\n",
             pcm);
 }

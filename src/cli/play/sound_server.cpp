@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "cli/play/sound_server.hpp"
 
+#include <algorithm>
 #include <cstdlib>
+#include <vector>
 
 #include <fmt/format.h>
 #include <tactor/tactor.hpp>
@@ -16,6 +18,15 @@ std::string settle_server(const std::string& pcm)
     if (server == "PipeWire")
         ::setenv("PIPEWIRE_ALSA", "{ stream.dont-remix = true }", 0);
     return server;
+}
+
+bool is_felt(const std::string& pcm)
+{
+    const std::vector<std::string> types = route_of(pcm).types;
+    const auto ends_in = [&types](const char* type) {
+        return std::find(types.begin(), types.end(), type) != types.end();
+    };
+    return !ends_in("null") || ends_in("hw");
 }
 
 std::string server_note(const std::string& server)

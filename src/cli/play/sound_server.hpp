@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Sound servers between the tool and the card.
+/// Sound servers between the tool and the card, and where there is neither.
 #pragma once
 
 #include <string>
@@ -11,6 +11,9 @@ namespace tactor::cli {
 /// to the output of its number, not to mix: in the environment of this process, where nothing is said there
 /// yet. Before there are threads, and before the PCM is opened.
 std::string settle_server(const std::string& pcm);
+
+/// Whether anybody may feel what is played on a PCM: it does not end in one of type null alone.
+bool is_felt(const std::string& pcm);
 
 /// What a server in between may do.
 std::string server_note(const std::string& server);
