@@ -22,6 +22,7 @@
 #include "cli/commands.hpp"
 #include "cli/completion/complete.hpp"
 #include "cli/option_words.hpp"
+#include "cli/pipes.hpp"
 #include "cli/say.hpp"
 #include "cli/usage.hpp"
 
@@ -117,6 +118,19 @@ int unprinted(int code)
     return status_failed;
 }
 
+// What was written to standard output as to a file (-o -) has no other reader.
+bool is_unread(const tactor::error& e)
+{
+    try {
+        std::rethrow_if_nested(e);
+    } catch (const std::system_error& cause) {
+        return cause.code().value() == EPIPE && is_standard_output(std::string(e.subject()));
+    } catch (...) {
+        return false;
+    }
+    return false;
+}
+
 int flushed(int status)
 {
     errno = 0;
@@ -138,6 +152,8 @@ int main(int argc, char** argv)
     try {
         return flushed(run(argc, argv));
     } catch (const tactor::error& e) {
+        if (is_unread(e))
+            return status_unread;
         say_error("tactor: {}\n", in_options(e).what());
         return status_of(e.kind());
     } catch (const std::system_error& e) {

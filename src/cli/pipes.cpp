@@ -24,17 +24,19 @@ bool is_named_pipe(const std::string& file)
     return fs::is_fifo(fs::symlink_status(file, ignored));
 }
 
+bool is_descriptor(const struct stat& s, int fd)
+{
+    struct stat out {};
+    return ::fstat(fd, &out) == 0 && out.st_dev == s.st_dev && out.st_ino == s.st_ino;
+}
+
 // What this process writes to, or a terminal, would be read for ever.
 void refuse_endless(const std::string& file)
 {
     struct stat s {};
     if (::stat(file.c_str(), &s) != 0)
         return;
-    const auto same = [&s](int fd) {
-        struct stat out {};
-        return ::fstat(fd, &out) == 0 && out.st_dev == s.st_dev && out.st_ino == s.st_ino;
-    };
-    if (S_ISFIFO(s.st_mode) && (same(STDOUT_FILENO) || same(STDERR_FILENO)))
+    if (S_ISFIFO(s.st_mode) && (is_descriptor(s, STDOUT_FILENO) || is_descriptor(s, STDERR_FILENO)))
         throw error(error_kind::bad_input, file, "is where this program writes to",
                     "name a file to read, or - for standard input");
     if (!S_ISCHR(s.st_mode))
@@ -54,6 +56,12 @@ void check_readable(const std::string& file)
     refuse_endless(file);
     if (is_named_pipe(file))
         say(stderr, "tactor: {}: is a pipe: waiting for a program that writes to it (Ctrl-C ends)\n", file);
+}
+
+bool is_standard_output(const std::string& file)
+{
+    struct stat s {};
+    return ::stat(file.c_str(), &s) == 0 && is_descriptor(s, STDOUT_FILENO);
 }
 
 void tell_of_pipe_to_write(const std::string& file)

@@ -11,6 +11,9 @@ namespace tactor::cli {
 /// it. \throws error (bad_input) for a terminal, and for a pipe that this program itself writes to.
 void check_readable(const std::string& file);
 
+/// Whether a name is one of this process's standard output (/dev/stdout, /dev/fd/1).
+bool is_standard_output(const std::string& file);
+
 /// Says on standard error that a named pipe is waited for until a program reads it. Else nothing.
 void tell_of_pipe_to_write(const std::string& file);
 

@@ -156,6 +156,25 @@ class People(Output):
         self.assertEqual((process.wait(timeout=PATIENCE_S), said), (128 + signal.SIGPIPE, b""))
         process.stderr.close()
 
+    def test_who_reads_only_the_beginning_of_sound_gets_no_error_either(self):
+        # However standard output is named; one that is a pipe by name has its error elsewhere.
+        (self.dir / "link.svg").symlink_to("/dev/stdout")
+        for command, name in (("render", "-"), ("render", "/dev/stdout"), ("render", "/dev/fd/1"), ("render", "/proc/self/fd/1"),
+                              ("plot", "link.svg")):
+            ours, theirs = os.pipe()
+            os.close(ours)
+            process = self.start(command, "park2016-1", "-o", name, stdout=theirs)
+            os.close(theirs)
+            _, said = process.communicate(timeout=PATIENCE_S)
+            self.assertEqual((process.returncode, said), (128 + signal.SIGPIPE, b""), name)
+        ours, theirs = os.pipe()
+        os.close(ours)
+        process = self.start("render", "park2016-1", "-o", f"/dev/fd/{theirs}", pass_fds=[theirs])
+        os.close(theirs)
+        _, said = process.communicate(timeout=PATIENCE_S)
+        self.assertEqual(process.returncode, 1)
+        self.assertIn(b"ended before all was written", said)
+
     def test_standard_error_that_is_gone_changes_no_status(self):
         closed = lambda: os.close(2)  # noqa: E731
         with open("/dev/full", "wb", buffering=0) as full:
