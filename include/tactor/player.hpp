@@ -169,8 +169,9 @@ private:
 struct player_options {
     /// How far ahead drives are handed to the audio thread; two buffers and four periods at least.
     double horizon_s = 0.5;
-    double fade_s = 0.010;         ///< fade on cancel and stop
-    double stall_s = 0.5;          ///< a device that stands still for so long (16 periods at least) is lost
+    double fade_s = 0.010; ///< fade on cancel and stop
+    /// A device whose position does not get on for so long (16 periods at least) is lost.
+    double stall_s = 0.5;
     bool realtime = true;          ///< ask for SCHED_FIFO
     bool require_realtime = false; ///< \throws instead of going on without it
     int priority = 65;

@@ -57,7 +57,7 @@ struct stream_position {
     std::uint64_t written = 0; ///< frames given in this epoch, the prefill included
     std::uint64_t played = 0;  ///< of these, how many have reached the DAC
     std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC of the reading
-    bool valid = false;
+    bool valid = false;        ///< one that stays so is a device that stands still: player_options::stall_s
 };
 
 /// A stream of interleaved frames. Order of calls: write() silence (prefill), start(), then wait on

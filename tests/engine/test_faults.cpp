@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Devices that run dry, vanish, or stand still.
+#include <memory>
+#include <utility>
+
 #include <doctest/doctest.h>
 
 #include "rig.hpp"
@@ -10,6 +13,40 @@ using namespace tactor;
 using namespace tactor::test;
 
 namespace {
+
+enum class seen { nothing, the_start, where_it_was };
+
+// Takes frames as ever, but does not say how far it has got: never, or not any more once it is blind.
+class blind_sink final : public forwarding_sink {
+public:
+    blind_sink(std::unique_ptr<sink> s, seen what, const bool& blind)
+        : forwarding_sink(std::move(s)), what_(what), blind_(blind)
+    {
+    }
+    stream_position position() noexcept override
+    {
+        stream_position p = forwarding_sink::position();
+        if (!blind_)
+            last_ = p.played;
+        p.valid = what_ != seen::nothing;
+        p.played = what_ == seen::where_it_was ? last_ : 0;
+        return p;
+    }
+
+private:
+    seen what_;
+    const bool& blind_;
+    std::uint64_t last_ = 0;
+};
+
+// The rig's device plays on; how long until the stream is over.
+std::int64_t play_until_over(rig& r)
+{
+    const std::int64_t begun = r.now;
+    for (int i = 0; i < 10'000 && !r.loop.over(); ++i)
+        r.play(r.options.period);
+    return r.now - begun;
+}
 
 // Plays until the stream is over; how long that took.
 std::int64_t run_until_over(rig& r, int steps)
@@ -180,6 +217,47 @@ TEST_CASE("a device that stands still is lost after its time, whether it says re
         CHECK(r.report(id)->reason == "the device does not move any more");
         CHECK(r.link.count.xruns == 0);
     }
+}
+
+TEST_CASE("a device that takes frames but does not say how far it has got is lost after its time")
+{
+    for (const seen what : {seen::nothing, seen::the_start, seen::where_it_was}) {
+        CAPTURE(static_cast<int>(what));
+        bool blind = false;
+        rig_options o;
+        o.wrap = [&](auto s) { return std::make_unique<blind_sink>(std::move(s), what, blind); };
+        rig r(o);
+        REQUIRE(r.start().status == io_kind::ok);
+        const stroke_id id = r.submit(tone(5.0));
+        r.play(9600);
+        REQUIRE(r.status().running);
+        const std::int64_t stands = what == seen::where_it_was ? 0 : 200'000'000;
+        blind = true;
+        const std::int64_t took = play_until_over(r) + stands;
+        CHECK(r.loop.over());
+        CHECK(took >= 500'000'000);
+        CHECK(took <= 510'000'000);
+        REQUIRE(r.report(id));
+        CHECK(r.report(id)->state == state_kind::interrupted);
+        CHECK(r.report(id)->reason == "the device does not move any more");
+        CHECK(r.link.count.xruns == 0);
+    }
+}
+
+TEST_CASE("stop does not wait for a position that never comes")
+{
+    bool blind = true;
+    rig_options o;
+    o.wrap = [&](auto s) { return std::make_unique<blind_sink>(std::move(s), seen::nothing, blind); };
+    rig r(o);
+    REQUIRE(r.start().status == io_kind::ok);
+    const stroke_id id = r.submit(tone(5.0));
+    r.play(960);
+    r.link.requests.push({.what = engine::request::kind::stop});
+    CHECK(play_until_over(r) <= 410'000'000);
+    REQUIRE(r.report(id));
+    CHECK(r.report(id)->state == state_kind::cancelled);
+    CHECK(r.feed.stream_reason().empty());
 }
 
 TEST_CASE("descriptors that lie are left out after a while, so that nothing spins")

@@ -53,6 +53,7 @@ audio_loop::audio_loop(sink& s, link& l, std::span<const double> limits, const l
 void audio_loop::step(io_kind ready, std::int64_t now) noexcept TACTOR_NONBLOCKING
 {
     ++idle_steps_;
+    ++still_steps_;
     now_ns_ = now;
     take_requests();
     obey_amplifier();
@@ -84,8 +85,9 @@ void audio_loop::step(io_kind ready, std::int64_t now) noexcept TACTOR_NONBLOCKI
     // In a long buffer the fade would be heard when all that was written before it is.
     if (phase_ == phase::running && stop_asked_ && now - stop_asked_ns_ >= longest_stop_ns)
         finish(stop_why_, 0, true);
-    // Both, so that a process that was stopped and goes on is not taken for a dead device.
-    if (phase_ == phase::running && idle_steps_ >= 4 && now - moved_ns_ > options_.stall_ns)
+    // Both, so that a process that was stopped and goes on is not taken for a dead device. That frames are
+    // taken counts for nothing: a stroke whose end is never seen at the DAC would be waited for for ever.
+    if (phase_ == phase::running && still_steps_ >= 4 && now - moved_ns_ > options_.stall_ns)
         finish(reason::lost, -ETIMEDOUT);
     publish();
 }
@@ -213,7 +215,7 @@ void audio_loop::write_periods(std::int64_t now) noexcept
         }
         const io_result r = write_pending();
         if (r.frames > 0)
-            moved(now);
+            idle_steps_ = 0;
         if (r.status == io_kind::again || (r.status == io_kind::ok && r.frames == 0))
             break;
         if (r.status != io_kind::ok)
@@ -249,6 +251,7 @@ void audio_loop::note_starts(std::uint64_t played) noexcept
 void audio_loop::moved(std::int64_t now) noexcept
 {
     moved_ns_ = now;
+    still_steps_ = 0;
     idle_steps_ = 0;
 }
 

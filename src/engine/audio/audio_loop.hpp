@@ -115,8 +115,9 @@ private:
     std::uint64_t played_ = 0;     ///< of this epoch
     std::uint64_t told_ = 0;       ///< stream frame at which the control side was last woken
     std::int64_t epoch_ns_ = 0;    ///< when the DAC was started
-    std::int64_t moved_ns_ = 0;    ///< when the stream last got on
-    unsigned idle_steps_ = 0;      ///< wake-ups since then
+    std::int64_t moved_ns_ = 0;    ///< when the position last got on
+    unsigned still_steps_ = 0;     ///< wake-ups since then
+    unsigned idle_steps_ = 0;      ///< wake-ups since the position got on or a frame was taken
     std::int64_t suspended_ns_ = 0;
     std::array<std::int64_t, 3> recoveries_{};
     std::size_t recovered_ = 0;
