@@ -113,27 +113,16 @@ std::unique_ptr<sink> not_null(std::unique_ptr<sink> s)
     return s;
 }
 
-// Frames for channels that the stream does not have would be left out, and nobody would feel why.
-const array& fitting(const array& a, const stream_setup& s)
-{
-    for (std::size_t i = 0; i < a.tactors.size(); ++i)
-        if (a.tactors[i].channel >= s.channels)
-            throw error(error_kind::bad_input, "player",
-                        fmt::format("tactor {} of {} is on channel {}, but the stream has {} channel{}", i,
-                                    a.name, a.tactors[i].channel, s.channels, s.channels == 1 ? "" : "s"),
-                        fmt::format("open it with {}; they count from 0", counted(a.channels(), "channel")));
-    return a;
-}
-
 } // namespace
 
 player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines l)
     : out(not_null(std::move(s))),
       lines(checked(std::move(l), out->setup().rate)),
       feed(link, horizon_frames(o, out->setup())),
-      tactors(fitting(a, out->setup())),
+      tactors(engine::fitting(a, out->setup())),
+      limits(synth::channel_limits(a, out->setup().channels)),
       log(o.log, link, o.limits),
-      loop(*out, link, synth::channel_limits(a, out->setup().channels),
+      loop(*out, link, limits,
            loop_options(o, o.driven.impl_.get(), out->setup(), lines.amplifier != nullptr)),
       audio(loop, *out, link, thread_options(o))
 {
@@ -260,12 +249,7 @@ std::shared_ptr<const drive_history::impl> player::impl::history()
 
 stroke_id player::impl::submit(const score& s, start_at start)
 {
-    const stream_setup& d = out->setup();
-    if (s.rate() != d.rate || s.channels() != d.channels)
-        throw error(error_kind::bad_input, "stroke",
-                    fmt::format("made for {} at {} Hz, the stream has {} at {} Hz",
-                                counted(s.channels(), "channel"), s.rate(), d.channels, d.rate),
-                    "render it with the stream's rate and channels");
+    engine::check_fits(s, out->setup(), limits);
     const std::lock_guard lock(mutex);
     check_open();
     const stroke_id id = next_id();

@@ -13,6 +13,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <tactor/phantom.hpp>
 #include <tactor/player.hpp>
@@ -23,6 +24,7 @@
 #include "engine/control/control_thread.hpp"
 #include "engine/control/drive_history.hpp"
 #include "engine/control/feeder.hpp"
+#include "engine/control/fitting.hpp"
 #include "engine/control/stream_log.hpp"
 #include "engine/control/trigger_thread.hpp"
 #include "engine/link.hpp"
@@ -65,6 +67,7 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     std::shared_ptr<const begin_handler> on_begun;
     std::multimap<stroke_id, report_handler> watchers;
     array tactors;
+    std::vector<double> limits;  ///< of the array, by channel of the stream
     std::optional<layout> faces; ///< of the array, once a live stroke needs it
     stroke_id last_id = {};
     stroke_id next_id() noexcept { return {++last_id.number}; }

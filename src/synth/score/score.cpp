@@ -6,6 +6,7 @@
 #include <deque>
 #include <functional>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -109,8 +110,20 @@ void place_markers(score::impl& s, std::uint64_t length, unsigned channel)
         it.tactor = static_cast<std::uint16_t>(channel);
         if (it.length > 0) {
             s.list.items.push_back(it);
+            s.marker = channel;
         }
     }
+}
+
+/// Where the peaks are not known, a continuous stroke was looked through, and every tactor keeps its limit.
+std::vector<double> asked_of(const score::impl& s, std::vector<double> peaks)
+{
+    if (peaks.empty()) {
+        for (const synth::tactor_level& t : s.tactors) {
+            peaks.push_back(s.limits[t.channel]);
+        }
+    }
+    return peaks;
 }
 
 void check_carrier(double carrier_hz, unsigned rate)
@@ -295,9 +308,11 @@ score score_builder::take()
         place_markers(s, synth::frame_at(o.marker_s, o.rate), *o.marker_channel);
     }
     sort_by_start(s.list.items);
-    if (synth::boost_rises(s, impl_->a, synth::check_peaks(s, impl_->a, o))) {
+    std::vector<double> peaks = synth::check_peaks(s, impl_->a, o);
+    if (synth::boost_rises(s, impl_->a, peaks)) {
         sort_by_start(s.list.items);
     }
+    s.asked = asked_of(s, std::move(peaks));
     measure(s);
     const auto made = detail::access::make<score>(std::shared_ptr<const score::impl>(std::move(impl_->s)));
     impl_ = std::make_unique<impl>(impl_->a, impl_->o);

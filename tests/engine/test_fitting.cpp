@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+// Scores for another array than the player's: what would be left out or cut is refused, the rest plays.
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include <doctest/doctest.h>
+
+#include <tactor/error.hpp>
+#include <tactor/plan.hpp>
+#include <tactor/player.hpp>
+#include <tactor/stroke.hpp>
+
+#include "clock_runner.hpp"
+#include "has.hpp"
+#include "player_support.hpp"
+#include "scores.hpp"
+#include "sink/alsa/adopt.hpp"
+
+namespace fitting_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+// palm() without its last tactors.
+array first_of_palm(std::size_t tactors)
+{
+    array a = palm();
+    a.tactors.resize(tactors);
+    return a;
+}
+
+// palm(), one tactor of which may have less.
+array palm_with_limit(std::size_t tactor, double max_dbfs)
+{
+    array a = palm();
+    a.tactors[tactor].max_dbfs = max_dbfs;
+    return a;
+}
+
+render_options on_nine_channels(double level_dbfs = -12.0)
+{
+    render_options o;
+    o.channels = 9;
+    o.level_dbfs = level_dbfs;
+    return o;
+}
+
+// One burst on a tactor of palm().
+score burst_on(unsigned tactor, const render_options& o, double amplitude = 1.0)
+{
+    plan p;
+    burst b;
+    b.duration_s = 0.01;
+    b.drives = {{.tactor = tactor, .amplitude = amplitude}};
+    p.bursts.push_back(std::move(b));
+    p.total_s = 0.01;
+    p.stroke_duration_s = 0.01;
+    return {palm(), std::move(p), o};
+}
+
+score continuous(const array& a)
+{
+    plan_options o;
+    o.algorithm = algorithm_kind::continuous;
+    return {a, make_plan(a, preset_stroke("park2016-1"), o), on_nine_channels()};
+}
+
+// What a player with this array says to a score; "" where it plays it to its end.
+std::string said(const array& a, const score& s)
+{
+    fake_dac dac;
+    const running_clock clock(dac);
+    player p(pcm::adopt(dac.pcm(), nine()), a, patient());
+    try {
+        const auto r = p.wait(p.submit(s));
+        REQUIRE(r);
+        CHECK(r->state == state_kind::finished);
+        return "";
+    } catch (const error& e) {
+        CHECK(e.kind() == error_kind::bad_input);
+        return e.what();
+    }
+}
+
+} // namespace
+
+TEST_CASE("a score that drives a channel without a tactor is refused, one that does not is played")
+{
+    const array few = first_of_palm(4);
+    CHECK(said(few, burst_on(3, on_nine_channels())).empty());
+    CHECK(said(few, burst_on(4, on_nine_channels())) ==
+          "stroke: it drives tactor 4 on channel 4, where the player's array has none (plan it for the array "
+          "that the player was opened with)");
+    CHECK(said(few, burst_on(4, on_nine_channels(), 0.0)).empty());
+    has(said(few, random_score(1, 20, 9)), "where the player's array has none");
+}
+
+TEST_CASE("a continuous stroke may come to any tactor of its array")
+{
+    CHECK(said(palm(), continuous(palm())).empty());
+    has(said(first_of_palm(8), continuous(palm())), "it drives tactor 8 on channel 8, where");
+}
+
+TEST_CASE("a score that drives a tactor above its limit at the player is refused, with both levels")
+{
+    const array careful = palm_with_limit(2, -30.0);
+    CHECK(said(careful, burst_on(2, on_nine_channels())) ==
+          "stroke: it drives tactor 2 at up to -12 dBFS, but the player's array allows -30 dBFS on channel 2 "
+          "(plan it for the array that the player was opened with)");
+    CHECK(said(careful, burst_on(1, on_nine_channels())).empty());
+    CHECK(said(careful, burst_on(2, on_nine_channels(-30.0))).empty());
+    has(said(careful, burst_on(2, on_nine_channels(-29.9))), "at up to -29.9 dBFS");
+    has(said(careful, continuous(palm())), "at up to -12 dBFS");
+}
+
+TEST_CASE("a score that was planned within the same limits is played, whatever was known of its peaks")
+{
+    // Two continuous strokes at once would come to more than their limit, if both were at the same place.
+    array a = palm();
+    for (tactor_spec& t : a.tactors)
+        t.max_dbfs = -12.0;
+    plan_options o;
+    o.algorithm = algorithm_kind::continuous;
+    const auto across = [&](double y) {
+        const stroke s{.motion = trajectory::timed({{0.0, {0.0, y}}, {0.1, {40.0, y}}})};
+        return make_plan(a, s, o);
+    };
+    const score two(a, {{across(0.0), 0.0, {}}, {across(40.0), 0.0, {}}}, on_nine_channels());
+    CHECK(said(a, two).empty());
+    has(said(palm_with_limit(0, -20.0), two), "but the player's array allows -20 dBFS on channel 0");
+}
+
+TEST_CASE("a marker on a tactor's channel is refused, one on a spare channel is not")
+{
+    render_options o = on_nine_channels();
+    o.marker_channel = 8;
+    const array eight = first_of_palm(8);
+    const score s(eight, make_plan(eight, preset_stroke("park2016-1")), o);
+    CHECK(said(eight, s).empty());
+    CHECK(said(palm(), s) == "stroke: its marker is on channel 8, where the player's array has a tactor "
+                             "(choose a spare channel for it)");
+}
+
+} // namespace fitting_test
