@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the control side puts into the ring, and when.
 #include <map>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -25,6 +26,40 @@ std::vector<command> take_all(engine::link& l)
     return all;
 }
 
+// What follows on what: b a beginning, d a drive, e an end, each with the number of its stroke.
+std::string in_order(engine::link& l)
+{
+    std::string all;
+    std::map<engine::ticket, std::string> numbers;
+    for (const command& c : take_all(l)) {
+        if (c.what == command::kind::begin)
+            numbers[c.score] = std::to_string(numbers.size() + 1);
+        all += (c.what == command::kind::begin   ? "b"
+                : c.what == command::kind::drive ? "d"
+                                                 : "e") +
+               numbers.at(c.score) + " ";
+    }
+    return all;
+}
+
+// A burst of 100 frames at each of these frames, each on a tactor of its own.
+score bursts_at(const std::vector<std::uint64_t>& frames)
+{
+    plan p;
+    for (unsigned i = 0; i < frames.size(); ++i) {
+        burst b;
+        b.onset_s = static_cast<double>(frames[i]) / rate;
+        b.duration_s = 100.0 / rate;
+        b.drives = {{.tactor = i, .amplitude = 0.5}};
+        p.bursts.push_back(b);
+        p.total_s = b.onset_s + b.duration_s;
+        p.stroke_duration_s = p.total_s;
+    }
+    render_options o;
+    o.rate = rate;
+    return {palm(), p, o};
+}
+
 } // namespace
 
 TEST_CASE("a beginning and its first drives become visible at once")
@@ -43,6 +78,50 @@ TEST_CASE("a beginning and its first drives become visible at once")
         audio.join();
         REQUIRE(seen == 3);
     }
+}
+
+TEST_CASE("strokes that begin together have each its first drives with its beginning")
+{
+    engine::link link;
+    engine::feeder feed(link, 24'000);
+    for (std::uint32_t n = 1; n <= 3; ++n)
+        feed.submit({n}, tone(0.05), start_at::now());
+    feed.pump(0);
+    CHECK(in_order(link) == "b1 d1 e1 b2 d2 e2 b3 d3 e3 ");
+}
+
+TEST_CASE("what begins within an eighth of the horizon has its drives at once, the rest in the order of all")
+{
+    engine::link link;
+    engine::feeder feed(link, 8000);
+    std::uint32_t id = 0;
+    for (const unsigned frame : {1500U, 1501U, 1501U})
+        feed.submit({++id}, tone(0.05), start_at::frame(frame));
+    feed.pump(500);
+    CHECK(in_order(link) == "b1 d1 e1 b2 b3 d2 e2 d3 e3 ");
+}
+
+TEST_CASE("with a beginning come the drives of an eighth of the horizon")
+{
+    engine::link link;
+    engine::feeder feed(link, 8000);
+    feed.submit({1}, bursts_at({0, 1000, 1001}), start_at::now());
+    feed.submit({2}, tone(0.05), start_at::now());
+    feed.pump(0);
+    CHECK(in_order(link) == "b1 d1 d1 b2 d2 e2 d1 e1 ");
+}
+
+TEST_CASE("of a crowd that begins together each has a part of the first drives, none all of them")
+{
+    engine::link link(16'384);
+    engine::feeder feed(link, 8000);
+    const score s = bursts_at({0, 100, 200, 300, 400, 500});
+    for (std::uint32_t n = 1; n <= engine::voices; ++n)
+        feed.submit({n}, s, start_at::now());
+    feed.pump(0);
+    const std::string all = in_order(link);
+    CHECK(all.starts_with("b1 d1 d1 d1 d1 b2 d2 d2 d2 d2 b3 "));
+    CHECK(all.find(" d511 b512 d512 d512 d512 d512 d1 ") != std::string::npos);
 }
 
 TEST_CASE("nothing beyond the horizon is handed over, and what is within it at once")

@@ -136,4 +136,21 @@ TEST_CASE("hundreds at once: each is cancelled by its handle, ended or timed out
     CHECK(r.first_sound());
 }
 
+TEST_CASE("one that waits for a place is cancelled by its number, once")
+{
+    live_rig r;
+    std::vector<std::shared_ptr<live_stroke::impl>> all{r.live};
+    while (all.size() <= engine::live_places)
+        all.push_back(r.add());
+    const auto& last = all.back();
+    CHECK(r.feed.knows(last->id));
+    CHECK(r.feed.cancel(last->id));
+    CHECK_FALSE(r.feed.cancel(last->id));
+    CHECK(last->voice.closed());
+    r.control();
+    REQUIRE(r.report(last->id));
+    CHECK(r.report(last->id)->state == state_kind::cancelled);
+    CHECK_FALSE(r.feed.knows(last->id));
+}
+
 } // namespace waiting_live_test

@@ -154,15 +154,15 @@ bool audio_loop::take(const command& c) noexcept
         if (held)
             return false;
         scores_.begin(c, offset_);
-        return true;
+        break;
     case command::kind::drive:
         return scores_.add(c);
     case command::kind::end:
         scores_.end(c.score);
-        return true;
+        break;
     case command::kind::fail:
         scores_.fail(c.score, c.at);
-        return true;
+        break;
     }
     return true;
 }

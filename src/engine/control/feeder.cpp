@@ -162,12 +162,6 @@ bool feeder::has_room(std::size_t n)
     return link_.commands.room() >= n;
 }
 
-feeder::slot* feeder::slot_of(ticket t) noexcept
-{
-    slot& s = slots_[place_of(t)];
-    return s.use && s.generation == t / voices ? &s : nullptr;
-}
-
 void feeder::release(slot& s) noexcept
 {
     const auto place = static_cast<std::uint32_t>(&s - slots_.data());
@@ -183,10 +177,8 @@ void feeder::handle(const report& r)
 {
     if (r.what == report::kind::stream_over)
         return end_all(r);
-    slot* s = slot_of(r.score);
-    if (s == nullptr)
-        return;
-    active& a = *s->use;
+    slot& s = slots_[place_of(r.score)]; // nobody else's: it is released by the last report of its ticket
+    active& a = *s.use;
     if (r.what != report::kind::begun && ended_)
         ended_(a.id, r.what == report::kind::over && r.frame > 0);
     switch (r.what) {
@@ -206,7 +198,7 @@ void feeder::handle(const report& r)
     case report::kind::stream_over:
         return;
     }
-    release(*s);
+    release(s);
 }
 
 void feeder::end_all(const report& r)

@@ -136,7 +136,6 @@ private:
     void hand_over_beginning(active& a, ticket t, std::size_t drives);
     static command next_command(active& a, ticket t);
     static std::uint64_t next_start(active& a, std::uint64_t written) noexcept;
-    slot* slot_of(ticket t) noexcept;
     void release(slot& s) noexcept;
     void end_all(const report& r);
 
