@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Many strokes at once: they play, or they say that they were too many.
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 
 #include <doctest/doctest.h>
 
@@ -47,13 +49,13 @@ score broad()
 }
 
 // How many strokes ended with each state and reason.
-std::map<std::string, int> play_at_once(const score& s, std::uint64_t at)
+std::map<std::string, int> play_at_once(const score& s, std::uint64_t at, int strokes = crowd)
 {
     rig_options o;
     o.channels = s.channels();
     rig r(o);
     REQUIRE(r.start().status == io_kind::ok);
-    for (int i = 0; i < crowd; ++i)
+    for (int i = 0; i < strokes; ++i)
         r.submit(s, at);
     r.play_out();
     std::map<std::string, int> ends;
@@ -111,6 +113,22 @@ TEST_CASE("more than can be mixed: what does not play says that they were too ma
     }
     CHECK(refused > 0);
     CHECK(refused < crowd);
+}
+
+TEST_CASE("more than the ring between the threads holds: that is no slow computer either")
+{
+    const score s = drawn(algorithm_kind::tactile_brush);
+    for (const auto& [strokes, at] : {std::pair(1000, 0), std::pair(4000, 48'000)}) {
+        CAPTURE(strokes);
+        int refused = 0;
+        for (const auto& [end, n] : play_at_once(s, static_cast<std::uint64_t>(at), strokes)) {
+            if (end.starts_with("finished"))
+                continue;
+            has(end, "too many strokes at once (let fewer overlap");
+            refused += n;
+        }
+        CHECK(refused > strokes / 2);
+    }
 }
 
 } // namespace crowd_test

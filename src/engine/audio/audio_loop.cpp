@@ -131,6 +131,9 @@ void audio_loop::take_requests() noexcept
 void audio_loop::take_commands() noexcept
 {
     const std::size_t waiting = link_.commands.size();
+    // The feeder was in time, but has more than the ring holds.
+    if (link_.feeder_waits.load(std::memory_order_relaxed))
+        scores_.crowd();
     std::size_t n = 0;
     for (; n < waiting && take(*link_.commands.front()); ++n)
         link_.commands.drop_front();

@@ -62,11 +62,16 @@ bool score_table::add(const command& c) noexcept
         return true;
     }
     if (mixer_.room() <= reserve_ || !mixer_.add(d)) {
-        full_until_ = mixer_.position() + crowd_frames;
+        crowd();
         return false;
     }
     cover(*e, d);
     return true;
+}
+
+void score_table::crowd() noexcept
+{
+    full_until_ = mixer_.position() + crowd_frames;
 }
 
 reason score_table::why_late() const noexcept

@@ -29,6 +29,8 @@ public:
     void begin(const command& c, std::uint64_t offset) noexcept;
     /// False when the mixer has no room now; the command must be given again.
     bool add(const command& c) noexcept;
+    /// There are more drives than there is room for: what comes too late in the next time does so for that.
+    void crowd() noexcept;
     void end(ticket t) noexcept;
     /// There will be no more drives from frame `at` of the score on, for its plan failed.
     void fail(ticket t, std::uint64_t at) noexcept;
@@ -71,7 +73,7 @@ private:
     /// Base of a live stroke before its first point, and the length of one that is fed.
     static constexpr std::uint64_t never = std::uint64_t{1} << 62;
 
-    /// For so long a mixer that was full is what makes drives late.
+    /// For so long a mixer or a ring that was full is what makes drives late.
     static constexpr std::uint64_t crowd_frames = 8192;
 
     struct entry {
@@ -112,8 +114,7 @@ private:
     std::uint32_t fade_;
     std::size_t reserve_;
     std::array<entry, voices> entries_{};
-    std::uint64_t full_until_ =
-        0; ///< what comes too late before this frame had to wait for room in the mixer
+    std::uint64_t full_until_ = 0; ///< what comes too late before this frame had to wait for room
     std::uint32_t used_ = 0;
     std::uint32_t top_ = 0; ///< entries from here on were never used
     /// By place: beginnings in the command ring that have been cancelled and reported. Those come first, as a
