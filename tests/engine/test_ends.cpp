@@ -302,4 +302,27 @@ TEST_CASE("the display sees the newest stroke that sounds")
     CHECK_FALSE(r.status().sounding);
 }
 
+TEST_CASE("before its first frame is mixed a stroke is cancelled without a sound, and waits out a mute")
+{
+    for (const bool muted : {false, true}) {
+        CAPTURE(muted);
+        rig r;
+        REQUIRE(r.start().status == io_kind::ok);
+        const std::uint64_t at = r.status().written + 960;
+        const stroke_id id = r.submit(tone(0.1), at);
+        while (r.status().written < at)
+            r.play(96);
+        REQUIRE(r.status().written == at); // the next frame is its first
+        if (muted)
+            r.link.amplifier.mutes = 1;
+        else
+            r.feed.cancel(id);
+        r.play_out();
+        REQUIRE(r.report(id));
+        CHECK(r.report(id)->state == (muted ? state_kind::finished : state_kind::cancelled));
+        CHECK((r.report(id)->frames == 0) != muted);
+        CHECK(r.first_sound().has_value() == muted);
+    }
+}
+
 } // namespace ends_test

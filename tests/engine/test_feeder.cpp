@@ -216,4 +216,78 @@ TEST_CASE("a full ring asks to be told, and the feeder goes on where it was")
     CHECK(ends == 1);
 }
 
+TEST_CASE("a stroke is handed over when it begins within the horizon, its last frame included")
+{
+    engine::link link;
+    engine::feeder feed(link, 8000);
+    feed.submit({1}, tone(0.05), start_at::frame(8500));
+    feed.submit({2}, tone(0.05), start_at::frame(8501));
+    feed.pump(500);
+    CHECK(in_order(link) == "b1 d1 e1 ");
+    feed.pump(501);
+    CHECK(link.commands.size() == 3);
+}
+
+TEST_CASE("while a stroke waits for room to begin, those that play get half of their horizon only")
+{
+    engine::link link(8); // a beginning and its drives take up to 3
+    engine::feeder feed(link, 8000);
+    feed.submit({1}, bursts_at({0, 2000, 3000, 3500, 4000, 9000}), start_at::now());
+    feed.pump(0);
+    REQUIRE(link.commands.size() == 6);
+    feed.handle({.what = engine::report::kind::begun, .score = link.commands.front()->score, .frame = 0});
+    feed.submit({2}, tone(0.05), start_at::now());
+    feed.pump(1100);
+    CHECK(link.commands.size() == 6);
+    CHECK(link.feeder_waits);
+    take_all(link);
+    feed.pump(1100);
+    const std::vector<command> then = take_all(link);
+    REQUIRE(then.size() == 5);
+    CHECK(then[0].what == command::kind::begin);
+    CHECK(then[3].what == command::kind::drive);
+    CHECK(then[3].drive.start == 9000);
+}
+
+TEST_CASE("how late a timed stroke is, is known also where the clock of its beginning is not")
+{
+    engine::clock_line clock{.epoch = 1, .time_ns = 1'000'000'000, .ns_per_frame = 1e9 / rate};
+    engine::clock_line of_later = clock;
+    of_later.first = 20'000;
+    for (const engine::clock_line& then : {engine::clock_line{}, of_later}) {
+        CAPTURE(then.valid());
+        engine::link link;
+        engine::feeder feed(link, 4800);
+        feed.submit({1}, tone(0.01), start_at::time(1'000'000'000));
+        feed.pump(9600, clock);
+        const engine::ticket t = take_all(link).front().score;
+        feed.pump(9600, then); // the device was started anew
+        feed.handle({.what = engine::report::kind::begun, .score = t, .frame = 9600});
+        feed.handle({.what = engine::report::kind::over,
+                     .score = t,
+                     .frame = 480,
+                     .started = true,
+                     .started_ns = 1'250'000'000});
+        REQUIRE(feed.has_reports());
+        CHECK(feed.take_reports().front().late_s == doctest::Approx(0.25));
+    }
+}
+
+TEST_CASE("what was cancelled stays so where the stream ends before its fade is told")
+{
+    engine::link link;
+    engine::feeder feed(link, 4800);
+    for (std::uint32_t n = 1; n <= 2; ++n)
+        feed.submit({n}, tone(1.0), start_at::now());
+    feed.pump(0);
+    CHECK(feed.cancel({1}));
+    feed.handle({.what = engine::report::kind::stream_over, .why = engine::reason::lost});
+    const auto ends = feed.take_reports();
+    REQUIRE(ends.size() == 2);
+    CHECK(ends.front().state == state_kind::cancelled);
+    CHECK(ends.front().reason.empty());
+    CHECK(ends.back().state == state_kind::interrupted);
+    CHECK(ends.back().reason == "the device is gone");
+}
+
 } // namespace feeder_test
