@@ -55,6 +55,7 @@ struct counters {
     std::atomic<std::uint64_t> drives_cut{0};
     std::atomic<std::uint64_t> stalls{0};       ///< written by the amplifier's thread
     std::atomic<std::uint64_t> off_failures{0}; ///< written by the amplifier's thread
+    std::atomic<bool> realtime_given_up{false}; ///< it had worked for too long without a pause
     std::atomic<std::uint64_t> minor_faults{0};
     std::atomic<std::uint64_t> major_faults{0};
     /// Length of xrun number n at n modulo the size: the newest are kept.

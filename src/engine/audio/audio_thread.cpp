@@ -5,6 +5,7 @@
 
 #include <sys/resource.h>
 
+#include "rt/busy_watch.hpp"
 #include "rt/clock.hpp"
 
 namespace tactor::engine {
@@ -66,11 +67,16 @@ audio_thread::audio_thread(audio_loop& loop, sink& s, link& l, const rt::thread_
 void audio_thread::run() noexcept TACTOR_NONBLOCKING
 {
     fault_watch faults(link_.count);
+    rt::busy_watch busy;
     while (!loop_.over()) {
         const io_kind ready = wait();
         const std::int64_t now = rt::monotonic_ns();
         loop_.step(ready, now);
         faults.step(now);
+        if (busy.look()) {
+            link_.count.realtime_given_up.store(true, std::memory_order_relaxed);
+            link_.to_control.signal();
+        }
     }
     faults.look();
     link_.to_control.signal();

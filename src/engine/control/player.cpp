@@ -151,7 +151,8 @@ player_stats player::stats() const
             .latest_wakeup_s = static_cast<double>(get(c.late_frames)) / impl_->out->setup().rate,
             .minor_faults = get(c.minor_faults),
             .major_faults = get(c.major_faults),
-            .realtime = impl_->audio.fifo_error() == 0,
+            .realtime =
+                impl_->audio.fifo_error() == 0 && !c.realtime_given_up.load(std::memory_order_relaxed),
             .xrun_s = std::move(lengths)};
 }
 

@@ -46,6 +46,7 @@ private:
 
     std::uint64_t xruns_ = 0;
     std::uint64_t epoch_ = 1;
+    bool given_up_ = false;
     bool asleep_ = false;
     bool ready_ = false;
     std::uint32_t mutes_ = 0;
