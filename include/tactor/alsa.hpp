@@ -20,7 +20,7 @@ struct alsa_options {
     unsigned rate = 48000;    ///< exact, Hz; never resampled by us
     std::optional<format_kind> format =
         {};                      ///< none: the first of s32, float, s24_3, s24_4, s16 that it takes
-    unsigned period_frames = 96; ///< wished; the device may round it
+    unsigned period_frames = 96; ///< wished, 50 us at least; the device may round it
     unsigned periods = 3;        ///< wished, >= 2
     /// ALSA configuration text in which `pcm` is looked up instead of the system's; empty: the system's.
     std::string config_text = {};

@@ -23,7 +23,7 @@ struct output_settings {
     bool pcm_included = false;                  ///< by a file that the one read names under [array]
     std::optional<unsigned> rate = {};          ///< Hz, 8000 to 768000
     std::optional<unsigned> channels = {};      ///< exact channel count
-    std::optional<unsigned> period_frames = {}; ///< frames in a period
+    std::optional<unsigned> period_frames = {}; ///< frames in a period, 50 us at least
     std::optional<unsigned> periods = {};       ///< periods in the buffer, >= 2
 };
 

@@ -103,8 +103,8 @@ public:
 /// Derive from it and say what becomes of the frames.
 class TACTOR_API paced_sink : public sink {
 public:
-    /// Of `s`, name, channels (1 to 16384), rate (8000 to 768000 Hz) and format count; period_frames and
-    /// buffer_frames (two periods at least) may be 0, which means 96 frames and three periods.
+    /// Of `s`, name, channels (1 to 16384), rate (8000 to 768000 Hz) and format count; period_frames (50 us
+    /// at least) and buffer_frames (two periods at least) may be 0, which means 96 frames and three periods.
     /// \throws error: bad_input for numbers that cannot be, runtime when there is no timer to be had.
     explicit paced_sink(stream_setup s);
     ~paced_sink() override;

@@ -14,6 +14,13 @@ inline constexpr unsigned max_channels = 1024;
 /// Coordinates and lengths beyond a kilometre are slips of the unit.
 inline constexpr double max_mm = 1e6;
 
+/// 50 us: a device that is asked for less only keeps a processor busy. No card offers it, but null does.
+constexpr unsigned least_period_frames(unsigned rate)
+{
+    constexpr unsigned periods_a_second = 20'000;
+    return rate / periods_a_second + (rate % periods_a_second != 0 ? 1 : 0);
+}
+
 inline constexpr double min_db = -200.0; ///< below the noise of any converter
 inline constexpr double max_gain_db = 60.0;
 

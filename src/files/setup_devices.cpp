@@ -2,6 +2,7 @@
 // [output], [amplifier], [sync] and [limits].
 #include <fmt/format.h>
 
+#include "core/limits.hpp"
 #include "files/setup_parts.hpp"
 
 namespace tactor::detail {
@@ -48,7 +49,7 @@ void read_output(const toml_table& root, located_setup& out)
         out.channels_at = t->where("channels");
     }
     if (t->has("period_frames"))
-        o.period_frames = t->whole("period_frames", 1, 1u << 20);
+        o.period_frames = t->whole("period_frames", least_period_frames(o.rate.value_or(48'000)), 1u << 20);
     if (t->has("periods"))
         o.periods = t->whole("periods", 2, 1024);
 }

@@ -8,6 +8,7 @@
 #include <tactor/error.hpp>
 #include <tactor/sink.hpp>
 
+#include "core/limits.hpp"
 #include "core/refused.hpp"
 #include "sink/pacer.hpp"
 
@@ -30,7 +31,7 @@ stream_setup checked(stream_setup s)
         s.buffer_frames = 3 * s.period_frames;
     check("channels", s.channels, 1, 16384);
     check("Hz", s.rate, 8000, 768000);
-    check("frames in a period", s.period_frames, 1, most_frames / 2);
+    check("frames in a period", s.period_frames, detail::least_period_frames(s.rate), most_frames / 2);
     check("frames in the buffer", s.buffer_frames, 2 * s.period_frames, most_frames);
     s.has_clock = false;
     return s;

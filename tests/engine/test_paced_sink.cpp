@@ -113,6 +113,7 @@ TEST_CASE("a sink of one's own cannot have numbers that cannot be")
     with([](stream_setup& s) { s.rate = 0; });
     with([](stream_setup& s) { s.rate = 4'000'000'000; });
     with([](stream_setup& s) { s.period_frames = 4'000'000'000; });
+    with([](stream_setup& s) { s.period_frames = 2; }); // 42 us
     with([](stream_setup& s) { s.period_frames = 100, s.buffer_frames = 199; });
 }
 

@@ -134,6 +134,11 @@ TEST_CASE("[output] out of range")
           "t.toml:7:8: rate is 7999 (allowed: 8000 to 768000)");
     CHECK(complaint(with("rate = 48000", "rate = 48000.0")) ==
           "t.toml:7:8: rate is 48000 (give a whole number)");
+    CHECK(complaint(with("period_frames = 96", "period_frames = 2")) ==
+          "t.toml:9:17: period_frames is 2 (allowed: 3 to 1048576)");
+    CHECK(complaint("[output]\nrate = 768000\nperiod_frames = 1\nperiods = 2\n") ==
+          "t.toml:3:17: period_frames is 1 (allowed: 39 to 1048576)");
+    CHECK(read("[output]\nrate = 8000\nperiod_frames = 1\n").output.period_frames == 1u);
     CHECK(complaint(with("periods = 3", "periods = 1")) == "t.toml:10:11: periods is 1 (allowed: 2 to 1024)");
     CHECK(complaint(with("\"hw:CARD=Tactor\"", "\"\"")) == "t.toml:6:7: pcm is empty");
     CHECK(complaint(with("\"hw:CARD=Tactor\"", "hw")).starts_with("t.toml:6:"));

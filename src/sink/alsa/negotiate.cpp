@@ -9,6 +9,7 @@
 
 #include <tactor/words.hpp>
 
+#include "core/limits.hpp"
 #include "core/refused.hpp"
 #include "sink/alsa/error_text.hpp"
 #include "sink/alsa/format.hpp"
@@ -132,7 +133,7 @@ void check(const alsa_options& o)
     };
     within("channels", o.channels, 1, most_channels);
     within("Hz", o.rate, 1, most_rate);
-    within("frames a period", o.period_frames, 1, most_period_frames);
+    within("frames a period", o.period_frames, detail::least_period_frames(o.rate), most_period_frames);
     within("periods", o.periods, 2, most_periods);
 }
 

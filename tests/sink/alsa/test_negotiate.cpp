@@ -2,6 +2,7 @@
 // What a PCM is asked for, what it makes of it, and what is said when it cannot.
 #include <cerrno>
 #include <string>
+#include <utility>
 
 #include <unistd.h>
 
@@ -187,6 +188,15 @@ TEST_CASE("numbers that no PCM has are bad input")
     CHECK(with([](alsa_options& o) { o.rate = 0; }) == error_kind::bad_input);
     CHECK(with([](alsa_options& o) { o.rate = 4'000'000'000; }) == error_kind::bad_input);
     CHECK(with([](alsa_options& o) { o.period_frames = 0; }) == error_kind::bad_input);
+    for (const auto& [rate, least] : {std::pair(8000U, 1U), std::pair(48'000U, 3U), std::pair(60'000U, 3U),
+                                      std::pair(60'001U, 4U), std::pair(768'000U, 39U)}) {
+        alsa_options o = {.pcm = "null", .channels = 9, .rate = rate, .period_frames = least};
+        CHECK_NOTHROW(pcm::check(o));
+        --o.period_frames;
+        const failure e = failure_of([&] { pcm::check(o); });
+        CHECK(e.kind == error_kind::bad_input);
+        CHECK(e.says(fmt::format("{} frames a period out of range (give {} to 1048576)", least - 1, least)));
+    }
     CHECK(with([](alsa_options& o) { o.period_frames = 4'000'000'000; }) == error_kind::bad_input);
     CHECK(with([](alsa_options& o) { o.periods = 1; }) == error_kind::bad_input);
     CHECK(with([](alsa_options& o) { o.periods = 4'000'000'000; }) == error_kind::bad_input);
