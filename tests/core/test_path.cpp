@@ -222,6 +222,16 @@ TEST_CASE("polylines and arcs that make no sense are refused")
     CHECK(arc({}, 1.0, 0.0, 361.0).find("sweep") != std::string::npos);
     CHECK(arc({}, 1.0, 0.0, 0.0).find("sweep") != std::string::npos);
     CHECK(arc({}, 1.0, 0.0, nan).find("sweep") != std::string::npos);
+    // The last that are let pass, and the next.
+    const auto above = [](double v) { return std::nextafter(v, 2.0 * v); };
+    for (const double sign : {1.0, -1.0}) {
+        CHECK(arc({}, 1.0, sign * 1e6, 90.0).empty());
+        CHECK(arc({}, 1.0, above(sign * 1e6), 90.0).find("angle") != std::string::npos);
+        CHECK(arc({}, 1.0, 0.0, sign * 360.0).empty());
+        CHECK(arc({}, 1.0, 0.0, above(sign * 360.0)).find("sweep") != std::string::npos);
+    }
+    CHECK(arc({}, 1e6, 0.0, 90.0).empty());
+    CHECK(arc({}, above(1e6), 0.0, 90.0).find("radius") != std::string::npos);
 }
 
 } // namespace path_test

@@ -160,6 +160,8 @@ TEST_CASE("wrong types and ranges, at the value")
           "palm.toml:4:18: threshold_dbfs is -inf (allowed: -200 to 0)");
     CHECK(complaint(one + "polarity = 0\n") ==
           "palm.toml:4:12: polarity is 0 (1, or -1 where it is wired the other way round)");
+    CHECK(complaint(one + "polarity = 1.5\n") == "palm.toml:4:12: polarity is 1.5 (allowed: -1 to 1)");
+    CHECK(complaint(one + "polarity = -1.5\n") == "palm.toml:4:12: polarity is -1.5 (allowed: -1 to 1)");
     CHECK(complaint(one + "polarity = true\n") == "palm.toml:4:12: polarity is true (give a number)");
     CHECK(complaint(one + "actuator = \"peizo\"\n") ==
           "palm.toml:4:12: actuator is 'peizo' (did you mean 'piezo'?)");

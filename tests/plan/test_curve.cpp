@@ -75,6 +75,30 @@ TEST_CASE("a curve has a sample each millisecond and one at its end")
     }
 }
 
+TEST_CASE("a sample takes the place of all that a burst was")
+{
+    for (const double duration : {1.4, 7.0}) { // kept, and computed
+        const plan p = flowing(duration);
+        burst fresh;
+        p.curve->sample(700, fresh);
+        burst used = make_plan(palm, preset_stroke("park2016-1")).bursts[3];
+        used.tau_s = 0.1;
+        p.curve->sample(700, used);
+        CHECK(used == fresh);
+        CHECK(used.duration_s == 0.0);
+        CHECK_FALSE(used.tau_s);
+        used.duration_s = 0.07;
+        used.tau_s = 0.1;
+        p.curve->at(0.7, used);
+        CHECK(used == fresh);
+        used.duration_s = 0.07;
+        used.tau_s = 0.1;
+        p.curve->at(0.70025, used);
+        CHECK(used.duration_s == 0.0);
+        CHECK_FALSE(used.tau_s);
+    }
+}
+
 TEST_CASE("a plan made again from its samples is the same plan, short or long")
 {
     for (const double duration : {0.01, 1.4, 3.9995, 5.0, 12.3456}) {

@@ -161,6 +161,37 @@ TEST_CASE("waves that cross zero nowhere in particular have the ramp of 2 ms")
     CHECK(burst_ramp_s(0.0, 0.1, p, {}) == 0.002);
 }
 
+TEST_CASE("a continuous stroke has the ramp of 2 ms by default where its carrier is not at zero at its end")
+{
+    for (const auto& [duration_s, half] : {std::pair{0.1, 1.0}, {0.1013, 0.5}}) {
+        CAPTURE(duration_s);
+        plan p;
+        p.carrier_hz = 250.0;
+        p.total_s = p.stroke_duration_s = duration_s;
+        p.curve = tactor::test::make_curve(duration_s, [](double, burst& out) { out.drives = {{0, 1.0}}; });
+        render_options o;
+        o.level_dbfs = 0.0;
+        // Not the first stroke of the piece, nor at a zero of its own.
+        const score s(row(1), {{p, 0.0117}}, o);
+        const auto x = channel(s, 0);
+        const std::size_t start = s.starts()[0];
+        CHECK(x[start + 48] == doctest::Approx(half)); // the crest in the middle of 2 ms
+        CHECK(x[start + 144] == doctest::Approx(-1.0));
+        // It falls as it has risen, to next to nothing in its last frames.
+        if (half < 1.0) {
+            double last = 0.0;
+            for (std::size_t k = x.size() - 10; k < x.size(); ++k) {
+                last = std::max(last, std::abs(x[k]));
+            }
+            CHECK(last > 0.0);
+            CHECK(last < 0.03);
+        }
+        o.ramp_s = 0.004;
+        CHECK(channel(score(row(1), {{p, 0.0117}}, o), 0)[start + 48] ==
+              doctest::Approx(0.1464).epsilon(1e-3));
+    }
+}
+
 TEST_CASE("envelopes that are none are refused")
 {
     const plan p = pieces::make_plan({make_burst(0.0, 0.1, {{0, 1.0}})});
