@@ -25,6 +25,13 @@ inline int rounds(int all)
     return shortened() ? all / 8 : all;
 }
 
+/// The same, and `all` of them where everything is asked for, which takes minutes: TACTOR_SOAK=whole.
+inline int rounds(int some, int all)
+{
+    const char* asked = std::getenv("TACTOR_SOAK");
+    return asked != nullptr && std::string_view(asked) == "whole" ? all : rounds(some);
+}
+
 /// `whole`, or `short_one` where tests are to do less, which it then says.
 inline std::uint64_t soak_length(const char* what, std::uint64_t whole, std::uint64_t short_one)
 {
