@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "rt/busy_watch.hpp"
 
-#include <ctime>
-
 #include <sched.h>
 #include <sys/resource.h>
 
@@ -11,6 +9,11 @@
 
 namespace tactor::rt {
 namespace {
+
+std::int64_t to_ns(const timeval& t) noexcept
+{
+    return std::int64_t{t.tv_sec} * ns_per_s + std::int64_t{t.tv_usec} * 1000;
+}
 
 bool is_realtime() noexcept
 {
@@ -25,14 +28,15 @@ busy_watch::busy_watch() noexcept : on_(is_realtime())
 {
 }
 
-bool busy_watch::look() noexcept
+bool busy_watch::look(std::int64_t now_ns) noexcept
 {
-    const permitted_call here{};
-    timespec t{};
-    if (!on_ || ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t) != 0 || !busy_.due(to_ns(t)))
+    if (!on_ || now_ns < next_ns_)
         return false;
+    next_ns_ = now_ns + pause_ns;
+    const permitted_call here{};
     rusage u{};
-    if (::getrusage(RUSAGE_THREAD, &u) != 0 || !busy_.too_long(to_ns(t), u.ru_nvcsw))
+    if (::getrusage(RUSAGE_THREAD, &u) != 0 ||
+        !busy_.too_long(to_ns(u.ru_utime) + to_ns(u.ru_stime), u.ru_nvcsw))
         return false;
     on_ = false;
     const sched_param none{};

@@ -13,24 +13,17 @@ class busy_time {
 public:
     /// Longest that may be; RLIMIT_RTTIME is 200 ms where rtkit or the tool sets it.
     static constexpr std::int64_t most_ns = 100'000'000;
-    /// Readings of how often it has waited cost a call: one in so much work.
-    static constexpr std::int64_t look_ns = 10'000'000;
-
-    /// Whether it is worth while to ask how often the thread has waited. `cpu_ns`: its processor time.
-    bool due(std::int64_t cpu_ns) const noexcept { return cpu_ns - looked_ns_ >= look_ns; }
-    /// Whether it is too long now. `waits`: how often the thread has waited by then.
+    /// Whether it is too long now. `cpu_ns`: processor time of the thread; `waits`: how often it has waited.
     bool too_long(std::int64_t cpu_ns, long waits) noexcept
     {
         if (waits != waits_)
             rested_ns_ = cpu_ns;
         waits_ = waits;
-        looked_ns_ = cpu_ns;
         return cpu_ns - rested_ns_ >= most_ns;
     }
 
 private:
     std::int64_t rested_ns_ = 0; ///< processor time at the first look since it waited
-    std::int64_t looked_ns_ = 0;
     long waits_ = -1;
 };
 
@@ -38,11 +31,15 @@ private:
 class busy_watch {
 public:
     busy_watch() noexcept;
-    /// Between two pieces of work. True when the thread has just given up real time, once.
-    bool look() noexcept;
+    /// Between two pieces of work, at CLOCK_MONOTONIC `now_ns`. True when the thread has just given up real
+    /// time, once. A system call 20 times a second.
+    bool look(std::int64_t now_ns) noexcept;
 
 private:
+    static constexpr std::int64_t pause_ns = 50'000'000;
+
     busy_time busy_;
+    std::int64_t next_ns_ = 0;
     bool on_;
 };
 

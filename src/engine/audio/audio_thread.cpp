@@ -73,7 +73,7 @@ void audio_thread::run() noexcept TACTOR_NONBLOCKING
         const std::int64_t now = rt::monotonic_ns();
         loop_.step(ready, now);
         faults.step(now);
-        if (busy.look()) {
+        if (busy.look(now)) {
             link_.count.realtime_given_up.store(true, std::memory_order_relaxed);
             link_.to_control.signal();
         }
