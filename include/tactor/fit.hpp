@@ -53,7 +53,7 @@ struct fitted_strokes {
 /// their length. Starts, intensities and carriers stay. A pure function; any thread. O(n log n) in the
 /// points, and O(k h) in k curves and the h corners of the hull. \throws error (bad_input) for a margin that
 /// leaves no room, for a picture with an extent on a single
-///         tactor, and for one that only goes across an array in one line.
+///         tactor, and for a stroke that only goes across an array in one line.
 [[nodiscard]] TACTOR_API fitted_strokes fit_strokes(const std::vector<stroke>& strokes, const layout& l,
                                                     double margin_mm = 0.0);
 

@@ -6,7 +6,9 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -107,6 +109,25 @@ std::optional<point> line_of(const layout::impl& l, std::pair<point, point> ends
                 room_mm > 0.0 ? fmt::format("less than {:.4g} mm", room_mm) : "one tactor has none");
 }
 
+[[noreturn]] void refuse_across(const std::string& what)
+{
+    throw error(error_kind::bad_input, what,
+                "goes across the line in which all tactors lie, and nothing of it along",
+                "turn it, or use an array with two rows");
+}
+
+/// One of several would be left without a length, and nobody would feel where it was to go.
+void check_along(const std::vector<stroke>& strokes, const fitting& f)
+{
+    for (std::size_t i = 0; i < strokes.size(); ++i) {
+        const picture one({strokes[i]});
+        if (one.rests() || f.scale * one.extent(*f.line) > same_place_mm)
+            continue;
+        const std::string& name = strokes[i].name;
+        refuse_across(name.empty() ? fmt::format("stroke {}", i) : fmt::format("stroke \"{}\"", name));
+    }
+}
+
 fitting fit_to_line(const picture& drawn, const layout::impl& l, std::pair<point, point> ends, point along,
                     double margin_mm)
 {
@@ -125,9 +146,7 @@ fitting fit_to_line(const picture& drawn, const layout::impl& l, std::pair<point
                     "use an array of two or more");
     const double extent = drawn.extent(along);
     if (!(extent > same_place_mm))
-        throw error(error_kind::bad_input, "stroke",
-                    "goes across the line in which all tactors lie, and nothing of it along",
-                    "turn it, or use an array with two rows");
+        refuse_across("stroke");
     f.from = f.from + (drawn.middle(along) - dot(along, f.from)) * along;
     f.scale = (length - 2.0 * margin_mm) / extent;
     return f;
@@ -188,6 +207,8 @@ fitted_strokes fit_strokes(const std::vector<stroke>& strokes, const layout& l, 
     if (strokes.empty())
         return all;
     all.placed = find_fit(picture(strokes), detail::access::of(l), margin_mm);
+    if (all.placed.line)
+        check_along(strokes, all.placed);
     const affine map = map_of(all.placed);
     for (stroke& s : all.strokes) {
         s.motion = detail::moved(s.motion, all.placed.from, map, all.placed.line,

@@ -88,6 +88,8 @@ class Fit(ToolTest):
         self.refused(2, "plan", "wave-2x4", *LOW, "--fit-margin", "1", says=["--fit"])
         self.refused(2, "plan", "--path", "M 0 0 V 5", "--array", ROOT / "examples/arrays/arm-line-4.toml", "--fit",
                      says=["goes across the line"])
+        self.refused(2, "plan", ROOT / "examples/strokes/several.toml", "--array", ROOT / "examples/arrays/arm-line-4.toml", "--fit",
+                     says=['stroke "left": goes across the line in which all tactors lie'])
 
 
 if __name__ == "__main__":

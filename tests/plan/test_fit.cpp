@@ -189,6 +189,11 @@ TEST_CASE("an array in one row takes what goes along it")
     CHECK(refusal(row, r.strokes[0], {}).empty());
     CHECK(refusal(row, r.strokes[0], strictly(algorithm_kind::continuous)).empty());
     CHECK(complaint({along("M 0 0 V 9", 1.0)}, l).starts_with("stroke: goes across the line in which all"));
+    stroke across = along("M 3 0 V 9", 1.0);
+    CHECK(complaint({circle, across}, l).starts_with("stroke 1: goes across the line in which all"));
+    across.name = "left";
+    CHECK(complaint({circle, across}, l).starts_with("stroke \"left\": goes across the line in which all"));
+    CHECK(complaint({circle, along("M 3 0 L 3.1 9", 1.0)}, l).empty());
     CHECK(complaint({along("M 0 0 H 9", 1.0)}, l, 60.0).find("(less than 60 mm)") != std::string::npos);
 
     // Measured places are never in line: a wave is not to become as thin as their errors are.
