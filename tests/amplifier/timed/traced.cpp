@@ -95,9 +95,10 @@ bool can_trace()
     return can;
 }
 
-traced_session::traced_session(const std::function<void()>& session)
+traced_session::traced_session(const std::function<void()>& session, counts from) : from_(from)
 {
     player_ = start(session, go_);
+    threads_.insert(player_);
     if (!seize(player_))
         throw std::runtime_error("the player cannot be traced");
     traced_.insert(player_);
@@ -121,14 +122,19 @@ bool traced_session::stopped_at_entry(pid_t pid, int status) const
 }
 
 // The first child of the player forks the holder.
-void traced_session::note_child(pid_t parent)
+void traced_session::note_child(pid_t parent, int event)
 {
     unsigned long child = 0;
     if (::ptrace(PTRACE_GETEVENTMSG, parent, nullptr, &child) != 0)
         return;
     const auto pid = static_cast<pid_t>(child);
     traced_.insert(pid);
-    if (parent == player_ && between_ < 0)
+    if (event == PTRACE_EVENT_CLONE) {
+        if (threads_.contains(parent))
+            threads_.insert(pid);
+        return;
+    }
+    if (threads_.contains(parent) && between_ < 0)
         between_ = pid;
     else if (parent == between_ && holder_ < 0) {
         holder_ = pid;
@@ -136,7 +142,14 @@ void traced_session::note_child(pid_t parent)
     }
 }
 
-killed traced_session::kill_at(party counted, unsigned nth, party victim)
+bool traced_session::is_of(party who, pid_t pid) const
+{
+    if (who == party::holder)
+        return pid == holder_;
+    return threads_.contains(pid) && (from_ == counts::all || holder_ >= 0);
+}
+
+killed traced_session::kill_at(party counted, unsigned nth, party victim, const std::function<void()>& before)
 {
     killed k;
     unsigned calls = 0;
@@ -151,10 +164,10 @@ killed traced_session::kill_at(party counted, unsigned nth, party victim)
         }
         if (const int event = status >> 16;
             event == PTRACE_EVENT_FORK || event == PTRACE_EVENT_VFORK || event == PTRACE_EVENT_CLONE)
-            note_child(pid);
-        const bool one = pid == (counted == party::player ? player_ : holder_);
-        if (one && stopped_at_entry(pid, status) && calls++ == nth) {
+            note_child(pid, event);
+        if (is_of(counted, pid) && stopped_at_entry(pid, status) && calls++ == nth) {
             k.reached = true;
+            before();
             strike(victim, k);
             let_go(pid);
             break;
@@ -189,7 +202,7 @@ void traced_session::let_go(pid_t stopped)
             break;
         if (WIFSTOPPED(status)) {
             if ((status >> 16) == PTRACE_EVENT_FORK || (status >> 16) == PTRACE_EVENT_CLONE)
-                note_child(pid);
+                note_child(pid, status >> 16);
             if (trace(PTRACE_DETACH, pid, delivered(status)) != 0)
                 continue; // killed meanwhile
             traced_.erase(pid);

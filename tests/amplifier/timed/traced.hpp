@@ -23,21 +23,28 @@ struct killed {
 /// Whether processes can be traced here, as they cannot where the kernel forbids it or qemu translates.
 bool can_trace();
 
-/// One run. `session` is what the player does; it forks its holder, which is found by its being a grandchild.
+/// One run. `session` is what the player does, in as many threads as it likes, or another program that it
+/// becomes; it forks its holder, which is found by its being a grandchild.
 class traced_session {
 public:
-    explicit traced_session(const std::function<void()>& session);
+    /// From which system call of the player on they are counted.
+    enum class counts { all, with_holder };
+
+    explicit traced_session(const std::function<void()>& session, counts from = counts::all);
     ~traced_session();
     traced_session(const traced_session&) = delete;
     traced_session& operator=(const traced_session&) = delete;
 
     /// Stops `counted` at the entry of its system call number `nth`, from 0, kills `victim`, lets the others
     /// go untraced, and returns when all have ended.
-    killed kill_at(party counted, unsigned nth, party victim);
+    /// `before` is called then, shortly before it kills.
+    killed kill_at(
+        party counted, unsigned nth, party victim, const std::function<void()>& before = [] {});
 
 private:
     bool stopped_at_entry(pid_t pid, int status) const;
-    void note_child(pid_t parent);
+    void note_child(pid_t parent, int event);
+    bool is_of(party who, pid_t pid) const;
     void strike(party victim, killed& k);
     void let_go(pid_t stopped);
     void wait_for_all();
@@ -47,6 +54,8 @@ private:
     pid_t holder_ = -1;
     int holder_fd_ = -1;
     int go_ = -1;
+    counts from_;
+    std::set<pid_t> threads_; ///< of the player
     std::set<pid_t> traced_;
 };
 
