@@ -193,6 +193,24 @@ TEST_CASE("validate refuses what no tactor can have")
     CHECK(why([](tactor_spec& t) { t.threshold_dbfs = 3; }).starts_with(at + "has a threshold of 3 dBFS"));
     CHECK(why([](tactor_spec& t) { t.polarity = 0; }).starts_with(at + "has a polarity of 0"));
     CHECK(why([](tactor_spec&) {}).empty());
+    // The last that are let pass, and the next.
+    for (const double db : {-200.0, 60.0})
+        CHECK(why([db](tactor_spec& t) { t.gain_db = db; }).empty());
+    CHECK(why([](tactor_spec& t) { t.gain_db = -200.1; }).starts_with(at + "has a gain of -200.1 dB"));
+    for (const double db : {-200.0, 0.0}) {
+        CHECK(why([db](tactor_spec& t) { t.max_dbfs = db; }).empty());
+        CHECK(why([db](tactor_spec& t) { t.threshold_dbfs = db; }).empty());
+        CHECK(why([db](tactor_spec& t) { t.thresholds = {{100.0, db}}; }).empty());
+    }
+    CHECK(why([](tactor_spec& t) {
+              t.thresholds = {{100.0, 0.1}};
+          }).starts_with(at + "has a threshold of 0.1 dBFS at 100 Hz"));
+    CHECK(why([](tactor_spec& t) {
+              t.thresholds = {{100.0, -20.0}, {100.0, -20.0}};
+          }).starts_with(at + "has a threshold of -20 dBFS at 100 Hz"));
+    CHECK(why([](tactor_spec& t) { t.rise_s = 1.0; }).empty());
+    CHECK(why([](tactor_spec& t) { t.rise_s = 1.001; }).starts_with(at + "has a rise time of 1.001 s"));
+    CHECK(why([](tactor_spec& t) { t.rise_s = 0.0; }).starts_with(at + "has a rise time of 0 s"));
     CHECK(message_of([] { validate(array{}); }) == "array '': 0 tactors (an array has 1 to 16384)");
 }
 

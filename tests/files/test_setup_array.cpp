@@ -160,6 +160,16 @@ TEST_CASE("wrong types and ranges, at the value")
           "palm.toml:4:18: threshold_dbfs is -inf (allowed: -200 to 0)");
     CHECK(complaint(one + "polarity = 0\n") ==
           "palm.toml:4:12: polarity is 0 (1, or -1 where it is wired the other way round)");
+    CHECK(complaint(one + "threshold_dbfs = [[1, -200], [384000, 0]]\n").empty());
+    CHECK(complaint(one + "threshold_dbfs = [[0.9, -20]]\n") ==
+          "palm.toml:4:19: the frequency is 0.9 (allowed: 1 to 384000)");
+    CHECK(complaint(one + "threshold_dbfs = [[384001, -20]]\n") ==
+          "palm.toml:4:19: the frequency is 384001 (allowed: 1 to 384000)");
+    CHECK(complaint(one + "threshold_dbfs = [[100, -20], [100, -41]]\n") ==
+          "palm.toml:4:31: the frequency 100 does not come after 100 (put thresholds in order of frequency, "
+          "each once)");
+    CHECK(array_of(one + "rise_ms = 1000\n").tactors[0].rise_s == 1.0);
+    CHECK(complaint(one + "rise_ms = 1001\n").starts_with("palm.toml:4:11: rise_ms is 1001 (allowed: "));
     CHECK(complaint(one + "polarity = 1.5\n") == "palm.toml:4:12: polarity is 1.5 (allowed: -1 to 1)");
     CHECK(complaint(one + "polarity = -1.5\n") == "palm.toml:4:12: polarity is -1.5 (allowed: -1 to 1)");
     CHECK(complaint(one + "polarity = true\n") == "palm.toml:4:12: polarity is true (give a number)");

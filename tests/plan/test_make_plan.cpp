@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include <tactor/error.hpp>
 #include <tactor/plan.hpp>
 
 #include "arrays.hpp"
@@ -66,6 +67,31 @@ TEST_CASE("more bursts than anyone can mean are refused at once")
     o.profile = {0.32, 0.0, 0.07};
     o.soa_s = 1e-6;
     CHECK(refusal(palm, across(86400.0), o).find("bursts") != std::string::npos);
+}
+
+TEST_CASE("a scale says what half an intensity means, and is held to its bounds")
+{
+    const intensity_scale linear;
+    for (const double i : {0.0, 0.5, 1.0, 3.0, -1.0})
+        CHECK(linear.amplitude(i) == i);
+    for (const double exponent : {0.1, 0.6, 3.0}) {
+        const intensity_scale s{scale_kind::stevens, exponent};
+        CHECK(s.amplitude(0.0) == 0.0);
+        CHECK(s.amplitude(1.0) == 1.0);
+        CHECK(s.amplitude(0.5) == doctest::Approx(std::pow(0.5, 1.0 / exponent)));
+    }
+    for (const double db : {0.1, 7.0, 100.0}) {
+        const intensity_scale s{.kind = scale_kind::sl, .sl_db = db};
+        CHECK(s.amplitude(0.0) == 0.0);
+        CHECK(s.amplitude(1.0) == 1.0);
+        CHECK(s.amplitude(0.5) == doctest::Approx(std::pow(10.0, -0.5 * db / 20.0)));
+    }
+    for (const double exponent : {0.09, 3.01, not_a_number})
+        CHECK_THROWS_AS(static_cast<void>(intensity_scale{scale_kind::stevens, exponent}.amplitude(0.5)),
+                        error);
+    for (const double db : {0.0, 100.1, not_a_number})
+        CHECK_THROWS_AS(
+            static_cast<void>(intensity_scale{.kind = scale_kind::sl, .sl_db = db}.amplitude(0.5)), error);
 }
 
 TEST_CASE("a model of one's own is used by its name, and held to its contract")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -103,6 +104,13 @@ TEST_CASE("what leaves the timing law, or the range that it was fitted for, is t
     CHECK(warnings[1].find("by which their SOA is 0.09882 s:") != std::string::npos);
     o.burst_s = 0.160;
     CHECK(make_plan(palm, across(1.0), o).warnings.size() == 1);
+    // By the law 39.6875 ms: a duration is said to the millisecond.
+    o.soa_s = 0.06;
+    for (const auto& [burst_s, told] : {std::pair{0.0401, 0U}, {0.0402, 1U}, {0.0392, 0U}, {0.0391, 1U}}) {
+        CAPTURE(burst_s);
+        o.burst_s = burst_s;
+        CHECK(make_plan(palm, across(1.0), o).warnings.size() == told);
+    }
 }
 
 TEST_CASE("a burst that cannot be is refused, with what can")

@@ -88,7 +88,7 @@ inline render_options some_options(dice& d)
 /// From one frame to 0.2 s, as likely short as long; every other one in whole frames.
 inline double some_length(dice& d, unsigned rate)
 {
-    const double frames = std::exp(d.from_to(0.0, std::log(0.2 * rate)));
+    const double frames = d.one_in(5) ? 1.0 : std::exp(d.from_to(0.0, std::log(0.2 * rate)));
     return (d.one_in(2) ? std::max(1.0, std::round(frames)) : frames) / rate;
 }
 
@@ -101,7 +101,9 @@ inline plan some_bursts(dice& d, unsigned tactors, unsigned rate)
         const double length_s = some_length(d, rate);
         // After the one before it, a frame or less into it, or anywhere.
         const double back_s = d.one_of({0.0, 1e-12, 1e-9, 0.5, 1.0, 1.5}) / rate;
-        const double onset_s = d.one_in(2) ? std::max(0.0, end_s - back_s) : d.from_to(0.0, 0.2);
+        const double onset_s = d.one_in(2)   ? std::max(0.0, end_s - back_s)
+                               : d.one_in(2) ? 0.0
+                                             : d.from_to(0.0, 0.2);
         std::vector<drive> drives;
         for (unsigned t = 0; t < tactors; ++t) {
             if (d.one_in(2))
@@ -153,7 +155,7 @@ inline mix some_mix(std::uint64_t number)
             p.am = {d.from_to(1.0, 100.0), d.from_to(0.0, 1.0)};
         std::optional<double> start_s;
         if (!d.one_in(4))
-            start_s = d.from_to(0.0, 0.1);
+            start_s = d.one_in(2) ? 0.0 : d.from_to(0.0, 0.1);
         m.plans.push_back({std::move(p), start_s, {}});
     }
     return m;

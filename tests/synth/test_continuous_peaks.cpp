@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What continuous strokes ask of the tactors is bounded, however long they are.
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <functional>
 #include <random>
 #include <string>
@@ -10,9 +12,12 @@
 
 #include <tactor/error.hpp>
 #include <tactor/phantom.hpp>
+#include <tactor/render.hpp>
 
+#include "core/access.hpp"
 #include "own_curve.hpp"
 #include "pieces.hpp"
+#include "synth/score/score.hpp"
 
 namespace continuous_peaks_test {
 
@@ -107,6 +112,30 @@ TEST_CASE("spans are left out only where nothing in them is above a limit: as if
     }
     CHECK(refused > 20);
     CHECK(refused < 100);
+}
+
+TEST_CASE(
+    "a stroke with a spike that no tactor alone could have is played, and promises no more than was seen")
+{
+    // On a diagonal, where two tactors share it; harmless before and after.
+    const plan p = continuous({{0.0, {0.0, 10.0}, 0.5},
+                               {5.0, {10.0, 10.0}, 0.5},
+                               {5.1, {10.0, 10.0}, 1.3},
+                               {5.2, {10.0, 10.0}, 0.5},
+                               {10.0, {40.0, 10.0}, 0.5}});
+    render_options o;
+    o.level_dbfs = 0.0;
+    o.rate = 8000;
+    const score s(palm, p, o);
+    const std::vector<double>& promised = detail::access::of(s).promised.at(0);
+    REQUIRE(promised.size() == 9);
+    CHECK(promised[0] == doctest::Approx(1.3 / std::sqrt(2.0)));
+    CHECK(promised[8] == 0.5); // not looked at: its part of any harmless intensity
+    renderer r(s, format_kind::float32);
+    std::vector<float> samples(s.frames() * s.channels());
+    r.process(s.frames(), reinterpret_cast<std::byte*>(samples.data()));
+    CHECK(r.failure().empty());
+    CHECK(std::any_of(samples.end() - 90, samples.end(), [](float v) { return v != 0.0F; }));
 }
 
 TEST_CASE("of a plan of one's own every control point is looked at")

@@ -235,6 +235,38 @@ TEST_CASE("continuous strokes are held to the limits too")
     CHECK(holds(message([&] { score(a, {{bad, {}}}, {}); }), "tactor 3"));
 }
 
+TEST_CASE("what comes to the limit but for the noise of its last digits is let pass")
+{
+    const auto sum = [](double amplitude) {
+        std::vector<placed_plan> all;
+        for (const double a : {0.33, 0.56, amplitude}) {
+            all.push_back({make_plan({make_burst(0.0, 0.1, {{0, a}})}), 0.0, {}});
+        }
+        render_options o;
+        o.level_dbfs = 0.0;
+        return message([&] { score(row(1), all, o); });
+    };
+    REQUIRE(0.33 + 0.56 + 0.11 > 1.0);
+    CHECK(sum(0.11) == "no error");
+    CHECK(holds(sum(0.11 + 1e-8), "would be driven at"));
+}
+
+TEST_CASE("a carrier that passes a threshold on its way is held to the limit there")
+{
+    array a = row(1);
+    a.tactors[0].thresholds = {{100.0, -40.0}, {200.0, -20.0}, {400.0, -40.0}};
+    plan p = make_continuous(1, 1.0);
+    p.curve = tactor::test::make_curve(1.0, [](double, burst& out) { out.drives = {{0, 1.0}}; });
+    p.course = {{0.0, 100.0}, {1.0, 400.0}};
+    render_options o;
+    o.sl_db = 19.0;
+    CHECK(message([&] { score(a, {{p, {}}}, o); }) == "no error");
+    o.sl_db = 25.0;
+    CHECK(holds(message([&] { score(a, {{p, {}}}, o); }), "tactor 0: would be driven at 5 dBFS"));
+    p.course = {{0.0, 400.0}, {1.0, 250.0}};
+    CHECK(message([&] { score(a, {{p, {}}}, o); }) == "no error");
+}
+
 TEST_CASE("options that cannot be rendered are refused")
 {
     const auto with = [](auto change) {

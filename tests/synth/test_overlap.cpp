@@ -2,6 +2,7 @@
 // Bursts that overlap on one tactor: one carrier, joined amplitudes.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <doctest/doctest.h>
 
@@ -53,6 +54,42 @@ TEST_CASE("overlapping bursts share one carrier that starts with the first")
             const double a = k < 2880 ? r.a : (k < 4800 ? r.both : r.b);
             REQUIRE(std::abs(x[k] - a * std::sin(2.0 * pi * 250.0 * static_cast<double>(k) / 48000.0)) <
                     1e-6);
+        }
+    }
+}
+
+TEST_CASE("the largest intensity is that of any that sounds, whichever came last")
+{
+    for (const bool louder_first : {true, false}) {
+        CAPTURE(louder_first);
+        plan p =
+            make_plan({make_burst(0.0, 0.1, {{0, louder_first ? 0.9 : 0.5}}, louder_first ? 0.95 : 0.5),
+                       make_burst(0.0, 0.1, {{0, louder_first ? 0.5 : 0.9}}, louder_first ? 0.5 : 0.95)});
+        const auto x = channel(score_of(p, 0.0), 0);
+        CHECK(x[48] == doctest::Approx(0.95)); // sqrt(0.81 + 0.25) would be more
+        // What a scale has made more of than the intensity may stay so.
+        p.bursts[0].intensity = p.bursts[1].intensity = 0.3;
+        CHECK(channel(score_of(p, 0.0), 0)[48] == doctest::Approx(0.9));
+    }
+}
+
+TEST_CASE("what is joined falls as finely as it would alone, however slowly it has risen")
+{
+    plan both = make_plan({make_burst(0.0, 0.1, {{0, 0.6}}), make_burst(0.06, 0.14, {{0, 0.6}})});
+    both.overlap = overlap_kind::max;
+    const plan alone = make_plan({make_burst(0.0, 0.2, {{0, 0.6}})});
+    for (const auto& [attack_s, release_s] : {std::pair{0.05, 0.002}, {0.0, 0.002}, {0.002, 0.03}}) {
+        CAPTURE(attack_s);
+        render_options o;
+        o.level_dbfs = 0.0;
+        o.envelope = {.kind = envelope_kind::raised_cosine, .attack_s = attack_s, .release_s = release_s};
+        const auto x = channel(score(row(1), both, o), 0);
+        const auto y = channel(score(row(1), alone, o), 0);
+        REQUIRE(x.size() == y.size());
+        const auto last = static_cast<std::size_t>(48000 * release_s);
+        const double near = last > 128 ? 0.6 * 0.002 : 1e-6; // long ones are drawn by 64 lines
+        for (std::size_t k = x.size() - last; k < x.size(); ++k) {
+            REQUIRE(std::abs(x[k] - y[k]) < near);
         }
     }
 }
