@@ -21,7 +21,8 @@ class Burst:
         self.first, self.end = frame_at(self.from_s, rate), frame_at(self.to_s, rate)
         self.length = self.end - self.first
         self.ramp = min(frame_at(burst["ramp_s"], rate), self.length // 2)
-        self.amplitude, self.intensity = amplitude, burst["intensity"]
+        self.amplitude = amplitude
+        self.strength = max(burst["intensity"], math.sqrt(sum(d["amplitude"] ** 2 for d in burst["drives"])))
 
     def at(self, n):
         return self.amplitude * window(n - self.first, self.length, self.ramp)
@@ -49,7 +50,7 @@ def joined(sounding, n, overlap):
         return sum(parts)
     if overlap == "max":
         return max(parts)
-    return min(max(b.intensity for b in sounding), math.sqrt(sum(a * a for a in parts)))
+    return min(max(b.strength for b in sounding), math.sqrt(sum(a * a for a in parts)))
 
 
 def envelopes_of_bursts(plan):

@@ -270,6 +270,8 @@ class Record(ToolTest):
         "overlap by energy, phase of the burst": (*BRUSH, "--duration", "1", "--phase", "burst", "--rate", "8000"),
         "the larger": (*BRUSH, "--duration", "1.1", "--overlap", "max", "--carrier", "243", "--rate", "8000"),
         "the sum": (*BRUSH, "--duration", "1", "--overlap", "sum", "--rate", "8000"),
+        "overlap by energy, stronger than the intensity": (*BRUSH[:4], "soft.csv", "--intensity-scale", "stevens",
+                                                           "--stevens-exponent", "2", "--rate", "8000"),
         "continuous": ("park2016-3", "--algorithm", "continuous", "--rate", "11025"),
         "continuous with ramps": ("park2016-1", "--algorithm", "continuous", "--carrier", "251", "--phantom", "gaussian",
                                   "--rate", "8000"),
@@ -286,6 +288,7 @@ class Record(ToolTest):
         self.write("pair.toml", PAIR)
         self.write("strokes.toml", STROKES)
         self.write("grid.toml", GRID)
+        self.write("soft.csv", "t_s,x_mm,y_mm,intensity\n0,10,30,0.4\n1,45,10,0.4\n")
         self.write("touch.csv", "t_s,x_mm,y_mm,intensity\n12.5,0,10,1\n13,20,10,0.25\n13.5,40,30,1.5\n")
 
     def test_samples(self):
