@@ -264,6 +264,30 @@ TEST_CASE("the next mixer counts on, at another rate, and less for the time betw
     CHECK(cut_s(h) == near(0.5));
 }
 
+TEST_CASE("what is handed on from mixer to mixer gains no frame by rounding")
+{
+    const synth::guard_settings g = time_of(9.0, 10.0);
+    synth::mixer first(std::vector<double>(1, 1.0), format_kind::float32, 64, g);
+    for (int i = 0; i < 40; ++i) {
+        REQUIRE(first.add(voice(0.2 * i, 0.1 + 0.0013 * i, 0.5)));
+    }
+    std::vector<float> x(std::size_t{9} * rate);
+    first.process(x.size(), reinterpret_cast<std::byte*>(x.data()));
+    const synth::drive_history had = first.history();
+    REQUIRE(had.channels.at(0).stretches.size() == 40);
+    synth::mixer next(std::vector<double>(1, 1.0), format_kind::float32, 64, g);
+    next.resume(had);
+    const synth::drive_history has = next.history();
+    REQUIRE(has.channels.at(0).stretches.size() == 40);
+    for (std::size_t i = 0; i < 40; ++i) {
+        const auto& a = had.channels[0].stretches[i];
+        const auto& b = has.channels[0].stretches[i];
+        CHECK(std::abs(b.begin_s - a.begin_s) < 0.1 / rate);
+        CHECK(std::abs(b.end_s - a.end_s) < 0.1 / rate);
+        CHECK(std::abs(b.driven_s - a.driven_s) < 0.1 / rate);
+    }
+}
+
 TEST_CASE("a tactor that was cut stays cut in the next mixer")
 {
     const synth::guard_settings g = time_of(0.5, 1.0);
