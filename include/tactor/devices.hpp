@@ -11,6 +11,7 @@
 #include <tactor/alsa.hpp>
 #include <tactor/api.hpp>
 #include <tactor/sample_format.hpp>
+#include <tactor/sink.hpp>
 
 namespace tactor {
 
@@ -78,6 +79,11 @@ struct pcm_route {
 /// Looks the name of a PCM up. Nothing is opened, and nothing thrown for names that nobody defines. Blocks
 /// for some milliseconds (ALSA reads its configuration). Any thread, but one at a time.
 [[nodiscard]] TACTOR_API pcm_route route_of(const std::string& pcm);
+
+/// Which channels of the device so many channels of a PCM would reach, as ALSA's configuration says: through
+/// tables, bindings and whatever hands channels on. Blocks as route_of() does, opens and throws no more than
+/// it. Any thread, but one at a time.
+[[nodiscard]] TACTOR_API stream_wiring wiring_of(const std::string& pcm, unsigned channels);
 
 /// For names that others have chosen, as in an array file that they made: open_alsa() takes any ALSA name,
 /// and one such as "file:'|COMMAND',raw" runs the command. Passes letters, digits, "_", "-", and ":", "," and

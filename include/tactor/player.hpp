@@ -233,6 +233,11 @@ struct player_lines {
     double trigger_delay_s = 0.050;           ///< from the edge to the first sample at the DAC
 };
 
+/// Which tactor cannot be felt by itself on a stream of this wiring, and why: its channel reaches none of the
+/// device's, or only such as another tactor's reaches, too. Empty: there is none, or it cannot be known
+/// (stream_wiring::hidden_by).
+[[nodiscard]] TACTOR_API std::string lost_tactor(const array& a, const stream_wiring& w);
+
 /// Owns the sink, the audio thread and the control thread. Its members may be called from any thread
 /// but the audio thread; they lock, so that several producers are safe. Numbers may be any: what cannot be is
 /// an error, never a crash. Where memory runs out std::bad_alloc is passed on, and what was called has done

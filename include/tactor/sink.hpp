@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <poll.h>
 
@@ -18,6 +19,16 @@
 
 namespace tactor {
 
+/// Which channels of the device the channels of a stream reach.
+struct stream_wiring {
+    /// Of each channel of the stream those that it reaches, ascending (of a second device they count from
+    /// 1024); none: what is played on it is lost. Empty: each reaches the one of its own number.
+    std::vector<std::vector<unsigned>> outputs = {};
+    /// What is between and may give any channel any place, so that `outputs` cannot be known: "type pulse".
+    /// Empty: they are known.
+    std::string hidden_by = {};
+};
+
 /// What was negotiated. Does not change while the sink lives, but for has_clock.
 struct stream_setup {
     std::string name; ///< as the user named it
@@ -26,8 +37,9 @@ struct stream_setup {
     format_kind format = format_kind::s32;
     unsigned period_frames = 0;
     unsigned buffer_frames = 0;
-    bool batch = false;    ///< the position moves by whole periods
-    bool has_clock = true; ///< false: null and file devices, which the sink paces; known after start()
+    bool batch = false;        ///< the position moves by whole periods
+    bool has_clock = true;     ///< false: null and file devices, which the sink paces; known after start()
+    stream_wiring wiring = {}; ///< behind this stream
 };
 
 /// What a call on a sink came to. A plain value: the audio thread throws nothing.

@@ -9,6 +9,7 @@
 #include "holds.hpp"
 #include "sink/alsa/devices/plain_name.hpp"
 #include "sink/alsa/devices/route.hpp"
+#include "sink/alsa/devices/wiring.hpp"
 #include "sink/alsa/handle.hpp"
 #include "sink/alsa/library_messages.hpp"
 
@@ -68,6 +69,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         HOLDS(route.empty());
         return 0;
     }
+    const stream_wiring w = pcm::find_wiring(top.get(), name, 9);
+    HOLDS(w.outputs.empty() || w.hidden_by.empty());
     const configuration owned(definition);
     if (pcm::unsafe_type(route).empty())
         check_tree(top.get(), definition, "", 0);

@@ -103,6 +103,9 @@ start_from_kind: Stroke.start_from
 starts_of: Score.starts
 state_kind: Report.state
 stream_setup: Player.setup
+stream_wiring: Player
+lost_tactor: Player
+wiring_of: Player
 stroke: Stroke
 stroke_choices: Stroke.choices
 stroke_id: Ticket.id

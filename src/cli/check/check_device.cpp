@@ -8,26 +8,49 @@
 
 namespace tactor::cli {
 
-finding check_device(const alsa_options& device, const play_options& o, bool named)
+namespace {
+
+finding told_lost(const alsa_options& device, const std::string& lost)
 {
+    return failure("device", {error_kind::not_available, fmt::format("PCM \"{}\"", device.pcm), lost,
+                              "give each channel one of the device's where the PCM is defined (ttable, "
+                              "bindings), or play on the card itself: -D hw:CARD=NAME"});
+}
+
+finding told_open(const alsa_options& device, const play_options& o, const std::string& lost, bool named)
+{
+    const std::string server = settle_server(device.pcm);
+    const stream_setup made = open_alsa(device)->setup();
+    if (!lost.empty())
+        return told_lost(device, lost);
+    const std::string found = describe(made) + (server.empty() ? "" : "; " + server_note(server));
+    if (!named)
+        return warning("device", "none is named, so play goes to " + found,
+                       "-D PCM, or pcm under [output]; tactor devices lists them");
+    const std::string late = latency_warning(o, made);
+    if (!late.empty())
+        return warning("device", found + "; " + late, "a device with shorter periods, or more latency");
+    if (!server.empty())
+        return warning("device", found, server_cure);
+    if (const std::string unknown = wiring_note(made); !unknown.empty())
+        return warning("device", found + "; " + unknown, server_cure);
+    return fine("device", found);
+}
+
+} // namespace
+
+finding check_device(const alsa_options& device, const play_options& o, const array& a, bool named)
+{
+    const std::string lost = lost_tactor(a, wiring_of(device.pcm, device.channels));
     if (route_of(device.pcm).writes)
-        return warning(
-            "device",
-            fmt::format("{}: not opened, for that would empty its file or start its command", device.pcm),
-            "play opens it: is it meant?");
+        return lost.empty()
+                   ? warning("device",
+                             fmt::format("{}: not opened, for that would empty its file or start its command",
+                                         device.pcm),
+                             "play opens it: is it meant?")
+                   : told_lost(device, lost);
     try {
-        const std::string server = settle_server(device.pcm);
-        const stream_setup made = open_alsa(device)->setup();
-        const std::string found = describe(made) + (server.empty() ? "" : "; " + server_note(server));
-        if (!named)
-            return warning("device", "none is named, so play goes to " + found,
-                           "-D PCM, or pcm under [output]; tactor devices lists them");
-        const std::string late = latency_warning(o, made);
-        if (!late.empty())
-            return warning("device", found + "; " + late, "a device with shorter periods, or more latency");
-        if (!server.empty())
-            return warning("device", found, server_cure);
-        return fine("device", found);
+        return told_open(device, o, lost, named);
     } catch (const error& e) {
         return failure("device", e);
     }

@@ -13,6 +13,13 @@
 namespace tactor::cli {
 namespace {
 
+// What it takes may still not reach the device.
+void look_behind(const array& a, unsigned channels, pcm_info& p)
+{
+    if (p.opened && p.misfit.empty())
+        p.misfit = lost_tactor(a, wiring_of(p.name, channels));
+}
+
 int list_devices(settings& s, option_list& options, bool as_json)
 {
     const environment e = read_environment(s, options);
@@ -22,6 +29,8 @@ int list_devices(settings& s, option_list& options, bool as_json)
     d.pcm_is_configured = names_device(s, e);
     d.wanted = device_options(s, {}, e, render.channels, render.rate);
     d.pcms = list_pcms(d.wanted);
+    for (pcm_info& p : d.pcms)
+        look_behind(e.tactors, d.wanted.channels, p);
     d.chips = list_gpio();
     if (as_json)
         fmt::print("{}", devices_json(d));

@@ -14,6 +14,7 @@
 
 #include "cli/play/instant.hpp"
 #include "cli/play/own_memory.hpp"
+#include "cli/play/sound_server.hpp"
 #include "cli/say.hpp"
 #include "rt/advice.hpp"
 
@@ -47,6 +48,8 @@ play_session::play_session(const alsa_options& device, const play_options& o, co
     if (!locked_ && o.require_realtime)
         throw error(error_kind::not_available, "locked memory", refused, advice());
     start(std::move(s));
+    if (const std::string unknown = wiring_note(setup_); !unknown.empty())
+        say(stderr, "tactor: warning: {} ({})\n", unknown, server_cure);
     const bool realtime = player_->stats().realtime;
     if (!realtime || !locked_)
         say(stderr, "tactor: warning: {}{}{}: xruns are likelier ({})\n",

@@ -34,4 +34,13 @@ std::string server_note(const std::string& server)
     return fmt::format("{} is in between: it may mix, resample and hide xruns", server);
 }
 
+std::string wiring_note(const stream_setup& s)
+{
+    const std::string& between = s.wiring.hidden_by;
+    if (between.empty() || !route_of(s.name).server.empty())
+        return {};
+    return fmt::format(
+        "whether each tactor has a channel of the device to itself is not known: {} is between", between);
+}
+
 } // namespace tactor::cli

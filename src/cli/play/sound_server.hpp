@@ -5,6 +5,8 @@
 
 #include <string>
 
+#include <tactor/sink.hpp>
+
 namespace tactor::cli {
 
 /// The sound server that playing on a PCM goes through; empty: none. PipeWire is asked to give each channel
@@ -17,6 +19,10 @@ bool is_felt(const std::string& pcm);
 
 /// What a server in between may do.
 std::string server_note(const std::string& server);
+
+/// What is not known of the ways that the stream's channels go; empty: all is, or a server is between, of
+/// which server_note() tells.
+std::string wiring_note(const stream_setup& s);
 
 /// What to do about it.
 inline constexpr const char* server_cure =

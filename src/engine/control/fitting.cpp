@@ -3,10 +3,12 @@
 
 #include <cmath>
 #include <cstddef>
+#include <string>
 
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
+#include <tactor/player.hpp>
 #include <tactor/words.hpp>
 
 #include "core/access.hpp"
@@ -51,6 +53,10 @@ const array& fitting(const array& a, const stream_setup& s)
                         fmt::format("tactor {} of {} is on channel {}, but the stream has {} channel{}", i,
                                     a.name, a.tactors[i].channel, s.channels, s.channels == 1 ? "" : "s"),
                         fmt::format("open it with {}; they count from 0", counted(a.channels(), "channel")));
+    if (const std::string lost = lost_tactor(a, s.wiring); !lost.empty())
+        throw error(error_kind::not_available, fmt::format("stream on \"{}\"", s.name), lost,
+                    "give each channel one of the device's where the PCM is defined (ttable, bindings), or "
+                    "play on the card itself, hw:CARD=NAME");
     return a;
 }
 

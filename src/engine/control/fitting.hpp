@@ -11,7 +11,8 @@
 
 namespace tactor::engine {
 
-/// The array itself. \throws error (bad_input) for a tactor on a channel that the stream does not have.
+/// The array itself. \throws error: bad_input for a tactor on a channel that the stream does not have,
+///         not_available for one that reaches no channel of the device of its own.
 const array& fitting(const array& a, const stream_setup& s);
 
 /// `limits`: of the player's array, by channel of the stream; 0: no tactor.

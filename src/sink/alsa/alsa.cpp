@@ -12,6 +12,7 @@
 #include "core/log.hpp"
 #include "core/refused.hpp"
 #include "sink/alsa/adopt.hpp"
+#include "sink/alsa/devices/wiring.hpp"
 #include "sink/alsa/handle.hpp"
 #include "sink/alsa/library_messages.hpp"
 #include "sink/alsa/negotiate.hpp"
@@ -28,10 +29,11 @@ bool is_on_card(snd_pcm_t* p)
     return snd_pcm_info(p, info) == 0 && snd_pcm_info_get_card(info) >= 0;
 }
 
-std::unique_ptr<sink> configure(handle h, const alsa_options& o, bool as_card = false)
+std::unique_ptr<sink> configure(handle h, const alsa_options& o, stream_wiring wiring, bool as_card)
 try {
     const library_messages silent;
     stream_setup s = negotiate(h.get(), o);
+    s.wiring = std::move(wiring);
     set_software(h.get(), s);
     detail::log(o.log, log_kind::info, "PCM \"{}\": {}, {} Hz, {}, {} of {} frames{}", o.pcm,
                 counted(s.channels, "channel"), s.rate, to_string(s.format),
@@ -41,6 +43,10 @@ try {
                     : fmt::format("; {} of {} were wished", o.periods, o.period_frames));
     if (s.batch)
         detail::log(o.log, log_kind::debug, "PCM \"{}\": its position moves by whole periods", o.pcm);
+    if (!s.wiring.hidden_by.empty())
+        detail::log(o.log, log_kind::warning,
+                    "PCM \"{}\": which of the device's channels its own reach is not known: {} is between",
+                    o.pcm, s.wiring.hidden_by);
     const bool on_card = as_card || is_on_card(h.get());
     return std::make_unique<pcm_sink>(std::move(h), std::move(s), on_card);
 } catch (const error&) {
@@ -55,7 +61,7 @@ std::unique_ptr<sink> adopt(snd_pcm_t* p, const alsa_options& o, bool as_card)
 {
     handle h(p);
     check(o);
-    return configure(std::move(h), o, as_card);
+    return configure(std::move(h), o, {}, as_card);
 }
 
 } // namespace pcm
@@ -63,7 +69,8 @@ std::unique_ptr<sink> adopt(snd_pcm_t* p, const alsa_options& o, bool as_card)
 std::unique_ptr<sink> open_alsa(const alsa_options& o)
 {
     pcm::check(o);
-    return pcm::configure(pcm::open(o), o);
+    pcm::handle h = pcm::open(o);
+    return pcm::configure(std::move(h), o, pcm::find_wiring(o), false);
 }
 
 } // namespace tactor

@@ -6,6 +6,9 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+#include <tactor/error.hpp>
+
+#include "sink/alsa/error_text.hpp"
 #include "sink/alsa/library_messages.hpp"
 
 namespace tactor::pcm {
@@ -29,6 +32,17 @@ bool defines_pcms(snd_config_t* top)
 }
 
 } // namespace
+
+configuration parse(const std::string& text)
+{
+    const library_messages said;
+    snd_config_t* c = nullptr;
+    const int code = snd_config_load_string(&c, text.c_str(), text.size());
+    if (code < 0)
+        throw error(error_kind::bad_input, "ALSA configuration text",
+                    with_detail(snd_strerror(code), said.first()), "see the ALSA documentation of .asoundrc");
+    return configuration(c);
+}
 
 system_configuration::system_configuration() : refused_(lack_of_descriptors())
 {

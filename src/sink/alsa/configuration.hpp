@@ -1,11 +1,21 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// ALSA's configuration, as the system has it.
+/// ALSA's configuration: the system's, or a text's.
 #pragma once
+
+#include <memory>
+#include <string>
 
 #include <alsa/asoundlib.h>
 
+#include "core/deleter.hpp"
+
 namespace tactor::pcm {
+
+using configuration = std::unique_ptr<snd_config_t, detail::deleter<snd_config_delete>>;
+
+/// \throws error (bad_input) for what ALSA cannot read.
+configuration parse(const std::string& text);
 
 /// ALSA's configuration as snd_pcm_open() finds it, kept from being reread meanwhile. Not read without a free
 /// descriptor: libasound goes without the files that it cannot open, and keeps that until one changes.

@@ -17,8 +17,6 @@ namespace {
 constexpr int mode =
     SND_PCM_NONBLOCK | SND_PCM_NO_AUTO_RESAMPLE | SND_PCM_NO_AUTO_CHANNELS | SND_PCM_NO_AUTO_FORMAT;
 
-using configuration = std::unique_ptr<snd_config_t, deleter<snd_config_delete>>;
-
 template <typename T, typename Make>
 T* made(Make make)
 {
@@ -26,16 +24,6 @@ T* made(Make make)
     if (make(&p) < 0)
         throw std::bad_alloc();
     return p;
-}
-
-configuration parse(const std::string& text, const library_messages& said)
-{
-    snd_config_t* c = nullptr;
-    const int code = snd_config_load_string(&c, text.c_str(), text.size());
-    if (code < 0)
-        throw error(error_kind::bad_input, "ALSA configuration text",
-                    with_detail(snd_strerror(code), said.first()), "see the ALSA documentation of .asoundrc");
-    return configuration(c);
 }
 
 } // namespace
@@ -76,7 +64,7 @@ handle open(const alsa_options& o)
         if (code < 0)
             there.pcms = defined_pcms(system.get());
     } else {
-        const configuration c = parse(o.config_text, said);
+        const configuration c = parse(o.config_text);
         code = snd_pcm_open_lconf(&p, o.pcm.c_str(), SND_PCM_STREAM_PLAYBACK, mode, c.get());
         if (code < 0)
             there.pcms = defined_pcms(c.get());

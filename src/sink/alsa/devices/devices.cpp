@@ -10,6 +10,7 @@
 #include "sink/alsa/devices/names.hpp"
 #include "sink/alsa/devices/plain_name.hpp"
 #include "sink/alsa/devices/route.hpp"
+#include "sink/alsa/devices/wiring.hpp"
 #include "sink/alsa/error_text.hpp"
 #include "sink/alsa/handle.hpp"
 #include "sink/alsa/library_messages.hpp"
@@ -144,6 +145,11 @@ tactor::pcm_route tactor::route_of(const std::string& pcm)
     r.writes = pcm::writes(r.types);
     r.server = pcm::server_of(r.types);
     return r;
+}
+
+tactor::stream_wiring tactor::wiring_of(const std::string& pcm, unsigned channels)
+{
+    return pcm::find_wiring({.pcm = pcm, .channels = channels});
 }
 
 void tactor::require_device_name(const std::string& pcm)

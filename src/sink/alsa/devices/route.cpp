@@ -16,7 +16,6 @@ namespace {
 
 using types = std::vector<std::string>;
 
-constexpr int deepest = 8;             // of plugins on plugins; a definition may name itself
 constexpr std::size_t most_types = 64; // of one PCM: definitions that double at each step end, too
 
 // They touch nothing beyond the device that they end in.
@@ -24,12 +23,6 @@ constexpr std::array harmless{"hw",    "null",  "plug", "linear", "lfloat", "cop
                               "multi", "empty", "asym", "mulaw",  "alaw",   "adpcm", "iec958"};
 // These start or set a card's mixer ("ctl_elems" is what hooks do), or talk to a server.
 constexpr std::array lasting{"dmix", "dshare", "softvol", "hooks", "ctl_elems", "pulse", "pipewire", "jack"};
-
-template <typename Names>
-bool among(const Names& names, const std::string& type)
-{
-    return std::find(names.begin(), names.end(), type) != names.end();
-}
 
 class walker {
 public:

@@ -3,7 +3,9 @@
 /// What the name of a PCM leads to, as ALSA's configuration defines it. Nothing is opened.
 #pragma once
 
+#include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <alsa/asoundlib.h>
@@ -23,6 +25,15 @@ void each_member(snd_config_t* compound, Visit visit)
         if (snd_config_get_id(member, &id) == 0 && id != nullptr)
             visit(std::string(id), member);
     }
+}
+
+/// Of plugins on plugins; a definition may name itself.
+inline constexpr int deepest = 8;
+
+template <typename Names>
+bool among(const Names& names, std::string_view type)
+{
+    return std::find(names.begin(), names.end(), type) != names.end();
 }
 
 /// Stands for the type of a definition that leads to itself, or farther than anyone's does.

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: MIT
+#include "sink/alsa/devices/wiring.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "sink/alsa/configuration.hpp"
+#include "sink/alsa/devices/route.hpp"
+#include "sink/alsa/handle.hpp"
+#include "sink/alsa/library_messages.hpp"
+
+namespace tactor::pcm {
+namespace {
+
+constexpr int most_definitions = 64;         // of one PCM: those that double at each step end, too
+constexpr std::size_t most_links = 1U << 18; // a table may lead each channel to each
+
+// They hand each channel on as it is.
+constexpr std::array straight{"plug",  "linear", "lfloat", "copy",  "rate",    "mulaw", "alaw",
+                              "adpcm", "iec958", "empty",  "hooks", "softvol", "file",  "mmap_emul"};
+// They lead each channel to the slave's that their bindings say.
+constexpr std::array binding{"dmix", "dshare", "share"};
+
+using outputs = std::vector<std::set<unsigned>>; // of each channel
+
+snd_config_t* member(snd_config_t* compound, const char* id)
+{
+    snd_config_t* found = nullptr;
+    return snd_config_get_type(compound) == SND_CONFIG_TYPE_COMPOUND &&
+                   snd_config_search(compound, id, &found) == 0
+               ? found
+               : nullptr;
+}
+
+std::string text(snd_config_t* value)
+{
+    char* said = nullptr;
+    if (value == nullptr || snd_config_get_ascii(value, &said) < 0 || said == nullptr)
+        return {};
+    const std::unique_ptr<char, deleter<std::free>> freed(said);
+    return said;
+}
+
+// Numbers as libasound reads them: of any base, and nothing else beside them. Those that no device has are
+// most_channels.
+std::optional<unsigned> channel_number(const std::string& s)
+{
+    char* end = nullptr;
+    const long n = std::strtol(s.c_str(), &end, 0);
+    if (s.empty() || *end != '\0')
+        return {};
+    return n < 0 || n > long{most_channels} ? most_channels : static_cast<unsigned>(n);
+}
+
+// What stands between and is not understood.
+struct hidden {
+    std::string by;
+};
+
+class tracer {
+public:
+    explicit tracer(snd_config_t* top) : top_(top) {}
+
+    outputs named(const char* base, const std::string& name, unsigned channels, int depth)
+    {
+        const configuration definition = look_up(base, name);
+        if (definition == nullptr)
+            throw hidden{fmt::format("{}, which is not defined", name)};
+        return at(definition.get(), channels, depth);
+    }
+
+private:
+    configuration look_up(const char* base, const std::string& name)
+    {
+        snd_config_t* definition = nullptr;
+        if (snd_config_search_definition(top_, base, name.c_str(), &definition) < 0)
+            return nullptr;
+        return configuration(definition);
+    }
+
+    // A definition, or the name of one.
+    outputs at(snd_config_t* definition, unsigned channels, int depth)
+    {
+        if (depth > deepest || ++definitions_ > most_definitions)
+            throw hidden{"more definitions than anyone has"};
+        const char* other = nullptr;
+        if (snd_config_get_string(definition, &other) >= 0 && other != nullptr)
+            return named("pcm", other, channels, depth + 1);
+        const std::string type = text(member(definition, "type"));
+        if (type == "hw")
+            return device(fmt::format("{},{}", text(member(definition, "card")),
+                                      channel_number(text(member(definition, "device"))).value_or(0)),
+                          channels);
+        if (type == "null")
+            return device(fmt::format("null {}", definitions_), channels);
+        if (type == "asym")
+            return slave(member(definition, "playback"), channels, depth);
+        if (type == "multi")
+            return of_multi(definition, channels, depth);
+        if (type == "route" || (type == "plug" && member(definition, "ttable") != nullptr))
+            return of_table(definition, channels, depth);
+        if (among(binding, type) && member(definition, "bindings") != nullptr)
+            return of_bindings(definition, channels, depth);
+        if (among(straight, type) || among(binding, type))
+            return slave(member(definition, "slave"), channels, depth);
+        throw hidden{type.empty() ? "a definition without a type" : fmt::format("type {}", type)};
+    }
+
+    // One that is reached on several ways is one.
+    outputs device(const std::string& key, unsigned channels)
+    {
+        const unsigned first = devices_.try_emplace(key, devices_.size() * most_channels).first->second;
+        outputs all(channels);
+        for (unsigned c = 0; c < channels; ++c)
+            all[c] = {first + c};
+        return all;
+    }
+
+    // `channels`: where the slave's definition does not say how many.
+    outputs slave(snd_config_t* definition, unsigned channels, int depth)
+    {
+        configuration kept;
+        const char* name = nullptr;
+        if (definition != nullptr && snd_config_get_string(definition, &name) >= 0 && name != nullptr) {
+            kept = look_up("pcm_slave", name);
+            definition = kept.get();
+        }
+        snd_config_t* pcm = definition == nullptr ? nullptr : member(definition, "pcm");
+        if (pcm == nullptr)
+            throw hidden{"a slave that is not defined"};
+        long said = 0;
+        if (snd_config_t* n = member(definition, "channels");
+            n != nullptr && snd_config_get_integer(n, &said) >= 0)
+            channels = static_cast<unsigned>(std::clamp(said, 0L, long{most_channels}));
+        return at(pcm, channels, depth + 1);
+    }
+
+    void link(std::set<unsigned>& from, const outputs& inner, std::optional<unsigned> to)
+    {
+        if (!to || *to >= inner.size())
+            return;
+        if ((links_ += inner[*to].size()) > most_links)
+            throw hidden{"a larger table than anyone has"};
+        from.insert(inner[*to].begin(), inner[*to].end());
+    }
+
+    outputs of_table(snd_config_t* definition, unsigned channels, int depth)
+    {
+        const outputs inner = slave(member(definition, "slave"), channels, depth);
+        outputs all(channels);
+        snd_config_t* table = member(definition, "ttable");
+        if (table == nullptr)
+            throw hidden{"a route without a table"};
+        each_member(table, [&](const std::string& client, snd_config_t* row) {
+            const auto from = channel_number(client);
+            each_member(row, [&](const std::string& to, snd_config_t* gain) {
+                double value = 0.0;
+                if (!channel_number(to)) // FL, FR: the device says which these are
+                    throw hidden{fmt::format("type route to a channel {}", to)};
+                if (from && *from < channels && snd_config_get_ireal(gain, &value) >= 0 && value != 0.0)
+                    link(all[*from], inner, channel_number(to));
+            });
+        });
+        return all;
+    }
+
+    outputs of_bindings(snd_config_t* definition, unsigned channels, int depth)
+    {
+        const outputs inner = slave(member(definition, "slave"), most_channels, depth);
+        outputs all(channels);
+        each_member(member(definition, "bindings"), [&](const std::string& client, snd_config_t* to) {
+            const auto from = channel_number(client);
+            if (from && *from < channels)
+                link(all[*from], inner, channel_number(text(to)));
+        });
+        return all;
+    }
+
+    outputs of_multi(snd_config_t* definition, unsigned channels, int depth)
+    {
+        std::map<std::string, outputs> slaves;
+        outputs all(channels);
+        snd_config_t* const defined = member(definition, "slaves");
+        snd_config_t* const bindings = member(definition, "bindings");
+        if (defined == nullptr || bindings == nullptr)
+            throw hidden{"type multi without slaves or bindings"};
+        each_member(defined, [&](const std::string& id, snd_config_t* one) {
+            slaves.emplace(id, slave(one, most_channels, depth));
+        });
+        each_member(bindings, [&](const std::string& client, snd_config_t* to) {
+            const auto from = channel_number(client);
+            const auto one = slaves.find(text(member(to, "slave")));
+            if (from && *from < channels && one != slaves.end())
+                link(all[*from], one->second, channel_number(text(member(to, "channel"))));
+        });
+        return all;
+    }
+
+    snd_config_t* top_;
+    int definitions_ = 0;
+    std::size_t links_ = 0;
+    std::map<std::string, unsigned> devices_ = {}; ///< and the number of the first output of each
+};
+
+bool is_straight(const outputs& all)
+{
+    for (unsigned c = 0; c < all.size(); ++c)
+        if (all[c] != std::set{c})
+            return false;
+    return true;
+}
+
+} // namespace
+
+stream_wiring find_wiring(snd_config_t* top, const std::string& name, unsigned channels)
+{
+    const library_messages silent;
+    stream_wiring w;
+    if (top == nullptr)
+        return w;
+    try {
+        outputs all = tracer(top).named("pcm", name, channels, 0);
+        all.resize(channels);
+        if (!is_straight(all))
+            for (const std::set<unsigned>& one : all)
+                w.outputs.emplace_back(one.begin(), one.end());
+    } catch (const hidden& h) {
+        w.hidden_by = h.by;
+    }
+    return w;
+}
+
+stream_wiring find_wiring(const alsa_options& o)
+{
+    if (o.config_text.empty())
+        return find_wiring(system_configuration().get(), o.pcm, o.channels);
+    return find_wiring(parse(o.config_text).get(), o.pcm, o.channels);
+}
+
+} // namespace tactor::pcm
