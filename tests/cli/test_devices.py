@@ -77,6 +77,16 @@ class Devices(ToolTest):
         self.assertEqual(pcms["said"]["description"], "first line, second line")
         self.assertIn("hw:CARD=Nowhere   <- the one that is configured", self.ok("devices", "-D", "hw:CARD=Nowhere").stdout)
 
+    def test_a_missing_plugin_is_named_with_its_package(self):
+        (self.dir / "plugins").mkdir()
+        env = {"ALSA_PLUGIN_DIR": str(self.dir / "plugins")}
+        for kind, package in (("pulse", "libasound2-plugins"), ("pipewire", "pipewire-alsa")):
+            self.write("alsa.conf", f"pcm.!default {{ type {kind} }}\n")
+            for command in (("play", "park2016-1"), ("check",)):
+                r = self.refused(3, *command, "-D", "default", env=env, says=[f"libasound_module_pcm_{kind}.so"])
+                self.assertIn(f"sudo apt install {package}", r.stdout + r.stderr)
+                self.assertNotIn("no sound card", r.stdout + r.stderr)
+
     def test_a_file_that_is_asked_about_is_listed_and_not_made(self):
         _, pcms = self.devices("-D", f"raw:{self.dir}/out.raw")
         self.assertEqual((pcms[f"raw:{self.dir}/out.raw"]["configured"], pcms[f"raw:{self.dir}/out.raw"]["tried"]), (True, False))

@@ -12,6 +12,7 @@
 
 #include "core/refused.hpp"
 #include "core/suggest.hpp"
+#include "sink/alsa/devices/route.hpp"
 
 namespace tactor::pcm {
 namespace {
@@ -60,8 +61,61 @@ error no_device(const std::string& name, unsigned device, const card& c, const s
             fmt::format("its playback devices: {}", fmt::join(devices, ", "))};
 }
 
+std::string on_a_card(const surroundings& s)
+{
+    const auto cards = sound_cards(s.root);
+    return fmt::format("play on a card: -D hw:CARD={}; tactor devices lists all",
+                       cards.empty() ? "NAME" : cards.front().id);
+}
+
+// "pulse" of libasound's complaint about libasound_module_pcm_pulse.so, or the ..._conf_pulse.so of its
+// hooks.
+std::string missing_plugin(const std::string& detail)
+{
+    constexpr std::string_view before = "Cannot open shared library libasound_module_";
+    const auto at = detail.find(before);
+    const auto end = at == detail.npos ? at : detail.find(".so", at);
+    if (end == detail.npos)
+        return {};
+    const std::string kind_and_name = detail.substr(at + before.size(), end - at - before.size());
+    return kind_and_name.substr(kind_and_name.find('_') + 1);
+}
+
+// Debian's names.
+error no_plugin(const std::string& name, const std::string& type, const std::string& detail,
+                const surroundings& s)
+{
+    constexpr std::array bundled{"a52", "jack", "oss", "pulse", "speex", "upmix", "usb_stream", "vdownmix"};
+    std::string hint;
+    if (type == "pipewire")
+        hint = "install it: sudo apt install pipewire-alsa";
+    else if (among(bundled, type))
+        hint = "install it: sudo apt install libasound2-plugins";
+    else
+        hint =
+            fmt::format("is the type {} in its definition misspelt? Else install what has that file", type);
+    return {error_kind::not_available, thing(name), with_detail("a plugin of ALSA's is missing", detail),
+            fmt::format("{}; or {}", hint, on_a_card(s))};
+}
+
+error no_jack(const std::string& name, const surroundings& s)
+{
+    return {error_kind::not_available, thing(name), "it leads to JACK, whose server does not run",
+            "start it, as the user who is logged in: jackd, or QjackCtl; or " + on_a_card(s)};
+}
+
+// Whether it would end in a card, were there one; of what cannot be looked up that is likely.
+bool wants_card(const surroundings& s)
+{
+    return s.route.empty() || among(s.route, "hw");
+}
+
 error no_pcm(const std::string& name, const std::string& detail, const surroundings& s)
 {
+    if (const std::string type = missing_plugin(detail); !type.empty())
+        return no_plugin(name, type, detail, s);
+    if (among(s.route, "jack") && detail.empty())
+        return no_jack(name, s);
     const auto cards = sound_cards(s.root);
     if (const auto d = named_device(name)) {
         const auto c = find_card(cards, d->card);
@@ -73,7 +127,7 @@ error no_pcm(const std::string& name, const std::string& detail, const surroundi
     }
     const std::string plain = name.substr(0, name.find(':'));
     const bool defined = std::find(s.pcms.begin(), s.pcms.end(), plain) != s.pcms.end();
-    if (defined && cards.empty())
+    if (defined && cards.empty() && wants_card(s))
         return {error_kind::not_available, thing(name), with_detail("there is no sound card", detail),
                 no_card_hint};
     std::string hint = near(plain, s.pcms);
@@ -128,13 +182,12 @@ error forbidden(const std::string& name, const surroundings& s)
 // nothing to people ("Host is down").
 error no_server(const std::string& name, const std::string& detail, const surroundings& s)
 {
-    std::string hint = "start it, as the user who is logged in: systemctl --user start pipewire-pulse, or "
-                       "pulseaudio --start; root and services have none of their own. Or play on a card: ";
-    const auto cards = sound_cards(s.root);
-    hint += cards.empty() ? "-D hw:CARD=NAME" : fmt::format("-D hw:CARD={}", cards.front().id);
+    const std::string hint =
+        "start it, as the user who is logged in: systemctl --user start pipewire-pulse, or pulseaudio "
+        "--start; root and services have none of their own. Or ";
     return {error_kind::not_available, thing(name),
             with_detail("it leads to a sound server (PipeWire, PulseAudio), which is not there", detail),
-            hint + "; tactor devices lists all"};
+            hint + on_a_card(s)};
 }
 
 } // namespace

@@ -19,6 +19,7 @@ std::string with_detail(const std::string& text, const std::string& detail);
 struct surroundings {
     std::vector<std::string> pcms = {}; ///< names that the configuration defines
     system_root root = "/";
+    std::vector<std::string> route = {}; ///< types of the plugins that the name leads through
 };
 
 /// Why a PCM could not be opened (negative errno) and what to do. `detail`: libasound's own words.

@@ -7,6 +7,7 @@
 #include "core/refused.hpp"
 #include "sink/alsa/configuration.hpp"
 #include "sink/alsa/devices/names.hpp"
+#include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/error_text.hpp"
 #include "sink/alsa/library_messages.hpp"
 
@@ -24,6 +25,11 @@ T* made(Make make)
     if (make(&p) < 0)
         throw std::bad_alloc();
     return p;
+}
+
+surroundings around(snd_config_t* top, const std::string& name)
+{
+    return {.pcms = defined_pcms(top), .route = find_route(top, name)};
 }
 
 } // namespace
@@ -62,12 +68,12 @@ handle open(const alsa_options& o)
         if (code == 0)
             code = snd_pcm_open(&p, o.pcm.c_str(), SND_PCM_STREAM_PLAYBACK, mode);
         if (code < 0)
-            there.pcms = defined_pcms(system.get());
+            there = around(system.get(), o.pcm);
     } else {
         const configuration c = parse(o.config_text);
         code = snd_pcm_open_lconf(&p, o.pcm.c_str(), SND_PCM_STREAM_PLAYBACK, mode, c.get());
         if (code < 0)
-            there.pcms = defined_pcms(c.get());
+            there = around(c.get(), o.pcm);
     }
     if (code < 0)
         tactor::detail::throw_caused(open_error(o.pcm, code, said.first(), there), -code);

@@ -2,14 +2,12 @@
 // What is said when a PCM cannot be opened, on a system made of files.
 #include <cerrno>
 #include <chrono>
-#include <cstdarg>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
 
-#include <alsa/asoundlib.h>
 #include <doctest/doctest.h>
 
 #include <tactor/alsa.hpp>
@@ -19,7 +17,6 @@
 #include "has.hpp"
 #include "sink/alsa/devices/cards.hpp"
 #include "sink/alsa/error_text.hpp"
-#include "sink/alsa/library_messages.hpp"
 
 namespace alsa_errors_test {
 
@@ -32,7 +29,18 @@ struct fake_system : test::fake_system {
     std::string says(const std::string& pcm, int code,
                      std::vector<std::string> pcms = {"default", "null"}) const
     {
-        const error e = pcm::open_error(pcm, code, "", {std::move(pcms), root()});
+        return says(pcm, code, "", {std::move(pcms), root()});
+    }
+    std::string leads(const std::vector<std::string>& route, int code, const std::string& detail = "") const
+    {
+        return says("default", code, detail, {{"default", "null"}, root(), route});
+    }
+
+private:
+    static std::string says(const std::string& pcm, int code, const std::string& detail,
+                            const pcm::surroundings& there)
+    {
+        const error e = pcm::open_error(pcm, code, detail, there);
         CHECK(e.kind() == error_kind::not_available);
         return e.what();
     }
@@ -82,6 +90,60 @@ TEST_CASE("a sound server that is not there is named, and what to do without one
     for (const int code : {-EHOSTDOWN, -ECONNREFUSED})
         has(s.says("pulse", code), "tactor devices lists all");
     CHECK(s.says("default", -EHOSTDOWN).find("hw:CARD=NAME") == std::string::npos);
+}
+
+TEST_CASE("a plugin of ALSA's that is missing is named with its package")
+{
+    const fake_system s;
+    const auto missing = [&](const std::string& type) {
+        const std::string file = "libasound_module_pcm_" + type + ".so";
+        const std::string text =
+            s.leads({"plug", type}, -ENXIO,
+                    "Cannot open shared library " + file + " (/usr/lib/alsa-lib/" + file +
+                        ": cannot open shared object file: No such file or directory)");
+        has(text, "PCM \"default\": a plugin of ALSA's is missing: Cannot open shared library " + file);
+        CHECK(text.find("there is no sound card") == std::string::npos);
+        return text;
+    };
+    for (const char* type : {"pulse", "jack", "oss", "usb_stream", "a52", "speex", "upmix", "vdownmix"})
+        has(missing(type), "sudo apt install libasound2-plugins; or play on a card: -D hw:CARD=NAME");
+    has(s.leads({}, -ENOENT, "Cannot open shared library libasound_module_conf_pulse.so (none)"),
+        "sudo apt install libasound2-plugins");
+    has(missing("pipewire"), "sudo apt install pipewire-alsa;");
+    const std::string unknown = missing("pulze");
+    has(unknown, "is the type pulze in its definition misspelt? Else install what has that file");
+    CHECK(unknown.find("apt") == std::string::npos);
+    s.two_cards();
+    has(missing("pulse"), "-D hw:CARD=Headphones");
+    try {
+        static_cast<void>(open_alsa({.pcm = "t", .channels = 1, .config_text = "pcm.t { type nobodys }"}));
+        FAIL("it opened");
+    } catch (const error& e) {
+        has(e.what(), "a plugin of ALSA's is missing: ");
+        has(e.what(), "is the type nobodys in its definition misspelt?");
+    }
+}
+
+TEST_CASE("JACK without its server is named, whose plugin only says that there is nothing")
+{
+    const fake_system s;
+    const std::string text = s.leads({"plug", "jack"}, -ENOENT);
+    has(text, "it leads to JACK, whose server does not run");
+    has(text, "jackd");
+    has(text, "-D hw:CARD=NAME");
+    CHECK(text.find("there is no sound card") == std::string::npos);
+    for (const int code : {-ECONNREFUSED, -EHOSTDOWN})
+        has(s.leads({"pipewire"}, code), "a sound server (PipeWire, PulseAudio), which is not there");
+}
+
+TEST_CASE("without a card that is said only of what leads to one")
+{
+    const fake_system s;
+    for (const std::vector<std::string>& route : {std::vector<std::string>{}, {"hw"}, {"plug", "dmix", "hw"}})
+        has(s.leads(route, -ENOENT), "there is no sound card");
+    const std::string text = s.leads({"plug"}, -ENOENT, "Unknown PCM palm");
+    has(text, "no such PCM: Unknown PCM palm");
+    CHECK(text.find("there is no sound card") == std::string::npos);
 }
 
 TEST_CASE("a busy device with nobody to be seen still says what to do")
@@ -206,43 +268,6 @@ TEST_CASE("the card and the device in an ALSA name")
     is("surround71:CARD=PCH,DEV=0", "PCH", 0);
     for (const char* name : {"null", "default", "raw:/tmp/x", "", ":", "file:hw"})
         CHECK_FALSE(pcm::named_device(name));
-}
-
-TEST_CASE("the host program keeps its handlers of libasound's messages")
-{
-    const auto fails = [] { CHECK_THROWS_AS(open_alsa({.pcm = "no-such-pcm", .channels = 1}), error); };
-    const auto host = snd_lib_error;
-    fails();
-    const bool kept = snd_lib_error == host;
-    CHECK(kept);
-
-    static unsigned heard = 0;
-    const auto own = [](const char*, int, const char*, int, const char*, va_list) { ++heard; };
-    const snd_local_error_handler_t before = pcm::set_local_handler(own);
-    fails();
-    { // What is said is the error's detail, not the host's, and in between its own calls are its own.
-        const auto sink = open_alsa({.pcm = "null", .channels = 1});
-        CHECK(heard == 0);
-        snd_pcm_t* p = nullptr;
-        CHECK(snd_pcm_open(&p, "no-such-pcm", SND_PCM_STREAM_PLAYBACK, 0) < 0);
-        CHECK(heard != 0);
-    }
-    const bool restored = pcm::set_local_handler(before) == static_cast<snd_local_error_handler_t>(own);
-    CHECK(restored);
-}
-
-TEST_CASE("messages within messages are the inner one's, and the outer one goes on")
-{
-    const pcm::library_messages outer;
-    {
-        const pcm::library_messages inner;
-        SNDERR("one");
-        SNDERR("two");
-        CHECK(inner.first() == "one");
-    }
-    CHECK(outer.first() == "");
-    SNDERR("three \n");
-    CHECK(outer.first() == "three");
 }
 
 } // namespace alsa_errors_test
