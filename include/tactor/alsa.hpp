@@ -14,9 +14,12 @@
 
 namespace tactor {
 
+/// More than any PCM has.
+inline constexpr unsigned max_pcm_channels = 1024;
+
 struct alsa_options {
     std::string pcm = "null"; ///< any ALSA name
-    unsigned channels = 0;    ///< exact
+    unsigned channels = 0;    ///< exact, up to max_pcm_channels
     unsigned rate = 48000;    ///< exact, Hz; never resampled by us
     std::optional<format_kind> format =
         {};                      ///< none: the first of s32, float, s24_3, s24_4, s16 that it takes

@@ -95,6 +95,18 @@ error in_piece(const error& x, const std::string& argument, std::size_t number, 
                 : error(x.kind(), fmt::format("{}: {}: {}", argument, which, x.subject()), x.why(), x.hint());
 }
 
+// A file's only stroke: which file, for the planner knows the stroke's name at most. What the command line or
+// a preset says is known without.
+error in_file(const error& x, const std::string& argument)
+{
+    const bool about_it = x.subject() == "stroke" || x.subject().starts_with("stroke \"");
+    const bool file = argument != "--path" && !is_preset(stroke_presets(), argument);
+    if (!about_it || !file)
+        return x;
+    return {x.kind(), fmt::format("{}: {}", argument == "-" ? "standard input" : argument, x.subject()),
+            x.why(), x.hint()};
+}
+
 // A plan comes with its strokes; those that are read as strokes are not planned yet.
 piece open_argument(const settings& s, const environment& e, const layout& faces, const std::string& argument)
 {
@@ -106,7 +118,7 @@ piece open_argument(const settings& s, const environment& e, const layout& faces
     return {argument, f.strokes, f.plans, {}, f.moved};
 }
 
-// Calls f(stroke), and says of which of several strokes it is that it throws.
+// Calls f(stroke), and says of which it is that it throws.
 template <class F>
 void for_each_stroke(const piece& p, F f)
 {
@@ -114,14 +126,18 @@ void for_each_stroke(const piece& p, F f)
         try {
             f(p.strokes[i]);
         } catch (const error& x) {
-            if (p.strokes.size() == 1)
-                throw;
-            throw in_piece(in_options(x), p.name, i + 1, p.strokes[i].name);
+            throw of_stroke(x, p, i);
         }
     }
 }
 
 } // namespace
+
+error of_stroke(const error& x, const piece& p, std::size_t i)
+{
+    return p.strokes.size() == 1 ? in_file(x, p.name)
+                                 : in_piece(in_options(x), p.name, i + 1, p.strokes[i].name);
+}
 
 std::vector<piece> open_pieces(const settings& s, const environment& e, const layout& faces)
 {

@@ -23,6 +23,9 @@ struct piece {
     std::vector<compensated_plan> moved = {};
 };
 
+/// An error about the piece's stroke i, with the file that has it, and which of several it is.
+error of_stroke(const error& x, const piece& p, std::size_t i);
+
 /// Reads all STROKE arguments. A plan comes with its plans; what is a stroke is not planned yet. `faces` is
 /// what --fit puts strokes on. \throws error.
 std::vector<piece> open_pieces(const settings& s, const environment& e, const layout& faces);

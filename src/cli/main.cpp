@@ -67,17 +67,35 @@ std::string version_text()
     return fmt::format("tactor {}\n{}", version(), build_facts());
 }
 
-int run(int argc, char** argv)
+bool is_command(std::string_view name)
 {
-    const std::string_view first = argc > 1 ? argv[1] : "";
-    if (first == "--version" && argc == 2) {
+    return std::any_of(commands.begin(), commands.end(),
+                       [&](const named_command& c) { return c.name == name; });
+}
+
+// `tactor help plan` is `tactor plan --help`, for whoever has no manual pages.
+std::vector<std::string> arguments(int argc, char** argv)
+{
+    std::vector<std::string> all(argv + 1, argv + argc);
+    if (all.empty() || all.front() != "help")
+        return all;
+    all.erase(all.begin());
+    if (all.empty() || is_command(all.front())) // another is complained of
+        all.emplace_back("--help");
+    return all;
+}
+
+int run(const std::vector<std::string>& given)
+{
+    const std::string_view first = given.empty() ? "" : std::string_view(given.front());
+    if (first == "--version" && given.size() == 1) {
         fmt::print("{}\n", version_text());
         return status_ok;
     }
     CLI::App app("Draws on skin: moving tactile strokes over sparse arrays of tactors.", "tactor");
     app.set_version_flag("--version", version_text);
     app.require_subcommand(1);
-    app.footer("Example: tactor play park2016-3        tactor COMMAND --help says more.");
+    app.footer("Example: tactor play park2016-3        tactor help COMMAND says more.");
     // To describe all options of all commands takes as long as to plan a stroke: of a command that is
     // named, its own.
     const auto named = std::find_if(commands.begin(), commands.end(),
@@ -87,12 +105,12 @@ int run(int argc, char** argv)
         if (named == commands.end() || c.name == first)
             added.emplace_back(c.name, c.add(app));
     if (first == complete_command) {
-        for (const std::string& line : complete(app, {argv + 2, argv + argc}))
+        for (const std::string& line : complete(app, {given.begin() + 1, given.end()}))
             fmt::print("{}\n", line);
         return status_ok;
     }
     try {
-        app.parse(argc, argv);
+        app.parse(std::vector<std::string>(given.rbegin(), given.rend())); // the last first, as it wants them
     } catch (const CLI::Success& e) {
         return app.exit(e);
     } catch (const CLI::ParseError& e) {
@@ -150,7 +168,7 @@ int main(int argc, char** argv)
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
     try {
-        return flushed(run(argc, argv));
+        return flushed(run(arguments(argc, argv)));
     } catch (const tactor::error& e) {
         if (is_unread(e))
             return status_unread;

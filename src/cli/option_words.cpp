@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/option_words.hpp"
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <string_view>
@@ -14,12 +15,13 @@ struct translation {
 };
 
 // What can only mean a field, in advice too.
-constexpr std::array<translation, 21> in_advice{{{"soa_s", "--soa"},
+constexpr std::array<translation, 22> in_advice{{{"soa_s", "--soa"},
                                                  {"burst_s", "--burst"},
                                                  {"carrier_hz", "--carrier"},
                                                  {"ramp_s", "--ramp"},
                                                  {"sl_db", "--sl"},
                                                  {"level_dbfs", "--level-dbfs"},
+                                                 {"sample_format = ", "--sample-format "},
                                                  {"sample_format", "--sample-format"},
                                                  {"timing = ", "--timing "},
                                                  {"outside = ", "--outside "},
@@ -43,15 +45,26 @@ constexpr std::array<translation, 5> as_subject{{{"rate", "--rate"},
                                                  {"waveform", "--waveform"},
                                                  {"am", "--am"}}};
 
+// Those that files have as keys, too.
+constexpr std::array<std::string_view, 5> keys{"soa_s", "burst_s", "carrier_hz", "texture_mm",
+                                               "algorithm = "};
+
+bool is_key(std::string_view field)
+{
+    return std::find(keys.begin(), keys.end(), field) != keys.end();
+}
+
 bool in_a_word(char c)
 {
     return c == '_' || c == '-' || c == '.' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') ||
            (c >= 'A' && c <= 'Z');
 }
 
-std::string replaced(std::string text)
+std::string replaced(std::string text, bool but_keys = false)
 {
     for (const translation& t : in_advice) {
+        if (but_keys && is_key(t.field))
+            continue;
         for (std::size_t at = text.find(t.field); at != std::string::npos; at = text.find(t.field, at + 1)) {
             const std::size_t end = at + t.field.size();
             const bool begins = at == 0 || !in_a_word(text[at - 1]);
@@ -75,11 +88,19 @@ std::string subject(std::string_view what)
     return std::string(what);
 }
 
+// "FILE:LINE" or "FILE:LINE:COLUMN": keys that are named there are those of that file.
+bool is_place(std::string_view what)
+{
+    const std::size_t colon = what.rfind(':');
+    return colon != what.npos && colon != 0 && colon + 1 < what.size() &&
+           what.find_first_not_of("0123456789", colon + 1) == what.npos;
+}
+
 } // namespace
 
 error in_options(const error& e)
 {
-    return {e.kind(), subject(e.subject()), e.why(), replaced(std::string(e.hint()))};
+    return {e.kind(), subject(e.subject()), e.why(), replaced(std::string(e.hint()), is_place(e.subject()))};
 }
 
 } // namespace tactor::cli

@@ -30,12 +30,14 @@ bool is_descriptor(const struct stat& s, int fd)
     return ::fstat(fd, &out) == 0 && out.st_dev == s.st_dev && out.st_ino == s.st_ino;
 }
 
-// What this process writes to, or a terminal, would be read for ever.
-void refuse_endless(const std::string& file)
+// A folder has no text; what this process writes to, or a terminal, would be read for ever.
+void refuse_unreadable(const std::string& file)
 {
     struct stat s {};
     if (::stat(file.c_str(), &s) != 0)
         return;
+    if (S_ISDIR(s.st_mode))
+        throw error(error_kind::bad_input, file, "is a folder", "name a file in it");
     if (S_ISFIFO(s.st_mode) && (is_descriptor(s, STDOUT_FILENO) || is_descriptor(s, STDERR_FILENO)))
         throw error(error_kind::bad_input, file, "is where this program writes to",
                     "name a file to read, or - for standard input");
@@ -53,7 +55,7 @@ void refuse_endless(const std::string& file)
 
 void check_readable(const std::string& file)
 {
-    refuse_endless(file);
+    refuse_unreadable(file);
     if (is_named_pipe(file))
         say(stderr, "tactor: {}: is a pipe: waiting for a program that writes to it (Ctrl-C ends)\n", file);
 }

@@ -8,7 +8,7 @@
 namespace tactor::cli {
 
 /// Before a file is read: says on standard error that a named pipe is waited for until a program writes to
-/// it. \throws error (bad_input) for a terminal, and for a pipe that this program itself writes to.
+/// it. \throws error (bad_input) for a folder, a terminal, and for a pipe that this program itself writes to.
 void check_readable(const std::string& file);
 
 /// Whether a name is one of this process's standard output (/dev/stdout, /dev/fd/1).

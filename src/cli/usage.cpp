@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/usage.hpp"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -46,12 +47,48 @@ std::string nearest_option(const std::string& given, const std::vector<std::stri
     return "--" + like;
 }
 
+std::string help_of(const CLI::App& app, const CLI::App& command)
+{
+    return "tactor " + (&command == &app ? "" : command.get_name() + " ") + "--help";
+}
+
+// What has to be there and is not.
+error missing(const CLI::App& app, const CLI::App& command)
+{
+    const std::string help = help_of(app, command);
+    if (&command == &app)
+        return {error_kind::bad_input, "command line", "no command", help + " lists them"};
+    const auto options = command.get_options();
+    const auto o = std::find_if(options.begin(), options.end(),
+                                [](const CLI::Option* x) { return x->get_required() && x->count() == 0; });
+    if (o == options.end())
+        return {error_kind::bad_input, "command line", "something is missing", help};
+    const std::string name = (*o)->get_name();
+    if (name.starts_with('-'))
+        return {error_kind::bad_input, name, "this option is missing",
+                fmt::format("say {} {}; {}", name, (*o)->get_type_name(), help)};
+    return {error_kind::bad_input, "command line", "no " + name,
+            fmt::format("tactor {} {}; {}", command.get_name(), name, help)};
+}
+
+// An option with too few values or too many: its name comes first in what the parser says.
+error miscounted(const CLI::App& app, const CLI::App& command, const std::string& said)
+{
+    const std::string name = said.substr(0, said.find_first_of(": "));
+    const CLI::Option* o = command.get_option_no_throw(name);
+    if (o == nullptr)
+        return {error_kind::bad_input, "command line", said, help_of(app, command)};
+    if (o->count() > 1)
+        return {error_kind::bad_input, name, "it is given more than once", "give it once"};
+    return {error_kind::bad_input, name, "its value is missing",
+            fmt::format("say {} {}; {}", name, o->get_type_name(), help_of(app, command))};
+}
+
 error unknown(const CLI::App& app, const CLI::App& command)
 {
     const auto left = app.remaining(true);
     const std::string given = left.empty() ? "" : left.front();
-    const std::string help =
-        "tactor " + (&command == &app ? "" : command.get_name() + " ") + "--help lists them";
+    const std::string help = help_of(app, command) + " lists them";
     if (given.starts_with('-')) {
         const std::string name = given.substr(0, given.find('='));
         const std::string like = nearest_option(name, option_names(command));
@@ -78,8 +115,11 @@ error usage_error(const CLI::App& app, const CLI::ParseError& e)
         return unknown(app, command);
     if (app.get_subcommands().empty() && !app.remaining().empty())
         return unknown(app, app);
-    return {error_kind::bad_input, "command line", e.what(),
-            fmt::format("tactor {}--help", &command == &app ? "" : command.get_name() + " ")};
+    if (dynamic_cast<const CLI::RequiredError*>(&e) != nullptr)
+        return missing(app, command);
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&e) != nullptr)
+        return miscounted(app, command, e.what());
+    return {error_kind::bad_input, "command line", e.what(), help_of(app, command)};
 }
 
 } // namespace tactor::cli

@@ -81,6 +81,14 @@ std::string suggestion(std::string_view name, std::span<const std::string_view> 
     return fmt::format("known {}: {}", kind, fmt::join(known, ", "));
 }
 
+std::string preset_hint(std::string_view name, const std::vector<std::string>& presets)
+{
+    const std::vector<std::string_view> known(presets.begin(), presets.end());
+    const std::string_view near = nearest_name(name, known);
+    return fmt::format("{}presets: {}", near.empty() ? "" : fmt::format("did you mean '{}'? ", near),
+                       fmt::join(presets, ", "));
+}
+
 std::string quoted(std::string_view name)
 {
     constexpr std::size_t shown = 40;

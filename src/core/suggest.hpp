@@ -5,12 +5,16 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace tactor::detail {
 
 /// A hint: "did you mean 'channel'?", or "known keys: a, b, c" where nothing is near. `kind` is the
 /// plural of what the names are.
 std::string suggestion(std::string_view name, std::span<const std::string_view> known, std::string_view kind);
+
+/// "did you mean 'palm-3x3'? presets: a, b", or "presets: a, b": for the few that there are.
+std::string preset_hint(std::string_view name, const std::vector<std::string>& presets);
 
 /// The one of `known` that `name` is a slip of, e.g. "chanel" of "channel" or "pitch" of "pitch_mm",
 /// for a hint in an error; empty if none is near.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <tactor/array.hpp>
 
@@ -40,7 +39,7 @@ array preset_array(std::string_view name)
         if (p.name == name)
             return make_grid(std::string(name), p.rows, p.columns, p.pitch_mm, p.pitch_mm);
     throw error(error_kind::bad_input, "array", fmt::format("there is no preset {}", detail::quoted(name)),
-                fmt::format("presets: {}; or name a file", fmt::join(array_presets(), ", ")));
+                detail::preset_hint(name, array_presets()) + "; or name a file");
 }
 
 } // namespace tactor

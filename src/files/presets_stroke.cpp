@@ -7,7 +7,6 @@
 #include <array>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <tactor/error.hpp>
 
@@ -81,7 +80,7 @@ stroke preset_stroke(std::string_view name)
             return {std::string(name), trajectory::along(path::from_svg(d.path), d.duration_s), {}, {}, {}};
     }
     throw error(error_kind::bad_input, "stroke", fmt::format("no preset {}", detail::quoted(name)),
-                fmt::format("presets: {}", fmt::join(stroke_presets(), ", ")));
+                detail::preset_hint(name, stroke_presets()));
 }
 
 } // namespace tactor

@@ -71,15 +71,42 @@ whole_text read_text_file(const std::filesystem::path& file, std::size_t max_byt
 {
     std::error_code ignored;
     if (std::filesystem::is_directory(file, ignored))
-        throw error(error_kind::bad_input, file.string(), "is a directory", "name a file in it");
+        throw error(error_kind::bad_input, file.string(), "is a folder", "name a file in it");
     const open_file in(file);
     if (in.fd < 0)
         refuse(file.string(), errno);
     return read_text(in.fd, file.string(), max_bytes);
 }
 
-void refuse_utf16(std::string_view text, const std::string& name)
+void refuse_other_kind(std::string_view text, const std::string& name)
 {
+    struct other_kind {
+        std::string_view begin;
+        std::string_view what;
+    };
+    constexpr other_kind others[] = {{"\x89PNG", "a PNG picture"},
+                                     {"\xFF\xD8\xFF", "a JPEG picture"},
+                                     {"%PDF-", "a PDF document"},
+                                     {"PK\x03\x04", "a ZIP archive or office document"},
+                                     {"\x1F\x8B", "compressed by gzip"},
+                                     {"fLaC", "FLAC sound"},
+                                     {"OggS", "Ogg sound"},
+                                     {"ID3", "MP3 sound"}};
+    std::string_view what;
+    if ((text.starts_with("RIFF") || text.starts_with("RF64")) && text.substr(0, 12).ends_with("WAVE"))
+        what = "a WAV file";
+    for (const other_kind& o : others)
+        if (text.starts_with(o.begin))
+            what = o.what;
+    if (!what.empty())
+        throw error(error_kind::bad_input, name, fmt::format("is {}, not text", what),
+                    "strokes are TOML, CSV or SVG, arrays and configurations TOML; sound is for waveform = "
+                    "\"FILE.wav\"");
+}
+
+void refuse_no_text(std::string_view text, const std::string& name)
+{
+    refuse_other_kind(text, name);
     const std::string_view mark = text.substr(0, 2);
     const bool marked = mark == "\xFF\xFE" || mark == "\xFE\xFF";
     // Without a mark, every other byte of plain letters is 0.

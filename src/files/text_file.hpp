@@ -33,11 +33,13 @@ private:
 whole_text read_text(int descriptor, std::string_view name, std::size_t max_bytes);
 
 /// The bytes of a file; pipes and devices are read up to `max_bytes` as well.
-/// \throws error (bad_input) naming the file when it is missing, a directory, not readable or longer.
+/// \throws error (bad_input) naming the file when it is missing, a folder, not readable or longer.
 whole_text read_text_file(const std::filesystem::path& file, std::size_t max_bytes);
 
-/// \throws error (bad_input) where the text is UTF-16, as some editors save it: it would be refused anyway,
-/// at its first character and in words about bytes.
-void refuse_utf16(std::string_view text, const std::string& name);
+/// \throws error (bad_input) that says what it is where it begins as sound, a picture or an archive do: it
+/// would be refused anyway, and in words about bytes.
+void refuse_other_kind(std::string_view text, const std::string& name);
+/// The same, and where it is UTF-16, as some editors save text.
+void refuse_no_text(std::string_view text, const std::string& name);
 
 } // namespace tactor::detail

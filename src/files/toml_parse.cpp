@@ -97,7 +97,7 @@ std::optional<std::size_t> open_string(std::string_view t)
 
 toml::table parse_toml(std::string_view text, const std::string& name)
 {
-    refuse_utf16(text, name);
+    refuse_no_text(text, name);
     refuse_deep_keys(text, name);
     try {
         return toml::parse(text, std::string_view(name));
@@ -112,6 +112,9 @@ toml::table parse_toml(std::string_view text, const std::string& name)
                             ? "end it with " + three
                             : fmt::format("end it with {} on the same line", text[*open]));
         }
+        if (e.description().find("utf-8") != std::string_view::npos)
+            fail_at({name, at.line, at.column}, "this is not UTF-8",
+                    "save it as UTF-8 in the editor, or convert it: iconv -f LATIN1 -t UTF-8 OLD > NEW");
         if (e.description().find("could not determine value type") != std::string_view::npos)
             fail_at({name, at.line, at.column}, "this is no value",
                     "a text stands in quotes, as name = \"palm\"; numbers have no unit; see tactor.toml(5)");

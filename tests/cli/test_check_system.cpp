@@ -130,7 +130,8 @@ TEST_CASE("limits below what play asks for are warnings, and errors where real t
     system_needs n = card_and_amplifier();
     CHECK(judged(f, n, "real time").how == level::warning);
     CHECK(has(judged(f, n, "real time").found, "RLIMIT_RTPRIO is 0"));
-    CHECK(has(judged(f, n, "memory").found, "8 MiB may be locked (RLIMIT_MEMLOCK), 100 MiB are needed"));
+    CHECK(has(judged(f, n, "memory").found,
+              "8 MiB may be locked (RLIMIT_MEMLOCK), 100 MiB must be, a reserve included"));
     CHECK_FALSE(judged(f, n, "memory").cure.empty());
     f.own.rights.priority = 40;
     CHECK(has(judged(f, n, "real time").found, "SCHED_FIFO up to 40 only, 65 is asked for"));

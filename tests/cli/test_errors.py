@@ -11,6 +11,35 @@ class CommandLine(ToolTest):
         for command in ((), ("plan",), ("render",), ("play",)):
             self.assertIn("Example: tactor ", self.ok(*command, "--help").stdout)
 
+    def test_help_is_a_command_too(self):
+        self.assertEqual(self.ok("help").stdout, self.ok("--help").stdout)
+        self.assertIn("tactor help COMMAND", self.ok("help").stdout)
+        for command in ("plan", "play", "experiment"):
+            self.assertEqual(self.ok("help", command).stdout, self.ok(command, "--help").stdout)
+        self.refused(2, "help", "plam", says=["plam", "did you mean plan?"])
+
+    def test_what_is_missing_is_named_with_what_to_say(self):
+        for args, says in (((), "tactor: command line: no command (tactor --help lists them)\n"),
+                           (("render", "park2016-1"), "tactor: --output: this option is missing (say --output FILE.wav; tactor render --help)\n"),
+                           (("render", "park2016-1", "-o"), "tactor: --output: its value is missing (say --output FILE.wav; tactor render --help)\n"),
+                           (("plan", "park2016-1", "--soa"), "tactor: --soa: its value is missing (say --soa S; tactor plan --help)\n"),
+                           (("plan", "park2016-1", "--soa", "0.07", "--soa", "0.07"), "tactor: --soa: it is given more than once (give it once)\n"),
+                           (("experiment",), "tactor: command line: no EXPERIMENT (tactor experiment EXPERIMENT; tactor experiment --help)\n"),
+                           (("report",), "tactor: command line: no DIR (tactor report DIR; tactor report --help)\n")):
+            self.assertEqual(self.refused(2, *args).stderr, says)
+
+    def test_a_strokes_file_is_named(self):
+        far = 'path = "M 0 0 L 400 0"\n'
+        self.write("one.toml", '[stroke]\nname = "swing"\n' + far)
+        self.write("two.toml", f"[[stroke]]\n{far}[[stroke]]\n{far}")
+        for command in (("plan",), ("render", "-o", "x.wav"), ("play", "-D", "null"), ("plot", "-o", "x.svg"), ("compare",)):
+            self.refused(2, command[0], "one.toml", *command[1:], says=['tactor: one.toml: stroke "swing": leaves the array'])
+        self.refused(2, "plan", "two.toml", says=['tactor: two.toml: stroke 1 "two-1": leaves the array'])
+        self.refused(2, "plan", "-", stdin="[stroke]\n" + far, says=["tactor: standard input: stroke"])
+        self.refused(2, "plan", "--path", "M 0 0 L 400 0", says=['tactor: stroke "path": leaves'])
+        self.refused(2, "plan", "park2016-1", "--array", self.write("s.toml", '[array]\nname = "s"\ngrid = { rows = 2, columns = 2, pitch_mm = 9.0 }\n'),
+                     says=['tactor: stroke "park2016-1": starts outside'])
+
     def test_version(self):
         lines = self.ok("--version").stdout.splitlines()
         self.assertRegex(lines[0], r"^tactor \d+\.\d+\.\d+$")

@@ -39,6 +39,11 @@ TEST_CASE("names of files, their keys, and words that only hold a field stay as 
 {
     CHECK(said("s.toml:3:1: carrier_hz", "") == "s.toml:3:1: carrier_hz: soa_s is why");
     CHECK(said("soa_s.toml", "") == "soa_s.toml: soa_s is why");
+    for (const std::string place : {"s.toml:3:1", "s.toml:3", "a b:c.toml:12:40"})
+        CHECK(said(place.c_str(), "known keys: soa_s, burst_s") ==
+              place + ": soa_s is why (known keys: soa_s, burst_s)");
+    CHECK(said("a.toml:11:1", "lower sl_db by 1 dB") == "a.toml:11:1: soa_s is why (lower --sl by 1 dB)");
+    CHECK(said("s.toml: stroke 2", "use soa_s") == "s.toml: stroke 2: soa_s is why (use --soa)");
     CHECK(said("rates", "my_soa_s, soa_second") == "rates: soa_s is why (my_soa_s, soa_second)");
 }
 

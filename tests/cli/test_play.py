@@ -222,7 +222,7 @@ class Play(ToolTest):
         (self.dir / "link.log").symlink_to("elsewhere")
         os.mkfifo(self.dir / "pipe")
         for name, why in (("a.toml", "no log"), ("link.log", "is a link"), ("pipe", "no regular file"), ("/dev/null", "no regular file"),
-                          (".", "directory"), ("none/play.log", "No such file"), ("", "empty")):
+                          (".", "folder"), ("none/play.log", "No such file"), ("", "empty")):
             r = self.refused(2, "play", *self.SHORT, "-D", "null", "--log", name, says=[why])
             self.assertEqual(r.stdout, "", name)
         self.assertEqual(array.read_text(), GRID)

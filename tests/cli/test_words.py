@@ -5,7 +5,7 @@ import re
 import subprocess
 import threading
 
-from harness import GRID, PATIENCE_S, TOOL, ToolTest, main
+from harness import GRID, PATIENCE_S, TOOL, ToolTest, main, wav_bytes
 
 GRID_ONE = '[array]\nname = "one"\ngrid = { rows = 1, columns = 1, pitch_mm = 20.0 }\n'
 
@@ -102,6 +102,49 @@ class Files(ToolTest):
             self.ok("plan", name)
         self.write("a.toml", GRID.encode("utf-16"))
         self.refused(2, "plan", "park2016-1", "--array", "a.toml", says=["is UTF-16", "iconv"])
+
+    def test_what_is_no_text_is_named(self):
+        wav = wav_bytes([0.0] * 100)
+        for name, data, what in (("s.wav", wav, "a WAV file"), ("s.toml", wav, "a WAV file"), ("s.csv", wav, "a WAV file"),
+                                 ("s.svg", wav, "a WAV file"), ("s", b"RF64" + wav[4:], "a WAV file"),
+                                 ("p.png", b"\x89PNG\r\n\x1a\n\0", "a PNG picture"), ("p.pdf", b"%PDF-1.7\n%\xe2", "a PDF document"),
+                                 ("t.csv", b"PK\x03\x04\x14\0", "a ZIP archive or office document")):
+            self.write(name, data)
+            self.refused(2, "plan", name, says=[f"{name}: is {what}, not text (strokes are TOML, CSV or SVG"])
+        self.refused(2, "plan", "park2016-1", "--array", "s.wav", says=["s.wav: is a WAV file, not text"])
+        self.refused(2, "plan", "park2016-1", "--config", "p.png", says=["p.png: is a PNG picture"])
+
+    def test_latin_1_is_named_with_its_place(self):
+        stroke = '[stroke]\nname = "caf\xe9"\npath = "M 0 0 L 20 0"\n'
+        self.write("s.toml", stroke.encode("latin-1"))
+        self.refused(2, "plan", "s.toml", says=["s.toml:2:", "this is not UTF-8 (save it as UTF-8", "iconv -f LATIN1"])
+        self.write("s.toml", stroke)
+        self.assertEqual(self.plan("s.toml")["stroke"]["name"], "caf\xe9")
+        self.write("a.toml", GRID.replace("oak", "ch\xeane").encode("latin-1"))
+        self.refused(2, "plan", "park2016-1", "--array", "a.toml", says=["a.toml:3:", "this is not UTF-8"])
+
+    def test_a_files_own_keys_stay_as_they_are(self):
+        self.write("s.toml", '[stroke]\npath = "M 0 0 L 20 0"\nburst = 3\n')
+        said = self.refused(2, "plan", "s.toml", says=["s.toml:3:", "burst_s"]).stderr
+        self.assertNotIn("--", said)
+
+    def test_a_folder_is_a_folder_everywhere(self):
+        (self.dir / "folder.json").mkdir()
+        for args in (("plan", "."), ("plan", "folder.json"), ("plan", "park2016-1", "--array", "."), ("plan", "park2016-1", "--config", "."),
+                     ("experiment", "./", "--dry-run"), ("render", "park2016-1", "-o", "."), ("play", "park2016-1", "-D", "null", "--log", ".")):
+            said = self.refused(2, *args, says=[" a folder"]).stderr
+            self.assertNotIn("irectory", said)
+
+    def test_presets_that_are_slips_have_a_suggestion(self):
+        self.refused(2, "plan", "prak2016-1", says=["did you mean 'park2016-1'? presets: park2016-1"])
+        self.refused(2, "plan", "park2016-1", "--array", "plam-3x3", says=["did you mean 'palm-3x3'? presets: palm-3x3"])
+
+    def test_an_array_that_no_device_can_play_says_so(self):
+        self.write("a.toml", '[array]\nname = "wall"\ngrid = { rows = 40, columns = 40, pitch_mm = 5.0 }\n')
+        for args in (("play", "park2016-1"), ("check",), ("devices",), ("serve", "--socket", "x.sock")):
+            self.refused(2, *args, "-D", "null", "--array", "a.toml",
+                         says=['array "wall": 1600 channels are more than a device has: 1024'])
+        self.ok("render", "park2016-1", "--array", "a.toml", "-o", "x.wav")
 
     def test_what_is_written_to_cannot_be_read(self):
         r = subprocess.run([TOOL, "plan", "/dev/stdout"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,

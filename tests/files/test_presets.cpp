@@ -78,11 +78,15 @@ TEST_CASE("two motions for palm-2x4 stay on it and use all of it")
     }
 }
 
-TEST_CASE("a preset that is not there is refused with the list")
+TEST_CASE("a preset that is not there is refused with the list, and the one that it is a slip of")
 {
-    const std::string m = message_of([] { static_cast<void>(tactor::preset_stroke("park2016-5")); });
-    CHECK(m == "stroke: no preset 'park2016-5' (presets: park2016-1, park2016-2, park2016-3, park2016-4, "
-               "wave-2x4, round-2x4)");
+    const std::string all = "presets: park2016-1, park2016-2, park2016-3, park2016-4, wave-2x4, round-2x4)";
+    const auto said = [](const char* name) {
+        return message_of([name] { static_cast<void>(tactor::preset_stroke(name)); });
+    };
+    CHECK(said("circle") == "stroke: no preset 'circle' (" + all);
+    CHECK(said("prak2016-1") == "stroke: no preset 'prak2016-1' (did you mean 'park2016-1'? " + all);
+    CHECK(said("round2x4") == "stroke: no preset 'round2x4' (did you mean 'round-2x4'? " + all);
 }
 
 } // namespace presets_test

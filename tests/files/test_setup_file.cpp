@@ -33,7 +33,7 @@ TEST_CASE("a file that cannot be read says which and why")
     const folder f;
     const std::string missing = (f / "none.toml").string();
     CHECK(complaint(missing) == missing + ": No such file or directory (check the name)");
-    CHECK(complaint(f / "") == (f / "").string() + ": is a directory (name a file in it)");
+    CHECK(complaint(f / "") == (f / "").string() + ": is a folder (name a file in it)");
     CHECK(complaint(f.write("file", "") / "below").find("Not a directory") != std::string::npos);
 }
 

@@ -69,7 +69,7 @@ TEST_CASE("files that cannot be read are named")
     const folder f;
     CHECK(refusal(f.path() / "none.csv").find("none.csv: No such file or directory (check the name)") !=
           std::string::npos);
-    CHECK(refusal(f.path()).find(f.path().string() + ": is a directory") == 0);
+    CHECK(refusal(f.path()).find(f.path().string() + ": is a folder") == 0);
     if (::geteuid() != 0) {
         const auto secret = f.write("secret.csv", csv);
         std::filesystem::permissions(secret, std::filesystem::perms::none);

@@ -80,10 +80,11 @@ finding check_memory(const system_facts& f, const system_needs& n)
         return fine("memory", "may be locked without limit");
     const std::uint64_t most = *f.own.rights.lockable_bytes / mib;
     if (*f.own.rights.lockable_bytes >= f.own.memory_bytes)
-        return fine("memory", fmt::format("{} MiB may be locked, {} MiB are needed", most, wanted));
+        return fine("memory", fmt::format("{} MiB may be locked, {} MiB must be", most, wanted));
     return insist(
         warning("memory",
-                fmt::format("{} MiB may be locked (RLIMIT_MEMLOCK), {} MiB are needed", most, wanted),
+                fmt::format("{} MiB may be locked (RLIMIT_MEMLOCK), {} MiB must be, a reserve included", most,
+                            wanted),
                 rt::realtime_advice(f.own.rights, n.priority)),
         n.require_realtime);
 }

@@ -148,15 +148,19 @@ void add_spread_options(CLI::App& c, const std::shared_ptr<compare_options>& o)
 }
 
 // Why strokes that no algorithm can play are refused. All reasons but the last are printed, each once.
-error why_refused(const std::vector<comparison>& all)
+error why_refused(const std::vector<comparison>& all, const piece& p)
 {
     std::vector<error> reasons;
     std::set<std::string> seen;
-    for (const comparison& c : all)
-        if (!c.playable())
-            for (const comparison_row& r : c.rows)
-                if (seen.insert(r.refused->what()).second)
-                    reasons.push_back(*r.refused);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        if (all[k].playable())
+            continue;
+        for (const comparison_row& r : all[k].rows) {
+            const error reason = of_stroke(*r.refused, p, k);
+            if (seen.insert(reason.what()).second)
+                reasons.push_back(reason);
+        }
+    }
     for (std::size_t i = 0; i + 1 < reasons.size(); ++i)
         say(stderr, "tactor: {}\n", reasons[i].what());
     return reasons.back();
@@ -176,16 +180,16 @@ int run(settings& s, option_list& options, const compare_options& asked, bool on
     // A row says what an algorithm cannot do; what nobody may ask for is wrong usage.
     static_cast<void>(burst_duration_s(s.plan));
     const layout faces(e.tactors);
-    const std::vector<stroke> strokes = read_one_piece(s, e, faces).strokes;
-    if (!asked.picture.empty() && strokes.size() > 1)
-        throw error(error_kind::bad_input, "-o", fmt::format("there are {} strokes", strokes.size()),
+    const piece p = read_one_piece(s, e, faces);
+    if (!asked.picture.empty() && p.strokes.size() > 1)
+        throw error(error_kind::bad_input, "-o", fmt::format("there are {} strokes", p.strokes.size()),
                     "a picture shows one");
     std::vector<comparison> all;
-    for (const stroke& k : strokes)
+    for (const stroke& k : p.strokes)
         all.push_back(compare(k, e.tactors, faces, s.plan, choice));
     const auto playable = std::count_if(all.begin(), all.end(), [](const auto& c) { return c.playable(); });
     if (playable == 0)
-        throw why_refused(all);
+        throw why_refused(all, p);
     if (!asked.picture.empty()) {
         tell_of_pipe_to_write(asked.picture);
         plot::save(picture_of(all[0], e.tactors, asked.width_mm), asked.picture, asked.dpi);
@@ -197,7 +201,7 @@ int run(settings& s, option_list& options, const compare_options& asked, bool on
     else
         print_text(stdout, all, e.tactors);
     if (static_cast<std::size_t>(playable) < all.size())
-        throw why_refused(all);
+        throw why_refused(all, p);
     return status_ok;
 }
 

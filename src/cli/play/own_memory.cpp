@@ -76,8 +76,8 @@ std::string lock_own_memory()
     if (const auto most = probe_realtime_rights().lockable_bytes) {
         const std::uint64_t wanted = memory_to_lock();
         if (wanted > *most)
-            return fmt::format("{} MiB are needed, {} MiB are allowed", (wanted + (1U << 20) - 1) >> 20,
-                               *most >> 20);
+            return fmt::format("{} MiB must be allowed, a reserve of {} included, and {} MiB are",
+                               (wanted + (1U << 20) - 1) >> 20, reserve_bytes >> 20, *most >> 20);
     }
     // One heap that never shrinks: what was locked once stays, and no arena of 64 MiB is charged.
     mallopt(M_TRIM_THRESHOLD, -1);

@@ -90,10 +90,11 @@ void play_log::open()
     if (fd_ < 0 && code == ELOOP)
         throw error(error_kind::bad_input, file_, "is a link",
                     "name the file itself; --verbose writes to standard error");
+    if (fd_ < 0 && code == EISDIR)
+        throw error(error_kind::bad_input, file_, "is a folder", "name a file in it");
     if (fd_ < 0)
-        throw error(code == ENOENT || code == ENOTDIR || code == EISDIR ? error_kind::bad_input
-                                                                        : error_kind::runtime,
-                    file_, std::strerror(code));
+        throw error(code == ENOENT || code == ENOTDIR ? error_kind::bad_input : error_kind::runtime, file_,
+                    std::strerror(code));
     if (::fstat(fd_, &s) != 0 || !S_ISREG(s.st_mode))
         throw error(error_kind::bad_input, file_, "is no regular file",
                     "name a file; --verbose writes to standard error");

@@ -247,7 +247,7 @@ private:
 std::vector<stroke> parse_strokes_csv(std::string_view text, const std::string& name)
 {
     detail::check_size(text, name, detail::max_stroke_bytes, "is it the right file?");
-    detail::refuse_utf16(text, name);
+    detail::refuse_no_text(text, name);
     return csv_reader(text, name).read();
 }
 

@@ -7,12 +7,14 @@
 
 #include "core/suggest.hpp"
 #include "files/stroke/text.hpp"
+#include "files/text_file.hpp"
 
 namespace tactor::detail {
 
 svg_document::svg_document(std::string_view text, const std::string& name)
     : text_(without_mark(text)), name_(name), buffer_(text_)
 {
+    refuse_other_kind(text_, name_);
     const pugi::xml_parse_result r = tree_.load_buffer_inplace(buffer_.data(), buffer_.size());
     if (!r) {
         const auto offset = static_cast<std::size_t>(r.offset > 0 ? r.offset : 0);

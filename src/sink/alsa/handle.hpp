@@ -15,8 +15,7 @@
 
 namespace tactor::pcm {
 
-/// More than any PCM has.
-inline constexpr unsigned most_channels = 1024;
+inline constexpr unsigned most_channels = max_pcm_channels;
 
 using detail::deleter;
 

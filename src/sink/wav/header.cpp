@@ -11,7 +11,8 @@ namespace tactor::wav {
 
 namespace {
 
-constexpr std::uint64_t elsewhere = 0xFFFFFFFFU; ///< a size that ds64 has
+constexpr std::uint64_t elsewhere = 0xFFFFFFFFU;  ///< a size that ds64 has
+constexpr std::size_t most_frame_bytes = 0xFFFFU; ///< the header has two bytes for them
 constexpr unsigned integer_tag = 1;
 constexpr unsigned float_tag = 3;
 
@@ -20,17 +21,28 @@ bool is_float(format_kind f)
     return f == format_kind::float32;
 }
 
+// Of the formats that a WAV file has, the best that holds them.
+std::string fewer_bytes(format_kind f, unsigned channels)
+{
+    for (const format_kind other : {format_kind::s24_3, format_kind::s16})
+        if (bytes_of(other) < bytes_of(f) && channels * bytes_of(other) <= most_frame_bytes)
+            return fmt::format("sample_format = {} holds them", to_string(other));
+    return "use fewer";
+}
+
 void check_format(format_kind f, unsigned channels)
 {
     if (f == format_kind::s24_4) {
         throw error(error_kind::bad_input, "sample_format",
                     fmt::format("a WAV file cannot hold {}", to_string(f)), "use float, s16, s24 or s32");
     }
-    const std::size_t most = 0xFFFFU / bytes_of(f); // the header has two bytes for those of a frame
+    const std::size_t most = most_frame_bytes / bytes_of(f);
     if (channels > most) {
-        throw error(error_kind::bad_input, "channels",
-                    fmt::format("a WAV file of {} holds {} at most, not {}", to_string(f), most, channels),
-                    "use fewer, or a format with fewer bytes");
+        throw error(
+            error_kind::bad_input, "channels",
+            fmt::format("a WAV file, RF64 too, has at most 65535 bytes a frame, {} channels in {}, not {}",
+                        most, to_string(f), channels),
+            fewer_bytes(f, channels));
     }
 }
 
