@@ -5,6 +5,7 @@ An option in the section OPTIONS belongs to the commands that its text names in 
 its subsection names in "All of these are of"; where none is named, to every command that takes a STROKE.
 """
 import re
+import subprocess
 
 from harness import ROOT, ToolTest, main
 
@@ -73,6 +74,16 @@ class Manual(ToolTest):
         for command in self.commands():
             text, _ = self.help_of(command)
             self.assertRegex(text.rstrip().splitlines()[-1], rf"^Example: tactor {command}", command)
+
+    def test_pages_read_as_they_were_meant(self):
+        for page in sorted((ROOT / "man").glob("*.[1-8]")):
+            with self.subTest(page=page.name):
+                # .Dq takes the whole line, "No" or not: .Do ... Dc ends before.
+                self.assertEqual(re.findall(r"^.*\b[DS]q \S+ No .*$", page.read_text(encoding="utf-8"), re.M), [])
+                text = subprocess.run(["man", "-E", "UTF-8", "-l", "-Tutf8", page], capture_output=True, encoding="utf-8", check=True,
+                                      env=self.env | {"MANWIDTH": "80"}).stdout
+                self.assertGreater(len(text), 1000)
+                self.assertEqual(re.findall(r"^.*[\w”] +[,;:)](?:\s.*)?$", text, re.M), [])
 
 
 if __name__ == "__main__":
