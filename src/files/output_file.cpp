@@ -83,7 +83,9 @@ fs::path follow_links(const fs::path& asked)
     fs::path p = asked;
     for (int i = 0; i < 40 && descriptor_in(p) < 0 && fs::is_symlink(fs::symlink_status(p, ignored)); ++i) {
         if (is_shared(folder_of(p))) {
-            refuse(asked, fmt::format("{} is a link in a folder that others can write to", p.string()),
+            refuse(asked,
+                   fmt::format("{}is a link in a folder that others can write to",
+                               p == asked ? "" : p.string() + " "),
                    "name the file that you mean");
         }
         const fs::path next = fs::read_symlink(p, ignored);

@@ -46,7 +46,9 @@ array read_included(const toml_table& table, const setup_source& source, located
     std::error_code ignored;
     const std::filesystem::path full = std::filesystem::weakly_canonical(file, ignored);
     if (std::find(source.opened.begin(), source.opened.end(), full) != source.opened.end())
-        table.fail("file", fmt::format("{} takes its array from itself", file.string()),
+        table.fail("file",
+                   fmt::format("{} takes its array from itself",
+                               full == source.opened.back() ? "it" : file.string()),
                    "break the circle of files");
     if (source.opened.size() == longest_chain)
         table.fail("file", "a chain of too many files", fmt::format("at most {}", longest_chain));

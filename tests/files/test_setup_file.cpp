@@ -115,7 +115,7 @@ TEST_CASE("included files that are missing, wrong, without an array or a circle"
     CHECK(complaint(a) == fmt::format("{}:2:8: {} takes its array from itself (break the circle of files)", b,
                                       (f / "c/../a.toml").string()));
     f.write("b.toml", "[array]\nfile = \"b.toml\"\n");
-    CHECK(complaint(a).find("takes its array from itself") != std::string::npos);
+    CHECK(complaint(a) == b + ":2:8: it takes its array from itself (break the circle of files)");
 }
 
 TEST_CASE("a chain of files ends somewhere")
