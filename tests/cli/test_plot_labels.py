@@ -148,6 +148,13 @@ class Strokes(Sheets):
             for e, f in itertools.combinations(svg.all("stroke-name"), 2):
                 self.assertFalse(overlap(box(e), box(f)), (what, e.text, f.text))
 
+    def test_names_that_begin_alike_are_told_apart(self):
+        self.write("a.toml", ARRAYS["nine"][0])
+        self.write("s.toml", "".join(f'[[stroke]]\nname = "a long name of stroke {i + 1}"\npath = "M {i} 0 L 40 40"\n' for i in range(14)))
+        for width in (60, 85, 170):
+            names = [e.text.partition(" ")[2] for e in self.svg("s.toml", "--array", "a.toml", "--width", str(width)).all("stroke-name")]
+            self.assertEqual((len(names), len(set(names))), (14, 14), names)
+
     def test_bars_of_strokes_at_one_time_do_not_lie_on_each_other(self):
         seen = 0
         for what, svg in self.pictures("timing", counts=(3,), widths=(170,)):

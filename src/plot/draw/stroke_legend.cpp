@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -33,6 +34,22 @@ std::vector<std::string> entries(const scene& s)
     return all;
 }
 
+// Where names are cut to the same letters, their ends tell them apart.
+std::vector<std::string> shortened(const std::vector<std::string>& all, double width)
+{
+    std::vector<std::string> cut;
+    std::set<std::string> seen;
+    bool alike = false;
+    for (const std::string& n : all) {
+        cut.push_back(shorten(n, small_text, width));
+        const bool first = seen.insert(cut.back().substr(cut.back().find(' ') + 1)).second;
+        alike = alike || (!first && cut.back() != n);
+    }
+    for (std::size_t i = 0; alike && i < all.size(); ++i)
+        cut[i] = shorten_middle(all[i], small_text, width);
+    return cut;
+}
+
 } // namespace
 
 double draw_stroke_legend(canvas& c, const scene& s, box where, bool colours)
@@ -42,11 +59,10 @@ double draw_stroke_legend(canvas& c, const scene& s, box where, bool colours)
     const group g(c, {.id = "strokes"});
     const double lead = colours ? swatch + gap : 0.0;
     double widest = 0.0;
-    std::vector<std::string> names = entries(s);
-    for (std::string& n : names) {
-        n = shorten(n, small_text, most_of_width * where.width - lead - column_gap);
+    const std::vector<std::string> names =
+        shortened(entries(s), most_of_width * where.width - lead - column_gap);
+    for (const std::string& n : names)
         widest = std::max(widest, text_width(n, small_text));
-    }
     const double entry_width = lead + widest + column_gap;
     const auto columns =
         std::max<std::size_t>(1, static_cast<std::size_t>((where.width + column_gap) / entry_width));

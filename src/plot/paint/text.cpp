@@ -101,6 +101,25 @@ std::string shorten(std::string_view text, double size, double width, bool bold)
     return out.append(ellipsis);
 }
 
+std::string shorten_middle(std::string_view text, double size, double width)
+{
+    const std::string all = clean(text.substr(0, 4096));
+    if (text.size() > 4096 || text_width(all, size) <= width)
+        return shorten(text, size, width);
+    const double room = (width - text_width(ellipsis, size)) / 2.0;
+    std::size_t end = all.size();
+    for (std::size_t i = all.size(); i > 0;) {
+        do
+            --i;
+        while (i > 0 && (static_cast<unsigned char>(all[i]) & 0xC0U) == 0x80U); // to where a character begins
+        if (text_width(std::string_view(all).substr(i), size) > room)
+            break;
+        end = i;
+    }
+    const std::string tail = all.substr(end);
+    return shorten(all.substr(0, end), size, width - text_width(tail, size)) + tail;
+}
+
 std::vector<std::string> wrap(const std::vector<std::string>& parts, std::string_view separator, double size,
                               double width, std::size_t max_lines)
 {

@@ -30,6 +30,9 @@ std::string clean(std::string_view text);
 /// The text, or its beginning and an ellipsis where it is wider than `width` pt.
 std::string shorten(std::string_view text, double size, double width, bool bold = false);
 
+/// The same with its end behind the ellipsis, for texts that begin alike.
+std::string shorten_middle(std::string_view text, double size, double width);
+
 /// Lines of at most `width` pt, broken after separators; the last of `max_lines` is shortened.
 std::vector<std::string> wrap(const std::vector<std::string>& parts, std::string_view separator, double size,
                               double width, std::size_t max_lines);
