@@ -45,10 +45,11 @@ io_result audio_loop::begin_epoch() noexcept
     mixer_.reset();
     pending_ = 0;
     played_ = 0;
-    clock_.begin_epoch(offset_);
-    tell_clock(clock_.line());
+    // A device that sleeps on is asked in each period: none of that is a start.
     if (const io_kind s = sink_.prepare(); s != io_kind::ok)
         return {s, 0, 0};
+    clock_.begin_epoch(offset_);
+    tell_clock(clock_.line());
     std::size_t filled = 0;
     while (filled < setup_.buffer_frames && pending_ == 0) {
         mix_period();

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// When the audio thread wakes the control side: often enough to be fed, at once where the stream changes.
+#include <doctest/doctest.h>
+
+#include "rig.hpp"
+
+namespace wakes_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+// The DAC plays a period; whether the control side was woken for it.
+bool wakes(rig& r)
+{
+    r.dac.advance_queued(r.options.period);
+    r.step();
+    return r.link.to_control.consume() > 0;
+}
+
+} // namespace
+
+TEST_CASE(
+    "a stroke longer than the horizon is fed to its end where the control side sleeps until it is woken")
+{
+    rig r;
+    REQUIRE(r.start().status == io_kind::ok);
+    const score s = random_score(1, 100);
+    const stroke_id id = r.submit(s);
+    REQUIRE(s.frames() > 10 * r.options.loop.horizon_frames);
+    int periods = 0;
+    int woken = 0;
+    for (; !r.report(id) && periods < 10'000; ++periods) {
+        if (wakes(r)) {
+            r.control();
+            ++woken;
+        }
+    }
+    REQUIRE(r.report(id));
+    CHECK(r.report(id)->state == state_kind::finished);
+    CHECK(woken < periods / 10);
+}
+
+TEST_CASE("an xrun of a silent stream, its sleep and its waking up are told at once")
+{
+    rig r;
+    REQUIRE(r.start().status == io_kind::ok);
+    while (!wakes(r)) {
+    }
+    CHECK_FALSE(wakes(r));
+    r.dac.advance(1000); // runs dry
+    CHECK(wakes(r));
+    CHECK(r.link.count.xruns == 1);
+    CHECK_FALSE(wakes(r));
+    r.dac.suspend();
+    CHECK(wakes(r));
+    CHECK_FALSE(wakes(r));
+    r.dac.wake(true);
+    CHECK(wakes(r));
+    CHECK(r.status().running);
+    CHECK(r.status().epoch == 3);
+}
+
+TEST_CASE("how few drives waited is counted while a stroke is fed, not in silence and not at its end")
+{
+    rig r;
+    REQUIRE(r.start().status == io_kind::ok);
+    r.play(9600);
+    CHECK(r.link.count.low_water == UINT64_MAX);
+    const stroke_id id = r.submit(random_score(1, 20));
+    r.play_out();
+    r.play(9600);
+    REQUIRE(r.report(id));
+    CHECK(r.link.count.low_water > 0);
+    CHECK(r.link.count.low_water < 20);
+}
+
+} // namespace wakes_test
