@@ -302,6 +302,19 @@ TEST_CASE("the display sees the newest stroke that sounds")
     CHECK_FALSE(r.status().sounding);
 }
 
+TEST_CASE("the display sees a stroke from its first frame to its last, at the DAC")
+{
+    rig r;
+    REQUIRE(r.start().status == io_kind::ok);
+    const std::uint64_t at = r.status().written + 960;
+    r.submit(tone(0.01), at);
+    for (std::uint64_t played = 0; played < at + 960; played = r.status().played) {
+        CAPTURE(played);
+        CHECK(r.status().sounding == (played >= at && played < at + 480));
+        r.play(96);
+    }
+}
+
 TEST_CASE("before its first frame is mixed a stroke is cancelled without a sound, and waits out a mute")
 {
     for (const bool muted : {false, true}) {
