@@ -95,8 +95,9 @@ TEST_CASE("a PCM that could not be opened for want of descriptors opens when the
 TEST_CASE("who waits for a lost PCM is told of a want of descriptors")
 {
     const test::descriptors_left none(0);
-    CHECK_THROWS_WITH_AS(static_cast<void>(reopen_alsa(of("null"), [](double) { return true; })),
-                         doctest::Contains("Too many open files"), error);
+    CHECK_THROWS_WITH_AS(
+        static_cast<void>(reopen_alsa(of("null"), [n = 0](double) mutable { return ++n < 3; })),
+        doctest::Contains("Too many open files"), error);
 }
 
 TEST_CASE("what asks for names without descriptors leaves nothing broken behind")
