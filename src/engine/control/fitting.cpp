@@ -34,8 +34,7 @@ void check_tactor(const score::impl& s, std::size_t i, std::span<const double> l
             error_kind::bad_input, "stroke",
             fmt::format("it drives tactor {} on channel {}, where the player's array has none", i, channel),
             replan);
-    // What was planned within the same limit was looked at then.
-    if (limit < s.limits[channel] && s.asked[i] > limit * rounding)
+    if (s.asked[i] > limit * rounding)
         throw error(error_kind::bad_input, "stroke",
                     fmt::format("it drives tactor {} at up to {:.4g} dBFS, but the player's array allows "
                                 "{:.4g} dBFS on channel {}",
