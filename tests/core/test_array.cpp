@@ -65,7 +65,7 @@ TEST_CASE("an unknown preset lists the presets")
 {
     CHECK(
         message_of([] { static_cast<void>(preset_array("palm-4x4")); }) ==
-        "array: there is no preset 'palm-4x4' (did you mean 'palm-3x3'? presets: palm-3x3, palm-2x4; or name "
+        "array: there is no preset 'palm-4x4' (did you mean 'palm-2x4'? presets: palm-3x3, palm-2x4; or name "
         "a file)");
     CHECK(message_of([] { static_cast<void>(preset_array("glove")); }) ==
           "array: there is no preset 'glove' (presets: palm-3x3, palm-2x4; or name a file)");
