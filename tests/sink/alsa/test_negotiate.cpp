@@ -218,7 +218,7 @@ TEST_CASE("each number that a PCM can have passes, and the next one does not")
     };
     least_and_most(&alsa_options::channels, 1, 1024);
     least_and_most(&alsa_options::rate, 1, 768'000);
-    least_and_most(&alsa_options::period_frames, 1, 1U << 20);
+    least_and_most(&alsa_options::period_frames, 3, 1U << 20); // 50 us at 48000 Hz
     least_and_most(&alsa_options::periods, 2, 1024);
 }
 
