@@ -19,7 +19,8 @@ bool is_realtime() noexcept
 {
     const permitted_call here{};
     const int policy = sched_getscheduler(0);
-    return policy >= 0 && (policy & ~SCHED_RESET_ON_FORK) != SCHED_OTHER;
+    return policy >= 0 &&
+           ((policy & ~SCHED_RESET_ON_FORK) == SCHED_FIFO || (policy & ~SCHED_RESET_ON_FORK) == SCHED_RR);
 }
 
 } // namespace

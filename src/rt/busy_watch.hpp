@@ -11,8 +11,10 @@ namespace tactor::rt {
 /// How long a thread has worked since it last waited. Pure: readings in.
 class busy_time {
 public:
-    /// Longest that may be; RLIMIT_RTTIME is 200 ms where rtkit or the tool sets it.
-    static constexpr std::int64_t most_ns = 100'000'000;
+    /// Longest that may be seen. What was worked before the first look is not in it, nor what comes until
+    /// the next: of pieces of work of up to 95 ms, with a look after each, less than 200 ms pass until it is
+    /// too long, which is RLIMIT_RTTIME where rtkit or the tool sets it.
+    static constexpr std::int64_t most_ns = 60'000'000;
     /// Whether it is too long now. `cpu_ns`: processor time of the thread; `waits`: how often it has waited.
     bool too_long(std::int64_t cpu_ns, long waits) noexcept
     {
@@ -32,11 +34,11 @@ class busy_watch {
 public:
     busy_watch() noexcept;
     /// Between two pieces of work, at CLOCK_MONOTONIC `now_ns`. True when the thread has just given up real
-    /// time, once. A system call 20 times a second.
+    /// time, once. A system call 50 times a second.
     bool look(std::int64_t now_ns) noexcept;
 
 private:
-    static constexpr std::int64_t pause_ns = 50'000'000;
+    static constexpr std::int64_t pause_ns = 20'000'000;
 
     busy_time busy_;
     std::int64_t next_ns_ = 0;
