@@ -244,6 +244,15 @@ TEST_CASE("a device that takes frames but does not say how far it has got is los
     }
 }
 
+TEST_CASE("the time that a start takes is not held against the device")
+{
+    rig r;
+    REQUIRE(r.start().status == io_kind::ok);
+    r.now += 600'000'000; // a server woke its card
+    run_until_over(r, 20);
+    CHECK_FALSE(r.loop.over());
+}
+
 TEST_CASE("stop does not wait for a position that never comes")
 {
     bool blind = true;

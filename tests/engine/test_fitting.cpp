@@ -65,7 +65,9 @@ score continuous(const array& a)
 {
     plan_options o;
     o.algorithm = algorithm_kind::continuous;
-    return {a, make_plan(a, preset_stroke("park2016-1"), o), on_nine_channels()};
+    stroke s = preset_stroke("park2016-1");
+    s.motion = s.motion.with_duration(0.2);
+    return {a, make_plan(a, s, o), on_nine_channels()};
 }
 
 // What a player with this array says to a score; "" where it plays it to its end.

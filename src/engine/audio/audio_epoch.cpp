@@ -35,6 +35,7 @@ io_result audio_loop::start(std::int64_t now) noexcept
     if (r.status == io_kind::ok) {
         phase_ = phase::running;
         moved(now);
+        fresh_ = true;
         publish();
     }
     return r;
@@ -126,6 +127,7 @@ void audio_loop::restart(std::int64_t now) noexcept
     if (r.status == io_kind::ok) {
         phase_ = phase::running;
         moved(now);
+        fresh_ = true;
     } else if (r.status == io_kind::suspended) {
         phase_ = phase::suspended; // not awake yet: once more in the next period
         suspended_ns_ = now;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <utility>
 
 namespace tactor::engine {
 namespace {
@@ -55,6 +56,8 @@ void audio_loop::step(io_kind ready, std::int64_t now) noexcept TACTOR_NONBLOCKI
     ++idle_steps_;
     ++still_steps_;
     now_ns_ = now;
+    if (std::exchange(fresh_, false))
+        moved(now);
     take_requests();
     obey_amplifier();
     switch (phase_) {

@@ -116,6 +116,7 @@ private:
     std::uint64_t told_ = 0;       ///< stream frame at which the control side was last woken
     std::int64_t epoch_ns_ = 0;    ///< when the DAC was started
     std::int64_t moved_ns_ = 0;    ///< when the position last got on
+    bool fresh_ = false;           ///< it has just started, which may have taken longer than a stall
     unsigned still_steps_ = 0;     ///< wake-ups since then
     unsigned idle_steps_ = 0;      ///< wake-ups since the position got on or a frame was taken
     std::int64_t suspended_ns_ = 0;

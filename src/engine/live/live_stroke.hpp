@@ -48,7 +48,7 @@ struct live_stroke::impl {
     engine::smoothing smooth;
     std::size_t most_knots;
     std::vector<drive> drives;
-    std::string excess; ///< not empty: the stroke has failed
+    std::string excess; ///< why the stroke is about to fail; handed on where it does
     std::atomic<std::uint64_t> points{0};
     std::atomic<std::uint64_t> outside_points{0};
     std::atomic<std::uint64_t> limited_points{0};
