@@ -55,6 +55,10 @@ void service::start_followers(stroke_record& first, std::int64_t at_ns)
             r.id = out->submit(music, start_at::time(at_ns + std::llround(after_s * 1e9)));
             r.state = "waiting";
             by_player_[{r.player, r.id}] = r.number;
+        } catch (const error& e) {
+            const bool goes_on = out != nullptr && !out->ended();
+            finish(r,
+                   {.state = state_kind::interrupted, .reason = goes_on ? e.what() : "the stream has ended"});
         } catch (...) {
             finish(r, {.state = state_kind::interrupted, .reason = "the stream has ended"});
         }

@@ -206,6 +206,7 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
         static_cast<std::size_t>(std::min_element(starts.begin(), starts.end()) - starts.begin());
     std::vector<std::uint32_t> numbers;
     std::vector<stroke_record*> records;
+    std::vector<std::string> refused(scores.size());
     for (std::size_t i = 0; i < scores.size(); ++i) {
         stroke_record& r = add_record(owner);
         numbers.push_back(r.number);
@@ -229,7 +230,8 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
         try {
             r.id = out->submit(scores[i], when);
         } catch (const error& e) {
-            continue; // the stream has just ended: its number ends with it, below
+            refused[i] = e.what(); // as where the stream has just ended: its number ends with it, below
+            continue;
         }
         r.state = wish.armed ? "armed" : "waiting";
         by_player_[{r.player, r.id}] = r.number;
@@ -237,11 +239,11 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
     for (std::size_t i = 0; i < records.size(); ++i)
         if (records[i]->music)
             records[first]->followers.emplace_back(records[i]->number, starts[i] - starts[first]);
-    for (stroke_record* r : records)
-        if (r->id == stroke_id{} && !r->music)
-            finish(*r, stopped ? stroke_report{.state = state_kind::cancelled, .reason = "stopped"}
-                               : stroke_report{.state = state_kind::interrupted,
-                                               .reason = out->ended().value_or("the stream has ended")});
+    for (std::size_t i = 0; i < records.size(); ++i)
+        if (records[i]->id == stroke_id{} && !records[i]->music)
+            finish(*records[i], stopped ? stroke_report{.state = state_kind::cancelled, .reason = "stopped"}
+                                        : stroke_report{.state = state_kind::interrupted,
+                                                        .reason = out->ended().value_or(refused[i])});
     return numbers;
 }
 
