@@ -152,7 +152,7 @@ public:
     /// time of 0 to 86400 s.
     drive_history with_ahead(unsigned channels, double seconds) const;
 
-    /// A text of a few lines, numbers in ns: at most 64 stretches of time a channel, neighbours taken
+    /// A text of a few lines, numbers in ns: at most 64 stretches of time a channel, the oldest taken
     /// together, which leave the window later then, never sooner.
     std::string save() const;
     /// What save() said on this machine since it was started, as of now; empty where it was before that.
@@ -208,8 +208,8 @@ struct player_stats {
     /// second.
     std::uint64_t minor_faults = 0;
     std::uint64_t major_faults = 0; ///< those that had to wait for a disk
-    /// The audio thread has SCHED_FIFO. It gives that up where it has worked for 0.1 s without a pause, so
-    /// that it neither keeps a processor to itself nor has the process ended (RLIMIT_RTTIME).
+    /// The audio thread has SCHED_FIFO. It gives that up where it has worked for some 0.1 s without a pause,
+    /// so that it neither keeps a processor to itself nor has the process ended (RLIMIT_RTTIME).
     bool realtime = false;
     /// How long the stream stood in the newest 64 xruns, oldest first; 0 where the device cannot tell.
     std::vector<double> xrun_s = {};

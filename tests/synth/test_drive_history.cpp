@@ -98,10 +98,24 @@ TEST_CASE("a coarser history holds what the finer one held")
     coarsen(h, 4);
     const auto& s = h.channels[0].stretches;
     REQUIRE(s.size() == 4);
-    check(s[0], -10.0, -7.5, 0.75);
-    check(s[1], -7.0, -4.5, 0.75);
+    check(s[0], -10.0, -3.5, 1.75);
+    check(s[1], -3.0, -2.5, 0.25);
     check(s[3], -1.0, -0.5, 0.25);
     check(h.channels[1].stretches[0], -1.0, 0.0, 1.0);
+    coarsen(h, 1);
+    REQUIRE(s.size() == 1);
+    check(s[0], -10.0, -0.5, 2.5);
+}
+
+TEST_CASE("what is too old for any window is forgotten")
+{
+    drive_history h = one_channel({{-9.0, -8.0, 1.0}, {-5.0, -3.0, 0.5}, {-1.0, 0.0, 1.0}});
+    tactor::synth::forget(h, 8.0);
+    REQUIRE(h.channels[0].stretches.size() == 2);
+    tactor::synth::forget(h, 3.5);
+    CHECK(h.channels[0].stretches.size() == 2);
+    tactor::synth::forget(h, 0.0);
+    CHECK(h.empty());
 }
 
 TEST_CASE("a channel that another guard had cut counts as cut again where it is driven too early")

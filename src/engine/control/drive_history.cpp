@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstddef>
 #include <fstream>
 #include <iterator>
 #include <memory>
@@ -22,11 +23,12 @@
 namespace tactor {
 namespace {
 
-constexpr std::string_view first_words = "tactor-driven 1";
+constexpr std::string_view first_words = "tactor-driven 1 ";
 constexpr std::string_view last_line = "end";
 constexpr unsigned most_channels = 16384;
 constexpr std::size_t most_stretches = 64; // of a channel, in a text
 constexpr double longest_ahead_s = 86400.0;
+constexpr double longest_window_s = 3600.0; // that drive_limits may have
 constexpr std::int64_t longest_ns = 4'000'000'000'000'000'000;
 
 [[noreturn]] void refuse(const char* why)
@@ -107,6 +109,7 @@ synth::drive_history drive_history::impl::as_of(std::int64_t now_ns) const
 {
     synth::drive_history h = channels;
     h.pass(seconds(now_ns - taken_ns));
+    synth::forget(h, longest_window_s);
     return h;
 }
 
@@ -150,7 +153,7 @@ std::string drive_history::save() const
     const impl none;
     synth::drive_history h = (impl_ != nullptr ? *impl_ : none).channels;
     synth::coarsen(h, most_stretches);
-    std::string text = fmt::format("{} {} {} {}\n", first_words, this_boot(),
+    std::string text = fmt::format("{}{} {} {}\n", first_words, this_boot(),
                                    impl_ != nullptr ? impl_->taken_ns : 0, h.channels.size());
     for (std::size_t i = 0; i < h.channels.size(); ++i) {
         const synth::drive_history::channel& c = h.channels[i];
@@ -170,13 +173,14 @@ std::string drive_history::save() const
 
 drive_history drive_history::restore(std::string_view text)
 {
-    std::vector<std::string_view> lines = detail::split(text, '\n');
+    if (std::count(text.begin(), text.end(), '\n') > std::ptrdiff_t{most_channels} + 2)
+        refuse("more lines than there are channels");
+    const std::vector<std::string_view> lines = detail::split(text, '\n');
     if (lines.size() < 3 || !lines.back().empty() || lines[lines.size() - 2] != last_line)
         refuse("the text has no end");
     if (!lines.front().starts_with(first_words))
         refuse("the text is something else");
     numbers head(lines.front().substr(first_words.size()));
-    head.word();
     const bool ours = head.word() == this_boot();
     impl h;
     h.taken_ns = head.next();

@@ -2,7 +2,8 @@
 #include "synth/guard/drive_history.hpp"
 
 #include <algorithm>
-#include <iterator>
+#include <cstddef>
+#include <utility>
 
 namespace tactor::synth {
 namespace {
@@ -81,24 +82,29 @@ drive_history together(const drive_history& a, const drive_history& b)
     return sum;
 }
 
+void forget(drive_history& h, double older_s)
+{
+    for (drive_history::channel& c : h.channels) {
+        const auto kept = std::find_if(c.stretches.begin(), c.stretches.end(),
+                                       [&](const driven_stretch& s) { return s.end_s > -older_s; });
+        c.stretches.erase(c.stretches.begin(), kept);
+    }
+}
+
 void coarsen(drive_history& h, std::size_t most)
 {
     for (drive_history::channel& c : h.channels) {
-        const std::size_t group = (c.stretches.size() + most - 1) / most;
-        if (group <= 1) {
+        if (c.stretches.size() <= most) {
             continue;
         }
-        std::vector<driven_stretch> fewer;
-        for (std::size_t i = 0; i < c.stretches.size(); ++i) {
-            const driven_stretch& s = c.stretches[i];
-            if (i % group == 0) {
-                fewer.push_back(s);
-            } else {
-                fewer.back().end_s = s.end_s;
-                fewer.back().driven_s += s.driven_s;
-            }
+        const auto newer = c.stretches.end() - static_cast<std::ptrdiff_t>(most - 1);
+        driven_stretch old = c.stretches.front();
+        for (auto s = c.stretches.begin() + 1; s != newer; ++s) {
+            old.end_s = s->end_s;
+            old.driven_s += s->driven_s;
         }
-        c.stretches = std::move(fewer);
+        *(newer - 1) = old;
+        c.stretches.erase(c.stretches.begin(), newer - 1);
     }
 }
 

@@ -38,7 +38,10 @@ struct drive_history {
 /// channel counts as driven for longer than there was time.
 drive_history together(const drive_history& a, const drive_history& b);
 
-/// At most so many stretches a channel, neighbours taken together: what counts leaves the window later then,
+/// What ended longer ago than that is no longer in it.
+void forget(drive_history& h, double older_s);
+
+/// At most so many stretches a channel, the oldest taken together: what counts leaves the window later then,
 /// never sooner. `most` is 1 at least.
 void coarsen(drive_history& h, std::size_t most);
 
