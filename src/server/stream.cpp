@@ -103,7 +103,6 @@ stream::stream(boost::asio::io_context& io, stream_options o, handlers h)
       watch_(std::make_shared<watch>(io)),
       peaks_(std::make_shared<level_peaks>(std::max(options_.wished.channels, options_.tactors.channels()))),
       setup_(options_.wished),
-      driven_(options_.player.driven),
       again_(io),
       idle_(io),
       going_(io)
@@ -138,6 +137,8 @@ void stream::when_ready(std::function<void()> ready)
 void stream::open()
 {
     opening_ = true;
+    if (options_.driven)
+        driven_ = options_.driven();
     boost::asio::post(worker_, [this, w = watch_, number = number_ + 1, driven = driven_] {
         std::unique_ptr<player> p;
         std::string failure;
@@ -250,18 +251,18 @@ void stream::retire(std::function<void()> then)
     boost::asio::post(worker_, [this, p = std::move(p), then = std::move(then)]() mutable {
         p->stop();
         player_stats last = p->stats();
-        drive_history driven;
+        std::optional<drive_history> driven;
         try {
             driven = p->history();
-        } catch (const error&) { // NOLINT(bugprone-empty-catch): it starts anew
+        } catch (const error&) { // NOLINT(bugprone-empty-catch): what was known before still counts
         }
         p.reset();
         boost::asio::post(io_, [this, last = std::move(last), driven = std::move(driven), then] {
             retiring_ = false;
             add(before_, last);
-            driven_ = driven;
-            if (options_.settled)
-                options_.settled(driven_);
+            driven_ = driven.value_or(driven_);
+            if (driven && options_.settled)
+                options_.settled(*driven);
             if (!waiting_.empty() && !closing_)
                 open();
             if (then)

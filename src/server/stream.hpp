@@ -35,9 +35,11 @@ struct stream_options {
     /// Lines for one player; may be empty.
     std::function<player_lines()> lines = {};
     array tactors = {};         ///< with the limits that hold for all clients together
-    player_options player = {}; ///< but `log`; `driven` of whoever played before
+    player_options player = {}; ///< but `driven` and `log`
     log_function log = {};
     std::function<void(stream_state, const std::string& reason)> changed = {}; ///< for the owner
+    /// What the array was given lately, by whomever: asked for before each opening. None: by this stream.
+    std::function<drive_history()> driven = {};
     /// Twice a second while strokes go on, that so many channels may be driven.
     std::function<void(unsigned channels)> going = {};
     /// What the array was given lately, each time that the device is closed.

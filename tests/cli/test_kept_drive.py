@@ -2,6 +2,7 @@
 """How long a tactor was driven counts on from one run of a user to the next on the same device. Windows last an hour: no
 machine is so slow that time itself would give it back."""
 import json
+import signal
 import subprocess
 import time
 
@@ -19,12 +20,20 @@ class KeptDrive(ToolTest):
         self.runtime.mkdir(mode=0o700)
         self.env["XDG_RUNTIME_DIR"] = str(self.runtime)
 
-    def cuts(self, *args, seconds=0.3, limits=LIMITS, **more):
-        r = self.ok("play", *STILL, "--duration", seconds, *limits, "--format", "json", *args, **more)
+    def cuts(self, *args, seconds=0.3, limits=LIMITS, stroke=STILL, **more):
+        r = self.ok("play", *stroke, "--duration", seconds, *limits, "--format", "json", *args, **more)
         return json.loads(r.stdout)["counters"]["drives_cut"]
 
-    def kept(self):
-        return sorted(self.runtime.rglob("driven-*"))
+    def running(self, *args):
+        p = subprocess.Popen([TOOL, "play", *args, "-D", "null"], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
+                             stderr=subprocess.DEVNULL, cwd=self.dir, env=self.env)
+        self.addCleanup(p.stdin.close)
+        self.addCleanup(p.wait)
+        self.addCleanup(p.kill)
+        return p
+
+    def kept(self, kind="driven"):
+        return sorted(self.runtime.rglob(f"{kind}-*"))
 
     def test_two_runs_count_together(self):
         self.assertEqual(self.cuts("-D", "null"), 0)
@@ -42,7 +51,7 @@ class KeptDrive(ToolTest):
         self.ok("play", "--live", "-", "-D", "null")
         self.refused(3, "play", *STILL, "-D", "nowhere")
         self.refused(2, "play", *STILL, "--max-drive-s", "0", "-D", "null")
-        self.assertEqual(self.kept(), [])
+        self.assertEqual(self.kept() + self.kept("going"), [])
 
     def test_a_file_that_is_torn_counts_as_none(self):
         self.assertEqual(self.cuts("-D", "null"), 0)
@@ -61,6 +70,8 @@ class KeptDrive(ToolTest):
         folder.chmod(0o777)
         self.assertEqual([self.cuts("-D", "null") for _ in range(2)], [0, 0])
         self.assertEqual(self.kept(), [])
+        self.assertIn("is not a folder of this user alone: the next run will not know",
+                      self.ok("play", *STILL, "--duration", "0.1", "-D", "null").stderr)
         folder.rmdir()
         folder.symlink_to(self.dir)
         self.assertEqual(self.cuts("-D", "null"), 0)
@@ -78,20 +89,42 @@ class KeptDrive(ToolTest):
     def test_a_run_that_was_killed_counts_too(self):
         for stroke in ((*STILL, "--duration", "300"), ("--live", "-")):
             with self.subTest(stroke[0]):
-                p = subprocess.Popen([TOOL, "play", *stroke, "-D", "null"], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
-                                     stderr=subprocess.DEVNULL, cwd=self.dir, env=self.env)
+                p = self.running(*stroke)
                 p.stdin.write(b"0 0 0\n")
                 p.stdin.flush()
-                self.until(self.kept, p)
+                self.until(lambda: self.kept("going"), p)
                 began = time.monotonic()
                 p.kill()
-                p.communicate()
+                p.wait()
                 self.until(lambda: time.monotonic() > began + 0.6)
                 self.assertEqual(self.cuts("-D", "null", seconds=0.1), 1)
+                self.assertEqual(self.kept("going"), [])
                 self.kept()[0].unlink()
 
     def test_without_a_limit_it_is_kept_when_the_array_was_driven(self):
         self.assertEqual(self.cuts("-D", "null", seconds=1.0, limits=("--max-drive-s", "3600", "--drive-window-s", "10")), 0)
+        self.assertEqual(self.cuts("-D", "null", seconds=0.1), 1)
+
+    def test_runs_at_once_count_together_once_they_have_ended(self):
+        other = self.running(*STILL, "--duration", "300", *LIMITS)
+        self.until(lambda: self.kept("going"), other)
+        corner = ("--path", "M 40 40 L 40 39.999", "--algorithm", "continuous")
+        self.assertEqual(self.cuts("-D", "null", seconds=0.4, stroke=corner), 0)  # the other's time is not this one's
+        other.send_signal(signal.SIGINT)
+        other.wait()
+        self.assertEqual(self.kept("going"), [])
+        self.assertEqual(self.cuts("-D", "null", seconds=0.2, stroke=corner), 1)
+        self.assertEqual(self.cuts("-D", "null", seconds=0.2), 1)
+
+    def test_a_service_that_opens_the_device_again_knows_what_was_given_meanwhile(self):
+        s = Server(self, "--idle-stop", "0.1", config="[limits]\nmax_drive_s = 0.5\nwindow_s = 3600\n",
+                   env={"XDG_RUNTIME_DIR": str(self.runtime)})
+        client = s.client()
+        self.ok("play", *STILL, "--duration", "0.1", "--socket", s.where["socket"])
+        self.until(lambda: client.ok("status")["stream"]["state"] == "idle", s.process)
+        self.assertEqual(self.cuts("-D", "null"), 0)
+        self.ok("play", *STILL, "--duration", "0.2", "--socket", s.where["socket"])
+        self.assertEqual(s.terminate()[0], 0)
         self.assertEqual(self.cuts("-D", "null", seconds=0.1), 1)
 
     def test_a_service_counts_what_was_before_and_is_counted(self):

@@ -35,8 +35,7 @@ play_session::play_session(const alsa_options& device, const play_options& o, co
       lines_(o.no_gpio ? tactor::setup{} : e.config, o.arm, o.sync_delay_ms * 1e-3),
       log_(o.verbose, o.log),
       device_(device),
-      kept_(device.pcm, limits_of(o, e)),
-      driven_(kept_.before())
+      kept_(device.pcm, limits_of(o, e))
 {
     device_.log = log_.function();
     std::unique_ptr<sink> s = source_.open(device_);
@@ -70,8 +69,7 @@ void play_session::end_stream()
     if (!std::exchange(streams_, false))
         return;
     player_->stop();
-    driven_ = player_->history();
-    kept_.settled(driven_);
+    kept_.settled(player_->history());
 }
 
 void play_session::start(std::unique_ptr<sink> s)
@@ -79,7 +77,7 @@ void play_session::start(std::unique_ptr<sink> s)
     player_options o = source_.player;
     o.limits = limits_of(options_, environment_);
     o.require_realtime = options_.require_realtime;
-    o.driven = driven_;
+    o.driven = kept_.until_now();
     o.log = device_.log;
     player_ = std::make_unique<player>(std::move(s), environment_.tactors, o, lines_.lend());
     player_->on_report([this](const stroke_report&) { ended_.signal(); });

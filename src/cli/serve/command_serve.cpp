@@ -46,26 +46,26 @@ struct owners_defaults {
     option_list options;
 };
 
-server::planning planning_of(const settings& s, const environment& e, const serve_settings& serve,
-                             const server::service_limits& limits)
-{
-    server::planning p;
-    p.tactors = e.tactors;
-    p.owner.plan = s.plan;
-    p.owner.render = settle_render(s, e);
-    p.owner.speed_mm_s = s.speed_mm_s;
-    p.max_level_dbfs = serve.max_level_dbfs.value_or(p.owner.render.level_dbfs);
-    p.owner.render.level_dbfs = std::min(p.owner.render.level_dbfs, p.max_level_dbfs);
-    p.max_stroke_s = limits.max_stroke_s;
-    return p;
-}
-
 // What the channels get of all clients together: the ceiling, with what the owner adds to a tactor.
 array limited(array a, double max_level_dbfs)
 {
     for (tactor_spec& t : a.tactors)
         t.max_dbfs = std::min(t.max_dbfs, max_level_dbfs + std::max(t.gain_db, 0.0));
     return a;
+}
+
+server::planning planning_of(const settings& s, const environment& e, const serve_settings& serve,
+                             const server::service_limits& limits)
+{
+    server::planning p;
+    p.owner.plan = s.plan;
+    p.owner.render = settle_render(s, e);
+    p.owner.speed_mm_s = s.speed_mm_s;
+    p.max_level_dbfs = serve.max_level_dbfs.value_or(p.owner.render.level_dbfs);
+    p.owner.render.level_dbfs = std::min(p.owner.render.level_dbfs, p.max_level_dbfs);
+    p.tactors = limited(e.tactors, p.max_level_dbfs);
+    p.max_stroke_s = limits.max_stroke_s;
+    return p;
 }
 
 void settle_realtime(const play_options& o)
@@ -208,10 +208,10 @@ int serve(settings& s, owners_defaults& defaults, const play_options& play, cons
     settle_realtime(play);
     server::stream_options stream = stream_of(device, play, e, lines);
     kept_drive kept(device.pcm, stream.player.limits);
-    stream.player.driven = kept.before();
+    stream.driven = [&kept] { return kept.until_now(); };
     stream.going = [&kept](unsigned channels) { kept.going(channels); };
     stream.settled = [&kept](const drive_history& h) { kept.settled(h); };
-    stream.tactors = limited(e.tactors, service.plans.max_level_dbfs);
+    stream.tactors = service.plans.tactors;
     stream.changed = tell_owner();
     stream.idle_stop_s = serve.idle_stop_s.value_or(0.0);
     server::serve(at, std::move(service), std::move(stream), std::move(network), stop.descriptor(),

@@ -7,10 +7,14 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <utility>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <system_error>
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -31,7 +35,7 @@ constexpr std::size_t longest_text = std::size_t{64} << 20;
 
 std::string name_of(std::string_view device)
 {
-    std::string name = "driven-";
+    std::string name;
     for (const char c : device) {
         const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
                            c == '-' || c == '_' || c == '.';
@@ -40,28 +44,40 @@ std::string name_of(std::string_view device)
     return name.substr(0, longest_name);
 }
 
+constexpr const char* what_follows =
+    "the next run will not know for how long the array was driven by this one";
+
+bool is_own(const std::string& folder, mode_t closed_to)
+{
+    struct stat is = {};
+    return ::lstat(folder.c_str(), &is) == 0 && S_ISDIR(is.st_mode) && is.st_uid == ::geteuid() &&
+           (is.st_mode & closed_to) == 0;
+}
+
 /// A folder that nobody else can put anything into; empty where there is none.
 std::string own_folder()
 {
     const std::string runtime = runtime_folder();
-    if (runtime.empty())
+    if (runtime.empty() || !is_own(runtime, 0))
         return {};
     std::string folder = runtime + "/tactor";
-    struct stat is = {};
-    if ((::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST) || ::lstat(folder.c_str(), &is) != 0)
-        return {};
-    const bool own = S_ISDIR(is.st_mode) && is.st_uid == ::geteuid() && (is.st_mode & 022) == 0;
-    return own ? folder : std::string{};
+    const bool made = ::mkdir(folder.c_str(), 0700) == 0 || errno == EEXIST;
+    if (made && is_own(folder, S_IWGRP | S_IWOTH))
+        return folder;
+    say(stderr, "tactor: warning: {}: {}: {}\n", folder,
+        made ? "is not a folder of this user alone" : std::generic_category().message(errno), what_follows);
+    return {};
 }
 
-/// Keeps others from writing meanwhile. Whoever holds it for long is at fault and is not waited for.
+/// Keeps others from writing meanwhile. Whoever holds it for long is at fault, and is not waited for.
 class folder_lock {
 public:
     explicit folder_lock(const std::string& folder)
         : fd_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC))
     {
-        if (fd_ >= 0)
-            static_cast<void>(::flock(fd_, LOCK_EX | LOCK_NB));
+        constexpr int tries = 20;
+        for (int i = 0; fd_ >= 0 && ::flock(fd_, LOCK_EX | LOCK_NB) != 0 && i < tries; ++i)
+            ::poll(nullptr, 0, 5);
     }
     ~folder_lock()
     {
@@ -93,57 +109,96 @@ drive_history history_in(std::string_view text)
     }
 }
 
+/// Whether a process runs; what cannot be found out counts as no.
+bool runs(std::string_view pid)
+{
+    std::ifstream file(fmt::format("/proc/{}/stat", pid));
+    const std::string stat{std::istreambuf_iterator<char>(file), {}};
+    const std::size_t name_ends = stat.rfind(") ");
+    return name_ends != std::string::npos && stat.size() > name_ends + 2 && stat[name_ends + 2] != 'Z' &&
+           stat[name_ends + 2] != 'X';
+}
+
 } // namespace
 
-kept_drive::kept_drive(std::string_view device, const drive_limits& l) : counted_(l.max_drive_s < l.window_s)
+kept_drive::kept_drive(std::string_view device, const drive_limits& l)
+    : folder_(own_folder()), name_(name_of(device)), counted_(l.max_drive_s < l.window_s)
 {
-    const std::string folder = own_folder();
-    if (folder.empty())
-        return;
-    file_ = folder + "/" + name_of(device);
-    text_ = read(file_);
-    now_ = history_in(text_);
+}
+
+void kept_drive::look()
+{
+    const std::string there = read(folder_ + "/driven-" + name_);
+    if (there != text_)
+        others_ = others_.with(history_in(there));
+    text_ = there;
+}
+
+void kept_drive::take_up_killed()
+{
+    const std::string begins = "going-" + name_ + "-";
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_, ignored)) {
+        const std::string file = entry.path().filename().string();
+        const std::string pid = file.starts_with(begins) ? file.substr(begins.size()) : "";
+        if (pid.empty() || pid.find_first_not_of("0123456789") != std::string::npos || runs(pid))
+            continue;
+        others_ = others_.with(history_in(read(entry.path())));
+        write("driven-" + name_, own_.with(others_));
+        std::filesystem::remove(entry.path(), ignored);
+    }
+}
+
+drive_history kept_drive::until_now()
+{
+    if (!folder_.empty()) {
+        look();
+        take_up_killed();
+    }
+    return own_.with(others_);
 }
 
 void kept_drive::going(unsigned channels)
 {
     const std::int64_t now_ns = rt::monotonic_ns();
-    if (file_.empty() || now_ns < next_ns_)
+    if (folder_.empty() || now_ns < next_ns_)
         return;
     next_ns_ = now_ns + renewed_ns;
-    now_ = now_.with_ahead(channels, ahead_s);
-    write(now_);
+    ahead_ = ahead_.with_ahead(channels, ahead_s);
+    write(fmt::format("going-{}-{}", name_, ::getpid()), ahead_);
 }
 
 void kept_drive::settled(const drive_history& h)
 {
-    if (file_.empty() || !counted_)
-        return;
-    now_ = h;
+    own_ = counted_ ? h : own_.with(ahead_);
     next_ns_ = 0;
-    write(h);
+    ahead_ = {};
+    if (folder_.empty())
+        return;
+    const folder_lock lock(folder_);
+    look();
+    const drive_history all = own_.with(others_);
+    write("driven-" + name_, all);
+    text_ = all.empty() ? "" : all.save();
+    write(fmt::format("going-{}-{}", name_, ::getpid()), {});
 }
 
-void kept_drive::write(drive_history h)
+void kept_drive::write(const std::string& file, const drive_history& h)
 {
     try {
-        const folder_lock lock(std::filesystem::path(file_).parent_path());
-        if (const std::string there = read(file_); there != text_)
-            h = h.with(history_in(there)); // another run's, on the same device
+        if (folder_.empty())
+            return;
         if (h.empty()) {
-            std::filesystem::remove(file_);
-            text_.clear();
+            std::filesystem::remove(folder_ + "/" + file);
             return;
         }
-        text_ = h.save();
-        detail::output_file out(file_);
-        out.write(text_.data(), static_cast<std::int64_t>(text_.size()));
+        const std::string text = h.save();
+        detail::output_file out(folder_ + "/" + file);
+        out.write(text.data(), static_cast<std::int64_t>(text.size()));
         out.commit();
     } catch (const std::exception& e) {
-        say(stderr,
-            "tactor: warning: {}: the next run will not know for how long the array was driven by this one\n",
-            e.what());
-        file_.clear();
+        say(stderr, "tactor: warning: {}: {}\n", e.what(), what_follows);
+        folder_.clear();
     }
 }
 

@@ -12,16 +12,19 @@
 
 namespace tactor::cli {
 
-/// One file for each name of a device, `tactor/driven-NAME`, replaced as a whole. A torn one counts as none.
-/// What cannot be kept is warned of once, and played all the same. One thread.
+/// In the folder `tactor` there, files that are replaced as a whole: `driven-NAME` of each device has how it
+/// was; `going-NAME-PID` what a process may drive as long as it lives, which counts once it was killed. A
+/// torn one counts as none. What cannot be kept is warned of once, and played all the same. One thread.
 class kept_drive {
 public:
-    /// Reads what runs before left. Where there is no runtime folder nothing is kept. Without a limit there
-    /// is nothing to count: then it is kept until when the array was driven, not for how long in between.
+    /// Where there is no runtime folder of the user's own nothing is kept from run to run. Without a limit
+    /// there is nothing to count: then it is kept until when the array was driven, not for how long in
+    /// between.
     kept_drive(std::string_view device, const drive_limits& l);
 
-    const drive_history& before() const noexcept { return now_; }
-
+    /// What the array was given until now, by this run, those before, and others meanwhile: for a stream that
+    /// is about to be opened.
+    drive_history until_now();
     /// To be called each second while so many channels may be driven: should this process be killed, they
     /// count as driven until 2 s after the last call at most. Seldom writes.
     void going(unsigned channels);
@@ -29,12 +32,17 @@ public:
     void settled(const drive_history& h);
 
 private:
-    void write(drive_history h);
+    void look();
+    void take_up_killed();
+    void write(const std::string& file, const drive_history& h);
 
-    std::string file_; ///< empty: nothing is kept
-    std::string text_; ///< as it was last seen
+    std::string folder_; ///< empty: nothing is kept
+    std::string name_;
+    std::string text_; ///< of driven-NAME, as it was last seen
     bool counted_;
-    drive_history now_;
+    drive_history own_;    ///< of this run, and what its streams went on from
+    drive_history others_; ///< what the files said that this run had not written
+    drive_history ahead_;  ///< what this stream may have driven
     std::int64_t next_ns_ = 0;
 };
 
