@@ -103,8 +103,11 @@ error in_file(const error& x, const std::string& argument)
     const bool file = argument != "--path" && !is_preset(stroke_presets(), argument);
     if (!about_it || !file)
         return x;
-    return {x.kind(), fmt::format("{}: {}", argument == "-" ? "standard input" : argument, x.subject()),
-            x.why(), x.hint()};
+    const std::string from = argument == "-" ? "standard input" : argument;
+    // A stroke without a name of its own has the file's.
+    const std::string given = argument == "-" ? from : std::filesystem::path(argument).stem().string();
+    const bool said = x.subject() == "stroke" || x.subject() == fmt::format("stroke \"{}\"", given);
+    return {x.kind(), said ? from : fmt::format("{}: {}", from, x.subject()), x.why(), x.hint()};
 }
 
 // A plan comes with its strokes; those that are read as strokes are not planned yet.

@@ -152,7 +152,7 @@ TEST_CASE("a limit that is weaker than by default is a warning that says the def
     CHECK(untimed.how == level::warning);
     CHECK(untimed.found ==
           "all together at most +0 dB of one at full scale; no limit on time: more than by default");
-    CHECK(has(untimed.cure, "max_drive_s = 5 of window_s = 10"));
+    CHECK(has(untimed.cure, "max_drive_s = 5, window_s = 10"));
     CHECK(untimed.cure.find("power_dbfs") == std::string::npos);
     for (const limit_settings& l :
          {limit_settings{.window_s = 5.0}, limit_settings{.window_s = 9.0}, limit_settings{.window_s = 1.0},

@@ -35,7 +35,7 @@ class CommandLine(ToolTest):
         for command in (("plan",), ("render", "-o", "x.wav"), ("play", "-D", "null"), ("plot", "-o", "x.svg"), ("compare",)):
             self.refused(2, command[0], "one.toml", *command[1:], says=['tactor: one.toml: stroke "swing": leaves the array'])
         self.refused(2, "plan", "two.toml", says=['tactor: two.toml: stroke 1 "two-1": leaves the array'])
-        self.refused(2, "plan", "-", stdin="[stroke]\n" + far, says=["tactor: standard input: stroke"])
+        self.refused(2, "plan", "-", stdin="[stroke]\n" + far, says=["tactor: standard input: leaves the array"])
         self.refused(2, "plan", "--path", "M 0 0 L 400 0", says=['tactor: stroke "path": leaves'])
         self.refused(2, "plan", "park2016-1", "--array", self.write("s.toml", '[array]\nname = "s"\ngrid = { rows = 2, columns = 2, pitch_mm = 9.0 }\n'),
                      says=['tactor: stroke "park2016-1": starts outside'])

@@ -39,6 +39,9 @@ struct bench {
 
     explicit bench(const std::string& folder)
     {
+        ::setenv("TACTOR_CONFIG", "/dev/null", 1);
+        ::setenv("XDG_RUNTIME_DIR", "", 1);
+        ::setenv("RUNTIME_DIRECTORY", "", 1);
         if (variable("TACTOR_FAKE_GPIOD").empty())
             return;
         line = folder + "/line";

@@ -175,7 +175,7 @@ std::vector<std::string> lifted(const drive_limits& l, std::size_t tactors)
         all.push_back(fmt::format("power_dbfs = {:.3g}", usual.power_dbfs));
     if (l.max_drive_s > usual.max_drive_s || l.max_drive_s / l.window_s > usual.max_drive_s / usual.window_s)
         all.push_back(
-            fmt::format("max_drive_s = {:.4g} of window_s = {:.4g}", usual.max_drive_s, usual.window_s));
+            fmt::format("max_drive_s = {:.4g}, window_s = {:.4g}", usual.max_drive_s, usual.window_s));
     return all;
 }
 
