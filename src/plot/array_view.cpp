@@ -10,19 +10,19 @@
 
 #include "plot/draw/array_frame.hpp"
 #include "plot/draw/axes.hpp"
+#include "plot/draw/notes.hpp"
 #include "plot/draw/path_marks.hpp"
+#include "plot/draw/time_colours.hpp"
 #include "plot/paint/text.hpp"
 
 namespace tactor::plot {
 namespace {
 
 constexpr double legend_height = 13.0;
-constexpr double note_height = 8.0;
 constexpr double least_spacing = 3.6; // of bursts on the page, pt
 constexpr std::size_t always_shown = 24;
 constexpr double close_pitch = 24.0; // of tactors on the page, pt
 constexpr double taller = 0.3;       // of the width
-constexpr std::size_t most_note_lines = 4;
 
 // How fine the marks are: the more bursts, the finer.
 struct fineness {
@@ -42,11 +42,11 @@ fineness fineness_for(std::size_t shown) noexcept
 
 class array_drawing {
 public:
-    array_drawing(canvas& c, const scene& s, const timeline& t, box at_most)
+    array_drawing(canvas& c, const scene& s, const timeline& t, box at_most, double highest)
         : canvas_(c),
           scene_(s),
           time_(t),
-          frame_(fit(s, at_most)),
+          frame_(fit(s, at_most, highest)),
           taken_({at_most.x, frame_.area.y - 3.0, at_most.width, frame_.area.height + 3.0}),
           stride_(stride()),
           fine_(fineness_for(t.bursts.size() / stride_ + 1)),
@@ -82,19 +82,23 @@ public:
         const double y = frame_.area.bottom() + legend_height / 2.0;
         draw_scale_bar(canvas_, frame_, {where_.x, y});
         draw_amplitude_legend(y);
-        return frame_.area.height + legend_height + draw_notes(y + legend_height / 2.0);
+        note_what_is_not_drawn();
+        return frame_.area.height + legend_height +
+               draw_notes(canvas_, notes_, {where_.x, y + legend_height / 2.0, where_.width, 0.0},
+                          most_array_notes);
     }
 
 private:
     // Higher where tactors would be too close on the page to be numbered.
-    static array_frame fit(const scene& s, box at_most)
+    static array_frame fit(const scene& s, box at_most, double highest)
     {
         const extent shown = shown_extent(s.tactors, s.strokes);
-        at_most.height -= legend_height;
+        const double tallest = std::min(at_most.height + taller * at_most.width, highest) - legend_height;
+        at_most.height = std::min(at_most.height, highest) - legend_height;
         const array_frame f = fit_array(s.tactors, shown, at_most);
         if (f.pitch >= close_pitch)
             return f;
-        at_most.height += taller * at_most.width;
+        at_most.height = tallest;
         return fit_array(s.tactors, shown, at_most);
     }
 
@@ -151,21 +155,26 @@ private:
             notes_.push_back(text);
     }
 
-    // What of the bursts, numbers and channels is not drawn.
-    double draw_notes(double top)
+    void note_what_is_not_drawn()
     {
         if (time_.sampled)
             add_note(fmt::format("positions each {}",
                                  seconds_text(time_.sample_s * static_cast<double>(stride_))));
         else if (stride_ > 1)
             add_note(fmt::format("one burst in {} is drawn on the array", stride_));
-        double y = top;
-        for (const std::string& line : wrap(notes_, "; ", small_text, where_.width, most_note_lines)) {
-            canvas_.text({where_.x, y + cap_height(small_text) + 1.0}, line, {.size = small_text},
-                         {.kind = "note"});
-            y += note_height;
-        }
-        return y - top;
+        std::vector<bool> joined(scene_.tactors.tactors.size(), false);
+        for_each_shown([&](const shown_burst& b, spot, colour) {
+            for (const drive& d : b.what->drives)
+                joined[d.tactor] = true;
+        });
+        std::vector<unsigned> others;
+        for (const unsigned i : time_.playing)
+            if (!joined[i])
+                others.push_back(i);
+        if (others.empty())
+            return;
+        add_note(fmt::format("{} play{} only {}", tactors_text(others), others.size() == 1 ? "s" : "",
+                             time_.sampled ? "in between" : "in others"));
     }
 
     double width_of(double amplitude) const { return std::max(0.15, fine_.join * amplitude / time_.peak); }
@@ -277,27 +286,9 @@ private:
 
 } // namespace
 
-colour colour_of(const timeline& t, const shown_burst& b) noexcept
+double draw_array_view(canvas& c, const scene& s, const timeline& t, box at_most, double highest)
 {
-    return t.several() ? of_stroke(b.stroke) : ordered(t.total_s > 0.0 ? b.target_s / t.total_s : 0.0);
-}
-
-double draw_array_view(canvas& c, const scene& s, const timeline& t, box at_most)
-{
-    return array_drawing(c, s, t, at_most).draw();
-}
-
-void draw_time_strip(canvas& c, const timeline&, box where)
-{
-    constexpr int steps = 128;
-    const group g(c, {.id = "time-colours", .title = "colour of each time"});
-    // Each reaches to the end, so that no seam shows between two.
-    for (int i = 0; i < steps; ++i) {
-        const double part = static_cast<double>(i) / steps;
-        c.rect({where.x + part * where.width, where.y, (1.0 - part) * where.width, where.height},
-               {.fill = ordered((i + 0.5) / steps)});
-    }
-    c.rect(where, {.stroke = ink, .width = 0.4});
+    return array_drawing(c, s, t, at_most, highest).draw();
 }
 
 } // namespace tactor::plot

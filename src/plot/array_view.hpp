@@ -12,14 +12,10 @@ namespace tactor::plot {
 /// Bursts that are drawn at most; of more, and where they would lie on each other, every n-th is.
 inline constexpr std::size_t most_shown_bursts = 120;
 
-/// Draws into the upper part of a box; returns the height taken.
-double draw_array_view(canvas& c, const scene& s, const timeline& t, box at_most);
+inline constexpr std::size_t most_array_notes = 6; ///< lines
 
-/// A strip of the colours of time, over x.
-void draw_time_strip(canvas& c, const timeline& t, box where);
-
-/// Colour of a burst: of its time in the piece where there is one stroke, of its stroke where there are
-/// several.
-colour colour_of(const timeline& t, const shown_burst& b) noexcept;
+/// Draws into the upper part of a box; returns the height taken. Where tactors would be too close for their
+/// numbers it is higher than the box, but at most `highest` pt and most_array_notes lines.
+double draw_array_view(canvas& c, const scene& s, const timeline& t, box at_most, double highest);
 
 } // namespace tactor::plot

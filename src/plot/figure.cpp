@@ -2,6 +2,8 @@
 #include "plot/figure.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -10,7 +12,9 @@
 #include "plot/array_view.hpp"
 #include "plot/draw/array_frame.hpp"
 #include "plot/draw/axes.hpp"
+#include "plot/draw/notes.hpp"
 #include "plot/draw/stroke_legend.hpp"
+#include "plot/draw/time_colours.hpp"
 #include "plot/paint/text.hpp"
 #include "plot/timing_view.hpp"
 #include "plot/wave_view.hpp"
@@ -85,12 +89,21 @@ double draw_time_key(canvas& c, const timeline& t, box where)
     return 6.0 + axis_height;
 }
 
-} // namespace
+// How high the parts may be, pt.
+struct bounds {
+    double array = std::numeric_limits<double>::infinity();
+    double picture = std::numeric_limits<double>::infinity();
+};
 
-canvas draw_figure(const scene& s, const figure_options& o)
+struct drawn {
+    canvas picture = {};
+    double array_height = 0.0;
+};
+
+drawn draw_within(const scene& s, const timeline& t, const figure_options& o, const bounds& most)
 {
-    const timeline t = make_timeline(s);
-    canvas c;
+    drawn d;
+    canvas& c = d.picture;
     c.width = o.width_mm * pt_per_mm;
     const std::vector<std::string> parts = details(s, t);
     const bool with_array = o.view == figure_view::array || o.view == figure_view::both;
@@ -100,11 +113,13 @@ canvas draw_figure(const scene& s, const figure_options& o)
     rest.y += draw_heading(c, s, parts, rest);
     if (with_array) {
         rest.height = 0.8 * c.width;
-        rest.y += draw_array_view(c, s, t, rest) + 4.0;
+        d.array_height = draw_array_view(c, s, t, rest, most.array);
+        rest.y += d.array_height + 4.0;
     }
     if (o.view == figure_view::timing)
         rest.y += 4.0;
     rest.y += draw_stroke_legend(c, s, rest, o.view != figure_view::wave);
+    rest.height = most.picture - margin - rest.y;
     if (o.view == figure_view::array && !t.several())
         rest.y += draw_time_key(c, t, rest);
     else if (o.view == figure_view::wave)
@@ -113,7 +128,31 @@ canvas draw_figure(const scene& s, const figure_options& o)
         rest.y += draw_timing_view(c, s, t, rest, !t.several());
 
     c.height = rest.y + margin;
-    return c;
+    return d;
+}
+
+// A4 within its margins; of wider pictures in proportion.
+double page_height(double width)
+{
+    constexpr double a4_width = 170.0;
+    constexpr double a4_height = 247.0;
+    return std::max(a4_height * pt_per_mm, width * a4_height / a4_width);
+}
+
+} // namespace
+
+canvas draw_figure(const scene& s, const figure_options& o)
+{
+    constexpr double least_array = 0.35; // of the page
+    const timeline t = make_timeline(s);
+    drawn d = draw_within(s, t, o, {});
+    const double page = page_height(d.picture.width);
+    if (d.picture.height > page) {
+        const double notes = note_height * static_cast<double>(most_array_notes);
+        const double left = d.array_height - notes - (d.picture.height - page);
+        d = draw_within(s, t, o, {std::max(least_array * page, left), page});
+    }
+    return std::move(d.picture);
 }
 
 } // namespace tactor::plot

@@ -3,15 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include <tactor/words.hpp>
 
-#include "plot/array_view.hpp"
 #include "plot/draw/axes.hpp"
 #include "plot/draw/dimensions.hpp"
-#include "plot/draw/stroke_legend.hpp"
+#include "plot/draw/notes.hpp"
+#include "plot/draw/stroke_starts.hpp"
+#include "plot/draw/time_colours.hpp"
 #include "plot/draw/timing_bars.hpp"
 #include "plot/paint/text.hpp"
 
@@ -26,6 +29,8 @@ constexpr double heading_height = 9.5;
 constexpr double inset = 9.0;  // of time 0 in the diagram: room for arrows that point from outside
 constexpr double outset = 7.0; // behind the last sound: room for half a label
 constexpr double timing_legend_height = 10.0;
+constexpr std::size_t most_timing_notes = 3; // lines
+constexpr double most_around_rows = 107.0;   // pt: strip, arrows, starts, axis, legend and notes
 
 class timing_drawing {
 public:
@@ -35,9 +40,8 @@ public:
           time_(t),
           where_(where),
           colours_(colours),
-          frame_{make_lanes(s.tactors, t.playing), {}, 0.0, t.peak, {}}
+          frame_{make_lanes(s.tactors, t.playing, where.height - most_around_rows), {}, 0.0, t.peak, {}}
     {
-        part_strokes(frame_, t);
         if (colours)
             frame_.rows.label_width =
                 std::max(frame_.rows.label_width, text_width(strip_heading, small_text));
@@ -45,7 +49,13 @@ public:
         const double per_s = (where.right() - left - inset - outset) / std::max(t.total_s, 1e-9);
         frame_.x = {-inset / per_s, t.total_s + outset / per_s, left, where.right()};
         find_first_pair();
-        frame_.top = where.y + (colours ? strip_height : 0.0) + dimensions_height() + 3.0 + starts_height(t);
+        starts_ = look_at_starts(t, frame_.x);
+        frame_.top = where.y + (colours ? strip_height : 0.0) + dimensions_height() + 3.0 + starts_.height;
+        const double room = where.bottom() - frame_.top - axis_gap - axis_height - timing_legend_height -
+                            note_height * static_cast<double>(most_timing_notes);
+        frame_.rows.fit(room);
+        notes_.push_back(starts_.note);
+        notes_.push_back(part_strokes(frame_, t, room));
         dense_ = too_dense(t, frame_);
     }
 
@@ -58,19 +68,21 @@ public:
                                            {"row-height", fmt::format("{:.9g}", frame_.rows.height)},
                                            {"bar-height", fmt::format("{:.9g}", frame_.bar_height(1.0))},
                                            {"drawn", dense_ ? "columns" : "bars"}}});
-        const double bottom = frame_.top + frame_.rows.all_height();
+        const double bottom = frame_.top + frame_.rows.all_height;
         draw_rows();
-        draw_horizontal_axis(canvas_, frame_.x, bottom + 1.5, colours_ ? where_.y + strip_height : frame_.top,
-                             "time (s)");
+        draw_horizontal_axis(canvas_, frame_.x, bottom + axis_gap,
+                             colours_ ? where_.y + strip_height : frame_.top, "time (s)");
         if (colours_)
             draw_strip();
-        draw_stroke_starts(canvas_, time_, frame_.x, frame_.top, bottom);
+        draw_stroke_starts(canvas_, starts_, frame_.top, bottom);
         draw_sound();
         conflicts_ = draw_conflicts(canvas_, scene_, time_, frame_);
         draw_dimensions();
-        const double legend_y = bottom + 1.5 + axis_height + timing_legend_height / 2.0;
+        const double legend_y = bottom + axis_gap + axis_height + timing_legend_height / 2.0;
         draw_legend(legend_y);
-        return legend_y + timing_legend_height / 2.0 - where_.y;
+        const double end = legend_y + timing_legend_height / 2.0;
+        return end - where_.y +
+               draw_notes(canvas_, notes_, {where_.x, end, where_.width, 0.0}, most_timing_notes);
     }
 
 private:
@@ -98,7 +110,7 @@ private:
         for (std::size_t i = 0; i < frame_.rows.rows.size(); ++i)
             canvas_.line({frame_.x.page_from, frame_.bottom_of(i)}, {frame_.x.page_to, frame_.bottom_of(i)},
                          {.stroke = light_grey, .width = 0.4}, {.kind = "row-line"});
-        draw_lane_labels(canvas_, frame_.rows, frame_.x.page_from - 3.0, frame_.top);
+        notes_.push_back(draw_lane_labels(canvas_, frame_.rows, frame_.x.page_from - 3.0, frame_.top));
         canvas_.text({frame_.x.page_from - 3.0, frame_.top - 3.5}, frame_.rows.heading,
                      {.size = small_text, .anchor = align::end, .ink = dark_grey}, {.kind = "row-heading"});
     }
@@ -126,7 +138,7 @@ private:
         std::size_t row = frame_.rows.rows.size() - 1;
         for (const drive& d : b.drives)
             row = std::min(row, static_cast<std::size_t>(frame_.rows.row_of[d.tactor]));
-        return frame_.top + frame_.rows.top_of(row);
+        return frame_.top + frame_.rows.rows[row].top;
     }
 
     void draw_dimensions()
@@ -185,6 +197,8 @@ private:
     box where_;
     bool colours_;
     timing_frame frame_;
+    stroke_starts starts_ = {};
+    std::vector<std::string> notes_ = {};
     bool dense_ = false;
     bool conflicts_ = false;
     const shown_burst* first_ = nullptr;

@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "plot/draw/axes.hpp"
 #include "plot/draw/lanes.hpp"
-#include "plot/draw/stroke_legend.hpp"
+#include "plot/draw/notes.hpp"
+#include "plot/draw/stroke_starts.hpp"
 #include "plot/draw/waveform.hpp"
 #include "plot/paint/text.hpp"
 
@@ -23,6 +26,9 @@ constexpr double least_cycle = 1.5;  // pt: shorter cycles are shown by their en
 constexpr double points_per_cycle = 14.0;
 constexpr double wave_heading_height = 12.0;
 constexpr double wave_legend_height = 10.0;
+constexpr double least_peak_row = 5.6;
+constexpr std::size_t most_wave_notes = 3; // lines
+constexpr double most_around_waves = 88.0; // pt: heading, starts, axis, legend and notes
 
 double dbfs(double linear)
 {
@@ -32,14 +38,22 @@ double dbfs(double linear)
 class wave_drawing {
 public:
     wave_drawing(canvas& c, const scene& s, const timeline& t, box where)
-        : canvas_(c), scene_(s), time_(t), where_(where), lanes_(make_lanes(s.tactors, t.playing))
+        : canvas_(c),
+          scene_(s),
+          time_(t),
+          where_(where),
+          lanes_(make_lanes(s.tactors, t.playing, where.height - most_around_waves))
     {
-        if (lanes_.rows.size() <= most_high_rows)
-            lanes_.height *= row_factor;
         const double total = std::max(static_cast<double>(s.sound->frames()) / s.sound->rate(), 1e-9);
         const double left = where.x + lanes_.label_width + 4.0;
         x_ = {0.0, total, left, where.right() - peak_column};
-        top_ = where.y + wave_heading_height + starts_height(t);
+        starts_ = look_at_starts(t, x_);
+        top_ = where.y + wave_heading_height + starts_.height;
+        const double room = where.bottom() - top_ - axis_gap - axis_height - wave_legend_height -
+                            note_height * static_cast<double>(most_wave_notes);
+        lanes_.fit(room);
+        if (lanes_.rows.size() <= most_high_rows && row_factor * lanes_.all_height <= room)
+            lanes_.lay_out(row_factor * lanes_.height);
         double highest = 0.0;
         double lowest = std::numeric_limits<double>::infinity();
         for (const placed_plan& p : s.plans) {
@@ -63,18 +77,20 @@ public:
                                            {"drawn", carrier_ ? "carrier" : "envelope"}}});
         for (const float p : wave_.peaks)
             peak_ = std::max(peak_, static_cast<double>(p));
-        const double bottom = top_ + lanes_.all_height();
-        draw_horizontal_axis(canvas_, x_, bottom + 1.5, top_, "time (s)");
+        const double bottom = top_ + lanes_.all_height;
+        draw_horizontal_axis(canvas_, x_, bottom + axis_gap, top_, "time (s)");
         draw_headings();
-        draw_stroke_starts(canvas_, time_, x_, top_, bottom);
+        draw_stroke_starts(canvas_, starts_, top_, bottom);
         for (std::size_t i = 0; i < lanes_.rows.size(); ++i)
             draw_row(i);
-        const double y = bottom + 1.5 + axis_height + wave_legend_height / 2.0;
+        const double y = bottom + axis_gap + axis_height + wave_legend_height / 2.0;
         if (peak_ > 0.0)
             canvas_.text({where_.x, y + cap_height(small_text) / 2.0},
                          fmt::format("height of a row: \xC2\xB1 {} of full scale", number(peak_, 3)),
                          {.size = small_text});
-        return y + wave_legend_height / 2.0 - where_.y;
+        const double end = y + wave_legend_height / 2.0;
+        return end - where_.y +
+               draw_notes(canvas_, notes_, {where_.x, end, where_.width, 0.0}, most_wave_notes);
     }
 
 private:
@@ -89,17 +105,22 @@ private:
 
     void draw_headings()
     {
-        draw_lane_labels(canvas_, lanes_, x_.page_from - 3.0, top_);
-        const double y = top_ - 4.0 - starts_height(time_);
+        notes_ = {starts_.note, draw_lane_labels(canvas_, lanes_, x_.page_from - 3.0, top_)};
+        const double y = top_ - 4.0 - starts_.height;
         canvas_.text({x_.page_from - 3.0, y}, lanes_.heading,
                      {.size = small_text, .anchor = align::end, .ink = dark_grey});
-        canvas_.text({where_.right(), y}, "peak (dBFS)",
-                     {.size = small_text, .anchor = align::end, .ink = dark_grey});
+        if (with_peaks())
+            canvas_.text({where_.right(), y}, "peak (dBFS)",
+                         {.size = small_text, .anchor = align::end, .ink = dark_grey});
+        else
+            notes_.push_back("no room for the peaks of rows");
     }
+
+    bool with_peaks() const { return lanes_.height >= least_peak_row - 1e-9; }
 
     void draw_row(std::size_t row)
     {
-        const double middle = top_ + lanes_.top_of(row) + lanes_.height / 2.0;
+        const double middle = top_ + lanes_.rows[row].top + lanes_.height / 2.0;
         const group g(canvas_, {.kind = "channel", .data = {{"row", fmt::format("{}", row)}}});
         canvas_.line({x_.page_from, middle}, {x_.page_to, middle}, {.stroke = light_grey, .width = 0.4});
         std::size_t first = 0;
@@ -112,7 +133,7 @@ private:
             return;
         for (std::size_t k = first; k < first + lanes_.rows[row].tactors.size(); ++k)
             carrier_ ? draw_carrier(k, middle) : draw_envelope(k, middle);
-        if (lanes_.height >= 7.0)
+        if (with_peaks())
             canvas_.text({where_.right(), middle + cap_height(small_text) / 2.0},
                          fmt::format("{:.1f}", dbfs(static_cast<double>(loudest))),
                          {.size = small_text, .anchor = align::end}, {.kind = "peak"});
@@ -167,6 +188,8 @@ private:
     const timeline& time_;
     box where_;
     lanes lanes_;
+    stroke_starts starts_ = {};
+    std::vector<std::string> notes_ = {};
     scale x_;
     double top_ = 0.0;
     bool carrier_ = false;

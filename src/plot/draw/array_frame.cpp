@@ -12,6 +12,7 @@
 #include <tactor/phantom.hpp>
 
 #include "plot/draw/axes.hpp"
+#include "plot/draw/notes.hpp"
 #include "plot/paint/text.hpp"
 
 namespace tactor::plot {
@@ -22,8 +23,7 @@ constexpr double lone_tactor_mm = 20.0; // shown round a tactor without neighbou
 constexpr std::size_t most_path_points = 20000;
 constexpr std::array<double, 3> number_sizes{7.0, 6.0, 5.2}; // pt
 constexpr double largest_radius = 7.0;
-constexpr double largest_share = 0.28; // of the distance of neighbours, for a circle's radius
-constexpr std::size_t most_listed = 8;
+constexpr double largest_share = 0.28;  // of the distance of neighbours, for a circle's radius
 constexpr double beside = 3.0;          // pt: farther away a label has lost its tactor
 constexpr std::size_t most_told = 1024; // tactors that get a group with a title of their own
 
@@ -94,14 +94,7 @@ struct missing {
         const std::string plural = tactors.size() == 1 ? "" : "s";
         if (tactors.size() == a.tactors.size())
             return fmt::format("no room for the {}{} of the tactors", what, plural);
-        std::string list;
-        for (std::size_t i = 0; i < std::min(tactors.size(), most_listed); ++i)
-            list += fmt::format("{}{}", i == 0 ? "" : ", ", tactors[i]);
-        if (tactors.size() > most_listed)
-            list = fmt::format("{} tactors", tactors.size());
-        else
-            list = fmt::format("tactor{} {}", plural, list);
-        return fmt::format("no room for the {}{} of {}", what, plural, list);
+        return fmt::format("no room for the {}{} of {}", what, plural, tactors_text(tactors));
     }
 };
 

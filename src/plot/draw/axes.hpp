@@ -42,6 +42,9 @@ inline constexpr double title_text = 7.0;
 /// Height that draw_time_axis() needs under the line, pt.
 inline constexpr double axis_height = 19.0;
 
+/// Between a diagram's lowest row and that line, pt.
+inline constexpr double axis_gap = 1.5;
+
 /// A line at y with ticks and labels under it, `title` under these, and light lines from `grid_top` down to
 /// it.
 void draw_horizontal_axis(canvas& c, const scale& x, double y, double grid_top, const std::string& title);

@@ -14,9 +14,13 @@ namespace {
 
 constexpr double highest_row = 11.0;
 constexpr double lowest_row = 2.2;
-constexpr double most_height = 260.0;     // of all rows, pt
-constexpr std::size_t most_labelled = 64; // rows that all get a label
-constexpr double label_pitch = 7.2;       // of labels, pt
+constexpr double lowest_level = 1.6;      // where strokes lie below each other
+constexpr double most_height = 260.0;     // of rows that do not all get a label, pt
+constexpr std::size_t most_labelled = 64; // rows that all get a label with ease
+constexpr double wide_pitch = 7.2;        // of labels, pt
+constexpr double tight_pitch = 5.6;
+constexpr double most_labelled_height = wide_pitch * static_cast<double>(most_labelled);
+constexpr double least_room = 60.0;
 
 std::string label_of(const array& a, const std::vector<unsigned>& tactors, bool channels)
 {
@@ -26,11 +30,29 @@ std::string label_of(const array& a, const std::vector<unsigned>& tactors, bool 
                     : fmt::format("{}", tactors.front());
 }
 
+double middle_of(const lane& r)
+{
+    return r.top + r.height / 2.0;
+}
+
+// Rows whose labels have room, from the first on.
+std::vector<std::size_t> labelled(const lanes& l)
+{
+    std::vector<std::size_t> shown;
+    double last = -l.label_pitch;
+    for (std::size_t i = 0; i < l.rows.size(); ++i)
+        if (const double middle = middle_of(l.rows[i]); middle - last >= l.label_pitch - 1e-9) {
+            last = middle;
+            shown.push_back(i);
+        }
+    return shown;
+}
+
 } // namespace
 
-lanes make_lanes(const array& a, const std::vector<unsigned>& playing)
+lanes make_lanes(const array& a, const std::vector<unsigned>& playing, double room)
 {
-    constexpr auto most_rows = static_cast<std::size_t>(most_height / lowest_row);
+    const auto most_rows = static_cast<std::size_t>(std::clamp(room, least_room, most_height) / lowest_row);
     const std::size_t together = std::max<std::size_t>(1, (playing.size() + most_rows - 1) / most_rows);
     lanes l;
     l.row_of.assign(a.tactors.size(), -1);
@@ -47,35 +69,65 @@ lanes make_lanes(const array& a, const std::vector<unsigned>& playing)
         l.label_width = std::max(l.label_width, text_width(r.label, small_text));
     }
     l.label_width = std::max(l.label_width, text_width(l.heading, small_text));
-    l.set_levels(std::vector<std::size_t>(l.rows.size(), 1));
+    l.fit(room);
     return l;
 }
 
-void lanes::set_levels(const std::vector<std::size_t>& wished)
+bool lanes::fit(double room)
 {
-    std::size_t n = 0;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        rows[i].first = n;
-        rows[i].levels = wished[i];
-        n += wished[i];
+    std::size_t levels = 0;
+    for (const lane& r : rows)
+        levels += r.levels;
+    const auto even = [&](double height) {
+        return std::clamp(height / static_cast<double>(std::max<std::size_t>(1, levels)), lowest_row,
+                          highest_row);
+    };
+    label_pitch = wide_pitch;
+    lay_out(even(rows.size() <= most_labelled ? most_labelled_height : most_height));
+    if (all_height <= room && labelled(*this).size() == rows.size())
+        return true;
+    // Closer labels then, and no row too low for its own.
+    label_pitch = tight_pitch;
+    const double most = std::min(room, most_labelled_height);
+    double low = lowest_level;
+    double high = highest_row;
+    lay_out(low, tight_pitch);
+    if (all_height > most) {
+        lay_out(even(std::clamp(room, least_room, most_height)));
+        return false;
     }
-    const double room =
-        rows.size() <= most_labelled ? label_pitch * static_cast<double>(most_labelled) : most_height;
-    height = std::clamp(room / static_cast<double>(std::max<std::size_t>(1, n)), lowest_row, highest_row);
+    for (int i = 0; i < 40; ++i) {
+        const double level = (low + high) / 2.0;
+        lay_out(level, tight_pitch);
+        (all_height <= most ? low : high) = level;
+    }
+    lay_out(low, tight_pitch);
+    return true;
 }
 
-void draw_lane_labels(canvas& c, const lanes& l, double x, double top)
+void lanes::lay_out(double level, double least_row)
 {
-    double last = -label_pitch;
-    for (std::size_t i = 0; i < l.rows.size(); ++i) {
-        const double within = l.top_of(i) + l.height_of(i) / 2.0;
-        if (within - last < label_pitch - 1e-9)
-            continue;
-        last = within;
-        const double middle = top + within;
-        c.text({x, middle + cap_height(small_text) / 2.0}, l.rows[i].label,
-               {.size = small_text, .anchor = align::end}, {.kind = "row-label"});
+    height = level;
+    std::size_t levels = 0;
+    double added = 0.0;
+    for (lane& r : rows) {
+        const double own = level * static_cast<double>(r.levels);
+        r.top = level * static_cast<double>(levels) + added;
+        r.height = std::max(own, least_row);
+        added += r.height - own;
+        levels += r.levels;
     }
+    all_height = level * static_cast<double>(levels) + added;
+}
+
+std::string draw_lane_labels(canvas& c, const lanes& l, double x, double top)
+{
+    const std::vector<std::size_t> shown = labelled(l);
+    for (const std::size_t i : shown)
+        c.text({x, top + middle_of(l.rows[i]) + cap_height(small_text) / 2.0}, l.rows[i].label,
+               {.size = small_text, .anchor = align::end}, {.kind = "row-label"});
+    // Where there is no room for all, rows are of one height.
+    return shown.size() == l.rows.size() ? "" : fmt::format("one row in {} has its number", shown[1]);
 }
 
 column_profile::column_profile(const scale& x)

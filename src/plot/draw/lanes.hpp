@@ -15,32 +15,32 @@ namespace tactor::plot {
 struct lane {
     std::vector<unsigned> tactors = {};
     std::string label = {}; ///< "4", "4 (7)" where channels are other numbers, "100-103"
-    std::size_t first = 0;  ///< level, counted through all rows
     std::size_t levels = 1; ///< strokes that play at one time on this row lie below each other
+    double top = 0.0;       ///< under the top of the first, pt
+    double height = 0.0;    ///< pt; its levels are at its bottom
 };
 
 struct lanes {
     std::vector<lane> rows = {};
     std::vector<int> row_of = {}; ///< by tactor; -1: does not play
-    double height = 10.0;         ///< of one level, pt
+    double height = 0.0;          ///< of one level, pt
+    double all_height = 0.0;      ///< pt
+    double label_pitch = 0.0;     ///< least distance of labels, pt
     std::string heading = {};     ///< over the labels
     double label_width = 0.0;     ///< pt
 
-    std::size_t levels() const noexcept { return rows.empty() ? 0 : rows.back().first + rows.back().levels; }
-    double all_height() const noexcept { return height * static_cast<double>(levels()); }
-    double top_of(std::size_t row) const noexcept { return height * static_cast<double>(rows[row].first); }
-    double height_of(std::size_t row) const noexcept
-    {
-        return height * static_cast<double>(rows[row].levels);
-    }
-    /// Gives the rows as many levels (by row) as asked for, and all a height with which they fit.
-    void set_levels(const std::vector<std::size_t>& wished);
+    /// Makes levels as high as they can be in `room` pt. Whether each row has room for its label then.
+    bool fit(double room);
+    /// Makes each level this high, and no row lower than `least_row`, pt.
+    void lay_out(double level, double least_row = 0.0);
 };
 
-lanes make_lanes(const array& a, const std::vector<unsigned>& playing);
+/// `room`: for all rows, pt.
+lanes make_lanes(const array& a, const std::vector<unsigned>& playing, double room);
 
-/// Labels end at x; as many rows get one as have room. `top`: of the first row.
-void draw_lane_labels(canvas& c, const lanes& l, double x, double top);
+/// Labels end at x; as many rows get one as have room. `top`: of the first row. Returns what had no room, in
+/// words; empty: all has.
+std::string draw_lane_labels(canvas& c, const lanes& l, double x, double top);
 
 /// Largest value in each column of the page, for one row: what remains of bars that are too many or too
 /// narrow.

@@ -2,9 +2,6 @@
 #include "plot/draw/stroke_legend.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <iterator>
-#include <map>
 #include <set>
 
 #include <fmt/format.h>
@@ -23,7 +20,6 @@ constexpr double gap = 3.0;           // between swatch and name
 constexpr double column_gap = 10.0;   // at least, between columns
 constexpr double most_of_width = 0.5; // for one entry, where there are several
 constexpr std::size_t most_rows = 12;
-constexpr std::size_t most_starts = 60; // more say nothing
 
 std::vector<std::string> entries(const scene& s)
 {
@@ -90,38 +86,6 @@ double draw_stroke_legend(canvas& c, const scene& s, box where, bool colours)
         height += row_height;
     }
     return height + 2.0;
-}
-
-double starts_height(const timeline& t) noexcept
-{
-    return t.several() && t.starts_s.size() <= most_starts ? 7.0 : 0.0;
-}
-
-void draw_stroke_starts(canvas& c, const timeline& t, const scale& x, double top, double bottom)
-{
-    if (starts_height(t) == 0.0)
-        return;
-    const group g(c, {.id = "stroke-starts"});
-    std::map<double, std::string> numbers;
-    for (std::size_t i = 0; i < t.starts_s.size(); ++i) {
-        std::string& s = numbers[std::round(x(t.starts_s[i]) * 10.0) / 10.0];
-        s += (s.empty() ? "" : ", ") + fmt::format("{}", i + 1);
-    }
-    std::string word = "stroke "; // for the first
-    double free = 0.0;
-    for (auto i = numbers.begin(); i != numbers.end(); ++i) {
-        const double at = i->first;
-        const double next = std::next(i) != numbers.end() ? std::next(i)->first : x.page_to;
-        c.line({at, top - 8.0}, {at, bottom}, {.stroke = dark_grey, .width = 0.5, .dash = 2.0},
-               {.kind = "stroke-start"});
-        const std::string label =
-            at + 2.0 + text_width(word + i->second, small_text) < next ? word + i->second : i->second;
-        word.clear();
-        if (at < free)
-            continue;
-        c.text({at + 2.0, top - 3.0}, label, {.size = small_text, .ink = dark_grey, .halo = true});
-        free = at + 2.0 + text_width(label, small_text);
-    }
 }
 
 } // namespace tactor::plot

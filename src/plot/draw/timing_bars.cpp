@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <fmt/format.h>
 
-#include "plot/array_view.hpp"
 #include "plot/draw/dimensions.hpp"
+#include "plot/draw/time_colours.hpp"
 
 namespace tactor::plot {
 namespace {
@@ -19,6 +18,7 @@ constexpr std::size_t most_hatches = 200;
 constexpr std::size_t most_parted = 60; // strokes
 constexpr std::size_t most_levels = 200;
 constexpr double seen_through = 0.7;
+constexpr const char* not_parted = "strokes on one tactor lie on each other";
 
 std::size_t row_of(const timing_frame& f, unsigned tactor)
 {
@@ -88,14 +88,16 @@ void look_up(const plan& p, const scale& x, Note&& note)
 
 } // namespace
 
-void part_strokes(timing_frame& f, const timeline& t)
+std::string part_strokes(timing_frame& f, const timeline& t, double room)
 {
     const std::size_t strokes = t.starts_s.size();
-    if (strokes < 2 || strokes > most_parted || f.rows.rows.size() < t.playing.size())
-        return;
+    if (strokes < 2)
+        return {};
+    if (strokes > most_parted || f.rows.rows.size() < t.playing.size())
+        return not_parted;
     const auto all = stays(f, t);
     f.levels.assign(all.size(), std::vector<std::size_t>(strokes, 0));
-    std::vector<std::size_t> wished;
+    std::size_t wished = 0;
     for (std::size_t row = 0; row < all.size(); ++row) {
         std::vector<double> ends; // by level
         for (const stay& s : all[row]) {
@@ -107,12 +109,17 @@ void part_strokes(timing_frame& f, const timeline& t)
             else
                 *free = s.to_s;
         }
-        wished.push_back(std::max<std::size_t>(1, ends.size()));
+        f.rows.rows[row].levels = std::max<std::size_t>(1, ends.size());
+        wished += f.rows.rows[row].levels;
     }
-    if (std::accumulate(wished.begin(), wished.end(), std::size_t{0}) > most_levels)
-        f.levels.clear(); // the page would have no end: they lie on each other, and show through
-    else
-        f.rows.set_levels(wished);
+    if (wished <= most_levels && (f.rows.fit(room) || wished == all.size()))
+        return {};
+    // The page would have no end: they lie on each other, and show through.
+    f.levels.clear();
+    for (lane& r : f.rows.rows)
+        r.levels = 1;
+    f.rows.fit(room);
+    return not_parted;
 }
 
 bool too_dense(const timeline& t, const timing_frame& f)

@@ -3,6 +3,9 @@
 /// The bars, curves and conflicts of the timing diagram.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "plot/draw/lanes.hpp"
 #include "plot/draw/timeline.hpp"
 
@@ -20,15 +23,21 @@ struct timing_frame {
 
     double base_of(std::size_t row, std::size_t stroke) const noexcept
     {
+        const lane& r = rows.rows[row];
         const std::size_t level = levels.empty() ? 0 : levels[row][stroke];
-        return top + rows.top_of(row) + static_cast<double>(level + 1) * rows.height;
+        const double over = r.height - rows.height * static_cast<double>(r.levels);
+        return top + r.top + over + static_cast<double>(level + 1) * rows.height;
     }
-    double bottom_of(std::size_t row) const noexcept { return top + rows.top_of(row) + rows.height_of(row); }
+    double bottom_of(std::size_t row) const noexcept
+    {
+        return top + rows.rows[row].top + rows.rows[row].height;
+    }
     double bar_height(double amplitude) const noexcept { return 0.86 * rows.height * amplitude / peak; }
 };
 
-/// Strokes that play at one time on one tactor get levels of their own in its row, one below the other.
-void part_strokes(timing_frame& f, const timeline& t);
+/// Strokes that play at one time on one tactor get levels of their own in its row, one below the other, as
+/// far as `room` pt allow for all rows. Returns what they do not, in words; empty: they do.
+std::string part_strokes(timing_frame& f, const timeline& t, double room);
 
 /// Whether there are too many bars, or too narrow ones, to draw one by one.
 bool too_dense(const timeline& t, const timing_frame& f);

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// When each of several strokes starts, over a diagram in time.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "plot/draw/axes.hpp"
+#include "plot/draw/timeline.hpp"
+#include "plot/paint/canvas.hpp"
+
+namespace tactor::plot {
+
+/// The starts of a scene's strokes and where their numbers stand.
+struct stroke_starts {
+    struct start {
+        double at = 0.0;        ///< x, pt
+        std::string label = {}; ///< of all strokes that start there; empty: no room
+        std::size_t line = 0;   ///< of the numbers, from the lowest: they stand over each other where they
+                                ///< are too close to stand beside each other
+    };
+
+    std::vector<start> marks = {};
+    double height = 0.0;   ///< that they need over the diagram, pt; 0 for one stroke
+    std::string note = {}; ///< what had no room
+};
+
+stroke_starts look_at_starts(const timeline& t, const scale& x);
+
+/// A line at each start, from over the diagram's top to its bottom, with the numbers of the strokes that
+/// start there.
+void draw_stroke_starts(canvas& c, const stroke_starts& s, double top, double bottom);
+
+} // namespace tactor::plot
