@@ -79,7 +79,8 @@ std::vector<std::string> arguments(int argc, char** argv)
     std::vector<std::string> all(argv + 1, argv + argc);
     if (all.empty() || all.front() != "help")
         return all;
-    all.erase(all.begin());
+    while (!all.empty() && all.front() == "help")
+        all.erase(all.begin());
     if (all.empty() || is_command(all.front())) // another is complained of
         all.emplace_back("--help");
     return all;

@@ -64,6 +64,11 @@ class Check(ToolTest):
         self.assertIn("real time", found)
         self.refused(2, "check", "--array", "palm-9x9", says=["palm-9x9"])
 
+    def test_an_array_that_is_not_there_is_named_once(self):
+        r = self.run_tool("check", "--array", "palm-3x4")
+        self.assertEqual(r.returncode, 2)
+        self.assertEqual(r.stdout.count("array"), 1, r.stdout)
+
     def test_levels_that_cannot_be_are_status_2(self):
         self.write("a.toml", GRID.replace("-3.0", "30.0"))
         _, found = self.check("--array", "a.toml", status=2)

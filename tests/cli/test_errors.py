@@ -13,6 +13,7 @@ class CommandLine(ToolTest):
 
     def test_help_is_a_command_too(self):
         self.assertEqual(self.ok("help").stdout, self.ok("--help").stdout)
+        self.assertEqual(self.ok("help", "help").stdout, self.ok("--help").stdout)
         self.assertIn("tactor help COMMAND", self.ok("help").stdout)
         for command in ("plan", "play", "experiment"):
             self.assertEqual(self.ok("help", command).stdout, self.ok(command, "--help").stdout)
