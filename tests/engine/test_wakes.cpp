@@ -42,6 +42,23 @@ TEST_CASE(
     CHECK(woken < periods / 10);
 }
 
+TEST_CASE("a stroke for a time that is named before the stream's clock is known begins at it")
+{
+    rig r;
+    REQUIRE(r.start().status == io_kind::ok);
+    r.link.to_control.consume(); // that it has started
+    r.control();
+    // After what is in the buffer, and long before the control side would be woken to feed it.
+    const std::int64_t at_ns = r.now + 2 * 288 * std::int64_t{1'000'000'000} / rate;
+    const stroke_id id = r.submit(tone(0.01), start_at::time(at_ns));
+    for (int i = 0; i < 200 && !r.report(id); ++i) {
+        if (wakes(r))
+            r.control();
+    }
+    REQUIRE(r.report(id));
+    CHECK(r.report(id)->late_s == 0.0);
+}
+
 TEST_CASE("an xrun of a silent stream, its sleep and its waking up are told at once")
 {
     rig r;
@@ -52,6 +69,7 @@ TEST_CASE("an xrun of a silent stream, its sleep and its waking up are told at o
     r.dac.advance(1000); // runs dry
     CHECK(wakes(r));
     CHECK(r.link.count.xruns == 1);
+    CHECK(wakes(r)); // the new epoch's clock is known
     CHECK_FALSE(wakes(r));
     r.dac.suspend();
     CHECK(wakes(r));

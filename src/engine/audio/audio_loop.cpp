@@ -280,9 +280,12 @@ void audio_loop::publish() noexcept
     link_.status.store(s);
     link_.amplifier.status.store(s);
 
-    const bool news = s.stage != told_stage_ || s.epoch != told_epoch_;
+    // Strokes that begin at a time wait for the clock of each epoch.
+    const bool clocked = clock_.line().valid();
+    const bool news = s.stage != told_stage_ || s.epoch != told_epoch_ || clocked != told_clocked_;
     told_stage_ = s.stage;
     told_epoch_ = s.epoch;
+    told_clocked_ = clocked;
     // Until strokes may sound, every frame that is played counts.
     if (options_.amplifier && (news || !link_.amplifier.ready.load(std::memory_order_relaxed)))
         link_.amplifier.wake.signal();

@@ -110,6 +110,7 @@ private:
     std::int64_t closing_ns_ = 0;
     stream_stage told_stage_ = stream_stage::idle;
     std::uint64_t told_epoch_ = 0;
+    bool told_clocked_ = false;
     std::uint64_t stop_frame_ = 0; ///< 0: not silent yet
     std::uint64_t offset_ = 0;     ///< stream frame at which this epoch began
     std::uint64_t played_ = 0;     ///< of this epoch
