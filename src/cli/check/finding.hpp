@@ -37,8 +37,8 @@ inline finding warning(std::string check, std::string found, std::string cure)
 inline finding failure(std::string check, const error& of_library)
 {
     const error e = in_options(of_library);
-    std::string why = e.subject() == check ? std::string(e.why())
-                                           : std::string(e.subject()) + ": " + std::string(e.why());
+    std::string why =
+        e.subject() == check ? std::string(e.why()) : std::string(e.subject()) + ": " + std::string(e.why());
     return {std::move(check), level::error, std::move(why), std::string(e.hint()), e.kind()};
 }
 
