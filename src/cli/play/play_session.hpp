@@ -75,7 +75,6 @@ public:
 
 private:
     void start(std::unique_ptr<sink> s);
-    void settle_realtime();
     /// False when a signal has come.
     bool sleep(int fd, int timeout_ms, int also = -1);
     /// Ends the player's stream, and keeps what it gave the array.
@@ -94,7 +93,6 @@ private:
     stroke_id playing_ = {};
     player_stats before_; ///< of the players before this one
     kept_drive kept_;     ///< what they gave the array lately, and runs before
-    drive_history driven_;
     bool streams_ = false;
     unsigned reopened_ = 0;
     bool locked_ = false;

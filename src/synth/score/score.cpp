@@ -115,17 +115,6 @@ void place_markers(score::impl& s, std::uint64_t length, unsigned channel)
     }
 }
 
-/// Where the peaks are not known, a continuous stroke was looked through, and every tactor keeps its limit.
-std::vector<double> asked_of(const score::impl& s, std::vector<double> peaks)
-{
-    if (peaks.empty()) {
-        for (const synth::tactor_level& t : s.tactors) {
-            peaks.push_back(s.limits[t.channel]);
-        }
-    }
-    return peaks;
-}
-
 void check_carrier(double carrier_hz, unsigned rate)
 {
     if (!(carrier_hz > 0.0 && carrier_hz < 0.5 * rate)) {
@@ -312,7 +301,7 @@ score score_builder::take()
     if (synth::boost_rises(s, impl_->a, peaks)) {
         sort_by_start(s.list.items);
     }
-    s.asked = asked_of(s, std::move(peaks));
+    s.asked = std::move(peaks);
     measure(s);
     const auto made = detail::access::make<score>(std::shared_ptr<const score::impl>(std::move(impl_->s)));
     impl_ = std::make_unique<impl>(impl_->a, impl_->o);

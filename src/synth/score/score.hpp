@@ -85,8 +85,8 @@ struct score::impl {
     std::vector<double> limits;               ///< by channel
     /// Greatest amplitude by plan and tactor that levels were checked with, of continuous ones.
     std::vector<std::vector<double>> promised;
-    /// By tactor: what it is driven with at most, linear, as far as that is known; 0 where it is not driven.
-    /// A continuous stroke may come to any. What a slow actuator's rise gets on top is not in it.
+    /// By tactor: what it is driven with at most, linear; 0 where it is not driven. A continuous stroke may
+    /// come to any. What a slow actuator's rise gets on top is not in it.
     std::vector<double> asked;
     std::optional<unsigned> marker; ///< its channel, where there is one
     synth::item_list list;
