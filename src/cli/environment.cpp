@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "cli/pipes.hpp"
+#include "cli/variable.hpp"
 #include "files/stroke/text.hpp"
 #include "files/text_file.hpp"
 
@@ -18,25 +19,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::optional<std::string> from_environment(const char* name)
-{
-    const char* v = std::getenv(name);
-    if (v == nullptr || *v == '\0')
-        return {};
-    return v;
-}
-
 std::string find_config(const settings& s)
 {
     if (s.config_file)
         return *s.config_file;
-    if (const auto named = from_environment("TACTOR_CONFIG"))
-        return *named;
+    if (const std::string named = variable("TACTOR_CONFIG"); !named.empty())
+        return named;
     std::vector<fs::path> places;
-    if (const auto xdg = from_environment("XDG_CONFIG_HOME"))
-        places.emplace_back(*xdg);
-    else if (const auto home = from_environment("HOME"))
-        places.push_back(fs::path(*home) / ".config");
+    if (const std::string xdg = variable("XDG_CONFIG_HOME"); !xdg.empty())
+        places.emplace_back(xdg);
+    else if (const std::string home = variable("HOME"); !home.empty())
+        places.push_back(fs::path(home) / ".config");
     places.emplace_back("/etc");
     for (const fs::path& p : places) {
         std::error_code ignored;

@@ -12,23 +12,19 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "cli/variable.hpp"
+
 namespace tactor::cli {
 namespace {
 
 // For whoever reads slowly. A terminal that takes nothing holds up the line that is printed next, anyway.
 constexpr int patience_ms = 2000;
 
-std::string environment_or_empty(const char* name)
-{
-    const char* v = std::getenv(name);
-    return v == nullptr ? "" : v;
-}
-
 } // namespace
 
 bool can_draw()
 {
-    const std::string kind = environment_or_empty("TERM");
+    const std::string kind = variable("TERM");
     return isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr && !kind.empty() &&
            kind != "dumb";
 }
@@ -37,7 +33,7 @@ bool can_draw()
 bool speaks_utf8()
 {
     for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
-        std::string value = environment_or_empty(name);
+        std::string value = variable(name);
         if (value.empty())
             continue;
         std::transform(value.begin(), value.end(), value.begin(),

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 
 #include <fcntl.h>
@@ -14,6 +13,7 @@
 
 #include "cli/say.hpp"
 #include "cli/session/runtime_folder.hpp"
+#include "cli/variable.hpp"
 
 namespace tactor::cli {
 namespace {

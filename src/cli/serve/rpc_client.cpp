@@ -2,7 +2,6 @@
 #include "cli/serve/rpc_client.hpp"
 
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <utility>
 #include <vector>
@@ -14,6 +13,8 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "cli/variable.hpp"
+
 namespace tactor::cli {
 namespace {
 
@@ -22,8 +23,8 @@ std::vector<std::string> candidates(const std::optional<std::string>& named)
     if (named)
         return {*named};
     std::vector<std::string> all;
-    if (const char* folder = std::getenv("XDG_RUNTIME_DIR"); folder != nullptr && *folder != '\0')
-        all.push_back(std::string(folder) + "/tactor.sock");
+    if (const std::string folder = variable("XDG_RUNTIME_DIR"); !folder.empty())
+        all.push_back(folder + "/tactor.sock");
     all.emplace_back("/run/tactor.sock");
     all.emplace_back("/run/tactor/tactor.sock");
     return all;

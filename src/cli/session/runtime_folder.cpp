@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "cli/session/runtime_folder.hpp"
 
-#include <cstdlib>
+#include "cli/variable.hpp"
 
 namespace tactor::cli {
-
-std::string variable(const char* name)
-{
-    const char* v = std::getenv(name);
-    return v == nullptr ? "" : v;
-}
 
 std::string service_folder()
 {

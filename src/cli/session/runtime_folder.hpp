@@ -7,9 +7,6 @@
 
 namespace tactor::cli {
 
-/// A variable of the environment; empty where it is not set.
-std::string variable(const char* name);
-
 /// The first of RUNTIME_DIRECTORY, which systemd gives to services and may be a list; empty where there is
 /// none.
 std::string service_folder();
