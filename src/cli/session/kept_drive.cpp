@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/session/kept_drive.hpp"
 
-#include <algorithm>
 #include <cerrno>
 #include <cstddef>
 #include <cstdio>
@@ -11,6 +10,7 @@
 #include <iterator>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -23,6 +23,7 @@
 #include "cli/session/runtime_folder.hpp"
 #include "files/output_file.hpp"
 #include "files/text_file.hpp"
+#include "net/listen.hpp"
 #include "rt/clock.hpp"
 
 namespace tactor::cli {
@@ -69,27 +70,16 @@ std::string own_folder()
     return {};
 }
 
-/// Keeps others from writing meanwhile. Whoever holds it for long is at fault, and is not waited for.
-class folder_lock {
-public:
-    explicit folder_lock(const std::string& folder)
-        : fd_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC))
-    {
-        constexpr int tries = 20;
-        for (int i = 0; fd_ >= 0 && ::flock(fd_, LOCK_EX | LOCK_NB) != 0 && i < tries; ++i)
-            ::poll(nullptr, 0, 5);
-    }
-    ~folder_lock()
-    {
-        if (fd_ >= 0)
-            ::close(fd_);
-    }
-    folder_lock(const folder_lock&) = delete;
-    folder_lock& operator=(const folder_lock&) = delete;
-
-private:
-    int fd_;
-};
+/// Keeps others from writing as long as it is held. Whoever holds it for long is at fault, and is not waited
+/// for.
+net::owned_fd lock(const std::string& folder)
+{
+    constexpr int tries = 20;
+    net::owned_fd fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    for (int i = 0; fd && ::flock(fd.get(), LOCK_EX | LOCK_NB) != 0 && i < tries; ++i)
+        ::poll(nullptr, 0, 5);
+    return fd;
+}
 
 std::string read(const std::string& file)
 {
@@ -122,13 +112,16 @@ bool runs(std::string_view pid)
 } // namespace
 
 kept_drive::kept_drive(std::string_view device, const drive_limits& l)
-    : folder_(own_folder()), name_(name_of(device)), counted_(l.max_drive_s < l.window_s)
+    : folder_(own_folder()),
+      driven_("driven-" + name_of(device)),
+      going_("going-" + name_of(device) + "-"),
+      counted_(l.max_drive_s < l.window_s)
 {
 }
 
 void kept_drive::look()
 {
-    const std::string there = read(folder_ + "/driven-" + name_);
+    const std::string there = read(folder_ + "/" + driven_);
     if (there != text_)
         others_ = others_.with(history_in(there));
     text_ = there;
@@ -136,17 +129,21 @@ void kept_drive::look()
 
 void kept_drive::take_up_killed()
 {
-    const std::string begins = "going-" + name_ + "-";
+    std::vector<std::filesystem::path> left;
     std::error_code ignored;
     for (const auto& entry : std::filesystem::directory_iterator(folder_, ignored)) {
         const std::string file = entry.path().filename().string();
-        const std::string pid = file.starts_with(begins) ? file.substr(begins.size()) : "";
+        const std::string pid = file.starts_with(going_) ? file.substr(going_.size()) : "";
         if (pid.empty() || pid.find_first_not_of("0123456789") != std::string::npos || runs(pid))
             continue;
         others_ = others_.with(history_in(read(entry.path())));
-        write("driven-" + name_, own_.with(others_));
-        std::filesystem::remove(entry.path(), ignored);
+        left.push_back(entry.path());
     }
+    if (left.empty())
+        return;
+    keep();
+    for (const std::filesystem::path& file : left)
+        std::filesystem::remove(file, ignored);
 }
 
 drive_history kept_drive::until_now()
@@ -165,7 +162,7 @@ void kept_drive::going(unsigned channels)
         return;
     next_ns_ = now_ns + renewed_ns;
     ahead_ = ahead_.with_ahead(channels, ahead_s);
-    write(fmt::format("going-{}-{}", name_, ::getpid()), ahead_);
+    write(going_ + std::to_string(::getpid()), ahead_);
 }
 
 void kept_drive::settled(const drive_history& h)
@@ -175,31 +172,36 @@ void kept_drive::settled(const drive_history& h)
     ahead_ = {};
     if (folder_.empty())
         return;
-    const folder_lock lock(folder_);
-    look();
-    const drive_history all = own_.with(others_);
-    write("driven-" + name_, all);
-    text_ = all.empty() ? "" : all.save();
-    write(fmt::format("going-{}-{}", name_, ::getpid()), {});
+    keep();
+    write(going_ + std::to_string(::getpid()), {});
 }
 
-void kept_drive::write(const std::string& file, const drive_history& h)
+void kept_drive::keep()
 {
+    const net::owned_fd held = lock(folder_);
+    look();
+    text_ = write(driven_, own_.with(others_));
+}
+
+std::string kept_drive::write(const std::string& file, const drive_history& h)
+{
+    if (folder_.empty())
+        return {};
+    const std::string path = folder_ + "/" + file;
+    std::string text = h.empty() ? "" : h.save();
     try {
-        if (folder_.empty())
-            return;
-        if (h.empty()) {
-            std::filesystem::remove(folder_ + "/" + file);
-            return;
+        if (text.empty()) {
+            std::filesystem::remove(path);
+        } else {
+            detail::output_file out(path);
+            out.write(text.data(), static_cast<std::int64_t>(text.size()));
+            out.commit();
         }
-        const std::string text = h.save();
-        detail::output_file out(folder_ + "/" + file);
-        out.write(text.data(), static_cast<std::int64_t>(text.size()));
-        out.commit();
     } catch (const std::exception& e) {
         say(stderr, "tactor: warning: {}: {}\n", e.what(), what_follows);
         folder_.clear();
     }
+    return text;
 }
 
 } // namespace tactor::cli

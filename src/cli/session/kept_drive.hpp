@@ -34,11 +34,14 @@ public:
 private:
     void look();
     void take_up_killed();
-    void write(const std::string& file, const drive_history& h);
+    void keep();
+    /// Its text; no file where there is none.
+    std::string write(const std::string& file, const drive_history& h);
 
     std::string folder_; ///< empty: nothing is kept
-    std::string name_;
-    std::string text_; ///< of driven-NAME, as it was last seen
+    std::string driven_; ///< name of the file
+    std::string going_;  ///< what such names begin with
+    std::string text_;   ///< of driven-NAME, as it was last seen
     bool counted_;
     drive_history own_;    ///< of this run, and what its streams went on from
     drive_history others_; ///< what the files said that this run had not written
