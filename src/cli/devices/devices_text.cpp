@@ -12,8 +12,6 @@
 namespace tactor::cli {
 namespace {
 
-constexpr unsigned most_channels = 1024; // that a PCM is asked for
-
 std::string row(const char* name, const std::string& text)
 {
     return text.empty() ? "" : wrapped(fmt::format("    {:<10}", name), text);
@@ -32,7 +30,7 @@ std::string channels_text(const pcm_abilities& a)
 {
     std::vector<std::string> counts;
     for (const count_range& r : a.channels)
-        counts.push_back(text_of(r, most_channels));
+        counts.push_back(text_of(r, max_pcm_channels));
     return fmt::format("{}", fmt::join(counts, ", "));
 }
 

@@ -17,18 +17,19 @@
 
 #include <tactor/error.hpp>
 
+#include "core/limits.hpp"
 #include "core/split.hpp"
 #include "rt/clock.hpp"
+#include "synth/guard/guard.hpp"
 
 namespace tactor {
 namespace {
 
 constexpr std::string_view first_words = "tactor-driven 1 ";
 constexpr std::string_view last_line = "end";
-constexpr unsigned most_channels = 16384;
+constexpr unsigned most_channels = detail::max_tactors;
 constexpr std::size_t most_stretches = 64; // of a channel, in a text
 constexpr double longest_ahead_s = 86400.0;
-constexpr double longest_window_s = 3600.0; // that drive_limits may have
 constexpr std::int64_t longest_ns = 4'000'000'000'000'000'000;
 
 [[noreturn]] void refuse(const char* why)
@@ -109,7 +110,7 @@ synth::drive_history drive_history::impl::as_of(std::int64_t now_ns) const
 {
     synth::drive_history h = channels;
     h.pass(seconds(now_ns - taken_ns));
-    synth::forget(h, longest_window_s);
+    synth::forget(h, synth::longest_window_s);
     return h;
 }
 
@@ -150,14 +151,12 @@ drive_history drive_history::with_ahead(unsigned channels, double seconds) const
 
 std::string drive_history::save() const
 {
-    const impl none;
-    synth::drive_history h = (impl_ != nullptr ? *impl_ : none).channels;
+    auto [h, taken_ns] = impl_ != nullptr ? *impl_ : impl{};
     synth::coarsen(h, most_stretches);
-    std::string text = fmt::format("{}{} {} {}\n", first_words, this_boot(),
-                                   impl_ != nullptr ? impl_->taken_ns : 0, h.channels.size());
+    std::string text = fmt::format("{}{} {} {}\n", first_words, this_boot(), taken_ns, h.channels.size());
     for (std::size_t i = 0; i < h.channels.size(); ++i) {
         const synth::drive_history::channel& c = h.channels[i];
-        if (c.stretches.empty() && c.opens_s <= 0.0)
+        if (c.empty())
             continue;
         fmt::format_to(std::back_inserter(text), "{} {}", i, up(c.opens_s));
         for (const synth::drive_history::stretch& s : c.stretches) {

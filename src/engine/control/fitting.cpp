@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "engine/control/fitting.hpp"
 
-#include <cmath>
 #include <cstddef>
 #include <string>
 
@@ -12,17 +11,13 @@
 #include <tactor/words.hpp>
 
 #include "core/access.hpp"
+#include "synth/score/levels.hpp"
 #include "synth/score/score.hpp"
 
 namespace tactor::engine {
 namespace {
 
 constexpr const char* replan = "plan it for the array that the player was opened with";
-
-double in_db(double amplitude)
-{
-    return 20.0 * std::log10(amplitude);
-}
 
 void check_tactor(const score::impl& s, std::size_t i, std::span<const double> limits)
 {
@@ -38,7 +33,7 @@ void check_tactor(const score::impl& s, std::size_t i, std::span<const double> l
         throw error(error_kind::bad_input, "stroke",
                     fmt::format("it drives tactor {} at up to {:.4g} dBFS, but the player's array allows "
                                 "{:.4g} dBFS on channel {}",
-                                i, in_db(s.asked[i]), in_db(limit), channel),
+                                i, synth::in_db(s.asked[i]), synth::in_db(limit), channel),
                     replan);
 }
 

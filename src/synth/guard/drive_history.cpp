@@ -64,8 +64,7 @@ void drive_history::add_ahead(std::size_t n, double seconds)
 
 bool drive_history::empty() const noexcept
 {
-    return std::all_of(channels.begin(), channels.end(),
-                       [](const channel& c) { return c.stretches.empty() && c.opens_s <= 0.0; });
+    return std::all_of(channels.begin(), channels.end(), [](const channel& c) { return c.empty(); });
 }
 
 drive_history together(const drive_history& a, const drive_history& b)

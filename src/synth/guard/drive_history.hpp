@@ -21,6 +21,9 @@ struct drive_history {
     struct channel {
         std::vector<stretch> stretches = {}; ///< in order, not overlapping
         double opens_s = 0.0;                ///< until then it is cut
+
+        /// Whether it is not known to have been driven.
+        bool empty() const noexcept { return stretches.empty() && opens_s <= 0.0; }
     };
     std::vector<channel> channels = {}; ///< none where there is no limit
 
@@ -30,7 +33,7 @@ struct drive_history {
     void end_now() noexcept;
     /// Each of so many channels is driven from now on for so long.
     void add_ahead(std::size_t n, double seconds);
-    /// Whether no channel is known to have been driven.
+    /// Whether all channels are.
     bool empty() const noexcept;
 };
 

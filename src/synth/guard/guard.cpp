@@ -29,7 +29,7 @@ void check_limits(const drive_limits& l)
         throw error(error_kind::bad_input, "power limit", fmt::format("{} dBFS is not one", l.power_dbfs),
                     "give e.g. 4.77, three channels at full scale");
     }
-    if (!(l.max_drive_s >= 0.1) || !(l.window_s >= 0.1 && l.window_s <= 3600.0)) {
+    if (!(l.max_drive_s >= 0.1) || !(l.window_s >= 0.1 && l.window_s <= longest_window_s)) {
         throw error(error_kind::bad_input, "longest drive",
                     fmt::format("{} s within {} s is not a limit", l.max_drive_s, l.window_s),
                     "give 0.1 s or more within 0.1 to 3600 s, e.g. 5 within 10");

@@ -10,6 +10,9 @@
 
 namespace tactor::synth {
 
+/// That drive_limits may have.
+inline constexpr double longest_window_s = 3600.0;
+
 /// Limits in the mixer's units; none as they are.
 struct guard_settings {
     double power = std::numeric_limits<double>::infinity(); ///< greatest sum of squared envelopes

@@ -14,6 +14,9 @@ namespace tactor::synth {
 /// comes on top.
 inline constexpr double reference_hz = 250.0;
 
+/// An amplitude in dBFS.
+double in_db(double amplitude);
+
 /// Gain of each tactor. \throws error (bad_input) for levels over full scale and missing thresholds.
 std::vector<tactor_level> tactor_levels(const array& a, const render_options& o);
 

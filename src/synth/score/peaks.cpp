@@ -121,11 +121,6 @@ std::vector<double> peaks_of(const score::impl& s, const continuous_peaks_of& co
     return all.peaks();
 }
 
-double in_db(double amplitude)
-{
-    return 20.0 * std::log10(amplitude);
-}
-
 void check(const array& a, std::size_t i, double peak, const render_options& o)
 {
     const double limit_db = std::min(0.0, a.tactors[i].max_dbfs);
@@ -149,6 +144,11 @@ void check(const array& a, std::size_t i, double peak, const render_options& o)
 }
 
 } // namespace
+
+double in_db(double amplitude)
+{
+    return 20.0 * std::log10(amplitude);
+}
 
 std::vector<double> check_peaks(score::impl& s, const array& a, const render_options& o)
 {
