@@ -56,9 +56,8 @@ void service::start_followers(stroke_record& first, std::int64_t at_ns)
             r.state = "waiting";
             by_player_[{r.player, r.id}] = r.number;
         } catch (const error& e) {
-            const bool goes_on = out != nullptr && !out->ended();
-            finish(r,
-                   {.state = state_kind::interrupted, .reason = goes_on ? e.what() : "the stream has ended"});
+            finish(r, {.state = state_kind::interrupted,
+                       .reason = out->ended() ? "the stream has ended" : e.what()});
         } catch (...) {
             finish(r, {.state = state_kind::interrupted, .reason = "the stream has ended"});
         }

@@ -17,11 +17,11 @@ finding told_lost(const alsa_options& device, const std::string& lost)
                               "bindings), or play on the card itself: -D hw:CARD=NAME"});
 }
 
-finding told_open(const alsa_options& device, const play_options& o, const std::string& lost, bool named)
+finding told_open(const alsa_options& device, const play_options& o, const array& a, bool named)
 {
     const std::string server = settle_server(device.pcm);
     const stream_setup made = open_alsa(device)->setup();
-    if (!lost.empty())
+    if (const std::string lost = lost_tactor(a, made.wiring); !lost.empty())
         return told_lost(device, lost);
     const std::string found = describe(made) + (server.empty() ? "" : "; " + server_note(server));
     if (!named)
@@ -41,16 +41,17 @@ finding told_open(const alsa_options& device, const play_options& o, const std::
 
 finding check_device(const alsa_options& device, const play_options& o, const array& a, bool named)
 {
-    const std::string lost = lost_tactor(a, wiring_of(device.pcm, device.channels));
-    if (route_of(device.pcm).writes)
+    if (route_of(device.pcm).writes) {
+        const std::string lost = lost_tactor(a, wiring_of(device.pcm, device.channels));
         return lost.empty()
                    ? warning("device",
                              fmt::format("{}: not opened, for that would empty its file or start its command",
                                          device.pcm),
                              "play opens it: is it meant?")
                    : told_lost(device, lost);
+    }
     try {
-        return told_open(device, o, lost, named);
+        return told_open(device, o, a, named);
     } catch (const error& e) {
         return failure("device", e);
     }

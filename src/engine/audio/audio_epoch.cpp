@@ -33,12 +33,17 @@ io_result audio_loop::start(std::int64_t now) noexcept
     now_ns_ = now;
     const io_result r = begin_epoch();
     if (r.status == io_kind::ok) {
-        phase_ = phase::running;
-        moved(now);
-        fresh_ = true;
+        run_from(now);
         publish();
     }
     return r;
+}
+
+void audio_loop::run_from(std::int64_t now) noexcept
+{
+    phase_ = phase::running;
+    moved(now);
+    fresh_ = true;
 }
 
 io_result audio_loop::begin_epoch() noexcept
@@ -125,9 +130,7 @@ void audio_loop::restart(std::int64_t now) noexcept
         r = begin_epoch();
     }
     if (r.status == io_kind::ok) {
-        phase_ = phase::running;
-        moved(now);
-        fresh_ = true;
+        run_from(now);
     } else if (r.status == io_kind::suspended) {
         phase_ = phase::suspended; // not awake yet: once more in the next period
         suspended_ns_ = now;

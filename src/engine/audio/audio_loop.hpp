@@ -71,6 +71,7 @@ private:
     void look_at_position(std::int64_t now) noexcept;
     void note_starts(std::uint64_t played) noexcept;
     void moved(std::int64_t now) noexcept;
+    void run_from(std::int64_t now) noexcept;
 
     void broken(io_kind s, int code, std::int64_t now) noexcept;
     void silence_all(reason why, int code, std::uint64_t played) noexcept;
