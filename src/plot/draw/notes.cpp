@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/split.hpp"
 #include "plot/draw/axes.hpp"
 #include "plot/paint/text.hpp"
 
@@ -17,17 +19,6 @@ namespace {
 
 constexpr std::size_t most_listed = 8;
 constexpr const char* note_gap = "; ";
-
-std::vector<std::string> words_of(const std::string& text)
-{
-    std::vector<std::string> words;
-    for (std::size_t from = 0; from < text.size();) {
-        const std::size_t to = std::min(text.find(' ', from), text.size());
-        words.push_back(text.substr(from, to - from));
-        from = to + 1;
-    }
-    return words;
-}
 
 } // namespace
 
@@ -53,11 +44,13 @@ std::vector<std::string> note_lines(const std::vector<std::string>& notes, doubl
         }
         if (!lines.empty())
             lines.back() += ";";
-        if (text_width(n, small_text) <= width)
+        if (text_width(n, small_text) <= width) {
             lines.push_back(n);
-        else
-            for (const std::string& part : wrap(words_of(n), " ", small_text, room, all))
-                lines.push_back(part);
+            continue;
+        }
+        const auto words = detail::split(n, ' ');
+        for (std::string& part : wrap({words.begin(), words.end()}, " ", small_text, room, all))
+            lines.push_back(std::move(part));
     }
     if (lines.size() > most_lines) {
         const std::string longer = lines[most_lines - 1] + " " + lines[most_lines];

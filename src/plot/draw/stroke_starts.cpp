@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <tactor/words.hpp>
 
@@ -26,27 +27,18 @@ constexpr double aside = 2.0; // of a number, behind its start
 
 using numbers_at = std::map<double, std::vector<std::size_t>>; // by x
 
-std::string listed(const std::vector<std::size_t>& numbers)
-{
-    std::string s;
-    for (const std::size_t n : numbers)
-        s += (s.empty() ? "" : ", ") + fmt::format("{}", n);
-    return s;
-}
-
-// The same with "1-4" for those that follow each other.
+// "1-4, 6": numbers in order, with those that follow each other together.
 std::string in_runs(const std::vector<std::size_t>& numbers)
 {
-    std::string s;
+    std::vector<std::string> runs;
     for (std::size_t i = 0; i < numbers.size();) {
         std::size_t k = i;
         while (k + 1 < numbers.size() && numbers[k + 1] == numbers[k] + 1)
             ++k;
-        s += (s.empty() ? "" : ", ") +
-             (k == i ? fmt::format("{}", numbers[i]) : fmt::format("{}-{}", numbers[i], numbers[k]));
+        runs.push_back(k == i ? fmt::format("{}", numbers[i]) : fmt::format("{}-{}", numbers[i], numbers[k]));
         i = k + 1;
     }
-    return s;
+    return fmt::format("{}", fmt::join(runs, ", "));
 }
 
 } // namespace
@@ -70,7 +62,7 @@ stroke_starts look_at_starts(const timeline& t, const scale& x)
     for (auto i = numbers.begin(); i != numbers.end(); ++i) {
         const double from = i->first + aside;
         const double next = std::next(i) != numbers.end() ? std::next(i)->first : x.page_to;
-        std::string label = listed(i->second);
+        std::string label = fmt::format("{}", fmt::join(i->second, ", "));
         if (from + text_width(label, small_text) > x.page_to)
             label = in_runs(i->second);
         if (from + text_width(word + label, small_text) < next)
