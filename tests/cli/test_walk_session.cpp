@@ -3,10 +3,8 @@
 #include "cli/check/walk_session.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <string>
-#include <thread>
 
 #include <doctest/doctest.h>
 #include <unistd.h>
@@ -26,38 +24,26 @@ using namespace tactor::test;
 
 namespace {
 
-// A clock that runs as fast as it can, with one xrun as soon as the first burst sounds.
-class stumbling_clock {
+// To be called again and again: one xrun as soon as the first burst sounds.
+class stumble_once {
 public:
-    explicit stumbling_clock(fake_dac& d)
-        : thread_([this, &d] {
-              std::size_t seen = 0;
-              bool stumbled = false;
-              while (!end_) {
-                  if (d.queued() >= 192)
-                      d.advance_queued(96);
-                  std::this_thread::yield();
-                  if (stumbled)
-                      continue;
-                  const auto fresh = d.captured(seen);
-                  seen = d.captured_frames();
-                  stumbled =
-                      std::any_of(fresh.begin(), fresh.end(), [](auto b) { return b != std::byte{0}; });
-                  if (stumbled)
-                      d.advance(1'000'000);
-              }
-          })
+    explicit stumble_once(fake_dac& d) : dac_(d) {}
+
+    void operator()()
     {
-    }
-    ~stumbling_clock()
-    {
-        end_ = true;
-        thread_.join();
+        if (done_)
+            return;
+        const auto fresh = dac_.captured(seen_);
+        seen_ = dac_.captured_frames();
+        done_ = std::any_of(fresh.begin(), fresh.end(), [](auto b) { return b != std::byte{0}; });
+        if (done_)
+            dac_.advance(1'000'000);
     }
 
 private:
-    std::atomic<bool> end_{false};
-    std::thread thread_;
+    fake_dac& dac_;
+    std::size_t seen_ = 0;
+    bool done_ = false;
 };
 
 class answers {
@@ -92,7 +78,7 @@ walk_result stumble(bool ask)
     r.channels = 2;
     stream_source source{[&](const alsa_options& o) { return pcm::adopt(dac.pcm(), o); }, patient()};
     source.player.realtime = false;
-    const stumbling_clock clock(dac);
+    const running_clock clock(dac, running_clock::capture_kind::kept, stumble_once(dac));
     walk_options o;
     o.ask = ask;
     return walk(device, e, r, o, source);

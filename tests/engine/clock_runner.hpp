@@ -4,7 +4,9 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <thread>
+#include <utility>
 
 #include <tactor/player.hpp>
 
@@ -28,14 +30,17 @@ class running_clock {
 public:
     enum class capture_kind { dropped, kept };
 
-    explicit running_clock(fake_dac& dac, capture_kind k = capture_kind::dropped)
-        : thread_([this, &dac, k] {
+    /// `each`: called after each period, in that thread.
+    explicit running_clock(
+        fake_dac& dac, capture_kind k = capture_kind::dropped, std::function<void()> each = [] {})
+        : thread_([this, &dac, k, each = std::move(each)] {
               if (k == capture_kind::dropped)
                   dac.stop_capture();
               while (!end_) {
                   if (dac.queued() >= 192)
                       dac.advance_queued(96);
                   std::this_thread::yield();
+                  each();
               }
           })
     {
