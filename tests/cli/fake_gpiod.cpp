@@ -182,7 +182,7 @@ void gpiod_line_request_release(gpiod_line_request*)
 
 int gpiod_line_request_get_fd(gpiod_line_request*)
 {
-    return the_line.fd;
+    return line_fd;
 }
 
 int gpiod_line_request_set_value(gpiod_line_request*, unsigned int, gpiod_line_value value)
