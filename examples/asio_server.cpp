@@ -30,7 +30,7 @@ asio::awaitable<void> draw(tactor::player& player, udp::socket& socket, udp::end
         const tactor::array palm = tactor::preset_array("palm-3x3");
         const tactor::score score(palm, tactor::make_plan(palm, tactor::preset_stroke(name)));
         const tactor::stroke_report report =
-            co_await tactor::async_play(player, score, {}, asio::use_awaitable);
+            co_await tactor::async_play(player, score, tactor::start_at::now(), asio::use_awaitable);
         answer = name + ": " + std::string(to_string(report.state));
     } catch (const tactor::error& e) {
         answer = e.what(); // no such preset; or the device has gone

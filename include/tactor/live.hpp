@@ -3,26 +3,16 @@
 /// Strokes that are fed point by point while they sound: from a sensor, a finger, a simulation.
 #pragma once
 
-#include <compare>
-#include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 
 #include <tactor/api.hpp>
 #include <tactor/plan.hpp>
 #include <tactor/render.hpp>
+#include <tactor/report.hpp>
 
 namespace tactor {
-
-/// A stroke that a player was given. A plain value; the number is unique in one player, and 0 stands for
-/// none.
-struct stroke_id {
-    std::uint32_t number = 0;
-
-    friend constexpr auto operator<=>(const stroke_id&, const stroke_id&) noexcept = default;
-};
 
 struct live_options {
     /// What of it counts: `algorithm` (continuous: the carrier runs and the phantom's weights follow the
@@ -97,8 +87,3 @@ private:
 };
 
 } // namespace tactor
-
-template <>
-struct std::hash<tactor::stroke_id> {
-    std::size_t operator()(tactor::stroke_id id) const noexcept { return id.number; }
-};

@@ -3,168 +3,26 @@
 /// The engine: plays scores on a sink in real time.
 #pragma once
 
-#include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include <tactor/api.hpp>
 #include <tactor/array.hpp>
+#include <tactor/drive_history.hpp>
 #include <tactor/gpio.hpp>
-#include <tactor/kinds.hpp>
 #include <tactor/live.hpp>
 #include <tactor/log.hpp>
 #include <tactor/render.hpp>
+#include <tactor/report.hpp>
 #include <tactor/sink.hpp>
+#include <tactor/start_at.hpp>
 
 namespace tactor {
-
-namespace detail {
-
-/// What can count frames or nanoseconds. Seconds in a double would be taken for 0 or 1 of them.
-template <typename T>
-concept whole_number = std::integral<T> && !std::same_as<T, bool>;
-template <typename T>
-concept no_count = std::floating_point<T> || std::same_as<T, bool>;
-
-[[noreturn]] TACTOR_API void refuse_frame(long long stream_frame);
-
-template <whole_number T>
-constexpr std::uint64_t stream_frame(T n)
-{
-    if constexpr (std::signed_integral<T>)
-        if (n < 0)
-            refuse_frame(n);
-    return static_cast<std::uint64_t>(n);
-}
-
-} // namespace detail
-
-/// What a stroke's start waits for.
-enum class start_kind { frame, time, trigger };
-
-TACTOR_API std::string_view to_string(start_kind k) noexcept;
-template <>
-TACTOR_API start_kind from_string<start_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const start_kind> values_of<start_kind>() noexcept;
-
-/// When a stroke starts. A plain value.
-class start_at {
-public:
-    /// As soon as possible.
-    constexpr start_at() noexcept = default;
-    start_at(const auto& frame_or_seconds) = delete; ///< say which: frame(), time()
-
-    /// With the next period that is written.
-    static constexpr start_at now() noexcept { return {}; }
-    /// From a frame of the stream on; one that has been written already means as soon as possible, and one
-    /// that never comes waits to be cancelled. Frames of the stream count on over an xrun.
-    /// \throws error (bad_input) for a negative one.
-    template <detail::whole_number T>
-    static constexpr start_at frame(T stream_frame)
-    {
-        start_at s;
-        s.frame_ = detail::stream_frame(stream_frame);
-        return s;
-    }
-    template <detail::no_count T>
-    static start_at frame(T seconds) = delete;
-    /// CLOCK_MONOTONIC, ns, at which the first sample is to be at the DAC: within half a frame and the error
-    /// of the DAC clock. What is over already means as soon as possible; see stroke_report::late_s. Any
-    /// number may be given.
-    template <detail::no_count T>
-    static start_at time(T seconds) = delete;
-    static constexpr start_at time(std::int64_t monotonic_ns) noexcept
-    {
-        start_at s;
-        s.kind_ = start_kind::time;
-        s.time_ns_ = monotonic_ns;
-        return s;
-    }
-    /// Armed: waits, silent, for an edge at player_lines::trigger or for player::fire(), whichever is first.
-    static constexpr start_at trigger() noexcept
-    {
-        start_at s;
-        s.kind_ = start_kind::trigger;
-        return s;
-    }
-
-    constexpr start_kind what() const noexcept { return kind_; }
-    constexpr std::uint64_t stream_frame() const noexcept { return frame_; }
-    constexpr std::int64_t time_ns() const noexcept { return time_ns_; }
-
-private:
-    start_kind kind_ = start_kind::frame;
-    std::uint64_t frame_ = 0;
-    std::int64_t time_ns_ = 0;
-};
-
-/// How a submitted score ended. Each ends in exactly one of these.
-enum class state_kind {
-    finished,    ///< its last frame reached the DAC
-    cancelled,   ///< faded out because it was asked for
-    interrupted, ///< an xrun, the loss of the device, a failure, a live stroke's silent producer or its
-                 ///< longest_s
-};
-
-TACTOR_API std::string_view to_string(state_kind k) noexcept;
-template <>
-TACTOR_API state_kind from_string<state_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const state_kind> values_of<state_kind>() noexcept;
-
-struct stroke_report {
-    stroke_id id = {};
-    state_kind state = state_kind::finished;
-    std::uint64_t frames = 0; ///< frames of it that were played, from its first on
-    std::string reason = {};  ///< why it was interrupted
-    /// How much later than asked for its first sample came; 0 when in time, and for start_at::now().
-    double late_s = 0.0;
-    /// CLOCK_MONOTONIC of its first sample at the DAC, as the DAC's clock had it when that sample passed;
-    /// none when it never sounded (`frames` is 0).
-    std::optional<std::int64_t> started_ns = {};
-};
-
-/// For how long each channel was driven lately, and when that was: what drive_limits::max_drive_s goes by.
-/// One player gives it (player::history()), the next goes on from it; save() and restore() bring it to
-/// another process. A value, cheap to copy, empty at first. Any thread.
-class TACTOR_API drive_history {
-public:
-    struct impl;
-
-    drive_history() = default;
-
-    /// Whether no channel is known to have been driven.
-    bool empty() const noexcept;
-    /// This, and what another player or process gave the same array: no channel counts as driven for longer
-    /// than there was time.
-    drive_history with(const drive_history& other) const;
-    /// This, and each of so many channels driven from now on for `seconds`: what to save while a stroke
-    /// plays, for the process may not live to say what came of it. What is still to come when a player goes
-    /// on from it did not come. \throws error (bad_input) for more than 16384 channels, and for what is no
-    /// time of 0 to 86400 s.
-    drive_history with_ahead(unsigned channels, double seconds) const;
-
-    /// A text of a few lines, numbers in ns: at most 64 stretches of time a channel, the oldest taken
-    /// together, which leave the window later then, never sooner.
-    std::string save() const;
-    /// What save() said on this machine since it was started, as of now; empty where it was before that.
-    /// \throws error (bad_input) for a text that is not whole.
-    static drive_history restore(std::string_view text);
-
-private:
-    friend class player;
-    explicit drive_history(std::shared_ptr<const impl> i) : impl_(std::move(i)) {}
-
-    std::shared_ptr<const impl> impl_;
-};
 
 struct player_options {
     /// How far ahead drives are handed to the audio thread; two buffers and four periods at least.
@@ -272,7 +130,7 @@ public:
     ///         would leave out or cut: a score that drives a channel without a tactor there (a continuous
     ///         stroke may come to any of its own array), or a tactor above its limit there, and a marker on a
     ///         tactor's channel; runtime when the stream has ended.
-    stroke_id submit(const score& s, start_at start = {});
+    stroke_id submit(const score& s, start_at start = start_at::now());
 
     /// Starts all armed strokes: their first samples are at the DAC at a CLOCK_MONOTONIC time, ns, or as
     /// soon as possible when that time has passed. Returns how many there were. An edge at the trigger
@@ -292,11 +150,11 @@ public:
     /// while the system sleeps too. False when it has ended or is not known.
     bool cancel(stroke_id id);
 
-    /// Blocks until the stroke has ended and returns how. Returns nothing on time-out and for a stroke that
-    /// is not known. In a handler it does not block (reports come from the handler's own thread): a stroke
-    /// that has not ended gives nothing there. Each report is given once by wait(), and to the handler when
-    /// there is one. Of reports that nobody waits for, the 4096 newest are kept.
-    std::optional<stroke_report> wait(stroke_id id, std::optional<double> timeout_s = {});
+    /// Blocks until the stroke has ended, for timeout_s at most where there is one, and returns how it ended.
+    /// In a handler it does not block (reports come from the handler's own thread). Each report is given once
+    /// by wait(), and to the handler when there is one. Of reports that nobody waits for, the 4096 newest are
+    /// kept.
+    wait_result wait(stroke_id id, std::optional<double> timeout_s = {});
 
     /// Called in the control thread for each stroke that begins, soon after its first frame was handed to the
     /// device and before its report: with the CLOCK_MONOTONIC, ns, at which that frame is (or was) at the
@@ -319,10 +177,9 @@ public:
     /// handler at once.
     void stop();
 
-    /// Why the stream has ended: the device was lost, it failed, the amplifier's line did, or a handler
-    /// threw; empty text where stop() ended it in order. Nothing while it goes on. A stream that has ended
-    /// stays so: open the device again (reopen_alsa()) for a new player.
-    std::optional<std::string> ended() const;
+    /// How the stream has ended; nothing while it goes on. A stream that has ended stays so: open the device
+    /// again (reopen_alsa()) for a new player.
+    std::optional<stream_end> ended() const;
 
     player_position position() const noexcept;
     player_stats stats() const;

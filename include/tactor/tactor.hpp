@@ -8,6 +8,7 @@
 #include <tactor/choices.hpp>
 #include <tactor/curve.hpp>
 #include <tactor/devices.hpp>
+#include <tactor/drive_history.hpp>
 #include <tactor/error.hpp>
 #include <tactor/fit.hpp>
 #include <tactor/geometry.hpp>
@@ -25,9 +26,11 @@
 #include <tactor/player.hpp>
 #include <tactor/realtime.hpp>
 #include <tactor/render.hpp>
+#include <tactor/report.hpp>
 #include <tactor/sample_format.hpp>
 #include <tactor/setup.hpp>
 #include <tactor/sink.hpp>
+#include <tactor/start_at.hpp>
 #include <tactor/stroke.hpp>
 #include <tactor/version.hpp>
 #include <tactor/wav.hpp>

@@ -48,24 +48,6 @@ struct request {
     bool closing = false;        ///< stop: the player is being closed; its strokes count as interrupted
 };
 
-/// Why a stroke or the stream ended.
-enum class reason : std::uint32_t {
-    none,
-    xrun,
-    suspended,
-    lost,
-    failed,
-    late,
-    crowded,
-    closed,
-    starved,
-    too_long,
-    muted,
-    amplifier,
-    left_on,
-    plan ///< the control side knows more
-};
-
 /// Audio to control.
 struct report {
     enum class kind : std::uint32_t {
@@ -77,7 +59,7 @@ struct report {
     kind what = kind::begun;
     ticket score = 0;
     state_kind state = state_kind::finished;
-    reason why = reason::none;
+    reason_kind why = reason_kind::none;
     int code = 0; ///< negative errno of the device
     std::uint64_t frame = 0;
     bool started = false;        ///< over: its first sample has been at the DAC ...

@@ -56,8 +56,7 @@ py::tuple tuple_of(const stroke_report& r)
     const py::object started = r.started_ns
                                    ? py::object(py::float_(static_cast<double>(*r.started_ns) * 1e-9))
                                    : py::object(py::none());
-    return py::make_tuple(r.id.number, std::string(to_string(r.state)), r.reason, r.frames, started,
-                          r.late_s);
+    return py::make_tuple(r.id.number, std::string(to_string(r.state)), r.why, r.frames, started, r.late_s);
 }
 
 py::object next_event(player_handle& h)
@@ -218,7 +217,13 @@ void bind_player(py::module_& m)
         .def(
             "stop", [](const player_handle& h) { h.use([](player& p) { p.stop(); }); }, free_call())
         .def(
-            "ended", [](const player_handle& h) { return h.use([](player& p) { return p.ended(); }); },
+            "ended",
+            [](const player_handle& h) {
+                return h.use([](player& p) {
+                    const auto end = p.ended();
+                    return end ? std::optional(end->why) : std::nullopt;
+                });
+            },
             free_call())
         .def(
             "history", [](const player_handle& h) { return h.use([](player& p) { return p.history(); }); },

@@ -57,9 +57,12 @@ void service::start_followers(stroke_record& first, std::int64_t at_ns)
             by_player_[{r.player, r.id}] = r.number;
         } catch (const error& e) {
             finish(r, {.state = state_kind::interrupted,
-                       .reason = out->ended() ? "the stream has ended" : e.what()});
+                       .reason = reason_kind::failed,
+                       .why = out->ended() ? "the stream has ended" : e.what()});
         } catch (...) {
-            finish(r, {.state = state_kind::interrupted, .reason = "the stream has ended"});
+            finish(r, {.state = state_kind::interrupted,
+                       .reason = reason_kind::failed,
+                       .why = "the stream has ended"});
         }
     }
 }
@@ -114,7 +117,7 @@ void service::tell_stroke(stroke_record& r, std::string_view state, const stroke
     };
     reply_json n = net::notification("stroke", {{"stroke", r.number},
                                                 {"state", state},
-                                                {"reason", how.reason},
+                                                {"reason", how.why},
                                                 {"frames", how.frames},
                                                 {"started_s", from(0)},
                                                 {"started_unix_s", from(unix_ns() - options_.now_ns())},

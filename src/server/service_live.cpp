@@ -70,7 +70,7 @@ void service::begin_now(client& c, const live_options& o, const answer& to, bool
     if (stopped) {
         // While the stream was being started: as with what was being planned then.
         stroke_record& r = add_record(c.number);
-        finish(r, {.state = state_kind::cancelled, .reason = "stopped"});
+        finish(r, {.state = state_kind::cancelled, .why = "stopped"});
         to.result({{"stroke", r.number}}, {r.number});
         return;
     }

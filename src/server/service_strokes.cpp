@@ -239,11 +239,13 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
     for (std::size_t i = 0; i < records.size(); ++i)
         if (records[i]->music)
             records[first]->followers.emplace_back(records[i]->number, starts[i] - starts[first]);
+    const auto end = out->ended();
     for (std::size_t i = 0; i < records.size(); ++i)
         if (records[i]->id == stroke_id{} && !records[i]->music)
-            finish(*records[i], stopped ? stroke_report{.state = state_kind::cancelled, .reason = "stopped"}
+            finish(*records[i], stopped ? stroke_report{.state = state_kind::cancelled, .why = "stopped"}
                                         : stroke_report{.state = state_kind::interrupted,
-                                                        .reason = out->ended().value_or(refused[i])});
+                                                        .reason = end ? end->reason : reason_kind::failed,
+                                                        .why = end ? end->why : refused[i]});
     return numbers;
 }
 
@@ -302,7 +304,7 @@ void service::stop(const json& params, const answer& to)
             continue;
         stroke_record& r = *found->second;
         if (r.music)
-            finish(r, {.state = state_kind::cancelled, .reason = "stopped"});
+            finish(r, {.state = state_kind::cancelled, .why = "stopped"});
         else if (p != nullptr && r.player == stream_.number())
             p->cancel(r.id);
     }

@@ -231,8 +231,8 @@ void stream::look()
 {
     if (player_ == nullptr || closing_)
         return;
-    if (const auto why = player_->ended()) {
-        set(stream_state::lost, why->empty() ? "the stream was stopped" : *why);
+    if (const auto end = player_->ended()) {
+        set(stream_state::lost, end->reason == reason_kind::none ? "the stream was stopped" : end->why);
         return retire([this] { retry(); });
     }
     if (!options_.has_amplifier || (state_ != stream_state::running && state_ != stream_state::muted))

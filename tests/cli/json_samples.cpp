@@ -53,7 +53,8 @@ run_report troubled_run()
     const stroke_report cut{.id = 1,
                             .state = state_kind::interrupted,
                             .frames = 480,
-                            .reason = "an xrun",
+                            .reason = reason_kind::xrun,
+                            .why = "an xrun",
                             .late_s = 0.001,
                             .started_ns = 123456789};
     r.strokes = {{"a.toml", 70560, cut}, {"b.toml", 70560, std::nullopt}};

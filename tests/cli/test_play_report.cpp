@@ -21,7 +21,7 @@ stroke_outcome ended(const char* name, state_kind how)
 {
     stroke_report r{.state = how, .frames = 24000};
     if (how != state_kind::finished)
-        r.reason = tired;
+        r.why = tired;
     return {name, 48000, r};
 }
 

@@ -144,7 +144,7 @@ private:
 
 inline std::string reason_of(const amplifier_rig& r, stroke_id id)
 {
-    return r.report(id) ? r.report(id)->reason : "no report";
+    return r.report(id) ? r.report(id)->why : "no report";
 }
 
 /// An amplifier that is on, and a stroke that sounds.

@@ -104,7 +104,7 @@ public:
     stroke_id last() const { return {last_id}; }
 
     stroke_id submit(const score& s, std::uint64_t frame) { return submit(s, start_at::frame(frame)); }
-    stroke_id submit(const score& s, start_at at = {})
+    stroke_id submit(const score& s, start_at at = start_at::now())
     {
         feed.submit(next_id(), s, at);
         feed.pump(status().written, link.clock.load());

@@ -44,7 +44,7 @@ TEST_CASE("at the last stop an off that is refused is tried again before the DAC
     CHECK(r.news() == event_log{"off", "off", "off", "off", "drop"});
     CHECK(r.link.count.off_failures == 3);
     CHECK_FALSE(r.link.amplifier.stuck);
-    CHECK(r.feed.stream_reason().empty());
+    CHECK(r.feed.end().why.empty());
 }
 
 TEST_CASE("a line that never goes off is tried for a second, and the stream's reason says so")
@@ -62,7 +62,7 @@ TEST_CASE("a line that never goes off is tried for a second, and the stream's re
     CHECK(r.link.count.off_failures == static_cast<std::uint64_t>(offs(log)));
     CHECK(r.link.amplifier.stuck);
     CHECK_FALSE(r.link.amplifier.off);
-    CHECK(r.feed.stream_reason() == may_be_on);
+    CHECK(r.feed.end().why == may_be_on);
     CHECK(r.report(r.id)->state == state_kind::cancelled);
 
     r.driver.close(); // a last time, and in vain
@@ -102,7 +102,7 @@ TEST_CASE("a mute that stays refused ends the stream")
     CHECK(r.link.amplifier.stuck);
     r.dac.wake(true);
     end(r);
-    CHECK(r.feed.stream_reason() == may_be_on);
+    CHECK(r.feed.end().why == may_be_on);
 }
 
 TEST_CASE("a device that is lost while the line refuses: what may be on is what is said")
@@ -118,7 +118,7 @@ TEST_CASE("a device that is lost while the line refuses: what may be on is what 
     r.control();
     CHECK(r.loop.over());
     CHECK(reason_of(r, r.id) == "the device is gone");
-    CHECK(r.feed.stream_reason() == may_be_on);
+    CHECK(r.feed.end().why == may_be_on);
 }
 
 TEST_CASE("a line that refuses to go on is switched off, for it may have gone on all the same")
@@ -133,7 +133,7 @@ TEST_CASE("a line that refuses to go on is switched off, for it may have gone on
     CHECK(r.loop.over());
     CHECK(r.news() == event_log{"prepare", "start", "on", "off", "off", "drop"});
     CHECK(reason_of(r, id) == "the amplifier's line cannot be switched");
-    CHECK(r.feed.stream_reason() == "the amplifier's line cannot be switched");
+    CHECK(r.feed.end().why == "the amplifier's line cannot be switched");
 }
 
 TEST_CASE("a line that was lost counts as on until it was switched off")
@@ -145,7 +145,7 @@ TEST_CASE("a line that was lost counts as on until it was switched off")
     CHECK_FALSE(r.link.amplifier.off);
     r.stop();
     end(r);
-    CHECK(r.feed.stream_reason() == may_be_on);
+    CHECK(r.feed.end().why == may_be_on);
 }
 
 } // namespace amplifier_refuses_test

@@ -71,7 +71,7 @@ TEST_CASE("an end that nobody answers comes all the same, after two seconds of z
     CHECK(r.now - begun >= 2000 * ms);
     CHECK(r.now - begun <= 2070 * ms);
     r.control();
-    CHECK(r.feed.stream_reason() == "the amplifier's line cannot be switched off: it may be on");
+    CHECK(r.feed.end().why == "the amplifier's line cannot be switched off: it may be on");
     CHECK(r.link.count.xruns == 0);
 }
 

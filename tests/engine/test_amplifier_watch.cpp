@@ -94,7 +94,7 @@ TEST_CASE("a line that cannot be switched ends the stream and says so")
     CHECK(r.loop.over());
     CHECK(r.report(id)->state == state_kind::interrupted);
     CHECK(reason_of(r, id) == "the amplifier's line cannot be switched");
-    CHECK(r.feed.stream_reason() == "the amplifier's line cannot be switched");
+    CHECK(r.feed.end().why == "the amplifier's line cannot be switched");
     CHECK_FALSE(r.first_sound());
     CHECK(r.news() == event_log{"prepare", "start", "on", "off", "drop"});
 }

@@ -79,7 +79,7 @@ TEST_CASE("a handler of beginnings that throws ends the stream, as others do")
     REQUIRE(r);
     CHECK(r->state == state_kind::interrupted);
     p.stop();
-    CHECK(p.ended()->find("handler") != std::string::npos);
+    CHECK(p.ended()->why.find("handler") != std::string::npos);
 }
 
 } // namespace begins_test

@@ -120,8 +120,8 @@ TEST_CASE("a plan that fails in mid-stroke interrupts the stroke with the reason
             REQUIRE(r.report(id));
             const stroke_report report = *r.report(id);
             CHECK(report.state == state_kind::interrupted);
-            CHECK(report.reason.find("the plan failed at 0.3") == 0);
-            CHECK(report.reason.find(s.why) != std::string::npos);
+            CHECK(report.why.find("the plan failed at 0.3") == 0);
+            CHECK(report.why.find(s.why) != std::string::npos);
             CHECK(report.started_ns.has_value());
             // Control points up to 0.299 s are in order; it is silent there, and a fade before that.
             const std::uint64_t good = rate * 299 / 1000;
@@ -167,7 +167,7 @@ TEST_CASE("a plan that fails at its first point is interrupted before it sounds"
     for (const stroke_id id : {now, later}) {
         REQUIRE(r.report(id));
         CHECK(r.report(id)->state == state_kind::interrupted);
-        CHECK(r.report(id)->reason == "the plan failed at 0 s of the stroke: the model has no idea");
+        CHECK(r.report(id)->why == "the plan failed at 0 s of the stroke: the model has no idea");
         CHECK(r.report(id)->frames == 0);
     }
     CHECK_FALSE(r.first_sound());
@@ -193,7 +193,7 @@ TEST_CASE("what fails takes nothing else along")
     r.feed.cancel(cancelled);
     r.play_out();
     CHECK(r.report(cancelled)->state == state_kind::cancelled);
-    CHECK(r.report(cancelled)->reason.empty());
+    CHECK(r.report(cancelled)->why.empty());
     for (int n = 0; n < 600; ++n)
         r.submit(music);
     r.play_out();

@@ -67,7 +67,7 @@ TEST_CASE("stats of a stream that never ran dry")
     CHECK_FALSE(p.ended());
     p.stop();
     REQUIRE(p.ended());
-    CHECK(p.ended()->empty());
+    CHECK(p.ended()->why.empty());
     const player_stats s = p.stats();
     CHECK(s.xruns == 0);
     CHECK(s.xrun_s.empty());

@@ -61,7 +61,7 @@ std::map<std::string, int> play_at_once(const score& s, std::uint64_t at, int st
     std::map<std::string, int> ends;
     for (const auto& [id, reports] : r.ended)
         for (const stroke_report& e : reports)
-            ++ends[std::string(to_string(e.state)) + (e.late_s > 0.0 ? " late" : "") + ": " + e.reason];
+            ++ends[std::string(to_string(e.state)) + (e.late_s > 0.0 ? " late" : "") + ": " + e.why];
     return ends;
 }
 

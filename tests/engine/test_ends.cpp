@@ -61,7 +61,7 @@ TEST_CASE("a stroke is not finished before its last frame has reached the DAC")
     REQUIRE(r.report(id));
     CHECK(r.report(id)->state == state_kind::finished);
     CHECK(r.report(id)->frames == s.frames());
-    CHECK(r.report(id)->reason.empty());
+    CHECK(r.report(id)->why.empty());
 }
 
 TEST_CASE("a cancelled stroke fades and is then reported once, with the frames that it got")
@@ -180,7 +180,7 @@ TEST_CASE("stop fades what sounds, waits until it is out, and drops the stream")
         for (const stroke_id id : {sounding, later, far}) {
             REQUIRE(r.report(id));
             CHECK(r.report(id)->state == state);
-            CHECK(r.report(id)->reason == (closing ? "the player was closed" : ""));
+            CHECK(r.report(id)->why == (closing ? "the player was closed" : ""));
             CHECK((r.report(id)->frames > 0) == (id == sounding));
         }
         CHECK_FALSE(r.first_sound(next + 480));
@@ -211,7 +211,7 @@ TEST_CASE("stop does not wait for a long buffer: what still sounds after 0.4 s i
         CHECK_FALSE(r.dac.running());
         REQUIRE(r.report(sounding));
         CHECK(r.report(sounding)->state == (closing ? state_kind::interrupted : state_kind::cancelled));
-        CHECK(r.report(sounding)->reason == (closing ? "the player was closed" : ""));
+        CHECK(r.report(sounding)->why == (closing ? "the player was closed" : ""));
     }
 }
 
@@ -239,7 +239,7 @@ TEST_CASE("drives that come too late end the stroke instead of starting in mid-b
     r.play_out();
     REQUIRE(r.report(id));
     CHECK(r.report(id)->state == state_kind::interrupted);
-    CHECK(r.report(id)->reason.find("too slow") != std::string::npos);
+    CHECK(r.report(id)->why.find("too slow") != std::string::npos);
     // What sounded is a true beginning of the stroke.
     const std::uint64_t sure = 2400 - 480;
     const std::vector<std::byte> all = rendered(s, format_kind::s32);
@@ -266,7 +266,7 @@ TEST_CASE("a continuous stroke whose drives stop coming fades out before the las
         r.play_out();
         REQUIRE(r.report(id));
         CHECK(r.report(id)->state == state_kind::interrupted);
-        CHECK(r.report(id)->reason.find("too slow") != std::string::npos);
+        CHECK(r.report(id)->why.find("too slow") != std::string::npos);
         const std::uint64_t end = r.report(id)->frames;
         CHECK(end > 9600);
         CHECK_FALSE(r.first_sound(from + end));

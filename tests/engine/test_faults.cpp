@@ -85,7 +85,8 @@ TEST_CASE("an xrun interrupts what sounded, and the stream goes on in silence")
     r.control();
     REQUIRE(r.report(id));
     CHECK(r.report(id)->state == state_kind::interrupted);
-    CHECK(r.report(id)->reason == "xrun: the device ran dry");
+    CHECK(r.report(id)->why == "xrun: the device ran dry");
+    CHECK(r.report(id)->reason == reason_kind::xrun);
     CHECK(r.report(id)->frames == written - base);
     CHECK(r.link.count.xruns == 1);
     CHECK(r.dac.starts() == 2);
@@ -162,7 +163,8 @@ TEST_CASE("three xruns a second are survived, the fourth is the end")
     CHECK(r.feed.stream_over());
     REQUIRE(r.report(far));
     CHECK(r.report(far)->state == state_kind::interrupted);
-    CHECK(r.report(far)->reason == "the device was given up: one xrun after the other");
+    CHECK(r.report(far)->why == "the device was given up: one xrun after the other");
+    CHECK(r.report(far)->reason == reason_kind::lost);
 }
 
 TEST_CASE("xruns that are further apart never end the stream")
@@ -193,10 +195,12 @@ TEST_CASE("an unplugged device ends the stream and every stroke")
     for (const stroke_id id : {sounding, near, far}) {
         REQUIRE(r.report(id));
         CHECK(r.report(id)->state == state_kind::interrupted);
-        CHECK(r.report(id)->reason == "the device is gone");
+        CHECK(r.report(id)->why == "the device is gone");
+        CHECK(r.report(id)->reason == reason_kind::lost);
         CHECK((r.report(id)->frames > 0) == (id == sounding));
     }
-    CHECK(r.feed.stream_reason() == "the device is gone");
+    CHECK(r.feed.end().why == "the device is gone");
+    CHECK(r.feed.end().reason == reason_kind::lost);
 }
 
 TEST_CASE("a device that stands still is lost after its time, whether it says ready or not")
@@ -214,7 +218,8 @@ TEST_CASE("a device that stands still is lost after its time, whether it says re
         CHECK(took <= 520'000'000);
         r.control();
         CHECK(r.report(id)->state == state_kind::interrupted);
-        CHECK(r.report(id)->reason == "the device does not move any more");
+        CHECK(r.report(id)->why == "the device does not move any more");
+        CHECK(r.report(id)->reason == reason_kind::lost);
         CHECK(r.link.count.xruns == 0);
     }
 }
@@ -239,7 +244,8 @@ TEST_CASE("a device that takes frames but does not say how far it has got is los
         CHECK(took <= 510'000'000);
         REQUIRE(r.report(id));
         CHECK(r.report(id)->state == state_kind::interrupted);
-        CHECK(r.report(id)->reason == "the device does not move any more");
+        CHECK(r.report(id)->why == "the device does not move any more");
+        CHECK(r.report(id)->reason == reason_kind::lost);
         CHECK(r.link.count.xruns == 0);
     }
 }
@@ -266,7 +272,7 @@ TEST_CASE("stop does not wait for a position that never comes")
     CHECK(play_until_over(r) <= 410'000'000);
     REQUIRE(r.report(id));
     CHECK(r.report(id)->state == state_kind::cancelled);
-    CHECK(r.feed.stream_reason().empty());
+    CHECK(r.feed.end().why.empty());
 }
 
 TEST_CASE("descriptors that lie are left out after a while, so that nothing spins")
@@ -312,8 +318,9 @@ TEST_CASE("a device that does not prepare or start any more ends the stream")
         r.control();
         CHECK(r.loop.over());
         CHECK(r.report(id)->state == state_kind::interrupted);
-        CHECK(r.report(id)->reason == "xrun: the device ran dry");
-        CHECK(r.feed.stream_reason().find("device failed") != std::string::npos);
+        CHECK(r.report(id)->why == "xrun: the device ran dry");
+        CHECK(r.report(id)->reason == reason_kind::xrun);
+        CHECK(r.feed.end().why.find("device failed") != std::string::npos);
     }
 }
 

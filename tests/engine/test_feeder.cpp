@@ -281,13 +281,14 @@ TEST_CASE("what was cancelled stays so where the stream ends before its fade is 
         feed.submit({n}, tone(1.0), start_at::now());
     feed.pump(0);
     CHECK(feed.cancel({1}));
-    feed.handle({.what = engine::report::kind::stream_over, .why = engine::reason::lost});
+    feed.handle({.what = engine::report::kind::stream_over, .why = reason_kind::lost});
     const auto ends = feed.take_reports();
     REQUIRE(ends.size() == 2);
     CHECK(ends.front().state == state_kind::cancelled);
-    CHECK(ends.front().reason.empty());
+    CHECK(ends.front().why.empty());
     CHECK(ends.back().state == state_kind::interrupted);
-    CHECK(ends.back().reason == "the device is gone");
+    CHECK(ends.back().why == "the device is gone");
+    CHECK(ends.back().reason == reason_kind::lost);
 }
 
 } // namespace feeder_test

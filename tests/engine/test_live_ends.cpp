@@ -94,7 +94,8 @@ TEST_CASE("a producer that falls silent: faded out after the time-out, interrupt
         r.play(48'000);
         REQUIRE(r.report({1}));
         CHECK(r.report({1})->state == state_kind::interrupted);
-        CHECK(r.report({1})->reason == "no more points came");
+        CHECK(r.report({1})->why == "no more points came");
+        CHECK(r.report({1})->reason == reason_kind::starved);
         CHECK(r.first_sound(last + 9000));
         CHECK_FALSE(r.first_sound(last + 9600 + 480 + 3 * 96 + (as_bursts ? 3360 : 0)));
         CHECK_FALSE(r.live->to({0.0, 0.0}, 1.0));
@@ -117,7 +118,8 @@ TEST_CASE("a live stroke lasts as long as it may, to a period: faded out, interr
         }
         REQUIRE(r.report({1}));
         CHECK(r.report({1})->state == state_kind::interrupted);
-        CHECK(r.report({1})->reason == "it has lasted as long as it may");
+        CHECK(r.report({1})->why == "it has lasted as long as it may");
+        CHECK(r.report({1})->reason == reason_kind::too_long);
         CHECK(r.report({1})->frames >= 9600);
         CHECK(r.report({1})->frames <= 9600 + 96 + 480);
         CHECK_FALSE(r.first_sound(base + 9600 + 96 + 480));
@@ -136,7 +138,8 @@ TEST_CASE("an xrun ends a live stroke that sounds, and leaves one alone that wai
     r.control();
     REQUIRE(r.report({1}));
     CHECK(r.report({1})->state == state_kind::interrupted);
-    CHECK(r.report({1})->reason == "xrun: the device ran dry");
+    CHECK(r.report({1})->why == "xrun: the device ran dry");
+    CHECK(r.report({1})->reason == reason_kind::xrun);
     CHECK_FALSE(r.live->to({0.0, 0.0}, 1.0));
     const std::uint64_t from = r.dac.captured_frames();
     CHECK(waits->to({40.0, 40.0}, 1.0));
@@ -218,7 +221,7 @@ TEST_CASE("a model that gives more than it was asked for: faded out, interrupted
             r.play(9600);
             REQUIRE(r.report({1}));
             CHECK(r.report({1})->state == state_kind::interrupted);
-            CHECK(r.report({1})->reason ==
+            CHECK(r.report({1})->why ==
                   "phantom model \"overdone\" gave tactor 4 amplitude 5e+08, above the 0.5 asked for");
             CHECK_FALSE(r.first_sound(from + 480));
             CHECK(peak(r.channel(4), 0, SIZE_MAX) <= 0.5 * live_level * (1.0 + 1e-8));
@@ -248,7 +251,7 @@ TEST_CASE(
         CHECK(r.report(id)->state == state_kind::interrupted);
         CHECK(r.report(id)->frames == 0);
         // The scale makes 0.01 of 0.1.
-        CHECK(r.report(id)->reason ==
+        CHECK(r.report(id)->why ==
               "phantom model \"overdone\" gave tactor 4 amplitude 0.01001, above the 0.01 asked for");
     }
     CHECK_FALSE(r.first_sound());

@@ -87,8 +87,8 @@ TEST_CASE("why a lost device ended the stream is a line, once")
         r.step();
     r.control();
     REQUIRE(r.feed.stream_over());
-    r.log.end(r.feed.stream_reason());
-    r.log.end(r.feed.stream_reason());
+    r.log.end(r.feed.end().why);
+    r.log.end(r.feed.end().why);
     r.log.tell();
     CHECK(r.told.count("error the stream has ended: the device is gone") == 1);
 }
@@ -144,7 +144,7 @@ TEST_CASE("a player tells of its start and its end, and bears a log that throws"
             const running_clock clock(dac);
             REQUIRE(p.wait(id));
             p.stop();
-            CHECK(p.ended() == "");
+            CHECK(p.ended()->reason == reason_kind::none);
         }
         CHECK(told.count("info the stream has ended") == 1);
     }

@@ -113,7 +113,8 @@ TEST_CASE("a player that is destroyed while strokes sound reports them as interr
     REQUIRE(told.size() == 2);
     for (const stroke_report& r : told) {
         CHECK(r.state == state_kind::interrupted);
-        CHECK(r.reason == "the player was closed");
+        CHECK(r.why == "the player was closed");
+        CHECK(r.reason == reason_kind::closed);
     }
     CHECK(dac.closed());
 }
@@ -128,7 +129,7 @@ TEST_CASE("the handler may submit, cancel and stop, and is not made to wait for 
     p.on_report([&](const stroke_report& r) {
         if (rounds++ < 5) {
             last = p.submit(tone(0.01));
-            CHECK_FALSE(p.wait(last));
+            CHECK(p.wait(last).outcome() == wait_kind::timeout);
             CHECK_FALSE(p.cancel(r.id));
         } else {
             p.stop();
@@ -171,7 +172,8 @@ TEST_CASE("an unplugged device ends the waits and the stream")
     const auto r = p.wait(id);
     REQUIRE(r);
     CHECK(r->state == state_kind::interrupted);
-    CHECK(r->reason == "the device is gone");
+    CHECK(r->why == "the device is gone");
+    CHECK(r->reason == reason_kind::lost);
     while (!p.ended()) // a stroke ends before its stream
         std::this_thread::yield();
     try {
@@ -194,7 +196,8 @@ TEST_CASE("an xrun is counted and survived")
     const auto r = p.wait(id);
     REQUIRE(r);
     CHECK(r->state == state_kind::interrupted);
-    CHECK(r->reason == "xrun: the device ran dry");
+    CHECK(r->why == "xrun: the device ran dry");
+    CHECK(r->reason == reason_kind::xrun);
     dac.await([&] { return dac.starts() == 2; });
     CHECK(p.stats().xruns == 1);
     const running_clock clock(dac);
@@ -202,16 +205,24 @@ TEST_CASE("an xrun is counted and survived")
     p.stop(); // while the clock still runs
 }
 
-TEST_CASE("a wait can time out, and one for an unknown stroke does not block")
+TEST_CASE("a wait says whether its time was over, the report was taken before, or there is no such stroke")
 {
     fake_dac dac;
     player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
-    CHECK_FALSE(p.wait({17}));
+    CHECK(p.wait({17}).outcome() == wait_kind::unknown);
+    CHECK(p.wait({}).outcome() == wait_kind::unknown);
     const stroke_id id = p.submit(tone(endless_s));
-    CHECK_FALSE(p.wait(id, 1e-9));
+    const wait_result none = p.wait(id, 1e-9);
+    CHECK(none.outcome() == wait_kind::timeout);
+    CHECK_FALSE(none);
     CHECK(p.cancel(id));
     const running_clock clock(dac);
-    CHECK(p.wait(id));
+    const wait_result some = p.wait(id);
+    CHECK(some.outcome() == wait_kind::ended);
+    REQUIRE(some);
+    CHECK((*some).id == id);
+    CHECK(p.wait(id).outcome() == wait_kind::taken);
+    CHECK(p.wait({id.number + 1}).outcome() == wait_kind::unknown);
     p.stop();
 }
 

@@ -102,7 +102,7 @@ TEST_CASE("an amplifier whose line fails ends the player's stream")
         const auto report = p.wait(p.submit(tone(0.05)));
         REQUIRE(report);
         CHECK(report->state == state_kind::interrupted);
-        why = report->reason;
+        why = report->why;
     } catch (const error& e) {
         why = e.what(); // the stream was over before the stroke came
     }
@@ -110,7 +110,9 @@ TEST_CASE("an amplifier whose line fails ends the player's stream")
     p.stop();
     CHECK_THROWS_AS(p.submit(tone(0.05)), error);
     // It refuses to go off as well.
-    CHECK(p.ended() == "the amplifier's line cannot be switched off: it may be on");
+    REQUIRE(p.ended());
+    CHECK(p.ended()->reason == reason_kind::left_on);
+    CHECK(p.ended()->why == "the amplifier's line cannot be switched off: it may be on");
     CHECK(p.stats().left_on);
     // All but the first were to switch it off. What has just been tried is counted in a moment.
     const auto tries = [&] {

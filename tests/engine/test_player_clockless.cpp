@@ -101,7 +101,7 @@ TEST_CASE("a file that cannot be written ends the stream with the reason")
         const auto r = p.wait(p.submit(tone(60.0)));
         REQUIRE(r);
         CHECK(r->state == state_kind::interrupted);
-        said = r->reason;
+        said = r->why;
     } catch (const error& e) {
         CHECK(e.kind() == error_kind::runtime);
         said = e.what();

@@ -62,7 +62,14 @@ concept submits = requires(player& p, const score& s, T t)
 {
     p.submit(s, t);
 };
+template <typename T>
+concept cancels = requires(player& p, T t)
+{
+    p.cancel(t);
+};
 
+static_assert(cancels<stroke_id> && !cancels<int> && !cancels<unsigned>);
+static_assert(!std::is_default_constructible_v<start_at>);
 static_assert(submits<start_at> && !submits<int> && !submits<std::uint64_t> && !submits<double>);
 static_assert(!std::is_constructible_v<start_at, int> && !std::is_constructible_v<start_at, double>);
 static_assert(takes_as_frame<int> && !takes_as_frame<double> && !takes_as_frame<bool>);

@@ -241,7 +241,7 @@ TEST_CASE("Asio: callbacks in the caller's executor")
     async_play(p, tone(0.01), start_at::now(), boost::asio::bind_executor(context, ran));
     const stroke_id id = p.submit(tone(endless_s));
     async_wait(p, id, boost::asio::bind_executor(context, ran));
-    async_play(p, random_score(1, 1, 10), {},
+    async_play(p, random_score(1, 1, 10), start_at::now(),
                boost::asio::bind_executor(
                    context, [&](std::exception_ptr failed, const stroke_report&) { refused = failed; }));
     CHECK_FALSE(refused); // never within the call

@@ -45,7 +45,8 @@ TEST_CASE("a suspended device is resumed when it can, with a fresh stream")
         CHECK_FALSE(r.loop.over());
         REQUIRE(r.report(id));
         CHECK(r.report(id)->state == state_kind::interrupted);
-        CHECK(r.report(id)->reason == "the system was suspended");
+        CHECK(r.report(id)->why == "the system was suspended");
+        CHECK(r.report(id)->reason == reason_kind::suspended);
         CHECK(r.report(id)->frames <= played - base);
 
         const stroke_id waiting = r.submit(tone(0.01));
@@ -110,7 +111,7 @@ TEST_CASE("stop ends a suspended stream at once")
     r.control();
     CHECK(r.loop.over());
     CHECK(r.feed.stream_over());
-    CHECK(r.feed.stream_reason().empty());
+    CHECK(r.feed.end().why.empty());
 }
 
 } // namespace suspend_test

@@ -131,7 +131,8 @@ TEST_CASE(
         r.play(96);
     }
     CHECK(state_of(r, r.live->id) == state_kind::interrupted);
-    CHECK(r.report(r.live->id)->reason == "no more points came");
+    CHECK(r.report(r.live->id)->why == "no more points came");
+    CHECK(r.report(r.live->id)->reason == reason_kind::starved);
     CHECK_FALSE(r.report(before));
     CHECK_FALSE(r.report(fed->id));
     CHECK_FALSE(r.first_sound());

@@ -27,7 +27,7 @@ live_options short_timeout()
 bool starved(const rig& r, stroke_id id)
 {
     return r.report(id) && r.report(id)->state == state_kind::interrupted &&
-           r.report(id)->reason == "no more points came";
+           r.report(id)->why == "no more points came";
 }
 
 } // namespace

@@ -116,8 +116,8 @@ private:
         if (session_.signal() != 0)
             throw interrupted{};
         if (r.state == state_kind::interrupted && session_.lost())
-            throw error(error_kind::runtime, p.name, r.reason, "the walk ends here");
-        unfinished_[i] = r.state == state_kind::finished ? "" : "interrupted: " + r.reason;
+            throw error(error_kind::runtime, p.name, r.why, "the walk ends here");
+        unfinished_[i] = r.state == state_kind::finished ? "" : "interrupted: " + r.why;
         if (!unfinished_[i].empty())
             say(fmt::format("tactor {}: {}\n", i, unfinished_[i]));
     }

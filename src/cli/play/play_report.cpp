@@ -24,7 +24,7 @@ json to_json(const stroke_outcome& s, unsigned rate)
 {
     const bool ended = s.report.has_value();
     const std::uint64_t frames = ended ? s.report->frames : 0;
-    const bool has_reason = ended && !s.report->reason.empty();
+    const bool has_reason = ended && !s.report->why.empty();
     return {{"stroke", s.name},
             {"state", ended ? std::string(to_string(s.report->state)) : "not played"},
             {"frames", frames},
@@ -32,7 +32,7 @@ json to_json(const stroke_outcome& s, unsigned rate)
             {"played_s", seconds(frames, rate)},
             {"late_s", ended ? s.report->late_s : 0.0},
             {"started_ns", ended && s.report->started_ns ? json(*s.report->started_ns) : json(nullptr)},
-            {"reason", has_reason ? json(s.report->reason) : json(nullptr)}};
+            {"reason", has_reason ? json(s.report->why) : json(nullptr)}};
 }
 
 json to_json(const stream_setup& d)
@@ -122,7 +122,7 @@ std::string fate(const stroke_outcome& s, unsigned rate)
     if (s.report->state == state_kind::finished)
         return fmt::format("played {:.3f} s", t);
     return fmt::format("{} after {:.3f} s{}{}", to_string(s.report->state), t,
-                       s.report->reason.empty() ? "" : ": ", s.report->reason);
+                       s.report->why.empty() ? "" : ": ", s.report->why);
 }
 
 std::string describe(const stroke_outcome& s, unsigned rate)

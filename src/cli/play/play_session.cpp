@@ -126,9 +126,10 @@ stroke_report play_session::play(const piece& p, const score& s, const watcher& 
         id = player_->submit(s, options_.arm ? start_at::trigger() : start);
         playing_ = id;
     } catch (const error&) {
-        if (!lost())
+        const auto end = player_->ended();
+        if (!end)
             throw;
-        return {.state = state_kind::interrupted, .reason = *player_->ended()};
+        return {.state = state_kind::interrupted, .reason = end->reason, .why = end->why};
     }
     if (options_.arm && !options_.json()) {
         say(stdout, "{}: armed\n", p.name);
@@ -156,7 +157,7 @@ stroke_report play_session::play(const piece& p, const score& s, const watcher& 
         ended_.consume();
         if (!go_on) {
             player_->stop();
-            return player_->wait(id).value_or(stroke_report{.id = id, .state = state_kind::cancelled});
+            return end_of(id);
         }
     }
 }
@@ -187,10 +188,16 @@ stroke_report play_session::live(const live_options& o, live_lines& lines)
         ended_.consume();
         if (!go_on) {
             player_->stop();
-            return player_->wait(stroke.id())
-                .value_or(stroke_report{.id = stroke.id(), .state = state_kind::cancelled});
+            return end_of(stroke.id());
         }
     }
+}
+
+// Of a stroke of a stream that was stopped.
+stroke_report play_session::end_of(stroke_id id)
+{
+    const wait_result last = player_->wait(id);
+    return last ? *last : stroke_report{.id = id, .state = state_kind::cancelled};
 }
 
 bool play_session::reopen()

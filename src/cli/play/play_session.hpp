@@ -44,7 +44,8 @@ public:
 
     /// Plays one piece to its end, or until a signal comes, see signal(). With --arm it waits for the trigger
     /// instead of `start`. \throws error.
-    stroke_report play(const piece& p, const score& s, const watcher& watch = {}, start_at start = {});
+    stroke_report play(const piece& p, const score& s, const watcher& watch = {},
+                       start_at start = start_at::now());
     /// Fades out what plays: for the watcher.
     void cancel();
 
@@ -77,6 +78,7 @@ private:
     void start(std::unique_ptr<sink> s);
     /// False when a signal has come.
     bool sleep(int fd, int timeout_ms, int also = -1);
+    stroke_report end_of(stroke_id id);
     /// Ends the player's stream, and keeps what it gave the array.
     void end_stream();
 

@@ -211,7 +211,7 @@ private:
             return false;
         stroke_report r{.state = from_string<state_kind>(found->value("state", "interrupted")),
                         .frames = found->value("frames", std::uint64_t{0}),
-                        .reason = found->value("reason", ""),
+                        .why = found->value("reason", ""),
                         .late_s = found->value("late_s", 0.0)};
         if ((*found)["started_s"].is_number())
             r.started_ns = std::llround((*found)["started_s"].get<double>() * 1e9);
@@ -222,7 +222,7 @@ private:
             r.late_s = std::max(r.late_s, out.report->late_s);
             if (out.report->state != state_kind::finished) {
                 r.state = out.report->state;
-                r.reason = out.report->reason;
+                r.why = out.report->why;
             }
         }
         out.report = r;

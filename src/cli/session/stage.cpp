@@ -114,7 +114,7 @@ given_stimulus stage::give(const std::string& name, const score& s, double lead_
     g.started_ns = r.started_ns.value_or(monotonic_ns() - (r.frames > 0 ? length : 0));
     g.ended_ns = g.started_ns + length;
     if (r.state != state_kind::finished)
-        g.flaw = r.state == state_kind::cancelled ? "it was cut off" : r.reason;
+        g.flaw = r.state == state_kind::cancelled ? "it was cut off" : r.why;
     else if (g.xruns > 0)
         g.flaw = "an xrun";
     else if (masker_ && (masker_->breaks() != breaks || noise_ended() != io_kind::ok))

@@ -23,7 +23,7 @@ void audio_loop::finish_when_silent() noexcept
 
 // A DAC that stops under an amplifier that is on pops: the line goes off first, as far as that can be
 // helped. `runs`: the stream is in order, so zeros are written meanwhile.
-void audio_loop::finish(reason why, int code, bool runs) noexcept
+void audio_loop::finish(reason_kind why, int code, bool runs) noexcept
 {
     if (phase_ == phase::over)
         return;
@@ -64,7 +64,7 @@ void audio_loop::end() noexcept
     // Whatever else it was: this is what somebody has to do something about.
     if (!link_.amplifier.off.load(std::memory_order_seq_cst)) {
         link_.amplifier.stuck.store(true, std::memory_order_seq_cst);
-        end_why_ = reason::left_on;
+        end_why_ = reason_kind::left_on;
     }
     link_.reports.push({.what = report::kind::stream_over, .why = end_why_, .code = end_code_});
 }
@@ -77,10 +77,10 @@ void audio_loop::obey_amplifier() noexcept
     if (mutes != mutes_)
         scores_.mute();
     mutes_ = mutes;
-    if (link_.amplifier.failed.load(std::memory_order_acquire) && stop_why_ == reason::none) {
+    if (link_.amplifier.failed.load(std::memory_order_acquire) && stop_why_ == reason_kind::none) {
         ask_to_stop();
-        stop_why_ = reason::amplifier;
-        scores_.stop(state_kind::interrupted, reason::amplifier);
+        stop_why_ = reason_kind::amplifier;
+        scores_.stop(state_kind::interrupted, reason_kind::amplifier);
     }
 }
 

@@ -12,17 +12,17 @@ namespace {
 // snd_pcm_resume() may say "not yet" for ever; a device needs some seconds at most.
 constexpr std::int64_t longest_resume = 10 * rt::ns_per_s;
 
-reason to_reason(io_kind s) noexcept
+reason_kind to_reason(io_kind s) noexcept
 {
     switch (s) {
     case io_kind::xrun:
-        return reason::xrun;
+        return reason_kind::xrun;
     case io_kind::suspended:
-        return reason::suspended;
+        return reason_kind::suspended;
     case io_kind::lost:
-        return reason::lost;
+        return reason_kind::lost;
     default:
-        return reason::failed;
+        return reason_kind::failed;
     }
 }
 
@@ -83,10 +83,10 @@ void audio_loop::broken(io_kind s, int code, std::int64_t now) noexcept
     case io_kind::xrun:
         link_.count.count_xrun(sink_.xrun_ns());
         // It stopped because it had played everything.
-        silence_all(reason::xrun, code, mixer_.position() - pending_);
-        return too_often(now) ? finish(reason::lost, -EPIPE) : restart(now);
+        silence_all(reason_kind::xrun, code, mixer_.position() - pending_);
+        return too_often(now) ? finish(reason_kind::lost, -EPIPE) : restart(now);
     case io_kind::suspended:
-        silence_all(reason::suspended, code, played_);
+        silence_all(reason_kind::suspended, code, played_);
         phase_ = phase::suspended;
         suspended_ns_ = now;
         return;
@@ -97,7 +97,7 @@ void audio_loop::broken(io_kind s, int code, std::int64_t now) noexcept
 }
 
 // Nothing resumes in mid-burst: what had begun ends here, what had not is handed over again later.
-void audio_loop::silence_all(reason why, int code, std::uint64_t played) noexcept
+void audio_loop::silence_all(reason_kind why, int code, std::uint64_t played) noexcept
 {
     note_starts(played);
     scores_.interrupt(why, code, played, !stop_asked_);
@@ -126,7 +126,7 @@ void audio_loop::restart(std::int64_t now) noexcept
     io_result r = begin_epoch();
     while (r.status == io_kind::xrun) {
         if (too_often(now))
-            return finish(reason::lost, -EPIPE);
+            return finish(reason_kind::lost, -EPIPE);
         r = begin_epoch();
     }
     if (r.status == io_kind::ok) {

@@ -91,7 +91,7 @@ void audio_loop::step(io_kind ready, std::int64_t now) noexcept TACTOR_NONBLOCKI
     // Both, so that a process that was stopped and goes on is not taken for a dead device. That frames are
     // taken counts for nothing: a stroke whose end is never seen at the DAC would be waited for for ever.
     if (phase_ == phase::running && still_steps_ >= 4 && now - moved_ns_ > options_.stall_ns)
-        finish(reason::lost, -ETIMEDOUT);
+        finish(reason_kind::lost, -ETIMEDOUT);
     publish();
 }
 

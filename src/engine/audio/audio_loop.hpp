@@ -74,11 +74,11 @@ private:
     void run_from(std::int64_t now) noexcept;
 
     void broken(io_kind s, int code, std::int64_t now) noexcept;
-    void silence_all(reason why, int code, std::uint64_t played) noexcept;
+    void silence_all(reason_kind why, int code, std::uint64_t played) noexcept;
     void try_resume(std::int64_t now) noexcept;
     void restart(std::int64_t now) noexcept;
     bool too_often(std::int64_t now) noexcept;
-    void finish(reason why, int code, bool runs = false) noexcept;
+    void finish(reason_kind why, int code, bool runs = false) noexcept;
     void close_step(io_kind ready, std::int64_t now) noexcept;
     void end() noexcept;
     void obey_amplifier() noexcept;
@@ -102,10 +102,10 @@ private:
     phase phase_ = phase::idle;
     bool stop_asked_ = false;
     std::int64_t stop_asked_ns_ = 0;
-    reason stop_why_ = reason::none;
-    std::uint32_t mutes_ = 0;       ///< link::amplifier's, as far as obeyed
-    bool end_runs_ = false;         ///< closing: the stream is fed with zeros meanwhile
-    reason end_why_ = reason::none; ///< closing
+    reason_kind stop_why_ = reason_kind::none;
+    std::uint32_t mutes_ = 0;                 ///< link::amplifier's, as far as obeyed
+    bool end_runs_ = false;                   ///< closing: the stream is fed with zeros meanwhile
+    reason_kind end_why_ = reason_kind::none; ///< closing
     int end_code_ = 0;
     std::int64_t now_ns_ = 0;
     std::int64_t closing_ns_ = 0;

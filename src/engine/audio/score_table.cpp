@@ -74,9 +74,9 @@ void score_table::crowd() noexcept
     full_until_ = mixer_.position() + crowd_frames;
 }
 
-reason score_table::why_late() const noexcept
+reason_kind score_table::why_late() const noexcept
 {
-    return mixer_.position() < full_until_ ? reason::crowded : reason::late;
+    return mixer_.position() < full_until_ ? reason_kind::crowded : reason_kind::late;
 }
 
 // What ends before its window does is continued by another drive, unless it has come down to zero.
@@ -129,7 +129,7 @@ void score_table::fade_what_failed(std::uint64_t period) noexcept
         if (!e.used || e.fading || e.fade_wanted || e.broken >= next + period + fade_)
             continue;
         e.fade = static_cast<std::uint32_t>(std::min<std::uint64_t>(fade_, std::max(e.broken, next) - next));
-        want_fade(e, state_kind::interrupted, reason::plan);
+        want_fade(e, state_kind::interrupted, reason_kind::plan);
     }
 }
 
@@ -147,10 +147,10 @@ void score_table::cancel(ticket t) noexcept
         link_.reports.push({.what = report::kind::over, .score = t, .state = state_kind::cancelled});
         return;
     }
-    want_fade(*e, state_kind::cancelled, reason::none);
+    want_fade(*e, state_kind::cancelled, reason_kind::none);
 }
 
-void score_table::want_fade(entry& e, state_kind s, reason why) noexcept
+void score_table::want_fade(entry& e, state_kind s, reason_kind why) noexcept
 {
     if (e.fading || e.fade_wanted)
         return;
@@ -163,7 +163,8 @@ void score_table::want_fade(entry& e, state_kind s, reason why) noexcept
         over(e, s, why, 0, 0); // nothing of it has been mixed yet
         return;
     }
-    if (e.finish <= next && why != reason::late && why != reason::crowded && why != reason::plan)
+    if (e.finish <= next && why != reason_kind::late && why != reason_kind::crowded &&
+        why != reason_kind::plan)
         return; // all of it is on its way to the DAC: it finishes
     e.state = s;
     e.why = why;
@@ -188,12 +189,12 @@ void score_table::fade(entry& e) noexcept
 void score_table::stop(bool closing) noexcept
 {
     if (closing)
-        stop(state_kind::interrupted, reason::closed);
+        stop(state_kind::interrupted, reason_kind::closed);
     else
-        stop(state_kind::cancelled, reason::none);
+        stop(state_kind::cancelled, reason_kind::none);
 }
 
-void score_table::stop(state_kind s, reason why) noexcept
+void score_table::stop(state_kind s, reason_kind why) noexcept
 {
     stopping_ = true;
     stop_state_ = s;
@@ -211,7 +212,7 @@ void score_table::mute() noexcept
         if (!e.used || e.fading || e.fade_wanted || e.base == never)
             continue;
         if (e.base < mixer_.position() || e.live != nullptr || stopping_) {
-            want_fade(e, state_kind::interrupted, reason::muted);
+            want_fade(e, state_kind::interrupted, reason_kind::muted);
         } else if (mixer_.fade_out(e.score, 0)) {
             link_.reports.push({.what = report::kind::returned, .score = e.score});
             e.used = false;
@@ -246,11 +247,11 @@ void score_table::update(std::uint64_t played) noexcept
         if (e.fading)
             over(e, e.state, e.why, 0, frames_until(e.finish, e.base, e.length));
         else if (e.fed)
-            over(e, state_kind::finished, reason::none, 0, e.length);
+            over(e, state_kind::finished, reason_kind::none, 0, e.length);
     }
 }
 
-void score_table::interrupt(reason why, int code, std::uint64_t played, bool give_back) noexcept
+void score_table::interrupt(reason_kind why, int code, std::uint64_t played, bool give_back) noexcept
 {
     full_until_ = 0; // frames begin anew
     for (std::uint32_t i = 0; i < top_; ++i) {
@@ -267,15 +268,15 @@ void score_table::interrupt(reason why, int code, std::uint64_t played, bool giv
         }
         const std::uint64_t frames = frames_until(played, e.base, e.length);
         if (!e.fading && e.fed && frames == e.length)
-            over(e, state_kind::finished, reason::none, 0, frames);
-        else if ((e.fading || e.fade_wanted) && e.why == reason::none)
+            over(e, state_kind::finished, reason_kind::none, 0, frames);
+        else if ((e.fading || e.fade_wanted) && e.why == reason_kind::none)
             over(e, e.state, e.why, 0, frames); // it was cancelled, and it is silent now
         else
-            over(e, state_kind::interrupted, why == reason::none ? e.why : why, code, frames);
+            over(e, state_kind::interrupted, why == reason_kind::none ? e.why : why, code, frames);
     }
 }
 
-void score_table::over(entry& e, state_kind s, reason why, int code, std::uint64_t frames) noexcept
+void score_table::over(entry& e, state_kind s, reason_kind why, int code, std::uint64_t frames) noexcept
 {
     close_live(e);
     if (e.sounds)

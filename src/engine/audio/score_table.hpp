@@ -50,7 +50,7 @@ public:
     /// Fades everything out; scores not yet begun end at once, as do those that come later.
     void stop(bool closing) noexcept;
     /// The same, with a reason.
-    void stop(state_kind s, reason why) noexcept;
+    void stop(state_kind s, reason_kind why) noexcept;
     /// The amplifier is off: fades what sounds, returns what has not begun.
     void mute() noexcept;
 
@@ -61,7 +61,7 @@ public:
     void update(std::uint64_t played) noexcept;
 
     /// The stream broke: ends what had begun to sound, and with `give_back` returns the rest.
-    void interrupt(reason why, int code, std::uint64_t played, bool give_back) noexcept;
+    void interrupt(reason_kind why, int code, std::uint64_t played, bool give_back) noexcept;
 
     bool empty() const noexcept { return used_ == 0; }
     /// Fills in the newest score that sounds at `played`.
@@ -96,18 +96,18 @@ private:
         bool sounds = false;        ///< one of live_voices
         live_voice* live = nullptr; ///< while it is fed
         state_kind state = state_kind::finished;
-        reason why = reason::none;
+        reason_kind why = reason_kind::none;
     };
 
     entry* find(ticket t) noexcept;
     void look_at_wishes(entry& e) noexcept;
     void render_live(entry& e, std::uint64_t frames, std::uint64_t offset) noexcept;
     void close_live(entry& e) noexcept;
-    reason why_late() const noexcept;
+    reason_kind why_late() const noexcept;
     static void cover(entry& e, const synth::drive_event& d) noexcept;
-    void want_fade(entry& e, state_kind s, reason why) noexcept;
+    void want_fade(entry& e, state_kind s, reason_kind why) noexcept;
     void fade(entry& e) noexcept;
-    void over(entry& e, state_kind s, reason why, int code, std::uint64_t frames) noexcept;
+    void over(entry& e, state_kind s, reason_kind why, int code, std::uint64_t frames) noexcept;
 
     synth::mixer& mixer_;
     link& link_;
@@ -125,7 +125,7 @@ private:
     std::size_t live_sounding_ = 0; ///< until they are over
     bool stopping_ = false;
     state_kind stop_state_ = state_kind::cancelled;
-    reason stop_reason_ = reason::none;
+    reason_kind stop_reason_ = reason_kind::none;
 };
 
 } // namespace tactor::engine

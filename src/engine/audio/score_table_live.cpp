@@ -49,9 +49,9 @@ void score_table::look_at_wishes(entry& e) noexcept
 {
     switch (e.live->asked()) {
     case live_voice::wish::cancel:
-        return want_fade(e, state_kind::cancelled, reason::none);
+        return want_fade(e, state_kind::cancelled, reason_kind::none);
     case live_voice::wish::fail:
-        return want_fade(e, state_kind::interrupted, reason::plan);
+        return want_fade(e, state_kind::interrupted, reason_kind::plan);
     case live_voice::wish::end:
         if (e.live->has_news() || (e.base == never && e.live->has_point()) ||
             e.live->moves(mixer_.position()))
@@ -59,13 +59,13 @@ void score_table::look_at_wishes(entry& e) noexcept
         break;
     case live_voice::wish::go_on:
         if (e.live->starved())
-            want_fade(e, state_kind::interrupted, reason::starved);
+            want_fade(e, state_kind::interrupted, reason_kind::starved);
         else if (e.live->lasted(mixer_.position()))
-            want_fade(e, state_kind::interrupted, reason::too_long);
+            want_fade(e, state_kind::interrupted, reason_kind::too_long);
         return;
     }
     if (e.base == never)
-        return over(e, state_kind::finished, reason::none, 0, 0);
+        return over(e, state_kind::finished, reason_kind::none, 0, 0);
     if (!e.live->is_bursts())
         e.live->fade(mixer_, fade_);
     e.finish = std::max(e.live->end(), mixer_.position());
@@ -87,7 +87,7 @@ void score_table::render_live(entry& e, std::uint64_t frames, std::uint64_t offs
         link_.reports.push({.what = report::kind::begun, .score = e.score, .frame = offset + e.base});
     }
     if (!e.live->render(mixer_, frames))
-        want_fade(e, state_kind::interrupted, reason::late);
+        want_fade(e, state_kind::interrupted, reason_kind::late);
 }
 
 void score_table::close_live(entry& e) noexcept

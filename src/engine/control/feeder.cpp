@@ -189,7 +189,7 @@ void feeder::handle(const report& r)
         break;
     case report::kind::returned:
         if (a.cancelled)
-            tell({.id = a.id, .state = state_kind::cancelled, .frames = 0, .reason = {}});
+            tell({.id = a.id, .state = state_kind::cancelled, .frames = 0});
         else if (a.due_ns)
             timed_.emplace(*a.due_ns, task{a.id, *a.music, a.due_ns});
         else
@@ -203,12 +203,13 @@ void feeder::handle(const report& r)
 
 void feeder::end_all(const report& r)
 {
-    stream_reason_ = text(r.why, r.code);
-    const bool cut = r.why != reason::none || closing_;
-    const std::string why = r.why != reason::none ? stream_reason_ : cut ? text(reason::closed, 0) : "";
+    end_ = {.reason = r.why, .why = text(r.why, r.code)};
+    const reason_kind why = r.why == reason_kind::none && closing_ ? reason_kind::closed : r.why;
     const auto end = [&](stroke_id id, bool cancelled) {
-        const auto state = cut && !cancelled ? state_kind::interrupted : state_kind::cancelled;
-        tell({.id = id, .state = state, .frames = 0, .reason = cancelled ? std::string() : why});
+        if (cancelled || why == reason_kind::none)
+            tell({.id = id, .state = state_kind::cancelled});
+        else
+            tell({.id = id, .state = state_kind::interrupted, .reason = why, .why = text(why, r.code)});
     };
     while (!in_use_.empty()) {
         slot& s = slots_[in_use_.front()];

@@ -81,8 +81,8 @@ public:
     bool knows(stroke_id id) const;
     /// Whether the stream has ended; every stroke has been reported then.
     bool stream_over() const noexcept { return stream_over_; }
-    /// Why it ended, for people; empty when it was stopped.
-    const std::string& stream_reason() const noexcept { return stream_reason_; }
+    /// How it ended; no reason when it was stopped.
+    const stream_end& end() const noexcept { return end_; }
     /// From now on what has not been handed over counts as cut by the closing of the player.
     void set_closing() noexcept { closing_ = true; }
 
@@ -160,10 +160,10 @@ private:
     bool urgent_ = false;
     bool stream_over_ = false;
     bool closing_ = false;
-    std::string stream_reason_;
+    stream_end end_;
 };
 
-/// A reason for people; empty for `none`.
-std::string text(reason r, int code);
+/// A reason for people, with the negative errno that is known of it; empty for `none`.
+std::string text(reason_kind r, int code);
 
 } // namespace tactor::engine

@@ -92,11 +92,17 @@ void feeder::look_at_waiting_live(std::uint64_t written)
         if (asked == live_voice::wish::cancel)
             tell({.id = next->first, .state = state_kind::cancelled});
         else if (asked == live_voice::wish::fail)
-            tell({.id = next->first, .state = state_kind::interrupted, .reason = v.failure()});
+            tell({.id = next->first,
+                  .state = state_kind::interrupted,
+                  .reason = reason_kind::plan,
+                  .why = v.failure()});
         else if (asked == live_voice::wish::end && !v.has_point())
             tell({.id = next->first, .state = state_kind::finished});
         else if (v.starved())
-            tell({.id = next->first, .state = state_kind::interrupted, .reason = text(reason::starved, 0)});
+            tell({.id = next->first,
+                  .state = state_kind::interrupted,
+                  .reason = reason_kind::starved,
+                  .why = text(reason_kind::starved, 0)});
         else {
             ++next;
             continue;
@@ -126,7 +132,7 @@ bool feeder::cancel_waiting(stroke_id id)
     if (!waits(id))
         return false;
     // Before it is forgotten: there may be no memory for it.
-    tell({.id = id, .state = state_kind::cancelled, .frames = 0, .reason = {}});
+    tell({.id = id, .state = state_kind::cancelled, .frames = 0});
     const auto live = waiting_live_.find(id);
     if (live != waiting_live_.end()) {
         live->second->close();
@@ -167,9 +173,10 @@ void feeder::over(const active& a, const report& r)
     stroke_report told{.id = a.id,
                        .state = r.state,
                        .frames = r.frame,
-                       .reason = r.why != reason::plan ? text(r.why, r.code)
-                                 : a.voice             ? a.voice->failure()
-                                                       : a.failure,
+                       .reason = r.why,
+                       .why = r.why != reason_kind::plan ? text(r.why, r.code)
+                              : a.voice                  ? a.voice->failure()
+                                                         : a.failure,
                        .late_s = a.late_s.value_or(0.0),
                        .started_ns = {}};
     if (r.started)

@@ -69,7 +69,7 @@ bool player::cancel(stroke_id id)
     return impl_->cancel(id);
 }
 
-std::optional<stroke_report> player::wait(stroke_id id, std::optional<double> timeout_s)
+wait_result player::wait(stroke_id id, std::optional<double> timeout_s)
 {
     return impl_->wait(id, timeout_s);
 }
@@ -95,12 +95,12 @@ void player::stop()
     impl_->stop(false);
 }
 
-std::optional<std::string> player::ended() const
+std::optional<stream_end> player::ended() const
 {
     const std::lock_guard lock(impl_->mutex);
     if (!impl_->feed.stream_over())
         return std::nullopt;
-    return impl_->why_ended();
+    return impl_->end();
 }
 
 drive_history player::history() const

@@ -191,7 +191,7 @@ void player::impl::check_start(const player_options& o)
         throw error(error_kind::not_available, what, "the device is gone", "plug it in again");
     if (r.status != io_kind::ok)
         throw error(error_kind::runtime, what,
-                    fmt::format("it does not start ({})", engine::text(engine::reason::failed, r.code)),
+                    fmt::format("it does not start ({})", engine::text(reason_kind::failed, r.code)),
                     "try another PCM, or a longer period");
     if (o.require_realtime && audio.fifo_error() != 0)
         detail::throw_caused(error(error_kind::not_available, "real-time priority",
@@ -262,14 +262,14 @@ void player::impl::check_open() const
 {
     if (stopping || feed.stream_over())
         throw error(error_kind::runtime, fmt::format("stream on \"{}\"", out->setup().name),
-                    why_ended().empty() ? "it was stopped" : why_ended(), "open a new player");
+                    end().reason == reason_kind::none ? "it was stopped" : end().why, "open a new player");
 }
 
-std::string player::impl::why_ended() const
+stream_end player::impl::end() const
 {
     if (!handler_failed.empty())
-        return handler_failed;
-    return feed.stream_reason();
+        return {.reason = reason_kind::handler, .why = handler_failed};
+    return feed.end();
 }
 
 bool player::impl::cancel(stroke_id id)
@@ -303,7 +303,7 @@ bool player::impl::pump()
     return done;
 }
 
-std::optional<stroke_report> player::impl::wait(stroke_id id, std::optional<double> timeout_s)
+wait_result player::impl::wait(stroke_id id, std::optional<double> timeout_s)
 {
     std::unique_lock lock(mutex);
     const auto settled = [&] { return ended.contains(id) || !feed.knows(id); };
@@ -315,11 +315,14 @@ std::optional<stroke_report> player::impl::wait(stroke_id id, std::optional<doub
             news.wait(lock, settled);
     }
     const auto found = ended.find(id);
-    if (found == ended.end())
-        return std::nullopt;
-    std::optional<stroke_report> r(std::move(found->second));
-    ended.erase(found);
-    return r;
+    if (found != ended.end()) {
+        wait_result r(std::move(found->second));
+        ended.erase(found);
+        return r;
+    }
+    if (feed.knows(id))
+        return wait_kind::timeout;
+    return id != stroke_id{} && id <= last_id ? wait_kind::taken : wait_kind::unknown;
 }
 
 void player::impl::stop(bool closing)
@@ -344,7 +347,7 @@ void player::impl::woken()
     if (log.on())
         log.look(link.status.load(), rt::monotonic_ns());
     if (last)
-        log.end(why_ended());
+        log.end(end().why);
     lock.unlock();
     news.notify_all();
     log.tell();
@@ -381,8 +384,10 @@ bool player::impl::take_reports()
         }
         std::list<stroke_report>& news_of_strokes = feed.reports();
         for (stroke_report& r : news_of_strokes) {
-            if (!handler_failed.empty() && r.reason == engine::text(engine::reason::closed, 0))
-                r.reason = handler_failed;
+            if (!handler_failed.empty() && r.reason == reason_kind::closed) {
+                r.reason = reason_kind::handler;
+                r.why = handler_failed;
+            }
             ended.insert_or_assign(r.id, r);
         }
         untold.splice(untold.end(), news_of_strokes);

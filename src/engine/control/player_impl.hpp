@@ -48,11 +48,11 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     live_stroke begin(const live_options& o);
     bool on_end(stroke_id id, report_handler done);
     bool cancel(stroke_id id);
-    std::optional<stroke_report> wait(stroke_id id, std::optional<double> timeout_s);
+    wait_result wait(stroke_id id, std::optional<double> timeout_s);
     void stop(bool closing);
     std::shared_ptr<const drive_history::impl> history();
-    /// Why the stream has ended, or is about to, for people. Under the mutex.
-    std::string why_ended() const;
+    /// How the stream has ended, or is about to. Under the mutex.
+    stream_end end() const;
 
     std::unique_ptr<sink> out;
     player_lines lines;

@@ -10,16 +10,16 @@ namespace tactor {
 
 namespace engine {
 
-std::string text(reason r, int code)
+std::string text(reason_kind r, int code)
 {
     switch (r) {
-    case reason::none:
+    case reason_kind::none:
         return "";
-    case reason::xrun:
+    case reason_kind::xrun:
         return "xrun: the device ran dry";
-    case reason::suspended:
+    case reason_kind::suspended:
         return "the system was suspended";
-    case reason::lost:
+    case reason_kind::lost:
         switch (-code) {
         case ETIMEDOUT:
             return "the device does not move any more";
@@ -28,27 +28,29 @@ std::string text(reason r, int code)
         default:
             return "the device is gone";
         }
-    case reason::failed:
+    case reason_kind::failed:
         return code == 0 ? "the device failed"
                          : fmt::format("the device failed: {}",
                                        std::error_code(-code, std::generic_category()).message());
-    case reason::late:
+    case reason_kind::late:
         return "the computer was too slow to prepare the stroke in time";
-    case reason::crowded:
+    case reason_kind::crowded:
         return "too many strokes at once (let fewer overlap; bursts need less than continuous strokes)";
-    case reason::starved:
+    case reason_kind::starved:
         return "no more points came";
-    case reason::too_long:
+    case reason_kind::too_long:
         return "it has lasted as long as it may";
-    case reason::muted:
+    case reason_kind::muted:
         return "the amplifier was off";
-    case reason::amplifier:
+    case reason_kind::amplifier:
         return "the amplifier's line cannot be switched";
-    case reason::left_on:
+    case reason_kind::left_on:
         return "the amplifier's line cannot be switched off: it may be on";
-    case reason::plan:
+    case reason_kind::plan:
         return "the plan failed";
-    case reason::closed:
+    case reason_kind::handler:
+        return "a handler threw";
+    case reason_kind::closed:
         return "the player was closed";
     }
     return "";

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// How strokes and streams end.
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <tactor/api.hpp>
+#include <tactor/kinds.hpp>
+
+namespace tactor {
+
+/// A stroke that a player was given. A plain value; the number is unique in one player, and 0 stands for
+/// none.
+struct stroke_id {
+    std::uint32_t number = 0;
+
+    friend constexpr auto operator<=>(const stroke_id&, const stroke_id&) noexcept = default;
+};
+
+/// How a submitted score ended. Each ends in exactly one of these.
+enum class state_kind {
+    finished,    ///< its last frame reached the DAC
+    cancelled,   ///< faded out because it was asked for
+    interrupted, ///< an xrun, the loss of the device, a failure, a live stroke's silent producer or its
+                 ///< longest_s
+};
+
+TACTOR_API std::string_view to_string(state_kind k) noexcept;
+template <>
+TACTOR_API state_kind from_string<state_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const state_kind> values_of<state_kind>() noexcept;
+
+/// Why a stroke was interrupted, or why a stream ended.
+enum class reason_kind {
+    none,      ///< neither: it finished or was cancelled; the stream was stopped by stop()
+    xrun,      ///< the device ran dry
+    suspended, ///< the system was suspended
+    lost,      ///< the device is gone, does not get on any more, or had one xrun after the other
+    failed,    ///< the device failed
+    late,      ///< the computer was too slow to prepare the stroke in time
+    crowded,   ///< too many strokes at once
+    closed,    ///< the player was destroyed
+    starved,   ///< live_options::timeout_s: no more points came
+    too_long,  ///< live_options::longest_s
+    muted,     ///< the amplifier was off
+    amplifier, ///< its line cannot be switched
+    left_on,   ///< nor switched off: it may be on
+    plan,      ///< the plan or a model of one's own failed, or gave more than was promised
+    handler,   ///< one of the program's handlers threw
+};
+
+TACTOR_API std::string_view to_string(reason_kind k) noexcept;
+template <>
+TACTOR_API reason_kind from_string<reason_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const reason_kind> values_of<reason_kind>() noexcept;
+
+struct stroke_report {
+    stroke_id id = {};
+    state_kind state = state_kind::finished;
+    std::uint64_t frames = 0;               ///< frames of it that were played, from its first on
+    reason_kind reason = reason_kind::none; ///< why it was interrupted
+    std::string why = {};                   ///< the same for people, with what is known of it
+    /// How much later than asked for its first sample came; 0 when in time, and for start_at::now().
+    double late_s = 0.0;
+    /// CLOCK_MONOTONIC of its first sample at the DAC, as the DAC's clock had it when that sample passed;
+    /// none when it never sounded (`frames` is 0).
+    std::optional<std::int64_t> started_ns = {};
+};
+
+/// How a stream ended.
+struct stream_end {
+    reason_kind reason = reason_kind::none; ///< none: stop() ended it in order
+    std::string why = {};                   ///< the same for people; empty for none
+};
+
+/// What wait() came to.
+enum class wait_kind {
+    ended,   ///< the stroke has, and here is its report
+    timeout, ///< it has not yet: the time was over, or a handler asked, where it does not block
+    taken,   ///< it has, but its report was given before, or dropped for 4096 newer ones
+    unknown, ///< this player never had such a stroke
+};
+
+TACTOR_API std::string_view to_string(wait_kind k) noexcept;
+template <>
+TACTOR_API wait_kind from_string<wait_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const wait_kind> values_of<wait_kind>() noexcept;
+
+/// What wait() gives: the report, or why there is none.
+class wait_result {
+public:
+    wait_result(wait_kind without) noexcept : outcome_(without) {}
+    wait_result(stroke_report r) noexcept : outcome_(wait_kind::ended), report_(std::move(r)) {}
+
+    wait_kind outcome() const noexcept { return outcome_; }
+    /// Whether there is a report. Where there is none, there is nothing to ask of it.
+    explicit operator bool() const noexcept { return report_.has_value(); }
+    const stroke_report& operator*() const noexcept { return *report_; }
+    const stroke_report* operator->() const noexcept { return &*report_; }
+
+private:
+    wait_kind outcome_;
+    std::optional<stroke_report> report_;
+};
+
+} // namespace tactor
+
+template <>
+struct std::hash<tactor::stroke_id> {
+    std::size_t operator()(tactor::stroke_id id) const noexcept { return id.number; }
+};

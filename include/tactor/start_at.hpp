@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// When a stroke starts.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include <tactor/api.hpp>
+#include <tactor/kinds.hpp>
+
+namespace tactor {
+
+namespace detail {
+
+/// What can count frames or nanoseconds. Seconds in a double would be taken for 0 or 1 of them.
+template <typename T>
+concept whole_number = std::integral<T> && !std::same_as<T, bool>;
+template <typename T>
+concept no_count = std::floating_point<T> || std::same_as<T, bool>;
+
+[[noreturn]] TACTOR_API void refuse_frame(long long stream_frame);
+
+template <whole_number T>
+constexpr std::uint64_t stream_frame(T n)
+{
+    if constexpr (std::signed_integral<T>)
+        if (n < 0)
+            refuse_frame(n);
+    return static_cast<std::uint64_t>(n);
+}
+
+} // namespace detail
+
+/// What a stroke's start waits for.
+enum class start_kind { frame, time, trigger };
+
+TACTOR_API std::string_view to_string(start_kind k) noexcept;
+template <>
+TACTOR_API start_kind from_string<start_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const start_kind> values_of<start_kind>() noexcept;
+
+/// When a stroke starts. A plain value.
+class start_at {
+public:
+    start_at(const auto& frame_or_seconds) = delete; ///< say which: frame(), time()
+
+    /// With the next period that is written.
+    static constexpr start_at now() noexcept { return {}; }
+    /// From a frame of the stream on; one that has been written already means as soon as possible, and one
+    /// that never comes waits to be cancelled. Frames of the stream count on over an xrun.
+    /// \throws error (bad_input) for a negative one.
+    template <detail::whole_number T>
+    static constexpr start_at frame(T stream_frame)
+    {
+        start_at s;
+        s.frame_ = detail::stream_frame(stream_frame);
+        return s;
+    }
+    template <detail::no_count T>
+    static start_at frame(T seconds) = delete;
+    /// CLOCK_MONOTONIC, ns, at which the first sample is to be at the DAC: within half a frame and the error
+    /// of the DAC clock. What is over already means as soon as possible; see stroke_report::late_s. Any
+    /// number may be given.
+    template <detail::no_count T>
+    static start_at time(T seconds) = delete;
+    static constexpr start_at time(std::int64_t monotonic_ns) noexcept
+    {
+        start_at s;
+        s.kind_ = start_kind::time;
+        s.time_ns_ = monotonic_ns;
+        return s;
+    }
+    /// Armed: waits, silent, for an edge at player_lines::trigger or for player::fire(), whichever is first.
+    static constexpr start_at trigger() noexcept
+    {
+        start_at s;
+        s.kind_ = start_kind::trigger;
+        return s;
+    }
+
+    constexpr start_kind what() const noexcept { return kind_; }
+    constexpr std::uint64_t stream_frame() const noexcept { return frame_; }
+    constexpr std::int64_t time_ns() const noexcept { return time_ns_; }
+
+private:
+    constexpr start_at() noexcept = default;
+
+    start_kind kind_ = start_kind::frame;
+    std::uint64_t frame_ = 0;
+    std::int64_t time_ns_ = 0;
+};
+
+} // namespace tactor
