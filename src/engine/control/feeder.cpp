@@ -166,8 +166,8 @@ void feeder::release(slot& s) noexcept
 {
     const auto place = static_cast<std::uint32_t>(&s - slots_.data());
     in_use_.erase(std::find(in_use_.begin(), in_use_.end(), place));
-    if (s.use->voice)
-        --live_in_use_;
+    if (s.use->voice != nullptr)
+        gone_live_.insert(playing_live_.extract(s.use->id));
     s.use.reset();
     // Wraps after 16 million uses of one place; 0 stays out.
     s.generation = s.generation + 1 < UINT32_MAX / voices ? s.generation + 1 : 1;
@@ -214,7 +214,7 @@ void feeder::end_all(const report& r)
     while (!in_use_.empty()) {
         slot& s = slots_[in_use_.front()];
         end(s.use->id, s.use->cancelled);
-        if (s.use->voice)
+        if (s.use->voice != nullptr)
             s.use->voice->close();
         release(s);
     }
@@ -226,9 +226,11 @@ void feeder::end_all(const report& r)
     end_tasks(armed_);
     end_tasks(waiting_);
     end_tasks(timed_);
-    for (auto w = waiting_live_.begin(); w != waiting_live_.end(); w = waiting_live_.erase(w)) {
+    while (!waiting_live_.empty()) {
+        const auto w = waiting_live_.begin();
         end(w->first, false);
         w->second->close();
+        gone_live_.insert(waiting_live_.extract(w));
     }
     stream_over_ = true;
 }

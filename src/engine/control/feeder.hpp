@@ -75,6 +75,11 @@ public:
     void keep_beginnings() noexcept { keeps_beginnings_ = true; }
     std::list<first_frame>& beginnings() noexcept { return beginnings_; }
 
+    using live_map = std::map<stroke_id, std::shared_ptr<live_voice>>;
+    /// Live strokes that have ended, to be taken out and let go where no lock is held: with the last of one
+    /// goes its phantom model, which is the program's own.
+    live_map& gone_live() noexcept { return gone_live_; }
+
     /// Whether take_reports() would give any.
     bool has_reports() const noexcept { return !reports_.empty(); }
     /// Whether the stroke has not ended, or take_reports() has still to give its end.
@@ -95,7 +100,7 @@ private:
     struct active {
         stroke_id id = {};
         std::optional<score> music{};
-        std::shared_ptr<live_voice> voice{};
+        live_voice* voice = nullptr; ///< playing_live_ has it
         std::optional<std::int64_t> due_ns{};
         std::uint64_t at = 0;
         std::uint64_t base = 0;         ///< stream frame of its start, once begun
@@ -144,8 +149,9 @@ private:
     std::multimap<std::uint64_t, task> waiting_; ///< by frame of the stream
     std::multimap<std::int64_t, task> timed_;    ///< by CLOCK_MONOTONIC, ns
     std::map<stroke_id, task> armed_;
-    std::map<stroke_id, std::shared_ptr<live_voice>> waiting_live_;
-    std::size_t live_in_use_ = 0;
+    live_map waiting_live_;
+    live_map playing_live_;
+    live_map gone_live_;
     std::uint64_t seen_written_ = 0; ///< at the last look at waiting_live_
     clock_line clock_;
     std::array<slot, voices> slots_;

@@ -108,22 +108,20 @@ void feeder::look_at_waiting_live(std::uint64_t written)
             continue;
         }
         v.close();
-        next = waiting_live_.erase(next);
+        gone_live_.insert(waiting_live_.extract(next++));
     }
 }
 
 void feeder::admit_live()
 {
-    while (!waiting_live_.empty() && live_in_use_ < live_places && in_use_.size() < voices) {
+    while (!waiting_live_.empty() && playing_live_.size() < live_places && in_use_.size() < voices) {
         const auto next = waiting_live_.begin();
         live_voice* const voice = next->second.get();
-        const std::uint32_t place =
-            take_slot({.id = next->first, .voice = std::move(next->second), .fed = true});
-        ++live_in_use_;
+        const std::uint32_t place = take_slot({.id = next->first, .voice = voice, .fed = true});
         link_.requests.push(
             {.what = request::kind::live, .score = ticket_of(place), .id = next->first, .voice = voice});
         urgent_ = true;
-        waiting_live_.erase(next);
+        playing_live_.insert(waiting_live_.extract(next));
     }
 }
 
@@ -136,7 +134,7 @@ bool feeder::cancel_waiting(stroke_id id)
     const auto live = waiting_live_.find(id);
     if (live != waiting_live_.end()) {
         live->second->close();
-        waiting_live_.erase(live);
+        gone_live_.insert(waiting_live_.extract(live));
         return true;
     }
     return erase_task(waiting_, id) || erase_task(timed_, id) || erase_task(armed_, id);
@@ -175,7 +173,7 @@ void feeder::over(const active& a, const report& r)
                        .frames = r.frame,
                        .reason = r.why,
                        .why = r.why != reason_kind::plan ? text(r.why, r.code)
-                              : a.voice                  ? a.voice->failure()
+                              : a.voice != nullptr       ? a.voice->failure()
                                                          : a.failure,
                        .late_s = a.late_s.value_or(0.0),
                        .started_ns = {}};

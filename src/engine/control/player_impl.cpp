@@ -341,6 +341,7 @@ void player::impl::stop(bool closing)
 
 void player::impl::woken()
 {
+    engine::feeder::live_map gone;
     std::unique_lock lock(mutex);
     const bool done = take_reports() && (feed.stream_over() || pump());
     const bool last = done && feed.stream_over();
@@ -348,7 +349,9 @@ void player::impl::woken()
         log.look(link.status.load(), rt::monotonic_ns());
     if (last)
         log.end(end().why);
+    gone.swap(feed.gone_live());
     lock.unlock();
+    gone.clear();
     news.notify_all();
     log.tell();
     tell();

@@ -118,10 +118,11 @@ void player::impl::tell_beginnings()
     while (!begun.empty()) {
         const auto [id, at_ns] = begun.front();
         begun.pop_front();
-        const auto f = on_begun;
+        auto f = on_begun;
         lock.unlock();
         if (f != nullptr)
             call([&, id = id, at_ns = at_ns] { (*f)(id, at_ns); });
+        f.reset(); // the last, where it was replaced: what it holds may call the player
         lock.lock();
     }
 }
@@ -144,6 +145,7 @@ void player::impl::tell_watchers(const stroke_report& r)
     for (auto own = watchers.extract(r.id); own; own = watchers.extract(r.id)) {
         lock.unlock();
         call([&] { own.mapped()(r); });
+        own = {}; // what it holds may call the player
         lock.lock();
     }
 }

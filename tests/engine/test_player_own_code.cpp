@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+// What is the program's own may call the player while it goes: handlers with what they hold, phantom models.
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <tactor/live.hpp>
+#include <tactor/path.hpp>
+#include <tactor/phantom.hpp>
+#include <tactor/player.hpp>
+#include <tactor/stroke.hpp>
+
+#include "clock_runner.hpp"
+#include "player_support.hpp"
+#include "scores.hpp"
+#include "sink/alsa/adopt.hpp"
+
+namespace player_own_code_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+/// Asks the player where it is when it goes.
+class asking {
+public:
+    asking(const player& p, std::atomic<int>& gone) : player_(&p), gone_(&gone) {}
+    ~asking()
+    {
+        static_cast<void>(player_->position());
+        ++*gone_;
+        gone_->notify_all();
+    }
+    asking(const asking&) = delete;
+    asking& operator=(const asking&) = delete;
+
+private:
+    const player* player_;
+    std::atomic<int>* gone_;
+};
+
+/// The same, whenever it is asked for something, too.
+class asking_model final : public phantom_model {
+public:
+    asking_model(const player& p, std::atomic<int>& gone) : player_(&p), goes_(p, gone) {}
+    std::string_view name() const noexcept override
+    {
+        static_cast<void>(player_->position());
+        return "asking";
+    }
+    void weights(point, double a_v, std::vector<drive>& out) const override
+    {
+        static_cast<void>(player_->position());
+        out.clear();
+        out.push_back({.tactor = 4, .amplitude = a_v});
+    }
+
+private:
+    const player* player_;
+    asking goes_;
+};
+
+void await(const std::atomic<int>& n, int wanted)
+{
+    for (int seen = n; seen < wanted; seen = n)
+        n.wait(seen);
+}
+
+live_options of_model(const player& p, std::atomic<int>& gone)
+{
+    live_options o{.timeout_s = 86400.0};
+    o.plan.custom_phantom = std::make_shared<asking_model>(p, gone);
+    return o;
+}
+
+} // namespace
+
+TEST_CASE("what a handler holds may call the player when it goes")
+{
+    fake_dac dac;
+    std::atomic<int> gone{0};
+    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    const running_clock clock(dac);
+    SUBCASE("of one stroke's end")
+    {
+        const stroke_id id = p.submit(tone(0.01), start_at::trigger());
+        for (int i = 0; i < 2; ++i)
+            REQUIRE(p.on_end(id, [held = std::make_shared<asking>(p, gone)](const stroke_report&) {}));
+        p.fire(0);
+        await(gone, 2);
+    }
+    SUBCASE("of beginnings, replaced by itself")
+    {
+        p.on_begin([&p, held = std::make_shared<asking>(p, gone)](stroke_id, auto) { p.on_begin({}); });
+        p.submit(tone(0.01));
+        await(gone, 1);
+    }
+    SUBCASE("of all ends, replaced by itself")
+    {
+        p.on_report(
+            [&p, held = std::make_shared<asking>(p, gone)](const stroke_report&) { p.on_report({}); });
+        p.submit(tone(0.01));
+        await(gone, 1);
+    }
+    p.stop();
+}
+
+TEST_CASE("a phantom model may call the player when it is asked and when it goes")
+{
+    fake_dac dac;
+    std::atomic<int> gone{0};
+    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    SUBCASE("of a continuous stroke")
+    {
+        const running_clock clock(dac);
+        const auto line = trajectory::along(path::from_svg("M 0 0 L 40 40"), 0.1);
+        plan_options o{.algorithm = algorithm_kind::continuous,
+                       .custom_phantom = std::make_shared<asking_model>(p, gone)};
+        const stroke_id id = p.submit(score(palm(), make_plan(palm(), stroke{"line", line}, o)));
+        CHECK(p.wait(id)->state == state_kind::finished);
+        o = {};
+        await(gone, 1);
+        p.stop();
+    }
+    SUBCASE("of a live stroke that sounded")
+    {
+        const running_clock clock(dac);
+        stroke_id id;
+        {
+            live_stroke s = p.begin(of_model(p, gone));
+            id = s.id();
+            REQUIRE(s.to(20.0, 20.0));
+            s.end();
+        }
+        CHECK(p.wait(id)->state == state_kind::finished);
+        await(gone, 1);
+        p.stop();
+    }
+    SUBCASE("of live strokes that did not begin: cancelled, or ended with the stream")
+    {
+        std::vector<live_stroke> playing; // all places
+        for (std::size_t i = 0; i < 16; ++i)
+            REQUIRE(playing.emplace_back(p.begin(of_model(p, gone))).to(20.0, 20.0));
+        const stroke_id first = p.begin(of_model(p, gone)).id();
+        const stroke_id second = p.begin(of_model(p, gone)).id();
+        CHECK(p.cancel(first));
+        await(gone, 1);
+        const running_clock clock(dac);
+        p.stop();
+        CHECK(p.wait(second)->state == state_kind::cancelled);
+        playing.clear();
+        await(gone, 18);
+    }
+}
+
+} // namespace player_own_code_test
