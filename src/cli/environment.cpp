@@ -23,7 +23,7 @@ std::string find_config(const settings& s)
 {
     if (s.config_file)
         return *s.config_file;
-    if (const std::string named = variable("TACTOR_CONFIG"); !named.empty())
+    if (std::string named = variable("TACTOR_CONFIG"); !named.empty())
         return named;
     std::vector<fs::path> places;
     if (const std::string xdg = variable("XDG_CONFIG_HOME"); !xdg.empty())

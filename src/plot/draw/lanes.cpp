@@ -78,8 +78,8 @@ bool lanes::fit(double room)
     std::size_t levels = 0;
     for (const lane& r : rows)
         levels += r.levels;
-    const auto even = [&](double height) {
-        return std::clamp(height / static_cast<double>(std::max<std::size_t>(1, levels)), lowest_row,
+    const auto even = [&](double all_pt) {
+        return std::clamp(all_pt / static_cast<double>(std::max<std::size_t>(1, levels)), lowest_row,
                           highest_row);
     };
     label_pitch = wide_pitch;
