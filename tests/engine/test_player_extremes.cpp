@@ -187,37 +187,45 @@ TEST_CASE("the longest wait is one without end, the shortest none")
 
 TEST_CASE("options of the player that cannot be")
 {
-    const auto refused = [](const player_options& o, player_lines lines = {}) {
+    std::string refused_field;
+    const auto refused = [&](const player_options& o, player_lines lines = {}) {
         fake_dac dac;
         try {
             const running_clock clock(dac);
             const player p(pcm::adopt(dac.pcm(), nine()), palm(), o, std::move(lines));
         } catch (const error& e) {
+            refused_field = e.subject();
             return e.kind() == error_kind::bad_input && dac.closed();
         }
         return false;
     };
     for (const double bad : {nan, infinity, -infinity, -1.0, 1e308}) {
         CAPTURE(bad);
-        for (double player_options::*const field :
-             {&player_options::horizon_s, &player_options::fade_s, &player_options::stall_s}) {
+        for (const auto& [field, name] :
+             {std::pair(&player_options::horizon_s, "horizon_s"),
+              std::pair(&player_options::fade_s, "fade_s"), std::pair(&player_options::stall_s, "stall_s")}) {
             player_options o = patient();
             o.*field = bad;
             CHECK(refused(o));
+            CHECK(refused_field == name);
         }
-        for (double player_lines::*const field :
-             {&player_lines::settle_s, &player_lines::pulse_s, &player_lines::trigger_delay_s}) {
+        for (const auto& [field, name] :
+             {std::pair(&player_lines::settle_s, "settle_s"), std::pair(&player_lines::pulse_s, "pulse_s"),
+              std::pair(&player_lines::trigger_delay_s, "trigger_delay_s")}) {
             player_lines lines;
             lines.*field = bad;
             CHECK(refused(patient(), std::move(lines)));
+            CHECK(refused_field == name);
         }
     }
-    player_options o = patient();
-    o.limits.max_drive_s = nan;
-    CHECK(refused(o));
-    o = patient();
-    o.limits.power_dbfs = nan;
-    CHECK(refused(o));
+    for (const auto& [field, name] : {std::pair(&drive_limits::power_dbfs, "power_dbfs"),
+                                      std::pair(&drive_limits::max_drive_s, "max_drive_s"),
+                                      std::pair(&drive_limits::window_s, "window_s")}) {
+        player_options o = patient();
+        o.limits.*field = nan;
+        CHECK(refused(o));
+        CHECK(refused_field == name);
+    }
 }
 
 TEST_CASE("any priority will do")

@@ -39,18 +39,18 @@ std::uint32_t frames_of(double seconds, unsigned rate, const char* name)
 std::uint64_t horizon_frames(const player_options& o, const stream_setup& s)
 {
     const std::uint64_t least = 2 * std::uint64_t{s.buffer_frames} + 4 * std::uint64_t{s.period_frames};
-    return std::max<std::uint64_t>(frames_of(o.horizon_s, s.rate, "horizon"), least);
+    return std::max<std::uint64_t>(frames_of(o.horizon_s, s.rate, "horizon_s"), least);
 }
 
 engine::loop_options loop_options(const player_options& o, const drive_history::impl* before,
                                   const stream_setup& s, bool amplifier)
 {
     engine::loop_options l;
-    l.fade_frames = frames_of(o.fade_s, s.rate, "fade");
+    l.fade_frames = frames_of(o.fade_s, s.rate, "fade_s");
     l.horizon_frames = horizon_frames(o, s);
     // Long periods make long pauses.
     const std::int64_t periods = 16LL * s.period_frames * 1'000'000'000 / s.rate;
-    const auto asked = std::int64_t{frames_of(o.stall_s, 1'000'000, "stall")} * 1000;
+    const auto asked = std::int64_t{frames_of(o.stall_s, 1'000'000, "stall_s")} * 1000;
     l.stall_ns = std::max(periods, asked);
     l.amplifier = amplifier;
     l.guards = synth::guards_of(o.limits, s.rate);
@@ -76,7 +76,7 @@ engine::driver_options driver_options(const player_lines& l, const stream_setup&
 {
     const std::int64_t four_periods = 4LL * s.period_frames * 1'000'000'000 / s.rate;
     engine::driver_options d;
-    d.amplifier.settle_ns = std::int64_t{frames_of(l.settle_s, 1'000'000, "settle")} * 1000;
+    d.amplifier.settle_ns = std::int64_t{frames_of(l.settle_s, 1'000'000, "settle_s")} * 1000;
     d.amplifier.proof_frames = 2ULL * s.period_frames;
     d.watchdog_ns = std::max(d.watchdog_ns, four_periods);
     return d;
@@ -92,9 +92,9 @@ rt::thread_options amplifier_thread_options(const player_options& o)
 // Before there are threads that an error would have to stop.
 player_lines checked(player_lines l, unsigned rate)
 {
-    frames_of(l.trigger_delay_s, rate, "trigger delay");
-    frames_of(l.settle_s, rate, "settle");
-    frames_of(l.pulse_s, rate, "pulse");
+    frames_of(l.trigger_delay_s, rate, "trigger_delay_s");
+    frames_of(l.settle_s, rate, "settle_s");
+    frames_of(l.pulse_s, rate, "pulse_s");
     return l;
 }
 
@@ -177,7 +177,7 @@ void player::impl::start_lines(const player_options& o)
                                .priority = priority(o, 1),
                                .audio = true};
     pulses = std::make_unique<engine::trigger_thread>(
-        link, *lines.sync_out, std::int64_t{frames_of(lines.pulse_s, 1'000'000, "pulse")} * 1000, t);
+        link, *lines.sync_out, std::int64_t{frames_of(lines.pulse_s, 1'000'000, "pulse_s")} * 1000, t);
     feed.on_first_frames(
         [this](stroke_id id, std::uint64_t frame) { pulses->add(id, frame, link.clock.load()); },
         [this](stroke_id id, bool was_played) { pulses->forget(id, was_played); });

@@ -93,7 +93,7 @@ void check_marker(const array& a, const render_options& o, unsigned channels)
         }
     }
     if (!(o.marker_s > 0.0 && o.marker_s <= 10.0)) {
-        throw error(error_kind::bad_input, "marker", fmt::format("{} s is not its length", o.marker_s),
+        throw error(error_kind::bad_input, "marker_s", fmt::format("{} s is not its length", o.marker_s),
                     "use above 0 to 10 s, e.g. 0.005");
     }
 }
