@@ -2,11 +2,12 @@
 """Holds the public headers to their conventions, since what is awkward there becomes ABI.
 
 * Times are seconds as double, called ..._s; instants of a clock are ns as int64, called ..._ns. No ..._ms, no chrono.
-* Closed sets are enumerations called ..._kind, each with to_string(), from_string() and values_of().
+* Closed sets are enumerations called ..._kind, each with to_string(), from_string() and values_of(), from name to value
+  and back in tests/engine/test_kinds.cpp.
 * Nothing is made from an impl in public, and nobody gets at one: no public data().
 * Classes with virtual functions cannot be copied.
 * A function that has a result is [[nodiscard]]: to drop it is a mistake (to_string() and its kin apart; write_wav(), whose
-  work is the file).
+  work is the file). So are members that are const or static: they do nothing else.
 
 Usage: headers.py SOURCE_ROOT. Prints each line that breaks a rule, then counts.
 """
@@ -17,10 +18,12 @@ import sys
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.S)
 ENUM = re.compile(r"\benum\s+class\s+(\w+)")
 # A double that is a time by its name, and says no unit.
-TIME = re.compile(r"\bdouble\s+(duration|timeout|delay|onset|start|time|pause|wait|window|period)\b(?!_)")
+TIME = re.compile(r"\bdouble\s+(duration|timeout|delay|onset|start|time|pause|wait|window|period|seconds)\b(?!_)")
 INT_TIME = re.compile(r"\b(?:std::)?u?int\d+_t\s+\w*_(?:s|ms|us)\b")
 DROPPED = re.compile(r"^TACTOR_API\s+(?!void\b)[^;{]*?\b(\w+)\(", re.M)
 MAY_DROP = {"to_string", "write_wav"}
+MEMBER = re.compile(r"^    ((?:(?:static|constexpr|virtual) )*)(?!void |friend |using |return |explicit )"
+                    r"(?:const )?[\w:]+(?:<[^;{}()]*>)?[&* ]+(?!operator)(\w+)\(([^;{]*)", re.M)
 CLASS = re.compile(r"\bclass\s+(?:TACTOR_API\s+)?(\w+)(?:\s+final)?[^;{]*\{(.*?)\n\};", re.S)
 
 
@@ -35,7 +38,7 @@ def public_part(body):
     return "\n".join(kept)
 
 
-def complaints(name, text, everything):
+def complaints(name, text, everything, tried):
     code = COMMENT.sub("", text)
     if "chrono" in code:
         yield f"{name}: chrono; times are seconds as double"
@@ -51,12 +54,18 @@ def complaints(name, text, everything):
         for needed in (rf"to_string\({enum} ", rf"from_string<{enum}>\(", rf"values_of<{enum}>\("):
             if not re.search(needed, everything):
                 yield f"{name}: {enum} has no {needed.replace(chr(92), '')}"
+        if enum not in tried:
+            yield f"{name}: tests/engine/test_kinds.cpp does not try {enum}"
     if re.search(r"\benum\s+(?!class)\w+\s*\{", code):
         yield f"{name}: an enumeration without class"
     for m in DROPPED.finditer(code):
         before = code[: m.start()].rstrip()
         if m[1] not in MAY_DROP and not before.endswith("template <>"):
             yield f"{name}: {m[1]}() is not [[nodiscard]]"
+    for m in MEMBER.finditer(code):
+        only_asks = "static " in m[1] or re.search(r"\)\s*const\b", m[0])
+        if only_asks and not re.search(r"=\s*delete", m[0]):
+            yield f"{name}: {m[2]}() is not [[nodiscard]]"
     for cls, body in CLASS.findall(code):
         seen = public_part(body)
         if re.search(r"\bdata\(\)", seen):
@@ -72,7 +81,8 @@ def main():
     root = pathlib.Path(sys.argv[1]).resolve() / "include" / "tactor"
     texts = {f.name: f.read_text(encoding="utf-8") for f in sorted(root.glob("*.hpp"))}
     everything = "\n".join(COMMENT.sub("", t) for t in texts.values())
-    bad = {name: list(complaints(name, text, everything)) for name, text in texts.items()}
+    tried = set(re.findall(r"\w+_kind", (root.parents[1] / "tests" / "engine" / "test_kinds.cpp").read_text(encoding="utf-8")))
+    bad = {name: list(complaints(name, text, everything, tried)) for name, text in texts.items()}
     for lines in bad.values():
         for line in lines:
             print(line)

@@ -44,6 +44,6 @@ struct alsa_options {
 /// \throws error: what open_alsa() throws, but for not_available, which means not yet; bad_input without
 /// `pause`.
 [[nodiscard]] TACTOR_API std::unique_ptr<sink> reopen_alsa(const alsa_options& o,
-                                                           const std::function<bool(double seconds)>& pause);
+                                                           const std::function<bool(double pause_s)>& pause);
 
 } // namespace tactor

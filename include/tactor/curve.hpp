@@ -45,11 +45,11 @@ public:
     curve(const curve&) noexcept = default;
     curve& operator=(const curve&) noexcept = default;
 
-    double duration_s() const noexcept;
+    [[nodiscard]] double duration_s() const noexcept;
     /// Number of samples.
-    std::uint64_t size() const noexcept;
+    [[nodiscard]] std::uint64_t size() const noexcept;
     /// Time of sample k: k steps, at most the duration.
-    double time_s(std::uint64_t k) const noexcept;
+    [[nodiscard]] double time_s(std::uint64_t k) const noexcept;
 
     /// Replaces `out` by sample k (the last one, where there are not so many) as a burst without duration.
     void sample(std::uint64_t k, burst& out) const;

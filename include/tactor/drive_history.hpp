@@ -22,22 +22,22 @@ public:
     drive_history() = default;
 
     /// Whether no channel is known to have been driven.
-    bool empty() const noexcept;
+    [[nodiscard]] bool empty() const noexcept;
     /// This, and what another player or process gave the same array: no channel counts as driven for longer
     /// than there was time.
-    drive_history with(const drive_history& other) const;
-    /// This, and each of so many channels driven from now on for `seconds`: what to save while a stroke
+    [[nodiscard]] drive_history with(const drive_history& other) const;
+    /// This, and each of so many channels driven for `ahead_s` from now on: what to save while a stroke
     /// plays, for the process may not live to say what came of it. What is still to come when a player goes
     /// on from it did not come. \throws error (bad_input) for more than 16384 channels, and for what is no
     /// time of 0 to 86400 s.
-    drive_history with_ahead(unsigned channels, double seconds) const;
+    [[nodiscard]] drive_history with_ahead(unsigned channels, double ahead_s) const;
 
     /// A text of a few lines, numbers in ns: at most 64 stretches of time a channel, the oldest taken
     /// together, which leave the window later then, never sooner.
-    std::string save() const;
+    [[nodiscard]] std::string save() const;
     /// What save() said on this machine since it was started, as of now; empty where it was before that.
     /// \throws error (bad_input) for a text that is not whole.
-    static drive_history restore(std::string_view text);
+    [[nodiscard]] static drive_history restore(std::string_view text);
 
 private:
     friend class player;

@@ -51,12 +51,12 @@ public:
     error(error_kind kind, std::string_view what, std::string_view why, std::string_view hint = {});
 
     /// The kind of failure.
-    error_kind kind() const noexcept;
-    const char* what() const noexcept override;
+    [[nodiscard]] error_kind kind() const noexcept;
+    [[nodiscard]] const char* what() const noexcept override;
     /// The parts of what(), for programs that set them apart; valid while the error lives.
-    std::string_view subject() const noexcept; ///< WHAT
-    std::string_view why() const noexcept;     ///< WHY
-    std::string_view hint() const noexcept;    ///< HINT; may be empty
+    [[nodiscard]] std::string_view subject() const noexcept; ///< WHAT
+    [[nodiscard]] std::string_view why() const noexcept;     ///< WHY
+    [[nodiscard]] std::string_view hint() const noexcept;    ///< HINT; may be empty
 
 private:
     std::string text_;

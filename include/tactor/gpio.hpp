@@ -60,7 +60,7 @@ public:
     edge_input& operator=(const edge_input&) = delete;
     virtual ~edge_input();
     /// Readable when an edge waits; owned by this object.
-    virtual int descriptor() const noexcept = 0;
+    [[nodiscard]] virtual int descriptor() const noexcept = 0;
     /// The next edge, or nothing. Does not block.
     virtual std::optional<gpio_edge> read() noexcept = 0;
 };

@@ -49,7 +49,7 @@ struct live_counts {
 /// microsecond) for another call of to() on the same stroke.
 class TACTOR_API live_stroke {
 public:
-    stroke_id id() const noexcept;
+    [[nodiscard]] stroke_id id() const noexcept;
 
     /// Moves the stroke to a place, mm, at an intensity (linear, 1 is the level that was asked for). When
     /// several points arrive within one period, the newest counts.
@@ -71,8 +71,8 @@ public:
     void cancel() noexcept;
 
     /// Whether it can still be fed.
-    bool open() const noexcept;
-    live_counts counts() const noexcept;
+    [[nodiscard]] bool open() const noexcept;
+    [[nodiscard]] live_counts counts() const noexcept;
 
     live_stroke(const live_stroke&) noexcept = default;
     live_stroke& operator=(const live_stroke&) noexcept = default;

@@ -31,20 +31,20 @@ public:
     [[nodiscard]] static path arc(point centre, double radius_mm, double from_deg, double sweep_deg);
 
     /// Length in mm, to 1 um.
-    double length_mm() const noexcept;
+    [[nodiscard]] double length_mm() const noexcept;
 
     /// The point at arc length s (clamped to 0 ... length), to 1 um. O(log n) in the segments.
-    point at(double s_mm) const noexcept;
+    [[nodiscard]] point at(double s_mm) const noexcept;
 
     /// Arc lengths, ascending, at which the path meets the line x = x_mm, touching included. A
     /// stretch longer than 0.1 mm that runs along the line (within same_place_mm) gives nothing, its
     /// ends included; a shorter one is a touch.
-    std::vector<double> meets_x(double x_mm) const;
+    [[nodiscard]] std::vector<double> meets_x(double x_mm) const;
     /// The same for the line y = y_mm.
-    std::vector<double> meets_y(double y_mm) const;
+    [[nodiscard]] std::vector<double> meets_y(double y_mm) const;
 
     /// SVG path data of the curve, for plots.
-    std::string svg() const;
+    [[nodiscard]] std::string svg() const;
 
     path(const path&) noexcept = default; ///< and no move: there is no path without a curve
     path& operator=(const path&) noexcept = default;

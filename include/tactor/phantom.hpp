@@ -35,18 +35,18 @@ public:
     layout& operator=(const layout&) noexcept = default;
 
     /// Tactor places by index.
-    const std::vector<point>& places() const noexcept;
+    [[nodiscard]] const std::vector<point>& places() const noexcept;
 
     /// Faces as tactor indices in order round the face; none where all tactors are in one line.
-    const std::vector<std::vector<unsigned>>& faces() const noexcept;
+    [[nodiscard]] const std::vector<std::vector<unsigned>>& faces() const noexcept;
 
     /// Whether p is in the hull, its edge included (within same_place_mm).
-    bool contains(point p) const;
+    [[nodiscard]] bool contains(point p) const;
     /// The point of the hull nearest to p.
-    point nearest(point p) const;
+    [[nodiscard]] point nearest(point p) const;
 
     /// Median distance from a tactor to its nearest neighbour, mm; 0 for a single tactor.
-    double pitch_mm() const noexcept;
+    [[nodiscard]] double pitch_mm() const noexcept;
 
     struct impl;
 
@@ -64,7 +64,7 @@ public:
     phantom_model& operator=(const phantom_model&) = delete;
     virtual ~phantom_model();
     /// Name for plans and logs.
-    virtual std::string_view name() const noexcept = 0;
+    [[nodiscard]] virtual std::string_view name() const noexcept = 0;
     /// Replaces `out` by the drives for a phantom of intensity `a_v` at p, in order of tactor, each amplitude
     /// finite and > 0; above a_v it is played by no live stroke, which ends there. p is inside the hull.
     /// Called where plans are made, of a continuous stroke for each sample (at most ten million of them), and

@@ -118,7 +118,7 @@ public:
     player(const player&) = delete;
     player& operator=(const player&) = delete;
 
-    const stream_setup& setup() const noexcept;
+    [[nodiscard]] const stream_setup& setup() const noexcept;
 
     /// Plays a score as soon as possible, from a frame of the stream or a time on, or when triggered.
     /// Several may sound at once. Does not block: drives that do not fit into the ring wait on the control
@@ -169,7 +169,7 @@ public:
     /// ended already; what it throws here comes out here. False, without a call, for a stroke that is not
     /// known (any more). Several may be set for one stroke. See <tactor/asio.hpp> for completion tokens.
     /// \throws error (bad_input) for an empty function.
-    bool on_end(stroke_id id, std::function<void(const stroke_report&)> done);
+    [[nodiscard]] bool on_end(stroke_id id, std::function<void(const stroke_report&)> done);
 
     /// Fades everything out, plays silence until it is out, stops. What that ends counts as cancelled
     /// (interrupted, where the destructor does it). What is not silent after 0.4 s, for the device's buffer
@@ -179,13 +179,13 @@ public:
 
     /// How the stream has ended; nothing while it goes on. A stream that has ended stays so: open the device
     /// again (reopen_alsa()) for a new player.
-    std::optional<stream_end> ended() const;
+    [[nodiscard]] std::optional<stream_end> ended() const;
 
-    player_position position() const noexcept;
-    player_stats stats() const;
+    [[nodiscard]] player_position position() const noexcept;
+    [[nodiscard]] player_stats stats() const;
     /// What the array was given lately, for the next player on it. Waits for the audio thread to be through.
     /// \throws error (runtime) while the stream goes on: stop() it first.
-    drive_history history() const;
+    [[nodiscard]] drive_history history() const;
 
 private:
     struct impl;

@@ -134,20 +134,20 @@ public:
     score(const score&) noexcept = default;
     score& operator=(const score&) noexcept = default;
 
-    std::uint64_t frames() const noexcept; ///< length of the piece
-    unsigned channels() const noexcept;
-    unsigned rate() const noexcept; ///< Hz
+    [[nodiscard]] std::uint64_t frames() const noexcept; ///< length of the piece
+    [[nodiscard]] unsigned channels() const noexcept;
+    [[nodiscard]] unsigned rate() const noexcept; ///< Hz
     /// Start of each plan in frames.
-    const std::vector<std::uint64_t>& starts() const noexcept;
+    [[nodiscard]] const std::vector<std::uint64_t>& starts() const noexcept;
     /// The plans without their bursts, which are not kept twice.
-    const std::vector<placed_plan>& plans() const noexcept;
+    [[nodiscard]] const std::vector<placed_plan>& plans() const noexcept;
 
     struct impl;
 
 private:
     friend struct detail::access;
     explicit score(std::shared_ptr<const impl> made) noexcept;
-    static std::vector<placed_plan> alone(plan p);
+    [[nodiscard]] static std::vector<placed_plan> alone(plan p);
 
     std::shared_ptr<const impl> impl_;
 };
@@ -196,11 +196,11 @@ public:
     void process(std::size_t frames, std::byte* out);
 
     /// Next frame to be rendered.
-    std::uint64_t position() const;
+    [[nodiscard]] std::uint64_t position() const;
 
     /// Why the rest is silence: for want of memory, say, a continuous stroke could not be followed further,
     /// or it asked for more than its levels were checked with. Empty while all is well.
-    const std::string& failure() const;
+    [[nodiscard]] const std::string& failure() const;
 
 private:
     struct impl;

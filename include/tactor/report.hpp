@@ -104,7 +104,7 @@ public:
     wait_result(wait_kind without) noexcept : outcome_(without) {}
     wait_result(stroke_report r) noexcept : outcome_(wait_kind::ended), report_(std::move(r)) {}
 
-    wait_kind outcome() const noexcept { return outcome_; }
+    [[nodiscard]] wait_kind outcome() const noexcept { return outcome_; }
     /// Whether there is a report. Where there is none, there is nothing to ask of it.
     explicit operator bool() const noexcept { return report_.has_value(); }
     const stroke_report& operator*() const noexcept { return *report_; }

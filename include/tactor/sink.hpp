@@ -82,7 +82,7 @@ public:
     sink& operator=(const sink&) = delete;
     virtual ~sink();
 
-    virtual const stream_setup& setup() const noexcept = 0;
+    [[nodiscard]] virtual const stream_setup& setup() const noexcept = 0;
 
     /// Makes the stream ready to be filled: at first, and again after an xrun. Begins a new epoch.
     virtual io_kind prepare() noexcept = 0;
@@ -95,7 +95,7 @@ public:
     virtual std::int64_t xrun_ns() noexcept;
 
     /// Upper bound of the number of descriptors.
-    virtual std::size_t max_descriptors() const noexcept = 0;
+    [[nodiscard]] virtual std::size_t max_descriptors() const noexcept = 0;
     /// Fills `fds` with what to poll; returns how many.
     virtual std::size_t descriptors(std::span<pollfd> fds) noexcept = 0;
     /// Interprets the polled descriptors: `ok` room to write, `again` not yet, or an error.
@@ -121,11 +121,11 @@ public:
     explicit paced_sink(stream_setup s);
     ~paced_sink() override;
 
-    const stream_setup& setup() const noexcept final;
+    [[nodiscard]] const stream_setup& setup() const noexcept final;
     io_kind prepare() noexcept final;
     io_kind start() noexcept final;
     io_kind resume() noexcept final;
-    std::size_t max_descriptors() const noexcept final;
+    [[nodiscard]] std::size_t max_descriptors() const noexcept final;
     std::size_t descriptors(std::span<pollfd> fds) noexcept final;
     io_kind ready(std::span<pollfd> fds) noexcept final;
     io_result room() noexcept final;

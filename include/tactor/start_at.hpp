@@ -49,12 +49,12 @@ public:
     start_at(const auto& frame_or_seconds) = delete; ///< say which: frame(), time()
 
     /// With the next period that is written.
-    static constexpr start_at now() noexcept { return {}; }
+    [[nodiscard]] static constexpr start_at now() noexcept { return {}; }
     /// From a frame of the stream on; one that has been written already means as soon as possible, and one
     /// that never comes waits to be cancelled. Frames of the stream count on over an xrun.
     /// \throws error (bad_input) for a negative one.
     template <detail::whole_number T>
-    static constexpr start_at frame(T stream_frame)
+    [[nodiscard]] static constexpr start_at frame(T stream_frame)
     {
         start_at s;
         s.frame_ = detail::stream_frame(stream_frame);
@@ -67,7 +67,7 @@ public:
     /// number may be given.
     template <detail::no_count T>
     static start_at time(T seconds) = delete;
-    static constexpr start_at time(std::int64_t monotonic_ns) noexcept
+    [[nodiscard]] static constexpr start_at time(std::int64_t monotonic_ns) noexcept
     {
         start_at s;
         s.kind_ = start_kind::time;
@@ -75,16 +75,16 @@ public:
         return s;
     }
     /// Armed: waits, silent, for an edge at player_lines::trigger or for player::fire(), whichever is first.
-    static constexpr start_at trigger() noexcept
+    [[nodiscard]] static constexpr start_at trigger() noexcept
     {
         start_at s;
         s.kind_ = start_kind::trigger;
         return s;
     }
 
-    constexpr start_kind what() const noexcept { return kind_; }
-    constexpr std::uint64_t stream_frame() const noexcept { return frame_; }
-    constexpr std::int64_t time_ns() const noexcept { return time_ns_; }
+    [[nodiscard]] constexpr start_kind what() const noexcept { return kind_; }
+    [[nodiscard]] constexpr std::uint64_t stream_frame() const noexcept { return frame_; }
+    [[nodiscard]] constexpr std::int64_t time_ns() const noexcept { return time_ns_; }
 
 private:
     constexpr start_at() noexcept = default;

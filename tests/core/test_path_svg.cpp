@@ -160,7 +160,8 @@ TEST_CASE("changed path data gives a path or an error, nothing else")
         CHECK(std::isfinite(p.length_mm()));
         CHECK(std::abs(middle.x_mm) <= 1.001e6);
         CHECK(std::abs(middle.y_mm) <= 1.001e6);
-        p.meets_x(20.0);
+        for (const double at_mm : p.meets_x(20.0))
+            CHECK(std::isfinite(at_mm));
         CHECK(message_of([&] { static_cast<void>(path::from_svg(p.svg())); }).empty());
     }
     CHECK(paths > tactor::test::rounds(2000));

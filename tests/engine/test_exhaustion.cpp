@@ -201,7 +201,7 @@ COUNTING_TEST_CASE("without memory a call throws std::bad_alloc and has done not
     });
     CHECK(calls > 8);
     p.submit(s, start_at::trigger());
-    until_it_fits([&] { p.on_end(accepted.back(), [](const stroke_report&) {}); });
+    until_it_fits([&] { static_cast<void>(p.on_end(accepted.back(), [](const stroke_report&) {})); });
     until_it_fits([&] { static_cast<void>(p.stats()); });
     until_it_fits([&] { static_cast<void>(p.ended()); });
     until_it_fits([&] { p.stop(); });

@@ -135,17 +135,17 @@ drive_history drive_history::with(const drive_history& other) const
         impl{synth::together(impl_->as_of(now_ns), other.impl_->as_of(now_ns)), now_ns}));
 }
 
-drive_history drive_history::with_ahead(unsigned channels, double seconds) const
+drive_history drive_history::with_ahead(unsigned channels, double ahead_s) const
 {
     if (channels > most_channels)
         throw error(error_kind::bad_input, "drive history", fmt::format("{} channels", channels),
                     fmt::format("give 0 to {}", most_channels));
-    if (!(seconds >= 0.0 && seconds <= longest_ahead_s))
-        throw error(error_kind::bad_input, "drive history", fmt::format("{} s ahead", seconds),
+    if (!(ahead_s >= 0.0 && ahead_s <= longest_ahead_s))
+        throw error(error_kind::bad_input, "drive history", fmt::format("{} s ahead", ahead_s),
                     fmt::format("give 0 to {} s", longest_ahead_s));
     const std::int64_t now_ns = rt::monotonic_ns();
     synth::drive_history h = impl_ != nullptr ? impl_->as_of(now_ns) : synth::drive_history{};
-    h.add_ahead(channels, seconds);
+    h.add_ahead(channels, ahead_s);
     return drive_history(std::make_shared<impl>(impl{std::move(h), now_ns}));
 }
 
