@@ -41,6 +41,9 @@ struct meeting {
 /// is moved from stays what it was); any thread may call.
 class TACTOR_API trajectory {
 public:
+    /// A touch that rests at (0, 0) mm for a second.
+    trajectory();
+
     /// Along a path at constant speed in `duration_s`.
     /// \throws error (bad_input) unless 0 < duration_s <= 86400.
     [[nodiscard]] static trajectory along(path p, double duration_s, double intensity = 1.0);
@@ -54,13 +57,13 @@ public:
     /// \throws error (bad_input) naming the point (counting from 1).
     [[nodiscard]] static trajectory timed(std::vector<timed_point> points);
 
-    double duration_s() const noexcept;
-    double length_mm() const noexcept;
+    [[nodiscard]] double duration_s() const noexcept;
+    [[nodiscard]] double length_mm() const noexcept;
 
     /// Position at a time, clamped to 0 ... duration. O(log n).
-    point position(double t_s) const noexcept;
+    [[nodiscard]] point position(double t_s) const noexcept;
     /// Intensity at a time (A_v), clamped in the same way.
-    double intensity(double t_s) const noexcept;
+    [[nodiscard]] double intensity(double t_s) const noexcept;
 
     /// The same movement in another time, rests included. Throws like along().
     [[nodiscard]] trajectory with_duration(double duration_s) const;
@@ -79,8 +82,8 @@ public:
 
     /// Times, ascending, at which the target meets x = x_mm (or y = y_mm): see path::meets_x. A
     /// target that rests on the line meets it when it arrives.
-    std::vector<double> meets_x(double x_mm) const;
-    std::vector<double> meets_y(double y_mm) const;
+    [[nodiscard]] std::vector<double> meets_x(double x_mm) const;
+    [[nodiscard]] std::vector<double> meets_y(double y_mm) const;
 
     trajectory(const trajectory&) noexcept = default; ///< and no move: see path
     trajectory& operator=(const trajectory&) noexcept = default;
@@ -120,7 +123,7 @@ struct carrier_part {
 /// One stroke as the user gave it.
 struct stroke {
     std::string name = {};
-    trajectory motion;
+    trajectory motion = {};
     /// Start in seconds, counted from `anchor`; none: when the stroke before it has ended.
     std::optional<double> start_s = {};
     std::optional<double> carrier_hz = {}; ///< instead of the common carrier

@@ -35,6 +35,15 @@ std::string timed_refusal(std::vector<timed_point> points)
 
 } // namespace
 
+TEST_CASE("a stroke of which nothing was said rests where the coordinates begin")
+{
+    const tactor::stroke s;
+    CHECK(s.motion.duration_s() == 1.0);
+    CHECK(s.motion.length_mm() == 0.0);
+    CHECK(s.motion.position(0.5) == point{});
+    CHECK(s.motion.intensity(0.5) == 1.0);
+}
+
 TEST_CASE("along a path, the way is in proportion to time")
 {
     const trajectory t = line_in(2.0);

@@ -124,6 +124,10 @@ std::vector<double> trajectory::impl::meets(axis a, double line) const
     return times;
 }
 
+trajectory::trajectory() : trajectory(timed({{.t_s = 0.0}, {.t_s = 1.0}}))
+{
+}
+
 trajectory::trajectory(std::shared_ptr<const impl> p) noexcept : impl_(std::move(p))
 {
 }
