@@ -43,7 +43,8 @@ struct fitted_strokes {
 /// Moves and scales strokes, all alike, as one picture. The middle of their common bounds comes to the
 /// array's middle, the centre of gravity of the hull of the tactors' centres. The picture becomes as large as
 /// it can be inside that hull (which is what outside_kind::error accepts), at least `margin_mm` (finite, >=
-/// 0) from its edge. Width and height keep their ratio.
+/// 0) from its edge. Width and height keep their ratio. `l` is the layout of the array:
+/// fit_strokes(strokes, layout(a)).
 ///
 /// Where all tactors lie in one line, to a tenth of their pitch, that line is the array: the picture is
 /// fitted by its extent along the line, and what goes across is left out. A picture without extent (a timed
@@ -51,9 +52,9 @@ struct fitted_strokes {
 ///
 /// Strokes that say a speed (stroke::speed_mm_s) keep it; the others keep their time, whatever becomes of
 /// their length. Starts, intensities and carriers stay. A pure function; any thread. O(n log n) in the
-/// points, and O(k h) in k curves and the h corners of the hull. \throws error (bad_input) for a margin that
-/// leaves no room, for a picture with an extent on a single
-///         tactor, and for a stroke that only goes across an array in one line.
+/// points, and O(k h) in k curves and the h corners of the hull.
+/// \throws error (bad_input) for a margin that leaves nothing of the array, for a picture with an extent on a
+///         single tactor, and for a stroke that only goes across an array in one line.
 [[nodiscard]] TACTOR_API fitted_strokes fit_strokes(const std::vector<stroke>& strokes, const layout& l,
                                                     double margin_mm = 0.0);
 

@@ -79,7 +79,7 @@ struct intensity_scale {
 struct plan_options {
     algorithm_kind algorithm = algorithm_kind::park2016;
     phantom_kind phantom = phantom_kind::inverse_distance;
-    /// A model of your own instead of `phantom`; it must outlive nothing, the plan shares it.
+    /// A model of your own instead of `phantom`; shared as long as it is asked.
     std::shared_ptr<const phantom_model> custom_phantom = {};
     timing_profile profile = {};
     double soa_s = 0.07; ///< intercept < soa <= max_soa (with burst_s up to 10); for `fit` the longest one

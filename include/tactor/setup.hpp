@@ -58,7 +58,6 @@ struct serve_settings {
     std::optional<unsigned> max_all_unread_bytes = {}; ///< that wait for all together
 };
 
-/// All that a file may say.
 /// Of whom and at which carrier an array file's thresholds are: its [calibration].
 struct calibration_origin {
     std::string participant = {};
@@ -68,6 +67,7 @@ struct calibration_origin {
     friend bool operator==(const calibration_origin&, const calibration_origin&) = default;
 };
 
+/// All that an array file or a configuration may say.
 struct setup {
     std::optional<tactor::array> array = {};
     output_settings output = {};

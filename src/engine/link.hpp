@@ -73,10 +73,10 @@ struct link {
     explicit link(std::size_t commands_in_ring = 2048) : commands(commands_in_ring) {}
 
     rt::spsc_ring<command> commands;
-    // Never full. Until the audio thread reads the ring again, each voice gets at most three requests
-    // (cancel, begin, cancel), and there are at most two stops.
+    // This ring cannot overflow: between two readings of it by the audio thread each voice gets at most three
+    // requests (cancel, begin, cancel), and there are at most two stops.
     rt::spsc_ring<request> requests{std::size_t{4} * voices};
-    // Never full. A ticket has at most two reports, and is used again only when its last one was read.
+    // Nor can this one: a ticket has at most two reports, and is used again only when its last one was read.
     rt::spsc_ring<report> reports{std::size_t{4} * voices};
     rt::event_fd to_audio;
     rt::event_fd to_control;

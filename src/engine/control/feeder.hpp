@@ -54,8 +54,8 @@ public:
     /// to start at a time waits until the clock is known.
     void pump(std::uint64_t written, const clock_line& clock = {});
 
-    /// Whether what was handed over since the last call should be seen at once: what begins. Drives are seen
-    /// with the next period.
+    /// Whether the audio thread must be woken for what was handed over since the last call: a stroke begins.
+    /// Drives of strokes that sound are soon enough with the next period.
     bool take_urgent() noexcept { return std::exchange(urgent_, false); }
 
     /// Takes in what the audio thread reports.

@@ -24,9 +24,9 @@ struct pulse {
     auto operator<=>(const pulse&) const = default;
 };
 
-/// A few places for pulses. The sending thread stands above all others, the audio thread too: it takes no
-/// mutex and no memory from anyone, and neither side waits for the other. A place's turn is odd while a pulse
-/// waits there; both sides may take it away, and who brings the turn on has done so.
+/// A few places for pulses, without a lock: the thread that sends them has the highest priority of all, and
+/// must not wait for another. A place has a counter, `turn`: odd while a pulse waits there. Either side may
+/// take the pulse away, by a compare-and-swap that adds one to it; the side whose swap succeeds has it.
 class pulse_board {
 public:
     static constexpr std::size_t places = 256;
