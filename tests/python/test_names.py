@@ -102,6 +102,10 @@ start_anchor: Stroke.start
 start_from_kind: Stroke.start_from
 starts_of: Score.starts
 state_kind: Report.state
+reason_kind: Report.reason
+stream_end: Player.ended
+wait_kind: Ticket.wait
+wait_result: Ticket.wait
 stream_setup: Player.setup
 stream_wiring: Player
 lost_tactor: Player
