@@ -126,10 +126,9 @@ public:
     /// buffer one period after this call at the latest, and at the DAC after N + 1 periods at the latest.
     /// A score that starts at a given time is punctual if this call is made N + 1 periods before it.
     /// \throws error: bad_input when rate or channels differ from the stream's, and for what the player's
-    /// array
-    ///         would leave out or cut: a score that drives a channel without a tactor there (a continuous
-    ///         stroke may come to any of its own array), or a tactor above its limit there, and a marker on a
-    ///         tactor's channel; runtime when the stream has ended.
+    ///         array would leave out or cut: a score that drives a channel without a tactor there (a
+    ///         continuous stroke may come to any of its own array), or a tactor above its limit there, and a
+    ///         marker on a tactor's channel; runtime when the stream has ended.
     stroke_id submit(const score& s, start_at start = start_at::now());
 
     /// Starts all armed strokes: their first samples are at the DAC at a CLOCK_MONOTONIC time, ns, or as

@@ -260,9 +260,11 @@ stroke_id player::impl::submit(const score& s, start_at start)
 
 void player::impl::check_open() const
 {
-    if (stopping || feed.stream_over())
-        throw error(error_kind::runtime, fmt::format("stream on \"{}\"", out->setup().name),
-                    end().reason == reason_kind::none ? "it was stopped" : end().why, "open a new player");
+    if (!stopping && !feed.stream_over())
+        return;
+    const stream_end over = end();
+    throw error(error_kind::runtime, fmt::format("stream on \"{}\"", out->setup().name),
+                over.reason == reason_kind::none ? "it was stopped" : over.why, "open a new player");
 }
 
 stream_end player::impl::end() const
