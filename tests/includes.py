@@ -34,7 +34,7 @@ PUBLIC = {
     "phantom": "plan", "curve": "plan", "plan": "plan", "fit": "plan", "percept": "percept", "observer": "percept",
     "waveform": "core", "render": "synth", "sample_format": None, "wav": "sink/wav",
     "gpio": "amplifier", "realtime": "rt", "sink": None, "alsa": "sink/alsa", "devices": "sink/alsa", "player": "engine", "live": "engine",
-    "asio": "engine",
+    "asio": "engine", "report": "engine",
 }
 USES_ALL_PUBLIC = {"cli", "plot", "python", "server", "study"}
 # What those may know of the library's inside, which is in the tool: no program that embeds it needs these.

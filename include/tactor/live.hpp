@@ -59,11 +59,15 @@ public:
     /// Bursts: the next burst has this place. It starts one SOA later at most.
     /// With live_options::smooth_s both begin then to move there.
     ///
+    /// `at_ns`: CLOCK_MONOTONIC of when the touch was there, which stroke_report::delay counts from; none:
+    /// now. When the stroke gets there does not depend on it.
+    ///
     /// False when the stroke has ended; its report says why. A phantom model that gives a tactor more than
     /// the intensity (what the scale makes of it) ends it as interrupted.
-    /// \throws error (bad_input): a number that is not finite, an intensity below 0, or (with
-    ///         outside_kind::error) a point outside the array. The stroke then stays where it was.
-    bool to(double x_mm, double y_mm, double intensity = 1.0);
+    /// \throws error (bad_input): a number that is not finite, an intensity or a time stamp below
+    ///         0, or (with outside_kind::error) a point outside the array. The stroke then stays where it
+    ///         was.
+    bool to(double x_mm, double y_mm, double intensity = 1.0, std::optional<std::int64_t> at_ns = {});
 
     /// No more points come: fades out (continuous), or plays its last burst to the end. It ends finished.
     void end() noexcept;

@@ -65,6 +65,17 @@ TACTOR_API reason_kind from_string<reason_kind>(std::string_view name);
 template <>
 TACTOR_API std::span<const reason_kind> values_of<reason_kind>() noexcept;
 
+/// How long points of a live stroke took from their time stamps until the DAC had the first frame that they
+/// changed. The first of a stroke as stroke_report::started_ns has it, the others as the DAC's clock expects
+/// when they are rendered; those that come before it is known, in a stream's first periods, are not counted,
+/// nor those that a newer one overtook before the next period.
+struct live_delay {
+    std::uint64_t points = 0; ///< that were counted
+    double least_s = 0.0;     ///< below 0 where a time stamp lies in the future
+    double mean_s = 0.0;
+    double most_s = 0.0;
+};
+
 struct stroke_report {
     stroke_id id = {};
     state_kind state = state_kind::finished;
@@ -76,6 +87,7 @@ struct stroke_report {
     /// CLOCK_MONOTONIC of its first sample at the DAC, as the DAC's clock had it when that sample passed;
     /// none when it never sounded (`frames` is 0).
     std::optional<std::int64_t> started_ns = {};
+    std::optional<live_delay> delay = {}; ///< of a live stroke, once a point of it has sounded
 };
 
 /// How a stream ended.

@@ -64,6 +64,7 @@ struct report {
     std::uint64_t frame = 0;
     bool started = false;        ///< over: its first sample has been at the DAC ...
     std::int64_t started_ns = 0; ///< ... at this CLOCK_MONOTONIC
+    live_delay delay = {};       ///< over: of a live stroke's points; 0 of them where there are none
 };
 
 } // namespace tactor::engine

@@ -56,7 +56,12 @@ py::tuple tuple_of(const stroke_report& r)
     const py::object started = r.started_ns
                                    ? py::object(py::float_(static_cast<double>(*r.started_ns) * 1e-9))
                                    : py::object(py::none());
-    return py::make_tuple(r.id.number, std::string(to_string(r.state)), r.why, r.frames, started, r.late_s);
+    const py::object delay =
+        r.delay
+            ? py::object(py::make_tuple(r.delay->points, r.delay->least_s, r.delay->mean_s, r.delay->most_s))
+            : py::object(py::none());
+    return py::make_tuple(r.id.number, std::string(to_string(r.state)), r.why, r.frames, started, r.late_s,
+                          delay);
 }
 
 py::object next_event(player_handle& h)
@@ -166,9 +171,9 @@ void bind_live(py::module_& m)
         .def_property_readonly("id", [](const live_handle& l) { return l.stroke->id().number; })
         .def(
             "to",
-            [](live_handle& l, double x, double y, double intensity) {
+            [](live_handle& l, double x, double y, double intensity, std::optional<double> at_s) {
                 l.of->refuse_child();
-                return l.stroke->to(x, y, intensity);
+                return l.stroke->to(x, y, intensity, at_s ? std::optional(nanoseconds(*at_s)) : std::nullopt);
             },
             free_call())
         .def(

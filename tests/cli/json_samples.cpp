@@ -56,7 +56,8 @@ run_report troubled_run()
                             .reason = reason_kind::xrun,
                             .why = "an xrun",
                             .late_s = 0.001,
-                            .started_ns = 123456789};
+                            .started_ns = 123456789,
+                            .delay = live_delay{3, 0.01, 0.011, 0.012}};
     r.strokes = {{"a.toml", 70560, cut}, {"b.toml", 70560, std::nullopt}};
     r.stats.xruns = 1;
     r.stats.xrun_s = {0.0125};

@@ -133,9 +133,13 @@ class Remote(ToolTest):
 
     def test_lines_move_a_live_stroke_here(self):
         r = self.ok("play", "--live", "-", "-D", "null", stdin="10 10\n20 20 0.5\n30, 30\n")
-        self.assertIn("live: played", r.stdout)
+        self.assertRegex(r.stdout, r"live: played [0-9.]+ s; from [12] points? to the DAC [0-9.]+ ms \([0-9.]+ to [0-9.]+\)\n")
         record = json.loads(self.ok("play", "--live", "-", "-D", "null", "--format", "json", stdin="10 10\n").stdout)
         self.assertEqual(record["strokes"][0]["state"], "finished")
+        delay = record["strokes"][0]["delay"]
+        self.assertEqual(delay["points"], 1)
+        self.assertGreater(delay["least_s"], 0.0)
+        self.assertEqual({delay["least_s"], delay["most_s"]}, {delay["mean_s"]})
         for line, why in (("1\n", "words"), ("1 2 3 4\n", "words"), ("1 y\n", "not a number"), ("1 2 -1\n", "out of range"),
                           ("1 nan\n", "not a number"), ("x" * 5000, "4096")):
             self.refused(2, "play", "--live", "-", "-D", "null", stdin="10 10\n" + line, says=("standard input:2:", why))

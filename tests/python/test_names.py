@@ -37,6 +37,7 @@ limit_settings: Player
 list_gpio: devices
 list_pcms: devices
 live_counts: LiveStroke.counts
+live_delay: Delay
 live_options: Player.live
 live_stroke: LiveStroke
 load_setup: Array.from_file

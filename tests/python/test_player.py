@@ -135,8 +135,25 @@ def test_a_live_stroke_follows_its_points(player):
         assert finger.to(1000.0, 20.0)
         with pytest.raises(tactor.InputError):
             finger.to(float("nan"), 0.0)
+        for bad in (-1.0, float("inf"), 1e10):
+            with pytest.raises(tactor.InputError):
+                finger.to(12.0, 20.0, at_s=bad)
     assert finger.report.state == "finished" and not finger.open and not finger.to(0.0, 0.0)
     assert finger.counts["points"] == 3 and finger.counts["outside"] == 1
+
+
+def test_a_live_strokes_report_has_the_delay_of_its_points(player, short):
+    with player.live() as finger:
+        stamp = time.monotonic() - 1.0
+        finger.to(12.0, 20.0, at_s=stamp)
+    delay = finger.report.delay
+    assert isinstance(delay, tactor.Delay) and delay.points == 1
+    assert delay.least_s == delay.mean_s == delay.most_s == pytest.approx(finger.report.started_s - stamp, abs=1e-6)
+    assert delay.least_s > 1.0
+    assert player.play(short).delay is None
+    with player.live() as unfed:
+        pass
+    assert unfed.report.delay is None
 
 
 def test_a_live_stroke_ends_with_its_block_or_its_producer(player):

@@ -20,6 +20,11 @@ double seconds(std::uint64_t frames, unsigned rate)
     return static_cast<double>(frames) / rate;
 }
 
+json to_json(const live_delay& d)
+{
+    return {{"points", d.points}, {"least_s", d.least_s}, {"mean_s", d.mean_s}, {"most_s", d.most_s}};
+}
+
 json to_json(const stroke_outcome& s, unsigned rate)
 {
     const bool ended = s.report.has_value();
@@ -32,6 +37,7 @@ json to_json(const stroke_outcome& s, unsigned rate)
             {"played_s", seconds(frames, rate)},
             {"late_s", ended ? s.report->late_s : 0.0},
             {"started_ns", ended && s.report->started_ns ? json(*s.report->started_ns) : json(nullptr)},
+            {"delay", ended && s.report->delay ? to_json(*s.report->delay) : json(nullptr)},
             {"reason", has_reason ? json(s.report->why) : json(nullptr)}};
 }
 
@@ -127,7 +133,13 @@ std::string fate(const stroke_outcome& s, unsigned rate)
 
 std::string describe(const stroke_outcome& s, unsigned rate)
 {
-    return fmt::format("{}: {}", s.name, fate(s, rate));
+    std::string text = fmt::format("{}: {}", s.name, fate(s, rate));
+    if (s.report && s.report->delay) {
+        const live_delay& d = *s.report->delay;
+        text += fmt::format("; from {} to the DAC {:.1f} ms ({:.1f} to {:.1f})", counted(d.points, "point"),
+                            d.mean_s * 1e3, d.least_s * 1e3, d.most_s * 1e3);
+    }
+    return text;
 }
 
 std::string describe(const stream_setup& d)

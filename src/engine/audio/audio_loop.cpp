@@ -175,7 +175,7 @@ bool audio_loop::take(const command& c) noexcept
 
 void audio_loop::mix_period() noexcept
 {
-    scores_.render_live(setup_.period_frames, offset_);
+    scores_.render_live(setup_.period_frames, offset_, clock_.line());
     scores_.fade_what_failed(setup_.period_frames);
     // Drives that wait for room in the mixer are there in time.
     if (link_.commands.size() == 0)

@@ -282,14 +282,17 @@ void score_table::over(entry& e, state_kind s, reason_kind why, int code, std::u
     if (e.sounds)
         --live_sounding_;
     e.sounds = false;
-    link_.reports.push({.what = report::kind::over,
-                        .score = e.score,
-                        .state = s,
-                        .why = why,
-                        .code = code,
-                        .frame = frames,
-                        .started = e.started && frames != 0,
-                        .started_ns = e.started_ns});
+    const bool started = e.started && frames != 0;
+    link_.reports.push(
+        {.what = report::kind::over,
+         .score = e.score,
+         .state = s,
+         .why = why,
+         .code = code,
+         .frame = frames,
+         .started = started,
+         .started_ns = e.started_ns,
+         .delay = e.voice != nullptr && started ? e.voice->delay(e.started_ns) : live_delay{}});
     e.used = false;
     --used_;
 }

@@ -39,8 +39,9 @@ public:
     void begin_live(const request& r) noexcept;
     /// Ends live strokes whose producer wants it, or is silent for too long, and those that last too long.
     void look_at_wishes() noexcept;
-    /// Adds the live strokes' drives of the next frames; before each mix. `offset` as in begin().
-    void render_live(std::uint64_t frames, std::uint64_t offset) noexcept;
+    /// Adds the live strokes' drives of the next frames; before each mix. `offset` as in begin(); `clock` may
+    /// be unknown.
+    void render_live(std::uint64_t frames, std::uint64_t offset, const clock_line& clock) noexcept;
     /// Fades out what would break off for want of drives within two periods; before each mix.
     void fade_what_runs_out(std::uint64_t period) noexcept;
     /// Fades out what failed, so that it is silent where its drives end; before each mix.
@@ -93,15 +94,16 @@ private:
         bool fading = false;
         bool started = false; ///< its first sample has been at the DAC ...
         std::int64_t started_ns = 0;
-        bool sounds = false;        ///< one of live_voices
-        live_voice* live = nullptr; ///< while it is fed
+        bool sounds = false;               ///< one of live_voices
+        live_voice* live = nullptr;        ///< while it is fed
+        const live_voice* voice = nullptr; ///< of a live stroke, to its end
         state_kind state = state_kind::finished;
         reason_kind why = reason_kind::none;
     };
 
     entry* find(ticket t) noexcept;
     void look_at_wishes(entry& e) noexcept;
-    void render_live(entry& e, std::uint64_t frames, std::uint64_t offset) noexcept;
+    void render_live(entry& e, std::uint64_t frames, std::uint64_t offset, const clock_line& clock) noexcept;
     void close_live(entry& e) noexcept;
     reason_kind why_late() const noexcept;
     static void cover(entry& e, const synth::drive_event& d) noexcept;

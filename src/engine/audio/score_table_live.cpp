@@ -17,7 +17,8 @@ void score_table::begin_live(const request& r) noexcept
          .fade = fade_,
          .used = true,
          .fed = true,
-         .live = r.voice};
+         .live = r.voice,
+         .voice = r.voice};
     ++used_;
     top_ = std::max(top_, place_of(r.score) + 1);
     live_[live_count_++] = &e;
@@ -32,14 +33,14 @@ void score_table::look_at_wishes() noexcept
         look_at_wishes(*live_[i]);
 }
 
-void score_table::render_live(std::uint64_t frames, std::uint64_t offset) noexcept
+void score_table::render_live(std::uint64_t frames, std::uint64_t offset, const clock_line& clock) noexcept
 {
     look_at_wishes();
     // In order, so that who began first sounds first; one that closes now makes way for the next.
     for (std::size_t i = 0; i < live_count_;) {
         entry& e = *live_[i];
         if (!e.fade_wanted)
-            render_live(e, frames, offset);
+            render_live(e, frames, offset, clock);
         if (e.live != nullptr)
             ++i;
     }
@@ -73,7 +74,8 @@ void score_table::look_at_wishes(entry& e) noexcept
     close_live(e);
 }
 
-void score_table::render_live(entry& e, std::uint64_t frames, std::uint64_t offset) noexcept
+void score_table::render_live(entry& e, std::uint64_t frames, std::uint64_t offset,
+                              const clock_line& clock) noexcept
 {
     if (e.base == never) {
         e.live->wait(frames);
@@ -86,7 +88,7 @@ void score_table::render_live(entry& e, std::uint64_t frames, std::uint64_t offs
         e.base = mixer_.position();
         link_.reports.push({.what = report::kind::begun, .score = e.score, .frame = offset + e.base});
     }
-    if (!e.live->render(mixer_, frames))
+    if (!e.live->render(mixer_, frames, offset, clock))
         want_fade(e, state_kind::interrupted, reason_kind::late);
 }
 

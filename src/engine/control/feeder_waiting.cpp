@@ -176,9 +176,12 @@ void feeder::over(const active& a, const report& r)
                               : a.voice != nullptr       ? a.voice->failure()
                                                          : a.failure,
                        .late_s = a.late_s.value_or(0.0),
-                       .started_ns = {}};
+                       .started_ns = {},
+                       .delay = {}};
     if (r.started)
         told.started_ns = r.started_ns;
+    if (r.delay.points != 0)
+        told.delay = r.delay;
     if (r.started && a.due_ns && !a.late_s) // the clock was not known when it began
         told.late_s = late(r.started_ns, *a.due_ns, 1e9 / a.music->rate());
     tell(std::move(told));

@@ -10,6 +10,7 @@
 #include <tactor/error.hpp>
 
 #include "plan/job.hpp"
+#include "rt/clock.hpp"
 #include "synth/mix/mixer.hpp"
 #include "synth/score/frames.hpp"
 #include "synth/score/levels.hpp"
@@ -116,11 +117,15 @@ live_stroke::impl::impl(stroke_id number, const array& a, const layout& l, const
         levels[i].gain *= synth::threshold_factor(a.tactors[i], o.plan.carrier_hz);
 }
 
-bool live_stroke::impl::to(point p, double intensity)
+bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t> at_ns)
 {
+    const std::int64_t stamp = at_ns ? *at_ns : rt::monotonic_ns();
     if (!std::isfinite(p.x_mm) || !std::isfinite(p.y_mm))
         throw error(error_kind::bad_input, "live stroke", fmt::format("the point ({}, {})", p.x_mm, p.y_mm),
                     "finite millimetres");
+    if (stamp < 0)
+        throw error(error_kind::bad_input, "live stroke", fmt::format("a point at {} ns", stamp),
+                    "CLOCK_MONOTONIC, ns, or none for now");
     const std::lock_guard lock(mutex);
     if (voice.closed() || voice.asked() != engine::live_voice::wish::go_on)
         return false;
@@ -134,6 +139,7 @@ bool live_stroke::impl::to(point p, double intensity)
         voice.fail(std::move(excess));
         return false;
     }
+    voice.draft().at_ns = stamp;
     voice.publish();
     points.fetch_add(1, std::memory_order_relaxed);
     outside_points.fetch_add(inside ? 0 : 1, std::memory_order_relaxed);
@@ -199,9 +205,9 @@ stroke_id live_stroke::id() const noexcept
     return impl_->id;
 }
 
-bool live_stroke::to(double x_mm, double y_mm, double intensity)
+bool live_stroke::to(double x_mm, double y_mm, double intensity, std::optional<std::int64_t> at_ns)
 {
-    return impl_->to({x_mm, y_mm}, intensity);
+    return impl_->to({x_mm, y_mm}, intensity, at_ns);
 }
 
 void live_stroke::end() noexcept

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,7 +27,7 @@ struct live_stroke::impl {
     /// \throws error (bad_input) for options that cannot be.
     impl(stroke_id number, const array& a, const layout& l, const stream_setup& s, const live_options& o);
 
-    bool to(point p, double intensity);
+    bool to(point p, double intensity, std::optional<std::int64_t> at_ns = {});
     /// The amplitudes of a place into one set, by channel; whether a limit held one. What the model gives
     /// beyond what it was asked for is told in `excess`.
     bool amplitudes_at(point p, double intensity, std::span<double> by_channel);

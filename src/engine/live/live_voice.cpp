@@ -57,6 +57,7 @@ bool live_voice::try_begin(ticket t, std::uint64_t next) noexcept
     if (!has_point_)
         return false;
     ticket_ = t;
+    first_ns_ = points_.value().at_ns;
     has_begun_ = true;
     base_ = next;
     end_ = next;
@@ -68,15 +69,17 @@ bool live_voice::try_begin(ticket t, std::uint64_t next) noexcept
     return true;
 }
 
-bool live_voice::render(synth::mixer& m, std::uint64_t frames) noexcept
+bool live_voice::render(synth::mixer& m, std::uint64_t frames, std::uint64_t offset,
+                        const clock_line& clock) noexcept
 {
+    const dac_times t{offset, clock};
     bool room = true;
     if (setup_.bursts) {
         const std::uint64_t end = m.position() + frames;
         for (; room && next_burst_ < end; next_burst_ += setup_.soa)
-            room = burst(m, next_burst_);
+            room = burst(m, next_burst_, t);
     } else {
-        room = follow(m, frames);
+        room = follow(m, frames, t);
     }
     idle_ += frames;
     rendered_.store(m.position() + frames - base_, std::memory_order_relaxed);
@@ -84,15 +87,14 @@ bool live_voice::render(synth::mixer& m, std::uint64_t frames) noexcept
 }
 
 // Linear from the amplitudes of one point to those of the next, the carrier runs on.
-bool live_voice::follow(synth::mixer& m, std::uint64_t frames) noexcept
+bool live_voice::follow(synth::mixer& m, std::uint64_t frames, const dac_times& t) noexcept
 {
     const std::uint64_t end = m.position() + frames;
     bool room = true;
     for (std::uint64_t at = m.position(); room && at < end;) {
         if (place_ >= length_) {
             std::swap(from_, to_);
-            if (points_.fetch())
-                idle_ = 0;
+            take(at, t);
             length_ = std::max(setup_.step, end - at);
             aim(at + length_ - base_);
             place_ = 0;
@@ -115,6 +117,36 @@ bool live_voice::follow(synth::mixer& m, std::uint64_t frames) noexcept
     return room;
 }
 
+// The newest point, if one has come: what is rendered from `at` on has it.
+void live_voice::take(std::uint64_t at, const dac_times& t) noexcept
+{
+    if (!points_.fetch())
+        return;
+    idle_ = 0;
+    if (!t.clock.valid())
+        return;
+    const double s = 1e-9 * static_cast<double>(t.clock.time_of(t.offset + at) - points_.value().at_ns);
+    later_.least_s = later_.points == 0 ? s : std::min(later_.least_s, s);
+    later_.most_s = later_.points == 0 ? s : std::max(later_.most_s, s);
+    later_.mean_s += s;
+    ++later_.points;
+}
+
+live_delay live_voice::delay(std::optional<std::int64_t> started_ns) const noexcept
+{
+    live_delay all = later_;
+    if (started_ns) {
+        const double s = 1e-9 * static_cast<double>(*started_ns - first_ns_);
+        all.least_s = all.points == 0 ? s : std::min(all.least_s, s);
+        all.most_s = all.points == 0 ? s : std::max(all.most_s, s);
+        all.mean_s += s;
+        ++all.points;
+    }
+    if (all.points != 0)
+        all.mean_s /= static_cast<double>(all.points);
+    return all;
+}
+
 // To what the newest course has at a frame of the stroke.
 void live_voice::aim(std::uint64_t frame) noexcept
 {
@@ -132,10 +164,9 @@ void live_voice::aim(std::uint64_t frame) noexcept
         to_[n] += (a[setup_.channels + n] - a[n]) * part;
 }
 
-bool live_voice::burst(synth::mixer& m, std::uint64_t at) noexcept
+bool live_voice::burst(synth::mixer& m, std::uint64_t at, const dac_times& t) noexcept
 {
-    if (points_.fetch())
-        idle_ = 0;
+    take(at, t);
     synth::drive_event e;
     e.start = at;
     e.phase_frame = setup_.restart ? 0 : at - base_;

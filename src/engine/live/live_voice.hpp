@@ -7,9 +7,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include <tactor/report.hpp>
+
+#include "engine/audio/dac_clock.hpp"
 #include "engine/messages.hpp"
 #include "rt/triple_buffer.hpp"
 #include "synth/mix/mixer.hpp"
@@ -44,6 +48,7 @@ struct live_setup {
 struct live_course {
     std::uint64_t start = 0;        ///< frame of the stroke that they begin at
     std::uint64_t length = 0;       ///< frames until the last of them holds; 0: at once
+    std::int64_t at_ns = 0;         ///< time stamp of the point
     std::size_t knots = 1;          ///< at even distances over the length
     std::vector<double> amplitudes; ///< by knot and channel; room for all that there may be
 };
@@ -100,8 +105,10 @@ public:
     bool has_point() const noexcept { return has_point_; }
     /// Takes the newest point, if one has come; the stroke begins with the mixer's next frame.
     bool try_begin(ticket t, std::uint64_t next) noexcept;
-    /// Adds the drives of the next frames. False when the mixer had no room for them.
-    bool render(synth::mixer& m, std::uint64_t frames) noexcept;
+    /// Adds the drives of the next frames. False when the mixer had no room for them. `clock` may be unknown,
+    /// `offset` is the stream's frame at which the mixer's begin.
+    bool render(synth::mixer& m, std::uint64_t frames, std::uint64_t offset,
+                const clock_line& clock) noexcept;
     bool starved() const noexcept { return idle_ > setup_.timeout; }
     /// Whether it has sounded as long as it may by this frame of the mixer.
     bool lasted(std::uint64_t position) const noexcept
@@ -112,10 +119,19 @@ public:
     bool fade(synth::mixer& m, std::uint32_t frames) noexcept;
     /// Frame at which what has been added is over.
     std::uint64_t end() const noexcept { return end_; }
+    /// How long its points took; 0 points where that is not known. With when its first frame was at the DAC.
+    live_delay delay(std::optional<std::int64_t> started_ns) const noexcept;
 
 private:
-    bool follow(synth::mixer& m, std::uint64_t frames) noexcept;
-    bool burst(synth::mixer& m, std::uint64_t at) noexcept;
+    /// When the mixer's frames are at the DAC.
+    struct dac_times {
+        std::uint64_t offset;
+        const clock_line& clock;
+    };
+
+    bool follow(synth::mixer& m, std::uint64_t frames, const dac_times& t) noexcept;
+    bool burst(synth::mixer& m, std::uint64_t at, const dac_times& t) noexcept;
+    void take(std::uint64_t at, const dac_times& t) noexcept;
     void aim(std::uint64_t frame) noexcept;
     double amplitude(std::size_t channel) const noexcept;
     template <typename Part>
@@ -134,11 +150,13 @@ private:
     std::uint64_t next_burst_ = 0;
     bool has_point_ = false;
     bool has_begun_ = false;
-    std::uint64_t idle_ = 0;   ///< frames since a point came, or since the beginning of the wait
-    std::uint64_t length_ = 1; ///< of the line between two sets of amplitudes
-    std::uint64_t place_ = 1;  ///< on it
-    std::vector<double> from_; ///< by channel
-    std::vector<double> to_;   ///< of bursts: the next one's
+    std::int64_t first_ns_ = 0; ///< time stamp of the point that it began with
+    live_delay later_;          ///< of the others; the mean is their sum yet
+    std::uint64_t idle_ = 0;    ///< frames since a point came, or since the beginning of the wait
+    std::uint64_t length_ = 1;  ///< of the line between two sets of amplitudes
+    std::uint64_t place_ = 1;   ///< on it
+    std::vector<double> from_;  ///< by channel
+    std::vector<double> to_;    ///< of bursts: the next one's
 };
 
 } // namespace tactor::engine

@@ -22,14 +22,14 @@ from tactor._stroke import Fitting, Stroke, fit_strokes, load, parse, stroke_pre
 
 if _t.TYPE_CHECKING:
     from tactor._player import Player
-    from tactor._ticket import LiveStroke, Report, Ticket
+    from tactor._ticket import Delay, LiveStroke, Report, Ticket
     from tactor._tool import Comparison, compare, devices, plot
 
 __version__: str = _tactor.version()
 
 __all__ = [
-    "Array", "Burst", "Comparison", "Conflict", "Curve", "DeviceError", "Drive", "Error", "Fitting", "InputError", "LiveStroke", "Meeting",
-    "Path", "PerceptSample", "PhantomModel", "Plan", "Player", "Point", "Report", "Score", "StreamError", "Stroke", "Tactor", "Ticket",
+    "Array", "Burst", "Comparison", "Conflict", "Curve", "Delay", "DeviceError", "Drive", "Error", "Fitting", "InputError", "LiveStroke",
+    "Meeting", "Path", "PerceptSample", "PhantomModel", "Plan", "Player", "Point", "Report", "Score", "StreamError", "Stroke", "Tactor", "Ticket",
     "array_presets", "build_facts", "burst_duration", "compare", "devices", "fit_strokes", "load", "parse", "plan", "plot", "stroke_presets",
 ]
 
@@ -41,7 +41,7 @@ def build_facts() -> str:
 
 # What not every script needs is loaded when it is first named: a fifth of the time that the import takes.
 _LATER = {
-    "Player": "_player", "LiveStroke": "_ticket", "Report": "_ticket", "Ticket": "_ticket",
+    "Player": "_player", "Delay": "_ticket", "LiveStroke": "_ticket", "Report": "_ticket", "Ticket": "_ticket",
     "Comparison": "_tool", "compare": "_tool", "devices": "_tool", "plot": "_tool",
 }
 

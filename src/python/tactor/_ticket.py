@@ -16,6 +16,23 @@ if _t.TYPE_CHECKING:
 _LOOK_S = 0.1  # so late Ctrl-C may be noticed
 
 
+class Delay(_t.NamedTuple):
+    """How long a live stroke's points took, s, from their time stamps until the DAC had the first frame that each changed.
+
+    Attributes
+    ----------
+    points : int
+        How many were counted: not those that a newer one overtook before the next period.
+    least_s, mean_s, most_s : float
+        Below 0 where a time stamp lies in the future.
+    """
+
+    points: int
+    least_s: float
+    mean_s: float
+    most_s: float
+
+
 class Report(_t.NamedTuple):
     """How a stroke ended.
 
@@ -32,6 +49,8 @@ class Report(_t.NamedTuple):
         Time of its first sample at the DAC, s of CLOCK_MONOTONIC, which is Python's `time.monotonic()`; None when it never sounded.
     late_s : float
         How much later than asked for that was; 0 when in time.
+    delay : Delay or None
+        Of a live stroke's points; None where none has sounded, and for other strokes.
     """
 
     state: _State
@@ -39,6 +58,7 @@ class Report(_t.NamedTuple):
     frames: int
     started_s: float | None
     late_s: float
+    delay: Delay | None = None
 
 
 class Ticket:
@@ -173,7 +193,7 @@ class LiveStroke(Ticket):
         super().__init__(player, core.id)
         self._core = core
 
-    def to(self, x_mm: float, y_mm: float, intensity: float = 1.0) -> bool:
+    def to(self, x_mm: float, y_mm: float, intensity: float = 1.0, *, at_s: float | None = None) -> bool:
         """Moves it to a place.
 
         Parameters
@@ -181,6 +201,8 @@ class LiveStroke(Ticket):
         x_mm, y_mm : float
         intensity : float
             Linear; 1 is the level that was asked for.
+        at_s : float, optional
+            When the touch was there, s of CLOCK_MONOTONIC (`time.monotonic()`), which the report's delay counts from; else now.
 
         Returns
         -------
@@ -190,9 +212,9 @@ class LiveStroke(Ticket):
         Raises
         ------
         InputError
-            For what is not finite, and with outside="error" for a place outside the array; it goes on where it was.
+            For what is not finite, a negative time, and with outside="error" for a place outside the array; it goes on where it was.
         """
-        return self._core.to(x_mm, y_mm, intensity)  # type: ignore[no-any-return]
+        return self._core.to(x_mm, y_mm, intensity, at_s)  # type: ignore[no-any-return]
 
     def end(self) -> None:
         """No more points come: fades out, or plays its last burst to the end."""
@@ -240,11 +262,11 @@ class _Shared:
                 if self.log is not None:
                     _call(self.log, *event)
                 continue
-            number, *rest = event
+            number, *rest, delay = event
             with self.lock:  # whoever submitted it has its ticket in there first
                 ticket = self.tickets.pop(number, None)
             if ticket is not None:
-                ticket._end(Report(*rest))
+                ticket._end(Report(*rest, None if delay is None else Delay(*delay)))
 
 
 def _call(function: _t.Callable[..., object], *arguments: _t.Any) -> None:
