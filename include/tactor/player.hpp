@@ -139,7 +139,7 @@ public:
     std::size_t fire(T seconds) = delete;
 
     /// Begins a stroke that is fed point by point; silent until the first, which must come within
-    /// live_options::timeout_s. It ends in a report like all strokes. At most 16 sound at a time; further
+    /// live_options::timeout_s. It ends in a report like all strokes. At most 64 sound at a time; further
     /// ones wait until one of them ends, and begin with their newest point. A stroke without a point does
     /// not count. \throws error: bad_input for options that cannot be (levels, carrier, SOA, Tactile
     ///         Brush), runtime when the stream has ended.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a period costs the audio thread while 64 strokes sound on 64 channels: the mean, and the worst.
 #include <algorithm>
-#include <ctime>
 #include <memory>
 #include <vector>
 
@@ -32,14 +31,6 @@ void submit(engine::feeder& feed, engine::link& link, stroke_id& id, const std::
         feed.submit({++id.number}, s, start_at::frame(link.status.load().written + 4800));
 }
 
-// The thread's own time: what others do with the processor is not the engine's cost.
-double cpu_s() noexcept
-{
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 /// One step of the audio thread is one period.
 void periods(benchmark::State& state, double power_dbfs)
 {
@@ -66,9 +57,9 @@ void periods(benchmark::State& state, double power_dbfs)
             submit(feed, link, id, strokes);
         }
         feed.pump(link.status.load().written, link.clock.load());
-        const double from = cpu_s();
+        const double from = bench::cpu_s();
         loop.step(io_kind::ok, 0);
-        const double took = cpu_s() - from;
+        const double took = bench::cpu_s() - from;
         state.SetIterationTime(took);
         worst = std::max(worst, took);
         total += took;

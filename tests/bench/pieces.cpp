@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <ctime>
 #include <map>
 
 namespace bench {
@@ -133,6 +134,13 @@ void plain_loop::process(std::size_t frames, float* out)
         }
     }
     position_ = end;
+}
+
+double cpu_s() noexcept
+{
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 } // namespace bench

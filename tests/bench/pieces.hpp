@@ -60,4 +60,7 @@ private:
     double rate_;
 };
 
+/// The calling thread's own time: what others do with the processor is not the engine's cost.
+double cpu_s() noexcept;
+
 } // namespace bench

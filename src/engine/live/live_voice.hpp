@@ -22,7 +22,7 @@
 namespace tactor::engine {
 
 /// Live strokes that the audio thread renders at once.
-inline constexpr std::size_t live_voices = 16;
+inline constexpr std::size_t live_voices = 64;
 /// Those, and what waits for its first point or for one of them to end. More wait on the control side.
 inline constexpr std::size_t live_places = voices / 2;
 
