@@ -91,8 +91,8 @@ error in_piece(const error& x, const std::string& argument, std::size_t number, 
     const std::string which =
         name.empty() ? fmt::format("stroke {}", number) : fmt::format("stroke {} \"{}\"", number, name);
     const bool said = x.subject() == "stroke" || x.subject() == fmt::format("stroke \"{}\"", name);
-    return said ? error(x.kind(), fmt::format("{}: {}", argument, which), x.why(), x.hint())
-                : error(x.kind(), fmt::format("{}: {}: {}", argument, which, x.subject()), x.why(), x.hint());
+    const std::string from = fmt::format("{}: {}", argument, which);
+    return x.reworded(said ? from : fmt::format("{}: {}", from, x.subject()), x.why(), x.hint());
 }
 
 // A file's only stroke: which file, for the planner knows the stroke's name at most. What the command line or
@@ -107,7 +107,7 @@ error in_file(const error& x, const std::string& argument)
     // A stroke without a name of its own has the file's.
     const std::string given = argument == "-" ? from : std::filesystem::path(argument).stem().string();
     const bool said = x.subject() == "stroke" || x.subject() == fmt::format("stroke \"{}\"", given);
-    return {x.kind(), said ? from : fmt::format("{}: {}", from, x.subject()), x.why(), x.hint()};
+    return x.reworded(said ? from : fmt::format("{}: {}", from, x.subject()), x.why(), x.hint());
 }
 
 // A plan comes with its strokes; those that are read as strokes are not planned yet.

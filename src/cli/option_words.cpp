@@ -88,19 +88,11 @@ std::string subject(std::string_view what)
     return std::string(what);
 }
 
-// "FILE:LINE" or "FILE:LINE:COLUMN": keys that are named there are those of that file.
-bool is_place(std::string_view what)
-{
-    const std::size_t colon = what.rfind(':');
-    return colon != what.npos && colon != 0 && colon + 1 < what.size() &&
-           what.find_first_not_of("0123456789", colon + 1) == what.npos;
-}
-
 } // namespace
 
 error in_options(const error& e)
 {
-    return {e.kind(), subject(e.subject()), e.why(), replaced(std::string(e.hint()), is_place(e.subject()))};
+    return e.reworded(subject(e.subject()), e.why(), replaced(std::string(e.hint()), e.place().line != 0));
 }
 
 } // namespace tactor::cli

@@ -19,8 +19,8 @@ auto said_of(const char* option, F make)
     } catch (const error& e) {
         const bool field = e.subject() == "waveform" || e.subject() == "am" || e.subject() == "texture" ||
                            e.subject() == "envelope" || e.subject() == "intensity scale";
-        throw error(e.kind(), field ? std::string(option) : fmt::format("{}: {}", option, e.subject()),
-                    e.why(), e.hint());
+        throw e.reworded(field ? std::string(option) : fmt::format("{}: {}", option, e.subject()), e.why(),
+                         e.hint());
     }
 }
 

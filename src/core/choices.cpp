@@ -98,7 +98,8 @@ double resolve_start_s(std::optional<double> start_s, const start_anchor& anchor
     throw error(error_kind::bad_input, "start of the stroke",
                 fmt::format("{:g} s before the {} of what comes before it is before the piece", -*start_s,
                             to_string(anchor.from)),
-                fmt::format("{:g} s before is the start of the piece", from));
+                fmt::format("{:g} s before is the start of the piece", from))
+        .with_field("start_s");
 }
 
 } // namespace tactor

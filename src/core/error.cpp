@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <tactor/error.hpp>
 
+#include <cstddef>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include <tactor/version.hpp>
@@ -49,13 +52,47 @@ std::string source_place::text() const
     return t;
 }
 
-error::error(error_kind kind, std::string_view what, std::string_view why, std::string_view hint)
-    : std::system_error(make_error_code(kind)),
-      text_(hint.empty() ? fmt::format("{}: {}", what, why) : fmt::format("{}: {} ({})", what, why, hint)),
-      why_at_(what.size() + 2),
-      hint_at_(hint.empty() ? text_.size() : why_at_ + why.size() + 2)
+struct error::data {
+    std::string text = {};
+    std::size_t why_at = 0;
+    std::size_t hint_at = 0; ///< size of the text where there is none
+    std::string field = {};
+    source_place place = {};
+    int os_code = 0;
+
+    void say(std::string_view what, std::string_view why, std::string_view hint)
+    {
+        text = hint.empty() ? fmt::format("{}: {}", what, why) : fmt::format("{}: {} ({})", what, why, hint);
+        why_at = what.size() + 2;
+        hint_at = hint.empty() ? text.size() : why_at + why.size() + 2;
+    }
+};
+
+error::error(error_kind kind, data d)
+    : std::system_error(make_error_code(kind)), data_(std::make_shared<const data>(std::move(d)))
 {
 }
+
+error::error(error_kind kind, std::string_view what, std::string_view why, std::string_view hint)
+    : error(kind, [&] {
+          data d;
+          d.say(what, why, hint);
+          return d;
+      }())
+{
+}
+
+error::error(error_kind kind, const source_place& at, std::string_view why, std::string_view hint)
+    : error(kind, [&] {
+          data d;
+          d.say(at.text(), why, hint);
+          d.place = at;
+          return d;
+      }())
+{
+}
+
+error::~error() = default;
 
 error_kind error::kind() const noexcept
 {
@@ -64,29 +101,68 @@ error_kind error::kind() const noexcept
 
 const char* error::what() const noexcept
 {
-    return text_.c_str();
+    return data_->text.c_str();
 }
 
-// The text is empty where the error was moved from.
 std::string_view error::subject() const noexcept
 {
-    return std::string_view(text_).substr(0, why_at_ - 2);
+    return std::string_view(data_->text).substr(0, data_->why_at - 2);
 }
 
 std::string_view error::why() const noexcept
 {
-    if (why_at_ > text_.size())
-        return {};
-    const std::size_t end = hint_at_ == text_.size() ? hint_at_ : hint_at_ - 2;
-    return std::string_view(text_).substr(why_at_, end - why_at_);
+    const bool last = data_->hint_at == data_->text.size();
+    const std::size_t end = last ? data_->hint_at : data_->hint_at - 2;
+    return std::string_view(data_->text).substr(data_->why_at, end - data_->why_at);
 }
 
 std::string_view error::hint() const noexcept
 {
-    if (hint_at_ > text_.size())
-        return {};
-    const std::string_view rest = std::string_view(text_).substr(hint_at_);
+    const std::string_view rest = std::string_view(data_->text).substr(data_->hint_at);
     return rest.substr(0, rest.empty() ? 0 : rest.size() - 1);
+}
+
+std::string_view error::field() const noexcept
+{
+    return data_->field;
+}
+
+const source_place& error::place() const noexcept
+{
+    return data_->place;
+}
+
+int error::os_code() const noexcept
+{
+    return data_->os_code;
+}
+
+error error::with_field(std::string_view field) const
+{
+    data d = *data_;
+    d.field = field;
+    return {kind(), std::move(d)};
+}
+
+error error::with_place(source_place at) const
+{
+    data d = *data_;
+    d.place = std::move(at);
+    return {kind(), std::move(d)};
+}
+
+error error::with_os_code(int code) const
+{
+    data d = *data_;
+    d.os_code = code;
+    return {kind(), std::move(d)};
+}
+
+error error::reworded(std::string_view what, std::string_view why, std::string_view hint) const
+{
+    data d = *data_;
+    d.say(what, why, hint);
+    return {kind(), std::move(d)};
 }
 
 #define TACTOR_TEXT(x) #x

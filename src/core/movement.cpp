@@ -12,6 +12,7 @@
 #include <tactor/error.hpp>
 
 #include "core/access.hpp"
+#include "core/bad_input.hpp"
 #include "core/moved.hpp"
 #include "core/path/impl.hpp"
 #include "core/profile.hpp"
@@ -44,8 +45,8 @@ double moving_time_s(const movement& m, double length_mm)
     }
     detail::check_duration(*m.duration_s);
     if (!(rests < *m.duration_s))
-        throw error(
-            error_kind::bad_input, "rests",
+        throw detail::bad_field(
+            "rests",
             fmt::format("{:g} s in all leave nothing of the {:g} s of the stroke", rests, *m.duration_s),
             "the duration is that of all, rests included");
     return *m.duration_s - rests;
@@ -113,8 +114,8 @@ trajectory trajectory::with_speed(double speed_mm_s) const
 {
     const double length = length_mm();
     if (!(speed_mm_s > 0.0 && std::isfinite(speed_mm_s)))
-        throw error(error_kind::bad_input, "speed", fmt::format("{:g} mm/s", speed_mm_s),
-                    "it is more than 0");
+        throw error(error_kind::bad_input, "speed", fmt::format("{:g} mm/s", speed_mm_s), "it is more than 0")
+            .with_field("speed_mm_s");
     if (!(length > 0.0))
         return *this;
     const double moving = length / speed_mm_s;

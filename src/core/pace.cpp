@@ -9,6 +9,7 @@
 
 #include <tactor/error.hpp>
 
+#include "core/bad_input.hpp"
 #include "core/limits.hpp"
 #include "core/profile.hpp"
 #include "core/trajectory/limits.hpp"
@@ -116,8 +117,8 @@ void check_movement(const movement& m)
     check_profile_points("rests", times, 0.0, longest_stroke_s, true);
     for (const rest& r : m.rests)
         if (!(r.intensity >= 0.0 && r.intensity <= 1.0))
-            throw error(error_kind::bad_input, "rests", fmt::format("intensity {:g}", r.intensity),
-                        "it is a factor from 0 to 1");
+            throw detail::bad_field("rests", fmt::format("intensity {:g}", r.intensity),
+                                    "it is a factor from 0 to 1");
 }
 
 pace::pace(movement m, double moving_s) : said_(std::move(m)), moving_s_(moving_s)

@@ -33,7 +33,8 @@ void check_profile_points(std::string_view what, const std::vector<profile_point
 {
     for (std::size_t i = 0; i < points.size(); ++i) {
         const auto refuse = [&](std::string_view why, std::string_view hint) {
-            throw error(error_kind::bad_input, what, fmt::format("point {}: {}", i + 1, why), hint);
+            throw error(error_kind::bad_input, what, fmt::format("point {}: {}", i + 1, why), hint)
+                .with_field(what);
         };
         const auto [part, value] = points[i];
         if (!(part >= 0.0 && part <= 1.0))

@@ -22,7 +22,7 @@ void throw_caused(error e, int code)
     try {
         throw std::system_error(code, std::generic_category());
     } catch (...) {
-        throw_caused(std::move(e));
+        throw_caused(e.with_os_code(code));
     }
 }
 

@@ -20,9 +20,10 @@ using detail::max_mm;
 [[noreturn]] void refuse(const array& a, std::size_t i, const std::string& why, std::string_view hint)
 {
     const source_place& at = a.tactors[i].where;
-    const bool known = at.line != 0 || !at.file.empty();
-    throw error(error_kind::bad_input, known ? at.text() : "array " + detail::quoted(a.name),
-                fmt::format("tactor {} {}", i, why), hint);
+    const std::string what = fmt::format("tactor {} {}", i, why);
+    if (at.line != 0 || !at.file.empty())
+        throw error(error_kind::bad_input, at, what, hint);
+    throw error(error_kind::bad_input, "array " + detail::quoted(a.name), what, hint);
 }
 
 // "tactor 3", with its line where that is another.
@@ -111,7 +112,9 @@ void validate(const array& a)
         throw error(error_kind::bad_input,
                     a.where.line != 0 ? a.where.text() : "array " + detail::quoted(a.name),
                     fmt::format("{} tactors", a.tactors.size()),
-                    fmt::format("an array has 1 to {}", detail::max_tactors));
+                    fmt::format("an array has 1 to {}", detail::max_tactors))
+            .with_place(a.where)
+            .with_field("tactors");
 
     places_seen places;
     std::unordered_map<unsigned, std::size_t> channels;

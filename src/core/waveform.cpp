@@ -12,6 +12,7 @@
 #include <tactor/error.hpp>
 #include <tactor/words.hpp>
 
+#include "core/bad_input.hpp"
 #include "core/kind_table.hpp"
 #include "core/path/number.hpp"
 #include "core/recording_name.hpp"
@@ -39,10 +40,10 @@ void check_noise(const waveform& w)
 {
     // Not a number fails, too.
     if (!(w.low_hz >= least_noise_hz && w.high_hz >= w.low_hz + least_noise_hz && w.high_hz <= highest_hz))
-        throw error(
-            error_kind::bad_input, "waveform",
-            fmt::format("noise from {} to {} Hz cannot be made", w.low_hz, w.high_hz),
-            "give frequencies from 1 Hz up, the second 1 Hz above the first or more, as noise:50-500");
+        throw error(error_kind::bad_input, "waveform",
+                    fmt::format("noise from {} to {} Hz cannot be made", w.low_hz, w.high_hz),
+                    "give frequencies from 1 Hz up, the second 1 Hz above the first or more, as noise:50-500")
+            .with_field("wave");
 }
 
 void check_samples(const recording& r)
@@ -51,31 +52,36 @@ void check_samples(const recording& r)
     if (r.samples.size() < 2 || r.samples.size() > most_recording_samples)
         throw error(error_kind::bad_input, what,
                     fmt::format("it has {}", counted(r.samples.size(), "sample")),
-                    fmt::format("give 2 to {}", most_recording_samples));
+                    fmt::format("give 2 to {}", most_recording_samples))
+            .with_field("recorded");
     if (!(r.rate_hz >= 1.0 && r.rate_hz <= 1e6))
         throw error(error_kind::bad_input, what, fmt::format("its rate is {} Hz", r.rate_hz),
-                    "give 1 to 1000000 Hz");
+                    "give 1 to 1000000 Hz")
+            .with_field("recorded");
     if (!std::all_of(r.samples.begin(), r.samples.end(), [](float x) { return std::isfinite(x); }))
-        throw error(error_kind::bad_input, what, "a sample of it is no number");
+        throw error(error_kind::bad_input, what, "a sample of it is no number").with_field("recorded");
     if (std::adjacent_find(r.samples.begin(), r.samples.end(), std::not_equal_to<>()) == r.samples.end())
         throw error(error_kind::bad_input, what, "it is silence: its samples are all the same",
-                    "give a recording of a vibration");
+                    "give a recording of a vibration")
+            .with_field("recorded");
 }
 
 void check_recording(const waveform& w)
 {
     if (!w.recorded)
         throw error(error_kind::bad_input, "waveform", "there are no samples of the recording",
-                    "give them as recorded");
+                    "give them as recorded")
+            .with_field("wave");
     check_samples(*w.recorded);
     if (w.texture != texture_kind::time && w.recorded->samples.size() > most_cycle_samples)
         throw error(error_kind::bad_input, detail::name_of(*w.recorded),
                     fmt::format("{} are too many for texture {}",
                                 counted(w.recorded->samples.size(), "sample"), to_string(w.texture)),
-                    fmt::format("at most {}, which is 8 s at 8 kHz; or texture time", most_cycle_samples));
+                    fmt::format("at most {}, which is 8 s at 8 kHz; or texture time", most_cycle_samples))
+            .with_field("recorded");
     if (!(w.texture_mm >= 0.0 && w.texture_mm <= longest_texture_mm))
-        throw error(error_kind::bad_input, "texture_mm", fmt::format("{} mm is not a length", w.texture_mm),
-                    "give above 0 to 1000000, or 0 for the whole path");
+        throw detail::bad_field("texture_mm", fmt::format("{} mm is not a length", w.texture_mm),
+                                "give above 0 to 1000000, or 0 for the whole path");
 }
 
 // A number that ends where the text does, or at `end`.
@@ -151,8 +157,8 @@ modulation parse_modulation(std::string_view text)
     if (hz && at < text.size())
         depth = number_until(text, ++at, '\0');
     if (!hz || !depth)
-        throw error(error_kind::bad_input, "am", fmt::format("\"{}\" is not HZ or HZ:DEPTH", text),
-                    "such as 30 or 30:0.5");
+        throw detail::bad_field("am", fmt::format("\"{}\" is not HZ or HZ:DEPTH", text),
+                                "such as 30 or 30:0.5");
     m.hz = *hz;
     m.depth = *depth;
     validate(m);
@@ -170,11 +176,11 @@ void validate(const waveform& w)
 void validate(const modulation& m)
 {
     if (!(m.hz >= 0.0 && m.hz <= highest_modulation_hz))
-        throw error(error_kind::bad_input, "am", fmt::format("{} Hz cannot modulate", m.hz),
-                    "give 0 to 20000 Hz; 0 is none");
+        throw detail::bad_field("am", fmt::format("{} Hz cannot modulate", m.hz),
+                                "give 0 to 20000 Hz; 0 is none");
     if (!(m.depth >= 0.0 && m.depth <= 1.0))
-        throw error(error_kind::bad_input, "am", fmt::format("{} is not a depth", m.depth),
-                    "give 0 to 1, which goes down to silence");
+        throw detail::bad_field("am", fmt::format("{} is not a depth", m.depth),
+                                "give 0 to 1, which goes down to silence");
 }
 
 } // namespace tactor

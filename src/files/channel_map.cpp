@@ -110,9 +110,10 @@ std::string with_channels(const std::filesystem::path& file, std::span<const uns
         file.string(), file.parent_path(), {std::filesystem::weakly_canonical(file, ignored)}};
     const setup before = read_setup(text, source).said;
     if (!before.array)
-        throw error(error_kind::bad_input, file.string(), "says no [array]", "see tactor.toml(5)");
+        throw error(error_kind::bad_input, source_place{file.string()}, "says no [array]",
+                    "see tactor.toml(5)");
     if (before.array->tactors.size() != channels.size())
-        throw error(error_kind::bad_input, file.string(),
+        throw error(error_kind::bad_input, source_place{file.string()},
                     fmt::format("{} for {}", counted(channels.size(), "channel"),
                                 counted(before.array->tactors.size(), "tactor")),
                     "give one for each");
@@ -121,7 +122,7 @@ std::string with_channels(const std::filesystem::path& file, std::span<const uns
     for (std::size_t i = 0; i < channels.size(); ++i)
         if (!after.array || after.array->tactors.size() != channels.size() ||
             after.array->tactors[i].channel != channels[i])
-            throw error(error_kind::bad_input, file.string(),
+            throw error(error_kind::bad_input, source_place{file.string()},
                         fmt::format("the channel of tactor {} cannot be changed in its text", i),
                         "write it as channel = N in a [[tactor]] entry of its own");
     return out;

@@ -54,7 +54,7 @@ int descriptor_in(const fs::path& p)
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& why, std::string_view hint)
 {
-    throw error(error_kind::bad_input, file.string(), why, hint);
+    throw error(error_kind::bad_input, source_place{file.string()}, why, hint);
 }
 
 /// So that the new name survives a power cut, too; not every file system can.
@@ -235,7 +235,8 @@ void output_file::fail(int code) const
     } else if (code == EACCES || code == EPERM || code == EROFS) {
         hint = "name a file where you may write";
     }
-    throw_caused(error(error_kind::runtime, asked_.string(), fmt::format("cannot be written: {}", why), hint),
+    throw_caused(error(error_kind::runtime, source_place{asked_.string()},
+                       fmt::format("cannot be written: {}", why), hint),
                  code);
 }
 

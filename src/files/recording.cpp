@@ -48,7 +48,7 @@ T get(std::string_view bytes, std::size_t at)
 [[noreturn]] void refuse(const std::string& name, std::string_view why,
                          std::string_view hint = "give a WAV file of one channel")
 {
-    throw error(error_kind::bad_input, name, why, hint);
+    throw error(error_kind::bad_input, source_place{name}, why, hint);
 }
 
 wav_format read_format(std::string_view chunk, const std::string& name)

@@ -33,7 +33,9 @@ struct open_file {
 [[noreturn]] void refuse(std::string_view name, int code)
 {
     const char* hint = code == ENOENT ? "check the name" : code == EACCES ? "check the permissions" : "";
-    throw_caused(error(error_kind::bad_input, name, std::generic_category().message(code), hint), code);
+    throw_caused(error(error_kind::bad_input, source_place{std::string(name)},
+                       std::generic_category().message(code), hint),
+                 code);
 }
 
 } // namespace
@@ -62,8 +64,8 @@ whole_text read_text(int descriptor, std::string_view name, std::size_t max_byte
             return text;
         text.size_ += static_cast<std::size_t>(got);
         if (text.size_ > max_bytes)
-            throw error(error_kind::bad_input, name, fmt::format("longer than {} MB", max_bytes >> 20),
-                        "is it the right file?");
+            throw error(error_kind::bad_input, source_place{std::string(name)},
+                        fmt::format("longer than {} MB", max_bytes >> 20), "is it the right file?");
     }
 }
 
@@ -71,7 +73,7 @@ whole_text read_text_file(const std::filesystem::path& file, std::size_t max_byt
 {
     std::error_code ignored;
     if (std::filesystem::is_directory(file, ignored))
-        throw error(error_kind::bad_input, file.string(), "is a folder", "name a file in it");
+        throw error(error_kind::bad_input, source_place{file.string()}, "is a folder", "name a file in it");
     const open_file in(file);
     if (in.fd < 0)
         refuse(file.string(), errno);
@@ -99,7 +101,8 @@ void refuse_other_kind(std::string_view text, const std::string& name)
         if (text.starts_with(o.begin))
             what = o.what;
     if (!what.empty())
-        throw error(error_kind::bad_input, name, fmt::format("is {}, not text", what),
+        throw error(error_kind::bad_input, source_place{std::string(name)},
+                    fmt::format("is {}, not text", what),
                     "strokes are TOML, CSV or SVG, arrays and configurations TOML; sound is for waveform = "
                     "\"FILE.wav\"");
 }
@@ -112,7 +115,7 @@ void refuse_no_text(std::string_view text, const std::string& name)
     // Without a mark, every other byte of plain letters is 0.
     const bool bare = mark.size() == 2 && (mark[0] == '\0') != (mark[1] == '\0');
     if (marked || bare)
-        throw error(error_kind::bad_input, name, "is UTF-16, not UTF-8",
+        throw error(error_kind::bad_input, source_place{std::string(name)}, "is UTF-16, not UTF-8",
                     "save it as UTF-8 in the editor, or convert it: iconv -f UTF-16 -t UTF-8 OLD > NEW");
 }
 

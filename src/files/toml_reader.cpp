@@ -32,9 +32,9 @@ std::string text_of(bounds b)
 
 } // namespace
 
-void fail_at(const source_place& at, std::string_view why, std::string_view hint)
+void fail_at(const source_place& at, std::string_view why, std::string_view hint, std::string_view field)
 {
-    throw_caused(error(error_kind::bad_input, at.text(), why, hint));
+    throw_caused(error(error_kind::bad_input, at, why, hint).with_field(field));
 }
 
 std::string shown(const toml::node& n)
@@ -72,7 +72,7 @@ void toml_table::only(std::span<const std::string_view> known) const
     const auto& at = first->source().begin;
     fail_at({*file_, at.line, at.column},
             fmt::format("unknown key {} in {}", detail::quoted(first->str()), title_),
-            suggestion(first->str(), known, "keys"));
+            suggestion(first->str(), known, "keys"), first->str());
 }
 
 bool toml_table::has(std::string_view key) const
@@ -109,19 +109,19 @@ void toml_table::fail(std::string_view why, std::string_view hint) const
 
 void toml_table::fail(std::string_view key, std::string_view why, std::string_view hint) const
 {
-    fail_at(where(key), why, hint);
+    fail_at(where(key), why, hint, key);
 }
 
 void toml_table::missing(std::string_view key) const
 {
-    fail(fmt::format("{} has no {}", title_, key), fmt::format("add {} = ...", key));
+    fail_at(where(), fmt::format("{} has no {}", title_, key), fmt::format("add {} = ...", key), key);
 }
 
 void toml_table::wrong_type(std::string_view called, const toml::node& n, std::string_view want) const
 {
     const bool scalar = n.is_string() || n.is_number() || n.is_boolean();
     fail_at(where(n), fmt::format("{} is {}", called, scalar ? shown(n) : type_name(n)),
-            fmt::format("give {}", want));
+            fmt::format("give {}", want), called);
 }
 
 double toml_table::number_of(const toml::node& n, std::string_view called, bounds b) const
@@ -135,7 +135,7 @@ double toml_table::within(const toml::node& n, std::string_view called, double v
 {
     const bool inside = v <= b.high && (b.above_low ? v > b.low : v >= b.low);
     if (!std::isfinite(v) || !inside)
-        fail_at(where(n), fmt::format("{} is {}", called, v), fmt::format("allowed: {}", text_of(b)));
+        fail_at(where(n), fmt::format("{} is {}", called, v), fmt::format("allowed: {}", text_of(b)), called);
     return v;
 }
 
@@ -155,7 +155,7 @@ std::optional<unsigned> toml_table::whole(std::string_view key, unsigned low, un
         wrong_type(key, *n, "a whole number");
     if (i->get() < low || i->get() > high)
         fail_at(where(*n), fmt::format("{} is {}", key, i->get()),
-                fmt::format("allowed: {} to {}", low, high));
+                fmt::format("allowed: {} to {}", low, high), key);
     return static_cast<unsigned>(i->get());
 }
 
@@ -178,7 +178,7 @@ std::optional<std::string> toml_table::text(std::string_view key) const
         wrong_type(key, *n, "a string in quotes");
     const std::string& s = n->as_string()->get();
     if (s.empty() || s.find('\0') != std::string::npos)
-        fail_at(where(*n), fmt::format("{} is {}", key, s.empty() ? "empty" : "not text"));
+        fail_at(where(*n), fmt::format("{} is {}", key, s.empty() ? "empty" : "not text"), {}, key);
     return s;
 }
 

@@ -113,6 +113,7 @@ private:
 /// A value as a message shows it: 12.5, 'text', "a list".
 std::string shown(const toml::node& n);
 
-[[noreturn]] void fail_at(const source_place& at, std::string_view why, std::string_view hint = {});
+[[noreturn]] void fail_at(const source_place& at, std::string_view why, std::string_view hint = {},
+                          std::string_view field = {});
 
 } // namespace tactor::detail

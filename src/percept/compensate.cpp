@@ -10,6 +10,7 @@
 #include <tactor/words.hpp>
 
 #include "core/access.hpp"
+#include "core/bad_input.hpp"
 #include "percept/hull_fit.hpp"
 #include "percept/low_speed.hpp"
 #include "plan/faces/layout_impl.hpp"
@@ -123,9 +124,9 @@ compensated_plan make_compensated_plan(const array& a, const layout& l, const st
                                        const plan_options& o, const low_speed_observer& m)
 {
     if (s.choices.algorithm.value_or(o.algorithm) == algorithm_kind::continuous)
-        throw error(error_kind::bad_input, "algorithm",
-                    "continuous has no bursts that could be moved for the low-speed observer",
-                    "algorithm = park2016, or no compensation");
+        throw detail::bad_field("algorithm",
+                                "continuous has no bursts that could be moved for the low-speed observer",
+                                "algorithm = park2016, or no compensation");
     compensated_plan r;
     r.schedule = make_plan(a, l, s, o);
     r.observer = m;

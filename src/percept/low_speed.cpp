@@ -10,6 +10,8 @@
 #include <tactor/error.hpp>
 #include <tactor/words.hpp>
 
+#include "core/bad_input.hpp"
+
 namespace tactor {
 namespace detail {
 namespace {
@@ -21,7 +23,8 @@ void check(const char* what, double v, double least, double most)
 {
     if (!(v >= least && v <= most))
         throw error(error_kind::bad_input, what, fmt::format("{} is out of range", v),
-                    fmt::format("{} to {}", plain_number(least), plain_number(most)));
+                    fmt::format("{} to {}", plain_number(least), plain_number(most)))
+            .with_field(what);
 }
 
 } // namespace
@@ -34,8 +37,8 @@ std::vector<double> give_of(const low_speed_observer& o, std::span<const double>
     give.reserve(onsets_s.size());
     for (std::size_t i = 0; i < onsets_s.size(); ++i) {
         if (!std::isfinite(onsets_s[i]) || (i > 0 && onsets_s[i] < onsets_s[i - 1]))
-            throw error(
-                error_kind::bad_input, "onsets_s",
+            throw detail::bad_field(
+                "onsets_s",
                 fmt::format("number {}, {} s, is before the one before it or no time", i + 1, onsets_s[i]),
                 "give them in order");
         if (i > 0) {
@@ -115,9 +118,9 @@ std::vector<point> felt_places(const low_speed_observer& o, std::span<const doub
 {
     const std::vector<double> give = detail::give_of(o, onsets_s);
     if (onsets_s.size() != alone.size())
-        throw error(error_kind::bad_input, "onsets_s",
-                    fmt::format("there are {}, and {} places", onsets_s.size(), alone.size()),
-                    "one for each");
+        throw detail::bad_field("onsets_s",
+                                fmt::format("there are {}, and {} places", onsets_s.size(), alone.size()),
+                                "one for each");
     for (const point& p : alone)
         if (!std::isfinite(p.x_mm) || !std::isfinite(p.y_mm))
             throw error(error_kind::bad_input, "place of a tap", "is not finite");

@@ -9,6 +9,8 @@
 #include <tactor/error.hpp>
 #include <tactor/words.hpp>
 
+#include "core/bad_input.hpp"
+
 namespace tactor::detail {
 namespace {
 
@@ -17,7 +19,8 @@ void check_count(const array& a, const char* what, std::size_t n)
     if (n != 0 && n != a.tactors.size())
         throw error(error_kind::bad_input, what,
                     fmt::format("there are {} for {}", n, counted(a.tactors.size(), "tactor")),
-                    "one for each, or none");
+                    "one for each, or none")
+            .with_field(what);
 }
 
 } // namespace
@@ -30,7 +33,8 @@ array felt_array(const array& a, const person& who)
         point& p = felt.tactors[i].position;
         p = {p.x_mm + who.shift[i].x_mm, p.y_mm + who.shift[i].y_mm};
         if (!std::isfinite(p.x_mm) || !std::isfinite(p.y_mm))
-            throw error(error_kind::bad_input, "shift", fmt::format("that of tactor {} is not finite", i));
+            throw error(error_kind::bad_input, "shift", fmt::format("that of tactor {} is not finite", i))
+                .with_field("shift");
     }
     return felt;
 }
@@ -42,7 +46,7 @@ std::vector<double> gains_of(const array& a, const person& who)
     for (const double db : who.sensitivity_db) {
         gains.push_back(std::pow(10.0, db / 20.0));
         if (!(gains.back() > 0.0 && std::isfinite(gains.back())))
-            throw error(error_kind::bad_input, "sensitivity_db", fmt::format("{} dB is not one", db));
+            throw detail::bad_field("sensitivity_db", fmt::format("{} dB is not one", db));
     }
     return gains;
 }

@@ -8,6 +8,7 @@
 
 #include <tactor/error.hpp>
 
+#include "core/bad_input.hpp"
 #include "core/trajectory/way.hpp"
 
 namespace tactor::detail {
@@ -53,12 +54,12 @@ void check_profile(const std::vector<carrier_part>& profile)
     double before = -1.0;
     for (const carrier_part& p : profile) {
         if (!(p.part >= 0.0 && p.part <= 1.0 && p.part > before))
-            throw error(error_kind::bad_input, "carrier_profile",
-                        fmt::format("the part {} is out of order or range", p.part),
-                        "give parts of the path from 0 to 1, ascending");
+            throw detail::bad_field("carrier_profile",
+                                    fmt::format("the part {} is out of order or range", p.part),
+                                    "give parts of the path from 0 to 1, ascending");
         if (!(p.hz >= 1.0 && p.hz <= 384000.0))
-            throw error(error_kind::bad_input, "carrier_profile", fmt::format("{} Hz is not a carrier", p.hz),
-                        "give 1 to 384000 Hz");
+            throw detail::bad_field("carrier_profile", fmt::format("{} Hz is not a carrier", p.hz),
+                                    "give 1 to 384000 Hz");
         before = p.part;
     }
 }

@@ -15,6 +15,7 @@
 #include <tactor/error.hpp>
 
 #include "core/access.hpp"
+#include "core/bad_input.hpp"
 #include "core/moved.hpp"
 #include "plan/faces/hull.hpp"
 #include "plan/faces/layout_impl.hpp"
@@ -104,9 +105,9 @@ std::optional<point> line_of(const layout::impl& l, std::pair<point, point> ends
 
 [[noreturn]] void refuse_margin(double margin_mm, double room_mm)
 {
-    throw error(error_kind::bad_input, "margin_mm",
-                fmt::format("{:.6g} mm on each side leave no room in the array", margin_mm),
-                room_mm > 0.0 ? fmt::format("less than {:.4g} mm", room_mm) : "one tactor has none");
+    throw detail::bad_field(
+        "margin_mm", fmt::format("{:.6g} mm on each side leave no room in the array", margin_mm),
+        room_mm > 0.0 ? fmt::format("less than {:.4g} mm", room_mm) : "one tactor has none");
 }
 
 [[noreturn]] void refuse_across(const std::string& what)
@@ -202,7 +203,7 @@ affine map_of(const fitting& f)
 fitted_strokes fit_strokes(const std::vector<stroke>& strokes, const layout& l, double margin_mm)
 {
     if (!(margin_mm >= 0.0 && std::isfinite(margin_mm)))
-        throw error(error_kind::bad_input, "margin_mm", fmt::format("{} mm", margin_mm), "0 mm or more");
+        throw detail::bad_field("margin_mm", fmt::format("{} mm", margin_mm), "0 mm or more");
     fitted_strokes all{strokes, {}};
     if (strokes.empty())
         return all;

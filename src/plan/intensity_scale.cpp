@@ -6,6 +6,8 @@
 #include <tactor/error.hpp>
 #include <tactor/plan.hpp>
 
+#include "core/bad_input.hpp"
+
 namespace tactor {
 
 double intensity_scale::amplitude(double intensity) const
@@ -15,14 +17,16 @@ double intensity_scale::amplitude(double intensity) const
         return intensity;
     if (kind == scale_kind::stevens) {
         if (!(exponent >= 0.1 && exponent <= 3.0))
-            throw error(error_kind::bad_input, "stevens_exponent", fmt::format("{} is not one", exponent),
-                        "give 0.1 to 3; 0.95 at 60 Hz and 0.6 at 250 Hz on the finger (Stevens 1968)");
+            throw detail::bad_field(
+                "stevens_exponent", fmt::format("{} is not one", exponent),
+                "give 0.1 to 3; 0.95 at 60 Hz and 0.6 at 250 Hz on the finger (Stevens 1968)");
         return std::pow(intensity, 1.0 / exponent);
     }
     if (!(sl_db > 0.0 && sl_db <= 100.0))
         throw error(error_kind::bad_input, "intensity_scale",
                     fmt::format("sl needs the sensation level of intensity 1, not {} dB", sl_db),
-                    "give sl_db above 0 dB, such as 7");
+                    "give sl_db above 0 dB, such as 7")
+            .with_field("scale");
     return std::pow(10.0, sl_db * (intensity - 1.0) / 20.0);
 }
 

@@ -7,6 +7,7 @@
 #include <tactor/fit.hpp>
 #include <tactor/words.hpp>
 
+#include "core/bad_input.hpp"
 #include "plan/course.hpp"
 #include "plan/job.hpp"
 #include "plan/numbers.hpp"
@@ -205,7 +206,7 @@ void drives_at(const phantom_model& m, const layout& l, point p, double a_v, std
 {
     out.clear();
     if (!(a_v >= 0.0 && std::isfinite(a_v)))
-        throw error(error_kind::bad_input, "intensity", fmt::format("{} is not a number from 0 up", a_v));
+        throw detail::bad_field("intensity", fmt::format("{} is not a number from 0 up", a_v));
     if (a_v == 0.0)
         return;
     m.weights(p, a_v, out);

@@ -8,6 +8,7 @@
 
 #include <tactor/words.hpp>
 
+#include "core/bad_input.hpp"
 #include "plan/numbers.hpp"
 
 namespace tactor {
@@ -30,7 +31,8 @@ void check_profile(const timing_profile& p)
 {
     const auto refuse = [](std::string_view what, double value, std::string_view hint) {
         throw error(error_kind::bad_input, "timing profile", fmt::format("{} {} cannot be", what, value),
-                    hint);
+                    hint)
+            .with_field("profile");
     };
     if (!(p.slope > 0.0 && p.slope < 1.0))
         refuse("a slope of", p.slope, "between 0 and 1; 0.32 on palm and forearm");
@@ -56,14 +58,15 @@ void check_options(const plan_options& o)
         throw error(error_kind::bad_input, "timing = fit",
                     fmt::format("bursts of at least {} cannot be had: an SOA of {} gives {}",
                                 seconds_text(o.min_duration_s), seconds_text(o.soa_s), seconds_text(longest)),
-                    "ask for a shorter least duration, above 0 s, or for a longer SOA");
+                    "ask for a shorter least duration, above 0 s, or for a longer SOA")
+            .with_field("min_duration_s");
 }
 
 double check_carrier(double hz)
 {
     if (!(hz > 0.0 && std::isfinite(hz)))
-        throw error(error_kind::bad_input, "carrier_hz", fmt::format("{} Hz is not a frequency", hz),
-                    "more than 0; 250 is usual");
+        throw detail::bad_field("carrier_hz", fmt::format("{} Hz is not a frequency", hz),
+                                "more than 0; 250 is usual");
     return hz;
 }
 
@@ -73,10 +76,11 @@ double burst_duration_s(const timing_profile& p, double soa_s)
 {
     detail::check_profile(p);
     if (!(soa_s > p.intercept_s && soa_s <= p.max_soa_s))
-        throw error(error_kind::bad_input, "soa_s",
-                    fmt::format("{} s is out of bounds: an SOA is longer than {} s and at most {} s", soa_s,
-                                p.intercept_s, p.max_soa_s),
-                    fmt::format("use {}", p.max_soa_s));
+        throw detail::bad_field(
+            "soa_s",
+            fmt::format("{} s is out of bounds: an SOA is longer than {} s and at most {} s", soa_s,
+                        p.intercept_s, p.max_soa_s),
+            fmt::format("use {}", p.max_soa_s));
     return detail::law_duration_s(p, soa_s);
 }
 
@@ -86,8 +90,8 @@ double burst_duration_s(const plan_options& o)
         return burst_duration_s(o.profile, o.soa_s);
     detail::check_profile(o.profile);
     if (!(o.soa_s >= shortest_burst_s && o.soa_s <= longest_free_soa_s))
-        throw error(
-            error_kind::bad_input, "soa_s",
+        throw detail::bad_field(
+            "soa_s",
             fmt::format("{} s is out of bounds: with a duration of its own for the burst an SOA is {} to "
                         "{} s",
                         o.soa_s, shortest_burst_s, longest_free_soa_s),
@@ -95,12 +99,14 @@ double burst_duration_s(const plan_options& o)
     if (!(*o.burst_s >= shortest_burst_s && std::isfinite(*o.burst_s)))
         throw error(error_kind::bad_input, "duration of a burst",
                     fmt::format("{} s is not one, {} s is the shortest", *o.burst_s, shortest_burst_s),
-                    fmt::format("use {} to {} s", shortest_burst_s, o.soa_s));
+                    fmt::format("use {} to {} s", shortest_burst_s, o.soa_s))
+            .with_field("burst_s");
     if (*o.burst_s > o.soa_s)
         throw error(error_kind::bad_input, "duration of a burst",
                     fmt::format("{} s is longer than the SOA of {} s, and bursts must not overlap",
                                 *o.burst_s, o.soa_s),
-                    fmt::format("use at most {} s, or a longer SOA", o.soa_s));
+                    fmt::format("use at most {} s, or a longer SOA", o.soa_s))
+            .with_field("burst_s");
     return *o.burst_s;
 }
 

@@ -43,9 +43,11 @@ void translate(std::exception_ptr p)
             std::rethrow_exception(p);
     } catch (const error& e) {
         try {
-            const py::object x = py::module_::import("tactor._errors")
-                                     .attr("made")(std::string(to_string(e.kind())), text(e.subject()),
-                                                   text(e.why()), text(e.hint()));
+            const py::object x =
+                py::module_::import("tactor._errors")
+                    .attr("made")(std::string(to_string(e.kind())), text(e.subject()), text(e.why()),
+                                  text(e.hint()), text(e.field()), text(e.place().file), e.place().line,
+                                  e.place().column, e.os_code());
             PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(x.ptr())), x.ptr());
         } catch (py::error_already_set& raised) {
             raised.restore();

@@ -15,11 +15,12 @@
 namespace tactor {
 namespace {
 
-void check(const char* what, unsigned value, unsigned lo, unsigned hi)
+void check(const char* field, const char* what, unsigned value, unsigned lo, unsigned hi)
 {
     if (value < lo || value > hi)
         throw error(error_kind::bad_input, "paced_sink", fmt::format("{} {} is out of range", value, what),
-                    fmt::format("{} to {}", lo, hi));
+                    fmt::format("{} to {}", lo, hi))
+            .with_field(field);
 }
 
 stream_setup checked(stream_setup s)
@@ -29,10 +30,11 @@ stream_setup checked(stream_setup s)
         s.period_frames = 96;
     if (s.buffer_frames == 0)
         s.buffer_frames = 3 * s.period_frames;
-    check("channels", s.channels, 1, 16384);
-    check("Hz", s.rate, 8000, 768000);
-    check("frames in a period", s.period_frames, detail::least_period_frames(s.rate), most_frames / 2);
-    check("frames in the buffer", s.buffer_frames, 2 * s.period_frames, most_frames);
+    check("channels", "channels", s.channels, 1, 16384);
+    check("rate", "Hz", s.rate, 8000, 768000);
+    check("period_frames", "frames in a period", s.period_frames, detail::least_period_frames(s.rate),
+          most_frames / 2);
+    check("buffer_frames", "frames in the buffer", s.buffer_frames, 2 * s.period_frames, most_frames);
     s.has_clock = false;
     return s;
 }

@@ -66,7 +66,8 @@ burst_envelope parse_envelope(std::string_view text)
     const auto part = detail::scan_number(text, at);
     if (e.kind != envelope_kind::tukey || !part || at != text.size() || !(*part >= 0.0 && *part <= 1.0))
         throw error(error_kind::bad_input, "envelope", fmt::format("\"{}\" is not known", text),
-                    "only tukey has a part, 0 to 1, as tukey:0.5");
+                    "only tukey has a part, 0 to 1, as tukey:0.5")
+            .with_field("envelope");
     e.tukey_part = *part;
     return e;
 }

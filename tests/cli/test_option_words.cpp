@@ -11,12 +11,17 @@ using namespace tactor;
 
 namespace {
 
-std::string said(const char* what, const char* hint)
+std::string said(const error& e)
 {
-    const error once = cli::in_options(error(error_kind::bad_input, what, "soa_s is why", hint));
+    const error once = cli::in_options(e);
     const error twice = cli::in_options(once);
     CHECK(std::string(once.what()) == twice.what());
     return once.what();
+}
+
+std::string said(const char* what, const char* hint)
+{
+    return said(error(error_kind::bad_input, what, "soa_s is why", hint));
 }
 
 } // namespace
@@ -39,9 +44,10 @@ TEST_CASE("names of files, their keys, and words that only hold a field stay as 
 {
     CHECK(said("s.toml:3:1: carrier_hz", "") == "s.toml:3:1: carrier_hz: soa_s is why");
     CHECK(said("soa_s.toml", "") == "soa_s.toml: soa_s is why");
-    for (const std::string place : {"s.toml:3:1", "s.toml:3", "a b:c.toml:12:40"})
-        CHECK(said(place.c_str(), "known keys: soa_s, burst_s") ==
-              place + ": soa_s is why (known keys: soa_s, burst_s)");
+    for (const source_place& place :
+         {source_place{"s.toml", 3, 1}, source_place{"s.toml", 3}, source_place{"a b:c.toml", 12, 40}})
+        CHECK(said(error(error_kind::bad_input, place, "soa_s is why", "known keys: soa_s, burst_s")) ==
+              place.text() + ": soa_s is why (known keys: soa_s, burst_s)");
     CHECK(said("a.toml:11:1", "lower sl_db by 1 dB") == "a.toml:11:1: soa_s is why (lower --sl by 1 dB)");
     CHECK(said("s.toml: stroke 2", "use soa_s") == "s.toml: stroke 2: soa_s is why (use --soa)");
     CHECK(said("rates", "my_soa_s, soa_second") == "rates: soa_s is why (my_soa_s, soa_second)");

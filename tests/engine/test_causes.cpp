@@ -39,6 +39,7 @@ int system_cause(const std::function<void()>& call)
             FAIL("an error of our own");
         } catch (const std::system_error& cause) {
             CHECK(cause.code().category() == std::generic_category());
+            CHECK(e.os_code() == cause.code().value());
             return cause.code().value();
         }
     }

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <tactor/error.hpp>
 #include <tactor/setup.hpp>
 
 #include "folder.hpp"
@@ -35,6 +36,25 @@ TEST_CASE("a file that cannot be read says which and why")
     CHECK(complaint(missing) == missing + ": No such file or directory (check the name)");
     CHECK(complaint(f / "") == (f / "").string() + ": is a folder (name a file in it)");
     CHECK(complaint(f.write("file", "") / "below").find("Not a directory") != std::string::npos);
+}
+
+TEST_CASE("an error of a file has its place and the key, as parts")
+{
+    const folder f;
+    const auto place_and_key = [&](const fs::path& file) -> std::string {
+        try {
+            static_cast<void>(load_setup(file));
+        } catch (const error& e) {
+            return fmt::format("{}, {}, {}, {}", fs::path(e.place().file).filename().string(), e.place().line,
+                               e.place().column, e.field());
+        }
+        return "";
+    };
+    CHECK(place_and_key(f / "none.toml") == "none.toml, 0, 0, ");
+    CHECK(place_and_key(f.write("a.toml", "[array]\n\npich = 3\n")) == "a.toml, 3, 1, pich");
+    CHECK(place_and_key(f.write("b.toml", "[output]\nrate = \"x\"\n")) == "b.toml, 2, 8, rate");
+    CHECK(place_and_key(f.write("c.toml", "[output]\nrate = 1\n")) == "c.toml, 2, 8, rate");
+    CHECK(place_and_key(f.write("d.toml", "[array\n")) == "d.toml, 1, 7, ");
 }
 
 TEST_CASE("a file of more than 16 MB is refused, an endless one too")

@@ -48,10 +48,11 @@ def test_file_names_may_be_any_bytes(tmp_path):
 
 @pytest.mark.parametrize("kind", [tactor.Error, tactor.InputError, tactor.DeviceError, tactor.StreamError])
 def test_they_are_pickled(kind):
-    e = kind("what", "why", "hint", file="f", line=1, column=2)
+    e = kind("what", "why", "hint", file="f", line=1, column=2, field="x_mm", errno=5)
     again = pickle.loads(pickle.dumps(e))
     assert type(again) is kind and str(again) == str(e) == "what: why (hint)"
     assert (again.what, again.why, again.hint, again.file, again.line, again.column) == ("what", "why", "hint", "f", 1, 2)
+    assert (again.field, again.errno) == ("x_mm", 5)
 
 
 def test_each_kind_of_the_library_has_its_class():

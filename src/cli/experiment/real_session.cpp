@@ -31,7 +31,7 @@ void check_keys(const prepared_experiment& p)
 {
     for (const study::run_definition& r : p.definition.runs)
         if (choices_in(r) > most_keys)
-            throw error(error_kind::bad_input, r.where.text(),
+            throw error(error_kind::bad_input, r.where,
                         fmt::format("run \"{}\" has {} answers, and the terminal's keys are 1 to {}",
                                     r.outline.name, choices_in(r), most_keys),
                         "motions = [...] with fewer of them");

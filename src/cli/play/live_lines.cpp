@@ -33,6 +33,11 @@ std::vector<std::string_view> words_of(std::string_view line)
     return words;
 }
 
+source_place place_of(std::size_t line)
+{
+    return {.file = "standard input", .line = static_cast<unsigned>(line)};
+}
+
 } // namespace
 
 // False when there is nothing to take now.
@@ -68,7 +73,7 @@ std::optional<timed_point> live_lines::next()
                 return point;
         }
         if (buffer_.size() > longest_line)
-            throw error(error_kind::bad_input, fmt::format("standard input:{}", line_ + 1),
+            throw error(error_kind::bad_input, place_of(line_ + 1),
                         fmt::format("a line of more than {} bytes", longest_line), "x y [intensity], in mm");
     } while (fill());
     return std::nullopt;
@@ -80,7 +85,7 @@ std::optional<timed_point> live_lines::parse(const std::string& line) const
     if (words.empty() || words.front().front() == '#')
         return std::nullopt;
     const auto refuse = [&](const std::string& why) {
-        throw error(error_kind::bad_input, fmt::format("standard input:{}", line_), why,
+        throw error(error_kind::bad_input, place_of(line_), why,
                     "x y [intensity]: two places in mm and a factor from 0 up, such as 20 12.5 0.8");
     };
     if (words.size() < 2 || words.size() > 3)

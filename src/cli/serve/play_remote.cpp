@@ -89,7 +89,7 @@ error in_words_of_the_tool(const error& e, const std::string& argument)
     std::string hint(e.hint());
     for (std::size_t at = hint.find("options."); at != std::string::npos; at = hint.find("options."))
         hint.replace(at, std::string_view("options.").size(), "--");
-    return {e.kind(), what, e.why(), hint};
+    return e.reworded(what, e.why(), hint);
 }
 
 class remote_player {

@@ -79,14 +79,16 @@ void detail::check_duration(double duration_s)
 {
     if (!(duration_s > 0.0 && duration_s <= longest_stroke_s))
         throw error(error_kind::bad_input, "duration", fmt::format("{:g} s", duration_s),
-                    fmt::format("it is more than 0 and at most {:g} s", longest_stroke_s));
+                    fmt::format("it is more than 0 and at most {:g} s", longest_stroke_s))
+            .with_field("duration_s");
 }
 
 void detail::check_intensity(std::string_view what, double intensity)
 {
     if (!(intensity >= 0.0 && intensity <= max_intensity))
         throw error(error_kind::bad_input, what, fmt::format("intensity {:g}", intensity),
-                    fmt::format("it is a factor from 0 to {:g}", max_intensity));
+                    fmt::format("it is a factor from 0 to {:g}", max_intensity))
+            .with_field("intensity");
 }
 
 trajectory::impl::bracket trajectory::impl::find(const detail::timed_points& l, double t_s) const noexcept

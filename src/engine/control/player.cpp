@@ -20,7 +20,8 @@ namespace tactor {
 void detail::refuse_frame(long long stream_frame)
 {
     throw error(error_kind::bad_input, "start", fmt::format("frame {}", stream_frame),
-                "frames of the stream count from 0; start_at::now() is as soon as possible");
+                "frames of the stream count from 0; start_at::now() is as soon as possible")
+        .with_field("start");
 }
 
 player::player(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines lines)

@@ -25,24 +25,30 @@ void check(const live_options& o, unsigned rate)
 {
     if (o.plan.algorithm == algorithm_kind::tactile_brush)
         throw error(error_kind::bad_input, "live stroke", "Tactile Brush must know the whole path beforehand",
-                    "use continuous or park2016");
+                    "use continuous or park2016")
+            .with_field("algorithm");
     if (!(o.plan.carrier_hz > 0.0 && o.plan.carrier_hz < 0.5 * rate))
         throw error(
             error_kind::bad_input, "live stroke",
             fmt::format("a carrier of {} Hz cannot be rendered at a rate of {} Hz", o.plan.carrier_hz, rate),
-            "250 is usual");
+            "250 is usual")
+            .with_field("carrier_hz");
     if (!(o.timeout_s >= 0.001 && o.timeout_s <= 86400.0))
         throw error(error_kind::bad_input, "live stroke", fmt::format("a time-out of {} s", o.timeout_s),
-                    "give 0.001 to 86400 s");
+                    "give 0.001 to 86400 s")
+            .with_field("timeout_s");
     if (o.longest_s && !(*o.longest_s >= 0.001 && *o.longest_s <= 86400.0))
         throw error(error_kind::bad_input, "live stroke", fmt::format("at most {} s of it", *o.longest_s),
-                    "give 0.001 to 86400 s");
+                    "give 0.001 to 86400 s")
+            .with_field("longest_s");
     if (!(o.smooth_s >= 0.0 && o.smooth_s <= 1.0))
         throw error(error_kind::bad_input, "live stroke",
-                    fmt::format("points smoothed over {} s", o.smooth_s), "give 0 (off) to 1 s");
+                    fmt::format("points smoothed over {} s", o.smooth_s), "give 0 (off) to 1 s")
+            .with_field("smooth_s");
     if (o.render.ramp_s && !(*o.render.ramp_s >= 0.0 && *o.render.ramp_s <= 1.0))
         throw error(error_kind::bad_input, "live stroke", fmt::format("a ramp of {} s", *o.render.ramp_s),
-                    "give 0 to 1 s");
+                    "give 0 to 1 s")
+            .with_field("ramp_s");
 }
 
 /// What of a plan says how it sounds.
@@ -50,7 +56,8 @@ plan heard_of(const plan_options& o)
 {
     if (o.wave.kind == waveform_kind::recording && o.wave.texture == texture_kind::length)
         throw error(error_kind::bad_input, "live stroke", "the length of its path is not known beforehand",
-                    "lay the recording along it with texture time or cycle");
+                    "lay the recording along it with texture time or cycle")
+            .with_field("texture");
     plan p;
     p.carrier_hz = o.carrier_hz;
     p.wave = o.wave;
@@ -79,7 +86,8 @@ engine::live_setup live_setup(const stream_setup& s, const live_options& o)
     const double duration_s = burst_duration_s(o.plan);
     if (o.plan.soa_s < least_live_soa_s)
         throw error(error_kind::bad_input, "live stroke", fmt::format("an SOA of {} s", o.plan.soa_s),
-                    fmt::format("{} s or more", least_live_soa_s));
+                    fmt::format("{} s or more", least_live_soa_s))
+            .with_field("soa_s");
     l.soa = synth::frame_at(o.plan.soa_s, s.rate);
     l.duration = std::min(synth::frame_at(duration_s, s.rate), l.soa);
     l.restart = o.render.phase == phase_kind::burst;
@@ -122,10 +130,12 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
     const std::int64_t stamp = at_ns ? *at_ns : rt::monotonic_ns();
     if (!std::isfinite(p.x_mm) || !std::isfinite(p.y_mm))
         throw error(error_kind::bad_input, "live stroke", fmt::format("the point ({}, {})", p.x_mm, p.y_mm),
-                    "finite millimetres");
+                    "finite millimetres")
+            .with_field("point");
     if (stamp < 0)
         throw error(error_kind::bad_input, "live stroke", fmt::format("a point at {} ns", stamp),
-                    "CLOCK_MONOTONIC, ns, or none for now");
+                    "CLOCK_MONOTONIC, ns, or none for now")
+            .with_field("at_ns");
     const std::lock_guard lock(mutex);
     if (voice.closed() || voice.asked() != engine::live_voice::wish::go_on)
         return false;
@@ -133,7 +143,8 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
     if (!inside && outside == outside_kind::error)
         throw error(error_kind::bad_input, "live stroke",
                     fmt::format("({:.6g}, {:.6g}) is outside the array", p.x_mm, p.y_mm),
-                    "outside_kind::clamp plays the nearest point of the array");
+                    "outside_kind::clamp plays the nearest point of the array")
+            .with_field("outside");
     const bool limited = course_to({inside ? p : faces.nearest(p), intensity}, voice.draft());
     if (!excess.empty()) {
         voice.fail(std::move(excess));

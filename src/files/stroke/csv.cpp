@@ -225,7 +225,7 @@ private:
     [[noreturn]] void fail(std::optional<std::size_t> at, std::string_view why, std::string_view hint) const
     {
         const source_place place{name_, line_number_, static_cast<unsigned>(at.value_or(0))};
-        throw error(error_kind::bad_input, place.text(), why, hint);
+        throw error(error_kind::bad_input, place, why, hint);
     }
 
     std::string_view rest_;

@@ -42,7 +42,8 @@ void detail::check_size(std::string_view text, const std::string& name, std::siz
                         std::string_view hint)
 {
     if (text.size() > max_bytes)
-        throw error(error_kind::bad_input, name, fmt::format("longer than {} MB", max_bytes >> 20), hint);
+        throw error(error_kind::bad_input, source_place{name},
+                    fmt::format("longer than {} MB", max_bytes >> 20), hint);
 }
 
 std::string_view detail::without_mark(std::string_view text) noexcept

@@ -18,7 +18,7 @@ svg_document::svg_document(std::string_view text, const std::string& name)
     const pugi::xml_parse_result r = tree_.load_buffer_inplace(buffer_.data(), buffer_.size());
     if (!r) {
         const auto offset = static_cast<std::size_t>(r.offset > 0 ? r.offset : 0);
-        throw error(error_kind::bad_input, place_of(text_, offset, name_).text(), r.description(),
+        throw error(error_kind::bad_input, place_of(text_, offset, name_), r.description(),
                     "the file is not well-formed XML");
     }
     if (svg_tag(root()) != "svg")
@@ -63,7 +63,7 @@ std::string svg_document::called(pugi::xml_node n)
 
 void svg_document::fail(pugi::xml_node n, std::string_view why, std::string_view hint) const
 {
-    throw error(error_kind::bad_input, where(n).text(), why, hint);
+    throw error(error_kind::bad_input, where(n), why, hint);
 }
 
 void svg_document::fail(pugi::xml_node n, pugi::xml_attribute a, const value_fault& f) const
@@ -75,8 +75,8 @@ void svg_document::fail(pugi::xml_node n, pugi::xml_attribute a, const value_fau
         std::less_equal<>{}(buffer_.data(), value) && std::less<>{}(value, buffer_.data() + buffer_.size());
     const source_place at =
         here ? place_of(text_, static_cast<std::size_t>(value - buffer_.data()) + f.offset, name_) : where(n);
-    throw error(error_kind::bad_input, at.text(), fmt::format("{} of {}: {}", a.name(), called(n), f.why),
-                f.hint);
+    throw error(error_kind::bad_input, at, fmt::format("{} of {}: {}", a.name(), called(n), f.why), f.hint)
+        .with_field(a.name());
 }
 
 double svg_document::length(pugi::xml_node n, const char* attribute, const svg_viewport& v, svg_extent e,

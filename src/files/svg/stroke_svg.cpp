@@ -61,7 +61,7 @@ public:
             doc_.fail(hidden_, fmt::format("{} is hidden, and nothing else draws", doc_.called(hidden_)),
                       "take out display or visibility");
         throw error(
-            error_kind::bad_input, doc_.name(), "no shape in it",
+            error_kind::bad_input, source_place{doc_.name()}, "no shape in it",
             "strokes are path, line, polyline, polygon, rect, circle and ellipse; make paths of text");
     }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/access.hpp"
+#include "core/bad_input.hpp"
 #include "plan/faces/layout_impl.hpp"
 #include "plan/phantom/phantom_models.hpp"
 
@@ -30,7 +31,7 @@ std::shared_ptr<const phantom_model> make_phantom(phantom_kind k, const layout& 
     case phantom_kind::gaussian:
         return detail::make_gaussian(l);
     }
-    throw error(error_kind::bad_input, "phantom", fmt::format("no model has number {}", static_cast<int>(k)));
+    throw detail::bad_field("phantom", fmt::format("no model has number {}", static_cast<int>(k)));
 }
 
 namespace detail {
@@ -38,7 +39,7 @@ namespace detail {
 point check_request(const layout& l, point p, double a_v)
 {
     if (!std::isfinite(a_v) || a_v < 0.0)
-        throw error(error_kind::bad_input, "intensity", fmt::format("{} is not a number from 0 up", a_v));
+        throw detail::bad_field("intensity", fmt::format("{} is not a number from 0 up", a_v));
     return l.contains(p) ? p : l.nearest(p);
 }
 

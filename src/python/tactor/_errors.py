@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import typing as _t
 
-# Compiled when something goes wrong: that would be a good part of the time that the package's import takes.
-_PLACE = r"(?s)(?P<file>.+?):(?P<line>\d+)(?::(?P<column>\d+))?(?=$|: )"
-
 # The library speaks of its fields; here options have the names of the tool's.
 _NAMES = {
     "soa_s": "soa", "burst_s": "burst", "carrier_hz": "carrier", "ramp_s": "ramp", "sl_db": "sl", "margin_mm": "fit_margin",
@@ -30,6 +27,10 @@ class Error(Exception):
         The file, where it is about one.
     line, column : int or None
         Place in the file, counting from 1.
+    field : str or None
+        The option or value that it is about; in a file, as that calls it. None where it is about none, or about how several go together.
+    errno : int or None
+        What the system said, where a call of it failed.
     """
 
     what: str
@@ -38,9 +39,11 @@ class Error(Exception):
     file: str | None
     line: int | None
     column: int | None
+    field: str | None
+    errno: int | None  # not OSError's, which would be the first argument
 
-    def __init__(self, what: str = "", why: str = "", hint: str = "", *, file: str | None = None,
-                 line: int | None = None, column: int | None = None) -> None:
+    def __init__(self, what: str = "", why: str = "", hint: str = "", *, file: str | None = None, line: int | None = None,
+                 column: int | None = None, field: str | None = None, errno: int | None = None) -> None:
         super().__init__(what, why, hint)
         self.what = what
         self.why = why
@@ -48,13 +51,15 @@ class Error(Exception):
         self.file = file
         self.line = line
         self.column = column
+        self.field = field
+        self.errno = errno
 
     def __str__(self) -> str:
         text = f"{self.what}: {self.why}" if self.why else self.what
         return f"{text} ({self.hint})" if self.hint else text
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
-        return _again, (type(self), self.what, self.why, self.hint, self.file, self.line, self.column)
+        return _again, (type(self), self.what, self.why, self.hint, self.file, self.line, self.column, self.field, self.errno)
 
 
 class InputError(Error, ValueError):
@@ -72,9 +77,9 @@ class StreamError(Error, RuntimeError):
 _KINDS: dict[str, type[Error]] = {"bad-input": InputError, "not-available": DeviceError, "runtime": StreamError}
 
 
-def _again(kind: type[Error], what: str, why: str, hint: str, file: str | None, line: int | None,
-           column: int | None) -> Error:
-    return kind(what, why, hint, file=file, line=line, column=column)
+def _again(kind: type[Error], what: str, why: str, hint: str, file: str | None, line: int | None, column: int | None,
+           field: str | None, errno: int | None) -> Error:
+    return kind(what, why, hint, file=file, line=line, column=column, field=field, errno=errno)
 
 
 def _in_python(text: str) -> str:
@@ -84,12 +89,9 @@ def _in_python(text: str) -> str:
     return re.sub(_CHOICE, r'\1="\2"', text)
 
 
-def made(kind: str, what: str, why: str, hint: str) -> Error:
+def made(kind: str, what: str, why: str, hint: str, field: str = "", file: str = "", line: int = 0, column: int = 0,
+         errno: int = 0) -> Error:
     """Makes the exception of a library's error; called by the extension."""
-    import re
-    place = re.match(_PLACE, what)
-    if place is None:
-        return _KINDS[kind](_in_python(what), why, _in_python(hint))
-    column = place["column"]
-    return _KINDS[kind](what, why, _in_python(hint), file=place["file"], line=int(place["line"]),
-                        column=int(column) if column else None)
+    placed = bool(file or line)
+    return _KINDS[kind](what if placed else _in_python(what), why, _in_python(hint), file=file or None, line=line or None,
+                        column=column or None, field=(field if placed else _in_python(field)) or None, errno=errno or None)

@@ -125,16 +125,19 @@ stream_setup read_back(const hw_params& h, const alsa_options& o, format_kind f)
 
 void check(const alsa_options& o)
 {
-    const auto within = [&o](const char* thing, unsigned value, unsigned least, unsigned most) {
+    const auto within = [&o](const char* field, const char* thing, unsigned value, unsigned least,
+                             unsigned most) {
         if (value < least || value > most)
             throw error(error_kind::bad_input, fmt::format("PCM \"{}\"", o.pcm),
                         fmt::format("{} {} out of range", value, thing),
-                        fmt::format("give {} to {}", least, most));
+                        fmt::format("give {} to {}", least, most))
+                .with_field(field);
     };
-    within("channels", o.channels, 1, most_channels);
-    within("Hz", o.rate, 1, most_rate);
-    within("frames a period", o.period_frames, detail::least_period_frames(o.rate), most_period_frames);
-    within("periods", o.periods, 2, most_periods);
+    within("channels", "channels", o.channels, 1, most_channels);
+    within("rate", "Hz", o.rate, 1, most_rate);
+    within("period_frames", "frames a period", o.period_frames, detail::least_period_frames(o.rate),
+           most_period_frames);
+    within("periods", "periods", o.periods, 2, most_periods);
 }
 
 hw_params configuration_space(snd_pcm_t* p, const std::string& name)

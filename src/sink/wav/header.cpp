@@ -7,6 +7,8 @@
 
 #include <tactor/error.hpp>
 
+#include "core/bad_input.hpp"
+
 namespace tactor::wav {
 
 namespace {
@@ -33,13 +35,13 @@ std::string fewer_bytes(format_kind f, unsigned channels)
 void check_format(format_kind f, unsigned channels)
 {
     if (f == format_kind::s24_4) {
-        throw error(error_kind::bad_input, "sample_format",
-                    fmt::format("a WAV file cannot hold {}", to_string(f)), "use float, s16, s24 or s32");
+        throw detail::bad_field("sample_format", fmt::format("a WAV file cannot hold {}", to_string(f)),
+                                "use float, s16, s24 or s32");
     }
     const std::size_t most = most_frame_bytes / bytes_of(f);
     if (channels > most) {
-        throw error(
-            error_kind::bad_input, "channels",
+        throw detail::bad_field(
+            "channels",
             fmt::format("a WAV file, RF64 too, has at most 65535 bytes a frame, {} channels in {}, not {}",
                         most, to_string(f), channels),
             fewer_bytes(f, channels));

@@ -97,7 +97,7 @@ void replay(calibration& c, const calibration_log& log, observer* simulated)
     for (const std::string& line : log.lines()) {
         const source_place place{log.file().string(), static_cast<unsigned>(++at), 0};
         if (c.done())
-            throw error(error_kind::bad_input, place.text(), "the session ends before this line",
+            throw error(error_kind::bad_input, place, "the session ends before this line",
                         "the log is not of this session; begin another, with another log");
         const calibration_trial trial = c.next();
         const calibration_answer own = simulated != nullptr ? simulated->answer(trial) : answer_in(line);
@@ -106,7 +106,7 @@ void replay(calibration& c, const calibration_log& log, observer* simulated)
         if (possible)
             expected = log_line(c.answer(own));
         if (expected != line)
-            throw error(error_kind::bad_input, place.text(), "this is not how the session went",
+            throw error(error_kind::bad_input, place, "this is not how the session went",
                         "the log was changed, or is not of this session; begin another, with another log");
     }
 }

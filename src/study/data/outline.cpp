@@ -18,7 +18,7 @@ namespace {
                          std::string_view hint)
 {
     const unsigned line = at.source().begin.line;
-    throw error(error_kind::bad_input, source_place{name, line, at.source().begin.column}.text(), why, hint);
+    throw error(error_kind::bad_input, source_place{name, line, at.source().begin.column}, why, hint);
 }
 
 std::string need_text(const toml::table& t, std::string_view key, const std::string& name)

@@ -16,7 +16,7 @@ namespace {
 [[noreturn]] void refuse_line(const std::string& file, std::size_t line, std::string_view why,
                               std::string_view hint)
 {
-    throw error(error_kind::bad_input, fmt::format("{}:{}", file, line), why, hint);
+    throw error(error_kind::bad_input, source_place{file, static_cast<unsigned>(line)}, why, hint);
 }
 
 void check_cells(const std::string& file, std::size_t line, const std::vector<std::string_view>& cells,

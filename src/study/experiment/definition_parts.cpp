@@ -33,7 +33,8 @@ auto at_key(const toml_table& t, std::string_view key, F make)
     try {
         return make();
     } catch (const error& e) {
-        throw error(e.kind(), t.where(key).text(), fmt::format("{}: {}", e.subject(), e.why()), e.hint());
+        throw error(e.kind(), t.where(key), fmt::format("{}: {}", e.subject(), e.why()), e.hint())
+            .with_field(key);
     }
 }
 

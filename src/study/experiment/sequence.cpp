@@ -125,7 +125,7 @@ run_sequence make_run(const experiment_definition& d, std::size_t run, std::stri
     do {
         if (++draws > most_draws)
             throw error(
-                error_kind::bad_input, r.where.text(),
+                error_kind::bad_input, r.where,
                 fmt::format("no order of {} trials was found in which no motion comes {} times in a row",
                             r.outline.trials, most_in_a_row + 1),
                 "several runs with fewer trials");

@@ -100,7 +100,7 @@ double simulated_observer::cost(std::size_t motion, std::size_t method) const
     const percept_summary& felt = stimuli_.at(motion, method).felt;
     const std::optional<double> c = run_.attribute == "uniformity" ? felt.speed_cv : felt.rms_error_mm;
     if (!c)
-        throw error(error_kind::bad_input, definition_.motions[motion].where.text(),
+        throw error(error_kind::bad_input, definition_.motions[motion].where,
                     fmt::format("simulate: motion \"{}\" by method \"{}\" is not predicted to {}",
                                 definition_.motions[motion].name, definition_.methods[method].name,
                                 run_.attribute == "uniformity" ? "be felt to move" : "be felt"),

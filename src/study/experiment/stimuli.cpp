@@ -63,7 +63,7 @@ stimulus stimulus_set::make(const motion_definition& motion, const method_defini
                             const layout& faces, const plan_writer& write)
 {
     const auto blame = [&](const error& e) {
-        return error(e.kind(), motion.where.text(),
+        return error(e.kind(), motion.where,
                      fmt::format("motion \"{}\" by method \"{}\" (line {}): {}: {}", motion.name, method.name,
                                  method.where.line, e.subject(), e.why()),
                      e.hint());

@@ -7,6 +7,8 @@
 
 #include <tactor/error.hpp>
 
+#include "core/bad_input.hpp"
+
 namespace tactor::synth {
 
 guard_settings guards_of(const drive_limits& l, unsigned rate)
@@ -26,16 +28,16 @@ guard_settings guards_of(const drive_limits& l, unsigned rate)
 void check_limits(const drive_limits& l)
 {
     if (std::isnan(l.power_dbfs) || l.power_dbfs < -120.0) {
-        throw error(error_kind::bad_input, "power_dbfs", fmt::format("{} dBFS is not one", l.power_dbfs),
-                    "give e.g. 4.77, three channels at full scale");
+        throw detail::bad_field("power_dbfs", fmt::format("{} dBFS is not one", l.power_dbfs),
+                                "give e.g. 4.77, three channels at full scale");
     }
     if (!(l.max_drive_s >= 0.1)) {
-        throw error(error_kind::bad_input, "max_drive_s", fmt::format("{} s is not a limit", l.max_drive_s),
-                    "give 0.1 s or more, e.g. 5");
+        throw detail::bad_field("max_drive_s", fmt::format("{} s is not a limit", l.max_drive_s),
+                                "give 0.1 s or more, e.g. 5");
     }
     if (!(l.window_s >= 0.1 && l.window_s <= longest_window_s)) {
-        throw error(error_kind::bad_input, "window_s", fmt::format("{} s is no window", l.window_s),
-                    "give 0.1 to 3600 s, e.g. 10");
+        throw detail::bad_field("window_s", fmt::format("{} s is no window", l.window_s),
+                                "give 0.1 to 3600 s, e.g. 10");
     }
 }
 

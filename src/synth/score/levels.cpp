@@ -9,6 +9,8 @@
 
 #include <tactor/error.hpp>
 
+#include "core/bad_input.hpp"
+
 namespace tactor::synth {
 
 namespace {
@@ -42,12 +44,12 @@ double level_db(const array& a, std::size_t i, const render_options& o)
 
 void refuse_tactor(const array& a, std::size_t i, std::string_view why, std::string_view hint)
 {
-    const std::string line = a.tactors[i].where.text();
+    const source_place& at = a.tactors[i].where;
     const std::string name = fmt::format("tactor {}", i);
-    if (line.empty()) {
+    if (at.text().empty()) {
         throw error(error_kind::bad_input, name, why, hint);
     }
-    throw error(error_kind::bad_input, line, fmt::format("{} {}", name, why), hint);
+    throw error(error_kind::bad_input, at, fmt::format("{} {}", name, why), hint);
 }
 
 double tactor_limit(const array& a, std::size_t i)
@@ -58,13 +60,13 @@ double tactor_limit(const array& a, std::size_t i)
 std::vector<tactor_level> tactor_levels(const array& a, const render_options& o)
 {
     if (o.sl_db && !std::isfinite(*o.sl_db)) {
-        throw error(error_kind::bad_input, "sl_db", fmt::format("{} is not a level", *o.sl_db),
-                    "the paper uses 7 dB SL");
+        throw detail::bad_field("sl_db", fmt::format("{} is not a level", *o.sl_db),
+                                "the paper uses 7 dB SL");
     }
     if (!o.sl_db && !(std::isfinite(o.level_dbfs) && o.level_dbfs <= 0.0)) {
-        throw error(error_kind::bad_input, "level_dbfs",
-                    fmt::format("{} dBFS is not a level of 0 dBFS or less", o.level_dbfs),
-                    "the default is -12");
+        throw detail::bad_field("level_dbfs",
+                                fmt::format("{} dBFS is not a level of 0 dBFS or less", o.level_dbfs),
+                                "the default is -12");
     }
     std::vector<tactor_level> levels;
     levels.reserve(a.tactors.size());

@@ -15,6 +15,7 @@
 #include <tactor/error.hpp>
 
 #include "core/access.hpp"
+#include "core/bad_input.hpp"
 #include "plan/job.hpp"
 #include "synth/guard/guard.hpp"
 #include "synth/mix/mixer.hpp"
@@ -39,13 +40,14 @@ unsigned channels_of(const array& a, const render_options& o)
     const unsigned needed = a.channels();
     const unsigned channels = o.channels == 0 ? needed : o.channels;
     if (channels < needed) {
-        throw error(error_kind::bad_input, "channels",
-                    fmt::format("{} are too few: the array has a tactor on channel {}", channels, needed - 1),
-                    fmt::format("ask for {} or more", needed));
+        throw detail::bad_field(
+            "channels",
+            fmt::format("{} are too few: the array has a tactor on channel {}", channels, needed - 1),
+            fmt::format("ask for {} or more", needed));
     }
     if (channels > most_channels) {
-        throw error(error_kind::bad_input, "channels", fmt::format("{} are too many", channels),
-                    fmt::format("at most {} can be rendered", most_channels));
+        throw detail::bad_field("channels", fmt::format("{} are too many", channels),
+                                fmt::format("at most {} can be rendered", most_channels));
     }
     return channels;
 }
@@ -53,25 +55,26 @@ unsigned channels_of(const array& a, const render_options& o)
 void check_options(const render_options& o)
 {
     if (o.rate < 8000 || o.rate > 768000) {
-        throw error(error_kind::bad_input, "rate", fmt::format("{} Hz cannot be rendered", o.rate),
-                    "use 8000 to 768000, e.g. 48000");
+        throw detail::bad_field("rate", fmt::format("{} Hz cannot be rendered", o.rate),
+                                "use 8000 to 768000, e.g. 48000");
     }
     if (o.ramp_s && !(*o.ramp_s >= 0.0 && *o.ramp_s <= latest_start_s)) {
-        throw error(error_kind::bad_input, "ramp_s", fmt::format("{} s is not a ramp", *o.ramp_s),
-                    "use 0 or more, e.g. 0.002");
+        throw detail::bad_field("ramp_s", fmt::format("{} s is not a ramp", *o.ramp_s),
+                                "use 0 or more, e.g. 0.002");
     }
     const auto check_ramp = [](const char* what, std::optional<double> s) {
         if (s && !(*s >= 0.0 && *s <= 10.0)) {
             throw error(error_kind::bad_input, what, fmt::format("{} s is not a ramp", *s),
-                        "use 0 to 10, e.g. 0.01");
+                        "use 0 to 10, e.g. 0.01")
+                .with_field(what);
         }
     };
     check_ramp("attack_s", o.envelope.attack_s);
     check_ramp("release_s", o.envelope.release_s);
     if (!(o.envelope.tukey_part >= 0.0 && o.envelope.tukey_part <= 1.0)) {
-        throw error(error_kind::bad_input, "tukey_part",
-                    fmt::format("{} is not a part of a burst", o.envelope.tukey_part),
-                    "use 0, a rectangle, to 1, all of it");
+        throw detail::bad_field("tukey_part",
+                                fmt::format("{} is not a part of a burst", o.envelope.tukey_part),
+                                "use 0, a rectangle, to 1, all of it");
     }
 }
 
@@ -84,17 +87,19 @@ void check_marker(const array& a, const render_options& o, unsigned channels)
     if (*o.marker_channel >= channels) {
         throw error(error_kind::bad_input, what,
                     fmt::format("there {} {}", channels == 1 ? "is" : "are", counted(channels, "channel")),
-                    fmt::format("ask for {} or more", counted(*o.marker_channel + 1, "channel")));
+                    fmt::format("ask for {} or more", counted(*o.marker_channel + 1, "channel")))
+            .with_field("marker_channel");
     }
     for (std::size_t i = 0; i < a.tactors.size(); ++i) {
         if (a.tactors[i].channel == *o.marker_channel) {
             throw error(error_kind::bad_input, what, fmt::format("it drives tactor {}", i),
-                        "choose a spare channel");
+                        "choose a spare channel")
+                .with_field("marker_channel");
         }
     }
     if (!(o.marker_s > 0.0 && o.marker_s <= 10.0)) {
-        throw error(error_kind::bad_input, "marker_s", fmt::format("{} s is not its length", o.marker_s),
-                    "use above 0 to 10 s, e.g. 0.005");
+        throw detail::bad_field("marker_s", fmt::format("{} s is not its length", o.marker_s),
+                                "use above 0 to 10 s, e.g. 0.005");
     }
 }
 
@@ -118,9 +123,9 @@ void place_markers(score::impl& s, std::uint64_t length, unsigned channel)
 void check_carrier(double carrier_hz, unsigned rate)
 {
     if (!(carrier_hz > 0.0 && carrier_hz < 0.5 * rate)) {
-        throw error(error_kind::bad_input, "carrier_hz",
-                    fmt::format("{} Hz cannot be rendered at a rate of {} Hz", carrier_hz, rate),
-                    fmt::format("use a carrier above 0 and below {} Hz, half the rate", 0.5 * rate));
+        throw detail::bad_field(
+            "carrier_hz", fmt::format("{} Hz cannot be rendered at a rate of {} Hz", carrier_hz, rate),
+            fmt::format("use a carrier above 0 and below {} Hz, half the rate", 0.5 * rate));
     }
 }
 
@@ -132,7 +137,8 @@ std::uint64_t start_frame(std::optional<double> start_s, unsigned rate, std::uin
     if (!(*start_s >= 0.0 && *start_s <= latest_start_s)) {
         throw error(error_kind::bad_input, "start of the stroke",
                     fmt::format("{} s cannot be rendered", *start_s),
-                    fmt::format("use 0 to {} s", latest_start_s));
+                    fmt::format("use 0 to {} s", latest_start_s))
+            .with_field("start_s");
     }
     return synth::frame_at(*start_s, rate);
 }

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+// The parts of an error.
+#include <array>
+#include <cerrno>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+#include <doctest/doctest.h>
+
+#include <tactor/error.hpp>
+#include <tactor/movement.hpp>
+#include <tactor/path.hpp>
+#include <tactor/stroke.hpp>
+#include <tactor/waveform.hpp>
+
+#include "core/bad_input.hpp"
+#include "core/refused.hpp"
+
+using namespace tactor;
+
+namespace {
+
+template <class F>
+error thrown_by(F call)
+{
+    try {
+        call();
+    } catch (const error& e) {
+        return e;
+    }
+    FAIL("it did not throw");
+    return {error_kind::runtime, "", ""};
+}
+
+} // namespace
+
+static_assert(std::is_nothrow_copy_constructible_v<error> && std::is_nothrow_copy_assignable_v<error>);
+static_assert(std::is_nothrow_move_constructible_v<error>);
+
+TEST_CASE("an error is made of what it says, of its field, place and errno")
+{
+    const error plain(error_kind::runtime, "stream", "it broke");
+    CHECK(std::string(plain.what()) == "stream: it broke");
+    CHECK(plain.subject() == "stream");
+    CHECK(plain.why() == "it broke");
+    CHECK(plain.hint().empty());
+    CHECK(plain.field().empty());
+    CHECK(plain.place().text().empty());
+    CHECK(plain.os_code() == 0);
+
+    const error placed(error_kind::bad_input, source_place{"a.toml", 3, 7}, "soa_s is 1", "use 0.07");
+    CHECK(std::string(placed.what()) == "a.toml:3:7: soa_s is 1 (use 0.07)");
+    CHECK(placed.place().file == "a.toml");
+    CHECK(placed.place().line == 3);
+    CHECK(placed.place().column == 7);
+
+    const error all = placed.with_field("soa_s").with_os_code(EIO);
+    CHECK(std::string(all.what()) == placed.what());
+    CHECK(all.kind() == error_kind::bad_input);
+    CHECK(all.code() == error_kind::bad_input);
+    CHECK(all.field() == "soa_s");
+    CHECK(all.os_code() == EIO);
+    CHECK(placed.field().empty());
+
+    const error reworded = all.reworded("--soa", "1 s", "");
+    CHECK(std::string(reworded.what()) == "--soa: 1 s");
+    CHECK(reworded.hint().empty());
+    CHECK(reworded.kind() == error_kind::bad_input);
+    CHECK(reworded.field() == "soa_s");
+    CHECK(reworded.place().line == 3);
+    CHECK(reworded.os_code() == EIO);
+    CHECK(reworded.with_place({"b.toml", 1, 0}).place().text() == "b.toml:1");
+}
+
+TEST_CASE("an error that was moved from, and a copy of one that is gone, say the same")
+{
+    std::optional<error> first(error(error_kind::bad_input, "grid", "0 rows", "1 or more"));
+    error second = std::move(*first); // NOLINT(performance-move-const-arg): that is what is tried
+    CHECK(std::string(first->what()) == second.what()); // NOLINT(bugprone-use-after-move)
+    const std::string_view hint = second.hint();
+    first.reset();
+    CHECK(hint == "1 or more");
+    second = error(error_kind::runtime, "other", "why");
+    CHECK(second.kind() == error_kind::runtime);
+    CHECK(std::string(second.what()) == "other: why");
+}
+
+TEST_CASE("what the library refuses names its field")
+{
+    const path line = path::polyline(std::array{point{0.0, 0.0}, point{10.0, 0.0}});
+    CHECK(thrown_by([] { throw detail::bad_field("soa_s", "0 s"); }).field() == "soa_s");
+    CHECK(thrown_by([] { throw detail::bad_field("soa_s", "0 s"); }).subject() == "soa_s");
+    CHECK(thrown_by([&] {
+              static_cast<void>(trajectory::along(line, movement{.duration_s = -1.0}));
+          }).field() == "duration_s");
+    CHECK(thrown_by([&] {
+              static_cast<void>(
+                  trajectory::along(line, movement{.duration_s = 1.0, .intensity = {{2.0, 1.0}}}));
+          }).field() == "intensity");
+    CHECK(thrown_by([&] { static_cast<void>(trajectory::along(line, 1.0).with_speed(0.0)); }).field() ==
+          "speed_mm_s");
+    CHECK(thrown_by([] { static_cast<void>(parse_waveform("noise:50-1")); }).field() == "wave");
+}
+
+TEST_CASE("what the system refuses has its errno")
+{
+    CHECK(thrown_by([] { detail::refused_by_system("thread", EAGAIN, "none"); }).os_code() == EAGAIN);
+    CHECK(thrown_by([] { detail::throw_caused(error(error_kind::runtime, "a", "b")); }).os_code() == 0);
+}
