@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <span>
 
 #include <netdb.h>
 #include <sys/socket.h>
@@ -37,10 +38,9 @@ public:
 private:
     // In the audio thread: no waiting, no memory, no exceptions. A datagram for which there is no room in the
     // network is lost, as others are on their way; the number tells the other end.
-    tactor::io_kind take(std::uint64_t first, const std::byte* data, std::size_t frames) noexcept override
+    tactor::io_kind take(std::uint64_t first, std::span<const std::byte> frames) noexcept override
     {
-        const std::size_t bytes = frames * setup().channels * bytes_of(setup().format);
-        iovec parts[] = {{&first, sizeof first}, {const_cast<std::byte*>(data), bytes}};
+        iovec parts[] = {{&first, sizeof first}, {const_cast<std::byte*>(frames.data()), frames.size()}};
         msghdr message{};
         message.msg_iov = parts;
         message.msg_iovlen = 2;

@@ -190,10 +190,11 @@ public:
     renderer(renderer&&) noexcept;
     renderer& operator=(renderer&&) noexcept;
 
-    /// Writes `frames` interleaved frames to out (frames * channels * bytes_of(format) bytes) and
-    /// goes on; silence after the end. Where a continuous stroke fails, all fades out before that, within
-    /// 10 ms, and silence follows. Allocates nothing but what failure() says.
-    void process(std::size_t frames, std::byte* out);
+    /// Fills `out` with the next interleaved frames, as many as it has room for, and goes on; silence after
+    /// the end. Where a continuous stroke fails, all fades out before that, within 10 ms, and silence
+    /// follows. Allocates nothing but what failure() says.
+    /// \throws error (bad_input) where `out` is no whole number of frames (channels * bytes_of(format)).
+    void process(std::span<std::byte> out);
 
     /// Next frame to be rendered.
     [[nodiscard]] std::uint64_t position() const;

@@ -40,6 +40,9 @@ struct stream_setup {
     bool batch = false;        ///< the position moves by whole periods
     bool has_clock = true;     ///< false: null and file devices, which the sink paces; known after start()
     stream_wiring wiring = {}; ///< behind this stream
+
+    /// Bytes of one frame.
+    [[nodiscard]] std::size_t frame_bytes() const noexcept { return channels * bytes_of(format); }
 };
 
 /// What a call on a sink came to. A plain value: the audio thread throws nothing.
@@ -103,8 +106,8 @@ public:
 
     /// Frames that can be written now.
     virtual io_result room() noexcept = 0;
-    /// Writes up to `frames` frames; may take fewer, also none.
-    virtual io_result write(const std::byte* data, std::size_t frames) noexcept = 0;
+    /// Writes whole interleaved frames; may take fewer than there are, also none.
+    virtual io_result write(std::span<const std::byte> frames) noexcept = 0;
     virtual stream_position position() noexcept = 0;
     /// Stops at once and discards what is queued.
     virtual void drop() noexcept = 0;
@@ -129,7 +132,7 @@ public:
     std::size_t descriptors(std::span<pollfd> fds) noexcept final;
     io_kind ready(std::span<pollfd> fds) noexcept final;
     io_result room() noexcept final;
-    io_result write(const std::byte* data, std::size_t frames) noexcept final;
+    io_result write(std::span<const std::byte> frames) noexcept final;
     stream_position position() noexcept final;
     void drop() noexcept final;
 
@@ -137,7 +140,7 @@ protected:
     /// Takes the next frames of the stream, at most a period of them, interleaved, up to buffer_frames
     /// before their time; `first` counts from the epoch's start. Called by the audio thread: it must not
     /// block, lock, allocate or log. `ok`, or `lost` or `failed`, which end the stream.
-    virtual io_kind take(std::uint64_t first, const std::byte* data, std::size_t frames) noexcept = 0;
+    virtual io_kind take(std::uint64_t first, std::span<const std::byte> frames) noexcept = 0;
 
 private:
     struct impl;

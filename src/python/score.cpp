@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "python/plan_handle.hpp"
@@ -33,13 +34,13 @@ score make_score(const array_handle& on, const std::vector<placed>& plans, const
     return {on.value(), std::move(all), settled(on.value(), w.sound)};
 }
 
-void process(const score& s, format_kind f, std::byte* out)
+void process(const score& s, format_kind f, std::span<std::byte> out)
 {
     renderer r(s, f);
     const std::size_t frame = s.channels() * bytes_of(f);
     for (std::uint64_t done = 0; done < s.frames();) {
         const std::uint64_t n = std::min(frames_at_once, s.frames() - done);
-        r.process(static_cast<std::size_t>(n), out + done * frame);
+        r.process(out.subspan(done * frame, n * frame));
         done += n;
         if (!r.failure().empty())
             throw error(error_kind::runtime, "render", r.failure());
@@ -55,7 +56,7 @@ py::array render(const score& s, const std::string& format, const py::dtype& dty
     auto out = std::make_unique_for_overwrite<std::byte[]>(bytes);
     {
         const py::gil_scoped_release free;
-        process(s, f, out.get());
+        process(s, f, {out.get(), bytes});
     }
     std::byte* const first = out.get();
     const py::capsule owner(out.release(), [](void* p) { delete[] static_cast<std::byte*>(p); });

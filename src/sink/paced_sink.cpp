@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <span>
 #include <system_error>
 #include <utility>
 
@@ -50,9 +51,7 @@ try {
 
 struct paced_sink::impl {
     explicit impl(stream_setup s)
-        : setup(checked(std::move(s))),
-          frame_bytes(setup.channels * bytes_of(setup.format)),
-          pacer(make_pacer(setup))
+        : setup(checked(std::move(s))), frame_bytes(setup.frame_bytes()), pacer(make_pacer(setup))
     {
     }
 
@@ -121,12 +120,13 @@ io_result paced_sink::room() noexcept
     return {io_kind::ok, impl_->room(), 0};
 }
 
-io_result paced_sink::write(const std::byte* data, std::size_t frames) noexcept
+io_result paced_sink::write(std::span<const std::byte> frames) noexcept
 {
-    const std::size_t all = std::min(frames, impl_->room());
+    const std::size_t bytes = impl_->frame_bytes;
+    const std::size_t all = std::min(frames.size() / bytes, impl_->room());
     for (std::size_t done = 0; done < all;) {
         const std::size_t n = std::min<std::size_t>(all - done, impl_->setup.period_frames);
-        const io_kind s = take(impl_->written, data + done * impl_->frame_bytes, n);
+        const io_kind s = take(impl_->written, frames.subspan(done * bytes, n * bytes));
         if (s != io_kind::ok)
             return {s, done, 0};
         done += n;

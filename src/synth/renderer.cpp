@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <memory>
+#include <span>
+
+#include <fmt/format.h>
 
 #include <tactor/error.hpp>
 #include <tactor/render.hpp>
@@ -103,17 +106,23 @@ renderer::~renderer() = default;
 renderer::renderer(renderer&&) noexcept = default;
 renderer& renderer::operator=(renderer&&) noexcept = default;
 
-void renderer::process(std::size_t frames, std::byte* out)
+void renderer::process(std::span<std::byte> out)
 {
     impl& r = not_moved(impl_);
+    if (out.size() % r.frame_bytes != 0)
+        throw error(error_kind::bad_input, "renderer",
+                    fmt::format("{} bytes are no whole number of frames of {}", out.size(), r.frame_bytes),
+                    "give room for whole frames");
+    std::size_t frames = out.size() / r.frame_bytes;
+    std::byte* to = out.data();
     // Whole blocks of the mixer, several at once: little to keep waiting, little to do between.
     constexpr std::uint64_t stride = std::uint64_t{8} * synth::block_frames;
     while (frames > 0) {
         const std::uint64_t at = r.mix.position();
         const std::uint64_t until = std::min(at + frames, at / stride * stride + stride);
         const auto n = static_cast<std::size_t>(r.prepare(until) - at);
-        r.mix.process(n, out);
-        out += n * r.frame_bytes;
+        r.mix.process(n, to);
+        to += n * r.frame_bytes;
         frames -= n;
     }
 }

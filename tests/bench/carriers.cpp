@@ -47,7 +47,7 @@ void carriers(benchmark::State& state)
             r = renderer(s, format_kind::float32);
             state.ResumeTiming();
         }
-        r.process(bench::block, out.data());
+        r.process(out);
         benchmark::DoNotOptimize(out.data());
     }
 }

@@ -3,6 +3,7 @@
 // what they take where no clock means anything.
 //   tactor-count mixer|std_sin BLOCKS
 #include <cstdlib>
+#include <span>
 #include <string>
 
 #include "pieces.hpp"
@@ -21,7 +22,7 @@ int main(int argc, char** argv)
     } else {
         tactor::renderer mixer(s, tactor::format_kind::float32);
         for (int i = 0; i < blocks; ++i)
-            mixer.process(bench::block, reinterpret_cast<std::byte*>(out.data()));
+            mixer.process(std::as_writable_bytes(std::span(out)));
     }
     return 0;
 }

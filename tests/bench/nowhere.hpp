@@ -25,7 +25,7 @@ public:
         setup_.format = format_kind::s32;
         setup_.period_frames = period;
         setup_.buffer_frames = 3 * period;
-        last_.resize(period * channels * bytes_of(setup_.format));
+        last_.resize(period * setup_.frame_bytes());
     }
     const stream_setup& setup() const noexcept override { return setup_; }
     io_kind prepare() noexcept override { return io_kind::ok; }
@@ -35,11 +35,12 @@ public:
     std::size_t descriptors(std::span<pollfd>) noexcept override { return 0; }
     io_kind ready(std::span<pollfd>) noexcept override { return io_kind::ok; }
     io_result room() noexcept override { return {io_kind::ok, setup_.period_frames, 0}; }
-    io_result write(const std::byte* data, std::size_t frames) noexcept override
+    io_result write(std::span<const std::byte> frames) noexcept override
     {
-        std::memcpy(last_.data(), data, frames * setup_.channels * bytes_of(setup_.format));
-        written_ += frames;
-        return {io_kind::ok, frames, 0};
+        std::memcpy(last_.data(), frames.data(), frames.size());
+        const std::size_t n = frames.size() / setup_.frame_bytes();
+        written_ += n;
+        return {io_kind::ok, n, 0};
     }
     stream_position position() noexcept override
     {

@@ -170,7 +170,7 @@ void whole(benchmark::State& state, const score& s)
             r = std::make_unique<renderer>(s, format_kind::float32);
             state.ResumeTiming();
         }
-        r->process(bench::block, out.data());
+        r->process(out);
         benchmark::DoNotOptimize(out.data());
         benchmark::ClobberMemory();
     }

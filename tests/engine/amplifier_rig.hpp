@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,14 +33,14 @@ public:
     {
     }
 
-    io_result write(const std::byte* d, std::size_t n) noexcept override
+    io_result write(std::span<const std::byte> frames) noexcept override
     {
         if (spoilt_->empty())
-            return forwarding_sink::write(d, n);
+            return forwarding_sink::write(frames);
         const io_result r = spoilt_->front();
         spoilt_->pop_front();
         if (r.status == io_kind::ok && r.frames > 0)
-            return forwarding_sink::write(d, std::min(n, r.frames));
+            return write_first(std::min(frames.size() / setup().frame_bytes(), r.frames), frames);
         return r;
     }
 

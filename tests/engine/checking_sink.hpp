@@ -8,6 +8,7 @@
 #include <cstring>
 #include <memory>
 #include <random>
+#include <span>
 #include <utility>
 
 #include "rig.hpp"
@@ -32,8 +33,9 @@ public:
         return forwarding_sink::prepare();
     }
 
-    io_result write(const std::byte* d, std::size_t n) noexcept override
+    io_result write(std::span<const std::byte> frames) noexcept override
     {
+        std::size_t n = frames.size() / setup().frame_bytes();
         // An empty buffer always takes something.
         switch (empty_ ? 63 : random_() % 64) {
         case 0:
@@ -46,12 +48,12 @@ public:
         default:
             break;
         }
-        const io_result r = forwarding_sink::write(d, n);
+        const io_result r = write_first(n, frames);
         empty_ = false;
         for (std::size_t f = 0; f < r.frames; ++f) {
             for (unsigned c = 0; c < channels; ++c) {
                 std::int32_t v = 0;
-                std::memcpy(&v, d + (f * channels + c) * 4, 4);
+                std::memcpy(&v, frames.data() + (f * channels + c) * 4, 4);
                 const double x = v / 2147483648.0;
                 beyond_limit += std::abs(x) > limit_ + 1e-9 ? 1U : 0U;
                 jumps += std::abs(x - before_[c]) > allowed_ + 1e-6 ? 1U : 0U;

@@ -40,7 +40,12 @@ public:
     std::size_t descriptors(std::span<pollfd> f) noexcept override { return inner_->descriptors(f); }
     io_kind ready(std::span<pollfd> f) noexcept override { return inner_->ready(f); }
     io_result room() noexcept override { return inner_->room(); }
-    io_result write(const std::byte* d, std::size_t n) noexcept override { return inner_->write(d, n); }
+    io_result write(std::span<const std::byte> frames) noexcept override { return inner_->write(frames); }
+    /// Some of what is offered.
+    io_result write_first(std::size_t n, std::span<const std::byte> frames) noexcept
+    {
+        return forwarding_sink::write(frames.first(n * setup().frame_bytes()));
+    }
     stream_position position() noexcept override { return inner_->position(); }
     void drop() noexcept override { inner_->drop(); }
 

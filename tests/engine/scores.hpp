@@ -67,7 +67,7 @@ inline score tone(double seconds, unsigned tactor = 0)
 inline std::vector<std::byte> rendered(const score& s, format_kind f)
 {
     std::vector<std::byte> out(s.frames() * s.channels() * bytes_of(f));
-    renderer(s, f).process(s.frames(), out.data());
+    renderer(s, f).process(out);
     return out;
 }
 

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstring>
 #include <random>
+#include <span>
 
 #include <doctest/doctest.h>
 
@@ -21,7 +22,7 @@ class stingy_sink final : public forwarding_sink {
 public:
     using forwarding_sink::forwarding_sink;
 
-    io_result write(const std::byte* data, std::size_t frames) noexcept override
+    io_result write(std::span<const std::byte> frames) noexcept override
     {
         switch (random_() % 4) {
         case 0:
@@ -29,9 +30,9 @@ public:
         case 1:
             return {io_kind::again, 0, -EAGAIN};
         case 2:
-            return forwarding_sink::write(data, 1 + random_() % frames);
+            return write_first(1 + random_() % (frames.size() / setup().frame_bytes()), frames);
         default:
-            return forwarding_sink::write(data, frames);
+            return forwarding_sink::write(frames);
         }
     }
 

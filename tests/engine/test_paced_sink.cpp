@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sinks of one's own that pace themselves.
 #include <algorithm>
+#include <span>
 #include <thread>
 #include <vector>
 
@@ -46,15 +47,15 @@ public:
     }
 
 private:
-    io_kind take(std::uint64_t first, const std::byte* data, std::size_t frames) noexcept override
+    io_kind take(std::uint64_t first, std::span<const std::byte> data) noexcept override
     {
+        const std::size_t frames = data.size() / setup().frame_bytes();
         if (first >= ends_after_)
             return io_kind::lost;
         taken_.gapless = taken_.gapless && first == taken_.frames;
         taken_.frames += frames;
         taken_.most = std::max(taken_.most, frames);
-        taken_.bytes.insert(taken_.bytes.end(), data,
-                            data + frames * setup().channels * bytes_of(setup().format));
+        taken_.bytes.insert(taken_.bytes.end(), data.begin(), data.end());
         return io_kind::ok;
     }
 

@@ -337,7 +337,7 @@ TEST_CASE("scores of plans with absurd numbers: an error, or something that can 
                 const score s(a, {placed}, o);
                 renderer r(s, format_kind::s16);
                 std::vector<std::byte> out(std::size_t{480} * s.channels() * 2);
-                r.process(480, out.data());
+                r.process(out);
             });
         };
         CHECK(with([&](placed_plan& p, render_options&) { p.start_s = bad; }));

@@ -22,9 +22,9 @@ TEST_CASE("a device without descriptors in an xrun, such as dmix, is not asked a
     fake_dac dac;
     dac.hide_descriptors_in_xrun();
     const auto s = pcm::adopt(dac.pcm(), nine());
-    std::vector<std::byte> silence(288 * 9 * bytes_of(s->setup().format));
+    std::vector<std::byte> silence(288 * s->setup().frame_bytes());
     REQUIRE(s->prepare() == io_kind::ok);
-    REQUIRE(s->write(silence.data(), 288).frames == 288);
+    REQUIRE(s->write(silence).frames == 288);
     REQUIRE(s->start() == io_kind::ok);
     std::vector<pollfd> fds(s->max_descriptors());
     CHECK(s->descriptors(fds) == 1);

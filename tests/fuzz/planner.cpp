@@ -131,7 +131,7 @@ void check_samples(const array& a, const plan& p)
     constexpr std::size_t block = 256;
     std::vector<std::byte> bytes(block * s->channels() * sizeof(float));
     for (int i = 0; i < 8; ++i) {
-        r.process(block, bytes.data());
+        r.process(bytes);
         for (std::size_t at = 0; at < bytes.size(); at += sizeof(float)) {
             float x = 0.0F;
             std::memcpy(&x, bytes.data() + at, sizeof x);

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
 
 #include <boost/asio/executor_work_guard.hpp>
@@ -29,7 +30,7 @@ public:
     nobody() : paced_sink({.name = "nobody", .channels = 9, .rate = rate, .period_frames = 192}) {}
 
 protected:
-    io_kind take(std::uint64_t, const std::byte*, std::size_t) noexcept override { return io_kind::ok; }
+    io_kind take(std::uint64_t, std::span<const std::byte>) noexcept override { return io_kind::ok; }
 };
 
 // Holds what it is told against the protocol.

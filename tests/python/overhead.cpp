@@ -12,10 +12,9 @@ extern "C" void plan_and_render(float* copy)
     static const tactor::stroke stroke = tactor::preset_stroke("park2016-3");
     const tactor::score score(palm, tactor::make_plan(palm, stroke));
     tactor::renderer r(score, tactor::format_kind::float32);
-    const auto frames = static_cast<std::size_t>(score.frames());
-    const std::size_t bytes = frames * score.channels() * sizeof(float);
+    const std::size_t bytes = score.frames() * score.channels() * sizeof(float);
     const auto samples = std::make_unique_for_overwrite<std::byte[]>(bytes);
-    r.process(frames, samples.get());
+    r.process({samples.get(), bytes});
     if (copy != nullptr)
         std::memcpy(copy, samples.get(), bytes);
 }

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <memory>
 #include <numbers>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -119,11 +120,12 @@ public:
     {
         return {next, static_cast<std::size_t>(setup_.buffer_frames - (written_ - played_)), 0};
     }
-    io_result write(const std::byte* data, std::size_t frames) noexcept override
+    io_result write(std::span<const std::byte> offered) noexcept override
     {
-        frames = std::min<std::size_t>(frames, 37); // fewer than offered, as devices may
+        const std::size_t frames = std::min<std::size_t>(offered.size() / setup_.frame_bytes(),
+                                                         37); // fewer than offered, as devices may
         std::vector<float> x(2 * frames);
-        std::memcpy(x.data(), data, x.size() * sizeof(float));
+        std::memcpy(x.data(), offered.data(), x.size() * sizeof(float));
         all.insert(all.end(), x.begin(), x.end());
         written_ += frames;
         return {io_kind::ok, frames, 0};

@@ -105,7 +105,7 @@ std::vector<std::byte> render(const tactor::score& s, tactor::format_kind f, Nex
     tactor::renderer r(s, f);
     for (std::size_t done = 0; done < frames;) {
         const std::size_t n = std::min<std::size_t>(frames - done, next());
-        r.process(n, out.data() + done * frame_bytes);
+        r.process(std::span(out).subspan(done * frame_bytes, n * frame_bytes));
         done += n;
     }
     return out;

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The same bytes whatever the sizes of the blocks.
 #include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
 
 #include <doctest/doctest.h>
+
+#include <tactor/error.hpp>
 
 #include "pieces.hpp"
 #include "rounds.hpp"
@@ -68,6 +73,20 @@ TEST_CASE("the renderer goes on in silence after the end")
     CHECK(std::equal(exact.begin(), exact.end(), longer.begin()));
     CHECK(std::all_of(longer.begin() + static_cast<std::ptrdiff_t>(exact.size()), longer.end(),
                       [](std::byte b) { return b == std::byte{0}; }));
+}
+
+TEST_CASE("what is no whole number of frames is refused, and nothing is written; nothing at all is")
+{
+    const score s = various().front();
+    renderer r(s, format_kind::s16);
+    std::vector<std::byte> out(100 * s.channels() * 2 + 1, std::byte{0x55});
+    CHECK_THROWS_WITH_AS(r.process(out), doctest::Contains("whole number of frames"), error);
+    CHECK(r.position() == 0);
+    CHECK(std::all_of(out.begin(), out.end(), [](std::byte b) { return b == std::byte{0x55}; }));
+    r.process({});
+    CHECK(r.position() == 0);
+    r.process(std::span(out).first(100 * s.channels() * 2));
+    CHECK(r.position() == 100);
 }
 
 TEST_CASE("more voices than a block has frames keep their order")

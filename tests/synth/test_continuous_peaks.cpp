@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -133,7 +134,7 @@ TEST_CASE(
     CHECK(promised[8] == 0.5); // not looked at: its part of any harmless intensity
     renderer r(s, format_kind::float32);
     std::vector<float> samples(s.frames() * s.channels());
-    r.process(s.frames(), reinterpret_cast<std::byte*>(samples.data()));
+    r.process(std::as_writable_bytes(std::span(samples)));
     CHECK(r.failure().empty());
     CHECK(std::any_of(samples.end() - 90, samples.end(), [](float v) { return v != 0.0F; }));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <doctest/doctest.h>
 
@@ -80,9 +81,9 @@ TEST_CASE("a carrier that starts after an hour has the phase of the hour")
     renderer r(s, format_kind::float32);
     std::vector<float> x(48000);
     for (int second = 0; second < 3600; ++second) {
-        r.process(x.size(), reinterpret_cast<std::byte*>(x.data()));
+        r.process(std::as_writable_bytes(std::span(x)));
     }
-    r.process(480, reinterpret_cast<std::byte*>(x.data()));
+    r.process(std::as_writable_bytes(std::span(x).first(480)));
     for (std::uint64_t k = 96; k < 384; ++k) {
         const long double cycles = 251.3L * static_cast<long double>(3600U * 48000U + k) / 48000.0L;
         const long double exact = std::sin(2.0L * 3.14159265358979323846264L * std::fmod(cycles, 1.0L));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -55,7 +56,7 @@ std::vector<float> samples(const score& s)
 {
     std::vector<float> x(s.frames() * s.channels());
     renderer r(s, format_kind::float32);
-    r.process(s.frames(), reinterpret_cast<std::byte*>(x.data()));
+    r.process(std::as_writable_bytes(std::span(x)));
     return x;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <span>
 #include <utility>
 
 namespace tactor::engine {
@@ -44,7 +45,7 @@ audio_loop::audio_loop(sink& s, link& l, std::span<const double> limits, const l
       mixer_(limits, setup_.format, o.drives + live_reserve(setup_), o.guards),
       scores_(mixer_, l, o.fade_frames, live_reserve(setup_)),
       clock_(setup_.rate, setup_.batch ? setup_.period_frames : 0),
-      frame_bytes_(setup_.channels * bytes_of(setup_.format)),
+      frame_bytes_(setup_.frame_bytes()),
       block_(setup_.period_frames * frame_bytes_)
 {
     mixer_.resume(o.driven);
@@ -191,7 +192,8 @@ void audio_loop::mix_period() noexcept
 
 io_result audio_loop::write_pending() noexcept
 {
-    const io_result r = sink_.write(block_.data() + pending_from_ * frame_bytes_, pending_);
+    const io_result r =
+        sink_.write(std::span(block_).subspan(pending_from_ * frame_bytes_, pending_ * frame_bytes_));
     const std::size_t taken = std::min(r.frames, pending_);
     pending_ -= taken;
     pending_from_ += taken;

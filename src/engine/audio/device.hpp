@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include <tactor/sink.hpp>
 
@@ -43,10 +44,10 @@ public:
         const rt::permitted_call here{};
         return sink_.room();
     }
-    io_result write(const std::byte* data, std::size_t frames) noexcept
+    io_result write(std::span<const std::byte> frames) noexcept
     {
         const rt::permitted_call here{};
-        return sink_.write(data, frames);
+        return sink_.write(frames);
     }
     stream_position position() noexcept
     {

@@ -42,7 +42,7 @@ waveform look_at(const score& s, const std::vector<unsigned>& channels, std::siz
         // No block crosses from one stretch to the next.
         const auto n = static_cast<std::size_t>(
             std::min({static_cast<std::uint64_t>(block), frames - at, length - at % length}));
-        r.process(n, std::as_writable_bytes(std::span(buffer)).data());
+        r.process(std::as_writable_bytes(std::span(buffer).first(n * per_frame)));
         if (!r.failure().empty())
             throw error(error_kind::bad_input, "stroke", r.failure());
         ranges.add(buffer.data(), n);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <utility>
 
 namespace tactor::server {
@@ -53,11 +54,11 @@ public:
     stream_position position() noexcept override { return inner_->position(); }
     void drop() noexcept override { inner_->drop(); }
 
-    io_result write(const std::byte* data, std::size_t frames) noexcept override
+    io_result write(std::span<const std::byte> frames) noexcept override
     {
-        const io_result r = inner_->write(data, frames);
+        const io_result r = inner_->write(frames);
         if (peaks_->listens())
-            look(data, r.frames);
+            look(frames.data(), r.frames);
         return r;
     }
 

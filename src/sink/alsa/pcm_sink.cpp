@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <span>
 #include <utility>
 
 #include "rt/clock.hpp"
@@ -157,14 +158,16 @@ long pcm_sink::write_paced(const std::byte* data, std::size_t frames) noexcept
     return snd_pcm_writei(handle_.get(), data, frames);
 }
 
-io_result pcm_sink::write(const std::byte* data, std::size_t frames) noexcept
+io_result pcm_sink::write(std::span<const std::byte> frames) noexcept
 {
     const quiet silent;
+    std::size_t count = frames.size() / setup_.frame_bytes();
     if (paced_)
-        frames = std::min<std::size_t>(frames, pacer_.room());
-    if (frames == 0)
+        count = std::min<std::size_t>(count, pacer_.room());
+    if (count == 0)
         return {io_kind::again, 0, 0};
-    const long n = paced_ ? write_paced(data, frames) : snd_pcm_writei(handle_.get(), data, frames);
+    const long n =
+        paced_ ? write_paced(frames.data(), count) : snd_pcm_writei(handle_.get(), frames.data(), count);
     if (n < 0)
         return {of_error(n, state()), 0, static_cast<int>(n)};
     const auto taken = static_cast<std::size_t>(n);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include <tactor/alsa.hpp>
 
@@ -32,7 +33,7 @@ public:
     std::size_t descriptors(std::span<pollfd> fds) noexcept override;
     io_kind ready(std::span<pollfd> fds) noexcept override;
     io_result room() noexcept override;
-    io_result write(const std::byte* data, std::size_t frames) noexcept override;
+    io_result write(std::span<const std::byte> frames) noexcept override;
     stream_position position() noexcept override;
     void drop() noexcept override;
 

@@ -2,6 +2,7 @@
 #include "sink/wav/write.hpp"
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 #include <tactor/error.hpp>
@@ -38,7 +39,7 @@ bool write(const score& s, format_kind f, const std::filesystem::path& file, con
             return false;
         }
         const std::uint64_t n = std::min(at_once, s.frames() - done);
-        r.process(n, block.data());
+        r.process(std::span(block).first(n * frame_bytes));
         if (!r.failure().empty()) {
             throw error(error_kind::bad_input, "stroke", r.failure());
         }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include <tactor/sample_format.hpp>
 
@@ -21,7 +22,7 @@ constexpr unsigned most_breaks_in_row = 3;
 masking_stream::masking_stream(sink& s, const masking_options& o)
     : sink_(s),
       noise_(o.color, o.level_dbfs, o.seed),
-      frame_bytes_(s.setup().channels * bytes_of(s.setup().format)),
+      frame_bytes_(s.setup().frame_bytes()),
       fade_frames_(static_cast<std::uint32_t>(std::max(1.0, std::round(o.fade_s * s.setup().rate)))),
       samples_(masking_block_frames),
       block_(masking_block_frames * frame_bytes_)
@@ -76,7 +77,8 @@ io_kind masking_stream::fill(std::size_t frames, bool on) noexcept
             frames -= pending_;
             make_block(pending_, on);
         }
-        const io_result r = sink_.write(block_.data() + pending_from_ * frame_bytes_, pending_);
+        const io_result r =
+            sink_.write(std::span(block_).subspan(pending_from_ * frame_bytes_, pending_ * frame_bytes_));
         if (r.status == io_kind::again || (r.status == io_kind::ok && r.frames == 0))
             return io_kind::ok;
         if (r.status != io_kind::ok)

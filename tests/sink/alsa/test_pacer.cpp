@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Devices without a clock get one.
 #include <random>
+#include <span>
 
 #include <poll.h>
 
@@ -98,8 +99,8 @@ std::uint64_t write_all(sink& s, std::uint64_t frames)
 {
     REQUIRE(s.prepare() == io_kind::ok);
     const stream_setup& d = s.setup();
-    const std::vector<std::byte> silence(d.buffer_frames * d.channels * bytes_of(d.format));
-    REQUIRE(s.write(silence.data(), d.buffer_frames).frames == d.buffer_frames);
+    const std::vector<std::byte> silence(d.buffer_frames * d.frame_bytes());
+    REQUIRE(s.write(silence).frames == d.buffer_frames);
     REQUIRE(s.start() == io_kind::ok);
     CHECK_FALSE(d.has_clock);
     std::uint64_t wakes = 0;
@@ -111,7 +112,7 @@ std::uint64_t write_all(sink& s, std::uint64_t frames)
         if (s.ready(std::span(&fd, 1)) != io_kind::ok)
             continue;
         ++wakes;
-        const io_result r = s.write(silence.data(), d.period_frames);
+        const io_result r = s.write(std::span(silence).first(d.period_frames * d.frame_bytes()));
         REQUIRE(r.status == io_kind::ok);
         REQUIRE(r.frames == d.period_frames);
     }

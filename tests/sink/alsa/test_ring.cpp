@@ -36,8 +36,8 @@ struct stream {
     void start()
     {
         REQUIRE(out->prepare() == io_kind::ok);
-        const std::vector<std::byte> silence(std::size_t{out->setup().buffer_frames} * 4);
-        REQUIRE(out->write(silence.data(), out->setup().buffer_frames).frames == out->setup().buffer_frames);
+        const std::vector<std::byte> silence(out->setup().buffer_frames * out->setup().frame_bytes());
+        REQUIRE(out->write(silence).frames == out->setup().buffer_frames);
         REQUIRE(out->start() == io_kind::ok);
     }
     // For as long as the buffer lasts at the rate.

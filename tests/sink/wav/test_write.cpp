@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <span>
 
 #include <doctest/doctest.h>
 
@@ -307,7 +308,7 @@ TEST_CASE("a plan that fails in mid-stroke leaves no file; the renderer fades ou
 
         std::vector<std::byte> half(whole.size(), std::byte{1});
         CHECK(r.failure().empty());
-        r.process(s.frames(), half.data());
+        r.process(half);
         CHECK(r.failure().find(std::isnan(amplitude) ? "amplitude nan cannot be rendered"
                                                      : "amplitude 1e+300, above the ") != std::string::npos);
         const std::size_t bytes = s.channels() * sizeof(float);
@@ -326,7 +327,7 @@ TEST_CASE("a plan that fails in mid-stroke leaves no file; the renderer fades ou
         }
         std::vector<std::byte> same(whole.size());
         for (std::size_t frame = 0; frame < s.frames(); ++frame) {
-            by_frames.process(1, same.data() + frame * bytes);
+            by_frames.process(std::span(same).subspan(frame * bytes, bytes));
         }
         CHECK(same == half);
     }
