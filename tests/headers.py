@@ -8,6 +8,7 @@
 * Classes with virtual functions cannot be copied.
 * A function that has a result is [[nodiscard]]: to drop it is a mistake (to_string() and its kin apart; write_wav(), whose
   work is the file). So are members that are const or static: they do nothing else.
+* What is exported is in the inline namespace of this version: v0 of 0.1, v0_N of a 0.N that breaks programs.
 
 Usage: headers.py SOURCE_ROOT. Prints each line that breaks a rule, then counts.
 """
@@ -56,6 +57,9 @@ def complaints(name, text, everything, tried):
                 yield f"{name}: {enum} has no {needed.replace(chr(92), '')}"
         if enum not in tried:
             yield f"{name}: tests/engine/test_kinds.cpp does not try {enum}"
+    for opened in re.findall(r"^namespace [^{]*\{\n[^\n]*", code, re.M):
+        if not re.match(r"namespace tactor(::detail \{| \{\ninline namespace v0 \{)", opened):
+            yield f"{name}: {opened}: what is exported is in the inline namespace v0"
     if re.search(r"\benum\s+(?!class)\w+\s*\{", code):
         yield f"{name}: an enumeration without class"
     for m in DROPPED.finditer(code):

@@ -13,6 +13,7 @@
 #include <tactor/sink.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// More than any PCM has.
 inline constexpr unsigned max_pcm_channels = 1024;
@@ -46,4 +47,5 @@ struct alsa_options {
 [[nodiscard]] TACTOR_API std::unique_ptr<sink> reopen_alsa(const alsa_options& o,
                                                            const std::function<bool(double pause_s)>& pause);
 
+} // namespace v0
 } // namespace tactor

@@ -15,6 +15,7 @@
 #include <tactor/kinds.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// How a tactor works, which decides what bursts it can make.
 enum class actuator_kind {
@@ -97,4 +98,5 @@ struct grid_lines {
 /// \throws error (bad_input) naming the tactors and their line.
 TACTOR_API void validate(const array& a);
 
+} // namespace v0
 } // namespace tactor

@@ -18,8 +18,7 @@
 #include <tactor/error.hpp>
 #include <tactor/player.hpp>
 
-namespace tactor {
-namespace detail {
+namespace tactor::detail {
 
 /// A handler that waits for a stroke's end, and keeps its executor, and the one that the caller named, at
 /// work until then.
@@ -82,7 +81,10 @@ void wait_for_stroke(const Named& named, player& p, Handler&& h, Start id_of)
     }
 }
 
-} // namespace detail
+} // namespace tactor::detail
+
+namespace tactor {
+inline namespace v0 {
 
 /// Waits for a stroke's end: handler(std::exception_ptr, stroke_report). `where` is an executor, or what has
 /// one (an io_context, a socket): the handler runs there, unless it has an associated executor of its own
@@ -132,4 +134,5 @@ auto async_play(player& p, score s, start_at start, Token&& token)
     return async_play(boost::asio::system_executor(), p, std::move(s), start, std::forward<Token>(token));
 }
 
+} // namespace v0
 } // namespace tactor

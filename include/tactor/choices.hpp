@@ -11,6 +11,7 @@
 #include <tactor/kinds.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 enum class algorithm_kind { park2016, tactile_brush, continuous };
 
@@ -76,4 +77,5 @@ struct start_anchor {
                                                 std::span<const double> starts_s,
                                                 std::span<const double> ends_s);
 
+} // namespace v0
 } // namespace tactor

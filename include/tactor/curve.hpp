@@ -13,6 +13,7 @@
 #include <tactor/phantom.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 struct burst;
 
@@ -67,4 +68,5 @@ private:
     std::shared_ptr<const impl> impl_;
 };
 
+} // namespace v0
 } // namespace tactor

@@ -14,6 +14,7 @@
 #include <tactor/sink.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// Stands for "as many as you like" in count_range::most, as software PCMs say.
 inline constexpr unsigned no_limit = std::numeric_limits<unsigned>::max();
@@ -108,4 +109,5 @@ struct card_info {
 /// Blocks shortly (/proc). Any thread.
 [[nodiscard]] TACTOR_API std::vector<process_info> card_holders(unsigned card_index);
 
+} // namespace v0
 } // namespace tactor

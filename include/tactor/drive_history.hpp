@@ -11,6 +11,7 @@
 #include <tactor/api.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// For how long each channel was driven lately, and when that was: what drive_limits::max_drive_s goes by.
 /// One player gives it (player::history()), the next goes on from it; save() and restore() bring it to
@@ -46,4 +47,5 @@ private:
     std::shared_ptr<const impl> impl_;
 };
 
+} // namespace v0
 } // namespace tactor

@@ -12,6 +12,7 @@
 #include <tactor/kinds.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// What kind of failure it was.
 enum class error_kind {
@@ -86,6 +87,7 @@ private:
     std::shared_ptr<const data> data_; ///< never none: an error is not moved from
 };
 
+} // namespace v0
 } // namespace tactor
 
 template <>

@@ -12,6 +12,7 @@
 #include <tactor/stroke.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// Where a picture was put: `from` became `to`, and all distances are `scale` times what they were.
 struct fitting {
@@ -62,4 +63,5 @@ struct fitted_strokes {
 /// stroke::fit_group, which do not ask any more. Throws as above.
 [[nodiscard]] TACTOR_API std::vector<stroke> fit_as_asked(std::vector<stroke> strokes, const layout& l);
 
+} // namespace v0
 } // namespace tactor

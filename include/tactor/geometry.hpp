@@ -8,6 +8,7 @@
 #include <tactor/api.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// A place on the array in millimetres: x to the right, y down, as on a screen.
 struct point {
@@ -26,4 +27,5 @@ inline double distance_mm(point a, point b) noexcept
 /// Two places nearer to each other than this are the same place (a nanometre).
 inline constexpr double same_place_mm = 1e-6;
 
+} // namespace v0
 } // namespace tactor

@@ -13,6 +13,7 @@
 #include <tactor/lines.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// One output that is on or off, e.g. the enable input of an amplifier. Derive from it for hardware of your
 /// own.
@@ -101,4 +102,5 @@ struct gpio_line_place {
 ///         opened (which group to join); bad_input for a name that says neither.
 [[nodiscard]] TACTOR_API gpio_line_place find_gpio_line(const gpio_line_name& line);
 
+} // namespace v0
 } // namespace tactor

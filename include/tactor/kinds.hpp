@@ -10,6 +10,7 @@
 #include <tactor/api.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// The value that to_string() prints so: from_string<phantom_kind>("barycentric").
 /// \throws error (bad_input) that lists the names.
@@ -20,4 +21,5 @@ template <typename Kind>
 template <typename Kind>
 [[nodiscard]] std::span<const Kind> values_of() noexcept = delete;
 
+} // namespace v0
 } // namespace tactor

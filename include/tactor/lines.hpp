@@ -13,6 +13,7 @@
 #include <tactor/kinds.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// Which changes of an input count.
 enum class edge_kind { rising, falling, both };
@@ -63,4 +64,5 @@ struct sync_settings {
     pull_kind pull = pull_kind::as_is;
 };
 
+} // namespace v0
 } // namespace tactor

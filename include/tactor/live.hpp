@@ -13,6 +13,7 @@
 #include <tactor/report.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 struct live_options {
     /// What of it counts: `algorithm` (continuous: the carrier runs and the phantom's weights follow the
@@ -90,4 +91,5 @@ private:
     std::shared_ptr<impl> impl_;
 };
 
+} // namespace v0
 } // namespace tactor

@@ -11,6 +11,7 @@
 #include <tactor/kinds.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// How much it matters.
 enum class log_kind {
@@ -32,4 +33,5 @@ TACTOR_API std::span<const log_kind> values_of<log_kind>() noexcept;
 /// keeps drives waiting. What it throws is dropped, and so are lines for which there is no memory.
 using log_function = std::function<void(log_kind, std::string_view)>;
 
+} // namespace v0
 } // namespace tactor

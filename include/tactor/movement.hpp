@@ -12,6 +12,7 @@
 #include <tactor/kinds.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// How a target gets from rest to rest. With u from 0 to 1 the part of the time, the part of the way is
 enum class easing_kind {
@@ -59,4 +60,5 @@ struct movement {
     friend bool operator==(const movement&, const movement&) = default;
 };
 
+} // namespace v0
 } // namespace tactor

@@ -21,6 +21,7 @@
 #include <tactor/stroke.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// Who is predicted to feel a plan.
 enum class observer_kind {
@@ -135,4 +136,5 @@ struct compensated_plan {
                                                                 const stroke& s, const plan_options& o,
                                                                 const low_speed_observer& m = {});
 
+} // namespace v0
 } // namespace tactor

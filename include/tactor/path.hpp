@@ -13,6 +13,7 @@
 #include <tactor/geometry.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// One open or closed curve of lines, arcs and Beziers. Immutable; copies share it, and so do moves: what is
 /// moved from stays what it was. All members may be called from any thread and do not block.
@@ -58,4 +59,5 @@ private:
     std::shared_ptr<const impl> impl_;
 };
 
+} // namespace v0
 } // namespace tactor

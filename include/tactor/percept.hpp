@@ -12,6 +12,7 @@
 #include <tactor/stroke.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// One instant: where the target is, and what is predicted to be felt.
 struct percept_sample {
@@ -81,4 +82,5 @@ struct person {
 /// population (divided by n).
 [[nodiscard]] TACTOR_API percept_summary summarise(const std::vector<percept_sample>& samples);
 
+} // namespace v0
 } // namespace tactor

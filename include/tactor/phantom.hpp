@@ -15,6 +15,7 @@
 #include <tactor/kinds.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// One tactor's part in a phantom: linear amplitude, where 1 is the intensity asked for.
 struct drive {
@@ -77,4 +78,5 @@ public:
 /// nearest point of it. \throws error (bad_input), from weights(), for what is not finite or below 0.
 [[nodiscard]] TACTOR_API std::shared_ptr<const phantom_model> make_phantom(phantom_kind k, const layout& l);
 
+} // namespace v0
 } // namespace tactor

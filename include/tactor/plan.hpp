@@ -20,6 +20,7 @@
 #include <tactor/waveform.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// SOA = slope * duration + intercept: Eq. (1) of Park et al. 2016, from Israr and Poupyrev 2011.
 /// Both depend on the body site.
@@ -171,4 +172,5 @@ struct plan {
 /// above, or for a burst that is longer than the SOA or shorter than 0.1 ms.
 [[nodiscard]] TACTOR_API double burst_duration_s(const plan_options& o);
 
+} // namespace v0
 } // namespace tactor

@@ -23,6 +23,7 @@
 #include <tactor/start_at.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 struct player_options {
     /// How far ahead drives are handed to the audio thread; two buffers and four periods at least.
@@ -191,4 +192,5 @@ private:
     std::shared_ptr<impl> impl_; ///< the control thread's, too, while a handler runs
 };
 
+} // namespace v0
 } // namespace tactor

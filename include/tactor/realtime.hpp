@@ -9,6 +9,7 @@
 #include <tactor/api.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// What limits and capabilities allow.
 struct realtime_rights {
@@ -21,4 +22,5 @@ struct realtime_rights {
 /// not throw for files that cannot be read: no rights then. Blocks shortly.
 [[nodiscard]] TACTOR_API realtime_rights probe_realtime_rights();
 
+} // namespace v0
 } // namespace tactor

@@ -21,6 +21,7 @@
 #include <tactor/sample_format.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// Where the carrier's phase starts. With `stroke` one carrier runs from the stroke's first frame on, and
 /// bursts open and close it: a tactor that plays several in a row goes on without a break. With `burst` it
@@ -208,4 +209,5 @@ private:
     std::unique_ptr<impl> impl_;
 };
 
+} // namespace v0
 } // namespace tactor

@@ -17,6 +17,7 @@
 #include <tactor/kinds.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// A stroke that a player was given. A plain value; the number is unique in one player, and 0 stands for
 /// none.
@@ -127,6 +128,7 @@ private:
     std::optional<stroke_report> report_;
 };
 
+} // namespace v0
 } // namespace tactor
 
 template <>

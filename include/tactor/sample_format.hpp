@@ -10,6 +10,7 @@
 #include <tactor/kinds.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 enum class format_kind {
     float32, ///< FLOAT_LE, full scale 1.0
@@ -29,4 +30,5 @@ TACTOR_API format_kind from_string<format_kind>(std::string_view name);
 template <>
 TACTOR_API std::span<const format_kind> values_of<format_kind>() noexcept;
 
+} // namespace v0
 } // namespace tactor

@@ -15,6 +15,7 @@
 #include <tactor/lines.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// [output]: the PCM. Anything not said is chosen by the program.
 struct output_settings {
@@ -92,4 +93,5 @@ struct setup {
 /// against the current directory.
 [[nodiscard]] TACTOR_API setup parse_setup(std::string_view toml, const std::string& name);
 
+} // namespace v0
 } // namespace tactor

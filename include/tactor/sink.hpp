@@ -18,6 +18,7 @@
 #include <tactor/sample_format.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// Which channels of the device the channels of a stream reach.
 struct stream_wiring {
@@ -147,4 +148,5 @@ private:
     std::unique_ptr<impl> impl_;
 };
 
+} // namespace v0
 } // namespace tactor

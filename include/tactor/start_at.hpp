@@ -11,9 +11,7 @@
 #include <tactor/api.hpp>
 #include <tactor/kinds.hpp>
 
-namespace tactor {
-
-namespace detail {
+namespace tactor::detail {
 
 /// What can count frames or nanoseconds. Seconds in a double would be taken for 0 or 1 of them.
 template <typename T>
@@ -32,7 +30,10 @@ constexpr std::uint64_t stream_frame(T n)
     return static_cast<std::uint64_t>(n);
 }
 
-} // namespace detail
+} // namespace tactor::detail
+
+namespace tactor {
+inline namespace v0 {
 
 /// What a stroke's start waits for.
 enum class start_kind { frame, time, trigger };
@@ -94,4 +95,5 @@ private:
     std::int64_t time_ns_ = 0;
 };
 
+} // namespace v0
 } // namespace tactor

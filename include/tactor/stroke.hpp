@@ -21,6 +21,7 @@
 #include <tactor/waveform.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// Where the target is at one time. Times in seconds from the start of the stroke.
 struct timed_point {
@@ -177,4 +178,5 @@ struct stroke {
 /// Guesses the kind from the text (SVG if it starts with '<', CSV if its first line names t_s, else TOML).
 [[nodiscard]] TACTOR_API std::vector<stroke> parse_strokes(std::string_view text, const std::string& name);
 
+} // namespace v0
 } // namespace tactor

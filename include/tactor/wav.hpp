@@ -12,6 +12,7 @@
 #include <tactor/sample_format.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// Called between blocks with the frames done and in all; false gives up.
 using wav_progress = std::function<bool(std::uint64_t done, std::uint64_t all)>;
@@ -25,4 +26,5 @@ using wav_progress = std::function<bool(std::uint64_t done, std::uint64_t all)>;
 TACTOR_API bool write_wav(const score& s, format_kind f, const std::filesystem::path& file,
                           const wav_progress& progress = {});
 
+} // namespace v0
 } // namespace tactor

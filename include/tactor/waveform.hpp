@@ -15,6 +15,7 @@
 #include <tactor/kinds.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// The shapes have the carrier's frequency and only those of their harmonics that are below half the rate;
 /// each begins at a crossing of zero upwards. Noise lies between two frequencies. The peak of each is the
@@ -103,4 +104,5 @@ struct modulation {
 TACTOR_API void validate(const waveform& w);
 TACTOR_API void validate(const modulation& m);
 
+} // namespace v0
 } // namespace tactor

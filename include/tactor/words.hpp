@@ -11,6 +11,7 @@
 #include <tactor/api.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 /// "1 burst", "2 bursts", "0 bursts". `plural`: where it is not the noun and an s.
 [[nodiscard]] TACTOR_API std::string counted(std::uint64_t n, std::string_view noun,
@@ -24,4 +25,5 @@ namespace tactor {
 /// less than half a nanosecond, which is what rounding leaves.
 [[nodiscard]] TACTOR_API std::string seconds_text(double s, int digits = 6);
 
+} // namespace v0
 } // namespace tactor

@@ -77,6 +77,7 @@ bool set_output(void* line, bool on) noexcept
 } // namespace tactor::gpio
 
 namespace tactor {
+inline namespace v0 {
 
 using namespace gpio;
 
@@ -113,4 +114,5 @@ std::unique_ptr<edge_input> open_edges(const gpio_line_name& line, edge_kind edg
     return std::make_unique<debounced_input>(take(request_input(request), line, at), filter);
 }
 
+} // namespace v0
 } // namespace tactor

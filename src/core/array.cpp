@@ -11,6 +11,7 @@
 #include "core/limits.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 // Ascending, without those that are one line.
@@ -88,4 +89,5 @@ array make_grid(std::string name, unsigned rows, unsigned columns, double pitch_
     return a;
 }
 
+} // namespace v0
 } // namespace tactor

@@ -10,6 +10,7 @@
 #include "core/kind_table.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 constexpr detail::kind_table<algorithm_kind, 3> algorithms("algorithm",
@@ -102,4 +103,5 @@ double resolve_start_s(std::optional<double> start_s, const start_anchor& anchor
         .with_field("start_s");
 }
 
+} // namespace v0
 } // namespace tactor

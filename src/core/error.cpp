@@ -9,6 +9,7 @@
 #include <tactor/version.hpp>
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 class category final : public std::error_category {
@@ -173,4 +174,5 @@ const char* version() noexcept
     return TACTOR_DOTTED(TACTOR_VERSION_MAJOR, TACTOR_VERSION_MINOR, TACTOR_VERSION_PATCH);
 }
 
+} // namespace v0
 } // namespace tactor

@@ -10,6 +10,7 @@
 #include "core/kind_table.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 constexpr detail::kind_table<error_kind, 3> errors("kind of error",
@@ -183,4 +184,5 @@ std::span<const log_kind> values_of<log_kind>() noexcept
     return log_kinds.kinds();
 }
 
+} // namespace v0
 } // namespace tactor

@@ -19,6 +19,7 @@
 #include "core/trajectory/impl.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 using detail::drawn_path;
@@ -149,4 +150,5 @@ trajectory trajectory::reversed() const
         std::make_shared<impl>(impl{detail::access::of(back).law, impl_->duration_s, impl_->gain}));
 }
 
+} // namespace v0
 } // namespace tactor

@@ -4,6 +4,7 @@
 #include "core/kind_table.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 constexpr detail::kind_table<format_kind, 5> formats("sample format", {{format_kind::float32, "float"},
@@ -46,4 +47,5 @@ std::span<const format_kind> values_of<format_kind>() noexcept
     return formats.kinds();
 }
 
+} // namespace v0
 } // namespace tactor

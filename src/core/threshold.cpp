@@ -5,6 +5,7 @@
 #include <cmath>
 
 namespace tactor {
+inline namespace v0 {
 
 std::optional<double> threshold_at(const tactor_spec& t, double hz)
 {
@@ -22,4 +23,5 @@ std::optional<double> threshold_at(const tactor_spec& t, double hz)
     return std::lerp(below.dbfs, above->dbfs, part);
 }
 
+} // namespace v0
 } // namespace tactor

@@ -13,6 +13,7 @@
 #include "core/suggest.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 using detail::max_mm;
@@ -133,4 +134,5 @@ void validate(const array& a)
     }
 }
 
+} // namespace v0
 } // namespace tactor

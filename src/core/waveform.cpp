@@ -18,6 +18,7 @@
 #include "core/recording_name.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 constexpr detail::kind_table<waveform_kind, 6> waveforms("waveform",
@@ -183,4 +184,5 @@ void validate(const modulation& m)
                                 "give 0 to 1, which goes down to silence");
 }
 
+} // namespace v0
 } // namespace tactor

@@ -7,6 +7,7 @@
 #include "synth/mix/vector_path.hpp"
 
 namespace tactor {
+inline namespace v0 {
 
 std::string build_facts()
 {
@@ -18,4 +19,5 @@ std::string build_facts()
                        TACTOR_LIBRARIES);
 }
 
+} // namespace v0
 } // namespace tactor

@@ -4,6 +4,7 @@
 #include "core/kind_table.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 constexpr detail::kind_table<start_kind, 3> starts("start", {{start_kind::frame, "frame"},
@@ -102,4 +103,5 @@ std::span<const wait_kind> values_of<wait_kind>() noexcept
     return waits.kinds();
 }
 
+} // namespace v0
 } // namespace tactor

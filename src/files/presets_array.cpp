@@ -6,6 +6,7 @@
 #include "core/suggest.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 struct preset {
@@ -42,4 +43,5 @@ array preset_array(std::string_view name)
                 detail::preset_hint(name, array_presets()) + "; or name a file");
 }
 
+} // namespace v0
 } // namespace tactor

@@ -13,6 +13,7 @@
 #include "core/suggest.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 // y points down: from -90 degrees (above the centre), a negative sweep goes over the left side.
@@ -83,4 +84,5 @@ stroke preset_stroke(std::string_view name)
                 detail::preset_hint(name, stroke_presets()));
 }
 
+} // namespace v0
 } // namespace tactor

@@ -20,6 +20,7 @@
 #include "files/text_file.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "WAV files are little-endian");
@@ -138,7 +139,12 @@ waveform noise_of(std::string_view band)
 
 } // namespace
 
-recording detail::parse_recording(std::string_view bytes, const std::string& name)
+} // namespace v0
+} // namespace tactor
+
+namespace tactor::detail {
+
+recording parse_recording(std::string_view bytes, const std::string& name)
 {
     waveform as_texture;
     as_texture.kind = waveform_kind::recording;
@@ -148,6 +154,11 @@ recording detail::parse_recording(std::string_view bytes, const std::string& nam
     validate(as_texture);
     return *shared;
 }
+
+} // namespace tactor::detail
+
+namespace tactor {
+inline namespace v0 {
 
 recording load_recording(const std::filesystem::path& file)
 {
@@ -182,4 +193,5 @@ waveform parse_waveform(std::string_view text, const std::filesystem::path& fold
     return w;
 }
 
+} // namespace v0
 } // namespace tactor

@@ -8,8 +8,7 @@
 #include "files/setup_parts.hpp"
 #include "files/text_file.hpp"
 
-namespace tactor {
-namespace detail {
+namespace tactor::detail {
 namespace {
 
 std::string place_note(const source_place& at)
@@ -107,7 +106,10 @@ located_setup read_setup(std::string_view text, const setup_source& source)
     return out;
 }
 
-} // namespace detail
+} // namespace tactor::detail
+
+namespace tactor {
+inline namespace v0 {
 
 setup load_setup(const std::filesystem::path& file)
 {
@@ -123,4 +125,5 @@ setup parse_setup(std::string_view toml, const std::string& name)
     return detail::read_setup(toml, {name, {}, {}}).said;
 }
 
+} // namespace v0
 } // namespace tactor

@@ -13,8 +13,7 @@
 #include "core/suggest.hpp"
 #include "files/setup_parts.hpp"
 
-namespace tactor {
-namespace detail {
+namespace tactor::detail {
 namespace {
 
 enum class kind { word, text, number, whole, flag };
@@ -147,7 +146,10 @@ void read_defaults(const toml_table& root, setup& out)
         t->one_of({"level-dbfs", "sl"});
 }
 
-} // namespace detail
+} // namespace tactor::detail
+
+namespace tactor {
+inline namespace v0 {
 
 const std::vector<std::string>& setup_default_names()
 {
@@ -160,4 +162,5 @@ const std::vector<std::string>& setup_default_names()
     return names;
 }
 
+} // namespace v0
 } // namespace tactor

@@ -18,6 +18,7 @@
 #include "plan/job.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 constexpr double on_edge_mm = 1e-6;
@@ -162,4 +163,5 @@ compensated_plan make_compensated_plan(const array& a, const layout& l, const st
     return r;
 }
 
+} // namespace v0
 } // namespace tactor

@@ -12,8 +12,7 @@
 
 #include "core/bad_input.hpp"
 
-namespace tactor {
-namespace detail {
+namespace tactor::detail {
 namespace {
 
 // A link that pulls nothing; infinite ones would divide infinity by itself.
@@ -111,7 +110,10 @@ std::optional<point> centre_of(const array& a, const burst& b, std::span<const d
     return point{moment.x_mm / energy, moment.y_mm / energy};
 }
 
-} // namespace detail
+} // namespace tactor::detail
+
+namespace tactor {
+inline namespace v0 {
 
 std::vector<point> felt_places(const low_speed_observer& o, std::span<const double> onsets_s,
                                std::span<const point> alone)
@@ -127,4 +129,5 @@ std::vector<point> felt_places(const low_speed_observer& o, std::span<const doub
     return detail::pulled(give, alone);
 }
 
+} // namespace v0
 } // namespace tactor

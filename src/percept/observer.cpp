@@ -14,6 +14,7 @@
 #include "percept/person.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 constexpr detail::kind_table<observer_kind, 2>
@@ -95,4 +96,5 @@ tap_summary summarise(const std::vector<tap>& taps)
     return r;
 }
 
+} // namespace v0
 } // namespace tactor

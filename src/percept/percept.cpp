@@ -13,6 +13,7 @@
 #include "plan/numbers.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 std::size_t count_samples(double duration_s)
@@ -63,8 +64,13 @@ std::vector<percept_sample> predict_percept(const array& a, const stroke& s, con
     return samples;
 }
 
-std::vector<percept_summary> detail::predict_summaries(const array& a, const stroke& s,
-                                                       std::span<const plan* const> plans)
+} // namespace v0
+} // namespace tactor
+
+namespace tactor::detail {
+
+std::vector<percept_summary> predict_summaries(const array& a, const stroke& s,
+                                               std::span<const plan* const> plans)
 {
     const std::size_t count = count_samples(s.motion.duration_s());
     std::vector<followed_plan> all;
@@ -87,4 +93,4 @@ std::vector<percept_summary> detail::predict_summaries(const array& a, const str
     return summaries;
 }
 
-} // namespace tactor
+} // namespace tactor::detail

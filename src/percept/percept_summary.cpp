@@ -4,6 +4,7 @@
 #include "percept/summing.hpp"
 
 namespace tactor {
+inline namespace v0 {
 
 percept_summary summarise(const std::vector<percept_sample>& samples)
 {
@@ -16,4 +17,5 @@ percept_summary summarise(const std::vector<percept_sample>& samples)
     return sums.result();
 }
 
+} // namespace v0
 } // namespace tactor

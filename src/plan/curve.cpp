@@ -15,6 +15,7 @@
 #include "plan/numbers.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 // A sample counts as being at times so near to it.
@@ -109,27 +110,47 @@ void curve_samples::add(const burst& b)
     ends.push_back(drives.size());
 }
 
-std::uint64_t detail::samples_of(double duration_s) noexcept
+} // namespace v0
+} // namespace tactor
+
+namespace tactor::detail {
+
+std::uint64_t samples_of(double duration_s) noexcept
 {
     return static_cast<std::uint64_t>(std::ceil(duration_s / continuous_step_s - same_step)) + 1;
 }
+
+} // namespace tactor::detail
+
+namespace tactor {
+inline namespace v0 {
 
 curve::impl::impl(double duration) : duration_s(duration), size(detail::samples_of(duration))
 {
 }
 
-double detail::sample_time_s(std::uint64_t k, double duration_s) noexcept
+} // namespace v0
+} // namespace tactor
+
+namespace tactor::detail {
+
+double sample_time_s(std::uint64_t k, double duration_s) noexcept
 {
     return std::min(static_cast<double>(k) * continuous_step_s, duration_s);
 }
 
-void detail::read(const curve_samples& all, std::size_t i, burst& out)
+void read(const curve_samples& all, std::size_t i, burst& out)
 {
     const drive* first = all.drives.data() + (i == 0 ? 0 : all.ends[i - 1]);
     out.position = all.positions[i];
     out.intensity = all.intensities[i];
     out.drives.assign(first, all.drives.data() + all.ends[i]);
 }
+
+} // namespace tactor::detail
+
+namespace tactor {
+inline namespace v0 {
 
 curve::curve(double duration_s, curve_samples samples) : impl_(checked(duration_s, std::move(samples)))
 {
@@ -194,4 +215,5 @@ bool operator==(const curve& a, const curve& b)
     return true;
 }
 
+} // namespace v0
 } // namespace tactor

@@ -12,6 +12,7 @@
 #include <tactor/plan.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 struct curve::impl {
     explicit impl(double duration_s);
@@ -34,7 +35,10 @@ struct curve_access {
     static const curve::impl& of(const curve& c) { return *c.impl_; }
 };
 
-namespace detail {
+} // namespace v0
+} // namespace tactor
+
+namespace tactor::detail {
 
 /// So many samples belong to a stroke.
 std::uint64_t samples_of(double duration_s) noexcept;
@@ -43,5 +47,4 @@ double sample_time_s(std::uint64_t k, double duration_s) noexcept;
 /// Position, intensity and drives of one of them.
 void read(const curve_samples& all, std::size_t i, burst& out);
 
-} // namespace detail
-} // namespace tactor
+} // namespace tactor::detail

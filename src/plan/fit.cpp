@@ -23,6 +23,7 @@
 #include "plan/faces/sides.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 using detail::affine;
@@ -248,4 +249,5 @@ std::vector<stroke> fit_as_asked(std::vector<stroke> strokes, const layout& l)
     return strokes;
 }
 
+} // namespace v0
 } // namespace tactor

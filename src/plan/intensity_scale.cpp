@@ -9,6 +9,7 @@
 #include "core/bad_input.hpp"
 
 namespace tactor {
+inline namespace v0 {
 
 double intensity_scale::amplitude(double intensity) const
 {
@@ -30,4 +31,5 @@ double intensity_scale::amplitude(double intensity) const
     return std::pow(10.0, sl_db * (intensity - 1.0) / 20.0);
 }
 
+} // namespace v0
 } // namespace tactor

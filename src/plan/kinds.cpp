@@ -4,6 +4,7 @@
 #include "core/kind_table.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 constexpr detail::kind_table<timing_kind, 2> timings("timing", {{timing_kind::fixed, "fixed"},
@@ -87,4 +88,5 @@ std::span<const scale_kind> values_of<scale_kind>() noexcept
     return scales.kinds();
 }
 
+} // namespace v0
 } // namespace tactor

@@ -14,6 +14,7 @@
 #include "plan/options.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 // Durations beyond this are outside the data from which Eq. (1) was fitted (Israr and Poupyrev 2011).
@@ -173,7 +174,10 @@ plan make_plan(const array& a, const stroke& s, const plan_options& o)
     return make_plan(a, layout(a), s, o);
 }
 
-namespace detail {
+} // namespace v0
+} // namespace tactor
+
+namespace tactor::detail {
 
 plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan_options& o,
                     const burst_taker& take)
@@ -232,5 +236,4 @@ burst make_burst(const job& j, double onset_s, double duration_s, point p, doubl
     return b;
 }
 
-} // namespace detail
-} // namespace tactor
+} // namespace tactor::detail

@@ -12,6 +12,7 @@
 #include "plan/numbers.hpp"
 
 namespace tactor {
+inline namespace v0 {
 
 namespace {
 
@@ -20,7 +21,10 @@ constexpr double longest_free_soa_s = 10.0;
 
 } // namespace
 
-namespace detail {
+} // namespace v0
+} // namespace tactor
+
+namespace tactor::detail {
 
 double law_duration_s(const timing_profile& p, double soa_s)
 {
@@ -70,7 +74,10 @@ double check_carrier(double hz)
     return hz;
 }
 
-} // namespace detail
+} // namespace tactor::detail
+
+namespace tactor {
+inline namespace v0 {
 
 double burst_duration_s(const timing_profile& p, double soa_s)
 {
@@ -110,4 +117,5 @@ double burst_duration_s(const plan_options& o)
     return *o.burst_s;
 }
 
+} // namespace v0
 } // namespace tactor

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 constexpr unsigned cap_ipc_lock = 14; // capabilities(7)
@@ -48,4 +49,5 @@ realtime_rights probe_realtime_rights()
     return r;
 }
 
+} // namespace v0
 } // namespace tactor

@@ -14,6 +14,7 @@
 #include "sink/pacer.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 void check(const char* field, const char* what, unsigned value, unsigned lo, unsigned hi)
@@ -149,4 +150,5 @@ void paced_sink::drop() noexcept
     impl_->running = false;
 }
 
+} // namespace v0
 } // namespace tactor

@@ -2,6 +2,7 @@
 #include <tactor/sink.hpp>
 
 namespace tactor {
+inline namespace v0 {
 
 // Here rather than in alsa/ or engine/: both stand on rt/.
 sink::~sink() = default;
@@ -11,4 +12,5 @@ std::int64_t sink::xrun_ns() noexcept
     return 0;
 }
 
+} // namespace v0
 } // namespace tactor

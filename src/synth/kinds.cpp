@@ -9,6 +9,7 @@
 #include "core/path/number.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 constexpr detail::kind_table<phase_kind, 2> phases("phase", {{phase_kind::stroke, "stroke"},
@@ -79,4 +80,5 @@ std::string envelope_text(const burst_envelope& e)
     return std::string(to_string(e.kind));
 }
 
+} // namespace v0
 } // namespace tactor

@@ -16,6 +16,7 @@
 #include "synth/score/score.hpp"
 
 namespace tactor {
+inline namespace v0 {
 
 namespace {
 
@@ -137,4 +138,5 @@ const std::string& renderer::failure() const
     return not_moved(impl_).source.failure();
 }
 
+} // namespace v0
 } // namespace tactor

@@ -142,6 +142,17 @@ class Install(FolderTest):
             self.assertRegex(errors[0], "tactor needs C\\+\\+20: -std=c\\+\\+20", header.name)
             self.assertEqual(len(errors), 2, r.stderr)  # the second ends it
 
+    def test_what_was_compiled_for_another_version_does_not_link(self):
+        headers = self.dir / "other"
+        shutil.copytree(ROOT / "include/tactor", headers / "tactor")
+        for header in (headers / "tactor").glob("*.hpp"):
+            header.write_text(header.read_text(encoding="utf-8").replace("inline namespace v0 ", "inline namespace v0_2 "), encoding="utf-8")
+        flags = run("pkg-config", "--libs", "tactor", env=self.env).split()
+        r = subprocess.run([*os.environ.get("CXX", "c++").split(), "-std=c++20", f"-I{headers}", str(CONSUMER / "consumer.cpp"), "-o",
+                            str(self.dir / "linked"), *flags], capture_output=True, text=True, check=False, env=self.env)
+        self.assertNotEqual(r.returncode, 0)
+        self.assertIn("undefined reference to `tactor::v0_2::player::", r.stderr)
+
     def test_the_uninstalled_library_is_found(self):
         env = self.env | {"PKG_CONFIG_PATH": str(BUILD / "meson-uninstalled")}
         flags = run("pkg-config", "--cflags", "--libs", "tactor", env=env).split()
@@ -173,9 +184,9 @@ class Install(FolderTest):
         library = self.libdir / "libtactor.so"
         self.assertRegex(run("readelf", "-dW", library), r"SONAME.*\[libtactor\.so\.0\]")
         names = [line.split(" ", 2)[2] for line in run("nm", "-D", "-C", "--defined-only", library).splitlines()]
-        own = re.compile(r"((typeinfo( name)?|vtable) for |std::span<)?tactor::")  # a template says first what it returns
+        own = re.compile(r"((typeinfo( name)?|vtable) for |std::span<)?tactor::(v0|detail)::")  # a template says first what it returns
         self.assertEqual([n for n in names if not own.match(n)], [])
-        for wanted in ("tactor::player::", "tactor::path::from_svg(", "typeinfo for tactor::error", "vtable for tactor::sink"):
+        for wanted in ("tactor::v0::player::", "tactor::v0::path::from_svg(", "typeinfo for tactor::v0::error", "vtable for tactor::v0::sink"):
             self.assertTrue(any(n.startswith(wanted) for n in names), wanted)
 
     def test_errors_are_caught_across_the_border(self):

@@ -13,6 +13,7 @@
 #include "core/path/outline.hpp"
 
 namespace tactor {
+inline namespace v0 {
 
 struct path::impl {
     struct measured_curve {
@@ -29,11 +30,13 @@ struct path::impl {
     const measured_curve* curve_of(std::size_t segment) const noexcept;
 };
 
-namespace detail {
+} // namespace v0
+} // namespace tactor
+
+namespace tactor::detail {
 
 /// Measures an outline. What `what` gives stands for it in messages.
 /// \throws error (bad_input) for coordinates that are not finite or beyond max_mm and for no length.
 path make_path(outline o, const std::function<std::string()>& what);
 
-} // namespace detail
-} // namespace tactor
+} // namespace tactor::detail

@@ -9,6 +9,7 @@
 #include "core/path/impl.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 using detail::axis;
@@ -102,4 +103,5 @@ std::vector<double> path::meets_y(double y_mm) const
     return meets(*impl_, axis::y, y_mm);
 }
 
+} // namespace v0
 } // namespace tactor

@@ -15,6 +15,7 @@
 #include "core/path/impl.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 // Neumaier's sum: a million short segments keep all digits.
@@ -50,7 +51,12 @@ point on_circle(point centre, double radius_mm, double degrees)
 
 } // namespace
 
-path detail::make_path(outline o, const std::function<std::string()>& what)
+} // namespace v0
+} // namespace tactor
+
+namespace tactor::detail {
+
+path make_path(outline o, const std::function<std::string()>& what)
 {
     if (const auto bad = absurd_coordinate(o))
         refuse_absurd(what(), *bad);
@@ -73,6 +79,11 @@ path detail::make_path(outline o, const std::function<std::string()>& what)
         throw error(error_kind::bad_input, what(), "has no length", "a path needs two different points");
     return detail::access::make<path>(std::shared_ptr<const path::impl>(std::move(made)));
 }
+
+} // namespace tactor::detail
+
+namespace tactor {
+inline namespace v0 {
 
 path path::polyline(std::span<const point> points)
 {
@@ -142,4 +153,5 @@ point path::at(double s_mm) const noexcept
     return detail::between(p.vertices[i], p.vertices[i + 1], along / (p.s[i + 1] - p.s[i]));
 }
 
+} // namespace v0
 } // namespace tactor

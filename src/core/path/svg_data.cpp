@@ -16,6 +16,7 @@
 #include "core/suggest.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 using detail::subpaths;
@@ -167,10 +168,20 @@ private:
 
 } // namespace
 
-std::vector<detail::outline> detail::parse_path_data(std::string_view data, double limit, subpaths wanted)
+} // namespace v0
+} // namespace tactor
+
+namespace tactor::detail {
+
+std::vector<detail::outline> parse_path_data(std::string_view data, double limit, subpaths wanted)
 {
     return path_reader(data, limit, wanted).run();
 }
+
+} // namespace tactor::detail
+
+namespace tactor {
+inline namespace v0 {
 
 path path::from_svg(std::string_view data)
 {
@@ -185,4 +196,5 @@ path path::from_svg(std::string_view data)
     }
 }
 
+} // namespace v0
 } // namespace tactor

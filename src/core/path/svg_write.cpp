@@ -9,6 +9,7 @@
 #include "core/path/impl.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 using out = std::back_insert_iterator<std::string>;
@@ -80,4 +81,5 @@ std::string path::svg() const
     return data;
 }
 
+} // namespace v0
 } // namespace tactor

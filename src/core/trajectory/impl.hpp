@@ -13,9 +13,7 @@
 #include "core/pace.hpp"
 #include "core/path/shape.hpp"
 
-namespace tactor {
-
-namespace detail {
+namespace tactor::detail {
 
 struct drawn_path {
     path way;
@@ -35,7 +33,10 @@ struct timed_points {
 void check_duration(double duration_s);
 void check_intensity(std::string_view what, double intensity);
 
-} // namespace detail
+} // namespace tactor::detail
+
+namespace tactor {
+inline namespace v0 {
 
 struct trajectory::impl {
     std::variant<detail::drawn_path, detail::timed_points> law;
@@ -78,4 +79,5 @@ struct trajectory::impl {
     std::vector<double> meets(detail::axis a, double line) const;
 };
 
+} // namespace v0
 } // namespace tactor

@@ -16,6 +16,7 @@
 #include "core/trajectory/limits.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 using detail::axis;
@@ -75,7 +76,12 @@ private:
 
 } // namespace
 
-void detail::check_duration(double duration_s)
+} // namespace v0
+} // namespace tactor
+
+namespace tactor::detail {
+
+void check_duration(double duration_s)
 {
     if (!(duration_s > 0.0 && duration_s <= longest_stroke_s))
         throw error(error_kind::bad_input, "duration", fmt::format("{:g} s", duration_s),
@@ -83,13 +89,18 @@ void detail::check_duration(double duration_s)
             .with_field("duration_s");
 }
 
-void detail::check_intensity(std::string_view what, double intensity)
+void check_intensity(std::string_view what, double intensity)
 {
     if (!(intensity >= 0.0 && intensity <= max_intensity))
         throw error(error_kind::bad_input, what, fmt::format("intensity {:g}", intensity),
                     fmt::format("it is a factor from 0 to {:g}", max_intensity))
             .with_field("intensity");
 }
+
+} // namespace tactor::detail
+
+namespace tactor {
+inline namespace v0 {
 
 trajectory::impl::bracket trajectory::impl::find(const detail::timed_points& l, double t_s) const noexcept
 {
@@ -211,4 +222,5 @@ std::vector<double> trajectory::meets_y(double y_mm) const
     return impl_->meets(axis::y, y_mm);
 }
 
+} // namespace v0
 } // namespace tactor

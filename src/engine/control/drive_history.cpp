@@ -23,6 +23,7 @@
 #include "synth/guard/guard.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 constexpr std::string_view first_words = "tactor-driven 1 ";
@@ -201,4 +202,5 @@ drive_history drive_history::restore(std::string_view text)
     return drive_history(std::make_shared<impl>(std::move(h)));
 }
 
+} // namespace v0
 } // namespace tactor

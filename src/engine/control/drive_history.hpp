@@ -10,6 +10,7 @@
 #include "synth/guard/drive_history.hpp"
 
 namespace tactor {
+inline namespace v0 {
 
 struct drive_history::impl {
     synth::drive_history channels;
@@ -21,4 +22,5 @@ struct drive_history::impl {
     synth::drive_history until_now() const;
 };
 
+} // namespace v0
 } // namespace tactor

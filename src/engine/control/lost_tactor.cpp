@@ -7,6 +7,7 @@
 #include <tactor/player.hpp>
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 const std::vector<unsigned>& reached(const stream_wiring& w, const tactor_spec& t)
@@ -50,4 +51,5 @@ std::string lost_tactor(const array& a, const stream_wiring& w)
     return {};
 }
 
+} // namespace v0
 } // namespace tactor

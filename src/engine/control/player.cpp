@@ -15,14 +15,19 @@
 #include "core/refused.hpp"
 #include "engine/control/player_impl.hpp"
 
-namespace tactor {
+namespace tactor::detail {
 
-void detail::refuse_frame(long long stream_frame)
+void refuse_frame(long long stream_frame)
 {
     throw error(error_kind::bad_input, "start", fmt::format("frame {}", stream_frame),
                 "frames of the stream count from 0; start_at::now() is as soon as possible")
         .with_field("start");
 }
+
+} // namespace tactor::detail
+
+namespace tactor {
+inline namespace v0 {
 
 player::player(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines lines)
 try : impl_(std::make_shared<impl>(std::move(s), a, o, std::move(lines))) {
@@ -157,4 +162,5 @@ player_stats player::stats() const
             .xrun_s = std::move(lengths)};
 }
 
+} // namespace v0
 } // namespace tactor

@@ -22,6 +22,7 @@
 #include "rt/clock.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 // Reports that nobody asked for are kept for so long; a program that only uses the handler must not grow.
@@ -405,4 +406,5 @@ bool player::impl::take_reports()
     return true;
 }
 
+} // namespace v0
 } // namespace tactor

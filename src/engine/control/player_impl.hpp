@@ -30,6 +30,7 @@
 #include "engine/link.hpp"
 
 namespace tactor {
+inline namespace v0 {
 
 /// Shared with the control thread while that is at work, so that a handler can destroy the player.
 struct player::impl : std::enable_shared_from_this<player::impl> {
@@ -105,4 +106,5 @@ private:
     void give_up(const char* what) noexcept;
 };
 
+} // namespace v0
 } // namespace tactor

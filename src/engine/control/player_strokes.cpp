@@ -15,6 +15,7 @@
 #include "engine/live/live_stroke.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 // A descriptor that stays readable without an edge is broken.
@@ -167,4 +168,5 @@ void player::impl::give_up(const char* what) noexcept
     link.to_audio.signal();
 }
 
+} // namespace v0
 } // namespace tactor

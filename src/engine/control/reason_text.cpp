@@ -6,9 +6,7 @@
 
 #include "engine/control/feeder.hpp"
 
-namespace tactor {
-
-namespace engine {
+namespace tactor::engine {
 
 std::string text(reason_kind r, int code)
 {
@@ -56,5 +54,4 @@ std::string text(reason_kind r, int code)
     return "";
 }
 
-} // namespace engine
-} // namespace tactor
+} // namespace tactor::engine

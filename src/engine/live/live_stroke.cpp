@@ -17,6 +17,7 @@
 #include "synth/tone/make_timbre.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 using engine::least_live_soa_s;
@@ -243,4 +244,5 @@ live_counts live_stroke::counts() const noexcept
             .limited = impl_->limited_points.load(std::memory_order_relaxed)};
 }
 
+} // namespace v0
 } // namespace tactor

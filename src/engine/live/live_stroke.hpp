@@ -22,6 +22,7 @@
 #include "synth/score/score.hpp"
 
 namespace tactor {
+inline namespace v0 {
 
 struct live_stroke::impl {
     /// \throws error (bad_input) for options that cannot be.
@@ -55,4 +56,5 @@ struct live_stroke::impl {
     std::atomic<std::uint64_t> limited_points{0};
 };
 
+} // namespace v0
 } // namespace tactor

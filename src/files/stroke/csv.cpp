@@ -19,6 +19,7 @@
 #include "files/text_file.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 enum column : std::size_t { t_s, x_mm, y_mm, intensity, columns };
@@ -251,4 +252,5 @@ std::vector<stroke> parse_strokes_csv(std::string_view text, const std::string& 
     return csv_reader(text, name).read();
 }
 
+} // namespace v0
 } // namespace tactor

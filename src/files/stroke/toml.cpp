@@ -26,6 +26,7 @@
 #include "files/toml_reader.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 /// Where a file's recordings are looked for; nothing for text that is no file's.
@@ -283,10 +284,15 @@ std::vector<stroke> parse_strokes_toml(std::string_view text, const std::string&
     return read_strokes(text, name, nullptr);
 }
 
-std::vector<stroke> detail::strokes_of_toml_file(std::string_view text, const std::string& name)
+} // namespace v0
+} // namespace tactor
+
+namespace tactor::detail {
+
+std::vector<stroke> strokes_of_toml_file(std::string_view text, const std::string& name)
 {
     const std::filesystem::path folder = std::filesystem::path(name).parent_path();
     return read_strokes(text, name, &folder);
 }
 
-} // namespace tactor
+} // namespace tactor::detail

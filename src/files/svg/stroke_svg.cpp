@@ -19,6 +19,7 @@
 #include "files/svg/shapes.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 using detail::affine;
@@ -251,4 +252,5 @@ std::vector<stroke> parse_strokes_svg(std::string_view text, const std::string& 
     return svg_reader(text, name).read();
 }
 
+} // namespace v0
 } // namespace tactor

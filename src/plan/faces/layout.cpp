@@ -10,6 +10,7 @@
 #include "plan/faces/plane.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 using detail::box;
@@ -185,4 +186,5 @@ double layout::pitch_mm() const noexcept
     return impl_->pitch_mm;
 }
 
+} // namespace v0
 } // namespace tactor

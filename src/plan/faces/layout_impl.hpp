@@ -13,9 +13,7 @@
 
 #include "plan/faces/box_index.hpp"
 
-namespace tactor {
-
-namespace detail {
+namespace tactor::detail {
 
 /// A guess that threads share: a wrong one costs time and nothing else.
 class guess {
@@ -33,7 +31,10 @@ private:
     std::atomic<unsigned> face_{0};
 };
 
-} // namespace detail
+} // namespace tactor::detail
+
+namespace tactor {
+inline namespace v0 {
 
 struct layout::impl {
     std::vector<point> places;                   ///< by index
@@ -72,4 +73,5 @@ struct layout::impl {
     point nearest_in_hull(point p) const;
 };
 
+} // namespace v0
 } // namespace tactor

@@ -5,6 +5,7 @@
 #include "plan/faces/plane.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 using detail::turn;
@@ -122,4 +123,5 @@ void layout::impl::faces_at(point p, std::vector<unsigned>& out) const
     }
 }
 
+} // namespace v0
 } // namespace tactor

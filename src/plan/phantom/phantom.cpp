@@ -13,6 +13,7 @@
 #include "plan/phantom/phantom_models.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 } // namespace
@@ -34,7 +35,10 @@ std::shared_ptr<const phantom_model> make_phantom(phantom_kind k, const layout& 
     throw detail::bad_field("phantom", fmt::format("no model has number {}", static_cast<int>(k)));
 }
 
-namespace detail {
+} // namespace v0
+} // namespace tactor
+
+namespace tactor::detail {
 
 point check_request(const layout& l, point p, double a_v)
 {
@@ -65,5 +69,4 @@ void sort_drives(std::vector<drive>& out)
     std::sort(out.begin(), out.end(), by_tactor);
 }
 
-} // namespace detail
-} // namespace tactor
+} // namespace tactor::detail

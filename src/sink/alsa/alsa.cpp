@@ -18,8 +18,7 @@
 #include "sink/alsa/negotiate.hpp"
 #include "sink/alsa/pcm_sink.hpp"
 
-namespace tactor {
-namespace pcm {
+namespace tactor::pcm {
 namespace {
 
 bool is_on_card(snd_pcm_t* p)
@@ -64,7 +63,10 @@ std::unique_ptr<sink> adopt(snd_pcm_t* p, const alsa_options& o, bool as_card)
     return configure(std::move(h), o, {}, as_card);
 }
 
-} // namespace pcm
+} // namespace tactor::pcm
+
+namespace tactor {
+inline namespace v0 {
 
 std::unique_ptr<sink> open_alsa(const alsa_options& o)
 {
@@ -73,4 +75,5 @@ std::unique_ptr<sink> open_alsa(const alsa_options& o)
     return pcm::configure(std::move(h), o, pcm::find_wiring(o), false);
 }
 
+} // namespace v0
 } // namespace tactor

@@ -7,6 +7,7 @@
 #include "core/log.hpp"
 
 namespace tactor {
+inline namespace v0 {
 
 std::unique_ptr<sink> reopen_alsa(const alsa_options& o, const std::function<bool(double)>& pause)
 {
@@ -29,4 +30,5 @@ std::unique_ptr<sink> reopen_alsa(const alsa_options& o, const std::function<boo
     return nullptr;
 }
 
+} // namespace v0
 } // namespace tactor

@@ -9,6 +9,7 @@
 #include "sink/alsa/devices/plain_name.hpp"
 
 namespace tactor {
+inline namespace v0 {
 namespace {
 
 error without(std::string_view what)
@@ -62,4 +63,5 @@ std::vector<process_info> card_holders(unsigned)
     return {};
 }
 
+} // namespace v0
 } // namespace tactor

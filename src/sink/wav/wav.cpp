@@ -10,9 +10,7 @@
 #include "files/output_file.hpp"
 #include "sink/wav/header.hpp"
 
-namespace tactor {
-
-namespace wav {
+namespace tactor::wav {
 
 namespace {
 
@@ -54,11 +52,15 @@ bool write(const score& s, format_kind f, const std::filesystem::path& file, con
     return true;
 }
 
-} // namespace wav
+} // namespace tactor::wav
+
+namespace tactor {
+inline namespace v0 {
 
 bool write_wav(const score& s, format_kind f, const std::filesystem::path& file, const wav_progress& progress)
 {
     return wav::write(s, f, file, wav::container_for(s.frames(), s.channels() * bytes_of(f)), progress);
 }
 
+} // namespace v0
 } // namespace tactor

@@ -7,6 +7,7 @@
 #include "synth/score/score.hpp"
 
 namespace tactor {
+inline namespace v0 {
 
 namespace {
 
@@ -64,6 +65,7 @@ double score::impl::most_equalised(std::size_t tactor, std::uint32_t plan) const
     return most;
 }
 
+} // namespace v0
 } // namespace tactor
 
 namespace tactor::synth {

@@ -320,6 +320,7 @@ std::uint64_t place_end(const plan& p, std::uint32_t plan, std::uint64_t start, 
 } // namespace tactor::synth
 
 namespace tactor {
+inline namespace v0 {
 
 double burst_ramp_s(double onset_s, double duration_s, double carrier_hz, const render_options& o) noexcept
 {
@@ -335,4 +336,5 @@ double burst_ramp_s(double onset_s, double duration_s, const plan& p, const rend
     return o.envelope.attack_s.value_or(synth::plain_ramp_s(onset_s, duration_s, p, o));
 }
 
+} // namespace v0
 } // namespace tactor

@@ -26,6 +26,7 @@
 #include "synth/tone/make_timbre.hpp"
 
 namespace tactor {
+inline namespace v0 {
 
 namespace {
 
@@ -370,4 +371,5 @@ const std::vector<placed_plan>& score::plans() const noexcept
     return impl_->plans;
 }
 
+} // namespace v0
 } // namespace tactor

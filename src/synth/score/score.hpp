@@ -74,6 +74,7 @@ struct item_list {
 } // namespace tactor::synth
 
 namespace tactor {
+inline namespace v0 {
 
 struct score::impl {
     std::vector<placed_plan> plans;                           ///< without their bursts, which are the items
@@ -106,4 +107,5 @@ struct score::impl {
     double most_equalised(std::size_t tactor, std::uint32_t plan) const;
 };
 
+} // namespace v0
 } // namespace tactor
