@@ -140,14 +140,7 @@ int unprinted(int code)
 // What was written to standard output as to a file (-o -) has no other reader.
 bool is_unread(const tactor::error& e)
 {
-    try {
-        std::rethrow_if_nested(e);
-    } catch (const std::system_error& cause) {
-        return cause.code().value() == EPIPE && is_standard_output(std::string(e.subject()));
-    } catch (...) {
-        return false;
-    }
-    return false;
+    return e.os_code() == EPIPE && is_standard_output(std::string(e.subject()));
 }
 
 int flushed(int status)

@@ -14,7 +14,7 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& name, const std::string& why, const std::string& hint = {})
 {
-    throw error(error_kind::bad_input, name, why, hint);
+    throw error(error_kind::bad_input, name, why, hint).with_field(name);
 }
 
 std::string shown(py::handle v)

@@ -84,7 +84,8 @@ std::int64_t nanoseconds(double s)
     constexpr double most = 9e9; // s: 285 years
     if (!(std::abs(s) <= most))
         throw error(error_kind::bad_input, "at_s", "it is no time of CLOCK_MONOTONIC",
-                    "give seconds as time.monotonic() does");
+                    "give seconds as time.monotonic() does")
+            .with_field("at_s");
     return static_cast<std::int64_t>(std::llround(s * 1e9));
 }
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Exceptions say what is wrong, and where."""
+import errno
 import pickle
 
 import pytest
@@ -21,6 +22,7 @@ def test_their_parts(palm, stroke):
     assert (e.value.what, e.value.hint) == ("soa", "use 0.07") and e.value.why.startswith("0.5 s is out of bounds")
     assert str(e.value) == f"{e.value.what}: {e.value.why} ({e.value.hint})"
     assert (e.value.file, e.value.line, e.value.column) == (None, None, None)
+    assert (e.value.field, e.value.errno) == ("soa", 0)
 
 
 def test_files_with_line_and_column(tmp_path):
@@ -29,6 +31,7 @@ def test_files_with_line_and_column(tmp_path):
     with pytest.raises(tactor.InputError) as e:
         tactor.Array.from_file(file)
     assert (e.value.file, e.value.line, e.value.column) == (str(file), 3, 1)
+    assert e.value.field == "pich"
     file.write_text('[[stroke]]\npath = "M 0 0 L"\n')
     with pytest.raises(tactor.InputError) as e:
         tactor.load(file)
@@ -37,6 +40,7 @@ def test_files_with_line_and_column(tmp_path):
         with pytest.raises(tactor.InputError) as e:
             missing()
         assert e.value.file == str(tmp_path / "none.toml") and e.value.line is None
+        assert e.value.errno == errno.ENOENT
 
 
 def test_file_names_may_be_any_bytes(tmp_path):

@@ -29,8 +29,8 @@ class Error(Exception):
         Place in the file, counting from 1.
     field : str or None
         The option or value that it is about; in a file, as that calls it. None where it is about none, or about how several go together.
-    errno : int or None
-        What the system said, where a call of it failed.
+    errno : int
+        What the system said where a call of it failed; else 0.
     """
 
     what: str
@@ -40,10 +40,10 @@ class Error(Exception):
     line: int | None
     column: int | None
     field: str | None
-    errno: int | None  # not OSError's, which would be the first argument
+    errno: int  # not OSError's, which would be the first argument
 
     def __init__(self, what: str = "", why: str = "", hint: str = "", *, file: str | None = None, line: int | None = None,
-                 column: int | None = None, field: str | None = None, errno: int | None = None) -> None:
+                 column: int | None = None, field: str | None = None, errno: int = 0) -> None:
         super().__init__(what, why, hint)
         self.what = what
         self.why = why
@@ -78,7 +78,7 @@ _KINDS: dict[str, type[Error]] = {"bad-input": InputError, "not-available": Devi
 
 
 def _again(kind: type[Error], what: str, why: str, hint: str, file: str | None, line: int | None, column: int | None,
-           field: str | None, errno: int | None) -> Error:
+           field: str | None, errno: int) -> Error:
     return kind(what, why, hint, file=file, line=line, column=column, field=field, errno=errno)
 
 
@@ -94,4 +94,4 @@ def made(kind: str, what: str, why: str, hint: str, field: str = "", file: str =
     """Makes the exception of a library's error; called by the extension."""
     placed = bool(file or line)
     return _KINDS[kind](what if placed else _in_python(what), why, _in_python(hint), file=file or None, line=line or None,
-                        column=column or None, field=(field if placed else _in_python(field)) or None, errno=errno or None)
+                        column=column or None, field=(field if placed else _in_python(field)) or None, errno=errno)

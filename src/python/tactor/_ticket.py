@@ -262,11 +262,11 @@ class _Shared:
                 if self.log is not None:
                     _call(self.log, *event)
                 continue
-            number, *rest, delay = event
+            number, state, reason, frames, started_s, late_s, delay = event
             with self.lock:  # whoever submitted it has its ticket in there first
                 ticket = self.tickets.pop(number, None)
             if ticket is not None:
-                ticket._end(Report(*rest, None if delay is None else Delay(*delay)))
+                ticket._end(Report(state, reason, frames, started_s, late_s, None if delay is None else Delay(*delay)))
 
 
 def _call(function: _t.Callable[..., object], *arguments: _t.Any) -> None:
