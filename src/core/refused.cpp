@@ -4,21 +4,20 @@
 #include <cerrno>
 #include <exception>
 #include <system_error>
-#include <utility>
 
 namespace tactor::detail {
 
-void throw_caused(error e)
+void throw_caused(const error& e)
 {
     if (std::current_exception() != nullptr)
-        std::throw_with_nested(std::move(e));
-    throw std::move(e);
+        std::throw_with_nested(e);
+    throw error(e);
 }
 
-void throw_caused(error e, int code)
+void throw_caused(const error& e, int code)
 {
     if (code == 0)
-        throw_caused(std::move(e));
+        throw_caused(e);
     try {
         throw std::system_error(code, std::generic_category());
     } catch (...) {

@@ -10,9 +10,9 @@
 namespace tactor::detail {
 
 /// Throws it; the exception that is being handled, if there is one, is nested in it as its cause.
-[[noreturn]] void throw_caused(error e);
+[[noreturn]] void throw_caused(const error& e);
 /// Throws it; its cause is what the system said: a std::system_error of that errno, where it is not 0.
-[[noreturn]] void throw_caused(error e, int code);
+[[noreturn]] void throw_caused(const error& e, int code);
 
 /// What to do about an errno of that kind; empty for others.
 std::string_view advice_for(int code) noexcept;
