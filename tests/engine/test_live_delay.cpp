@@ -2,6 +2,7 @@
 // How long points of live strokes take from their time stamps to the DAC.
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include <doctest/doctest.h>
 
@@ -22,6 +23,15 @@ double ahead_s(live_rig& r)
     return static_cast<double>(s.written - s.played) / rate;
 }
 
+/// Ends it, and plays it out.
+std::optional<stroke_report> report_of(live_rig& r, live_stroke::impl& s,
+                                       engine::live_voice::wish w = engine::live_voice::wish::end)
+{
+    s.voice.ask(w);
+    r.play_out();
+    return r.report(s.id);
+}
+
 } // namespace
 
 TEST_CASE("a live stroke's report tells how long its points took to the DAC")
@@ -40,9 +50,7 @@ TEST_CASE("a live stroke's report tells how long its points took to the DAC")
     point(5.0, -1'000'000);                                    // by a clock that runs ahead
     CHECK(r.live->to({30.0, 20.0}, 1.0, r.now - 900'000'000)); // is overtaken
     point(7.0, 0);
-    r.live->voice.ask(engine::live_voice::wish::end);
-    r.play_out();
-    const auto report = r.report(r.live->id);
+    const auto report = report_of(r, *r.live);
     REQUIRE(report);
     REQUIRE(report->delay);
     CHECK(report->delay->points == 5);
@@ -57,9 +65,7 @@ TEST_CASE("a live stroke of one point has the delay of its first sample, in a st
     const std::int64_t stamp = r.now - 5'000'000;
     CHECK(r.live->to({20.0, 20.0}, 1.0, stamp));
     r.play(960);
-    r.live->voice.ask(engine::live_voice::wish::end);
-    r.play_out();
-    const auto report = r.report(r.live->id);
+    const auto report = report_of(r, *r.live);
     REQUIRE(report);
     REQUIRE(report->started_ns);
     REQUIRE(report->delay);
@@ -79,9 +85,7 @@ TEST_CASE("bursts: a point's delay is to the burst that has it")
     const double buffered = ahead_s(r);
     CHECK(r.live->to({0.0, 20.0}, 1.0, r.now)); // 70 ms after the first one's burst, 2 ms of which are over
     r.play(4800);
-    r.live->voice.ask(engine::live_voice::wish::end);
-    r.play_out();
-    const auto report = r.report(r.live->id);
+    const auto report = report_of(r, *r.live);
     REQUIRE(report);
     REQUIRE(report->delay);
     CHECK(report->delay->points == 2);
@@ -93,18 +97,14 @@ TEST_CASE("without a sounding point there is no delay, and a time stamp is of CL
     live_rig r;
     CHECK_THROWS_AS(r.live->to({20.0, 20.0}, 1.0, -1), error);
     r.play(960);
-    r.live->voice.ask(engine::live_voice::wish::cancel);
-    r.play_out();
-    const auto silent = r.report(r.live->id);
+    const auto silent = report_of(r, *r.live, engine::live_voice::wish::cancel);
     REQUIRE(silent);
     CHECK_FALSE(silent->delay);
 
     const auto far = r.add();
     CHECK(far->to({20.0, 20.0}, 1.0, INT64_MAX)); // told as it is
     r.play(960);
-    far->voice.ask(engine::live_voice::wish::end);
-    r.play_out();
-    const auto report = r.report(far->id);
+    const auto report = report_of(r, *far);
     REQUIRE(report);
     REQUIRE(report->delay);
     CHECK(report->delay->most_s < -9e9);

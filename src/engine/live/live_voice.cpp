@@ -8,6 +8,19 @@
 #include "synth/score/frames.hpp"
 
 namespace tactor::engine {
+namespace {
+
+// One more point, which took so long.
+void count(live_delay& d, std::int64_t ns) noexcept
+{
+    const double s = 1e-9 * static_cast<double>(ns);
+    d.least_s = d.points == 0 ? s : std::min(d.least_s, s);
+    d.most_s = d.points == 0 ? s : std::max(d.most_s, s);
+    ++d.points;
+    d.mean_s += (s - d.mean_s) / static_cast<double>(d.points);
+}
+
+} // namespace
 
 std::size_t live_drives(std::size_t channels, unsigned period_frames, unsigned rate) noexcept
 {
@@ -125,25 +138,13 @@ void live_voice::take(std::uint64_t at, const dac_times& t) noexcept
     idle_ = 0;
     if (!t.clock.valid())
         return;
-    const double s = 1e-9 * static_cast<double>(t.clock.time_of(t.offset + at) - points_.value().at_ns);
-    later_.least_s = later_.points == 0 ? s : std::min(later_.least_s, s);
-    later_.most_s = later_.points == 0 ? s : std::max(later_.most_s, s);
-    later_.mean_s += s;
-    ++later_.points;
+    count(later_, t.clock.time_of(t.offset + at) - points_.value().at_ns);
 }
 
-live_delay live_voice::delay(std::optional<std::int64_t> started_ns) const noexcept
+live_delay live_voice::delay(std::int64_t started_ns) const noexcept
 {
     live_delay all = later_;
-    if (started_ns) {
-        const double s = 1e-9 * static_cast<double>(*started_ns - first_ns_);
-        all.least_s = all.points == 0 ? s : std::min(all.least_s, s);
-        all.most_s = all.points == 0 ? s : std::max(all.most_s, s);
-        all.mean_s += s;
-        ++all.points;
-    }
-    if (all.points != 0)
-        all.mean_s /= static_cast<double>(all.points);
+    count(all, started_ns - first_ns_);
     return all;
 }
 

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -119,8 +118,8 @@ public:
     bool fade(synth::mixer& m, std::uint32_t frames) noexcept;
     /// Frame at which what has been added is over.
     std::uint64_t end() const noexcept { return end_; }
-    /// How long its points took; 0 points where that is not known. With when its first frame was at the DAC.
-    live_delay delay(std::optional<std::int64_t> started_ns) const noexcept;
+    /// How long its points took. With when its first frame was at the DAC.
+    live_delay delay(std::int64_t started_ns) const noexcept;
 
 private:
     /// When the mixer's frames are at the DAC.
@@ -151,7 +150,7 @@ private:
     bool has_point_ = false;
     bool has_begun_ = false;
     std::int64_t first_ns_ = 0; ///< time stamp of the point that it began with
-    live_delay later_;          ///< of the others; the mean is their sum yet
+    live_delay later_ = {};     ///< of the others
     std::uint64_t idle_ = 0;    ///< frames since a point came, or since the beginning of the wait
     std::uint64_t length_ = 1;  ///< of the line between two sets of amplitudes
     std::uint64_t place_ = 1;   ///< on it
