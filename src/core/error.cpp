@@ -61,11 +61,15 @@ struct error::data {
     source_place place = {};
     int os_code = 0;
 
-    void say(std::string_view what, std::string_view why, std::string_view hint)
+    /// The same in these words.
+    data said(std::string_view what, std::string_view why, std::string_view hint) const
     {
-        text = hint.empty() ? fmt::format("{}: {}", what, why) : fmt::format("{}: {} ({})", what, why, hint);
-        why_at = what.size() + 2;
-        hint_at = hint.empty() ? text.size() : why_at + why.size() + 2;
+        data d = *this;
+        d.text =
+            hint.empty() ? fmt::format("{}: {}", what, why) : fmt::format("{}: {} ({})", what, why, hint);
+        d.why_at = what.size() + 2;
+        d.hint_at = hint.empty() ? d.text.size() : d.why_at + why.size() + 2;
+        return d;
     }
 };
 
@@ -75,21 +79,12 @@ error::error(error_kind kind, data d)
 }
 
 error::error(error_kind kind, std::string_view what, std::string_view why, std::string_view hint)
-    : error(kind, [&] {
-          data d;
-          d.say(what, why, hint);
-          return d;
-      }())
+    : error(kind, data().said(what, why, hint))
 {
 }
 
 error::error(error_kind kind, const source_place& at, std::string_view why, std::string_view hint)
-    : error(kind, [&] {
-          data d;
-          d.say(at.text(), why, hint);
-          d.place = at;
-          return d;
-      }())
+    : error(kind, data{.place = at}.said(at.text(), why, hint))
 {
 }
 
@@ -161,9 +156,7 @@ error error::with_os_code(int code) const
 
 error error::reworded(std::string_view what, std::string_view why, std::string_view hint) const
 {
-    data d = *data_;
-    d.say(what, why, hint);
-    return {kind(), std::move(d)};
+    return {kind(), data_->said(what, why, hint)};
 }
 
 #define TACTOR_TEXT(x) #x

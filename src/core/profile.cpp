@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "core/profile.hpp"
+#include "core/bad_input.hpp"
 
 #include <algorithm>
 
@@ -33,8 +34,7 @@ void check_profile_points(std::string_view what, const std::vector<profile_point
 {
     for (std::size_t i = 0; i < points.size(); ++i) {
         const auto refuse = [&](std::string_view why, std::string_view hint) {
-            throw error(error_kind::bad_input, what, fmt::format("point {}: {}", i + 1, why), hint)
-                .with_field(what);
+            throw detail::bad_field(what, fmt::format("point {}: {}", i + 1, why), hint);
         };
         const auto [part, value] = points[i];
         if (!(part >= 0.0 && part <= 1.0))

@@ -49,22 +49,18 @@ void check_noise(const waveform& w)
 
 void check_samples(const recording& r)
 {
-    const std::string what = detail::name_of(r);
+    const auto refuse = [&r](std::string_view why, std::string_view hint) {
+        throw error(error_kind::bad_input, detail::name_of(r), why, hint).with_field("recorded");
+    };
     if (r.samples.size() < 2 || r.samples.size() > most_recording_samples)
-        throw error(error_kind::bad_input, what,
-                    fmt::format("it has {}", counted(r.samples.size(), "sample")),
-                    fmt::format("give 2 to {}", most_recording_samples))
-            .with_field("recorded");
+        refuse(fmt::format("it has {}", counted(r.samples.size(), "sample")),
+               fmt::format("give 2 to {}", most_recording_samples));
     if (!(r.rate_hz >= 1.0 && r.rate_hz <= 1e6))
-        throw error(error_kind::bad_input, what, fmt::format("its rate is {} Hz", r.rate_hz),
-                    "give 1 to 1000000 Hz")
-            .with_field("recorded");
+        refuse(fmt::format("its rate is {} Hz", r.rate_hz), "give 1 to 1000000 Hz");
     if (!std::all_of(r.samples.begin(), r.samples.end(), [](float x) { return std::isfinite(x); }))
-        throw error(error_kind::bad_input, what, "a sample of it is no number").with_field("recorded");
+        refuse("a sample of it is no number", "");
     if (std::adjacent_find(r.samples.begin(), r.samples.end(), std::not_equal_to<>()) == r.samples.end())
-        throw error(error_kind::bad_input, what, "it is silence: its samples are all the same",
-                    "give a recording of a vibration")
-            .with_field("recorded");
+        refuse("it is silence: its samples are all the same", "give a recording of a vibration");
 }
 
 void check_recording(const waveform& w)

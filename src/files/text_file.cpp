@@ -101,8 +101,7 @@ void refuse_other_kind(std::string_view text, const std::string& name)
         if (text.starts_with(o.begin))
             what = o.what;
     if (!what.empty())
-        throw error(error_kind::bad_input, source_place{std::string(name)},
-                    fmt::format("is {}, not text", what),
+        throw error(error_kind::bad_input, source_place{name}, fmt::format("is {}, not text", what),
                     "strokes are TOML, CSV or SVG, arrays and configurations TOML; sound is for waveform = "
                     "\"FILE.wav\"");
 }
@@ -115,7 +114,7 @@ void refuse_no_text(std::string_view text, const std::string& name)
     // Without a mark, every other byte of plain letters is 0.
     const bool bare = mark.size() == 2 && (mark[0] == '\0') != (mark[1] == '\0');
     if (marked || bare)
-        throw error(error_kind::bad_input, source_place{std::string(name)}, "is UTF-16, not UTF-8",
+        throw error(error_kind::bad_input, source_place{name}, "is UTF-16, not UTF-8",
                     "save it as UTF-8 in the editor, or convert it: iconv -f UTF-16 -t UTF-8 OLD > NEW");
 }
 

@@ -21,9 +21,8 @@ constexpr double freest = 1e30;
 void check(const char* what, double v, double least, double most)
 {
     if (!(v >= least && v <= most))
-        throw error(error_kind::bad_input, what, fmt::format("{} is out of range", v),
-                    fmt::format("{} to {}", plain_number(least), plain_number(most)))
-            .with_field(what);
+        throw detail::bad_field(what, fmt::format("{} is out of range", v),
+                                fmt::format("{} to {}", plain_number(least), plain_number(most)));
 }
 
 } // namespace

@@ -17,10 +17,9 @@ namespace {
 void check_count(const array& a, const char* what, std::size_t n)
 {
     if (n != 0 && n != a.tactors.size())
-        throw error(error_kind::bad_input, what,
-                    fmt::format("there are {} for {}", n, counted(a.tactors.size(), "tactor")),
-                    "one for each, or none")
-            .with_field(what);
+        throw detail::bad_field(what,
+                                fmt::format("there are {} for {}", n, counted(a.tactors.size(), "tactor")),
+                                "one for each, or none");
 }
 
 } // namespace
@@ -33,8 +32,7 @@ array felt_array(const array& a, const person& who)
         point& p = felt.tactors[i].position;
         p = {p.x_mm + who.shift[i].x_mm, p.y_mm + who.shift[i].y_mm};
         if (!std::isfinite(p.x_mm) || !std::isfinite(p.y_mm))
-            throw error(error_kind::bad_input, "shift", fmt::format("that of tactor {} is not finite", i))
-                .with_field("shift");
+            throw detail::bad_field("shift", fmt::format("that of tactor {} is not finite", i));
     }
     return felt;
 }

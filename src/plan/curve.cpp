@@ -110,6 +110,10 @@ void curve_samples::add(const burst& b)
     ends.push_back(drives.size());
 }
 
+curve::impl::impl(double duration) : duration_s(duration), size(detail::samples_of(duration))
+{
+}
+
 } // namespace v0
 } // namespace tactor
 
@@ -119,20 +123,6 @@ std::uint64_t samples_of(double duration_s) noexcept
 {
     return static_cast<std::uint64_t>(std::ceil(duration_s / continuous_step_s - same_step)) + 1;
 }
-
-} // namespace tactor::detail
-
-namespace tactor {
-inline namespace v0 {
-
-curve::impl::impl(double duration) : duration_s(duration), size(detail::samples_of(duration))
-{
-}
-
-} // namespace v0
-} // namespace tactor
-
-namespace tactor::detail {
 
 double sample_time_s(std::uint64_t k, double duration_s) noexcept
 {

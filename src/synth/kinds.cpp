@@ -5,6 +5,7 @@
 
 #include <tactor/error.hpp>
 
+#include "core/bad_input.hpp"
 #include "core/kind_table.hpp"
 #include "core/path/number.hpp"
 
@@ -66,9 +67,8 @@ burst_envelope parse_envelope(std::string_view text)
     std::size_t at = colon + 1;
     const auto part = detail::scan_number(text, at);
     if (e.kind != envelope_kind::tukey || !part || at != text.size() || !(*part >= 0.0 && *part <= 1.0))
-        throw error(error_kind::bad_input, "envelope", fmt::format("\"{}\" is not known", text),
-                    "only tukey has a part, 0 to 1, as tukey:0.5")
-            .with_field("envelope");
+        throw detail::bad_field("envelope", fmt::format("\"{}\" is not known", text),
+                                "only tukey has a part, 0 to 1, as tukey:0.5");
     e.tukey_part = *part;
     return e;
 }

@@ -122,8 +122,8 @@ public:
     }
     io_result write(std::span<const std::byte> offered) noexcept override
     {
-        const std::size_t frames = std::min<std::size_t>(offered.size() / setup_.frame_bytes(),
-                                                         37); // fewer than offered, as devices may
+        // Fewer than offered, as devices may.
+        const std::size_t frames = std::min<std::size_t>(offered.size() / setup_.frame_bytes(), 37);
         std::vector<float> x(2 * frames);
         std::memcpy(x.data(), offered.data(), x.size() * sizeof(float));
         all.insert(all.end(), x.begin(), x.end());

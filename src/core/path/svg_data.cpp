@@ -173,7 +173,7 @@ private:
 
 namespace tactor::detail {
 
-std::vector<detail::outline> parse_path_data(std::string_view data, double limit, subpaths wanted)
+std::vector<outline> parse_path_data(std::string_view data, double limit, subpaths wanted)
 {
     return path_reader(data, limit, wanted).run();
 }

@@ -16,6 +16,7 @@
 #include <tactor/realtime.hpp>
 #include <tactor/words.hpp>
 
+#include "core/bad_input.hpp"
 #include "core/log.hpp"
 #include "core/refused.hpp"
 #include "rt/advice.hpp"
@@ -32,8 +33,7 @@ constexpr std::size_t most_unread_reports = 4096;
 std::uint32_t frames_of(double seconds, unsigned rate, const char* name)
 {
     if (!(seconds >= 0.0 && seconds <= 600.0))
-        throw error(error_kind::bad_input, name, fmt::format("{} s", seconds), "give 0 to 600 s")
-            .with_field(name);
+        throw detail::bad_field(name, fmt::format("{} s", seconds), "give 0 to 600 s");
     return static_cast<std::uint32_t>(std::lround(seconds * rate));
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -22,43 +23,38 @@ namespace {
 
 using engine::least_live_soa_s;
 
+error refused(std::string_view field, std::string_view why, std::string_view hint)
+{
+    return error(error_kind::bad_input, "live stroke", why, hint).with_field(field);
+}
+
 void check(const live_options& o, unsigned rate)
 {
     if (o.plan.algorithm == algorithm_kind::tactile_brush)
-        throw error(error_kind::bad_input, "live stroke", "Tactile Brush must know the whole path beforehand",
-                    "use continuous or park2016")
-            .with_field("algorithm");
+        throw refused("algorithm", "Tactile Brush must know the whole path beforehand",
+                      "use continuous or park2016");
     if (!(o.plan.carrier_hz > 0.0 && o.plan.carrier_hz < 0.5 * rate))
-        throw error(
-            error_kind::bad_input, "live stroke",
+        throw refused(
+            "carrier_hz",
             fmt::format("a carrier of {} Hz cannot be rendered at a rate of {} Hz", o.plan.carrier_hz, rate),
-            "250 is usual")
-            .with_field("carrier_hz");
+            "250 is usual");
     if (!(o.timeout_s >= 0.001 && o.timeout_s <= 86400.0))
-        throw error(error_kind::bad_input, "live stroke", fmt::format("a time-out of {} s", o.timeout_s),
-                    "give 0.001 to 86400 s")
-            .with_field("timeout_s");
+        throw refused("timeout_s", fmt::format("a time-out of {} s", o.timeout_s), "give 0.001 to 86400 s");
     if (o.longest_s && !(*o.longest_s >= 0.001 && *o.longest_s <= 86400.0))
-        throw error(error_kind::bad_input, "live stroke", fmt::format("at most {} s of it", *o.longest_s),
-                    "give 0.001 to 86400 s")
-            .with_field("longest_s");
+        throw refused("longest_s", fmt::format("at most {} s of it", *o.longest_s), "give 0.001 to 86400 s");
     if (!(o.smooth_s >= 0.0 && o.smooth_s <= 1.0))
-        throw error(error_kind::bad_input, "live stroke",
-                    fmt::format("points smoothed over {} s", o.smooth_s), "give 0 (off) to 1 s")
-            .with_field("smooth_s");
+        throw refused("smooth_s", fmt::format("points smoothed over {} s", o.smooth_s),
+                      "give 0 (off) to 1 s");
     if (o.render.ramp_s && !(*o.render.ramp_s >= 0.0 && *o.render.ramp_s <= 1.0))
-        throw error(error_kind::bad_input, "live stroke", fmt::format("a ramp of {} s", *o.render.ramp_s),
-                    "give 0 to 1 s")
-            .with_field("ramp_s");
+        throw refused("ramp_s", fmt::format("a ramp of {} s", *o.render.ramp_s), "give 0 to 1 s");
 }
 
 /// What of a plan says how it sounds.
 plan heard_of(const plan_options& o)
 {
     if (o.wave.kind == waveform_kind::recording && o.wave.texture == texture_kind::length)
-        throw error(error_kind::bad_input, "live stroke", "the length of its path is not known beforehand",
-                    "lay the recording along it with texture time or cycle")
-            .with_field("texture");
+        throw refused("texture", "the length of its path is not known beforehand",
+                      "lay the recording along it with texture time or cycle");
     plan p;
     p.carrier_hz = o.carrier_hz;
     p.wave = o.wave;
@@ -86,9 +82,8 @@ engine::live_setup live_setup(const stream_setup& s, const live_options& o)
         return l;
     const double duration_s = burst_duration_s(o.plan);
     if (o.plan.soa_s < least_live_soa_s)
-        throw error(error_kind::bad_input, "live stroke", fmt::format("an SOA of {} s", o.plan.soa_s),
-                    fmt::format("{} s or more", least_live_soa_s))
-            .with_field("soa_s");
+        throw refused("soa_s", fmt::format("an SOA of {} s", o.plan.soa_s),
+                      fmt::format("{} s or more", least_live_soa_s));
     l.soa = synth::frame_at(o.plan.soa_s, s.rate);
     l.duration = std::min(synth::frame_at(duration_s, s.rate), l.soa);
     l.restart = o.render.phase == phase_kind::burst;
@@ -130,22 +125,17 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
 {
     const std::int64_t stamp = at_ns ? *at_ns : rt::monotonic_ns();
     if (!std::isfinite(p.x_mm) || !std::isfinite(p.y_mm))
-        throw error(error_kind::bad_input, "live stroke", fmt::format("the point ({}, {})", p.x_mm, p.y_mm),
-                    "finite millimetres")
-            .with_field("point");
+        throw refused("point", fmt::format("the point ({}, {})", p.x_mm, p.y_mm), "finite millimetres");
     if (stamp < 0)
-        throw error(error_kind::bad_input, "live stroke", fmt::format("a point at {} ns", stamp),
-                    "CLOCK_MONOTONIC, ns, or none for now")
-            .with_field("at_ns");
+        throw refused("at_ns", fmt::format("a point at {} ns", stamp),
+                      "CLOCK_MONOTONIC, ns, or none for now");
     const std::lock_guard lock(mutex);
     if (voice.closed() || voice.asked() != engine::live_voice::wish::go_on)
         return false;
     const bool inside = faces.contains(p);
     if (!inside && outside == outside_kind::error)
-        throw error(error_kind::bad_input, "live stroke",
-                    fmt::format("({:.6g}, {:.6g}) is outside the array", p.x_mm, p.y_mm),
-                    "outside_kind::clamp plays the nearest point of the array")
-            .with_field("outside");
+        throw refused("outside", fmt::format("({:.6g}, {:.6g}) is outside the array", p.x_mm, p.y_mm),
+                      "outside_kind::clamp plays the nearest point of the array");
     const bool limited = course_to({inside ? p : faces.nearest(p), intensity}, voice.draft());
     if (!excess.empty()) {
         voice.fail(std::move(excess));

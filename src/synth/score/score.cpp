@@ -65,9 +65,7 @@ void check_options(const render_options& o)
     }
     const auto check_ramp = [](const char* what, std::optional<double> s) {
         if (s && !(*s >= 0.0 && *s <= 10.0)) {
-            throw error(error_kind::bad_input, what, fmt::format("{} s is not a ramp", *s),
-                        "use 0 to 10, e.g. 0.01")
-                .with_field(what);
+            throw detail::bad_field(what, fmt::format("{} s is not a ramp", *s), "use 0 to 10, e.g. 0.01");
         }
     };
     check_ramp("attack_s", o.envelope.attack_s);

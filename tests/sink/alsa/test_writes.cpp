@@ -47,13 +47,14 @@ TEST_CASE("a full device that has not been started takes nothing and says so")
     const auto s = pcm::adopt(dac.pcm(), o);
     REQUIRE(s->prepare() == io_kind::ok);
     const std::vector<std::byte> silence(1000 * 8);
+    const auto ten_frames = std::span(silence).first(10 * s->setup().frame_bytes());
     CHECK(s->write(silence).frames == s->setup().buffer_frames);
-    const io_result r = s->write(std::span(silence).first(80));
+    const io_result r = s->write(ten_frames);
     CHECK(r.status == io_kind::again);
     CHECK(r.frames == 0);
     CHECK_FALSE(s->position().valid);
     REQUIRE(s->start() == io_kind::ok);
-    CHECK(s->write(std::span(silence).first(80)).status == io_kind::again);
+    CHECK(s->write(ten_frames).status == io_kind::again);
     dac.advance(96);
     CHECK(s->position().valid);
     CHECK(s->position().written == 288);
