@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <tactor/percept.hpp>
 
+#include <array>
+
 #include <fmt/format.h>
 
 #include <tactor/words.hpp>
@@ -43,25 +45,49 @@ struct followed_plan {
 
 } // namespace
 
-std::vector<percept_sample> predict_percept(const array& a, const stroke& s, const plan& p)
+void follow_percept(const array& a, const stroke& s, const plan& p, const person& who,
+                    const std::function<void(const percept_sample&)>& each)
 {
-    return predict_percept(a, s, p, person{});
+    constexpr std::size_t delay = detail::running_speed::delay;
+    const std::size_t count = count_samples(s.motion.duration_s());
+    const array felt = detail::felt_array(a, who);
+    detail::sounding now(felt, p, s.motion.duration_s(), detail::gains_of(a, who));
+    detail::running_speed speed;
+    std::array<percept_sample, delay + 1> waiting; // for their speed
+    for (std::size_t i = 0; i < count + delay; ++i) {
+        if (i < count) {
+            percept_sample& x = waiting[i % waiting.size()];
+            x = target_at(s, i);
+            now.at(x.t_s, x);
+            if (const auto v = speed.next(x.felt))
+                waiting[(i - delay) % waiting.size()].speed_mm_s = v;
+        }
+        if (i >= delay)
+            each(waiting[(i - delay) % waiting.size()]);
+    }
 }
 
 std::vector<percept_sample> predict_percept(const array& a, const stroke& s, const plan& p, const person& who)
 {
-    std::vector<percept_sample> samples(count_samples(s.motion.duration_s()));
-    const array felt = detail::felt_array(a, who);
-    detail::sounding now(felt, p, s.motion.duration_s(), detail::gains_of(a, who));
-    detail::running_speed speed;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        percept_sample& x = samples[i];
-        x = target_at(s, i);
-        now.at(x.t_s, x);
-        if (const auto v = speed.next(x.felt))
-            samples[i - detail::running_speed::delay].speed_mm_s = v;
-    }
+    std::vector<percept_sample> samples;
+    samples.reserve(count_samples(s.motion.duration_s()));
+    follow_percept(a, s, p, who, [&](const percept_sample& x) { samples.push_back(x); });
     return samples;
+}
+
+percept_summary summarise(const array& a, const stroke& s, const plan& p, const person& who)
+{
+    detail::summing sums;
+    follow_percept(a, s, p, who, [&](const percept_sample& x) { sums.add_all(x); });
+    return sums.result();
+}
+
+percept_summary summarise(const std::vector<percept_sample>& samples)
+{
+    detail::summing sums;
+    for (const percept_sample& x : samples)
+        sums.add_all(x);
+    return sums.result();
 }
 
 } // namespace v0

@@ -56,6 +56,14 @@ public:
     /// Of a sample at which something is felt.
     void add_speed(double mm_s) { speed_.add(mm_s); }
 
+    /// A sample whose speed is known where there is one.
+    void add_all(const percept_sample& x)
+    {
+        add(x);
+        if (x.felt && x.speed_mm_s)
+            add_speed(*x.speed_mm_s);
+    }
+
     percept_summary result() const
     {
         percept_summary r;

@@ -149,7 +149,7 @@ py::dict summary(const plan_handle& p)
     percept_summary s;
     {
         const py::gil_scoped_release free;
-        s = summarise(predict_percept(p.on->value(), p.drawn, p.schedule()));
+        s = summarise(p.on->value(), p.drawn, p.schedule());
     }
     using namespace py::literals;
     return py::dict("rms_error_mm"_a = s.rms_error_mm, "largest_error_mm"_a = s.largest_error_mm,

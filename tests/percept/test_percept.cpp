@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <stdexcept>
 
 #include <doctest/doctest.h>
 
@@ -272,9 +273,34 @@ TEST_CASE("summaries of several plans at once are those of their samples, to the
         for (std::size_t i = 0; i < plans.size(); ++i) {
             CAPTURE(i);
             CHECK(same(all[i], summarise(predict_percept(a, s, plans[i]))));
+            CHECK(same(all[i], summarise(a, s, plans[i])));
         }
     }
     CHECK(detail::predict_summaries(a, along("M 3 3 L 37 37", 1.0), {}).empty());
+}
+
+TEST_CASE("samples are followed in order, and what takes them may end it")
+{
+    const stroke s = along("M 0 0 L 10 0", 1.0);
+    const plan p = make_plan(pair, s);
+    const auto all = predict_percept(pair, s, p);
+    REQUIRE(all.size() == 1001);
+    std::size_t n = 0;
+    follow_percept(pair, s, p, {}, [&](const percept_sample& x) {
+        REQUIRE(x.t_s == doctest::Approx(0.001 * static_cast<double>(n)));
+        REQUIRE(x.felt == all[n].felt);
+        REQUIRE(x.speed_mm_s == all[n].speed_mm_s);
+        ++n;
+    });
+    CHECK(n == all.size());
+    n = 0;
+    CHECK_THROWS_AS(follow_percept(pair, s, p, {},
+                                   [&](const percept_sample&) {
+                                       if (++n == 10)
+                                           throw std::runtime_error("enough");
+                                   }),
+                    std::runtime_error);
+    CHECK(n == 10);
 }
 
 TEST_CASE("nothing to feel has no error, and nothing to sum up is no error")

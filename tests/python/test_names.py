@@ -87,6 +87,7 @@ player_position: Player.position
 player_stats: Player.stats
 point: Point
 predict_percept: Plan.percept
+follow_percept: Plan.percept
 preset_array: Array.preset
 preset_stroke: Stroke.preset
 profile_point: Stroke.along

@@ -82,15 +82,16 @@ void feel_taps(gathered& g, row_spread& r, const std::vector<tap>& taps, bool fo
         r.tracks.push_back(std::move(track));
 }
 
-void feel_samples(gathered& g, row_spread& r, const std::vector<percept_sample>& samples, bool for_picture)
+void keep_summary(gathered& g, const percept_summary& s)
 {
-    const percept_summary s = summarise(samples);
     g.rms.push_back(s.rms_error_mm);
     g.largest.push_back(s.largest_error_mm);
     g.speed_cv.push_back(s.speed_cv);
     g.intensity_cv.push_back(s.intensity_cv);
-    if (!for_picture)
-        return;
+}
+
+void keep_samples(gathered& g, row_spread& r, const std::vector<percept_sample>& samples)
+{
     std::vector<point> track;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         keep_speed(g, i, samples[i].t_s, samples[i].speed_mm_s);
@@ -167,8 +168,12 @@ row_spread spread_of(const std::vector<drawn_person>& people, const array& a, co
             low_speed_observer o = *low_speed;
             o.sigma_mm = std::clamp(o.sigma_mm * x.sigma_factor, least_sigma_mm, most_sigma_mm);
             feel_taps(g, r, predict_taps(a, s, p, o, x.who), for_picture);
+        } else if (for_picture) {
+            const std::vector<percept_sample> samples = predict_percept(a, s, p, x.who);
+            keep_summary(g, summarise(samples));
+            keep_samples(g, r, samples);
         } else {
-            feel_samples(g, r, predict_percept(a, s, p, x.who), for_picture);
+            keep_summary(g, summarise(a, s, p, x.who));
         }
     }
     r.rms_error_mm = interval_of(std::move(g.rms));
