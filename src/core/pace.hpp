@@ -25,7 +25,6 @@ public:
     pace(movement m, double moving_s);
 
     double total_s() const noexcept { return total_s_; }
-    double rests_s() const noexcept { return total_s_ - moving_s_; }
     double moving_s() const noexcept { return moving_s_; }
     const movement& said() const noexcept { return said_; }
 

@@ -2,6 +2,7 @@
 // What a period costs the audio thread while 64 strokes sound on 64 channels: the mean, and the worst.
 #include <algorithm>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <benchmark/benchmark.h>
@@ -51,7 +52,7 @@ void periods(benchmark::State& state, double power_dbfs)
         engine::report r;
         while (link.reports.pop(r))
             feed.handle(r);
-        ended += feed.take_reports().size();
+        ended += std::exchange(feed.reports(), {}).size();
         if (ended >= 64) {
             ended = 0;
             submit(feed, link, id, strokes);

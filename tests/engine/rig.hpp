@@ -138,7 +138,7 @@ public:
         engine::report r;
         while (link.reports.pop(r))
             feed.handle(r);
-        for (const stroke_report& e : feed.take_reports())
+        for (const stroke_report& e : std::exchange(feed.reports(), {}))
             ended[e.id].push_back(e);
         feed.pump(status().written, link.clock.load());
         if (also_control)

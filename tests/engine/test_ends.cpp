@@ -84,7 +84,7 @@ TEST_CASE("a cancelled stroke fades and is then reported once, with the frames t
     const double tone_step = 0.2512 * 2 * 3.14159265 * 250 / rate;
     CHECK(largest_step(r.captured(from, fade_from + 600 - from), 9) < tone_step * 1.1);
     CHECK_FALSE(r.feed.cancel(id));
-    CHECK(r.feed.take_reports().empty());
+    CHECK(r.feed.reports().empty());
 }
 
 TEST_CASE("cancelling leaves the other strokes alone")

@@ -269,7 +269,7 @@ TEST_CASE("how late a timed stroke is, is known also where the clock of its begi
                      .started = true,
                      .started_ns = 1'250'000'000});
         REQUIRE(feed.has_reports());
-        CHECK(feed.take_reports().front().late_s == doctest::Approx(0.25));
+        CHECK(feed.reports().front().late_s == doctest::Approx(0.25));
     }
 }
 
@@ -282,7 +282,7 @@ TEST_CASE("what was cancelled stays so where the stream ends before its fade is 
     feed.pump(0);
     CHECK(feed.cancel({1}));
     feed.handle({.what = engine::report::kind::stream_over, .why = reason_kind::lost});
-    const auto ends = feed.take_reports();
+    const auto& ends = feed.reports();
     REQUIRE(ends.size() == 2);
     CHECK(ends.front().state == state_kind::cancelled);
     CHECK(ends.front().why.empty());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The audio thread's work touches no heap, and the feeder's memory does not grow with a score.
 #include <cstdlib>
+#include <utility>
 
 #include <doctest/doctest.h>
 
@@ -82,7 +83,7 @@ COUNTING_TEST_CASE("an hour of strokes needs no more memory in the feeder than a
             calls += count.calls();
         }
         most_in_ring = std::max<std::uint64_t>(most_in_ring, r.link.commands.size());
-        for (const stroke_report& e : r.feed.take_reports())
+        for (const stroke_report& e : std::exchange(r.feed.reports(), {}))
             r.ended[e.id].push_back(e);
     }
     CHECK(calls == 0);

@@ -14,6 +14,22 @@ namespace colours_test {
 
 using namespace tactor::plot;
 
+namespace {
+
+double linear_light(std::uint8_t v) noexcept
+{
+    const double c = v / 255.0;
+    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
+
+// Relative, 0 ... 1 (ITU-R BT.709 weights on linear light).
+double luminance(colour c)
+{
+    return 0.2126 * linear_light(c.r) + 0.7152 * linear_light(c.g) + 0.0722 * linear_light(c.b);
+}
+
+} // namespace
+
 TEST_CASE("the colours of time get lighter all the way, so that they are in order in grey too")
 {
     double before = luminance(ordered(0.0));

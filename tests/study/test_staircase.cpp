@@ -93,10 +93,16 @@ TEST_CASE("mean, deviation and halves of the reversals that count")
     CHECK(mean_of(r, 6).halves_db == doctest::Approx(std::abs((-30 - 20 - 31) / 3.0 + (29 + 32 + 28) / 3.0)));
 }
 
+// Whether the threshold is there and the trials above it run.
+bool checking(const staircase& s)
+{
+    return s.threshold() && !s.end();
+}
+
 // Answers so that the staircase turns at each step: right until it goes down, then wrong.
 void turn(staircase& s, std::size_t reversals, double drift_db)
 {
-    while (s.reversals_dbfs().size() < reversals && !s.checking()) {
+    while (s.reversals_dbfs().size() < reversals && !checking(s)) {
         const double aim = -20.0 + drift_db * static_cast<double>(s.reversals_dbfs().size());
         s.answer(s.level_dbfs() > aim);
     }
@@ -106,7 +112,7 @@ TEST_CASE("of an odd number that counts the earliest is dropped too")
 {
     staircase s({.reversals = 11, .discard = 4});
     turn(s, 11, 0.0);
-    REQUIRE(s.checking());
+    REQUIRE(checking(s));
     CHECK(s.threshold()->mean_dbfs == mean_of(s.reversals_dbfs(), 6).mean_dbfs);
 }
 
@@ -115,7 +121,7 @@ TEST_CASE(
 {
     staircase s({});
     turn(s, 24, -1.2); // a threshold that falls all the time
-    REQUIRE(s.checking());
+    REQUIRE(checking(s));
     CHECK(s.reversals_dbfs().size() == most_reversals);
     CHECK(s.threshold()->halves_db > 2.0);
     CHECK(s.threshold()->mean_dbfs == mean_of(s.reversals_dbfs(), 8).mean_dbfs);
@@ -127,7 +133,7 @@ TEST_CASE(
 
     staircase once({});
     std::vector<double> halves;
-    while (!once.checking()) {
+    while (!checking(once)) {
         // A jump of the threshold after the eighth reversal is behind the last eight at the sixteenth.
         const double aim = once.reversals_dbfs().size() < 8 ? -20.0 : -26.0;
         if (once.answer(once.level_dbfs() > aim) && once.reversals_dbfs().size() >= 12 &&
@@ -144,7 +150,7 @@ TEST_CASE("ten check trials, 6 dB above the threshold or at the ceiling, decide"
     for (const double ceiling : {0.0, -18.0}) {
         staircase s({.ceiling_dbfs = ceiling});
         turn(s, 12, 0.0);
-        REQUIRE(s.checking());
+        REQUIRE(checking(s));
         CHECK(s.level_dbfs() == doctest::Approx(std::min(s.threshold()->mean_dbfs + 6.0, ceiling)));
         const std::size_t before = s.trials();
         staircase t = s;

@@ -29,8 +29,6 @@ struct outline {
     void bezier(point c1, point c2, point to);
     void quadratic(point c, point to);
     void arc(const elliptic& a, point to);
-
-    bool has_segments() const noexcept { return vertices.size() > 1; }
 };
 
 outline mapped(outline o, const affine& m);

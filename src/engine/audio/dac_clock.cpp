@@ -102,7 +102,6 @@ void dac_clock::add(std::int64_t time_ns, std::uint64_t frame) noexcept
     const double off = ns_between(line_.time_ns, time_ns) - (fraction_ + step);
     const double variance = p_time + noise_;
     if (std::abs(off) > gate * std::sqrt(variance)) {
-        ++rejected_;
         if (++in_a_row_ >= give_up_after)
             begin_line(time_ns, frame); // the system slept, or the device has another clock now
         return;

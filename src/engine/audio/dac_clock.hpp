@@ -40,7 +40,6 @@ public:
     void add(std::int64_t time_ns, std::uint64_t frame) noexcept;
 
     const clock_line& line() const noexcept { return line_; }
-    std::uint64_t rejected() const noexcept { return rejected_; }
 
 private:
     void begin_line(std::int64_t time_ns, std::uint64_t frame) noexcept;
@@ -54,7 +53,6 @@ private:
     double p_cross_ = 0.0;
     double p_drift_ = 0.0;
     unsigned in_a_row_ = 0; ///< readings that were refused
-    std::uint64_t rejected_ = 0;
 };
 
 } // namespace tactor::engine

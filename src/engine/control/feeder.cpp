@@ -235,11 +235,6 @@ void feeder::end_all(const report& r)
     stream_over_ = true;
 }
 
-std::list<stroke_report> feeder::take_reports()
-{
-    return std::exchange(reports_, {});
-}
-
 bool feeder::knows(stroke_id id) const
 {
     return waits(id) ||

@@ -61,9 +61,7 @@ public:
     /// Takes in what the audio thread reports.
     void handle(const report& r);
 
-    /// Reports since the last call, in order of their ends.
-    std::list<stroke_report> take_reports();
-    /// The same, where they are.
+    /// Reports of strokes that ended, in order of their ends, for who takes them from the list.
     std::list<stroke_report>& reports() noexcept { return reports_; }
 
     /// A stroke that began: its first frame was written, as that frame of the stream.
@@ -80,9 +78,9 @@ public:
     /// goes its phantom model, which is the program's own.
     live_map& gone_live() noexcept { return gone_live_; }
 
-    /// Whether take_reports() would give any.
+    /// Whether there are any.
     bool has_reports() const noexcept { return !reports_.empty(); }
-    /// Whether the stroke has not ended, or take_reports() has still to give its end.
+    /// Whether the stroke has not ended, or its report has not been taken yet.
     bool knows(stroke_id id) const;
     /// Whether the stream has ended; every stroke has been reported then.
     bool stream_over() const noexcept { return stream_over_; }

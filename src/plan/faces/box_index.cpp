@@ -92,17 +92,4 @@ unsigned box_index::nearest(point p, const std::function<double(unsigned)>& dist
     return best;
 }
 
-std::size_t box_index::compared(point p, double margin_mm) const
-{
-    std::size_t n = 0;
-    const auto count = [&n](const entry&) {
-        ++n;
-        return true;
-    };
-    std::vector<entry> found;
-    tree_->items.query(bgi::satisfies(count) && bgi::intersects(around(p, margin_mm)),
-                       std::back_inserter(found));
-    return n;
-}
-
 } // namespace tactor::detail

@@ -33,9 +33,6 @@ public:
     /// the distance to the item's box. The index must not be empty.
     unsigned nearest(point p, const std::function<double(unsigned)>& distance) const;
 
-    /// How many items near() compares one by one, for tests of its cost.
-    std::size_t compared(point p, double margin_mm) const;
-
 private:
     struct tree;
     std::shared_ptr<const tree> tree_;

@@ -24,12 +24,6 @@ std::uint8_t mixed(std::uint8_t a, std::uint8_t b, double part) noexcept
     return static_cast<std::uint8_t>(std::lround(a + (b - a) * part));
 }
 
-double linear_light(std::uint8_t v) noexcept
-{
-    const double c = v / 255.0;
-    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-}
-
 } // namespace
 
 colour ordered(double u) noexcept
@@ -55,11 +49,6 @@ colour of_stroke(std::size_t n) noexcept
                                                       {0, 0, 0},
                                                       {187, 187, 187}}};
     return all[n % all.size()];
-}
-
-double luminance(colour c) noexcept
-{
-    return 0.2126 * linear_light(c.r) + 0.7152 * linear_light(c.g) + 0.0722 * linear_light(c.b);
 }
 
 } // namespace tactor::plot

@@ -50,7 +50,4 @@ inline constexpr std::size_t stroke_colours = 10;
 /// al.).
 colour of_stroke(std::size_t n) noexcept;
 
-/// Relative luminance 0 ... 1 (ITU-R BT.709 weights on linear light).
-double luminance(colour c) noexcept;
-
 } // namespace tactor::plot

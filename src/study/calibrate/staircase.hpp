@@ -44,8 +44,6 @@ public:
 
     /// Of the next trial; check trials included.
     double level_dbfs() const noexcept { return level_; }
-    /// Whether the threshold is there and the check trials above it run.
-    bool checking() const noexcept { return threshold_.has_value() && !end_; }
     std::optional<staircase_end> end() const noexcept { return end_; }
     /// The answer to the trial at level_dbfs(). True where it turned the direction.
     bool answer(bool right);
