@@ -70,17 +70,17 @@ struct person {
 /// the positions so completed; speed is the central difference of the average.
 ///
 /// O(samples * log n) for a stroke of n points, and O(1) for each burst in as many as overlap with it. An
-/// hour is 3,600,001 samples, 317 MB: follow_percept() and summarise() keep none. \throws error (bad_input)
-/// where the stroke is longer than longest_percept_s, the plan names a tactor that
-///         the array does not have, or a list of `who` is neither empty nor one finite number for each
-///         tactor.
+/// hour is 3,600,001 samples, 317 MB: follow_percept() and summarise() keep none.
+///
+/// \throws error (bad_input) where the stroke is longer than longest_percept_s, the plan names a tactor that
+///         the array does not have, or a list of `who` is neither empty nor one finite number for each one.
 [[nodiscard]] TACTOR_API std::vector<percept_sample> predict_percept(const array& a, const stroke& s,
                                                                      const plan& p, const person& who = {});
 
 /// The same samples, each handed to `each` in the calling thread, in order, once its speed is known. Memory
-/// does not grow with the length of the stroke. \throws error as predict_percept(), before the first sample
-/// or,
-///         for the plan's tactors, when it comes to them; what `each` throws.
+/// does not grow with the length of the stroke.
+/// \throws error as predict_percept(), before the first sample or, for the plan's tactors, when it comes to
+///         them; what `each` throws.
 TACTOR_API void follow_percept(const array& a, const stroke& s, const plan& p, const person& who,
                                const std::function<void(const percept_sample&)>& each);
 
