@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "cli/say.hpp"
+#include "rt/clock.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -179,7 +180,7 @@ study::calibration_answer person::choose(const study::calibration_trial& t)
         const std::string answered = wait_for_answer(t);
         if (answered == "1" || answered == "2") {
             show(fmt::format("{}\n", answered));
-            const double time_s = std::max(0.0, static_cast<double>(monotonic_ns() - p.ended_ns) * 1e-9);
+            const double time_s = std::max(0.0, static_cast<double>(rt::monotonic_ns() - p.ended_ns) * 1e-9);
             study::calibration_answer a{.interval = answered == "1" ? 1U : 2U,
                                         .response_time_s = std::round(time_s * 1e3) / 1e3};
             if (p.first_frame)
@@ -210,7 +211,7 @@ bool person::change_level(const std::string& keys, const study::calibration_tria
 
 study::calibration_answer person::adjust(const study::calibration_trial& t)
 {
-    const std::int64_t began_ns = monotonic_ns();
+    const std::int64_t began_ns = rt::monotonic_ns();
     double level = t.level_dbfs;
     std::optional<study::calibration_answer> out;
     std::optional<std::uint64_t> onset;
@@ -234,7 +235,7 @@ study::calibration_answer person::adjust(const study::calibration_trial& t)
         if (!out && ended())
             throw error(error_kind::runtime, fmt::format("trial {}", t.number), "no answer", go_on);
     }
-    out->response_time_s = std::round(static_cast<double>(monotonic_ns() - began_ns) * 1e-6) / 1e3;
+    out->response_time_s = std::round(static_cast<double>(rt::monotonic_ns() - began_ns) * 1e-6) / 1e3;
     out->onset_frame = onset;
     return *out;
 }

@@ -10,6 +10,7 @@
 #include "cli/experiment/person_session.hpp"
 #include "cli/experiment/trials.hpp"
 #include "cli/say.hpp"
+#include "rt/clock.hpp"
 #include "study/bids/acq_time.hpp"
 
 namespace tactor::cli {
@@ -102,7 +103,8 @@ void person_session::trial(const study::session_step& s)
         show(s.practice ? "\n" : "once more, later\n");
         say(stderr, "tactor: {}: trial {} is void: {}\n", r.outline.name, s.which.trial, flaw);
     }
-    const std::int64_t started_ns = study::utc_now_ns() - (g.first_frame ? monotonic_ns() - g.started_ns : 0);
+    const std::int64_t started_ns =
+        study::utc_now_ns() - (g.first_frame ? rt::monotonic_ns() - g.started_ns : 0);
     write(s, row, started_ns);
     find_device();
 }

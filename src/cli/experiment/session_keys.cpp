@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/experiment/session_keys.hpp"
+#include "rt/clock.hpp"
 
 #include <string>
 
@@ -35,7 +36,7 @@ std::optional<session_key> key_of(const std::optional<std::string>& said)
 {
     if (!said)
         return {};
-    session_key k{.at_ns = monotonic_ns()};
+    session_key k{.at_ns = rt::monotonic_ns()};
     if (said->size() != 1)
         return k;
     k.character = said->front();

@@ -2,13 +2,13 @@
 #include "cli/session/stage.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "cli/play/play_report.hpp"
+#include "rt/clock.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -27,13 +27,6 @@ play_options without_picture(play_options o)
 }
 
 } // namespace
-
-std::int64_t monotonic_ns() noexcept
-{
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(
-               std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
 
 stage::stage(const alsa_options& device, const play_options& o, const environment& e, stream_source source)
     : environment_(e), options_(without_picture(o)), session_(device, options_, e, std::move(source))
@@ -111,7 +104,7 @@ given_stimulus stage::give(const std::string& name, const score& s, double lead_
     g.frames = r.frames;
     if (r.frames > 0)
         g.first_frame = at + static_cast<std::uint64_t>(std::llround(std::max(0.0, r.late_s) * s.rate()));
-    g.started_ns = r.started_ns.value_or(monotonic_ns() - (r.frames > 0 ? length : 0));
+    g.started_ns = r.started_ns.value_or(rt::monotonic_ns() - (r.frames > 0 ? length : 0));
     g.ended_ns = g.started_ns + length;
     if (r.state != state_kind::finished)
         g.flaw = r.state == state_kind::cancelled ? "it was cut off" : r.why;

@@ -114,7 +114,4 @@ template <typename Stage, typename Held>
     return signal;
 }
 
-/// CLOCK_MONOTONIC.
-std::int64_t monotonic_ns() noexcept;
-
 } // namespace tactor::cli
