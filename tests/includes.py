@@ -29,7 +29,7 @@ MAY_INCLUDE = {
 }
 # The folder that a public header belongs to; a folder may use the public headers of the folders it may include.
 PUBLIC = {
-    "api": None, "error": None, "version": None, "words": None, "kinds": None, "lines": None, "log": None, "geometry": None, "tactor": "engine",
+    "api": None, "error": None, "version": None, "kinds": None, "lines": None, "log": None, "geometry": None, "tactor": "engine",
     "array": "core", "path": "core", "stroke": "core", "movement": "core", "choices": "core", "setup": "files",
     "phantom": "plan", "curve": "plan", "plan": "plan", "fit": "plan", "percept": "percept", "observer": "percept",
     "waveform": "core", "render": "synth", "sample_format": None, "wav": "sink/wav",
@@ -39,10 +39,11 @@ PUBLIC = {
 USES_ALL_PUBLIC = {"cli", "plot", "python", "server", "study"}
 # What those may know of the library's inside, which is in the tool: no program that embeds it needs these.
 INSIDE = {
-    "cli": {"core/split.hpp", "core/suggest.hpp", "files/channel_map.hpp", "files/output_file.hpp", "files/stroke/text.hpp", "files/text_file.hpp", "percept/summaries.hpp", "rt/advice.hpp", "rt/clock.hpp", "rt/event_fd.hpp", "synth/score/sounding_now.hpp"},
-    "study": {"core/split.hpp", "files/output_file.hpp", "files/text_file.hpp", "files/toml_reader.hpp", "rt/event_fd.hpp", "rt/thread.hpp", "synth/mix/converter.hpp"},
-    "plot": {"core/split.hpp", "files/output_file.hpp", "synth/mix/sample_ranges.hpp"},
-    "python": {"core/access.hpp", "core/path/impl.hpp", "core/path/outline.hpp", "core/profile.hpp",
+    "cli": {"core/split.hpp", "core/suggest.hpp", "core/words.hpp", "files/channel_map.hpp", "files/output_file.hpp", "files/stroke/text.hpp", "files/text_file.hpp", "percept/summaries.hpp", "rt/advice.hpp", "rt/clock.hpp", "rt/event_fd.hpp", "synth/score/sounding_now.hpp"},
+    "study": {"core/split.hpp", "core/words.hpp", "files/output_file.hpp", "files/text_file.hpp", "files/toml_reader.hpp", "rt/event_fd.hpp", "rt/thread.hpp", "synth/mix/converter.hpp"},
+    "plot": {"core/split.hpp", "core/words.hpp", "files/output_file.hpp", "synth/mix/sample_ranges.hpp"},
+    "server": {"core/words.hpp"},
+    "python": {"core/access.hpp", "core/path/impl.hpp", "core/path/outline.hpp", "core/profile.hpp", "core/words.hpp",
                "core/trajectory/impl.hpp"},
 }
 # Header prefix: the only places that may include it.

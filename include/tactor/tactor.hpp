@@ -35,4 +35,3 @@
 #include <tactor/version.hpp>
 #include <tactor/wav.hpp>
 #include <tactor/waveform.hpp>
-#include <tactor/words.hpp>

@@ -13,13 +13,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <tactor/words.hpp>
-
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/pipes.hpp"
 #include "cli/say.hpp"
+#include "core/words.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -10,12 +10,12 @@
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
-#include <tactor/words.hpp>
 
 #include "core/bad_input.hpp"
 #include "core/kind_table.hpp"
 #include "core/path/number.hpp"
 #include "core/recording_name.hpp"
+#include "core/words.hpp"
 
 namespace tactor {
 inline namespace v0 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <tactor/words.hpp>
+#include "core/words.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 namespace tactor {
-inline namespace v0 {
+
 namespace {
 
 constexpr double no_time_s = 0.5e-9;  // less is what sums of rounded numbers leave
@@ -50,5 +50,4 @@ std::string seconds_text(double s, int digits)
     return plain_number(s, digits) + " s";
 }
 
-} // namespace v0
 } // namespace tactor

@@ -3,8 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <tactor/words.hpp>
-
+#include "core/words.hpp"
 #include "files/setup_parts.hpp"
 #include "files/text_file.hpp"
 

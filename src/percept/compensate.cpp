@@ -7,10 +7,10 @@
 #include <fmt/format.h>
 
 #include <tactor/observer.hpp>
-#include <tactor/words.hpp>
 
 #include "core/access.hpp"
 #include "core/bad_input.hpp"
+#include "core/words.hpp"
 #include "percept/hull_fit.hpp"
 #include "percept/low_speed.hpp"
 #include "plan/faces/layout_impl.hpp"

@@ -7,9 +7,8 @@
 
 #include <fmt/format.h>
 
-#include <tactor/words.hpp>
-
 #include "core/kind_table.hpp"
+#include "core/words.hpp"
 #include "percept/low_speed.hpp"
 #include "percept/person.hpp"
 

@@ -5,8 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <tactor/words.hpp>
-
+#include "core/words.hpp"
 #include "percept/percept_sounding.hpp"
 #include "percept/person.hpp"
 #include "percept/running_speed.hpp"

@@ -8,8 +8,7 @@
 
 #include <fmt/format.h>
 
-#include <tactor/words.hpp>
-
+#include "core/words.hpp"
 #include "plan/numbers.hpp"
 
 namespace tactor::detail {

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
-#include <tactor/words.hpp>
 
 #include "core/bad_input.hpp"
+#include "core/words.hpp"
 
 namespace tactor::detail {
 namespace {

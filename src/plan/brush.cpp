@@ -4,8 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <tactor/words.hpp>
-
+#include "core/words.hpp"
 #include "plan/brush_points.hpp"
 #include "plan/brush_timing.hpp"
 #include "plan/job.hpp"

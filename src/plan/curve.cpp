@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
-#include <tactor/words.hpp>
 
 #include "core/trajectory/limits.hpp"
+#include "core/words.hpp"
 #include "plan/curve_impl.hpp"
 #include "plan/numbers.hpp"
 

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include <tactor/fit.hpp>
-#include <tactor/words.hpp>
 
 #include "core/bad_input.hpp"
+#include "core/words.hpp"
 #include "plan/course.hpp"
 #include "plan/job.hpp"
 #include "plan/numbers.hpp"

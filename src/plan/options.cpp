@@ -6,9 +6,8 @@
 
 #include <fmt/format.h>
 
-#include <tactor/words.hpp>
-
 #include "core/bad_input.hpp"
+#include "core/words.hpp"
 #include "plan/numbers.hpp"
 
 namespace tactor {

@@ -8,8 +8,7 @@
 
 #include <fmt/format.h>
 
-#include <tactor/words.hpp>
-
+#include "core/words.hpp"
 #include "plot/compare_panel.hpp"
 #include "plot/draw/axes.hpp"
 #include "plot/figure.hpp"

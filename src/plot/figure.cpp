@@ -7,8 +7,7 @@
 
 #include <fmt/format.h>
 
-#include <tactor/words.hpp>
-
+#include "core/words.hpp"
 #include "plot/array_view.hpp"
 #include "plot/draw/array_frame.hpp"
 #include "plot/draw/axes.hpp"

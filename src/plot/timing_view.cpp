@@ -8,8 +8,7 @@
 
 #include <fmt/format.h>
 
-#include <tactor/words.hpp>
-
+#include "core/words.hpp"
 #include "plot/draw/axes.hpp"
 #include "plot/draw/dimensions.hpp"
 #include "plot/draw/notes.hpp"

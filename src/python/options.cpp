@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "core/words.hpp"
+
 namespace tactor::python {
 namespace {
 

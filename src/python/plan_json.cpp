@@ -8,6 +8,7 @@
 #include "cli/input.hpp"
 #include "cli/plan/plan_file.hpp"
 #include "cli/plan/plan_output.hpp"
+#include "core/words.hpp"
 #include "python/plan_handle.hpp"
 #include "python/written.hpp"
 

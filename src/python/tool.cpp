@@ -7,6 +7,7 @@
 #include "cli/compare/compare_picture.hpp"
 #include "cli/compare/compare_rows.hpp"
 #include "cli/devices/devices_output.hpp"
+#include "core/words.hpp"
 #include "plot/figure.hpp"
 #include "plot/paint/output.hpp"
 #include "python/plan_handle.hpp"

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <tactor/words.hpp>
+#include "core/words.hpp"
 
 namespace tactor::server {
 namespace {

@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include <tactor/fit.hpp>
-#include <tactor/words.hpp>
 
+#include "core/words.hpp"
 #include "server/faults.hpp"
 
 namespace tactor::server {

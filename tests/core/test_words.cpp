@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include <tactor/words.hpp>
+#include "core/words.hpp"
 
 namespace words_test {
 

@@ -155,7 +155,6 @@ HAS_NOT = {
     "threshold_point threshold_at": "Array.from_file reads thresholds at several frequencies, a Score uses them",
     "score_builder": "a Score is made from plans that are there; the tool plans strokes while it places them",
     "serve_settings": "the service's configuration, which the tool reads",
-    "counted plain_number seconds_text": "words for messages: Python formats",
     "sink paced_sink io_kind io_result stream_position": "what the audio thread calls cannot be Python",
     "enable_line edge_input gpio_edge gpio_line_name gpio_line_place find_gpio_line player_lines amplifier_settings sync_settings edge_kind pull_kind":
         "lines are the configuration's; a player opens them",

@@ -4,11 +4,10 @@
 
 #include <fmt/format.h>
 
-#include <tactor/words.hpp>
-
 #include "cli/analyze/analyze_output.hpp"
 #include "cli/say.hpp"
 #include "cli/wrapped.hpp"
+#include "core/words.hpp"
 #include "study/analysis/number_text.hpp"
 
 namespace tactor::cli {

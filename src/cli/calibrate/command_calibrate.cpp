@@ -11,6 +11,7 @@
 #include "cli/commands.hpp"
 #include "cli/play/sound_server.hpp"
 #include "cli/say.hpp"
+#include "core/words.hpp"
 #include "study/calibrate/log.hpp"
 #include "study/calibrate/observer.hpp"
 #include "study/calibrate/result.hpp"

@@ -8,9 +8,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <tactor/words.hpp>
-
 #include "cli/check/walk.hpp"
+#include "core/words.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -7,9 +7,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <tactor/words.hpp>
-
 #include "cli/check/check_array.hpp"
+#include "core/words.hpp"
 
 namespace tactor::cli {
 namespace {

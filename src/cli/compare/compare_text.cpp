@@ -6,10 +6,9 @@
 
 #include <fmt/format.h>
 
-#include <tactor/words.hpp>
-
 #include "cli/compare/compare_rows.hpp"
 #include "cli/say.hpp"
+#include "core/words.hpp"
 
 namespace tactor::cli {
 namespace {

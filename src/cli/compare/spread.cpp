@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include <tactor/words.hpp>
+#include "core/words.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -4,10 +4,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <tactor/words.hpp>
-
 #include "cli/devices/devices_output.hpp"
 #include "cli/wrapped.hpp"
+#include "core/words.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -15,6 +15,7 @@
 #include "cli/experiment/trials.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/say.hpp"
+#include "core/words.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -10,6 +10,7 @@
 #include "cli/experiment/participant_screen.hpp"
 #include "cli/experiment/trials.hpp"
 #include "cli/say.hpp"
+#include "core/words.hpp"
 #include "study/bids/acq_time.hpp"
 
 namespace tactor::cli {

@@ -14,6 +14,7 @@
 #include "cli/plan/plan_sound.hpp"
 #include "cli/play/play_options.hpp"
 #include "cli/say.hpp"
+#include "core/words.hpp"
 #include "study/random/sha256.hpp"
 
 namespace tactor::cli {

@@ -11,10 +11,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <tactor/words.hpp>
-
 #include "cli/pipes.hpp"
 #include "cli/plan/plan_fields.hpp"
+#include "core/words.hpp"
 
 namespace tactor::cli {
 namespace {

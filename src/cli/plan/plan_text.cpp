@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <tactor/words.hpp>
-
 #include "cli/plan/plan_output.hpp"
 #include "cli/plan/plan_rows.hpp"
 #include "cli/say.hpp"
+#include "core/words.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
-#include <tactor/words.hpp>
 
 #include "cli/play/play_options.hpp"
+#include "core/words.hpp"
 
 namespace tactor::cli {
 namespace {

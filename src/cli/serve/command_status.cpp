@@ -8,13 +8,12 @@
 #include <fmt/format.h>
 #include <poll.h>
 
-#include <tactor/words.hpp>
-
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/say.hpp"
 #include "cli/serve/rpc_client.hpp"
 #include "cli/settings.hpp"
+#include "core/words.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -8,9 +8,9 @@
 
 #include <tactor/error.hpp>
 #include <tactor/player.hpp>
-#include <tactor/words.hpp>
 
 #include "core/access.hpp"
+#include "core/words.hpp"
 #include "synth/score/levels.hpp"
 #include "synth/score/score.hpp"
 

@@ -14,11 +14,11 @@
 
 #include <tactor/error.hpp>
 #include <tactor/realtime.hpp>
-#include <tactor/words.hpp>
 
 #include "core/bad_input.hpp"
 #include "core/log.hpp"
 #include "core/refused.hpp"
+#include "core/words.hpp"
 #include "rt/advice.hpp"
 #include "rt/clock.hpp"
 

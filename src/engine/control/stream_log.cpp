@@ -3,8 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <tactor/words.hpp>
-
+#include "core/words.hpp"
 #include "rt/clock.hpp"
 
 namespace tactor::engine {

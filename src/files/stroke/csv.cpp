@@ -9,12 +9,12 @@
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
-#include <tactor/words.hpp>
 
 #include "core/limits.hpp"
 #include "core/path/number.hpp"
 #include "core/suggest.hpp"
 #include "core/trajectory/limits.hpp"
+#include "core/words.hpp"
 #include "files/stroke/text.hpp"
 #include "files/text_file.hpp"
 

@@ -6,8 +6,7 @@
 
 #include <fmt/format.h>
 
-#include <tactor/words.hpp>
-
+#include "core/words.hpp"
 #include "plot/draw/axes.hpp"
 #include "plot/paint/text.hpp"
 

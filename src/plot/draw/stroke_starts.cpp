@@ -13,8 +13,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <tactor/words.hpp>
-
+#include "core/words.hpp"
 #include "plot/paint/text.hpp"
 
 namespace tactor::plot {

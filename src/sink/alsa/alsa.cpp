@@ -7,10 +7,10 @@
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
-#include <tactor/words.hpp>
 
 #include "core/log.hpp"
 #include "core/refused.hpp"
+#include "core/words.hpp"
 #include "sink/alsa/adopt.hpp"
 #include "sink/alsa/devices/wiring.hpp"
 #include "sink/alsa/handle.hpp"

@@ -7,10 +7,9 @@
 
 #include <fmt/format.h>
 
-#include <tactor/words.hpp>
-
 #include "core/limits.hpp"
 #include "core/refused.hpp"
+#include "core/words.hpp"
 #include "sink/alsa/error_text.hpp"
 #include "sink/alsa/format.hpp"
 #include "sink/alsa/handle.hpp"

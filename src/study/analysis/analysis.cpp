@@ -5,8 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <tactor/words.hpp>
-
+#include "core/words.hpp"
 #include "study/analysis/cells.hpp"
 
 namespace tactor::study {

@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
-#include <tactor/words.hpp>
 
 #include "core/split.hpp"
+#include "core/words.hpp"
 
 namespace tactor::study {
 namespace {

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include <tactor/phantom.hpp>
-#include <tactor/words.hpp>
 
+#include "core/words.hpp"
 #include "study/report/markdown.hpp"
 #include "study/report/sections.hpp"
 

@@ -5,8 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <tactor/words.hpp>
-
+#include "core/words.hpp"
 #include "study/experiment/sequence.hpp"
 #include "study/report/markdown.hpp"
 #include "study/report/sections.hpp"

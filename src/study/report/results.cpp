@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <tactor/words.hpp>
-
+#include "core/words.hpp"
 #include "study/analysis/number_text.hpp"
 #include "study/report/markdown.hpp"
 #include "study/report/sections.hpp"

@@ -4,8 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <tactor/words.hpp>
-
+#include "core/words.hpp"
 #include "study/report/equations.hpp"
 #include "study/report/markdown.hpp"
 #include "study/report/sections.hpp"

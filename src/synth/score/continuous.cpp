@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
-#include <tactor/words.hpp>
 
+#include "core/words.hpp"
 #include "synth/score/expander.hpp"
 #include "synth/score/frames.hpp"
 

@@ -12,8 +12,8 @@
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
-#include <tactor/words.hpp>
 
+#include "core/words.hpp"
 #include "synth/score/frames.hpp"
 #include "synth/tone/make_timbre.hpp"
 

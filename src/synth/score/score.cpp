@@ -10,12 +10,11 @@
 
 #include <fmt/format.h>
 
-#include <tactor/words.hpp>
-
 #include <tactor/error.hpp>
 
 #include "core/access.hpp"
 #include "core/bad_input.hpp"
+#include "core/words.hpp"
 #include "plan/job.hpp"
 #include "synth/guard/guard.hpp"
 #include "synth/mix/mixer.hpp"

@@ -8,22 +8,17 @@
 #include <string>
 #include <string_view>
 
-#include <tactor/api.hpp>
-
 namespace tactor {
-inline namespace v0 {
 
 /// "1 burst", "2 bursts", "0 bursts". `plural`: where it is not the noun and an s.
-[[nodiscard]] TACTOR_API std::string counted(std::uint64_t n, std::string_view noun,
-                                             std::string_view plural = {});
+[[nodiscard]] std::string counted(std::uint64_t n, std::string_view noun, std::string_view plural = {});
 
 /// A number with at most `digits` (1 to 15) significant digits and no exponent: 0.07, 1200000; what rounds to
 /// nothing at twelve decimals is 0.
-[[nodiscard]] TACTOR_API std::string plain_number(double v, int digits = 6);
+[[nodiscard]] std::string plain_number(double v, int digits = 6);
 
 /// A time in seconds with its unit: "1.26 s", "0.07 s"; "27.9 us" and "27.9 ns" below 0.0001 s, and "0 s" for
 /// less than half a nanosecond, which is what rounding leaves.
-[[nodiscard]] TACTOR_API std::string seconds_text(double s, int digits = 6);
+[[nodiscard]] std::string seconds_text(double s, int digits = 6);
 
-} // namespace v0
 } // namespace tactor
