@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// GPIO lines: amplifier enable, sync pulses, start triggers. Through libgpiod, version 1 or 2.
+/// GPIO lines of this computer: amplifier enable, sync pulses, start triggers. Through libgpiod, version 1
+/// or 2.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,25 +14,6 @@
 
 namespace tactor {
 inline namespace v0 {
-
-/// One output that is on or off, e.g. the enable input of an amplifier. Derive from it for hardware of your
-/// own.
-class TACTOR_API enable_line {
-public:
-    enable_line() = default;
-    enable_line(const enable_line&) = delete;
-    enable_line& operator=(const enable_line&) = delete;
-    virtual ~enable_line();
-    /// Switches. False when that failed. An "on" that failed stops the player's stream; an "off" is called
-    /// again every 10 ms for a second, and once more when the player closes, see player_stats::left_on. One
-    /// ioctl or write of a few microseconds, no allocation. Not the audio thread.
-    virtual bool set(bool on) noexcept = 0;
-    /// Says that the player lives; called every 50 ms while the line is on, by the thread that calls set().
-    /// False when the line is no longer on: it went off by itself because the player was silent for too long
-    /// (stopped by a signal, or hanging), or it was lost. Until the next set(true) it stays off. Does not
-    /// block.
-    virtual bool beat() noexcept { return true; }
-};
 
 /// The amplifier's enable line, owned by a small process of its own, the holder. The holder switches the line
 /// off when it is told to, 150 ms after the last beat() or set(), and when this process ends in any way,
@@ -46,25 +27,6 @@ public:
 /// sync pulses. Throws like open_amplifier.
 [[nodiscard]] TACTOR_API std::unique_ptr<enable_line> open_output(const gpio_line_name& line,
                                                                   bool active_low = false);
-
-/// One edge on an input.
-struct gpio_edge {
-    std::int64_t time_ns = 0; ///< CLOCK_MONOTONIC, stamped by the kernel
-    bool rising = true;
-};
-
-/// An input that reports edges.
-class TACTOR_API edge_input {
-public:
-    edge_input() = default;
-    edge_input(const edge_input&) = delete;
-    edge_input& operator=(const edge_input&) = delete;
-    virtual ~edge_input();
-    /// Readable when an edge waits; owned by this object.
-    [[nodiscard]] virtual int descriptor() const noexcept = 0;
-    /// The next edge, or nothing. Does not block.
-    virtual std::optional<gpio_edge> read() noexcept = 0;
-};
 
 /// Edges that follow another of these within `debounce_s` (0 to 10) are dropped. Throws like open_amplifier,
 /// and bad_input for a time that cannot be.

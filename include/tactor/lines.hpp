@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// GPIO lines as values: which one is meant and what it is for. They are opened by <tactor/gpio.hpp>.
+/// Lines: outputs that are on or off and inputs that report edges, which a player switches and watches, and
+/// which GPIO line is meant. <tactor/gpio.hpp> opens those of this computer; derive from them for hardware of
+/// your own.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -46,22 +49,49 @@ struct gpio_line_name {
     source_place where = {};
 };
 
-/// [amplifier]: the line that enables the amplifier.
+/// The line that enables an amplifier.
 struct amplifier_settings {
     gpio_line_name line = {};
     bool active_low = false;
     double settle_s = 0.010; ///< turn-on time of the amplifier
 };
 
-/// [sync]: triggers out and in.
-struct sync_settings {
-    std::optional<gpio_line_name> out = {};
-    double pulse_s = 0.005;
-    std::optional<unsigned> channel = {}; ///< marker on a spare PCM channel
-    std::optional<gpio_line_name> in = {};
-    edge_kind edge = edge_kind::rising;
-    double debounce_s = 0.001; ///< edges that follow another within this are dropped
-    pull_kind pull = pull_kind::as_is;
+/// One output that is on or off, e.g. the enable input of an amplifier. Derive from it for hardware of your
+/// own.
+class TACTOR_API enable_line {
+public:
+    enable_line() = default;
+    enable_line(const enable_line&) = delete;
+    enable_line& operator=(const enable_line&) = delete;
+    virtual ~enable_line();
+    /// Switches. False when that failed. An "on" that failed stops the player's stream; an "off" is called
+    /// again every 10 ms for a second, and once more when the player closes, see player_stats::left_on. One
+    /// ioctl or write of a few microseconds, no allocation. Not the audio thread.
+    virtual bool set(bool on) noexcept = 0;
+    /// Says that the player lives; called every 50 ms while the line is on, by the thread that calls set().
+    /// False when the line is no longer on: it went off by itself because the player was silent for too long
+    /// (stopped by a signal, or hanging), or it was lost. Until the next set(true) it stays off. Does not
+    /// block.
+    virtual bool beat() noexcept { return true; }
+};
+
+/// One edge on an input.
+struct gpio_edge {
+    std::int64_t time_ns = 0; ///< CLOCK_MONOTONIC, stamped by the kernel
+    bool rising = true;
+};
+
+/// An input that reports edges.
+class TACTOR_API edge_input {
+public:
+    edge_input() = default;
+    edge_input(const edge_input&) = delete;
+    edge_input& operator=(const edge_input&) = delete;
+    virtual ~edge_input();
+    /// Readable when an edge waits; owned by this object.
+    [[nodiscard]] virtual int descriptor() const noexcept = 0;
+    /// The next edge, or nothing. Does not block.
+    virtual std::optional<gpio_edge> read() noexcept = 0;
 };
 
 } // namespace v0

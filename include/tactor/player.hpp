@@ -14,7 +14,7 @@
 #include <tactor/api.hpp>
 #include <tactor/array.hpp>
 #include <tactor/drive_history.hpp>
-#include <tactor/gpio.hpp>
+#include <tactor/lines.hpp>
 #include <tactor/live.hpp>
 #include <tactor/log.hpp>
 #include <tactor/render.hpp>

@@ -28,6 +28,17 @@ struct output_settings {
     std::optional<unsigned> periods = {};       ///< periods in the buffer, >= 2
 };
 
+/// [sync]: triggers out and in.
+struct sync_settings {
+    std::optional<gpio_line_name> out = {};
+    double pulse_s = 0.005;
+    std::optional<unsigned> channel = {}; ///< marker on a spare PCM channel
+    std::optional<gpio_line_name> in = {};
+    edge_kind edge = edge_kind::rising;
+    double debounce_s = 0.001; ///< edges that follow another within this are dropped
+    pull_kind pull = pull_kind::as_is;
+};
+
 /// [limits]: see drive_limits. Anything not said is that one's default.
 struct limit_settings {
     std::optional<double> power_dbfs = {};

@@ -11,7 +11,7 @@
 
 #include <sys/types.h>
 
-#include <tactor/gpio.hpp>
+#include <tactor/lines.hpp>
 
 #include "amplifier/holder_process.hpp"
 

@@ -13,7 +13,7 @@
 
 #include <doctest/doctest.h>
 
-#include <tactor/gpio.hpp>
+#include <tactor/lines.hpp>
 
 #include "engine/control/amplifier_driver.hpp"
 #include "rig.hpp"

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <functional>
 
-#include <tactor/gpio.hpp>
+#include <tactor/lines.hpp>
 
 #include "amplifier/amplifier.hpp"
 #include "engine/link.hpp"

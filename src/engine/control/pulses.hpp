@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <set>
 
-#include <tactor/gpio.hpp>
+#include <tactor/lines.hpp>
 
 #include "engine/audio/dac_clock.hpp"
 #include "engine/control/pulse_board.hpp"
