@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What a stroke may say of itself beside its movement: how it is planned, and from when its start counts.
+/// The closed sets that plans, their sound and their observers are chosen from; what a stroke may say of
+/// itself beside its movement: how it is planned, and from when its start counts.
 #pragma once
 
 #include <optional>
@@ -35,6 +36,68 @@ template <>
 TACTOR_API phantom_kind from_string<phantom_kind>(std::string_view name);
 template <>
 TACTOR_API std::span<const phantom_kind> values_of<phantom_kind>() noexcept;
+
+/// The SOA as it is given, or shortened so that the last burst ends with the path.
+enum class timing_kind { fixed, fit };
+
+TACTOR_API std::string_view to_string(timing_kind k) noexcept;
+template <>
+TACTOR_API timing_kind from_string<timing_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const timing_kind> values_of<timing_kind>() noexcept;
+
+/// A path that leaves the array: refused, or moved to the edge.
+enum class outside_kind { error, clamp };
+
+TACTOR_API std::string_view to_string(outside_kind k) noexcept;
+template <>
+TACTOR_API outside_kind from_string<outside_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const outside_kind> values_of<outside_kind>() noexcept;
+
+/// How bursts that overlap on one tactor are joined into one carrier's amplitude.
+enum class overlap_kind { energy, max, sum };
+
+TACTOR_API std::string_view to_string(overlap_kind k) noexcept;
+template <>
+TACTOR_API overlap_kind from_string<overlap_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const overlap_kind> values_of<overlap_kind>() noexcept;
+
+/// What an intensity of one half means: half of the amplitude; half of the sensation level in dB; or half as
+/// strong as it is felt, by Stevens's law.
+enum class scale_kind { linear, sl, stevens };
+
+TACTOR_API std::string_view to_string(scale_kind k) noexcept;
+template <>
+TACTOR_API scale_kind from_string<scale_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const scale_kind> values_of<scale_kind>() noexcept;
+
+/// Where the carrier's phase starts. With `stroke` one carrier runs from the stroke's first frame on, and
+/// bursts open and close it: a tactor that plays several in a row goes on without a break. With `burst` it
+/// starts again with each burst (where bursts overlap on a tactor, with the first). 70 ms at 250 Hz are 17.5
+/// cycles, so there the sign flips from burst to burst: the spectrum has lines at 242.9 and 257.1 Hz in place
+/// of 250, and the mean is above 0.
+enum class phase_kind { stroke, burst };
+
+TACTOR_API std::string_view to_string(phase_kind k) noexcept;
+template <>
+TACTOR_API phase_kind from_string<phase_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const phase_kind> values_of<phase_kind>() noexcept;
+
+/// Who is predicted to feel a plan.
+enum class observer_kind {
+    centroid,  ///< feels the centre of energy of what sounds: tactor/percept.hpp
+    low_speed, ///< expects low speeds: tactor/observer.hpp
+};
+
+TACTOR_API std::string_view to_string(observer_kind k) noexcept;
+template <>
+TACTOR_API observer_kind from_string<observer_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const observer_kind> values_of<observer_kind>() noexcept;
 
 /// What one stroke has in place of the common options of a plan (plan_options); a phantom wins over a model
 /// of your own, too.

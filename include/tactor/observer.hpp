@@ -23,18 +23,6 @@
 namespace tactor {
 inline namespace v0 {
 
-/// Who is predicted to feel a plan.
-enum class observer_kind {
-    centroid,  ///< feels the centre of energy of what sounds: tactor/percept.hpp
-    low_speed, ///< expects low speeds: below
-};
-
-TACTOR_API std::string_view to_string(observer_kind k) noexcept;
-template <>
-TACTOR_API observer_kind from_string<observer_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const observer_kind> values_of<observer_kind>() noexcept;
-
 /// Goldreich's observer (PLoS ONE 2007; Goldreich and Tong 2013): knows places to sigma_mm and expects speeds
 /// of 0 give or take sigma_v_mm_s. The defaults were fitted to taps on the forearm; nobody has fitted a palm,
 /// or bursts that touch.

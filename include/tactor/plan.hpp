@@ -30,39 +30,6 @@ struct timing_profile {
     double max_soa_s = 0.07; ///< Eq. (11), as the paper rounds it: intercept / (1 - slope)
 };
 
-enum class timing_kind { fixed, fit };
-enum class outside_kind { error, clamp };
-/// How bursts that overlap on one tactor are joined into one carrier's amplitude.
-enum class overlap_kind { energy, max, sum };
-
-TACTOR_API std::string_view to_string(timing_kind k) noexcept;
-template <>
-TACTOR_API timing_kind from_string<timing_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const timing_kind> values_of<timing_kind>() noexcept;
-
-TACTOR_API std::string_view to_string(outside_kind k) noexcept;
-template <>
-TACTOR_API outside_kind from_string<outside_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const outside_kind> values_of<outside_kind>() noexcept;
-
-TACTOR_API std::string_view to_string(overlap_kind k) noexcept;
-template <>
-TACTOR_API overlap_kind from_string<overlap_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const overlap_kind> values_of<overlap_kind>() noexcept;
-
-/// What an intensity of one half means: half of the amplitude; half of the sensation level in dB; or half as
-/// strong as it is felt, by Stevens's law.
-enum class scale_kind { linear, sl, stevens };
-
-TACTOR_API std::string_view to_string(scale_kind k) noexcept;
-template <>
-TACTOR_API scale_kind from_string<scale_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const scale_kind> values_of<scale_kind>() noexcept;
-
 /// From the intensity that is asked for to an amplitude; 0 and 1 stay.
 struct intensity_scale {
     scale_kind kind = scale_kind::linear;

@@ -16,52 +16,13 @@
 
 #include <tactor/api.hpp>
 #include <tactor/array.hpp>
+#include <tactor/envelope.hpp>
 #include <tactor/kinds.hpp>
 #include <tactor/plan.hpp>
 #include <tactor/sample_format.hpp>
 
 namespace tactor {
 inline namespace v0 {
-
-/// Where the carrier's phase starts. With `stroke` one carrier runs from the stroke's first frame on, and
-/// bursts open and close it: a tactor that plays several in a row goes on without a break. With `burst` it
-/// starts again with each burst (where bursts overlap on a tactor, with the first). 70 ms at 250 Hz are 17.5
-/// cycles, so there the sign flips from burst to burst: the spectrum has lines at 242.9 and 257.1 Hz in place
-/// of 250, and the mean is above 0.
-enum class phase_kind { stroke, burst };
-
-TACTOR_API std::string_view to_string(phase_kind k) noexcept;
-template <>
-TACTOR_API phase_kind from_string<phase_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const phase_kind> values_of<phase_kind>() noexcept;
-
-/// How a burst rises and falls: like half a cosine's cycle, by a straight line, or by an exponential that
-/// ends after five of its time constants. `tukey` is the first with ramps that are a part of the burst.
-enum class envelope_kind { raised_cosine, linear, exponential, tukey };
-
-TACTOR_API std::string_view to_string(envelope_kind k) noexcept;
-template <>
-TACTOR_API envelope_kind from_string<envelope_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const envelope_kind> values_of<envelope_kind>() noexcept;
-
-/// Of every burst, and of a continuous stroke as a whole. Where both ramps do not fit, they are shortened
-/// alike.
-struct burst_envelope {
-    envelope_kind kind = envelope_kind::raised_cosine;
-    std::optional<double> attack_s = {};  ///< s, from 0; none: render_options::ramp_s
-    std::optional<double> release_s = {}; ///< s, from 0; none: render_options::ramp_s
-    double tukey_part = 0.5; ///< tukey: both ramps together, of the burst, 0 to 1; instead of all other ramps
-
-    friend bool operator==(const burst_envelope&, const burst_envelope&) = default;
-};
-
-/// The name of a kind, or "tukey:PART". The ramps are left open. \throws error (bad_input).
-[[nodiscard]] TACTOR_API burst_envelope parse_envelope(std::string_view text);
-
-/// What parse_envelope() takes: all but the ramps.
-[[nodiscard]] TACTOR_API std::string envelope_text(const burst_envelope& e);
 
 /// What the array may be given at run time, over and above each channel's own max_dbfs: what the channels
 /// get after all strokes are summed, by its envelope. Plans within these limits are not touched in a single

@@ -9,6 +9,7 @@
 #include <tactor/curve.hpp>
 #include <tactor/devices.hpp>
 #include <tactor/drive_history.hpp>
+#include <tactor/envelope.hpp>
 #include <tactor/error.hpp>
 #include <tactor/fit.hpp>
 #include <tactor/geometry.hpp>

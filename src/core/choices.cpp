@@ -23,62 +23,35 @@ constexpr detail::kind_table<phantom_kind, 5> phantoms("phantom",
                                                         {phantom_kind::linear, "linear"},
                                                         {phantom_kind::log, "log"},
                                                         {phantom_kind::gaussian, "gaussian"}});
+constexpr detail::kind_table<timing_kind, 2> timings("timing", {{timing_kind::fixed, "fixed"},
+                                                                {timing_kind::fit, "fit"}});
+constexpr detail::kind_table<outside_kind, 2> outsides("outside", {{outside_kind::error, "error"},
+                                                                   {outside_kind::clamp, "clamp"}});
+constexpr detail::kind_table<overlap_kind, 3> overlaps("overlap", {{overlap_kind::energy, "energy"},
+                                                                   {overlap_kind::max, "max"},
+                                                                   {overlap_kind::sum, "sum"}});
+constexpr detail::kind_table<scale_kind, 3> scales("intensity scale", {{scale_kind::linear, "linear"},
+                                                                       {scale_kind::sl, "sl"},
+                                                                       {scale_kind::stevens, "stevens"}});
+constexpr detail::kind_table<phase_kind, 2> phases("phase", {{phase_kind::stroke, "stroke"},
+                                                             {phase_kind::burst, "burst"}});
+constexpr detail::kind_table<observer_kind, 2>
+    observers("observer", {{observer_kind::centroid, "centroid"}, {observer_kind::low_speed, "low-speed"}});
 constexpr detail::kind_table<start_from_kind, 3> start_froms("start_from", {{start_from_kind::piece, "piece"},
                                                                             {start_from_kind::start, "start"},
                                                                             {start_from_kind::end, "end"}});
 
 } // namespace
 
-std::string_view to_string(algorithm_kind k) noexcept
-{
-    return algorithms.name(k);
-}
-
-template <>
-algorithm_kind from_string<algorithm_kind>(std::string_view name)
-{
-    return algorithms.kind(name);
-}
-
-template <>
-std::span<const algorithm_kind> values_of<algorithm_kind>() noexcept
-{
-    return algorithms.kinds();
-}
-
-std::string_view to_string(phantom_kind k) noexcept
-{
-    return phantoms.name(k);
-}
-
-template <>
-phantom_kind from_string<phantom_kind>(std::string_view name)
-{
-    return phantoms.kind(name);
-}
-
-template <>
-std::span<const phantom_kind> values_of<phantom_kind>() noexcept
-{
-    return phantoms.kinds();
-}
-
-std::string_view to_string(start_from_kind k) noexcept
-{
-    return start_froms.name(k);
-}
-
-template <>
-start_from_kind from_string<start_from_kind>(std::string_view name)
-{
-    return start_froms.kind(name);
-}
-
-template <>
-std::span<const start_from_kind> values_of<start_from_kind>() noexcept
-{
-    return start_froms.kinds();
-}
+TACTOR_KIND_FUNCTIONS(algorithm_kind, algorithms)
+TACTOR_KIND_FUNCTIONS(phantom_kind, phantoms)
+TACTOR_KIND_FUNCTIONS(timing_kind, timings)
+TACTOR_KIND_FUNCTIONS(outside_kind, outsides)
+TACTOR_KIND_FUNCTIONS(overlap_kind, overlaps)
+TACTOR_KIND_FUNCTIONS(scale_kind, scales)
+TACTOR_KIND_FUNCTIONS(phase_kind, phases)
+TACTOR_KIND_FUNCTIONS(observer_kind, observers)
+TACTOR_KIND_FUNCTIONS(start_from_kind, start_froms)
 
 double resolve_start_s(std::optional<double> start_s, const start_anchor& anchor,
                        std::span<const double> starts_s, std::span<const double> ends_s)

@@ -61,3 +61,20 @@ private:
 };
 
 } // namespace tactor::detail
+
+/// Defines to_string(), from_string() and values_of() of a kind, inside namespace tactor::v0, by its table.
+#define TACTOR_KIND_FUNCTIONS(Kind, table)                                                                   \
+    std::string_view to_string(Kind k) noexcept                                                              \
+    {                                                                                                        \
+        return (table).name(k);                                                                              \
+    }                                                                                                        \
+    template <>                                                                                              \
+    Kind from_string<Kind>(std::string_view name)                                                            \
+    {                                                                                                        \
+        return (table).kind(name);                                                                           \
+    }                                                                                                        \
+    template <>                                                                                              \
+    std::span<const Kind> values_of<Kind>() noexcept                                                         \
+    {                                                                                                        \
+        return (table).kinds();                                                                              \
+    }

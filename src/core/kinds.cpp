@@ -48,141 +48,14 @@ constexpr detail::kind_table<log_kind, 4> log_kinds("kind of log line", {{log_ki
 
 } // namespace
 
-std::string_view to_string(error_kind k) noexcept
-{
-    return errors.name(k);
-}
-
-template <>
-error_kind from_string<error_kind>(std::string_view name)
-{
-    return errors.kind(name);
-}
-
-template <>
-std::span<const error_kind> values_of<error_kind>() noexcept
-{
-    return errors.kinds();
-}
-
-std::string_view to_string(actuator_kind k) noexcept
-{
-    return actuators.name(k);
-}
-
-template <>
-actuator_kind from_string<actuator_kind>(std::string_view name)
-{
-    return actuators.kind(name);
-}
-
-template <>
-std::span<const actuator_kind> values_of<actuator_kind>() noexcept
-{
-    return actuators.kinds();
-}
-
-std::string_view to_string(note_kind k) noexcept
-{
-    return notes.name(k);
-}
-
-template <>
-note_kind from_string<note_kind>(std::string_view name)
-{
-    return notes.kind(name);
-}
-
-template <>
-std::span<const note_kind> values_of<note_kind>() noexcept
-{
-    return notes.kinds();
-}
-
-std::string_view to_string(easing_kind k) noexcept
-{
-    return easings.name(k);
-}
-
-template <>
-easing_kind from_string<easing_kind>(std::string_view name)
-{
-    return easings.kind(name);
-}
-
-template <>
-std::span<const easing_kind> values_of<easing_kind>() noexcept
-{
-    return easings.kinds();
-}
-
-std::string_view to_string(edge_kind k) noexcept
-{
-    return edges.name(k);
-}
-
-template <>
-edge_kind from_string<edge_kind>(std::string_view name)
-{
-    return edges.kind(name);
-}
-
-template <>
-std::span<const edge_kind> values_of<edge_kind>() noexcept
-{
-    return edges.kinds();
-}
-
-std::string_view to_string(pull_kind k) noexcept
-{
-    return pulls.name(k);
-}
-
-template <>
-pull_kind from_string<pull_kind>(std::string_view name)
-{
-    return pulls.kind(name);
-}
-
-template <>
-std::span<const pull_kind> values_of<pull_kind>() noexcept
-{
-    return pulls.kinds();
-}
-
-std::string_view to_string(io_kind k) noexcept
-{
-    return states.name(k);
-}
-
-template <>
-io_kind from_string<io_kind>(std::string_view name)
-{
-    return states.kind(name);
-}
-
-template <>
-std::span<const io_kind> values_of<io_kind>() noexcept
-{
-    return states.kinds();
-}
-
-std::string_view to_string(log_kind k) noexcept
-{
-    return log_kinds.name(k);
-}
-
-template <>
-log_kind from_string<log_kind>(std::string_view name)
-{
-    return log_kinds.kind(name);
-}
-
-template <>
-std::span<const log_kind> values_of<log_kind>() noexcept
-{
-    return log_kinds.kinds();
-}
+TACTOR_KIND_FUNCTIONS(error_kind, errors)
+TACTOR_KIND_FUNCTIONS(actuator_kind, actuators)
+TACTOR_KIND_FUNCTIONS(note_kind, notes)
+TACTOR_KIND_FUNCTIONS(easing_kind, easings)
+TACTOR_KIND_FUNCTIONS(edge_kind, edges)
+TACTOR_KIND_FUNCTIONS(pull_kind, pulls)
+TACTOR_KIND_FUNCTIONS(io_kind, states)
+TACTOR_KIND_FUNCTIONS(log_kind, log_kinds)
 
 } // namespace v0
 } // namespace tactor

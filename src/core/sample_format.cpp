@@ -30,22 +30,7 @@ std::size_t bytes_of(format_kind f) noexcept
     return 4;
 }
 
-std::string_view to_string(format_kind k) noexcept
-{
-    return formats.name(k);
-}
-
-template <>
-format_kind from_string<format_kind>(std::string_view name)
-{
-    return formats.kind(name);
-}
-
-template <>
-std::span<const format_kind> values_of<format_kind>() noexcept
-{
-    return formats.kinds();
-}
+TACTOR_KIND_FUNCTIONS(format_kind, formats)
 
 } // namespace v0
 } // namespace tactor

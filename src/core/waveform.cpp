@@ -90,39 +90,8 @@ std::optional<double> number_until(std::string_view text, std::size_t& at, char 
 
 } // namespace
 
-std::string_view to_string(waveform_kind k) noexcept
-{
-    return waveforms.name(k);
-}
-
-template <>
-waveform_kind from_string<waveform_kind>(std::string_view name)
-{
-    return waveforms.kind(name);
-}
-
-template <>
-std::span<const waveform_kind> values_of<waveform_kind>() noexcept
-{
-    return waveforms.kinds();
-}
-
-std::string_view to_string(texture_kind k) noexcept
-{
-    return textures.name(k);
-}
-
-template <>
-texture_kind from_string<texture_kind>(std::string_view name)
-{
-    return textures.kind(name);
-}
-
-template <>
-std::span<const texture_kind> values_of<texture_kind>() noexcept
-{
-    return textures.kinds();
-}
+TACTOR_KIND_FUNCTIONS(waveform_kind, waveforms)
+TACTOR_KIND_FUNCTIONS(texture_kind, textures)
 
 bool operator==(const waveform& a, const waveform& b)
 {

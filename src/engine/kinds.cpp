@@ -35,73 +35,10 @@ constexpr detail::kind_table<wait_kind, 4> waits("wait", {{wait_kind::ended, "en
 
 } // namespace
 
-std::string_view to_string(start_kind k) noexcept
-{
-    return starts.name(k);
-}
-
-template <>
-start_kind from_string<start_kind>(std::string_view name)
-{
-    return starts.kind(name);
-}
-
-template <>
-std::span<const start_kind> values_of<start_kind>() noexcept
-{
-    return starts.kinds();
-}
-
-std::string_view to_string(state_kind k) noexcept
-{
-    return states.name(k);
-}
-
-template <>
-state_kind from_string<state_kind>(std::string_view name)
-{
-    return states.kind(name);
-}
-
-template <>
-std::span<const state_kind> values_of<state_kind>() noexcept
-{
-    return states.kinds();
-}
-
-std::string_view to_string(reason_kind k) noexcept
-{
-    return reasons.name(k);
-}
-
-template <>
-reason_kind from_string<reason_kind>(std::string_view name)
-{
-    return reasons.kind(name);
-}
-
-template <>
-std::span<const reason_kind> values_of<reason_kind>() noexcept
-{
-    return reasons.kinds();
-}
-
-std::string_view to_string(wait_kind k) noexcept
-{
-    return waits.name(k);
-}
-
-template <>
-wait_kind from_string<wait_kind>(std::string_view name)
-{
-    return waits.kind(name);
-}
-
-template <>
-std::span<const wait_kind> values_of<wait_kind>() noexcept
-{
-    return waits.kinds();
-}
+TACTOR_KIND_FUNCTIONS(start_kind, starts)
+TACTOR_KIND_FUNCTIONS(state_kind, states)
+TACTOR_KIND_FUNCTIONS(reason_kind, reasons)
+TACTOR_KIND_FUNCTIONS(wait_kind, waits)
 
 } // namespace v0
 } // namespace tactor

@@ -7,36 +7,12 @@
 
 #include <fmt/format.h>
 
-#include "core/kind_table.hpp"
 #include "core/words.hpp"
 #include "percept/low_speed.hpp"
 #include "percept/person.hpp"
 
 namespace tactor {
 inline namespace v0 {
-namespace {
-
-constexpr detail::kind_table<observer_kind, 2>
-    observers("observer", {{observer_kind::centroid, "centroid"}, {observer_kind::low_speed, "low-speed"}});
-
-} // namespace
-
-std::string_view to_string(observer_kind k) noexcept
-{
-    return observers.name(k);
-}
-
-template <>
-observer_kind from_string<observer_kind>(std::string_view name)
-{
-    return observers.kind(name);
-}
-
-template <>
-std::span<const observer_kind> values_of<observer_kind>() noexcept
-{
-    return observers.kinds();
-}
 
 std::string describe(const low_speed_observer& o)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <tactor/render.hpp>
+#include <tactor/envelope.hpp>
 
 #include <fmt/format.h>
 
@@ -11,10 +11,9 @@
 
 namespace tactor {
 inline namespace v0 {
+
 namespace {
 
-constexpr detail::kind_table<phase_kind, 2> phases("phase", {{phase_kind::stroke, "stroke"},
-                                                             {phase_kind::burst, "burst"}});
 constexpr detail::kind_table<envelope_kind, 4> envelopes("envelope",
                                                          {{envelope_kind::raised_cosine, "raised-cosine"},
                                                           {envelope_kind::linear, "linear"},
@@ -23,39 +22,7 @@ constexpr detail::kind_table<envelope_kind, 4> envelopes("envelope",
 
 } // namespace
 
-std::string_view to_string(phase_kind k) noexcept
-{
-    return phases.name(k);
-}
-
-template <>
-phase_kind from_string<phase_kind>(std::string_view name)
-{
-    return phases.kind(name);
-}
-
-template <>
-std::span<const phase_kind> values_of<phase_kind>() noexcept
-{
-    return phases.kinds();
-}
-
-std::string_view to_string(envelope_kind k) noexcept
-{
-    return envelopes.name(k);
-}
-
-template <>
-envelope_kind from_string<envelope_kind>(std::string_view name)
-{
-    return envelopes.kind(name);
-}
-
-template <>
-std::span<const envelope_kind> values_of<envelope_kind>() noexcept
-{
-    return envelopes.kinds();
-}
+TACTOR_KIND_FUNCTIONS(envelope_kind, envelopes)
 
 burst_envelope parse_envelope(std::string_view text)
 {
