@@ -4,7 +4,6 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,7 +11,11 @@
 
 #include <tactor/api.hpp>
 #include <tactor/array.hpp>
+#include <tactor/choices.hpp>
+#include <tactor/envelope.hpp>
 #include <tactor/lines.hpp>
+#include <tactor/sample_format.hpp>
+#include <tactor/waveform.hpp>
 
 namespace tactor {
 inline namespace v0 {
@@ -70,6 +73,56 @@ struct serve_settings {
     std::optional<unsigned> max_all_unread_bytes = {}; ///< that wait for all together
 };
 
+/// [defaults]: what strokes, plans and their sound have where nothing else is said. The file was looked at
+/// for what cannot be at all; what goes together, and with a sample rate, is checked where it is used.
+struct default_settings {
+    std::optional<double> speed_mm_s = {}; ///< of strokes that say neither speed nor duration
+
+    // plan_options
+    std::optional<algorithm_kind> algorithm = {};
+    std::optional<phantom_kind> phantom = {};
+    std::optional<double> soa_s = {};
+    std::optional<double> burst_s = {};
+    std::optional<timing_kind> timing = {};
+    std::optional<outside_kind> outside = {};
+    std::optional<bool> snap = {};
+    std::optional<bool> drop_points = {};
+    std::optional<overlap_kind> overlap = {};
+    std::optional<double> carrier_hz = {};
+    std::optional<double> slope = {};         ///< of timing_profile
+    std::optional<double> intercept_s = {};   ///< of timing_profile
+    std::optional<std::string> waveform = {}; ///< for parse_waveform(); no file was opened
+    std::optional<unsigned> noise_seed = {};
+    std::optional<texture_kind> texture = {};
+    std::optional<double> texture_mm = {};
+    std::optional<modulation> am = {};
+    std::optional<scale_kind> intensity_scale = {};
+    std::optional<double> stevens_exponent = {}; ///< of tactor::intensity_scale
+
+    // render_options
+    std::optional<envelope_kind> envelope = {};
+    std::optional<double> tukey_part = {};
+    std::optional<double> attack_s = {};
+    std::optional<double> release_s = {};
+    std::optional<phase_kind> phase = {};
+    std::optional<double> ramp_s = {};
+    std::optional<double> level_dbfs = {};
+    std::optional<double> sl_db = {};
+    std::optional<unsigned> rate = {}; ///< Hz
+
+    // output
+    std::optional<format_kind> sample_format = {};
+    std::optional<double> latency_s = {};
+
+    // low_speed_observer
+    std::optional<bool> compensate = {}; ///< whether bursts are moved by compensate()
+    std::optional<observer_kind> observer = {};
+    std::optional<double> sigma_mm = {};
+    std::optional<double> sigma_v_mm_s = {};
+
+    friend bool operator==(const default_settings&, const default_settings&) = default;
+};
+
 /// Of whom and at which carrier an array file's thresholds are: its [calibration].
 struct calibration_origin {
     std::string participant = {};
@@ -88,13 +141,8 @@ struct setup {
     std::optional<limit_settings> limits = {};
     std::optional<serve_settings> serve = {};
     std::optional<calibration_origin> calibration = {};
-    /// [defaults]: option name (without dashes) to value as text, e.g. "phantom" -> "barycentric".
-    /// Only names that setup_default_names() lists.
-    std::map<std::string, std::string> defaults = {};
+    default_settings defaults = {};
 };
-
-/// Options that a [defaults] table may set.
-[[nodiscard]] TACTOR_API const std::vector<std::string>& setup_default_names();
 
 /// Reads an array or configuration file. May block on the file system.
 /// \throws error (bad_input) with file, line and column; an unknown key names the nearest known one.

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT
-// [defaults]: options of the command line. They are checked here, where their line is known, and
-// kept as text, which the tool takes as if it had been typed.
+// [defaults]. Its keys are named as the tool's options are; it is checked here, where its lines are known.
+#include "files/setup_defaults.hpp"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <span>
+#include <concepts>
+#include <type_traits>
+#include <variant>
 
 #include <fmt/format.h>
 
-#include <tactor/waveform.hpp>
+#include <tactor/envelope.hpp>
 
 #include "core/suggest.hpp"
 #include "files/setup_parts.hpp"
@@ -16,120 +19,227 @@
 namespace tactor::detail {
 namespace {
 
-enum class kind { word, text, number, whole, flag };
+template <class T>
+using member = std::optional<T> default_settings::*;
 
-struct option {
+// Values that are written in another way than their field holds them.
+struct milliseconds {
+    member<double> seconds;
+};
+struct yes_or_none { // a flag that has a name
+    member<bool> flag;
+    std::string_view yes;
+};
+struct envelope_name {}; // KIND or tukey:PART
+struct waveform_name {   // a waveform's name or file
+    member<std::string> text;
+};
+
+using field =
+    std::variant<member<double>, member<unsigned>, member<bool>, member<algorithm_kind>, member<phantom_kind>,
+                 member<timing_kind>, member<outside_kind>, member<overlap_kind>, member<texture_kind>,
+                 member<scale_kind>, member<phase_kind>, member<format_kind>, member<observer_kind>,
+                 member<modulation>, milliseconds, yes_or_none, envelope_name, waveform_name>;
+
+struct key {
     std::string_view name;
-    kind is;
+    field to;
     bounds allowed{};
-    std::array<std::string_view, 5> words{};
 };
 
 constexpr double max_hz = 384000.0; // half of the highest rate
 
 // What is possible at all; the planner knows the closer bounds.
-constexpr std::array options{
-    option{"algorithm", kind::word, {}, {"park2016", "tactile-brush", "continuous"}},
-    option{"phantom", kind::word, {}, {"inverse-distance", "barycentric", "linear", "log", "gaussian"}},
-    option{"speed", kind::number, {0.0, max_mm, true}},
-    option{"soa", kind::number, {0.0, 10.0, true}},
-    option{"burst", kind::number, {0.0001, 10.0}},
-    option{"timing", kind::word, {}, {"fixed", "fit"}},
-    option{"outside", kind::word, {}, {"error", "clamp"}},
-    option{"snap", kind::flag},
-    option{"drop-points", kind::flag},
-    option{"overlap", kind::word, {}, {"energy", "max", "sum"}},
-    option{"carrier", kind::number, {1.0, max_hz}},
-    option{"waveform", kind::text},
-    option{"am", kind::text},
-    option{"noise-seed", kind::whole, {0.0, 4294967295.0}},
-    option{"texture", kind::word, {}, {"cycle", "time", "length"}},
-    option{"texture-mm", kind::number, {0.0, max_mm}},
-    option{"envelope", kind::text, {}, {"raised-cosine", "linear", "exponential", "tukey"}},
-    option{"attack", kind::number, {0.0, 10.0}},
-    option{"release", kind::number, {0.0, 10.0}},
-    option{"phase", kind::word, {}, {"stroke", "burst"}},
-    option{"ramp", kind::number, {0.0, 10.0}},
-    option{"level-dbfs", kind::number, {min_db, 0.0}},
-    option{"sl", kind::number, {min_db, -min_db}},
-    option{"intensity-scale", kind::word, {}, {"linear", "sl", "stevens"}},
-    option{"stevens-exponent", kind::number, {0.1, 3.0}},
-    option{"rate", kind::whole, {8000.0, 768000.0}},
-    option{"sample-format", kind::word, {}, {"float", "s16", "s24", "s24-4", "s32"}},
-    option{"latency-ms", kind::number, {0.0, 10000.0}},
-    option{"slope", kind::number, {0.0, 0.99}},
-    option{"intercept", kind::number, {0.0, 10.0, true}},
-    option{"compensate", kind::word, {}, {"none", "low-speed"}},
-    option{"observer", kind::word, {}, {"centroid", "low-speed"}},
-    option{"sigma-mm", kind::number, {0.001, 1000.0}},
-    option{"sigma-v-mm-s", kind::number, {0.001, 1e6}},
+using d = default_settings;
+constexpr std::array keys{
+    key{"algorithm", &d::algorithm},
+    key{"phantom", &d::phantom},
+    key{"speed", &d::speed_mm_s, {0.0, max_mm, true}},
+    key{"soa", &d::soa_s, {0.0, 10.0, true}},
+    key{"burst", &d::burst_s, {0.0001, 10.0}},
+    key{"timing", &d::timing},
+    key{"outside", &d::outside},
+    key{"snap", &d::snap},
+    key{"drop-points", &d::drop_points},
+    key{"overlap", &d::overlap},
+    key{"carrier", &d::carrier_hz, {1.0, max_hz}},
+    key{"waveform", waveform_name{&d::waveform}},
+    key{"am", &d::am},
+    key{"noise-seed", &d::noise_seed, {0.0, 4294967295.0}},
+    key{"texture", &d::texture},
+    key{"texture-mm", &d::texture_mm, {0.0, max_mm}},
+    key{"envelope", envelope_name{}},
+    key{"attack", &d::attack_s, {0.0, 10.0}},
+    key{"release", &d::release_s, {0.0, 10.0}},
+    key{"phase", &d::phase},
+    key{"ramp", &d::ramp_s, {0.0, 10.0}},
+    key{"level-dbfs", &d::level_dbfs, {min_db, 0.0}},
+    key{"sl", &d::sl_db, {min_db, -min_db}},
+    key{"intensity-scale", &d::intensity_scale},
+    key{"stevens-exponent", &d::stevens_exponent, {0.1, 3.0}},
+    key{"rate", &d::rate, {8000.0, 768000.0}},
+    key{"sample-format", &d::sample_format},
+    key{"latency-ms", milliseconds{&d::latency_s}, {0.0, 10000.0}},
+    key{"slope", &d::slope, {0.0, 0.99}},
+    key{"intercept", &d::intercept_s, {0.0, 10.0, true}},
+    key{"compensate", yes_or_none{&d::compensate, "low-speed"}},
+    key{"observer", &d::observer},
+    key{"sigma-mm", &d::sigma_mm, {0.001, 1000.0}},
+    key{"sigma-v-mm-s", &d::sigma_v_mm_s, {0.001, 1e6}},
 };
 
-// A value in quotes is taken as typed: "0.07" is 0.07.
-double number_in(const toml_table& t, const option& o, const toml::node& n)
-{
-    const auto* s = n.as_string();
-    if (!s)
-        return t.number_of(n, o.name, o.allowed);
-    double v = 0.0;
-    const char* end = s->get().data() + s->get().size();
-    const auto [stop, code] = std::from_chars(s->get().data(), end, v);
-    if (code != std::errc() || stop != end)
-        fail_at(t.where(n), fmt::format("{} is {}", o.name, shown(n)), "give a number");
-    return t.within(n, o.name, v, o.allowed);
-}
-
-// What only the option's own reader knows, checked here as far as it goes without a file.
-std::string text_in(const toml_table& t, const option& o, const toml::node& n)
-{
-    const bool number = o.name == "am" && (n.is_integer() || n.is_floating_point());
-    std::string said = n.is_string() ? n.as_string()->get() : number ? shown(n) : std::string();
-    if (said.empty())
-        fail_at(t.where(n), fmt::format("{} is {}", o.name, shown(n)), "give a text");
-    const std::string_view head = std::string_view(said).substr(0, said.find(':'));
-    if (!o.words.front().empty() && std::find(o.words.begin(), o.words.end(), head) == o.words.end())
-        fail_at(t.where(n), fmt::format("{} is {}", o.name, shown(n)),
-                suggestion(said, std::span(o.words).first(4), "values"));
-    try {
-        if (o.name == "am")
-            static_cast<void>(parse_modulation(said));
-        // A file is looked for where the option is used.
-        if (o.name == "waveform" && !waveform_names_file(said))
-            static_cast<void>(parse_waveform(said));
-    } catch (const error& e) {
-        fail_at(t.where(n), fmt::format("{} is {}", o.name, shown(n)), e.hint());
+// Reads the value at n into its field.
+class reader {
+public:
+    reader(const toml_table& table, const key& k, const toml::node& n, default_settings& out)
+        : table_(table), key_(k), node_(n), out_(out)
+    {
     }
-    return said;
-}
 
-std::string value_of(const toml_table& t, const option& o, const toml::node& n)
-{
-    if (o.is == kind::text)
-        return text_in(t, o, n);
-    if (o.is == kind::number)
-        return fmt::format("{}", number_in(t, o, n));
-    if (o.is == kind::whole) {
-        const double v = number_in(t, o, n);
+    void operator()(member<double> m) const { out_.*m = number(); }
+    void operator()(member<unsigned> m) const
+    {
+        const double v = number();
         if (v != static_cast<double>(static_cast<unsigned>(v)))
-            fail_at(t.where(n), fmt::format("{} is {}", o.name, v), "give a whole number");
-        return fmt::format("{}", static_cast<unsigned>(v));
+            fail_at(table_.where(node_), fmt::format("{} is {}", key_.name, v), "give a whole number");
+        out_.*m = static_cast<unsigned>(v);
     }
-    if (o.is == kind::flag) {
-        const auto* s = n.as_string();
-        if (!n.is_boolean() && !(s && (s->get() == "true" || s->get() == "false")))
-            fail_at(t.where(n), fmt::format("{} is {}", o.name, shown(n)), "give true or false");
-        return s ? s->get() : shown(n);
+    void operator()(member<bool> m) const
+    {
+        const auto* s = node_.as_string();
+        if (!node_.is_boolean() && !(s && (s->get() == "true" || s->get() == "false")))
+            fail("give true or false");
+        out_.*m = s ? s->get() == "true" : node_.as_boolean()->get();
     }
-    std::vector<std::string_view> words;
-    for (const std::string_view w : o.words)
-        if (!w.empty())
-            words.push_back(w);
-    std::string said = n.is_string() ? n.as_string()->get() : std::string();
-    for (const std::string_view w : words)
-        if (w == said)
-            return said;
-    fail_at(t.where(n), fmt::format("{} is {}", o.name, shown(n)), suggestion(said, words, "values"));
-}
+    template <class Kind>
+    requires std::is_enum_v<Kind>
+    void operator()(member<Kind> m) const { out_.*m = from_string<Kind>(one_of(names_of<Kind>(), typed())); }
+    void operator()(milliseconds m) const { out_.*m.seconds = number() / 1e3; }
+    void operator()(yes_or_none m) const { out_.*m.flag = one_of({"none", m.yes}, typed()) == m.yes; }
+    void operator()(member<modulation> m) const
+    {
+        out_.*m = checked([&] {
+            return parse_modulation(node_.is_integer() || node_.is_floating_point() ? shown(node_) : text());
+        });
+    }
+    void operator()(envelope_name) const
+    {
+        const std::string said = text();
+        one_of(names_of<envelope_kind>(), said.substr(0, said.find(':')));
+        const burst_envelope e = checked([&] { return parse_envelope(said); });
+        out_.envelope = e.kind;
+        out_.tukey_part = said.find(':') == std::string::npos ? std::nullopt : std::optional(e.tukey_part);
+    }
+    void operator()(waveform_name m) const
+    {
+        const std::string said = text();
+        // A file is looked for where the option is used.
+        if (!waveform_names_file(said))
+            checked([&] { return parse_waveform(said); });
+        out_.*m.text = said;
+    }
+
+private:
+    template <class Kind>
+    static std::vector<std::string_view> names_of()
+    {
+        std::vector<std::string_view> names;
+        for (const Kind k : values_of<Kind>())
+            names.push_back(to_string(k));
+        return names;
+    }
+
+    [[noreturn]] void fail(std::string_view hint) const
+    {
+        fail_at(table_.where(node_), fmt::format("{} is {}", key_.name, shown(node_)), hint);
+    }
+    // Empty for what is no text.
+    std::string typed() const { return node_.is_string() ? node_.as_string()->get() : std::string(); }
+    std::string text() const
+    {
+        std::string said = typed();
+        if (said.empty())
+            fail("give a text");
+        return said;
+    }
+    std::string_view one_of(const std::vector<std::string_view>& names, std::string_view said) const
+    {
+        const auto found = std::find(names.begin(), names.end(), said);
+        if (found == names.end())
+            fail(suggestion(said, names, "values"));
+        return *found;
+    }
+    // A value in quotes is taken as typed: "0.07" is 0.07.
+    double number() const
+    {
+        if (!node_.is_string())
+            return table_.number_of(node_, key_.name, key_.allowed);
+        const std::string said = typed();
+        double v = 0.0;
+        const char* end = said.data() + said.size();
+        const auto [stop, code] = std::from_chars(said.data(), end, v);
+        if (code != std::errc() || stop != end)
+            fail("give a number");
+        return table_.within(node_, key_.name, v, key_.allowed);
+    }
+    // What parse() says is wrong stands at this value.
+    template <class Parse>
+    std::invoke_result_t<Parse> checked(Parse parse) const
+    {
+        try {
+            return parse();
+        } catch (const error& e) {
+            fail(e.hint());
+        }
+    }
+
+    const toml_table& table_;
+    const key& key_;
+    const toml::node& node_;
+    default_settings& out_;
+};
+
+// Writes a field as text; none is not said.
+struct writer {
+    const default_settings& from;
+
+    template <class T>
+    std::optional<std::string> operator()(member<T> m) const
+    {
+        return from.*m ? std::optional(written(*(from.*m))) : std::nullopt;
+    }
+    std::optional<std::string> operator()(milliseconds m) const
+    {
+        // 15 digits: the number that was divided.
+        return from.*m.seconds ? std::optional(fmt::format("{:.15g}", *(from.*m.seconds) * 1e3))
+                               : std::nullopt;
+    }
+    std::optional<std::string> operator()(yes_or_none m) const
+    {
+        return from.*m.flag ? std::optional(std::string(*(from.*m.flag) ? m.yes : "none")) : std::nullopt;
+    }
+    std::optional<std::string> operator()(envelope_name) const
+    {
+        if (!from.envelope)
+            return {};
+        if (from.envelope == envelope_kind::tukey && from.tukey_part)
+            return envelope_text({.kind = envelope_kind::tukey, .tukey_part = *from.tukey_part});
+        return std::string(to_string(*from.envelope));
+    }
+    std::optional<std::string> operator()(waveform_name m) const { return from.*m.text; }
+
+private:
+    template <class T>
+    requires std::is_arithmetic_v<T>
+    static std::string written(T v) { return fmt::format("{}", v); }
+    template <class Kind>
+    requires std::is_enum_v<Kind>
+    static std::string written(Kind k) { return std::string(to_string(k)); }
+    static std::string written(const modulation& m)
+    {
+        return m.depth == modulation().depth ? fmt::format("{}", m.hz) : fmt::format("{}:{}", m.hz, m.depth);
+    }
+};
 
 } // namespace
 
@@ -138,29 +248,37 @@ void read_defaults(const toml_table& root, setup& out)
     const auto t = root.table("defaults", "[defaults]", "[defaults]");
     if (!t)
         return;
-    t->only(std::vector<std::string_view>(setup_default_names().begin(), setup_default_names().end()));
-    for (const option& o : options)
-        if (const toml::node* n = t->node(o.name))
-            out.defaults[std::string(o.name)] = value_of(*t, o, *n);
+    const auto names = default_names();
+    t->only({names.begin(), names.end()});
+    for (const key& k : keys)
+        if (const toml::node* n = t->node(k.name))
+            std::visit(reader(*t, k, *n, out.defaults), k.to);
     if (t->has("sl") && t->has("level-dbfs"))
         t->one_of({"level-dbfs", "sl"});
+    // What an included file says of the other.
+    if (t->has("sl"))
+        out.defaults.level_dbfs.reset();
+    if (t->has("level-dbfs"))
+        out.defaults.sl_db.reset();
 }
 
-} // namespace tactor::detail
-
-namespace tactor {
-inline namespace v0 {
-
-const std::vector<std::string>& setup_default_names()
+std::span<const std::string_view> default_names()
 {
-    static const std::vector<std::string> names = [] {
-        std::vector<std::string> all;
-        for (const detail::option& o : detail::options)
-            all.emplace_back(o.name);
+    static constexpr auto names = [] {
+        std::array<std::string_view, keys.size()> all;
+        std::transform(keys.begin(), keys.end(), all.begin(), [](const key& k) { return k.name; });
         return all;
     }();
     return names;
 }
 
-} // namespace v0
-} // namespace tactor
+std::map<std::string, std::string> default_texts(const default_settings& s)
+{
+    std::map<std::string, std::string> texts;
+    for (const key& k : keys)
+        if (auto text = std::visit(writer{s}, k.to))
+            texts.emplace(k.name, *std::move(text));
+    return texts;
+}
+
+} // namespace tactor::detail

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "core/profile.hpp"
+#include "files/setup_defaults.hpp"
 #include "python/binding.hpp"
 #include "python/state.hpp"
 
@@ -94,7 +95,7 @@ void bind_array(py::module_& m)
                                    return s.array ? std::optional<array_handle>(std::in_place, *s.array)
                                                   : std::nullopt;
                                })
-        .def_readonly("defaults", &setup::defaults)
+        .def_property_readonly("defaults", [](const setup& s) { return detail::default_texts(s.defaults); })
         .def_property_readonly("rate", [](const setup& s) { return s.output.rate; })
         .def_property_readonly("channels", [](const setup& s) { return s.output.channels; })
         .def_property_readonly("marker", [](const setup& s) -> std::optional<std::pair<unsigned, double>> {

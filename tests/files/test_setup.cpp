@@ -9,6 +9,7 @@
 
 #include <tactor/setup.hpp>
 
+#include "files/setup_defaults.hpp"
 #include "message_of.hpp"
 
 namespace setup_test {
@@ -99,12 +100,12 @@ TEST_CASE("a whole configuration")
     CHECK(s.sync->edge == edge_kind::falling);
     CHECK(s.sync->debounce_s == 0.0025);
     CHECK(s.sync->pull == pull_kind::up);
-    CHECK(s.defaults == std::map<std::string, std::string>{{"algorithm", "tactile-brush"},
-                                                           {"soa", "0.06"},
-                                                           {"speed", "80"},
-                                                           {"snap", "true"},
-                                                           {"rate", "96000"},
-                                                           {"level-dbfs", "-20"}});
+    CHECK(s.defaults == default_settings{.speed_mm_s = 80.0,
+                                         .algorithm = algorithm_kind::tactile_brush,
+                                         .soa_s = 0.06,
+                                         .snap = true,
+                                         .level_dbfs = -20.0,
+                                         .rate = 96000});
 }
 
 TEST_CASE("what a file leaves out is left to the program")
@@ -116,7 +117,7 @@ TEST_CASE("what a file leaves out is left to the program")
         CHECK_FALSE(s.output.channels.has_value());
         CHECK_FALSE(s.amplifier.has_value());
         CHECK_FALSE(s.sync.has_value());
-        CHECK(s.defaults.empty());
+        CHECK(s.defaults == default_settings());
     }
     const setup s = read("[amplifier]\nline = { name = \"GPIO17\" }\n[sync]\n");
     CHECK_FALSE(s.amplifier->active_low);
@@ -191,9 +192,9 @@ TEST_CASE("GPIO lines: a chip and an offset, or a name, each line once")
 
 TEST_CASE("[defaults] takes the options it lists, checked")
 {
-    for (const std::string& name : setup_default_names())
-        CHECK_FALSE(complaint("[defaults]\n" + name + " = []\n").empty());
-    CHECK(setup_default_names().size() == 34);
+    for (const std::string_view name : detail::default_names())
+        CHECK_FALSE(complaint(fmt::format("[defaults]\n{} = []\n", name)).empty());
+    CHECK(detail::default_names().size() == 34);
     CHECK(complaint("[defaults]\nphantoms = \"log\"\n") ==
           "t.toml:2:1: unknown key 'phantoms' in [defaults] (did you mean 'phantom'?)");
     CHECK(complaint("[defaults]\nlevel_dbfs = -6\n") ==
@@ -222,10 +223,67 @@ TEST_CASE("numbers in [defaults] come out as they went in, in any locale")
         std::setlocale(LC_ALL, name); // those that are installed
     const setup s = read("[defaults]\nsoa = 0.0575\nramp = 1e-4\ncarrier = 250\nslope = 0.1\n");
     std::setlocale(LC_ALL, before.c_str());
-    CHECK(s.defaults.at("soa") == "0.0575");
-    CHECK(s.defaults.at("ramp") == "0.0001");
-    CHECK(s.defaults.at("carrier") == "250");
-    CHECK(s.defaults.at("slope") == "0.1");
+    CHECK(s.defaults == default_settings{.soa_s = 0.0575, .carrier_hz = 250, .slope = 0.1, .ramp_s = 1e-4});
+    CHECK(detail::default_texts(s.defaults) ==
+          std::map<std::string, std::string>{
+              {"soa", "0.0575"}, {"ramp", "0.0001"}, {"carrier", "250"}, {"slope", "0.1"}});
+}
+
+TEST_CASE("each key of [defaults] has a field, and comes out as it may be typed")
+{
+    const std::map<std::string, std::string> all{{"algorithm", "continuous"},
+                                                 {"phantom", "log"},
+                                                 {"speed", "70"},
+                                                 {"soa", "0.06"},
+                                                 {"burst", "0.07"},
+                                                 {"timing", "fit"},
+                                                 {"outside", "clamp"},
+                                                 {"snap", "false"},
+                                                 {"drop-points", "true"},
+                                                 {"overlap", "sum"},
+                                                 {"carrier", "230.5"},
+                                                 {"waveform", "noise:100-300"},
+                                                 {"am", "30:0.5"},
+                                                 {"noise-seed", "4294967295"},
+                                                 {"texture", "length"},
+                                                 {"texture-mm", "12.5"},
+                                                 {"envelope", "tukey:0.3"},
+                                                 {"attack", "0.01"},
+                                                 {"release", "0.02"},
+                                                 {"phase", "burst"},
+                                                 {"ramp", "0.005"},
+                                                 {"sl", "7"},
+                                                 {"intensity-scale", "sl"},
+                                                 {"stevens-exponent", "0.9"},
+                                                 {"rate", "44100"},
+                                                 {"sample-format", "s24-4"},
+                                                 {"latency-ms", "17.3"},
+                                                 {"slope", "0.32"},
+                                                 {"intercept", "0.0473"},
+                                                 {"compensate", "low-speed"},
+                                                 {"observer", "low-speed"},
+                                                 {"sigma-mm", "4"},
+                                                 {"sigma-v-mm-s", "90"},
+                                                 {"level-dbfs", "-6.5"}};
+    CHECK(all.size() == detail::default_names().size());
+    for (const auto& [name, value] : all) {
+        CAPTURE(name);
+        const std::map<std::string, std::string> one{{name, value}};
+        const setup s = read(fmt::format("[defaults]\n{} = \"{}\"\n", name, value));
+        CHECK(detail::default_texts(s.defaults) == one);
+        CHECK_FALSE(s.defaults == default_settings());
+    }
+    const setup s =
+        read("[defaults]\nlatency-ms = 20\nam = 30\nenvelope = \"tukey:0.3\"\ncompensate = \"none\"\n");
+    CHECK(s.defaults == default_settings{.am = modulation{.hz = 30.0},
+                                         .envelope = envelope_kind::tukey,
+                                         .tukey_part = 0.3,
+                                         .latency_s = 0.020,
+                                         .compensate = false});
+    CHECK(complaint("[defaults]\nenvelope = \"linear:0.3\"\n") ==
+          "t.toml:2:12: envelope is 'linear:0.3' (only tukey has a part, 0 to 1, as tukey:0.5)");
+    CHECK(complaint("[defaults]\nenvelope = \"tukei\"\n") ==
+          "t.toml:2:12: envelope is 'tukei' (did you mean 'tukey'?)");
 }
 
 TEST_CASE("what is no TOML has its line")

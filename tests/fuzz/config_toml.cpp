@@ -5,6 +5,7 @@
 
 #include <tactor/setup.hpp>
 
+#include "files/setup_defaults.hpp"
 #include "holds.hpp"
 
 using namespace tactor;
@@ -34,9 +35,13 @@ void check_setup(const setup& s)
                 check_line(**l);
         }
     }
-    const std::vector<std::string>& known = setup_default_names();
-    for (const auto& [name, value] : s.defaults)
-        HOLDS(std::find(known.begin(), known.end(), name) != known.end());
+    std::string again = "[defaults]\n";
+    for (const auto& [name, value] : detail::default_texts(s.defaults))
+        if (value.find_first_of("'\n\r") == std::string::npos) // a file's name may be anything
+            again += name + " = '" + value + "'\n";
+        else
+            return;
+    HOLDS(detail::default_texts(parse_setup(again, "again").defaults) == detail::default_texts(s.defaults));
 }
 
 } // namespace

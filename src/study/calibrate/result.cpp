@@ -14,6 +14,7 @@
 #include <tactor/error.hpp>
 
 #include "files/output_file.hpp"
+#include "files/setup_defaults.hpp"
 #include "study/data/kept.hpp"
 
 namespace tactor::study {
@@ -144,9 +145,10 @@ std::string array_text(const array& a, const setup& besides)
     s += output_text(besides.output) + lines_text(besides);
     if (besides.limits)
         s += limits_text(*besides.limits);
-    if (!besides.defaults.empty())
+    const std::map<std::string, std::string> defaults = detail::default_texts(besides.defaults);
+    if (!defaults.empty())
         s += "\n[defaults]\n";
-    for (const auto& [name, value] : besides.defaults)
+    for (const auto& [name, value] : defaults)
         s += fmt::format("{} = {}\n", name, toml_string(value));
     return s;
 }
