@@ -11,7 +11,7 @@ namespace tactor::detail {
 
 /// std::hypot as the C library computes it without fused multiplications since glibc 2.35, bit for bit
 /// (Borges 2019, algorithm "fused" without the fusing), on every machine.
-inline double hypot_of(double x, double y) noexcept
+[[gnu::always_inline]] inline double hypot_of(double x, double y) noexcept
 {
     const double u = std::abs(x);
     const double v = std::abs(y);
@@ -30,7 +30,7 @@ inline double hypot_of(double x, double y) noexcept
 }
 
 /// As tactor::distance_mm().
-inline double length_mm(point a, point b) noexcept
+[[gnu::always_inline]] inline double length_mm(point a, point b) noexcept
 {
     return hypot_of(a.x_mm - b.x_mm, a.y_mm - b.y_mm);
 }

@@ -8,6 +8,7 @@
 #include "plan/curve_impl.hpp"
 #include "plan/job.hpp"
 #include "plan/leaving.hpp"
+#include "plan/phantom/same_tactors.hpp"
 
 namespace tactor::detail {
 namespace {
@@ -20,16 +21,28 @@ constexpr std::uint64_t most_kept = 4001;
 class follow {
 public:
     explicit follow(const job& j)
-        : motion_(j.motion.motion), faces_(j.faces), model_(j.model), scale_(j.options.scale)
+        : motion_(j.motion.motion),
+          faces_(j.faces),
+          model_(j.model),
+          three_(dynamic_cast<const model_of_three*>(model_.get())),
+          scale_(j.options.scale)
     {
     }
 
-    void at(double t_s, burst& out) const
+    void at(double t_s, burst& out, same_tactors& seen) const
     {
         const point p = motion_.position(t_s);
-        out.position = faces_.contains(p) ? p : faces_.nearest(p);
         out.intensity = motion_.intensity(t_s);
-        drives_at(*model_, faces_, out.position, scale_.amplitude(out.intensity), out.drives);
+        const double a_v = scale_.amplitude(out.intensity);
+        if (seen.holds(p) && a_v > 0.0 && std::isfinite(a_v)) {
+            out.position = p;
+            drives_of_three(*three_, faces_, seen, p, a_v, out.drives);
+            return;
+        }
+        out.position = faces_.contains(p) ? p : faces_.nearest(p);
+        drives_at(*model_, faces_, out.position, a_v, out.drives);
+        if (three_ != nullptr)
+            look_around(*three_, faces_, out.position, seen);
     }
 
     const trajectory& motion() const noexcept { return motion_; }
@@ -40,6 +53,7 @@ private:
     trajectory motion_;
     layout faces_;
     std::shared_ptr<const phantom_model> model_;
+    const model_of_three* three_; ///< the model, if it is one
     intensity_scale scale_;
 };
 
@@ -48,9 +62,10 @@ curve_samples all_samples(const follow& f)
     const double duration_s = f.motion().duration_s();
     curve_samples all;
     burst b;
+    same_tactors seen;
     const std::uint64_t count = samples_of(duration_s);
     for (std::uint64_t k = 0; k < count; ++k) {
-        f.at(sample_time_s(k, duration_s), b);
+        f.at(sample_time_s(k, duration_s), b, seen);
         all.add(b);
     }
     all.drives.shrink_to_fit();
@@ -66,10 +81,10 @@ public:
             kept_ = all_samples(follow_);
     }
 
-    void fill(std::uint64_t k, burst& out) const override
+    void fill(std::uint64_t k, same_tactors& seen, burst& out) const override
     {
         if (kept_.ends.empty())
-            follow_.at(sample_time_s(k, duration_s), out);
+            follow_.at(sample_time_s(k, duration_s), out, seen);
         else
             read(kept_, static_cast<std::size_t>(k), out);
     }

@@ -25,7 +25,7 @@ class sampled final : public curve::impl {
 public:
     sampled(double duration, curve_samples all) : impl(duration), all_(std::move(all)) {}
 
-    void fill(std::uint64_t k, burst& out) const override
+    void fill(std::uint64_t k, detail::same_tactors&, burst& out) const override
     {
         detail::read(all_, static_cast<std::size_t>(k), out);
     }
@@ -114,6 +114,15 @@ curve::impl::impl(double duration) : duration_s(duration), size(detail::samples_
 {
 }
 
+void curve::impl::sample(std::uint64_t k, detail::same_tactors& seen, burst& out) const
+{
+    const std::uint64_t i = std::min(k, size - 1);
+    fill(i, seen, out);
+    out.onset_s = detail::sample_time_s(i, duration_s);
+    out.duration_s = 0.0;
+    out.tau_s.reset();
+}
+
 } // namespace v0
 } // namespace tactor
 
@@ -167,11 +176,8 @@ double curve::time_s(std::uint64_t k) const noexcept
 
 void curve::sample(std::uint64_t k, burst& out) const
 {
-    const std::uint64_t i = std::min(k, impl_->size - 1);
-    impl_->fill(i, out);
-    out.onset_s = detail::sample_time_s(i, impl_->duration_s);
-    out.duration_s = 0.0;
-    out.tau_s.reset();
+    detail::same_tactors nowhere{.in_vain = 1}; // one sample is not worth a look around
+    impl_->sample(k, nowhere, out);
 }
 
 void curve::at(double t_s, burst& out) const

@@ -11,6 +11,8 @@
 #include <tactor/curve.hpp>
 #include <tactor/plan.hpp>
 
+#include "plan/phantom/same_tactors.hpp"
+
 namespace tactor {
 inline namespace v0 {
 
@@ -20,8 +22,12 @@ struct curve::impl {
     impl(const impl&) = delete;
     impl& operator=(const impl&) = delete;
 
+    /// As curve::sample(). `seen` is the reader's own, of this curve: samples that are near each other are
+    /// read faster one after the other.
+    void sample(std::uint64_t k, detail::same_tactors& seen, burst& out) const;
+
     /// Position, intensity and drives of sample k, which is there.
-    virtual void fill(std::uint64_t k, burst& out) const = 0;
+    virtual void fill(std::uint64_t k, detail::same_tactors& seen, burst& out) const = 0;
     /// The movement that bounds what the tactors get: none is given more than its intensity, which is linear
     /// between the trajectory's points. Null where that is not known.
     virtual const trajectory* bounds() const noexcept { return nullptr; }

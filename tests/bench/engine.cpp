@@ -17,11 +17,11 @@ using namespace tactor;
 
 namespace {
 
-std::vector<score> scores()
+std::vector<score> scores(algorithm_kind method)
 {
     const array a = bench::square(64);
     std::vector<score> all;
-    for (const plan& p : bench::strokes(a, 64, algorithm_kind::park2016))
+    for (const plan& p : bench::strokes(a, 64, method))
         all.emplace_back(a, std::vector<placed_plan>{{p, {}}}, bench::levels(64));
     return all;
 }
@@ -32,11 +32,12 @@ void submit(engine::feeder& feed, engine::link& link, stroke_id& id, const std::
         feed.submit({++id.number}, s, start_at::frame(link.status.load().written + 4800));
 }
 
-/// One step of the audio thread is one period.
-void periods(benchmark::State& state, double power_dbfs)
+/// One step of the audio thread is one period. Feeding it is the control thread's; counted are the periods in
+/// which that had to wake up, and what it took.
+void periods(benchmark::State& state, algorithm_kind method, double power_dbfs)
 {
     const auto period = static_cast<unsigned>(state.range(0));
-    static const std::vector<score> strokes = scores();
+    const std::vector<score> strokes = scores(method);
     bench::nowhere out(64, period);
     engine::link link;
     engine::feeder feed(link, 24'000);
@@ -48,7 +49,11 @@ void periods(benchmark::State& state, double power_dbfs)
     std::size_t ended = 64;
     double worst = 0.0;
     double total = 0.0;
+    double feeding = 0.0;
+    std::uint64_t wakes = 0;
     for (auto _ : state) {
+        const double begun = bench::cpu_s();
+        wakes += link.to_control.consume() > 0 ? 1 : 0;
         engine::report r;
         while (link.reports.pop(r))
             feed.handle(r);
@@ -59,6 +64,7 @@ void periods(benchmark::State& state, double power_dbfs)
         }
         feed.pump(link.status.load().written, link.clock.load());
         const double from = bench::cpu_s();
+        feeding += from - begun;
         loop.step(io_kind::ok, 0);
         const double took = bench::cpu_s() - from;
         state.SetIterationTime(took);
@@ -68,17 +74,27 @@ void periods(benchmark::State& state, double power_dbfs)
     const double period_s = period / 48000.0;
     state.counters["worst_us"] = worst * 1e6;
     state.counters["worst_%_of_a_core"] = 100.0 * worst / period_s;
-    state.counters["mean_%_of_a_core"] = 100.0 * total / (static_cast<double>(state.iterations()) * period_s);
+    const auto all = static_cast<double>(state.iterations());
+    state.counters["mean_%_of_a_core"] = 100.0 * total / (all * period_s);
+    state.counters["feeding_%_of_a_core"] = 100.0 * feeding / (all * period_s);
+    state.counters["wakes_a_period"] = static_cast<double>(wakes) / all;
 }
-BENCHMARK_CAPTURE(periods, within_limits, drive_limits{}.power_dbfs)
+BENCHMARK_CAPTURE(periods, within_limits, algorithm_kind::park2016, drive_limits{}.power_dbfs)
     ->Name("engine/64_strokes_on_64_channels")
     ->Arg(48)
     ->Arg(96)
     ->Arg(480)
     ->UseManualTime()
     ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(periods, continuous, algorithm_kind::continuous, drive_limits{}.power_dbfs)
+    ->Name("engine/64_continuous_on_64_channels")
+    ->Arg(48)
+    ->Arg(96)
+    ->Arg(480)
+    ->UseManualTime()
+    ->Unit(benchmark::kMicrosecond);
 // 64 carriers, each of which counts by itself.
-BENCHMARK_CAPTURE(periods, held_down, -40.0)
+BENCHMARK_CAPTURE(periods, held_down, algorithm_kind::park2016, -40.0)
     ->Name("engine/64_strokes_held_down")
     ->Arg(96)
     ->UseManualTime()

@@ -191,12 +191,36 @@ void add_renderer(algorithm_kind method)
     }
 }
 
+/// A minute from corner to corner of nine tactors: straight, curved, and along a row of them, which are on
+/// the border between two faces.
+void add_renderer_ways()
+{
+    const array a = bench::square(9);
+    const auto& [x, y] = a.tactors.back().position;
+    const auto& [left, top] = a.tactors.front().position;
+    const auto at = [&](double u, double v) { return point{left + u * (x - left), top + v * (y - top)}; };
+    const auto svg = [](point p) { return fmt::format("{} {}", p.x_mm, p.y_mm); };
+    const std::vector<std::pair<std::string, path>> ways{
+        {"line", path::from_svg("M " + svg(at(0.05, 0.1)) + " L " + svg(at(0.95, 0.8)))},
+        {"cubic", path::from_svg("M " + svg(at(0.05, 0.25)) + " C " + svg(at(0.5, 0.95)) + " " +
+                                 svg(at(0.5, 0.05)) + " " + svg(at(0.95, 0.75)))},
+        {"row", path::from_svg("M " + svg(at(0.0, 0.5)) + " L " + svg(at(1.0, 0.5)))}};
+    for (const auto& [name, way] : ways) {
+        plan_options o;
+        o.algorithm = algorithm_kind::continuous;
+        const score s(a, {{make_plan(a, stroke{name, trajectory::along(way, 60.0)}, o), {}}},
+                      bench::levels(1));
+        add(fmt::format("renderer/continuous/{}", name), [s](benchmark::State& state) { whole(state, s); });
+    }
+}
+
 } // namespace
 
 void bench::add_synth()
 {
     add_renderer(algorithm_kind::park2016);
     add_renderer(algorithm_kind::continuous);
+    add_renderer_ways();
     for (const unsigned channels : {9U, 16U, 64U}) {
         add_bounds(channels, 2);
         add_bounds(channels, 4);

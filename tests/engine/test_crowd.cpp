@@ -32,7 +32,7 @@ score drawn(algorithm_kind how)
     return {a, {{.schedule = make_plan(a, preset_stroke("park2016-1"), o), .start_s = {}}}, r};
 }
 
-// Every tactor of 64 at once.
+// Every tactor of 64 at once, twice.
 score broad()
 {
     plan p;
@@ -41,8 +41,10 @@ score broad()
     for (unsigned i = 0; i < 64; ++i)
         b.drives.push_back({.tactor = i, .amplitude = 1.0});
     p.bursts.push_back(b);
-    p.total_s = 0.1;
-    p.stroke_duration_s = 0.1;
+    b.onset_s = 0.05;
+    p.bursts.push_back(b);
+    p.total_s = 0.15;
+    p.stroke_duration_s = 0.15;
     render_options r;
     r.level_dbfs = -60.0;
     return {make_grid("8x8", 8, 8, 20.0, 20.0), {{.schedule = p, .start_s = {}}}, r};

@@ -17,7 +17,10 @@ public:
 
     own_curve(double duration, function at) : impl(duration), at_(std::move(at)) {}
 
-    void fill(std::uint64_t k, burst& out) const override { at_(detail::sample_time_s(k, duration_s), out); }
+    void fill(std::uint64_t k, detail::same_tactors&, burst& out) const override
+    {
+        at_(detail::sample_time_s(k, duration_s), out);
+    }
 
 private:
     function at_;

@@ -151,8 +151,9 @@ TEST_CASE("events come in order of start and cover exactly what sounds")
         while (const synth::drive_event* e = source.peek()) {
             REQUIRE(e->start >= last);
             REQUIRE(e->length > 0);
-            REQUIRE(e->drives > 0);
+            REQUIRE((e->drives > 0) != (e->points > 0));
             REQUIRE(e->drives <= synth::drives_per_event);
+            REQUIRE(e->points <= synth::points_per_line);
             REQUIRE(e->score == 0);
             last = e->start;
             end = std::max(end, e->start + e->length);

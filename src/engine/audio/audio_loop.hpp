@@ -25,7 +25,7 @@ struct loop_options {
     std::uint32_t fade_frames = 480;
     std::uint64_t horizon_frames = 24'000; ///< the control side is woken each eighth of it
     std::int64_t stall_ns = 500'000'000;   ///< a device that stands still for so long is lost
-    std::size_t drives = 4096;             ///< capacity of the mixer
+    std::size_t drives = 8192;             ///< capacity of the mixer
     bool amplifier = false;                ///< somebody drives one after link::amplifier
     /// How long the end waits for the amplifier to be off: a holder that hangs takes a second, and a line
     /// that refuses is tried again for another.

@@ -85,9 +85,11 @@ void score_table::cover(entry& e, const synth::drive_event& d) noexcept
     const std::uint64_t end = d.start + d.length;
     if (end < e.covered)
         return;
-    const bool open = d.ramp_position + d.length < d.window &&
-                      std::any_of(d.drive.begin(), d.drive.begin() + d.drives,
-                                  [](const synth::channel_drive& c) { return c.to != 0.0; });
+    const bool sounds = d.points != 0
+                            ? d.line.amplitude[d.points - 1] != 0.0
+                            : std::any_of(d.drive.begin(), d.drive.begin() + d.drives,
+                                          [](const synth::channel_drive& c) { return c.to != 0.0; });
+    const bool open = d.ramp_position + d.length < d.window && sounds;
     e.open = open || (e.open && end == e.covered);
     e.covered = end;
 }

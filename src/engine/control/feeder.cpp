@@ -11,7 +11,7 @@ namespace tactor::engine {
 namespace {
 
 // Drives that strokes which begin together are given at once: the mixer has room for twice as many.
-constexpr std::size_t drives_ahead = 2048;
+constexpr std::size_t drives_ahead = 4096;
 
 } // namespace
 

@@ -6,6 +6,7 @@
 #include "core/distance.hpp"
 #include "plan/faces/face_rules.hpp"
 #include "plan/phantom/phantom_models.hpp"
+#include "plan/phantom/same_tactors.hpp"
 
 namespace tactor::detail {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 constexpr std::size_t few = 8;
 
 /// Park et al. 2016: Eq. (2) on a segment, Eq. (10) in a triangle.
-class inverse_distance final : public phantom_model {
+class inverse_distance final : public model_of_three {
 public:
     explicit inverse_distance(const layout& l) : layout_(l) {}
 
@@ -42,7 +43,36 @@ public:
         sort_drives(out);
     }
 
+    double three_around(point p, rank_triple& three) const override
+    {
+        const layout::impl& l = detail::access::of(layout_);
+        const auto face = l.clear_face(p);
+        if (!face || l.faces[*face].size() > few || !l.clear_of_diagonals(*face, p))
+            return 0.0;
+        const auto found = triangle_at(l, *face, p);
+        if (!found)
+            return 0.0;
+        three = found->tactors;
+        return free_mm(l, *face, p, true);
+    }
+
+    std::array<double, 3> amplitudes(const rank_triple& three, point p, double a_v) const override
+    {
+        return at_distances({distance(three[0], p), distance(three[1], p), distance(three[2], p)}, a_v);
+    }
+
 private:
+    static std::array<double, 3> at_distances(const std::array<double, 3>& distances, double a_v)
+    {
+        std::array<double, 3> parts{};
+        double sum = 0.0;
+        for (std::size_t i = 0; i < 3; ++i)
+            sum += parts[i] = 1.0 / distances[i];
+        for (double& part : parts)
+            part = std::sqrt(part / sum) * a_v;
+        return parts;
+    }
+
     double distance(unsigned rank, point p) const
     {
         return length_mm(p, detail::access::of(layout_).points[rank]);
@@ -61,12 +91,9 @@ private:
         const auto three = triangle_at(detail::access::of(layout_), face, p);
         if (!three)
             return false;
-        std::array<double, 3> parts{};
-        double sum = 0.0;
+        const std::array<double, 3> a = at_distances(three->distances, a_v);
         for (std::size_t i = 0; i < 3; ++i)
-            sum += parts[i] = 1.0 / three->distances[i];
-        for (std::size_t i = 0; i < 3; ++i)
-            add_drive(layout_, three->tactors[i], std::sqrt(parts[i] / sum) * a_v, out);
+            add_drive(layout_, three->tactors[i], a[i], out);
         return true;
     }
 

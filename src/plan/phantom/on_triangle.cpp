@@ -8,6 +8,7 @@
 #include "plan/faces/face_rules.hpp"
 #include "plan/faces/plane.hpp"
 #include "plan/phantom/phantom_models.hpp"
+#include "plan/phantom/same_tactors.hpp"
 
 namespace tactor::detail {
 namespace {
@@ -48,7 +49,7 @@ weights_of_three in_triangle(const layout::impl& l, const rank_triple& t, point 
 }
 
 /// Barycentric coordinates in the Delaunay triangle of p, and what is made of them.
-class on_triangle final : public phantom_model {
+class on_triangle final : public model_of_three {
 public:
     on_triangle(phantom_kind k, const layout& l) : kind_(k), layout_(l) {}
 
@@ -74,14 +75,35 @@ public:
         sort_drives(out);
     }
 
+    double three_around(point p, rank_triple& three) const override
+    {
+        const layout::impl& l = detail::access::of(layout_);
+        const auto face = l.clear_face(p);
+        if (!face || !l.clear_of_diagonals(*face, p))
+            return 0.0;
+        three = fan_triangle(l, *face, p);
+        const bool wound = turn(l.points[three[0]], l.points[three[1]], l.points[three[2]]) > 0.0;
+        return wound ? free_mm(l, *face, p, false) : 0.0;
+    }
+
+    std::array<double, 3> amplitudes(const rank_triple& three, point p, double a_v) const override
+    {
+        const weights_of_three w = settled(in_triangle(detail::access::of(layout_), three, p));
+        return {amplitude(w[0].b) * a_v, amplitude(w[1].b) * a_v, amplitude(w[2].b) * a_v};
+    }
+
 private:
     /// Sum 1, the least ones zero.
     weights_of_three coordinates(unsigned face, point p) const
     {
         const layout::impl& l = detail::access::of(layout_);
         const std::vector<unsigned>& ring = l.faces[face];
-        weights_of_three w = ring.size() < 3 ? on_segment(l, ring.front(), ring.back(), p)
-                                             : in_triangle(l, fan_triangle(l, face, p), p);
+        return settled(ring.size() < 3 ? on_segment(l, ring.front(), ring.back(), p)
+                                       : in_triangle(l, fan_triangle(l, face, p), p));
+    }
+
+    static weights_of_three settled(weights_of_three w)
+    {
         normalise(w);
         for (weight& x : w)
             x.b = x.b < least_weight ? 0.0 : x.b;

@@ -56,6 +56,27 @@ const double* carrier_block::get(const voice& v, const fade* f, std::uint64_t at
     return k.shaped.data();
 }
 
+void add_stretch(const double* s, const stretch& p, std::uint64_t at, unsigned n, double* sum) noexcept
+{
+    const auto from = static_cast<unsigned>(std::max(p.start, at) - at);
+    const auto to = static_cast<unsigned>(std::min(p.end, at + n) - at);
+    if (p.drive.slope == 0.0) {
+        add_constant(s, p.drive.from, from, to, sum);
+    } else {
+        const auto k = static_cast<double>(static_cast<std::int64_t>(at - p.start));
+        add_line(s, p.drive.from, p.drive.slope, k, from, to, sum);
+    }
+}
+
+unsigned set_stretch(const double* s, const stretch& p, std::uint64_t at, unsigned n, double* sum) noexcept
+{
+    const auto from = static_cast<unsigned>(std::max(p.start, at) - at);
+    const auto to = static_cast<unsigned>(std::min(p.end, at + n) - at);
+    const auto k = static_cast<double>(static_cast<std::int64_t>(at - p.start));
+    set_line(s, p.drive.from, p.drive.slope, k, from, to, sum);
+    return to;
+}
+
 TACTOR_CLONES void set_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept
 {
     const double* __restrict in = s;
@@ -71,6 +92,16 @@ TACTOR_CLONES void add_constant(const double* s, double a, unsigned lo, unsigned
     double* __restrict out = sum;
     for (unsigned j = lo; j < hi; ++j) {
         out[j] += a * in[j];
+    }
+}
+
+TACTOR_CLONES void set_line(const double* s, double a, double slope, double k, unsigned lo, unsigned hi,
+                            double* sum) noexcept
+{
+    const double* __restrict in = s;
+    double* __restrict out = sum;
+    for (int j = static_cast<int>(lo); j < static_cast<int>(hi); ++j) {
+        out[j] = 0.0 + (a + slope * (k + j)) * in[j]; // no zero has a sign, as in a sum
     }
 }
 

@@ -50,11 +50,21 @@ private:
     std::array<kept, 2> kept_; ///< by wave
 };
 
+/// sum[j] += amplitude * s[j] for those of n frames from frame `at` of the stream on that are in the stretch.
+void add_stretch(const double* s, const stretch& p, std::uint64_t at, unsigned n, double* sum) noexcept;
+
+/// The same, where nothing is in the sum yet. Returns the first of the n frames that comes after the stretch.
+unsigned set_stretch(const double* s, const stretch& p, std::uint64_t at, unsigned n, double* sum) noexcept;
+
 /// sum[j] = a * s[j] for lo <= j < hi.
 void set_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept;
 
 /// sum[j] += a * s[j] for lo <= j < hi.
 void add_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept;
+
+/// sum[j] = (a + slope * (k + j)) * s[j] for lo <= j < hi, a zero without a sign.
+void set_line(const double* s, double a, double slope, double k, unsigned lo, unsigned hi,
+              double* sum) noexcept;
 
 /// sum[j] += (a + slope * (k + j)) * s[j] for lo <= j < hi.
 void add_line(const double* s, double a, double slope, double k, unsigned lo, unsigned hi,

@@ -54,16 +54,17 @@ std::uint64_t mixer::drives_cut() const noexcept
 // A constant would push a tactor off its place for as long as it lasts.
 bool mixer::impl::plays(const voice& v) const noexcept
 {
-    const bool marker = v.cycles_per_frame == 0.0;
-    return !marker || std::all_of(v.drive.begin(), v.drive.begin() + v.drives,
-                                  [&](const voice_drive& d) { return strips[d.channel].spare; });
+    bool only_spare = true;
+    each_channel(v, [&](std::uint32_t c) { only_spare = only_spare && strips[c].spare; });
+    return v.cycles_per_frame != 0.0 || only_spare;
 }
 
 bool mixer::add(const drive_event& e) noexcept
 {
     impl& m = *impl_;
     const voice v = make_voice(e, m.strips.size());
-    if (v.drives == 0 || v.end <= m.position || m.fading.find(e.score) != fades::none || !m.plays(v)) {
+    if ((v.drives == 0 && v.points == 0) || v.end <= m.position || m.fading.find(e.score) != fades::none ||
+        !m.plays(v)) {
         return true;
     }
     if (m.voices.room() == 0) {

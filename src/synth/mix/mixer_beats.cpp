@@ -64,8 +64,9 @@ void mixer::impl::list_carriers() noexcept
     const std::span<const std::uint32_t> active = voices.active();
     for (std::uint32_t i = 0; i < active.size(); ++i) {
         const voice& v = voices[active[i]];
-        if (std::any_of(v.drive.begin(), v.drive.begin() + v.drives,
-                        [this](const voice_drive& d) { return strips[d.channel].beats; })) {
+        bool beats = false;
+        each_channel(v, [&](std::uint32_t c) { beats = beats || strips[c].beats; });
+        if (beats) {
             carriers.emplace_back(v.cycles_per_frame, i);
         }
     }
@@ -81,14 +82,14 @@ void mixer::impl::find_crests(unsigned from, unsigned to) noexcept
     }
     for (std::size_t i = 0; i < carriers.size(); ++i) {
         const voice& v = voices[voices.active()[carriers[i].second]];
-        for (std::uint32_t k = 0; k < v.drives; ++k) {
-            const voice_drive& d = v.drive[k];
-            if (strips[d.channel].beats) {
-                crests[d.channel].touched = true;
-                add_wave(v, d, wave::sine, from, to, crests[d.channel].x.data());
-                add_wave(v, d, wave::cosine, from, to, crests[d.channel].y.data());
+        each_stretch(v, [&](const stretch& s) {
+            const std::uint32_t c = s.drive.channel;
+            if (strips[c].beats) {
+                crests[c].touched = true;
+                add_wave(v, s, wave::sine, from, to, crests[c].x.data());
+                add_wave(v, s, wave::cosine, from, to, crests[c].y.data());
             }
-        }
+        });
         if (i + 1 == carriers.size() || !adds_up(v, voices[voices.active()[carriers[i + 1].second]])) {
             add_carrier(from, to);
         }

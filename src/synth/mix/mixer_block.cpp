@@ -38,7 +38,10 @@ void mixer::impl::mix(const voice& v, bool last, unsigned n) noexcept
     const double* s = v.cycles_per_frame == 0.0
                           ? ones.data()
                           : carrier.get(v, v.fade == fades::none ? nullptr : &fading[v.fade], position, n);
-    const auto k = static_cast<double>(static_cast<std::int64_t>(position - v.start));
+    if (v.points != 0) {
+        mix_line(v, s, n);
+        return;
+    }
     for (std::uint32_t i = 0; i < v.drives; ++i) {
         const voice_drive& d = v.drive[i];
         const double peak = d.peak(v.end - v.start);
@@ -48,18 +51,9 @@ void mixer::impl::mix(const voice& v, bool last, unsigned n) noexcept
             continue;
         }
         if (!t.sounding) {
-            t.sounding = true;
-            t.since = from;
-            t.cycles_per_frame = v.cycles_per_frame;
-            t.sound = v.sound;
-            t.phase = v.phase;
-            t.power = v.sound == nullptr ? 1.0 : v.sound->power;
+            begin_strip(d.channel, v, from);
             t.steady = d.slope == 0.0 && carrier.is_plain(s);
-            t.beats = false;
-            t.peak = 0.0;
-            t.until = 0;
             t.reach(from, to, peak);
-            sounding.push_back(d.channel);
             if (d.slope == 0.0 && to - from == n) {
                 t.lone = s;
                 t.gain = d.from;
@@ -73,12 +67,77 @@ void mixer::impl::mix(const voice& v, bool last, unsigned n) noexcept
             t.reach(from, to, peak);
             t.join(v);
         }
-        double* sum = t.summed(n);
-        if (d.slope == 0.0) {
-            add_constant(s, d.from, from, to, sum);
-        } else {
-            add_line(s, d.from, d.slope, k, from, to, sum);
+        add_stretch(s, {v.start, v.end, d}, position, n, t.summed(n));
+    }
+}
+
+void mixer::impl::begin_strip(std::uint32_t channel, const voice& v, unsigned from) noexcept
+{
+    strip& t = strips[channel];
+    t.sounding = true;
+    t.since = from;
+    t.cycles_per_frame = v.cycles_per_frame;
+    t.sound = v.sound;
+    t.phase = v.phase;
+    t.power = v.sound == nullptr ? 1.0 : v.sound->power;
+    t.steady = false;
+    t.beats = false;
+    t.peak = 0.0;
+    t.until = 0;
+    sounding.push_back(channel);
+}
+
+// What of it lies in the block counts as one with its greatest amplitude: voices come in order of their
+// start.
+void mixer::impl::mix_line(const voice& v, const double* s, unsigned n) noexcept
+{
+    const channel_line& l = v.line;
+    double peak = 0.0;
+    std::uint64_t from = position + n;
+    std::uint64_t to = position;
+    for (std::uint32_t i = 0; i + 1 < v.points; ++i) {
+        const std::uint64_t start = std::max(v.start + l.frame[i], position);
+        const std::uint64_t stop = std::min(v.start + l.frame[i + 1], position + n);
+        const double most = std::max(std::abs(l.amplitude[i]), std::abs(l.amplitude[i + 1]));
+        if (start < stop && most != 0.0) {
+            peak = std::max(peak, most);
+            from = std::min(from, start);
+            to = stop;
         }
+    }
+    if (from >= to) {
+        return;
+    }
+    strip& t = strips[v.line.channel];
+    if (t.spare && v.cycles_per_frame != 0.0) {
+        limited += to - from; // there is no tactor that it could be meant for
+        return;
+    }
+    const auto first = static_cast<unsigned>(from - position);
+    const auto end = static_cast<unsigned>(to - position);
+    const bool alone = !t.sounding;
+    if (alone) {
+        begin_strip(v.line.channel, v, first);
+    } else {
+        t.join(v);
+    }
+    t.reach(first, end, peak);
+    double* sum = alone ? t.sum.data() : t.summed(n);
+    unsigned filled = 0;
+    each_stretch(v.line, v.points, v.start, [&](const stretch& p) {
+        if (p.end <= position || p.start >= position + n) {
+            return;
+        }
+        if (!alone) {
+            add_stretch(s, p, position, n, sum);
+            return;
+        }
+        const auto begin = static_cast<unsigned>(std::max(p.start, position) - position);
+        std::fill(sum + filled, sum + begin, 0.0);
+        filled = set_stretch(s, p, position, n, sum);
+    });
+    if (alone) {
+        std::fill(sum + filled, sum + n, 0.0);
     }
 }
 

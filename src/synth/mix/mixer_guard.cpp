@@ -64,35 +64,28 @@ void mixer::impl::look_from(bool together, unsigned n) noexcept
     }
 }
 
-void mixer::impl::add_wave(const voice& v, const voice_drive& d, wave w, unsigned look, unsigned n,
+void mixer::impl::add_wave(const voice& v, const stretch& p, wave w, unsigned look, unsigned n,
                            double* sum) noexcept
 {
     const std::uint64_t at = position + look;
-    const auto from = static_cast<unsigned>(std::max(v.start, at) - at);
-    const auto to = static_cast<unsigned>(std::max(std::min(v.end, position + n), at) - at);
-    if (from >= to) {
+    if (p.end <= at || p.start >= position + n) {
         return;
     }
     const double* s = carrier.get(v, v.fade == fades::none ? nullptr : &fading[v.fade], at, n - look, w);
-    if (d.slope == 0.0) {
-        add_constant(s, d.from, from, to, sum);
-    } else {
-        const auto k = static_cast<double>(static_cast<std::int64_t>(at - v.start));
-        add_line(s, d.from, d.slope, k, from, to, sum);
-    }
+    add_stretch(s, p, at, n - look, sum);
 }
 
 void mixer::impl::find_envelopes(unsigned n) noexcept
 {
     for (const std::uint32_t slot : voices.active()) {
         const voice& v = voices[slot];
-        for (std::uint32_t i = 0; i < v.drives; ++i) {
-            const voice_drive& d = v.drive[i];
-            const strip& t = strips[d.channel];
+        each_stretch(v, [&](const stretch& s) {
+            const std::uint32_t c = s.drive.channel;
+            const strip& t = strips[c];
             if (t.look < n && !t.only_crests) {
-                add_wave(v, d, wave::cosine, t.look, n, envelopes[d.channel].data() + t.look);
+                add_wave(v, s, wave::cosine, t.look, n, envelopes[c].data() + t.look);
             }
-        }
+        });
     }
     for (const std::uint32_t c : sounding) {
         strip& t = strips[c];

@@ -125,8 +125,9 @@ struct mixer::impl {
     void limit(unsigned n) noexcept;
     void guard(unsigned n) noexcept;
     void look_from(bool together, unsigned n) noexcept;
-    void add_wave(const voice& v, const voice_drive& d, wave w, unsigned look, unsigned n,
-                  double* sum) noexcept;
+    void begin_strip(std::uint32_t channel, const voice& v, unsigned from) noexcept;
+    void mix_line(const voice& v, const double* s, unsigned n) noexcept;
+    void add_wave(const voice& v, const stretch& p, wave w, unsigned look, unsigned n, double* sum) noexcept;
     void find_envelopes(unsigned n) noexcept;
     void count_drive(unsigned n) noexcept;
     void find_beats(unsigned from, unsigned n) noexcept;

@@ -20,6 +20,15 @@ voice make_voice(const drive_event& e, std::size_t channels) noexcept
     if (!std::isfinite(e.cycles_per_frame) || e.length == 0) {
         return v;
     }
+    if (e.points != 0) {
+        const auto last = e.line.amplitude.begin() + e.points;
+        if (e.line.channel < channels &&
+            std::all_of(e.line.amplitude.begin(), last, [](double a) { return std::isfinite(a); })) {
+            v.points = e.points;
+            v.line = e.line;
+        }
+        return v;
+    }
     for (std::uint32_t i = 0; i < std::min<std::uint32_t>(e.drives, drives_per_event); ++i) {
         const channel_drive& d = e.drive[i];
         const double slope = (d.to - d.from) / e.length;

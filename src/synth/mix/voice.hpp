@@ -18,9 +18,9 @@ namespace tactor::synth {
 
 /// Amplitude from + slope * k at frame k of the voice.
 struct voice_drive {
-    double from = 0.0;
-    double slope = 0.0;
-    std::uint32_t channel = 0;
+    double from;
+    double slope;
+    std::uint32_t channel;
 
     /// Largest in `length` frames.
     double peak(std::uint64_t length) const noexcept
@@ -41,10 +41,60 @@ struct voice {
     burst_window window = {};
     std::uint32_t score = 0;
     std::int32_t fade = -1;
-    std::uint32_t drives = 0;
+    std::uint32_t drives = 0;      ///< of `drive`
+    std::uint32_t points = 0;      ///< of `line`, which is there in place of `drive`; 0: it is not
     const timbre* sound = nullptr; ///< none: a sine
-    std::array<voice_drive, drives_per_event> drive;
+    union {
+        std::array<voice_drive, drives_per_event> drive{};
+        channel_line line;
+    };
 };
+
+/// Calls `visit` for each of the voice's channels.
+template <class Visit>
+void each_channel(const voice& v, Visit visit)
+{
+    for (std::uint32_t i = 0; i < v.drives; ++i) {
+        visit(v.drive[i].channel);
+    }
+    if (v.points != 0) {
+        visit(v.line.channel);
+    }
+}
+
+/// Frames of the stream in which a channel's amplitude is linear: drive.from + drive.slope * k at start + k.
+struct stretch {
+    std::uint64_t start = 0;
+    std::uint64_t end = 0;
+    voice_drive drive = {};
+};
+
+/// Calls `visit` for each stretch of a line, in order of time, in which it is not zero.
+template <class Visit>
+void each_stretch(const channel_line& l, std::uint32_t points, std::uint64_t start, Visit visit)
+{
+    for (std::uint32_t i = 0; i + 1 < points; ++i) {
+        const double from = l.amplitude[i];
+        const double to = l.amplitude[i + 1];
+        const auto length = static_cast<std::uint32_t>(l.frame[i + 1] - l.frame[i]);
+        if (from != 0.0 || to != 0.0) {
+            visit(
+                stretch{start + l.frame[i], start + l.frame[i + 1], {from, (to - from) / length, l.channel}});
+        }
+    }
+}
+
+/// Calls `visit` for each stretch of each channel.
+template <class Visit>
+void each_stretch(const voice& v, Visit visit)
+{
+    for (std::uint32_t i = 0; i < v.drives; ++i) {
+        visit(stretch{v.start, v.end, v.drive[i]});
+    }
+    if (v.points != 0) {
+        each_stretch(v.line, v.points, v.start, visit);
+    }
+}
 
 /// Takes over what of an event can sound on `channels` channels; drives that are not finite are silence.
 voice make_voice(const drive_event& e, std::size_t channels) noexcept;

@@ -69,9 +69,26 @@ void check_drives(const burst& b, double t_s, std::size_t tactors)
 
 void control_points::reserve(std::size_t tactors)
 {
-    before.reserve(tactors);
-    changes.reserve(tactors);
+    rows.reserve(tactors);
     now.drives.reserve(tactors);
+}
+
+void control_points::add(std::size_t i) noexcept
+{
+    auto r = rows.begin();
+    for (const drive& d : now.drives) {
+        while (r != rows.end() && r->tactor < d.tactor) {
+            ++r;
+        }
+        if (r == rows.end() || r->tactor != d.tactor) {
+            if (d.amplitude == 0.0) {
+                continue;
+            }
+            r = rows.insert(r, {d.tactor, {}});
+        }
+        r->amplitude[i] = d.amplitude;
+        ++r;
+    }
 }
 
 std::uint64_t control_frame(std::uint64_t k, unsigned rate, std::uint64_t length) noexcept
@@ -79,12 +96,12 @@ std::uint64_t control_frame(std::uint64_t k, unsigned rate, std::uint64_t length
     return std::min(length, frame_at(static_cast<double>(k) * continuous_step_s, rate));
 }
 
-bool checked_sample(const plan& p, std::uint64_t k, std::span<const double> promised, burst& out,
-                    std::string& failure) noexcept
+bool checked_sample(const plan& p, std::uint64_t k, std::span<const double> promised,
+                    detail::same_tactors& seen, burst& out, std::string& failure) noexcept
 {
     const double t = p.curve->time_s(k);
     try {
-        p.curve->sample(k, out);
+        curve_access::of(*p.curve).sample(k, seen, out);
         std::string why = unplayable(out, promised.size());
         if (why.empty()) {
             why = above(out, promised);
@@ -103,39 +120,37 @@ bool checked_sample(const plan& p, std::uint64_t k, std::span<const double> prom
     return true;
 }
 
-/// Moves on to the next two control points; tactors that are in one of them only come from or go to 0.
+/// Moves on to the next control points, or to where the plan failed.
 bool expander::next_points() noexcept
 {
     position_ = step_end_;
+    next_ = 0;
+    control_points& c = *points_;
+    c.rows.clear();
     if (position_ >= item_->end()) {
         return false;
     }
-    while (step_end_ == position_) {
-        step_end_ = item_->start + control_frame(++step_, score_->rate, item_->length);
-    }
-    control_points& c = *points_;
-    std::swap(c.before, c.now.drives);
-    if (!checked_sample(score_->plans[item_->plan].schedule, step_, score_->promised[item_->plan], c.now,
-                        c.failure)) {
-        failed_ = true;
-        return false;
-    }
-    c.changes.clear();
-    next_ = 0;
-    auto a = c.before.cbegin();
-    auto b = c.now.drives.cbegin();
-    while (a != c.before.cend() || b != c.now.drives.cend()) {
-        if (b == c.now.drives.cend() || (a != c.before.cend() && a->tactor < b->tactor)) {
-            c.changes.push_back({a->tactor, a->amplitude, 0.0});
-            ++a;
-        } else if (a == c.before.cend() || b->tactor < a->tactor) {
-            c.changes.push_back({b->tactor, 0.0, b->amplitude});
-            ++b;
-        } else {
-            c.changes.push_back({a->tactor, a->amplitude, b->amplitude});
-            ++a;
-            ++b;
+    failed_ = failing_;
+    c.frame[0] = 0;
+    c.add(0);
+    c.count = 1;
+    while (!failing_ && c.count < points_per_line && step_end_ < item_->end()) {
+        const std::uint64_t before = step_end_;
+        while (step_end_ == before) {
+            step_end_ = item_->start + control_frame(++step_, score_->rate, item_->length);
         }
+        if (!checked_sample(score_->plans[item_->plan].schedule, step_, score_->promised[item_->plan], c.seen,
+                            c.now, c.failure)) {
+            failing_ = true;
+            failed_ = c.count == 1;
+            step_end_ = before;
+            break;
+        }
+        c.frame[c.count] = static_cast<std::uint16_t>(step_end_ - position_);
+        c.add(c.count++);
+    }
+    if (failed_) {
+        c.rows.clear();
     }
     return true;
 }

@@ -42,7 +42,7 @@ public:
 private:
     void at_point(std::uint64_t k)
     {
-        plan_.curve->sample(k, now_);
+        curve_access::of(*plan_.curve).sample(k, seen_, now_);
         check_drives(now_, now_.onset_s, peaks_.size());
         for (const drive& d : now_.drives) {
             peaks_[d.tactor] = std::max(peaks_[d.tactor], std::abs(d.amplitude));
@@ -54,6 +54,7 @@ private:
     std::uint64_t next_ = 0;
     std::vector<double> peaks_;
     burst now_;
+    detail::same_tactors seen_;
 };
 
 /// The movement behind a plan, where none of its tactors gets more than its intensity; null for others.

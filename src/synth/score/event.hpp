@@ -21,13 +21,22 @@ inline constexpr unsigned drives_per_event = 4;
 /// One channel's part: peak amplitude (level, gain and polarity included) at the first frame of the
 /// event and at the frame after its last; linear between.
 struct channel_drive {
-    double from = 0.0;
-    double to = 0.0;
-    std::uint32_t channel = 0;
+    double from;
+    double to;
+    std::uint32_t channel;
 };
 
-/// Up to four channels that share one carrier from frame `start` for `length` frames. The signal at
-/// frame start + j is
+inline constexpr unsigned points_per_line = 9;
+
+/// One channel's part with bends: its peak amplitude at some frames of the event, linear between them.
+struct channel_line {
+    std::array<double, points_per_line> amplitude;
+    std::array<std::uint16_t, points_per_line> frame; ///< since the event's start: 0, ascending, its length
+    std::uint32_t channel;
+};
+
+/// Up to four channels, or one with bends, that share one carrier from frame `start` for `length` frames. The
+/// signal at frame start + j is
 ///     amplitude(j) * w(ramp_position + j) * sin(2 pi cycles_per_frame (phase_frame + j))
 /// (1 in place of the sine where cycles_per_frame is 0: a marker, which only a channel without a tactor
 /// takes) with w the window of `window` frames that rises in `ramp` and falls in `release`. A timbre stands
@@ -44,8 +53,12 @@ struct drive_event {
     envelope_kind shape = envelope_kind::raised_cosine;
     std::uint32_t score = 0;       ///< the submitted score it belongs to
     std::uint32_t drives = 0;      ///< how many of `drive` are used
+    std::uint32_t points = 0;      ///< how many of `line`, which is there in place of `drive`; 0: it is not
     const timbre* sound = nullptr; ///< lives until the score is over; none: a sine
-    std::array<channel_drive, drives_per_event> drive{};
+    union {
+        std::array<channel_drive, drives_per_event> drive{};
+        channel_line line;
+    };
 };
 static_assert(std::is_trivially_copyable_v<drive_event>);
 

@@ -18,12 +18,13 @@ void expander::begin(const score::impl& s, std::size_t item_number, control_poin
     step_ = 0;
     next_ = 0;
     done_ = false;
+    failing_ = false;
     failed_ = false;
     if (item_->kind == item_kind::continuous) {
-        points_->before.clear();
-        points_->changes.clear();
-        failed_ = !checked_sample(s.plans[item_->plan].schedule, 0, s.promised[item_->plan], points_->now,
-                                  points_->failure);
+        points_->rows.clear();
+        points_->seen = {};
+        failed_ = !checked_sample(s.plans[item_->plan].schedule, 0, s.promised[item_->plan], points_->seen,
+                                  points_->now, points_->failure);
     }
     if (failed_) {
         done_ = true;
@@ -69,6 +70,7 @@ void expander::stretch(std::uint64_t start, std::uint64_t length) noexcept
                          : release_frames(score_->envelope, score_->rate, item_->length, item_->ramp);
     event_.shape = score_->envelope.kind;
     event_.drives = 0;
+    event_.points = 0;
 }
 
 void expander::add(std::uint32_t tactor, double from, double to) noexcept
@@ -77,10 +79,9 @@ void expander::add(std::uint32_t tactor, double from, double to) noexcept
     event_.drive[event_.drives++] = {t.gain * from, t.gain * to, t.channel};
     if (!score_->measured.empty()) {
         channel_drive& d = event_.drive[event_.drives - 1];
-        const bool one = item_->kind != item_kind::continuous; // a burst has the level of its beginning
-        const std::uint64_t start = one ? item_->start : event_.start;
-        d.from *= score_->equalised(tactor, item_->plan, start);
-        d.to *= score_->equalised(tactor, item_->plan, one ? start : event_.start + event_.length);
+        const double level = score_->equalised(tactor, item_->plan, item_->start); // that of its beginning
+        d.from *= level;
+        d.to *= level;
     }
 }
 
@@ -132,16 +133,39 @@ void expander::marker_event() noexcept
 
 void expander::continuous_event() noexcept
 {
-    while (next_ == points_->changes.size()) {
-        if (!next_points()) {
+    control_points& c = *points_;
+    while (next_ == c.rows.size()) {
+        if (failed_ || !next_points()) {
             done_ = true;
             return;
         }
+        if (failed_) {
+            stretch(position_, 0); // what others begin until here comes before the end of all
+            return;
+        }
     }
-    stretch(position_, step_end_ - position_);
-    for (; next_ < points_->changes.size() && event_.drives < drives_per_event; ++next_) {
-        const control_points::change& c = points_->changes[next_];
-        add(c.tactor, c.from, c.to);
+    draw(c.rows[next_++]);
+}
+
+/// A tactor between the control points, up to where it has come down to zero.
+void expander::draw(const control_points::row& r) noexcept
+{
+    const control_points& c = *points_;
+    std::size_t points = c.count;
+    while (points > 2 && r.amplitude[points - 1] == 0.0 && r.amplitude[points - 2] == 0.0) {
+        --points;
+    }
+    stretch(position_, c.frame[points - 1]);
+    event_.points = static_cast<std::uint32_t>(points);
+    const tactor_level& t = score_->tactors[r.tactor];
+    channel_line& l = event_.line;
+    l.channel = t.channel;
+    l.frame = c.frame;
+    for (std::size_t i = 0; i < points; ++i) {
+        l.amplitude[i] = t.gain * r.amplitude[i];
+        if (!score_->measured.empty()) {
+            l.amplitude[i] *= score_->equalised(r.tactor, item_->plan, position_ + c.frame[i]);
+        }
     }
 }
 

@@ -3,28 +3,34 @@
 /// An item's events, one after the other.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "plan/curve_impl.hpp"
 #include "synth/score/event.hpp"
 #include "synth/score/score.hpp"
 
 namespace tactor::synth {
 
-/// A continuous stroke at its latest two control points.
+/// A continuous stroke at a few control points.
 struct control_points {
     void reserve(std::size_t tactors);
+    /// Takes over what `now` drives, as point number i.
+    void add(std::size_t i) noexcept;
 
-    struct change {
+    struct row {
         std::uint32_t tactor;
-        double from;
-        double to;
+        std::array<double, points_per_line> amplitude; ///< by point
     };
-    std::vector<drive> before;
-    std::vector<change> changes;
-    burst now;
+    std::vector<row> rows; ///< by tactor
+    std::array<std::uint16_t, points_per_line> frame{};
+    std::size_t count = 0;
+    burst now; ///< the latest of them
+    detail::same_tactors seen;
     std::string failure; ///< why the plan could not be followed further; empty: it could
 };
 
@@ -47,6 +53,7 @@ public:
 private:
     void stretch(std::uint64_t start, std::uint64_t length) noexcept;
     void add(std::uint32_t tactor, double from, double to) noexcept;
+    void draw(const control_points::row& r) noexcept;
     void burst_event() noexcept;
     void joined_event() noexcept;
     void continuous_event() noexcept;
@@ -58,10 +65,11 @@ private:
     control_points* points_ = nullptr;
     std::size_t number_ = 0;
     std::uint64_t position_ = 0; ///< first frame of the stretch whose events come next
-    std::uint64_t step_end_ = 0; ///< continuous: frame of the later control point
-    std::uint64_t step_ = 0;     ///< continuous: number of the later control point
-    std::size_t next_ = 0;       ///< drive, member or change that is next
+    std::uint64_t step_end_ = 0; ///< continuous: frame of the latest control point
+    std::uint64_t step_ = 0;     ///< continuous: number of the latest control point
+    std::size_t next_ = 0;       ///< drive, member or row that is next
     bool done_ = true;
+    bool failing_ = false; ///< the plan cannot be followed beyond the latest control point
     bool failed_ = false;
     drive_event event_;
 };
@@ -89,7 +97,7 @@ void check_drives(const burst& b, double t_s, std::size_t tactors);
 /// Sample k of a continuous plan, in order of tactor. False, and why, where it cannot be computed or drives
 /// what is no tactor, with what is no amplitude, or with more than was `promised` for the tactor. Allocates
 /// only then.
-bool checked_sample(const plan& p, std::uint64_t k, std::span<const double> promised, burst& out,
-                    std::string& failure) noexcept;
+bool checked_sample(const plan& p, std::uint64_t k, std::span<const double> promised,
+                    detail::same_tactors& seen, burst& out, std::string& failure) noexcept;
 
 } // namespace tactor::synth

@@ -193,7 +193,7 @@ void measure(score::impl& s)
         case item_kind::burst:
             return events(it.count);
         case item_kind::continuous:
-            return events(s.tactors.size());
+            return s.tactors.size(); // a line for each
         case item_kind::joined:
         case item_kind::marker:
             break;

@@ -9,6 +9,22 @@
 
 namespace tactor::synth {
 
+namespace {
+
+double amplitude_at(const channel_line& l, std::uint32_t points, std::uint64_t frame) noexcept
+{
+    const auto end = l.frame.begin() + points;
+    const auto after = std::upper_bound(l.frame.begin(), end, frame);
+    const auto i = static_cast<std::size_t>(after - l.frame.begin());
+    if (after == end) {
+        return l.amplitude[i - 1];
+    }
+    const double part = static_cast<double>(frame - l.frame[i - 1]) / (l.frame[i] - l.frame[i - 1]);
+    return l.amplitude[i - 1] + part * (l.amplitude[i] - l.amplitude[i - 1]);
+}
+
+} // namespace
+
 sounding_now::sounding_now(const score& s)
     : score_(s), source_(s), energy_(s.channels()), levels_(detail::access::of(s).tactors.size())
 {
@@ -27,10 +43,13 @@ const std::vector<double>& sounding_now::at(std::uint64_t asked)
     energy_.assign(energy_.size(), 0.0);
     for (const drive_event& e : open_) {
         const double part = static_cast<double>(frame - e.start) / e.length;
+        const auto add = [this](std::uint32_t channel, double a) { energy_[channel] += a * a; };
         for (std::uint32_t i = 0; i < e.drives; ++i) {
             const channel_drive& d = e.drive[i];
-            const double a = d.from + part * (d.to - d.from);
-            energy_[d.channel] += a * a;
+            add(d.channel, d.from + part * (d.to - d.from));
+        }
+        if (e.points != 0) {
+            add(e.line.channel, amplitude_at(e.line, e.points, frame - e.start));
         }
     }
     for (std::size_t i = 0; i < levels_.size(); ++i) {
