@@ -36,8 +36,8 @@ public:
     ~udp_sink() override { close(fd_); }
 
 private:
-    // In the audio thread: no waiting, no memory, no exceptions. A datagram for which there is no room in the
-    // network is lost, as others are on their way; the number tells the other end.
+    // In the audio thread: no waiting, no memory, no exceptions. A datagram for which there is no space in
+    // the network is lost, as others are on their way; the number tells the other end.
     tactor::io_kind take(std::uint64_t first, std::span<const std::byte> frames) noexcept override
     {
         iovec parts[] = {{&first, sizeof first}, {const_cast<std::byte*>(frames.data()), frames.size()}};

@@ -152,7 +152,7 @@ public:
     renderer(renderer&&) noexcept;
     renderer& operator=(renderer&&) noexcept;
 
-    /// Fills `out` with the next interleaved frames, as many as it has room for, and goes on; silence after
+    /// Fills `out` with the next interleaved frames, as many as it has space for, and goes on; silence after
     /// the end. Where a continuous stroke fails, all fades out before that, within 10 ms, and silence
     /// follows. Allocates nothing but what failure() says.
     /// \throws error (bad_input) where `out` is no whole number of frames (channels * bytes_of(format)).

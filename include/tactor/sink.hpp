@@ -49,7 +49,7 @@ struct stream_setup {
 /// What a call on a sink came to. A plain value: the audio thread throws nothing.
 enum class io_kind {
     ok,
-    again,     ///< no room now
+    again,     ///< no space now
     xrun,      ///< the device ran dry; the stream has stopped
     suspended, ///< the system sleeps or slept
     lost,      ///< unplugged, or it does not move any more
@@ -102,11 +102,11 @@ public:
     [[nodiscard]] virtual std::size_t max_descriptors() const noexcept = 0;
     /// Fills `fds` with what to poll; returns how many.
     virtual std::size_t descriptors(std::span<pollfd> fds) noexcept = 0;
-    /// Interprets the polled descriptors: `ok` room to write, `again` not yet, or an error.
+    /// Interprets the polled descriptors: `ok` space to write, `again` not yet, or an error.
     virtual io_kind ready(std::span<pollfd> fds) noexcept = 0;
 
     /// Frames that can be written now.
-    virtual io_result room() noexcept = 0;
+    virtual io_result available() noexcept = 0;
     /// Writes whole interleaved frames; may take fewer than there are, also none.
     virtual io_result write(std::span<const std::byte> frames) noexcept = 0;
     virtual stream_position position() noexcept = 0;
@@ -132,7 +132,7 @@ public:
     [[nodiscard]] std::size_t max_descriptors() const noexcept final;
     std::size_t descriptors(std::span<pollfd> fds) noexcept final;
     io_kind ready(std::span<pollfd> fds) noexcept final;
-    io_result room() noexcept final;
+    io_result available() noexcept final;
     io_result write(std::span<const std::byte> frames) noexcept final;
     stream_position position() noexcept final;
     void drop() noexcept final;

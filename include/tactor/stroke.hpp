@@ -135,7 +135,7 @@ struct stroke {
     std::optional<double> speed_mm_s = {};
     start_anchor anchor = {};
     stroke_choices choices = {};
-    /// Wants to be as large as the array has room for, this far from its edge: see fit_strokes().
+    /// Wants to be as large as the array has space for, this far from its edge: see fit_strokes().
     std::optional<double> fit_margin_mm = {};
     /// With it: strokes of the same number, above 0, are fitted as one picture; 0: this one by itself.
     unsigned fit_group = 0;

@@ -244,7 +244,7 @@ std::int64_t output_file::write(const void* data, std::int64_t bytes)
 {
     const auto* from = static_cast<const char*>(data);
     std::int64_t done = 0;
-    // A pipe takes PIPE_BUF bytes without waiting once it has room.
+    // A pipe takes PIPE_BUF bytes without waiting once it has space.
     while (done < bytes && good() && (!directly_ || wait_for_room())) {
         const std::int64_t now = directly_ ? std::min<std::int64_t>(bytes - done, PIPE_BUF) : bytes - done;
         const ssize_t n = ::write(fd_, from + done, static_cast<std::size_t>(now));

@@ -44,18 +44,18 @@ whole_text read_text(int descriptor, std::string_view name, std::size_t max_byte
 {
     constexpr std::size_t first_bytes = std::size_t{1} << 16;
     whole_text text;
-    std::size_t room = 0;
+    std::size_t capacity = 0;
     for (;;) {
-        if (text.size_ == room) {
+        if (text.size_ == capacity) {
             // Large ones are moved by mapping their pages elsewhere, not by a copy beside them.
-            room = std::min(std::max(room * 2, first_bytes), max_bytes + 1);
-            void* moved = std::realloc(text.bytes_.get(), room);
+            capacity = std::min(std::max(capacity * 2, first_bytes), max_bytes + 1);
+            void* moved = std::realloc(text.bytes_.get(), capacity);
             if (moved == nullptr)
                 throw std::bad_alloc();
             static_cast<void>(text.bytes_.release());
             text.bytes_.reset(static_cast<char*>(moved));
         }
-        const ssize_t got = ::read(descriptor, text.bytes_.get() + text.size_, room - text.size_);
+        const ssize_t got = ::read(descriptor, text.bytes_.get() + text.size_, capacity - text.size_);
         if (got < 0 && errno == EINTR)
             continue;
         if (got < 0)

@@ -18,8 +18,9 @@ constexpr auto accept_pause = std::chrono::milliseconds(100);
 
 } // namespace
 
-listener::listener(asio::io_context& io, int fd, std::string no_room, std::function<void(socket_type)> taken)
-    : io_(io), fd_(io, fd), pause_(io), no_room_(std::move(no_room)), taken_(std::move(taken))
+listener::listener(asio::io_context& io, int fd, std::string when_full,
+                   std::function<void(socket_type)> taken)
+    : io_(io), fd_(io, fd), pause_(io), when_full_(std::move(when_full)), taken_(std::move(taken))
 {
     keep_spare();
 }
@@ -89,7 +90,7 @@ bool listener::turn_away() noexcept
     ::close(std::exchange(spare_, -1));
     const int fd = ::accept4(fd_.native_handle(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
     if (fd >= 0) {
-        static_cast<void>(::send(fd, no_room_.data(), no_room_.size(), MSG_DONTWAIT | MSG_NOSIGNAL));
+        static_cast<void>(::send(fd, when_full_.data(), when_full_.size(), MSG_DONTWAIT | MSG_NOSIGNAL));
         ::close(fd);
     }
     keep_spare();

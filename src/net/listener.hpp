@@ -19,8 +19,8 @@ class listener {
 public:
     using socket_type = boost::asio::generic::stream_protocol::socket;
 
-    /// `fd` stays its owner's; `no_room` is what is said for want of descriptors.
-    listener(boost::asio::io_context& io, int fd, std::string no_room,
+    /// `fd` stays its owner's; `when_full` is what is said for want of descriptors.
+    listener(boost::asio::io_context& io, int fd, std::string when_full,
              std::function<void(socket_type)> taken);
     ~listener();
     listener(const listener&) = delete;
@@ -37,7 +37,7 @@ private:
     boost::asio::io_context& io_;
     boost::asio::posix::stream_descriptor fd_;
     boost::asio::steady_timer pause_;
-    std::string no_room_;
+    std::string when_full_;
     std::function<void(socket_type)> taken_;
     int spare_ = -1;
 };

@@ -33,14 +33,14 @@ public:
         held_ = felt.value_or(held_);
         // Relative to the first one, for the sake of precision.
         const std::size_t j = count_++;
-        const point& before = sums_[j % room];
-        sums_[(j + 1) % room] = {before.x_mm + (held_.x_mm - origin_.x_mm),
-                                 before.y_mm + (held_.y_mm - origin_.y_mm)};
-        felt_[j % room] = felt.has_value();
+        const point& before = sums_[j % capacity];
+        sums_[(j + 1) % capacity] = {before.x_mm + (held_.x_mm - origin_.x_mm),
+                                     before.y_mm + (held_.y_mm - origin_.y_mm)};
+        felt_[j % capacity] = felt.has_value();
         if (j < 2 * delay)
             return {};
         const std::size_t middle = j - delay;
-        was_felt_ = felt_[middle % room];
+        was_felt_ = felt_[middle % capacity];
         return length_mm(average(middle + 1), average(middle - 1)) / (2.0 * percept_step_s);
     }
 
@@ -48,22 +48,22 @@ public:
     bool was_felt() const noexcept { return was_felt_; }
 
 private:
-    static constexpr std::size_t room = 128;
-    static_assert(room >= 2 * delay + 2);
+    static constexpr std::size_t capacity = 128;
+    static_assert(capacity >= 2 * delay + 2);
 
     point average(std::size_t i) const
     {
         constexpr double width = 2 * half_window + 1;
-        const point& before = sums_[(i - half_window) % room];
-        const point& after = sums_[(i + half_window + 1) % room];
+        const point& before = sums_[(i - half_window) % capacity];
+        const point& after = sums_[(i + half_window + 1) % capacity];
         return {(after.x_mm - before.x_mm) / width, (after.y_mm - before.y_mm) / width};
     }
 
     std::size_t count_ = 0; // from the first one felt on
     point origin_;
     point held_;
-    std::array<point, room> sums_{}; // of the first so many
-    std::array<bool, room> felt_{};
+    std::array<point, capacity> sums_{}; // of the first so many
+    std::array<bool, capacity> felt_{};
     bool was_felt_ = false;
 };
 

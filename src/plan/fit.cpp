@@ -107,7 +107,7 @@ std::optional<point> line_of(const layout::impl& l, std::pair<point, point> ends
 [[noreturn]] void refuse_margin(double margin_mm, double room_mm)
 {
     throw detail::bad_field(
-        "margin_mm", fmt::format("{:.6g} mm on each side leave no room in the array", margin_mm),
+        "margin_mm", fmt::format("{:.6g} mm on each side leave no space in the array", margin_mm),
         room_mm > 0.0 ? fmt::format("less than {:.4g} mm", room_mm) : "one tactor has none");
 }
 
@@ -164,11 +164,11 @@ fitting fit_to_hull(const picture& drawn, const layout::impl& l, double margin_m
     const bool rests = drawn.rests();
     double narrowest = std::numeric_limits<double>::infinity();
     for (const detail::beyond& side : detail::sides_of(l)) {
-        const double room = side.reach - dot(side.out, f.to);
-        narrowest = std::min(narrowest, room);
+        const double space = side.reach - dot(side.out, f.to);
+        narrowest = std::min(narrowest, space);
         const double reach = rests ? 0.0 : drawn.reach(side.out) - dot(side.out, f.from);
         if (reach > 0.0)
-            f.scale = std::min(f.scale, (room - margin_mm) / reach);
+            f.scale = std::min(f.scale, (space - margin_mm) / reach);
     }
     if (margin_mm >= narrowest)
         refuse_margin(margin_mm, narrowest);

@@ -39,8 +39,8 @@ struct job {
     const plan_options& options;
     std::shared_ptr<const phantom_model> model;
     burst_count& counted;
-    const burst_taker& take;              ///< empty: all bursts stay in the plan
-    mutable std::vector<drive> room = {}; ///< for the drives of a burst, until their number is known
+    const burst_taker& take;                 ///< empty: all bursts stay in the plan
+    mutable std::vector<drive> scratch = {}; ///< for the drives of a burst, until their number is known
 
     /// For messages: stroke "name".
     std::string name() const;

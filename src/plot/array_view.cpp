@@ -121,7 +121,7 @@ private:
         return plays;
     }
 
-    // A number stands in its circle where that has room and nothing lies on it.
+    // A number stands in its circle where that has space and nothing lies on it.
     tactor_looks look_at_tactors() const
     {
         // How near a centre may come: dots, and the larger rings and squares of starts and ends.

@@ -37,13 +37,13 @@ void draw_error(canvas& c, const bar& b, const scale& y, double x, double cap)
 
 void draw_group(canvas& c, const bar_panel& p, std::size_t g, const scale& y, double left, double width)
 {
-    const double room = 0.72 * width;
-    const double each = room / static_cast<double>(p.series.size());
+    const double space = 0.72 * width;
+    const double each = space / static_cast<double>(p.series.size());
     for (std::size_t i = 0; i < p.series.size(); ++i) {
         const bar& b = p.series[i].bars[g];
         if (!b.height)
             continue;
-        const double x = left + (width - room) / 2.0 + each * static_cast<double>(i);
+        const double x = left + (width - space) / 2.0 + each * static_cast<double>(i);
         const double top = y(std::clamp(*b.height, p.y_from, p.y_to));
         c.rect({x, top, each, y(p.y_from) - top},
                {.fill = fill_of(i, p.series.size()), .stroke = ink, .width = 0.5},
@@ -64,8 +64,8 @@ void draw_legend(canvas& c, const bar_panel& p, double x, double y, double width
     for (std::size_t i = 0; i < p.series.size(); ++i) {
         if (p.series[i].name.empty())
             continue;
-        const double room = width / static_cast<double>(p.series.size()) - 12.0;
-        const std::string name = shorten(clean(p.series[i].name), small_text, room);
+        const double space = width / static_cast<double>(p.series.size()) - 12.0;
+        const std::string name = shorten(clean(p.series[i].name), small_text, space);
         c.rect({at, y - 5.0, 6.0, 5.0}, {.fill = fill_of(i, p.series.size()), .stroke = ink, .width = 0.4},
                {.kind = "legend"});
         c.text({at + 8.0, y}, name, {.size = small_text}, {.kind = "legend"});

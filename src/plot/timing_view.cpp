@@ -25,8 +25,8 @@ constexpr const char* strip_heading = "time (s)";
 constexpr double dimension_pitch = 9.5;
 constexpr double first_dimension = 8.0; // under the strip
 constexpr double heading_height = 9.5;
-constexpr double inset = 9.0;  // of time 0 in the diagram: room for arrows that point from outside
-constexpr double outset = 7.0; // behind the last sound: room for half a label
+constexpr double inset = 9.0;  // of time 0 in the diagram: space for arrows that point from outside
+constexpr double outset = 7.0; // behind the last sound: space for half a label
 constexpr double timing_legend_height = 10.0;
 constexpr std::size_t most_timing_notes = 3; // lines
 constexpr double most_around_rows = 107.0;   // pt: strip, arrows, starts, axis, legend and notes
@@ -50,11 +50,11 @@ public:
         find_first_pair();
         starts_ = look_at_starts(t, frame_.x);
         frame_.top = where.y + (colours ? strip_height : 0.0) + dimensions_height() + 3.0 + starts_.height;
-        const double room = where.bottom() - frame_.top - axis_gap - axis_height - timing_legend_height -
-                            note_height * static_cast<double>(most_timing_notes);
-        frame_.rows.fit(room);
+        const double space = where.bottom() - frame_.top - axis_gap - axis_height - timing_legend_height -
+                             note_height * static_cast<double>(most_timing_notes);
+        frame_.rows.fit(space);
         notes_.push_back(starts_.note);
-        notes_.push_back(part_strokes(frame_, t, room));
+        notes_.push_back(part_strokes(frame_, t, space));
         dense_ = too_dense(t, frame_);
     }
 

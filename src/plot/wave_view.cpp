@@ -49,10 +49,10 @@ public:
         x_ = {0.0, total, left, where.right() - peak_column};
         starts_ = look_at_starts(t, x_);
         top_ = where.y + wave_heading_height + starts_.height;
-        const double room = where.bottom() - top_ - axis_gap - axis_height - wave_legend_height -
-                            note_height * static_cast<double>(most_wave_notes);
-        lanes_.fit(room);
-        if (lanes_.rows.size() <= most_high_rows && row_factor * lanes_.all_height <= room)
+        const double space = where.bottom() - top_ - axis_gap - axis_height - wave_legend_height -
+                             note_height * static_cast<double>(most_wave_notes);
+        lanes_.fit(space);
+        if (lanes_.rows.size() <= most_high_rows && row_factor * lanes_.all_height <= space)
             lanes_.lay_out(row_factor * lanes_.height);
         double highest = 0.0;
         double lowest = std::numeric_limits<double>::infinity();
@@ -113,7 +113,7 @@ private:
             canvas_.text({where_.right(), y}, "peak (dBFS)",
                          {.size = small_text, .anchor = align::end, .ink = dark_grey});
         else
-            notes_.push_back("no room for the peaks of rows");
+            notes_.push_back("no space for the peaks of rows");
     }
 
     bool with_peaks() const { return lanes_.height >= least_peak_row - 1e-9; }

@@ -41,7 +41,7 @@ public:
     std::size_t capacity() const noexcept { return slots_.size(); }
 
     /// Producer: elements that fit now. Can only grow behind the producer's back.
-    std::size_t room() noexcept
+    std::size_t available() noexcept
     {
         read_seen_ = read_.load(std::memory_order_acquire);
         return capacity() - (write_.load(std::memory_order_relaxed) - read_seen_);
@@ -64,7 +64,7 @@ public:
     /// Producer: appends as many as fit, in order; returns how many.
     std::size_t push(std::span<const T> values) noexcept
     {
-        const std::size_t n = std::min(values.size(), room());
+        const std::size_t n = std::min(values.size(), available());
         const std::size_t w = write_.load(std::memory_order_relaxed);
         for (std::size_t i = 0; i < n; ++i)
             slots_[(w + i) & mask_] = values[i];

@@ -146,7 +146,7 @@ private:
     void submit_all(const plan_job& job, const std::shared_ptr<planned>& p, const std::vector<score>& scores);
     std::vector<std::uint32_t> submit(client_number owner, const net::json& start, const planned& p,
                                       const std::vector<score>& scores, bool stopped);
-    void check_room(const client& c) const;
+    void check_free_place(const client& c) const;
     void cancel(client& c, const net::json& params, const answer& to);
     void stop(const net::json& params, const answer& to);
     void fire(const net::json& params, const answer& to);

@@ -37,7 +37,7 @@ void service::begin(client& c, const json& params, const answer& to)
         o.timeout_s = number(*t, "timeout_s", 0.001, 86400);
     if (const json* t = member(params, "smooth_s"))
         o.smooth_s = number(*t, "smooth_s", 0.0, 1.0);
-    check_room(c);
+    check_free_place(c);
     if (c.live >= options_.limits.max_live_strokes)
         limit_reached("max_live_strokes",
                       fmt::format("{} live strokes of yours go on", options_.limits.max_live_strokes),

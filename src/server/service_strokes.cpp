@@ -58,7 +58,7 @@ start_wish read_start(const json* start, std::int64_t now_ns)
 
 } // namespace
 
-void service::check_room(const client& c) const
+void service::check_free_place(const client& c) const
 {
     const std::size_t most = options_.limits.max_strokes;
     if (c.strokes.size() + c.coming >= most)
@@ -78,7 +78,7 @@ void service::plan_or_play(client& c, const json& params, const answer& to, bool
         static_cast<void>(with_options(options_.plans.owner, *o, options_for::planned));
     if (closing_)
         no_stream("the server ends");
-    check_room(c);
+    check_free_place(c);
     if (play && stream_.is_out())
         no_stream(stream_.reason());
     if (planning_bytes_ + bytes > options_.limits.max_all_unread_bytes)
@@ -254,7 +254,7 @@ void service::drive(client& c, const json& params, const answer& to)
     auto p = std::make_shared<planned>(make_drive(options_.plans, params));
     const json start = params.value("start", json("now"));
     static_cast<void>(read_start(&start, options_.now_ns()));
-    check_room(c);
+    check_free_place(c);
     if (closing_ || stream_.is_out())
         no_stream(stream_.reason());
     ++c.coming;

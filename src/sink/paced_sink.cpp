@@ -56,9 +56,9 @@ struct paced_sink::impl {
     {
     }
 
-    std::size_t room() noexcept
+    std::size_t available() noexcept
     {
-        return running ? static_cast<std::size_t>(pacer.room())
+        return running ? static_cast<std::size_t>(pacer.available())
                        : setup.buffer_frames - static_cast<std::size_t>(written);
     }
 
@@ -116,15 +116,15 @@ io_kind paced_sink::ready(std::span<pollfd>) noexcept
     return impl_->pacer.due() ? io_kind::ok : io_kind::again;
 }
 
-io_result paced_sink::room() noexcept
+io_result paced_sink::available() noexcept
 {
-    return {io_kind::ok, impl_->room(), 0};
+    return {io_kind::ok, impl_->available(), 0};
 }
 
 io_result paced_sink::write(std::span<const std::byte> frames) noexcept
 {
     const std::size_t bytes = impl_->frame_bytes;
-    const std::size_t all = std::min(frames.size() / bytes, impl_->room());
+    const std::size_t all = std::min(frames.size() / bytes, impl_->available());
     for (std::size_t done = 0; done < all;) {
         const std::size_t n = std::min<std::size_t>(all - done, impl_->setup.period_frames);
         const io_kind s = take(impl_->written, frames.subspan(done * bytes, n * bytes));

@@ -24,13 +24,13 @@ public:
     void start(std::uint64_t written) noexcept;
     void wrote(std::uint64_t frames) noexcept { queue_.wrote(frames); }
     std::uint64_t played(std::int64_t now) noexcept { return queue_.played(now); }
-    std::uint64_t room() noexcept { return queue_.room(monotonic_ns()); }
+    std::uint64_t available() noexcept { return queue_.available(monotonic_ns()); }
 
     /// Sets the timer to when a period fits; a time in the past makes it readable at once. It stays readable
     /// until it is set again.
     void arm() noexcept;
     /// Whether a period fits.
-    bool due() noexcept { return room() >= period_; }
+    bool due() noexcept { return available() >= period_; }
 
 private:
     virtual_queue queue_;

@@ -33,7 +33,7 @@ std::uint64_t virtual_queue::played(std::int64_t now) noexcept
     return written_;
 }
 
-std::uint64_t virtual_queue::room(std::int64_t now) noexcept
+std::uint64_t virtual_queue::available(std::int64_t now) noexcept
 {
     const std::uint64_t queued = written_ - played(now);
     return queued < buffer_ ? buffer_ - queued : 0;

@@ -22,7 +22,7 @@ public:
     /// Frames that have left.
     std::uint64_t played(std::int64_t now) noexcept;
     /// Frames that fit.
-    std::uint64_t room(std::int64_t now) noexcept;
+    std::uint64_t available(std::int64_t now) noexcept;
     /// First time at which `frames` frames fit (frames <= the buffer).
     std::int64_t time_of_room(std::uint64_t frames) const noexcept;
 

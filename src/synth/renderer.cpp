@@ -57,7 +57,7 @@ struct renderer::impl {
     }
 
     /// What can be mixed at once, up to a frame: where a plan fails is known a fade before it. Few strokes
-    /// are so crowded that there is no room for that; their fade is shorter.
+    /// are so crowded that there is no space for that; their fade is shorter.
     std::uint64_t prepare(std::uint64_t until) noexcept
     {
         const std::uint64_t at = mix.position();
@@ -113,7 +113,7 @@ void renderer::process(std::span<std::byte> out)
     if (out.size() % r.frame_bytes != 0)
         throw error(error_kind::bad_input, "renderer",
                     fmt::format("{} bytes are no whole number of frames of {}", out.size(), r.frame_bytes),
-                    "give room for whole frames");
+                    "give space for whole frames");
     std::size_t frames = out.size() / r.frame_bytes;
     std::byte* to = out.data();
     // Whole blocks of the mixer, several at once: little to keep waiting, little to do between.

@@ -34,7 +34,7 @@ public:
     std::size_t max_descriptors() const noexcept override { return 0; }
     std::size_t descriptors(std::span<pollfd>) noexcept override { return 0; }
     io_kind ready(std::span<pollfd>) noexcept override { return io_kind::ok; }
-    io_result room() noexcept override { return {io_kind::ok, setup_.period_frames, 0}; }
+    io_result available() noexcept override { return {io_kind::ok, setup_.period_frames, 0}; }
     io_result write(std::span<const std::byte> frames) noexcept override
     {
         std::memcpy(last_.data(), frames.data(), frames.size());

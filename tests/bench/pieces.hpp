@@ -17,8 +17,8 @@ inline constexpr std::size_t block = 480;
 /// A square array with `channels` tactors (9, 16, 64, ...), 20 mm apart.
 tactor::array square(unsigned channels);
 
-/// For a square array: one stroke is park2016-1; of several, each has its own place, as far as there is room,
-/// and its own carrier.
+/// For a square array: one stroke is park2016-1; of several, each has its own place, as far as there is
+/// space, and its own carrier.
 std::vector<tactor::plan> strokes(const tactor::array& a, unsigned count, tactor::algorithm_kind algorithm);
 
 /// Options with a level at which so many strokes may sound together.

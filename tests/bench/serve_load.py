@@ -150,7 +150,7 @@ class Checks:
 
 
 def tell_delays(delays, stream):
-    # A period is written when there is room for it: the rest of the buffer is before it.
+    # A period is written when there is space for it: the rest of the buffer is before it.
     period_s = stream["period_frames"] / stream["rate"]
     periods = sorted((d - stream["latency_s"] + period_s) / period_s for d in delays)
     if not periods:

@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import tempfile
 
-PAGE = 4096  # what a tmpfs gives room in
+PAGE = 4096  # what a tmpfs gives space in
 CLONE_NEWNS, MS_REC, MS_PRIVATE = 0x20000, 0x4000, 0x40000
 
 

@@ -90,9 +90,9 @@ class FullDisk(ExperimentTest):
             # Before it begins, when a trial is answered, and when all are.
             begun += "me.json: cannot be written" in r.stderr
             if "me.json" not in r.stderr:
-                self.assertRegex(r.stderr, rf"me\.(tsv|toml): {NO_SPACE} \(what was answered before is kept; make room, and --resume goes on\)")
+                self.assertRegex(r.stderr, rf"me\.(tsv|toml): {NO_SPACE} \(what was answered before is kept; free some space, and --resume goes on\)")
                 kept += len(log.splitlines()) > 2
-            self.refused(1, *args, "--resume", says=[NO_SPACE])  # there still is no room
+            self.refused(1, *args, "--resume", says=[NO_SPACE])  # there still is no space
             disk.make_room()
             self.ok(*args, "--resume")
             self.assertEqual(disk.files(), whole, pages)
@@ -102,7 +102,7 @@ class FullDisk(ExperimentTest):
         self.assertGreater(kept, 1)
 
     def study(self, fill):
-        """A simulated session for any room that is left on the disk, and how often an answer took what was kept for it."""
+        """A simulated session for any space that is left on the disk, and how often an answer took what was kept for it."""
         self.small(SMALL.replace("trials = 4", "trials = 40"))
         args = ("experiment", "small.toml", "--participant", "01", "-o", "disk/study", "--simulate", "seed=4,sigma=1,void=0.3")
         disk = Disk(self)
@@ -121,7 +121,7 @@ class FullDisk(ExperimentTest):
                 break
             self.assertEqual(r.returncode, 1, r.stderr)
             # A first file may be written elsewhere.
-            self.assertRegex(r.stderr, rf"{NO_SPACE} \(.*(make room, and --resume goes on|free some space.*)\)")
+            self.assertRegex(r.stderr, rf"{NO_SPACE} \(.*(free some space.*)\)")
             kept += "the last answer is kept" in r.stderr
             found = answered()
             for name, data in found.items():
@@ -170,11 +170,11 @@ class FullDisk(ExperimentTest):
             t.answer("Which one\\? ", "1")
         t.until("Which one\\? ")
         disk.fill()
-        t.key("2")  # there is room where the table ends
+        t.key("2")  # there is space where the table ends
         t.answer("Any key begins", " ")
         t.answer("How even\\? ", "3")  # this takes a table of its own
         self.assertEqual(t.end(), 1)
-        self.assertRegex(t.said(), rf"{NO_SPACE} \(the last answer is kept; make room, and --resume goes on\)")
+        self.assertRegex(t.said(), rf"{NO_SPACE} \(the last answer is kept; free some space, and --resume goes on\)")
         self.assertEqual((self.answers("pairs"), self.answers("marks")), (["1", "2"], ["3"]))
         disk.make_room()
         self.resumed(("Any key begins", " "), ("trial 2 of 2: How even\\? ", "1"), ("Any key ends", " "))
@@ -189,7 +189,7 @@ class FullDisk(ExperimentTest):
         disk.fill_names()
         t.key("2")
         self.assertEqual(t.end(), 1)
-        self.assertRegex(t.said(), rf"{NO_SPACE} \(the last answer is kept; make room, and --resume goes on\)")
+        self.assertRegex(t.said(), rf"{NO_SPACE} \(the last answer is kept; free some space, and --resume goes on\)")
         self.assertEqual(self.answers("pairs"), ["2"])
 
     def test_a_disk_that_becomes_read_only_while_somebody_answers(self):

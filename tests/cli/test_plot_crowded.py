@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tactor plot: pictures in which not all has room. Widths of text by the table of DejaVu Sans."""
+"""tactor plot: pictures in which not all has space. Widths of text by the table of DejaVu Sans."""
 import itertools
 
 from harness import main
@@ -8,7 +8,7 @@ from sheets import ARRAYS, WIDTHS, Sheets, box, grid, overlap
 
 
 class Crowded(Sheets):
-    """Many strokes on 64 tactors: what has no room is said, and the page is one."""
+    """Many strokes on 64 tactors: what has no space is said, and the page is one."""
     PAGE_MM = 247.05  # of A4, rounding included
 
     def sheets(self, view="both"):
@@ -65,7 +65,7 @@ class Crowded(Sheets):
                 self.assertEqual(len(set(shown)), len(shown), what)
                 missing = what[0] - len(shown)
                 if missing:
-                    self.assertIn(f"no room for the start's number of {missing} stroke", self.notes(svg), what)
+                    self.assertIn(f"no space for the start's number of {missing} stroke", self.notes(svg), what)
                 self.assertLessEqual(missing, 2 if what[2] == 60 else 0, what)
                 for a, b in itertools.combinations(texts, 2):
                     self.assertFalse(overlap(box(a), box(b)), (what, a.text, b.text))
@@ -90,7 +90,7 @@ class Crowded(Sheets):
             shown = [int(e.text) for e in svg.all("row-label")]
             self.assertEqual(shown, list(range(0, 100, shown[1])))
             self.assertIn(f"one row in {shown[1]} has its number", self.notes(svg))
-        self.assertIn("no room for the peaks of rows", self.notes(svg))
+        self.assertIn("no space for the peaks of rows", self.notes(svg))
         self.assertEqual(svg.all("peak"), [])
 
     def test_strokes_that_start_together_are_numbered_within_the_page(self):

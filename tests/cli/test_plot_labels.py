@@ -24,7 +24,7 @@ class Labels(Sheets):
             elif i in beside:
                 self.assertEqual(beside[i].text.split()[0], str(i))
             else:
-                self.assertIn("no room for the number", notes, (what, i))
+                self.assertIn("no space for the number", notes, (what, i))
         marks = [(number(e, "cx"), number(e, "cy"), number(e, "r")) for e in svg.all("burst") + svg.all("start")]
         marks += [(number(e, "x") + number(e, "width") / 2, number(e, "y") + number(e, "height") / 2, number(e, "width") / 2)
                   for e in svg.all("end")]
@@ -56,7 +56,7 @@ class Labels(Sheets):
     def test_what_has_no_room_is_said(self):
         self.write("a.toml", grid(30, 30, 5))
         svg = self.svg("--path", "M 2 2 L 140 140", "--array", "a.toml", "--width", "60", "--view", "array")
-        self.assertIn("no room for the numbers", " ".join(e.text for e in svg.all("note")))
+        self.assertIn("no space for the numbers", " ".join(e.text for e in svg.all("note")))
 
     def test_a_channel_is_said_once(self):
         for file, channels in (("nine", False), ("twelve", True)):

@@ -67,8 +67,8 @@ class Limits(ServeTest):
         before = resource.prlimit(pid, resource.RLIMIT_NOFILE)
         highest = max(map(int, os.listdir(f"/proc/{pid}/fd")))
         resource.prlimit(pid, resource.RLIMIT_NOFILE, (highest + 1, before[1]))
-        room = highest + 1 - used # gaps among those that are open
-        for c in [s.client() for _ in range(room + 10)][room:]:
+        space = highest + 1 - used # gaps among those that are open
+        for c in [s.client() for _ in range(space + 10)][space:]:
             self.check_error(c.next()["error"], -32001, "descriptors")
             self.assertIsNone(c.next())
         host, _, port = s.where["http"].removeprefix("http://").rstrip("/").rpartition(":")

@@ -39,7 +39,7 @@ public:
     std::size_t max_descriptors() const noexcept override { return inner_->max_descriptors(); }
     std::size_t descriptors(std::span<pollfd> f) noexcept override { return inner_->descriptors(f); }
     io_kind ready(std::span<pollfd> f) noexcept override { return inner_->ready(f); }
-    io_result room() noexcept override { return inner_->room(); }
+    io_result available() noexcept override { return inner_->available(); }
     io_result write(std::span<const std::byte> frames) noexcept override { return inner_->write(frames); }
     /// Some of what is offered.
     io_result write_first(std::size_t n, std::span<const std::byte> frames) noexcept

@@ -171,7 +171,7 @@ TEST_CASE("a system that sleeps: off; when it wakes up, the order of a start")
     CHECK(r.link.amplifier.ready);
 }
 
-TEST_CASE("EINTR, no room and wake-ups in vain do not touch the line")
+TEST_CASE("EINTR, no space and wake-ups in vain do not touch the line")
 {
     playing r;
     for (int i = 0; i < 3; ++i)

@@ -42,7 +42,7 @@ public:
         return 1;
     }
     io_kind ready(std::span<pollfd>) noexcept override { return io_kind::ok; }
-    io_result room() noexcept override { return {io_kind::ok, setup_.buffer_frames, 0}; }
+    io_result available() noexcept override { return {io_kind::ok, setup_.buffer_frames, 0}; }
     io_result write(std::span<const std::byte> frames) noexcept override
     {
         const std::size_t n = frames.size() / setup_.frame_bytes();

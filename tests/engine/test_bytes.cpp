@@ -183,7 +183,7 @@ TEST_CASE("a tiny ring is back-pressure: nothing is lost")
     }
 }
 
-TEST_CASE("a mixer without room makes drives wait in the ring")
+TEST_CASE("a mixer without space makes drives wait in the ring")
 {
     rig r({.loop = {.drives = 4}});
     REQUIRE(r.start().status == io_kind::ok);

@@ -228,7 +228,7 @@ TEST_CASE("a stroke is handed over when it begins within the horizon, its last f
     CHECK(link.commands.size() == 3);
 }
 
-TEST_CASE("while a stroke waits for room to begin, those that play get half of their horizon only")
+TEST_CASE("while a stroke waits for space to begin, those that play get half of their horizon only")
 {
     engine::link link(8); // a beginning and its drives take up to 3
     engine::feeder feed(link, 8000);

@@ -30,7 +30,7 @@ TEST_CASE("a device without descriptors in an xrun, such as dmix, is not asked a
     CHECK(s->descriptors(fds) == 1);
     CHECK(s->ready(std::span(fds).first(1)) == io_kind::again);
     dac.advance(10'000);
-    CHECK(s->room().status == io_kind::xrun);
+    CHECK(s->available().status == io_kind::xrun);
     const std::size_t n = s->descriptors(fds);
     CHECK(n == 0);
     CHECK(s->ready(std::span(fds).first(n)) == io_kind::xrun);

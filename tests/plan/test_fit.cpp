@@ -88,7 +88,7 @@ TEST_CASE("a circle of the paper on palm-2x4: as high as the array, in its middl
     CHECK(refusal(preset_array("palm-2x4"), r.strokes.front(), {}).empty());
 }
 
-TEST_CASE("a margin is kept from every edge, and must leave room")
+TEST_CASE("a margin is kept from every edge, and must leave space")
 {
     const stroke square = along("M 0 0 H 1 V 1 H 0 Z", 1.0);
     const fitted_strokes r = fit_strokes({square}, low, 4.0);
@@ -101,7 +101,7 @@ TEST_CASE("a margin is kept from every edge, and must leave room")
             CHECK((10.0 - std::abs(p.x_mm) - std::abs(p.y_mm)) / std::numbers::sqrt2 > 2.0 - 1e-9);
         }
     CHECK(complaint({square}, low, 10.0) ==
-          "margin_mm: 10 mm on each side leave no room in the array (less than 10 mm)");
+          "margin_mm: 10 mm on each side leave no space in the array (less than 10 mm)");
     CHECK(complaint({square}, low, -1.0) == "margin_mm: -1 mm (0 mm or more)");
     CHECK(complaint({square}, low, not_a_number).starts_with("margin_mm: nan mm"));
     CHECK(complaint({square}, low, infinite).starts_with("margin_mm: inf mm"));

@@ -18,14 +18,14 @@ using namespace tactor::plot;
 namespace {
 
 // The rows of so many tactors in a line, all of which play.
-lanes rows_of(unsigned n, double room)
+lanes rows_of(unsigned n, double space)
 {
     tactor::array a;
     for (unsigned i = 0; i < n; ++i)
         a.tactors.push_back({.position = {10.0 * i, 0.0}, .channel = i});
     std::vector<unsigned> playing(n);
     std::iota(playing.begin(), playing.end(), 0U);
-    return make_lanes(a, playing, room);
+    return make_lanes(a, playing, space);
 }
 
 std::size_t labels(const lanes& l, std::string& said)
@@ -37,13 +37,13 @@ std::size_t labels(const lanes& l, std::string& said)
 
 } // namespace
 
-TEST_CASE("rows take no more than their room, and each has its number or it is said which have")
+TEST_CASE("rows take no more than their space, and each has its number or it is said which have")
 {
     std::string said;
-    for (const double room : {120.0, 270.0, 1000.0})
+    for (const double space : {120.0, 270.0, 1000.0})
         for (const unsigned n : {1U, 9U, 40U, 64U, 65U, 82U, 83U, 120U, 400U}) {
-            const lanes l = rows_of(n, room);
-            CHECK(l.all_height <= room + 1e-9);
+            const lanes l = rows_of(n, space);
+            CHECK(l.all_height <= space + 1e-9);
             CHECK(l.rows.back().top + l.rows.back().height == doctest::Approx(l.all_height));
             const std::size_t shown = labels(l, said);
             CHECK(said.empty() == (shown == l.rows.size()));
@@ -69,7 +69,7 @@ TEST_CASE("rows of many levels leave those of one the height of a number")
 
 TEST_CASE("a note too wide for a line goes on in the next, one too many is shortened")
 {
-    const std::string wide = "no room for the numbers of tactors 3, 12, 15, 20, 26, 34, 41, 52";
+    const std::string wide = "no space for the numbers of tactors 3, 12, 15, 20, 26, 34, 41, 52";
     const auto lines = note_lines({"squares: ends", "", wide, "one burst in 4"}, 120.0, 4);
     REQUIRE(lines.size() == 4);
     CHECK(lines[0] == "squares: ends;");

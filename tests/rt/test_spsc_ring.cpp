@@ -40,7 +40,7 @@ TEST_CASE("every size from 1 to 64 fills, refuses, empties and wraps")
             for (std::size_t i = 0; i < ring.capacity(); ++i)
                 REQUIRE(ring.push(next++));
             CHECK_FALSE(ring.push(std::size_t{99}));
-            CHECK(ring.room() == 0);
+            CHECK(ring.available() == 0);
             CHECK(ring.size() == ring.capacity());
             while (ring.pop(value))
                 REQUIRE(value == expected++);
@@ -89,7 +89,7 @@ TEST_CASE("behaves as a deque of bounded length")
             }
             }
             REQUIRE(ring.size() == model.size());
-            REQUIRE(ring.room() == ring.capacity() - model.size());
+            REQUIRE(ring.available() == ring.capacity() - model.size());
             REQUIRE((ring.front() != nullptr) == !model.empty());
         }
     }

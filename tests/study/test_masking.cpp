@@ -116,7 +116,7 @@ public:
     std::size_t max_descriptors() const noexcept override { return 0; }
     std::size_t descriptors(std::span<pollfd>) noexcept override { return 0; }
     io_kind ready(std::span<pollfd>) noexcept override { return io_kind::ok; }
-    io_result room() noexcept override
+    io_result available() noexcept override
     {
         return {next, static_cast<std::size_t>(setup_.buffer_frames - (written_ - played_)), 0};
     }

@@ -64,8 +64,8 @@ struct fake_dac::callbacks {
         const std::lock_guard lock(d.mutex_);
         const std::byte* from =
             static_cast<const std::byte*>(areas[0].addr) + areas[0].first / 8 + offset * d.frame_bytes_;
-        const std::size_t room = d.capture_limit_ - std::min(d.capture_limit_, d.captured_.size());
-        d.captured_.insert(d.captured_.end(), from, from + std::min(size * d.frame_bytes_, room));
+        const std::size_t space = d.capture_limit_ - std::min(d.capture_limit_, d.captured_.size());
+        d.captured_.insert(d.captured_.end(), from, from + std::min(size * d.frame_bytes_, space));
         d.transferred_ += size;
         d.total_ += size;
         d.happened();

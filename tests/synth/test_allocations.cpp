@@ -63,7 +63,7 @@ COUNTING_TEST_CASE("a mixer allocates nothing after its construction")
     std::vector<std::byte> out(96 * 9 * 4);
     const count_allocations count;
     for (std::uint32_t round = 0; round < 400; ++round) {
-        while (source.peek() != nullptr && m.room() > 0) {
+        while (source.peek() != nullptr && m.available() > 0) {
             synth::drive_event e = *source.peek();
             e.score = round % 7;
             m.add(e);

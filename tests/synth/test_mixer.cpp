@@ -135,10 +135,10 @@ TEST_CASE("a full mixer refuses, loses nothing, and takes more when a drive has 
     for (std::uint32_t i = 0; i < 4; ++i) {
         CHECK(m.add(make_event(i * 100, 100)));
     }
-    CHECK(m.room() == 0);
+    CHECK(m.available() == 0);
     CHECK_FALSE(m.add(make_event(400, 100)));
     CHECK_FALSE(silent(take(m, 100)));
-    CHECK(m.room() == 1);
+    CHECK(m.available() == 1);
     CHECK(m.add(make_event(400, 100)));
     const auto x = take(m, 400);
     for (std::size_t k = 0; k < 400; ++k) {
@@ -280,7 +280,7 @@ TEST_CASE("reset drops everything and counts from 0")
     m.reset();
     CHECK(m.position() == 0);
     CHECK(m.size() == 0);
-    CHECK(m.room() == 64);
+    CHECK(m.available() == 64);
     CHECK(silent(take(m, 500)));
     m.reset();
     m.add(make_event(0, 100));

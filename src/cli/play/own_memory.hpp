@@ -8,7 +8,7 @@
 
 namespace tactor::cli {
 
-/// Locks all memory of the process, now and to come, where the limits leave room for it. Returns why not;
+/// Locks all memory of the process, now and to come, where the limits leave space for it. Returns why not;
 /// empty: it is locked. Call it before threads are made and after what forks.
 std::string lock_own_memory();
 

@@ -13,7 +13,7 @@ namespace tactor::cli {
 namespace {
 
 constexpr unsigned margin = 3;              // left of the array
-constexpr double natural_mm = 1.25;         // a column, where there is room: 4 columns to 5 mm
+constexpr double natural_mm = 1.25;         // a column, where there is space: 4 columns to 5 mm
 constexpr unsigned least_array_columns = 5; // less shows nothing
 constexpr const char* level_colour = "\033[33m";
 constexpr const char* target_colour = "\033[1;36m";

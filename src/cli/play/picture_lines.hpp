@@ -20,7 +20,7 @@ struct terminal_size {
 };
 
 /// The array with each tactor's level and the place of the touch, and under it time, place and progress: at
-/// most rows - 1 lines of columns - 1 characters, so that nothing wraps or scrolls. Where there is less room
+/// most rows - 1 lines of columns - 1 characters, so that nothing wraps or scrolls. Where there is less space
 /// the array is drawn smaller, then left out, and then what the last line says. `unicode`: shades and not
 /// letters. With colours.
 std::vector<std::string> picture_lines(const array& a, const instant& now, double t_s, double total_s,

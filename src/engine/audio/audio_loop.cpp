@@ -141,10 +141,10 @@ void audio_loop::take_commands() noexcept
     std::size_t n = 0;
     for (; n < waiting && take(*link_.commands.front()); ++n)
         link_.commands.drop_front();
-    // The feeder is not woken for each bit of room: what it waits for is at most a quarter of the ring.
+    // The feeder is not woken for each bit of space: what it waits for is at most a quarter of the ring.
     if (n == 0 || waiting - n > link_.commands.capacity() - link_.commands.capacity() / 4)
         return;
-    // Either the feeder sees the room when it looks again, or this thread sees that it waits.
+    // Either the feeder sees the space when it looks again, or this thread sees that it waits.
     std::atomic_thread_fence(std::memory_order_seq_cst);
     if (link_.feeder_waits.exchange(false, std::memory_order_seq_cst))
         link_.to_control.signal();
@@ -178,7 +178,7 @@ void audio_loop::mix_period() noexcept
 {
     scores_.render_live(setup_.period_frames, offset_, clock_.line());
     scores_.fade_what_failed(setup_.period_frames);
-    // Drives that wait for room in the mixer are there in time.
+    // Drives that wait for space in the mixer are there in time.
     if (link_.commands.size() == 0)
         scores_.fade_what_runs_out(setup_.period_frames);
     mixer_.process(setup_.period_frames, block_.data());
@@ -203,14 +203,14 @@ io_result audio_loop::write_pending() noexcept
 
 void audio_loop::write_periods(std::int64_t now) noexcept
 {
-    const io_result room = sink_.room();
-    if (room.status != io_kind::ok)
-        return broken(room.status, room.code, now);
-    std::size_t left = room.frames;
+    const io_result available = sink_.available();
+    if (available.status != io_kind::ok)
+        return broken(available.status, available.code, now);
+    std::size_t left = available.frames;
     if (left > setup_.period_frames)
         raise_to<std::uint64_t>(link_.count.late_frames, left - setup_.period_frames);
 
-    // Bounded also where a device claims more room than it has buffer.
+    // Bounded also where a device claims more space than it has buffer.
     left = std::min<std::size_t>(left, setup_.buffer_frames);
     while (left > 0) {
         if (pending_ == 0) {
@@ -295,7 +295,7 @@ void audio_loop::publish() noexcept
     const bool hungry = s.written - told_ >= options_.horizon_frames / 8;
     if (hungry)
         told_ = s.written;
-    if (hungry || news || link_.reports.room() != link_.reports.capacity())
+    if (hungry || news || link_.reports.available() != link_.reports.capacity())
         link_.to_control.signal();
 }
 

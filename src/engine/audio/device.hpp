@@ -39,10 +39,10 @@ public:
         const rt::permitted_call here{};
         return sink_.xrun_ns();
     }
-    io_result room() noexcept
+    io_result available() noexcept
     {
         const rt::permitted_call here{};
-        return sink_.room();
+        return sink_.available();
     }
     io_result write(std::span<const std::byte> frames) noexcept
     {

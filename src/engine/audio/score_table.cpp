@@ -61,7 +61,7 @@ bool score_table::add(const command& c) noexcept
         want_fade(*e, state_kind::interrupted, why_late());
         return true;
     }
-    if (mixer_.room() <= reserve_ || !mixer_.add(d)) {
+    if (mixer_.available() <= reserve_ || !mixer_.add(d)) {
         crowd();
         return false;
     }

@@ -27,9 +27,9 @@ public:
     bool called_off(ticket t) noexcept;
     /// `offset`: stream frame at which the epoch began.
     void begin(const command& c, std::uint64_t offset) noexcept;
-    /// False when the mixer has no room now; the command must be given again.
+    /// False when the mixer has no space now; the command must be given again.
     bool add(const command& c) noexcept;
-    /// There are more drives than there is room for: what comes too late in the next time does so for that.
+    /// There are more drives than there is space for: what comes too late in the next time does so for that.
     void crowd() noexcept;
     void end(ticket t) noexcept;
     /// There will be no more drives from frame `at` of the score on, for its plan failed.
@@ -116,7 +116,7 @@ private:
     std::uint32_t fade_;
     std::size_t reserve_;
     std::array<entry, voices> entries_{};
-    std::uint64_t full_until_ = 0; ///< what comes too late before this frame had to wait for room
+    std::uint64_t full_until_ = 0; ///< what comes too late before this frame had to wait for space
     std::uint32_t used_ = 0;
     std::uint32_t top_ = 0; ///< entries from here on were never used
     /// By place: beginnings in the command ring that have been cancelled and reported. Those come first, as a

@@ -10,7 +10,7 @@
 namespace tactor::engine {
 namespace {
 
-// Drives that strokes which begin together are given at once: the mixer has room for twice as many.
+// Drives that strokes which begin together are given at once: the mixer has space for twice as many.
 constexpr std::size_t drives_ahead = 4096;
 
 } // namespace
@@ -46,11 +46,11 @@ void feeder::pump(std::uint64_t written, const clock_line& clock)
     find_due(written);
     look_at_waiting_live(written);
     admit_live();
-    // While a score waits for room, the others may not use up what becomes free.
+    // While a score waits for space, the others may not use up what becomes free.
     feed(written, admit(written) ? horizon_ : horizon_ / 2);
 }
 
-// Begins what is due within the horizon, the earliest first; false when the ring had too little room.
+// Begins what is due within the horizon, the earliest first; false when the ring had too little space.
 bool feeder::admit(std::uint64_t written)
 {
     const auto due = waiting_.upper_bound(written + horizon_);
@@ -127,7 +127,7 @@ std::uint64_t feeder::next_start(active& a, std::uint64_t written) noexcept
     return e != nullptr ? base + e->start : 0;
 }
 
-// Hands over drives, the one that starts first first, until there is none within the horizon, or no room.
+// Hands over drives, the one that starts first first, until there is none within the horizon, or no space.
 void feeder::feed(std::uint64_t written, std::uint64_t horizon)
 {
     next_.clear();
@@ -154,12 +154,12 @@ void feeder::feed(std::uint64_t written, std::uint64_t horizon)
 
 bool feeder::has_room(std::size_t n)
 {
-    if (link_.commands.room() >= n)
+    if (link_.commands.available() >= n)
         return true;
-    // The audio thread either sees this flag after it made room, or the room is there already.
+    // The audio thread either sees this flag after it made space, or the space is there already.
     link_.feeder_waits.store(true, std::memory_order_seq_cst);
     std::atomic_thread_fence(std::memory_order_seq_cst);
-    return link_.commands.room() >= n;
+    return link_.commands.available() >= n;
 }
 
 void feeder::release(slot& s) noexcept

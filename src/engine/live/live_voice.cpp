@@ -86,25 +86,25 @@ bool live_voice::render(synth::mixer& m, std::uint64_t frames, std::uint64_t off
                         const clock_line& clock) noexcept
 {
     const dac_times t{offset, clock};
-    bool room = true;
+    bool fits = true;
     if (setup_.bursts) {
         const std::uint64_t end = m.position() + frames;
-        for (; room && next_burst_ < end; next_burst_ += setup_.soa)
-            room = burst(m, next_burst_, t);
+        for (; fits && next_burst_ < end; next_burst_ += setup_.soa)
+            fits = burst(m, next_burst_, t);
     } else {
-        room = follow(m, frames, t);
+        fits = follow(m, frames, t);
     }
     idle_ += frames;
     rendered_.store(m.position() + frames - base_, std::memory_order_relaxed);
-    return room;
+    return fits;
 }
 
 // Linear from the amplitudes of one point to those of the next, the carrier runs on.
 bool live_voice::follow(synth::mixer& m, std::uint64_t frames, const dac_times& t) noexcept
 {
     const std::uint64_t end = m.position() + frames;
-    bool room = true;
-    for (std::uint64_t at = m.position(); room && at < end;) {
+    bool fits = true;
+    for (std::uint64_t at = m.position(); fits && at < end;) {
         if (place_ >= length_) {
             std::swap(from_, to_);
             take(at, t);
@@ -119,7 +119,7 @@ bool live_voice::follow(synth::mixer& m, std::uint64_t frames, const dac_times& 
         e.start = at;
         e.phase_frame = at - base_;
         e.length = static_cast<std::uint32_t>(n);
-        room = add(m, e, [&](std::size_t c) {
+        fits = add(m, e, [&](std::size_t c) {
             const double d = to_[c] - from_[c];
             return std::pair(from_[c] + d * start, from_[c] + d * stop);
         });
@@ -127,7 +127,7 @@ bool live_voice::follow(synth::mixer& m, std::uint64_t frames, const dac_times& 
         place_ += n;
         end_ = at;
     }
-    return room;
+    return fits;
 }
 
 // The newest point, if one has come: what is rendered from `at` on has it.

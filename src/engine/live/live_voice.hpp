@@ -49,7 +49,7 @@ struct live_course {
     std::uint64_t length = 0;       ///< frames until the last of them holds; 0: at once
     std::int64_t at_ns = 0;         ///< time stamp of the point
     std::size_t knots = 1;          ///< at even distances over the length
-    std::vector<double> amplitudes; ///< by knot and channel; room for all that there may be
+    std::vector<double> amplitudes; ///< by knot and channel; space for all that there may be
 };
 
 /// Most knots of a course.
@@ -104,8 +104,8 @@ public:
     bool has_point() const noexcept { return has_point_; }
     /// Takes the newest point, if one has come; the stroke begins with the mixer's next frame.
     bool try_begin(ticket t, std::uint64_t next) noexcept;
-    /// Adds the drives of the next frames. False when the mixer had no room for them. `clock` may be unknown,
-    /// `offset` is the stream's frame at which the mixer's begin.
+    /// Adds the drives of the next frames. False when the mixer had no space for them. `clock` may be
+    /// unknown, `offset` is the stream's frame at which the mixer's begin.
     bool render(synth::mixer& m, std::uint64_t frames, std::uint64_t offset,
                 const clock_line& clock) noexcept;
     bool starved() const noexcept { return idle_ > setup_.timeout; }
@@ -114,7 +114,7 @@ public:
     {
         return has_begun_ && position - base_ >= setup_.longest;
     }
-    /// Continuous: falls to zero in `frames`. False when the mixer had no room.
+    /// Continuous: falls to zero in `frames`. False when the mixer had no space.
     bool fade(synth::mixer& m, std::uint32_t frames) noexcept;
     /// Frame at which what has been added is over.
     std::uint64_t end() const noexcept { return end_; }

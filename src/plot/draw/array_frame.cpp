@@ -65,16 +65,16 @@ double closest_pt(const array& a, double scale)
     return least * scale;
 }
 
-// Circles in which the largest number fits, if there is room for them.
+// Circles in which the largest number fits, if there is space for them.
 void size_tactors(array_frame& f, const array& a)
 {
-    const double room = std::min(f.pitch, closest_pt(a, f.scale));
-    f.radius = std::clamp(0.2 * room, 0.3, largest_radius);
+    const double space = std::min(f.pitch, closest_pt(a, f.scale));
+    f.radius = std::clamp(0.2 * space, 0.3, largest_radius);
     const std::string longest(fmt::format("{}", a.tactors.size() - 1).size(), '8');
     f.number = 0.0;
     for (const double size : number_sizes) {
         const double need = std::hypot(text_width(longest, size), cap_height(size)) / 2.0 + 0.4;
-        if (need > std::max(f.radius, std::min(largest_share * room, largest_radius)))
+        if (need > std::max(f.radius, std::min(largest_share * space, largest_radius)))
             continue;
         f.number = size;
         f.radius = std::max(f.radius, need);
@@ -82,7 +82,7 @@ void size_tactors(array_frame& f, const array& a)
     }
 }
 
-// Tactors that had no room for something.
+// Tactors that had no space for something.
 struct missing {
     std::vector<unsigned> tactors = {};
 
@@ -93,8 +93,8 @@ struct missing {
             return {};
         const std::string plural = tactors.size() == 1 ? "" : "s";
         if (tactors.size() == a.tactors.size())
-            return fmt::format("no room for the {}{} of the tactors", what, plural);
-        return fmt::format("no room for the {}{} of {}", what, plural, tactors_text(tactors));
+            return fmt::format("no space for the {}{} of the tactors", what, plural);
+        return fmt::format("no space for the {}{} of {}", what, plural, tactors_text(tactors));
     }
 };
 
@@ -116,31 +116,31 @@ void extent::add(point p) noexcept
 extent shown_extent(const array& a, const std::vector<stroke>& strokes)
 {
     extent e = tactors_extent(a);
-    const double room = std::max({pitch_mm(a), 0.5 * (e.x1 - e.x0), 0.5 * (e.y1 - e.y0)});
-    const extent most{e.x0 - room, e.y0 - room, e.x1 + room, e.y1 + room};
+    const double space = std::max({pitch_mm(a), 0.5 * (e.x1 - e.x0), 0.5 * (e.y1 - e.y0)});
+    const extent most{e.x0 - space, e.y0 - space, e.x1 + space, e.y1 + space};
     for (const stroke& s : strokes)
         for (const point& p : sample(s.motion))
             e.add({std::clamp(p.x_mm, most.x0, most.x1), std::clamp(p.y_mm, most.y0, most.y1)});
     if (e.x1 - e.x0 < 0.3 * pitch_mm(a) && e.y1 - e.y0 < 0.3 * pitch_mm(a)) // a lone tactor
-        e = {e.x0 - 0.2 * room, e.y0 - 0.2 * room, e.x1 + 0.2 * room, e.y1 + 0.2 * room};
+        e = {e.x0 - 0.2 * space, e.y0 - 0.2 * space, e.x1 + 0.2 * space, e.y1 + 0.2 * space};
     return e;
 }
 
-array_frame fit_array(const array& a, const extent& shown, box at_most, surround room)
+array_frame fit_array(const array& a, const extent& shown, box at_most, surround space)
 {
     const double w = shown.x1 - shown.x0;
     const double h = shown.y1 - shown.y0;
     const double pitch = pitch_mm(a);
     array_frame f;
-    f.scale = std::min({(at_most.width - 2.0 * room.x) / std::max(w, 1e-3),
-                        (at_most.height - 2.0 * room.y) / std::max(h, 1e-3), largest_pitch / pitch});
+    f.scale = std::min({(at_most.width - 2.0 * space.x) / std::max(w, 1e-3),
+                        (at_most.height - 2.0 * space.y) / std::max(h, 1e-3), largest_pitch / pitch});
     f.pitch = pitch * f.scale;
     size_tactors(f, a);
-    f.area.width = f.scale * w + 2.0 * room.x;
-    f.area.height = f.scale * h + 2.0 * room.y;
+    f.area.width = f.scale * w + 2.0 * space.x;
+    f.area.height = f.scale * h + 2.0 * space.y;
     f.area.x = at_most.x + (at_most.width - f.area.width) / 2.0;
     f.area.y = at_most.y;
-    f.origin = {f.area.x + room.x - f.scale * shown.x0, f.area.y + room.y - f.scale * shown.y0};
+    f.origin = {f.area.x + space.x - f.scale * shown.x0, f.area.y + space.y - f.scale * shown.y0};
     return f;
 }
 
@@ -205,7 +205,7 @@ std::string draw_tactor_labels(canvas& c, const array_frame& f, const array& a, 
     missing without_channel;
     for (unsigned i = 0; i < a.tactors.size(); ++i) {
         const std::string channel = fmt::format("ch {}", a.tactors[i].channel);
-        std::vector<std::string> wished; // the first that has room
+        std::vector<std::string> wished; // the first that has space
         if (!looks.inside[i] && channels)
             wished = {fmt::format("{} ({})", i, channel), fmt::format("{}", i)};
         else if (!looks.inside[i])

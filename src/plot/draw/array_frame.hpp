@@ -31,7 +31,7 @@ struct array_frame {
     box area = {};       ///< that the array takes, margins included
     double pitch = 0.0;  ///< of neighbours, pt
     double radius = 5.0; ///< of a tactor's circle, pt
-    double number = 7.0; ///< size of the numbers in the circles, pt; 0: they have no room
+    double number = 7.0; ///< size of the numbers in the circles, pt; 0: they have no space
 
     spot operator()(point p) const noexcept { return {origin.x + scale * p.x_mm, origin.y + scale * p.y_mm}; }
 };
@@ -46,7 +46,7 @@ struct surround {
 };
 
 /// Puts what is shown into the upper middle of a box, as large as it goes.
-array_frame fit_array(const array& a, const extent& shown, box at_most, surround room = {});
+array_frame fit_array(const array& a, const extent& shown, box at_most, surround space = {});
 
 /// The movement on the page: bounded in points, inside the frame's area.
 std::vector<std::vector<spot>> path_on_page(const array_frame& f, const trajectory& motion);
@@ -65,7 +65,7 @@ void draw_tactors(canvas& c, const array_frame& f, const array& a, const tactor_
                   label_placer& taken);
 
 /// Numbers that do not stand in their circles, and channels that are other numbers, each beside its own
-/// tactor and on nothing else. Returns what had no room, in words; empty: all has.
+/// tactor and on nothing else. Returns what had no space, in words; empty: all has.
 std::string draw_tactor_labels(canvas& c, const array_frame& f, const array& a, const tactor_looks& looks,
                                label_placer& taken);
 

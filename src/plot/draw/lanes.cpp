@@ -20,7 +20,7 @@ constexpr std::size_t most_labelled = 64; // rows that all get a label with ease
 constexpr double wide_pitch = 7.2;        // of labels, pt
 constexpr double tight_pitch = 5.6;
 constexpr double most_labelled_height = wide_pitch * static_cast<double>(most_labelled);
-constexpr double least_room = 60.0;
+constexpr double least_space = 60.0;
 
 std::string label_of(const array& a, const std::vector<unsigned>& tactors, bool channels)
 {
@@ -35,7 +35,7 @@ double middle_of(const lane& r)
     return r.top + r.height / 2.0;
 }
 
-// Rows whose labels have room, from the first on.
+// Rows whose labels have space, from the first on.
 std::vector<std::size_t> labelled(const lanes& l)
 {
     std::vector<std::size_t> shown;
@@ -50,9 +50,9 @@ std::vector<std::size_t> labelled(const lanes& l)
 
 } // namespace
 
-lanes make_lanes(const array& a, const std::vector<unsigned>& playing, double room)
+lanes make_lanes(const array& a, const std::vector<unsigned>& playing, double space)
 {
-    const auto most_rows = static_cast<std::size_t>(std::clamp(room, least_room, most_height) / lowest_row);
+    const auto most_rows = static_cast<std::size_t>(std::clamp(space, least_space, most_height) / lowest_row);
     const std::size_t together = std::max<std::size_t>(1, (playing.size() + most_rows - 1) / most_rows);
     lanes l;
     l.row_of.assign(a.tactors.size(), -1);
@@ -69,11 +69,11 @@ lanes make_lanes(const array& a, const std::vector<unsigned>& playing, double ro
         l.label_width = std::max(l.label_width, text_width(r.label, small_text));
     }
     l.label_width = std::max(l.label_width, text_width(l.heading, small_text));
-    l.fit(room);
+    l.fit(space);
     return l;
 }
 
-bool lanes::fit(double room)
+bool lanes::fit(double space)
 {
     std::size_t levels = 0;
     for (const lane& r : rows)
@@ -84,16 +84,16 @@ bool lanes::fit(double room)
     };
     label_pitch = wide_pitch;
     lay_out(even(rows.size() <= most_labelled ? most_labelled_height : most_height));
-    if (all_height <= room && labelled(*this).size() == rows.size())
+    if (all_height <= space && labelled(*this).size() == rows.size())
         return true;
     // Closer labels then, and no row too low for its own.
     label_pitch = tight_pitch;
-    const double most = std::min(room, most_labelled_height);
+    const double most = std::min(space, most_labelled_height);
     double low = lowest_level;
     double high = highest_row;
     lay_out(low, tight_pitch);
     if (all_height > most) {
-        lay_out(even(std::clamp(room, least_room, most_height)));
+        lay_out(even(std::clamp(space, least_space, most_height)));
         return false;
     }
     for (int i = 0; i < 40; ++i) {
@@ -126,7 +126,7 @@ std::string draw_lane_labels(canvas& c, const lanes& l, double x, double top)
     for (const std::size_t i : shown)
         c.text({x, top + middle_of(l.rows[i]) + cap_height(small_text) / 2.0}, l.rows[i].label,
                {.size = small_text, .anchor = align::end}, {.kind = "row-label"});
-    // Where there is no room for all, rows are of one height.
+    // Where there is no space for all, rows are of one height.
     return shown.size() == l.rows.size() ? "" : fmt::format("one row in {} has its number", shown[1]);
 }
 

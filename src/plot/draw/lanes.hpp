@@ -29,17 +29,17 @@ struct lanes {
     std::string heading = {};     ///< over the labels
     double label_width = 0.0;     ///< pt
 
-    /// Makes levels as high as they can be in `room` pt. Whether each row has room for its label then.
-    bool fit(double room);
+    /// Makes levels as high as they can be in `space` pt. Whether each row has space for its label then.
+    bool fit(double space);
     /// Makes each level this high, and no row lower than `least_row`, pt.
     void lay_out(double level, double least_row = 0.0);
 };
 
-/// `room`: for all rows, pt.
-lanes make_lanes(const array& a, const std::vector<unsigned>& playing, double room);
+/// `space`: for all rows, pt.
+lanes make_lanes(const array& a, const std::vector<unsigned>& playing, double space);
 
-/// Labels end at x; as many rows get one as have room. `top`: of the first row. Returns what had no room, in
-/// words; empty: all has.
+/// Labels end at x; as many rows get one as have space. `top`: of the first row. Returns what had no space,
+/// in words; empty: all has.
 std::string draw_lane_labels(canvas& c, const lanes& l, double x, double top);
 
 /// Largest value in each column of the page, for one row: what remains of bars that are too many or too

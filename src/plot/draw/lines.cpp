@@ -21,10 +21,10 @@ std::optional<segment> clip_segment(spot a, spot b, box w)
     const double dy = b.y - a.y;
     double enter = 0.0;
     double leave = 1.0;
-    const auto cut = [&](double speed, double room) { // speed * t <= room
+    const auto cut = [&](double speed, double space) { // speed * t <= space
         if (speed == 0.0)
-            return room >= 0.0;
-        const double t = room / speed;
+            return space >= 0.0;
+        const double t = space / speed;
         if (speed < 0.0)
             enter = std::max(enter, t);
         else

@@ -33,12 +33,12 @@ std::vector<std::string> note_lines(const std::vector<std::string>& notes, doubl
                                     std::size_t most_lines)
 {
     constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
-    const double room = width - text_width(";", small_text);
+    const double space = width - text_width(";", small_text);
     std::vector<std::string> lines;
     for (const std::string& n : notes) {
         if (n.empty())
             continue;
-        if (!lines.empty() && text_width(lines.back() + note_gap + n, small_text) <= room) {
+        if (!lines.empty() && text_width(lines.back() + note_gap + n, small_text) <= space) {
             lines.back() += note_gap + n;
             continue;
         }
@@ -49,7 +49,7 @@ std::vector<std::string> note_lines(const std::vector<std::string>& notes, doubl
             continue;
         }
         const auto words = detail::split(n, ' ');
-        for (std::string& part : wrap({words.begin(), words.end()}, " ", small_text, room, all))
+        for (std::string& part : wrap({words.begin(), words.end()}, " ", small_text, space, all))
             lines.push_back(std::move(part));
     }
     if (lines.size() > most_lines) {

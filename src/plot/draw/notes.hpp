@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What of a picture had no room, in words under it.
+/// What of a picture had no space, in words under it.
 #pragma once
 
 #include <string>

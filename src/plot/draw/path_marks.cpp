@@ -73,7 +73,7 @@ public:
                 left_out +=
                     1 + static_cast<std::size_t>(std::count(numbers[k].begin(), numbers[k].end(), ','));
         }
-        return left_out == 0 ? "" : "no room for the number of " + counted(left_out, "stroke");
+        return left_out == 0 ? "" : "no space for the number of " + counted(left_out, "stroke");
     }
 
 private:
@@ -155,7 +155,7 @@ private:
         taken_.block_disc(end, r, 12.0);
     }
 
-    // Whether there was room, or nothing to label.
+    // Whether there was space, or nothing to label.
     bool label(const std::string& text, const char* kind, point where)
     {
         const spot at = frame_(where);

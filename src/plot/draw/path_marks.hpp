@@ -21,7 +21,7 @@ constexpr double end_mark_radius(double dot) noexcept
 }
 
 /// The words start and end beside those; of several strokes, the number of each at its start. Returns what
-/// had no room, in words; empty: all has.
+/// had no space, in words; empty: all has.
 std::string label_strokes(canvas& c, const scene& s, const array_frame& f, double dot, label_placer& taken);
 
 } // namespace tactor::plot

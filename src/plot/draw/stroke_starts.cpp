@@ -80,7 +80,7 @@ stroke_starts look_at_starts(const timeline& t, const scale& x)
     }
     all.height = line_height * static_cast<double>(lines);
     if (left_out != 0)
-        all.note = "no room for the start's number of " + counted(left_out, "stroke");
+        all.note = "no space for the start's number of " + counted(left_out, "stroke");
     return all;
 }
 

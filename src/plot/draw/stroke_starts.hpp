@@ -16,14 +16,14 @@ namespace tactor::plot {
 struct stroke_starts {
     struct start {
         double at = 0.0;        ///< x, pt
-        std::string label = {}; ///< of all strokes that start there; empty: no room
+        std::string label = {}; ///< of all strokes that start there; empty: no space
         std::size_t line = 0;   ///< of the numbers, from the lowest: they stand over each other where they
                                 ///< are too close to stand beside each other
     };
 
     std::vector<start> marks = {};
     double height = 0.0;   ///< that they need over the diagram, pt; 0 for one stroke
-    std::string note = {}; ///< what had no room
+    std::string note = {}; ///< what had no space
 };
 
 stroke_starts look_at_starts(const timeline& t, const scale& x);

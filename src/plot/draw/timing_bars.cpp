@@ -88,7 +88,7 @@ void look_up(const plan& p, const scale& x, Note&& note)
 
 } // namespace
 
-std::string part_strokes(timing_frame& f, const timeline& t, double room)
+std::string part_strokes(timing_frame& f, const timeline& t, double space)
 {
     const std::size_t strokes = t.starts_s.size();
     if (strokes < 2)
@@ -112,13 +112,13 @@ std::string part_strokes(timing_frame& f, const timeline& t, double room)
         f.rows.rows[row].levels = std::max<std::size_t>(1, ends.size());
         wished += f.rows.rows[row].levels;
     }
-    if (wished <= most_levels && (f.rows.fit(room) || wished == all.size()))
+    if (wished <= most_levels && (f.rows.fit(space) || wished == all.size()))
         return {};
     // The page would have no end: they lie on each other, and show through.
     f.levels.clear();
     for (lane& r : f.rows.rows)
         r.levels = 1;
-    f.rows.fit(room);
+    f.rows.fit(space);
     return not_parted;
 }
 

@@ -36,8 +36,8 @@ struct timing_frame {
 };
 
 /// Strokes that play at one time on one tactor get levels of their own in its row, one below the other, as
-/// far as `room` pt allow for all rows. Returns what they do not, in words; empty: they do.
-std::string part_strokes(timing_frame& f, const timeline& t, double room);
+/// far as `space` pt allow for all rows. Returns what they do not, in words; empty: they do.
+std::string part_strokes(timing_frame& f, const timeline& t, double space);
 
 /// Whether there are too many bars, or too narrow ones, to draw one by one.
 bool too_dense(const timeline& t, const timing_frame& f);

@@ -87,13 +87,13 @@ std::string shorten(std::string_view text, double size, double width, bool bold)
     std::string all = clean(text.substr(0, 4096));
     if (text.size() <= 4096 && text_width(all, size, bold) <= width)
         return all;
-    const double room = width - text_width(ellipsis, size, bold);
+    const double space = width - text_width(ellipsis, size, bold);
     std::string out;
     double used = 0.0;
     for (std::string_view rest = all; !rest.empty();) {
         const std::size_t n = decode(rest).bytes;
         used += text_width(rest.substr(0, n), size, bold);
-        if (used > room)
+        if (used > space)
             break;
         out += rest.substr(0, n);
         rest.remove_prefix(n);
@@ -106,13 +106,13 @@ std::string shorten_middle(std::string_view text, double size, double width)
     const std::string all = clean(text.substr(0, 4096));
     if (text.size() > 4096 || text_width(all, size) <= width)
         return shorten(text, size, width);
-    const double room = (width - text_width(ellipsis, size)) / 2.0;
+    const double space = (width - text_width(ellipsis, size)) / 2.0;
     std::size_t end = all.size();
     for (std::size_t i = all.size(); i > 0;) {
         do
             --i;
         while (i > 0 && (static_cast<unsigned char>(all[i]) & 0xC0U) == 0x80U); // to where a character begins
-        if (text_width(std::string_view(all).substr(i), size) > room)
+        if (text_width(std::string_view(all).substr(i), size) > space)
             break;
         end = i;
     }
@@ -124,7 +124,7 @@ std::vector<std::string> wrap(const std::vector<std::string>& parts, std::string
                               double width, std::size_t max_lines)
 {
     const std::string_view tail = separator.substr(0, separator.find_last_not_of(' ') + 1);
-    const double room = width - text_width(tail, size);
+    const double space = width - text_width(tail, size);
     std::vector<std::string> lines;
     for (const std::string& p : parts) {
         if (p.empty())
@@ -132,7 +132,7 @@ std::vector<std::string> wrap(const std::vector<std::string>& parts, std::string
         const std::string longer = lines.empty() ? p : fmt::format("{}{}{}", lines.back(), separator, p);
         if (lines.empty()) {
             lines.push_back(p);
-        } else if (text_width(longer, size) <= room || lines.size() == max_lines) {
+        } else if (text_width(longer, size) <= space || lines.size() == max_lines) {
             lines.back() = longer;
         } else {
             lines.back() += tail;

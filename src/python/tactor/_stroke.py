@@ -214,7 +214,7 @@ class Stroke:
         return self._of(self._core.with_intensity(factor))
 
     def fitted(self, array: Array, margin_mm: float = 0.0) -> Stroke:
-        """The same shape, as large as the array has room for and in its middle; see `fit_strokes`."""
+        """The same shape, as large as the array has space for and in its middle; see `fit_strokes`."""
         return fit_strokes([self], array, margin_mm)[0][0]
 
     def __eq__(self, other: object) -> bool:
@@ -249,7 +249,7 @@ class Fitting(_t.NamedTuple):
 
 
 def fit_strokes(strokes: _t.Sequence[Stroke], array: Array, margin_mm: float = 0.0) -> tuple[list[Stroke], Fitting]:
-    """Moves and scales strokes, all alike as one picture, so that it is as large as the array has room for.
+    """Moves and scales strokes, all alike as one picture, so that it is as large as the array has space for.
 
     Parameters
     ----------
@@ -266,7 +266,7 @@ def fit_strokes(strokes: _t.Sequence[Stroke], array: Array, margin_mm: float = 0
     Raises
     ------
     InputError
-        For a margin that leaves no room.
+        For a margin that leaves no space.
     """
     _need(array, Array, "array")
     fitted, origin, to, scale = _tactor.fit_strokes([s._core for s in strokes], array._core, margin_mm)

@@ -100,7 +100,7 @@ void osc_endpoint::arm()
     });
 }
 
-// Where the system has no room for it, it is lost, as it may be on its way.
+// Where the system has no space for it, it is lost, as it may be on its way.
 void osc_endpoint::send(const osc_clients::endpoint& to, const std::string& packet)
 {
     boost::system::error_code lost;

@@ -50,7 +50,7 @@ public:
     std::size_t max_descriptors() const noexcept override { return inner_->max_descriptors(); }
     std::size_t descriptors(std::span<pollfd> f) noexcept override { return inner_->descriptors(f); }
     io_kind ready(std::span<pollfd> f) noexcept override { return inner_->ready(f); }
-    io_result room() noexcept override { return inner_->room(); }
+    io_result available() noexcept override { return inner_->available(); }
     stream_position position() noexcept override { return inner_->position(); }
     void drop() noexcept override { inner_->drop(); }
 

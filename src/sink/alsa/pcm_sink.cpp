@@ -125,11 +125,11 @@ io_kind pcm_sink::ready(std::span<pollfd> fds) noexcept
     return (events & POLLOUT) != 0 ? io_kind::ok : io_kind::again;
 }
 
-io_result pcm_sink::room() noexcept
+io_result pcm_sink::available() noexcept
 {
     const quiet silent;
     if (paced_)
-        return {io_kind::ok, static_cast<std::size_t>(pacer_.room()), 0};
+        return {io_kind::ok, static_cast<std::size_t>(pacer_.available()), 0};
     const snd_pcm_sframes_t n = snd_pcm_avail_update(handle_.get());
     if (n < 0)
         return {of_error(n, state()), 0, static_cast<int>(n)};
@@ -139,9 +139,9 @@ io_result pcm_sink::room() noexcept
     return {io_kind::ok, static_cast<std::size_t>(n), 0};
 }
 
-void pcm_sink::look(std::int64_t now, snd_pcm_sframes_t room) noexcept
+void pcm_sink::look(std::int64_t now, snd_pcm_sframes_t available) noexcept
 {
-    const std::int64_t at = static_cast<std::int64_t>(written_) - setup_.buffer_frames + room;
+    const std::int64_t at = static_cast<std::int64_t>(written_) - setup_.buffer_frames + available;
     went_round_ = went_round_ || (on_card_ && at != at_ && now - looked_ns_ >= ns_of(setup_.buffer_frames));
     looked_ns_ = now;
     at_ = at;
@@ -163,7 +163,7 @@ io_result pcm_sink::write(std::span<const std::byte> frames) noexcept
     const quiet silent;
     std::size_t count = frames.size() / setup_.frame_bytes();
     if (paced_)
-        count = std::min<std::size_t>(count, pacer_.room());
+        count = std::min<std::size_t>(count, pacer_.available());
     if (count == 0)
         return {io_kind::again, 0, 0};
     const long n =

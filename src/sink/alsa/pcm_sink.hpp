@@ -32,7 +32,7 @@ public:
     std::size_t max_descriptors() const noexcept override { return max_descriptors_; }
     std::size_t descriptors(std::span<pollfd> fds) noexcept override;
     io_kind ready(std::span<pollfd> fds) noexcept override;
-    io_result room() noexcept override;
+    io_result available() noexcept override;
     io_result write(std::span<const std::byte> frames) noexcept override;
     stream_position position() noexcept override;
     void drop() noexcept override;
@@ -42,7 +42,7 @@ private:
     long write_paced(const std::byte* data, std::size_t frames) noexcept;
     bool runs_without_clock() noexcept;
     std::int64_t ns_of(std::uint64_t frames) const noexcept;
-    void look(std::int64_t now, snd_pcm_sframes_t room) noexcept;
+    void look(std::int64_t now, snd_pcm_sframes_t available) noexcept;
 
     handle handle_;
     stream_setup setup_;

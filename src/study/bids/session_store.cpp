@@ -208,7 +208,7 @@ void session_store::keeping(const std::function<void()>& write)
         release();
         write();
         throw error(error_kind::runtime, e.subject(), e.why(),
-                    "the last answer is kept; make room, and --resume goes on");
+                    "the last answer is kept; free some space, and --resume goes on");
     }
 }
 

@@ -11,7 +11,7 @@ namespace tactor::study {
 constexpr const char* what_is_kept(int code) noexcept
 {
     if (code == ENOSPC || code == EDQUOT)
-        return "what was answered before is kept; make room, and --resume goes on";
+        return "what was answered before is kept; free some space, and --resume goes on";
     if (code == EROFS)
         return "what was answered before is kept; make the disk writable again, and --resume goes on";
     return "what was answered before is kept; --resume goes on";

@@ -49,12 +49,12 @@ io_kind masking_stream::step(io_kind ready, bool on) noexcept
         return io_kind::ok;
     if (ready != io_kind::ok)
         return again_after(ready);
-    const io_result room = sink_.room();
-    if (room.status == io_kind::again)
+    const io_result available = sink_.available();
+    if (available.status == io_kind::again)
         return io_kind::ok;
-    if (room.status != io_kind::ok)
-        return again_after(room.status);
-    const io_kind s = fill(room.frames, on);
+    if (available.status != io_kind::ok)
+        return again_after(available.status);
+    const io_kind s = fill(available.frames, on);
     return s == io_kind::ok ? s : again_after(s);
 }
 

@@ -33,7 +33,7 @@ public:
 
     /// Prepares the sink, fills its buffer and starts it.
     io_kind begin() noexcept;
-    /// Writes what there is room for. `ready` is what the sink made of its descriptors. An xrun is counted
+    /// Writes what there is space for. `ready` is what the sink made of its descriptors. An xrun is counted
     /// and the stream begun again, from silence. `ok`, or why it has ended.
     io_kind step(io_kind ready, bool on) noexcept;
 

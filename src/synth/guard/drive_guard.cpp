@@ -93,13 +93,13 @@ void drive_guard::close(cell& c, std::int64_t at) noexcept
 /// First frame whose window holds no more than half of the limit, if nothing more is driven.
 std::int64_t drive_guard::half_gone(const cell& c) const noexcept
 {
-    std::int64_t room = limit_ / 2;
+    std::int64_t left = limit_ / 2;
     for (std::size_t i = c.count; i-- > 0;) {
         const stretch& s = c.at(i);
-        if (s.driven > room) {
-            return s.end - room + window_;
+        if (s.driven > left) {
+            return s.end - left + window_;
         }
-        room -= s.driven;
+        left -= s.driven;
     }
     return 0;
 }

@@ -59,7 +59,7 @@ private:
         std::int64_t end = 0;
         std::int64_t driven = 0;
     };
-    /// Stretches begin a grain or more after each other, so that those of one window have room.
+    /// Stretches begin a grain or more after each other, so that those of one window have space.
     struct cell {
         std::array<stretch, grains + 4> ring{};
         std::size_t first = 0;

@@ -64,16 +64,17 @@ void power_guard::keep(std::span<const powered_channel> channels) noexcept
     let_.swap(other_);
 }
 
-/// The sum is above the room. What falls or stays keeps its gain; what rises shares what is left of the room.
+/// The sum is above the headroom. What falls or stays keeps its gain; what rises shares what is left of the
+/// headroom.
 void power_guard::squeeze(std::span<const powered_channel> channels, unsigned frame, double sum,
-                          double room) noexcept
+                          double headroom) noexcept
 {
     double base = 0.0;
     for (const powered_channel& c : channels) {
         base += std::min(let_[c.channel], c.envelope[frame]);
     }
-    const double scale = base > room ? room / base : 1.0;
-    const double rise = base < room ? (room - base) / (sum - base) : 0.0;
+    const double scale = base > headroom ? headroom / base : 1.0;
+    const double rise = base < headroom ? (headroom - base) / (sum - base) : 0.0;
     for (const powered_channel& c : channels) {
         const double wanted = c.envelope[frame];
         const double had = std::min(let_[c.channel], wanted);
@@ -96,14 +97,14 @@ std::uint64_t power_guard::apply(std::span<const powered_channel> channels, unsi
     bool squeezed = true; // in the frame before: let_ is known
     for (unsigned j = 0; j < n; ++j) {
         step(sum[j]);
-        const double room = most_ / (gain_ * gain_);
-        const bool fits = sum[j] <= room * (1.0 + noise);
+        const double headroom = most_ / (gain_ * gain_);
+        const bool fits = sum[j] <= headroom * (1.0 + noise);
         changed += fits && gain_ >= 1.0 ? 0 : 1;
         if (!fits) {
             if (!squeezed) {
                 admit(channels, j - 1);
             }
-            squeeze(channels, j, sum[j], room);
+            squeeze(channels, j, sum[j], headroom);
         }
         sum[j] = fits ? gain_ : 1.0;
         squeezed = !fits;

@@ -19,7 +19,7 @@ struct powered_channel {
 
 /// Holds the sum over the channels of the squared envelopes, and with it that of x^2, at or below a limit in
 /// every frame, without a click: the gain of all follows the envelopes, not the waves, and takes about 10 ms.
-/// Where envelopes rise faster than that, what rises waits for the room that the gain makes: what sounds
+/// Where envelopes rise faster than that, what rises waits for the headroom that the gain makes: what sounds
 /// already is never cut off, and what begins fades in. The gain comes back 20 ms after the loud part with a
 /// time constant of 50 ms. State changes frame by frame, so that block sizes make no difference.
 class power_guard {
@@ -46,7 +46,8 @@ private:
     void step(double sum) noexcept;
     void keep(std::span<const powered_channel> channels) noexcept;
     void admit(std::span<const powered_channel> channels, unsigned frame) noexcept;
-    void squeeze(std::span<const powered_channel> channels, unsigned frame, double sum, double room) noexcept;
+    void squeeze(std::span<const powered_channel> channels, unsigned frame, double sum,
+                 double headroom) noexcept;
 
     double most_;
     bool on_;

@@ -21,9 +21,9 @@ std::size_t mixer::channels() const noexcept
     return impl_->strips.size();
 }
 
-std::size_t mixer::room() const noexcept
+std::size_t mixer::available() const noexcept
 {
-    return impl_->voices.room();
+    return impl_->voices.available();
 }
 
 std::size_t mixer::size() const noexcept
@@ -67,7 +67,7 @@ bool mixer::add(const drive_event& e) noexcept
         !m.plays(v)) {
         return true;
     }
-    if (m.voices.room() == 0) {
+    if (m.voices.available() == 0) {
         return false;
     }
     m.voices.add(v);

@@ -33,10 +33,10 @@ public:
 
     std::size_t channels() const noexcept;
     /// Drives that can be added now.
-    std::size_t room() const noexcept;
+    std::size_t available() const noexcept;
 
     /// Adds a drive, in any order; one that began in the past starts at once, in its middle (with the
-    /// right phase). False when there is no room: nothing is lost, try later.
+    /// right phase). False when there is no space: nothing is lost, try later.
     bool add(const drive_event& e) noexcept;
 
     /// Renders the next frames. Same drives, same samples, whatever the block sizes.

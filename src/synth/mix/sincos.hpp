@@ -15,7 +15,7 @@ struct sine_cosine {
     double cos = 1.0;
 };
 
-/// Adding it leaves no room for a fraction: 1.5 * 2^52.
+/// Adding it leaves no space for a fraction: 1.5 * 2^52.
 inline constexpr double rounds = 6755399441055744.0;
 
 /// Rounds to the nearest integer, half to even, in plain arithmetic; |x| < 2^51.

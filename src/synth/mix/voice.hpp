@@ -105,10 +105,10 @@ class schedule {
 public:
     explicit schedule(std::size_t capacity);
 
-    std::size_t room() const noexcept { return free_.size(); }
+    std::size_t available() const noexcept { return free_.size(); }
     std::size_t size() const noexcept { return voices_.size() - free_.size(); }
 
-    /// There must be room.
+    /// There must be space.
     void add(voice v) noexcept;
     /// Lets the voices sound that start before a frame.
     void activate(std::uint64_t before) noexcept;

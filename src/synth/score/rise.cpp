@@ -94,8 +94,8 @@ private:
         const std::uint64_t pause = it.start - std::min(m.until, it.start);
         const double before = m.strength * l.left(static_cast<double>(pause));
         const double unit = std::abs(s_.tactors[tactor].gain) * s_.equalised(tactor, it.plan, it.start);
-        const double room = (tactor_limit(a_, tactor) * (1.0 - 2e-9) - peaks_[tactor]) / unit;
-        const boost b = boost_of(it, l, release, amplitude, before, room, *rise_s);
+        const double headroom = (tactor_limit(a_, tactor) * (1.0 - 2e-9) - peaks_[tactor]) / unit;
+        const boost b = boost_of(it, l, release, amplitude, before, headroom, *rise_s);
         if (b.amplitude * unit > least_boost) {
             add(it, tactor, b, more);
         }
@@ -106,11 +106,11 @@ private:
         m.until = it.end();
     }
 
-    /// The shortest of whole half cycles that is enough, or all that there is room for.
+    /// The shortest of whole half cycles that is enough, or all that there is space for.
     boost boost_of(const item& it, const lag& l, std::uint32_t release, double amplitude, double before,
-                   double room, double rise_s) const
+                   double headroom, double rise_s) const
     {
-        if (!(room > 0.0 && amplitude > before)) {
+        if (!(headroom > 0.0 && amplitude > before)) {
             return {};
         }
         const double half_cycle = 0.5 * s_.rate / s_.plans[it.plan].schedule.carrier_hz;
@@ -130,14 +130,14 @@ private:
         std::uint64_t low = std::max<std::uint64_t>(first, 1);
         for (std::uint64_t high = last; low < high;) {
             const std::uint64_t middle = low + (high - low) / 2;
-            if (needed(middle).amplitude <= room) {
+            if (needed(middle).amplitude <= headroom) {
                 high = middle;
             } else {
                 low = middle + 1;
             }
         }
         boost b = needed(low);
-        b.amplitude = std::min(b.amplitude, room);
+        b.amplitude = std::min(b.amplitude, headroom);
         return b;
     }
 

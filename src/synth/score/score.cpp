@@ -165,7 +165,7 @@ std::size_t most_open(const std::deque<item>& items, End end, Weight weight)
     return most;
 }
 
-/// Mostly they are in order; sorting needs room for half of them again.
+/// Mostly they are in order; sorting needs space for half of them again.
 void sort_by_start(std::deque<item>& items)
 {
     const auto earlier = [](const item& x, const item& y) { return x.start < y.start; };

@@ -60,7 +60,7 @@ void check_length(const recording& r, unsigned rate)
     }
 }
 
-void check_room(const char* what, double hz, unsigned rate)
+void check_free_place(const char* what, double hz, unsigned rate)
 {
     if (!(hz < 0.5 * rate)) {
         throw error(error_kind::bad_input, what,
@@ -74,9 +74,9 @@ void check_room(const char* what, double hz, unsigned rate)
 /// What of a wave is below half the rate, its sidebands included.
 std::size_t harmonics_below(double hz, double am_hz, unsigned rate)
 {
-    const double room = (0.5 * rate - am_hz) / hz;
+    const double partials = (0.5 * rate - am_hz) / hz;
     return static_cast<std::size_t>(
-        std::clamp(std::ceil(room) - 1.0, 1.0, static_cast<double>(most_cycle_samples)));
+        std::clamp(std::ceil(partials) - 1.0, 1.0, static_cast<double>(most_cycle_samples)));
 }
 
 void fill_in(timbre& t, const plan& p, unsigned rate)
@@ -85,7 +85,7 @@ void fill_in(timbre& t, const plan& p, unsigned rate)
     const double am_hz = p.am.depth > 0.0 ? p.am.hz : 0.0;
     const bool timed = w.kind == waveform_kind::recording && w.texture == texture_kind::time;
     if (w.kind == waveform_kind::noise) {
-        check_room("waveform", w.high_hz + am_hz, rate);
+        check_free_place("waveform", w.high_hz + am_hz, rate);
         t.form = timbre::form_kind::loop;
         t.samples = std::make_shared<const wave_samples>(noise_loop(w.low_hz, w.high_hz, w.seed, rate));
     } else if (timed) {
@@ -93,7 +93,7 @@ void fill_in(timbre& t, const plan& p, unsigned rate)
         t.form = timbre::form_kind::loop;
         t.samples = std::make_shared<const wave_samples>(recorded_loop(*w.recorded, rate));
     } else {
-        check_room("carrier_hz", highest_hz(p) + am_hz, rate);
+        check_free_place("carrier_hz", highest_hz(p) + am_hz, rate);
         if (w.kind == waveform_kind::sine) {
             return;
         }

@@ -46,8 +46,8 @@ TEST_CASE("when the deadline comes the period fits, and not before")
         for (int i = 0; i < 100; ++i) {
             const std::int64_t t = q.time_of_room(period);
             REQUIRE(t > now);
-            REQUIRE(q.room(t - 1) < period);
-            REQUIRE(q.room(t) >= period);
+            REQUIRE(q.available(t - 1) < period);
+            REQUIRE(q.available(t) >= period);
             now = t;
             q.wrote(period);
         }
@@ -60,7 +60,7 @@ TEST_CASE("a writer that comes too late stops the virtual clock, and nothing is 
     q.start(0, 288);
     const std::int64_t late = 10'000'000'000;
     CHECK(q.played(late) == 288);
-    CHECK(q.room(late) == 288);
+    CHECK(q.available(late) == 288);
     q.wrote(96);
     CHECK(q.played(late) == 288);
     CHECK(q.played(late + 1'000'000) == 336);
@@ -72,7 +72,7 @@ TEST_CASE("time that runs backwards plays nothing back")
     virtual_queue q(48000, 288);
     q.start(1'000'000'000, 288);
     CHECK(q.played(0) == 0);
-    CHECK(q.room(0) == 0);
+    CHECK(q.available(0) == 0);
 }
 
 TEST_CASE("the timer becomes readable when a period fits")
@@ -86,10 +86,10 @@ TEST_CASE("the timer becomes readable when a period fits")
         REQUIRE(::poll(&fd, 1, 10'000) == 1);
         p.arm();
     }
-    CHECK(p.room() >= 96);
+    CHECK(p.available() >= 96);
     CHECK(rt::monotonic_ns() - begun >= 2'000'000); // 96 frames
     p.arm();
-    CHECK(::poll(&fd, 1, 10'000) == 1); // the room is still there
+    CHECK(::poll(&fd, 1, 10'000) == 1); // the space is still there
 }
 
 namespace {

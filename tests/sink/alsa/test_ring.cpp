@@ -60,17 +60,17 @@ TEST_CASE("a card whose position moved, unseen for a whole buffer, has had an xr
     stream s(true);
     s.pass();
     s.dac.advance(96); // of the round before it the position tells nothing
-    const io_result r = s.out->room();
+    const io_result r = s.out->available();
     CHECK(r.status == io_kind::xrun);
     CHECK(s.out->xrun_ns() >= 0);
-    CHECK(s.out->room().status == io_kind::xrun); // until it is made ready again
+    CHECK(s.out->available().status == io_kind::xrun); // until it is made ready again
     s.start();
     s.pass();
-    CHECK(s.out->room().status == io_kind::ok); // it stands still
+    CHECK(s.out->available().status == io_kind::ok); // it stands still
     s.pass();
     s.dac.advance(96);
     CHECK(s.out->position().valid); // who looks first does not hide it
-    CHECK(s.out->room().status == io_kind::xrun);
+    CHECK(s.out->available().status == io_kind::xrun);
 }
 
 TEST_CASE("what has no ring of a card is believed")
@@ -78,7 +78,7 @@ TEST_CASE("what has no ring of a card is believed")
     stream s(false);
     s.pass();
     s.dac.advance(96);
-    CHECK(s.out->room().status == io_kind::ok);
+    CHECK(s.out->available().status == io_kind::ok);
 }
 
 TEST_CASE("what plays on a card of the kernel's, the first one too, has a ring")
@@ -90,7 +90,7 @@ TEST_CASE("what plays on a card of the kernel's, the first one too, has a ring")
         stream s(false);
         s.pass();
         s.dac.advance(96);
-        CHECK(s.out->room().status == (card < 0 ? io_kind::ok : io_kind::xrun));
+        CHECK(s.out->available().status == (card < 0 ? io_kind::ok : io_kind::xrun));
     }
 }
 

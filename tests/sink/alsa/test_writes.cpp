@@ -59,7 +59,7 @@ TEST_CASE("a full device that has not been started takes nothing and says so")
     CHECK(s->position().valid);
     CHECK(s->position().written == 288);
     CHECK(s->position().played == 96);
-    CHECK(s->room().frames == 96);
+    CHECK(s->available().frames == 96);
     s->drop();
     CHECK_FALSE(dac.running());
 }
