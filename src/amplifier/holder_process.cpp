@@ -30,9 +30,8 @@ void leave_the_player() noexcept
 {
     ::setsid();
     ::prctl(PR_SET_NAME, "tactor-amp", 0UL, 0UL, 0UL);
-    if (::chdir("/") != 0) { // only so that no file system is kept busy
+    if (::chdir("/") != 0) // only so that no file system is kept busy
         return;
-    }
 }
 
 bool become_fifo(int level) noexcept

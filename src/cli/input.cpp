@@ -54,12 +54,11 @@ piece read_piece(const settings& s, const environment& e, const layout& faces, c
         p.strokes = std::move(fitted.strokes);
         p.fit = fitted.placed;
     }
-    for (stroke& k : p.strokes) {
+    for (stroke& k : p.strokes)
         if (s.duration_s)
             k.motion = k.motion.with_duration(*s.duration_s);
         else if (s.speed_mm_s && k.motion.length_mm() > 0.0)
             k.motion = k.motion.with_speed(*s.speed_mm_s);
-    }
     return p;
 }
 

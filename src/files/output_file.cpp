@@ -45,9 +45,8 @@ int descriptor_in(const fs::path& p)
     int n = -1;
     if (folder == "/dev/fd" || folder == "/proc/self/fd") {
         const auto [end, failed] = std::from_chars(name.data(), name.data() + name.size(), n);
-        if (failed != std::errc{} || end != name.data() + name.size()) {
+        if (failed != std::errc{} || end != name.data() + name.size())
             return -1;
-        }
     }
     return n;
 }
@@ -98,9 +97,8 @@ fs::path follow_links(const fs::path& asked)
 
 output_file::output_file(const fs::path& file, patience go_on) : asked_(file), go_on_(std::move(go_on))
 {
-    if (file.empty()) {
+    if (file.empty())
         throw error(error_kind::bad_input, "file", "its name is empty", "name a file");
-    }
     target_ = follow_links(file);
     if (const int n = descriptor_in(target_); n >= 0) {
         open_descriptor(n);
@@ -108,9 +106,8 @@ output_file::output_file(const fs::path& file, patience go_on) : asked_(file), g
     }
     std::error_code failed;
     const fs::file_status there = fs::status(target_, failed);
-    if (fs::is_directory(there) || !target_.has_filename()) {
+    if (fs::is_directory(there) || !target_.has_filename())
         refuse(asked_, "is a folder", "name a file in it");
-    }
     if (fs::exists(there) && !fs::is_regular_file(there)) {
         open_directly();
         return;
@@ -120,9 +117,8 @@ output_file::output_file(const fs::path& file, patience go_on) : asked_(file), g
         refuse(asked_, fmt::format("the folder \"{}\" does not exist", folder.string()),
                "make it first, or name another");
     }
-    if (fs::exists(there) && ::access(target_.c_str(), W_OK) != 0) {
+    if (fs::exists(there) && ::access(target_.c_str(), W_OK) != 0)
         fail(errno);
-    }
     open_beside();
 }
 
@@ -132,9 +128,8 @@ void output_file::open_descriptor(int descriptor)
 {
     directly_ = true;
     fd_ = ::fcntl(descriptor, F_DUPFD_CLOEXEC, 3);
-    if (fd_ < 0) {
+    if (fd_ < 0)
         fail(errno);
-    }
 }
 
 // Non-blocking: a pipe that nobody reads would keep the program for ever.
@@ -143,16 +138,13 @@ void output_file::open_directly()
     directly_ = true;
     for (;;) {
         fd_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
-        if (fd_ >= 0) {
+        if (fd_ >= 0)
             return;
-        }
-        if (errno != ENXIO || !fs::is_fifo(target_)) {
+        if (errno != ENXIO || !fs::is_fifo(target_))
             fail(errno);
-        }
         ::poll(nullptr, 0, moment_ms);
-        if (!still_wanted()) {
+        if (!still_wanted())
             return;
-        }
     }
 }
 
@@ -165,11 +157,9 @@ bool output_file::still_wanted()
 bool output_file::wait_for_room()
 {
     pollfd p{.fd = fd_, .events = POLLOUT, .revents = 0};
-    while (::poll(&p, 1, moment_ms) == 0) {
-        if (!still_wanted()) {
+    while (::poll(&p, 1, moment_ms) == 0)
+        if (!still_wanted())
             return false;
-        }
-    }
     return true;
 }
 
@@ -184,9 +174,8 @@ void output_file::open_beside()
             keep_owner_and_rights();
             return;
         }
-        if (errno != EEXIST) {
+        if (errno != EEXIST)
             break;
-        }
     }
     const int code = errno;
     temporary_.clear();
@@ -199,9 +188,8 @@ void output_file::keep_owner_and_rights() noexcept
 {
     constexpr mode_t rights = 0777;
     struct stat there {};
-    if (::stat(target_.c_str(), &there) != 0) {
+    if (::stat(target_.c_str(), &there) != 0)
         return;
-    }
     struct stat ours {};
     if (::fstat(fd_, &ours) == 0 && (ours.st_uid != there.st_uid || ours.st_gid != there.st_gid) &&
         ::fchown(fd_, there.st_uid, there.st_gid) != 0 && ::fchown(fd_, uid_t(-1), there.st_gid) != 0) {
@@ -213,12 +201,10 @@ void output_file::keep_owner_and_rights() noexcept
 
 output_file::~output_file()
 {
-    if (fd_ >= 0) {
+    if (fd_ >= 0)
         ::close(fd_);
-    }
-    if (!temporary_.empty()) {
+    if (!temporary_.empty())
         ::unlink(temporary_.c_str());
-    }
 }
 
 void output_file::fail(int code) const
@@ -248,39 +234,32 @@ std::int64_t output_file::write(const void* data, std::int64_t bytes)
     while (done < bytes && good() && (!directly_ || wait_for_room())) {
         const std::int64_t now = directly_ ? std::min<std::int64_t>(bytes - done, PIPE_BUF) : bytes - done;
         const ssize_t n = ::write(fd_, from + done, static_cast<std::size_t>(now));
-        if (n > 0) {
+        if (n > 0)
             done += n;
-        } else if (n == 0 || (errno != EINTR && errno != EAGAIN)) {
+        else if (n == 0 || (errno != EINTR && errno != EAGAIN))
             failure_ = n == 0 ? ENOSPC : errno;
-        }
     }
     return done;
 }
 
 void output_file::commit()
 {
-    if (failure_ != 0) {
+    if (failure_ != 0)
         fail(failure_);
-    }
-    if (given_up_) {
+    if (given_up_)
         fail(ECANCELED);
-    }
     // Else a power cut could leave an empty file under the name.
-    if (!temporary_.empty() && ::fsync(fd_) != 0) {
+    if (!temporary_.empty() && ::fsync(fd_) != 0)
         fail(errno);
-    }
     // A network file system may tell of a full disk only now.
     const int closed = ::close(fd_);
     fd_ = -1;
-    if (closed != 0 && errno != EINTR) {
+    if (closed != 0 && errno != EINTR)
         fail(errno);
-    }
-    if (temporary_.empty()) {
+    if (temporary_.empty())
         return;
-    }
-    if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
+    if (::rename(temporary_.c_str(), target_.c_str()) != 0)
         fail(errno);
-    }
     temporary_.clear();
     sync_folder(folder_of(target_));
 }

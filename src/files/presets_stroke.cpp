@@ -76,10 +76,9 @@ stroke preset_stroke(std::string_view name)
                     {},
                     note_kind::reconstructed};
     }
-    for (const drawing& d : drawings) {
+    for (const drawing& d : drawings)
         if (d.name == name)
             return {std::string(name), trajectory::along(path::from_svg(d.path), d.duration_s), {}, {}, {}};
-    }
     throw error(error_kind::bad_input, "stroke", fmt::format("no preset {}", detail::quoted(name)),
                 detail::preset_hint(name, stroke_presets()));
 }

@@ -42,10 +42,9 @@ public:
     std::uint64_t consume() noexcept
     {
         std::uint64_t n = 0;
-        while (::read(fd_, &n, sizeof n) < 0) {
+        while (::read(fd_, &n, sizeof n) < 0)
             if (errno != EINTR)
                 return 0;
-        }
         return n;
     }
 

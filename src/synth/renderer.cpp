@@ -48,9 +48,8 @@ struct renderer::impl {
     {
         for (const synth::drive_event* e = source.peek(); e != nullptr && e->start < until;
              e = source.peek()) {
-            if (!mix.add(*e)) {
+            if (!mix.add(*e))
                 return e->start;
-            }
             source.pop();
         }
         return until;
@@ -64,14 +63,12 @@ struct renderer::impl {
         const std::uint64_t known = feed(until + ahead);
         const std::uint64_t ready =
             std::min(until, known > at + ahead ? known - ahead : std::max(known, at + 1));
-        if (source.failure().empty()) {
+        if (source.failure().empty())
             return ready;
-        }
         const std::uint64_t silent = source.failed_at();
         const std::uint64_t fall = silent - std::min(silent, ahead);
-        if (at < fall) {
+        if (at < fall)
             return std::min(ready, fall);
-        }
         if (!failed) {
             failed = true;
             mix.fade_out(0, static_cast<std::uint32_t>(std::max(silent, at) - at));

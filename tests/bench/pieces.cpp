@@ -55,10 +55,9 @@ std::vector<placed_plan> plans(unsigned channels, unsigned count, algorithm_kind
 {
     const array a = square(channels);
     std::vector<placed_plan> placed;
-    for (unsigned r = 0; r < std::max(1U, 8 / count); ++r) {
+    for (unsigned r = 0; r < std::max(1U, 8 / count); ++r)
         for (plan& p : strokes(a, count, algorithm))
             placed.push_back({std::move(p), 1.5 * r});
-    }
     return placed;
 }
 
@@ -73,14 +72,12 @@ plain_loop::plain_loop(const score& s, const std::vector<placed_plan>& plans, do
     for (std::size_t i = 0; i < plans.size(); ++i) {
         const plan& p = plans[i].schedule;
         add_bursts(p, s.starts()[i], level);
-        if (p.curve) {
+        if (p.curve)
             add_lines(p, s.starts()[i], level);
-        }
     }
     std::sort(tones_.begin(), tones_.end(), [](const tone& a, const tone& b) { return a.start < b.start; });
-    for (const tone& t : tones_) {
+    for (const tone& t : tones_)
         longest_ = std::max(longest_, t.end - t.start);
-    }
 }
 
 void plain_loop::add_bursts(const plan& p, std::uint64_t start, double level)
@@ -88,9 +85,8 @@ void plain_loop::add_bursts(const plan& p, std::uint64_t start, double level)
     for (const burst& b : p.bursts) {
         const auto from = start + static_cast<std::uint64_t>(std::llround(b.onset_s * rate_));
         const auto to = from + static_cast<std::uint64_t>(std::llround(b.duration_s * rate_));
-        for (const drive& d : b.drives) {
+        for (const drive& d : b.drives)
             tones_.push_back({from, to, start, d.tactor, level * d.amplitude, 0.0, p.carrier_hz});
-        }
     }
 }
 
@@ -122,9 +118,8 @@ void plain_loop::process(std::size_t frames, float* out)
 {
     std::memset(out, 0, frames * channels_ * sizeof(float));
     const std::uint64_t end = position_ + frames;
-    while (first_ < tones_.size() && tones_[first_].start + longest_ <= position_) {
+    while (first_ < tones_.size() && tones_[first_].start + longest_ <= position_)
         ++first_;
-    }
     for (std::size_t i = first_; i < tones_.size() && tones_[i].start < end; ++i) {
         const tone& t = tones_[i];
         for (std::uint64_t k = std::max(t.start, position_); k < std::min(t.end, end); ++k) {

@@ -15,9 +15,8 @@ void plan_park(benchmark::State& state)
     const array a = preset_array("palm-3x3");
     const layout l(a);
     const stroke s = preset_stroke("park2016-1");
-    for (auto _ : state) {
+    for (auto _ : state)
         benchmark::DoNotOptimize(make_plan(a, l, s, {}));
-    }
 }
 BENCHMARK(plan_park)->Name("plan/park2016-1")->Unit(benchmark::kMicrosecond);
 
@@ -54,9 +53,8 @@ void locate(benchmark::State& state)
     std::mt19937_64 random(1);
     std::uniform_real_distribution<double> place(0.0, 20.0 * (side - 1));
     std::vector<point> points(1024);
-    for (point& p : points) {
+    for (point& p : points)
         p = {place(random), place(random)};
-    }
     std::vector<drive> drives;
     std::size_t i = 0;
     for (auto _ : state) {

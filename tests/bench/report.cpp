@@ -67,9 +67,8 @@ public:
             const bool manual = !r.run_name.time_type.empty();
             const double time = manual ? r.GetAdjustedRealTime() : r.GetAdjustedCPUTime();
             best.time = is_new ? time : std::min(best.time, time);
-            for (const auto& [key, counter] : r.counters) {
+            for (const auto& [key, counter] : r.counters)
                 best.counters[key] = std::max(best.counters[key], counter.value);
-            }
         }
     }
 
@@ -126,15 +125,13 @@ private:
                 continue;
             const result& r = found_.at(name);
             std::printf("%-52s %9.3f %s", name.c_str(), r.time, r.unit.c_str());
-            for (const auto& [key, value] : r.counters) {
+            for (const auto& [key, value] : r.counters)
                 std::printf("  %s %.3g", key.c_str(), value);
-            }
             std::printf("\n");
         }
         std::printf("\n%-52s %12s %10s\n", "The tool as a process", "CPU ms", "peak MB");
-        for (const tool_row& row : tool_) {
+        for (const tool_row& row : tool_)
             std::printf("%-52s %12.1f %10.1f\n", row.what.c_str(), row.cpu_ms, row.peak_mb);
-        }
     }
 
     const std::vector<tool_row>& tool_;
@@ -153,9 +150,8 @@ int run(int argc, char** argv, const std::vector<tool_row>& tool)
         arguments.push_back(a.data());
     auto count = static_cast<int>(arguments.size());
     benchmark::Initialize(&count, arguments.data());
-    if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) {
+    if (benchmark::ReportUnrecognizedArguments(count, arguments.data()))
         return 2;
-    }
     reporter r(tool);
     benchmark::RunSpecifiedBenchmarks(&r);
     benchmark::Shutdown();

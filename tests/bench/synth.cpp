@@ -43,9 +43,8 @@ public:
             next_ = 0;
         }
         while (next_ < events_.all.size() && events_.all[next_].start < mix_.position() + bench::block &&
-               mix_.add(events_.all[next_])) {
+               mix_.add(events_.all[next_]))
             ++next_;
-        }
         mix_.process(bench::block, out);
     }
 
@@ -137,9 +136,8 @@ private:
             events_ = std::make_unique<events>(s);
             plain_ = std::make_unique<bench::plain_loop>(s, bench::plans(row_.channels, count, algorithm),
                                                          0.2 / count);
-            if (row_.strokes == 0) {
+            if (row_.strokes == 0)
                 events_->all.clear();
-            }
         }
     }
     bench::synth_row row_;
@@ -225,10 +223,8 @@ void bench::add_synth()
         add_bounds(channels, 2);
         add_bounds(channels, 4);
         add_piece({.channels = channels, .strokes = 0});
-        for (const unsigned count : {1U, 8U, 64U}) {
-            for (const bool continuous : {false, true}) {
+        for (const unsigned count : {1U, 8U, 64U})
+            for (const bool continuous : {false, true})
                 add_piece({.channels = channels, .strokes = count, .continuous = continuous});
-            }
-        }
     }
 }

@@ -81,9 +81,8 @@ bench::tool_row measure(const std::string& what, const std::vector<std::string>&
     bench::tool_row row{what, 1e9, 0.0};
     for (int i = 0; i < times; ++i) {
         rusage used{};
-        if (!how(arguments, used)) {
+        if (!how(arguments, used))
             return {what + ": the tool failed", 0.0, 0.0};
-        }
         row.cpu_ms = std::min(row.cpu_ms, 1e3 * (seconds(used.ru_utime) + seconds(used.ru_stime)));
         row.peak_mb = std::max(row.peak_mb, static_cast<double>(used.ru_maxrss) / 1024.0);
     }

@@ -58,10 +58,9 @@ TEST_CASE("the parts of a Bezier are as long as the whole, from nanometres to a 
         control p;
         for (point& q : p)
             q = {number(), n % 3 == 0 ? 0.0 : number()};
-        if (n % 3 == 0) {
+        if (n % 3 == 0)
             for (point& q : p)
                 q.y_mm = 0.5 * q.x_mm; // back and forth on a line
-        }
         if (n % 5 == 0)
             p[1] = p[0];
         if (n % 7 == 0)

@@ -52,10 +52,9 @@ score random_stroke(std::mt19937_64& random, const render_options& o)
         burst b;
         b.onset_s = 0.05 * k;
         b.duration_s = 0.008 + 0.06 * uniform(random); // those that overlap are joined
-        for (unsigned t = 0; t < channels; ++t) {
+        for (unsigned t = 0; t < channels; ++t)
             if (random() % 2 == 0)
                 b.drives.push_back({.tactor = t, .amplitude = uniform(random)});
-        }
         p.total_s = std::max(p.total_s, b.onset_s + b.duration_s);
         p.bursts.push_back(b);
     }

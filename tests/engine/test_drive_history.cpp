@@ -102,9 +102,8 @@ TEST_CASE("of a process that did not live what it was about to drive counts unti
     o.driven = drive_history::restore(ahead.save());
     CHECK(cuts_of(o, 0.9, ignored) == 0); // it is not the 3000 s that count
     const std::int64_t enough_ns = rt::monotonic_ns() + 100'000'000;
-    while (rt::monotonic_ns() < enough_ns) {
+    while (rt::monotonic_ns() < enough_ns)
         std::this_thread::yield();
-    }
     o.limits.max_drive_s = 0.1;
     o.driven = drive_history::restore(ahead.save());
     CHECK(cuts_of(o, 0.05, ignored) == 1);

@@ -100,12 +100,11 @@ TEST_CASE("a handler may destroy the player: what is left is reported from withi
         const stroke_id armed = p->submit(tone(0.01), start_at::trigger());
         const stroke_id sounding = p->submit(tone(endless_s));
         const stroke_id first = p->submit(tone(0.01), start_at::trigger());
-        if (own) {
+        if (own)
             for (const stroke_id id : {armed, sounding, first})
                 CHECK(p->on_end(id, destroy));
-        } else {
+        else
             p->on_report(destroy);
-        }
         p->cancel(first);
         raise_flag(submitted);
         wait_for(gone);

@@ -36,10 +36,9 @@ std::optional<pulse> next(const engine::pulse_board& b, std::uint64_t epoch)
 // Of the strokes that a test calls off some have been sent before.
 bool may_be_forgotten(stroke_id id)
 {
-    for (std::uint32_t by = id.number; by < id.number + 5; ++by) {
+    for (std::uint32_t by = id.number; by < id.number + 5; ++by)
         if (by % 3 == 0 && by - by % 5 == id.number)
             return true;
-    }
     return false;
 }
 

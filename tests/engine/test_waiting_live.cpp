@@ -111,12 +111,11 @@ TEST_CASE("hundreds at once: each is cancelled by its handle, ended or timed out
     while (all.size() < 3 * engine::live_places)
         all.push_back(r.add(short_timeout()));
     r.play(960);
-    for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t i = 0; i < all.size(); ++i)
         if (i % 3 == 1)
             all[i]->voice.ask(engine::live_voice::wish::end);
         else if (i % 3 == 2)
             all[i]->voice.ask(engine::live_voice::wish::cancel);
-    }
     r.play(288);
     CHECK(r.ended.size() == 2 * engine::live_places);
     r.play(timeout_frames);

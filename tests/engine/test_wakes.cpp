@@ -51,10 +51,9 @@ TEST_CASE("a stroke for a time that is named before the stream's clock is known 
     // After what is in the buffer, and long before the control side would be woken to feed it.
     const std::int64_t at_ns = r.now + 2 * 288 * std::int64_t{1'000'000'000} / rate;
     const stroke_id id = r.submit(tone(0.01), start_at::time(at_ns));
-    for (int i = 0; i < 200 && !r.report(id); ++i) {
+    for (int i = 0; i < 200 && !r.report(id); ++i)
         if (wakes(r))
             r.control();
-    }
     REQUIRE(r.report(id));
     CHECK(r.report(id)->late_s == 0.0);
 }

@@ -30,10 +30,9 @@ void check_setup(const setup& s)
     if (s.sync) {
         HOLDS(s.sync->pulse_s > 0.0 && std::isfinite(s.sync->pulse_s));
         HOLDS(from_string<edge_kind>(to_string(s.sync->edge)) == s.sync->edge);
-        for (const auto* l : {&s.sync->out, &s.sync->in}) {
+        for (const auto* l : {&s.sync->out, &s.sync->in})
             if (*l)
                 check_line(**l);
-        }
     }
     std::string again = "[defaults]\n";
     for (const auto& [name, value] : detail::default_texts(s.defaults))

@@ -108,12 +108,11 @@ void stress(std::size_t size, std::uint64_t count)
 {
     spsc_ring<wide> ring(size, std::numeric_limits<std::size_t>::max() - 1000);
     std::thread producer([&] {
-        for (std::uint64_t i = 0; i < count;) {
+        for (std::uint64_t i = 0; i < count;)
             if (ring.push(wide{i, ~i, i * 3}))
                 ++i;
             else
                 std::this_thread::yield();
-        }
     });
     std::uint64_t wrong = 0;
     for (std::uint64_t i = 0; i < count;) {

@@ -17,9 +17,8 @@ public:
     folder()
     {
         std::string name = (std::filesystem::temp_directory_path() / "tactor-test-XXXXXX").string();
-        if (::mkdtemp(name.data()) == nullptr) {
+        if (::mkdtemp(name.data()) == nullptr)
             throw std::runtime_error("no folder for the test");
-        }
         path_ = name;
     }
     ~folder()
@@ -45,9 +44,8 @@ public:
     std::vector<std::string> names() const
     {
         std::vector<std::string> all;
-        for (const auto& entry : std::filesystem::directory_iterator(path_)) {
+        for (const auto& entry : std::filesystem::directory_iterator(path_))
             all.push_back(entry.path().filename().string());
-        }
         std::sort(all.begin(), all.end());
         return all;
     }

@@ -105,10 +105,9 @@ inline plan some_bursts(dice& d, unsigned tactors, unsigned rate)
                                : d.one_in(2) ? 0.0
                                              : d.from_to(0.0, 0.2);
         std::vector<drive> drives;
-        for (unsigned t = 0; t < tactors; ++t) {
+        for (unsigned t = 0; t < tactors; ++t)
             if (d.one_in(2))
                 drives.push_back({t, d.one_in(3) ? 1.0 : d.from_to(0.0, 1.0)});
-        }
         if (!drives.empty() && d.one_in(20))
             drives.push_back(drives.front());
         all.push_back(pieces::make_burst(onset_s, length_s, std::move(drives), d.from_to(0.3, 1.0)));
@@ -126,10 +125,9 @@ inline plan some_curve(dice& d, unsigned tactors, unsigned rate)
     const std::uint64_t count = detail::samples_of(length_s);
     for (std::uint64_t k = 0; k < count; ++k) {
         burst b;
-        for (unsigned t = 0; t < tactors; ++t) {
+        for (unsigned t = 0; t < tactors; ++t)
             if (d.one_in(2))
                 b.drives.push_back({t, d.from_to(0.0, 1.0)});
-        }
         all.add(b);
     }
     plan p;

@@ -50,9 +50,8 @@ inline tactor::plan make_plan(std::vector<tactor::burst> bursts, double carrier_
     tactor::plan p;
     p.algorithm = "by hand";
     p.carrier_hz = carrier_hz;
-    for (const tactor::burst& b : bursts) {
+    for (const tactor::burst& b : bursts)
         p.total_s = std::max(p.total_s, b.onset_s + b.duration_s);
-    }
     p.stroke_duration_s = p.total_s;
     p.bursts = std::move(bursts);
     return p;
@@ -71,9 +70,8 @@ inline tactor::plan make_continuous(unsigned tactors, double duration_s, double 
         const double f = place - left;
         out.drives.clear();
         out.drives.push_back({left, std::sqrt(1.0 - f)});
-        if (f > 0.0) {
+        if (f > 0.0)
             out.drives.push_back({left + 1, std::sqrt(f)});
-        }
     });
     return p;
 }
@@ -85,11 +83,9 @@ inline tactor::plan make_random(std::mt19937_64& random, unsigned tactors, unsig
     std::vector<tactor::burst> all;
     for (unsigned i = 0; i < bursts; ++i) {
         std::vector<tactor::drive> drives;
-        for (unsigned t = 0; t < tactors; ++t) {
-            if (unit(random) < 0.5) {
+        for (unsigned t = 0; t < tactors; ++t)
+            if (unit(random) < 0.5)
                 drives.push_back({t, 0.01 + 0.4 * unit(random)});
-            }
-        }
         all.push_back(make_burst(total_s * unit(random), 0.001 + 0.1 * unit(random), drives));
     }
     std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.onset_s < b.onset_s; });
@@ -162,21 +158,18 @@ inline std::vector<double> channel(const tactor::score& s, unsigned c)
 {
     const auto bytes = render(s, tactor::format_kind::float32);
     std::vector<double> x(s.frames());
-    for (std::size_t k = 0; k < x.size(); ++k) {
+    for (std::size_t k = 0; k < x.size(); ++k)
         x[k] = static_cast<double>(sample<float>(bytes, k * s.channels() + c));
-    }
     return x;
 }
 
 /// Section 7's window, from the formula.
 inline double window(std::int64_t k, std::int64_t n, std::int64_t r)
 {
-    if (k < r) {
+    if (k < r)
         return 0.5 * (1.0 - std::cos(pi * static_cast<double>(k) / static_cast<double>(r)));
-    }
-    if (k >= n - r) {
+    if (k >= n - r)
         return 0.5 * (1.0 - std::cos(pi * static_cast<double>(n - k) / static_cast<double>(r)));
-    }
     return 1.0;
 }
 
@@ -184,9 +177,8 @@ inline double window(std::int64_t k, std::int64_t n, std::int64_t r)
 inline std::uint64_t digest(std::span<const std::byte> bytes)
 {
     std::uint64_t h = 14695981039346656037U;
-    for (const std::byte b : bytes) {
+    for (const std::byte b : bytes)
         h = (h ^ static_cast<std::uint64_t>(b)) * 1099511628211U;
-    }
     return h;
 }
 

@@ -35,9 +35,8 @@ COUNTING_TEST_CASE("rendering allocates nothing")
         renderer r(s, f);
         std::vector<std::byte> out(500 * s.channels() * 4);
         const count_allocations count;
-        for (std::size_t n = 1; r.position() < s.frames() + 1000; n = n % 500 + 1) {
+        for (std::size_t n = 1; r.position() < s.frames() + 1000; n = n % 500 + 1)
             r.process(std::span(out).first(n * s.channels() * bytes_of(f)));
-        }
         CHECK(count.calls() == 0);
     }
 }
@@ -48,9 +47,8 @@ COUNTING_TEST_CASE("walking through a score allocates nothing")
     synth::event_source source(s);
     std::size_t events = 0;
     const count_allocations count;
-    for (; source.peek() != nullptr; source.pop()) {
+    for (; source.peek() != nullptr; source.pop())
         ++events;
-    }
     CHECK(count.calls() == 0);
     CHECK(events > 1000);
 }
@@ -70,9 +68,8 @@ COUNTING_TEST_CASE("a mixer allocates nothing after its construction")
             source.pop();
         }
         m.process(96, out.data());
-        if (round % 50 == 20) {
+        if (round % 50 == 20)
             m.fade_out(round % 7, 100 * (round % 3));
-        }
     }
     m.reset();
     CHECK(count.calls() == 0);

@@ -94,9 +94,8 @@ TEST_CASE("more voices than a block has frames keep their order")
     // Hundreds of overlapping plans on one tactor: sums in another order would differ in the last bits.
     std::mt19937_64 random(5);
     std::vector<placed_plan> plans;
-    for (int i = 0; i < tactor::test::rounds(400); ++i) {
+    for (int i = 0; i < tactor::test::rounds(400); ++i)
         plans.push_back({make_random(random, 3, 3, 0.05), 0.0005 * i});
-    }
     render_options o;
     o.level_dbfs = -60.0;
     const score s(row(3), plans, o);

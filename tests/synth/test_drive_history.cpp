@@ -88,9 +88,8 @@ TEST_CASE("a coarser history holds what the finer one held")
 {
     drive_history h;
     h.channels.resize(2);
-    for (int i = 0; i < 10; ++i) {
+    for (int i = 0; i < 10; ++i)
         h.channels[0].stretches.push_back({i - 10.0, i - 9.5, 0.25});
-    }
     h.channels[1].stretches = {{-1.0, 0.0, 1.0}};
     drive_history same = h;
     coarsen(same, 10);

@@ -56,14 +56,12 @@ played play(const std::vector<synth::drive_event>& events, double total_s, const
             double limit = 1.0, std::size_t block = 4096)
 {
     synth::mixer m(std::vector<double>(1, limit), format_kind::float32, events.size(), g);
-    for (const synth::drive_event& e : events) {
+    for (const synth::drive_event& e : events)
         REQUIRE(m.add(e));
-    }
     played p;
     p.x.resize(static_cast<std::size_t>(total_s * rate));
-    for (std::size_t done = 0; done < p.x.size(); done += block) {
+    for (std::size_t done = 0; done < p.x.size(); done += block)
         m.process(std::min(block, p.x.size() - done), reinterpret_cast<std::byte*>(p.x.data() + done));
-    }
     p.cuts = m.drives_cut();
     return p;
 }
@@ -100,9 +98,8 @@ std::size_t most_in_a_window(const std::vector<float>& x, std::size_t window)
 double end_s(const std::vector<float>& x)
 {
     std::size_t last = 0;
-    for (std::size_t k = 0; k < x.size() && k < last + rate / 20; ++k) {
+    for (std::size_t k = 0; k < x.size() && k < last + rate / 20; ++k)
         last = x[k] != 0.0F ? k : last;
-    }
     return static_cast<double>(last) / rate;
 }
 
@@ -174,9 +171,8 @@ TEST_CASE("no window holds more than the limit and one fade, whatever the mix")
         CAPTURE(p.cuts);
         const std::size_t most = most_in_a_window(p.x, frames(window_s));
         CHECK(most <= frames(limit_s) + fade);
-        if (p.cuts > 0) {
+        if (p.cuts > 0)
             CHECK(most + frames(window_s) / 256 + fade >= frames(limit_s)); // and no earlier than needed
-        }
     }
 }
 
@@ -184,9 +180,8 @@ TEST_CASE("a pattern that is within the limit to the frame is not touched")
 {
     for (const double part : {5.0, 0.5, 0.1, 0.04}) {
         std::vector<synth::drive_event> events;
-        for (double t = 0.0; t < 40.0; t += 2.0 * part) {
+        for (double t = 0.0; t < 40.0; t += 2.0 * part)
             events.push_back(voice(t, part, 0.7));
-        }
         CAPTURE(part);
         CHECK(play(events, 41.0, time_of(5.0, 10.0)).cuts == 0);
         CHECK(play(events, 41.0, time_of(5.0, 10.0)).x == play(events, 41.0, {}).x);
@@ -198,9 +193,8 @@ TEST_CASE("what is counted together within a grain of the window may be cut that
 {
     std::vector<synth::drive_event>
         events; // half of the time, in pieces of 4 ms: 78 grains of 39 ms are 3.04 s
-    for (double t = 0.0; t < 25.0; t += 0.008) {
+    for (double t = 0.0; t < 25.0; t += 0.008)
         events.push_back(voice(t, 0.004, 0.7));
-    }
     CHECK(play(events, 25.0, time_of(5.0 + 10.0 / 256, 10.0)).cuts == 0);
     CHECK(play(events, 25.0, time_of(4.96, 10.0)).cuts > 0);
 }
@@ -213,9 +207,8 @@ TEST_CASE("a quiet stroke on a channel that was cut is silent, too, whatever the
     const played whole = play(events, 3.0, g);
     CHECK(std::all_of(whole.x.begin() + rate * 6 / 10, whole.x.begin() + rate * 2,
                       [](float v) { return v == 0; }));
-    for (const std::size_t block : {1, 7, 160, 161, 500}) {
+    for (const std::size_t block : {1, 7, 160, 161, 500})
         CHECK(play(events, 3.0, g, 1.0, block).x == whole.x);
-    }
 }
 
 TEST_CASE("the next mixer counts on, at another rate, and less for the time between")
@@ -268,9 +261,8 @@ TEST_CASE("what is handed on from mixer to mixer gains no frame by rounding")
 {
     const synth::guard_settings g = time_of(9.0, 10.0);
     synth::mixer first(std::vector<double>(1, 1.0), format_kind::float32, 64, g);
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < 40; ++i)
         REQUIRE(first.add(voice(0.2 * i, 0.1 + 0.0013 * i, 0.5)));
-    }
     std::vector<float> x(std::size_t{9} * rate);
     first.process(x.size(), reinterpret_cast<std::byte*>(x.data()));
     const synth::drive_history had = first.history();

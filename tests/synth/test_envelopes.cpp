@@ -31,9 +31,8 @@ std::vector<double> window_of(const render_options& o, double duration_s = 0.1)
     std::vector<double> w(x.size(), -1.0);
     for (std::size_t k = 0; k < x.size(); ++k) {
         const double s = std::sin(2 * pi * 1000.0 * static_cast<double>(k) / rate);
-        if (std::abs(s) > 0.3) {
+        if (std::abs(s) > 0.3)
             w[k] = x[k] / s;
-        }
     }
     return w;
 }
@@ -180,9 +179,8 @@ TEST_CASE("a continuous stroke has the ramp of 2 ms by default where its carrier
         // It falls as it has risen, to next to nothing in its last frames.
         if (half < 1.0) {
             double last = 0.0;
-            for (std::size_t k = x.size() - 10; k < x.size(); ++k) {
+            for (std::size_t k = x.size() - 10; k < x.size(); ++k)
                 last = std::max(last, std::abs(x[k]));
-            }
             CHECK(last > 0.0);
             CHECK(last < 0.03);
         }

@@ -82,9 +82,8 @@ std::vector<example> examples()
         e.rate = rates[random() % 6];
         e.level_dbfs = -30.0 * unit(random);
         e.phase = random() % 2 == 0 ? phase_kind::burst : phase_kind::stroke;
-        if (random() % 2 == 0) {
+        if (random() % 2 == 0)
             e.ramp_s = 0.02 * unit(random) * static_cast<double>(random() % 3);
-        }
         all.push_back(e);
     }
     return all;
@@ -115,9 +114,8 @@ TEST_CASE("a burst is the formula to one float ulp")
 TEST_CASE("integers are the formula times 2^(bits - 1), rounded")
 {
     for (const format_kind f : all_formats) {
-        if (f == format_kind::float32) {
+        if (f == format_kind::float32)
             continue;
-        }
         std::size_t wrong = 0;
         std::size_t loud = 0;
         for (const example& e : examples()) {
@@ -164,16 +162,14 @@ TEST_CASE("bursts that touch after rounding share no frame")
 {
     // 0.07 s at 22050 Hz is 1543.5 frames: every other boundary is a tie.
     std::vector<burst> bursts;
-    for (int k = 0; k < 40; ++k) {
+    for (int k = 0; k < 40; ++k)
         bursts.push_back(make_burst(k * 0.07, 0.07, {{0, 1.0}}));
-    }
     render_options o;
     o.rate = 22050;
     o.level_dbfs = 0.0;
     const auto whole = channel(score(row(1), {{make_plan(bursts), {}}}, o), 0);
-    for (std::size_t k = 0; k < whole.size(); ++k) {
+    for (std::size_t k = 0; k < whole.size(); ++k)
         REQUIRE(std::abs(whole[k] - std::sin(2.0 * pi * 250.0 * static_cast<double>(k) / 22050.0)) < 1e-6);
-    }
     o.phase = phase_kind::burst;
     const auto x = channel(score(row(1), {{make_plan(bursts), {}}}, o), 0);
     for (int k = 0; k < 40; ++k) {

@@ -56,17 +56,14 @@ TEST_CASE("full scale does not wrap in any format")
 TEST_CASE("integers are rounded to the nearest, ties to even")
 {
     for (const format_kind f : all_formats) {
-        if (f == format_kind::float32) {
+        if (f == format_kind::float32)
             continue;
-        }
         std::vector<double> x;
-        for (int i = -1000; i <= 1000; ++i) {
+        for (int i = -1000; i <= 1000; ++i)
             x.push_back(0.125 * i / scale_of(f));
-        }
         const auto bytes = converted(f, x);
-        for (std::size_t i = 0; i < x.size(); ++i) {
+        for (std::size_t i = 0; i < x.size(); ++i)
             CHECK(static_cast<double>(integer(bytes, f, i)) == std::nearbyint(x[i] * scale_of(f)));
-        }
     }
 }
 
@@ -88,19 +85,16 @@ TEST_CASE("whichever channels sound, each sample is in its place and the others 
 {
     std::mt19937_64 random(3);
     std::vector<double> x(synth::block_frames);
-    for (double& v : x) {
+    for (double& v : x)
         v = std::uniform_real_distribution<double>(-1.0, 1.0)(random);
-    }
     for (int i = 0; i < 3000; ++i) {
         const format_kind f = all_formats[random() % std::size(all_formats)];
         const auto channels = 1 + random() % 20;
         const auto n = static_cast<unsigned>(1 + random() % 70);
         std::vector<synth::channel_samples> sounding;
-        for (std::uint32_t c = 0; c < channels; ++c) {
-            if (random() % 2 == 0) {
+        for (std::uint32_t c = 0; c < channels; ++c)
+            if (random() % 2 == 0)
                 sounding.push_back({c, x.data() + c, 0.1 * (c + 1)});
-            }
-        }
         std::vector<std::byte> out(n * channels * bytes_of(f) + 16, std::byte{0x55});
         synth::interleave(f, sounding, channels, n, out.data());
         std::vector<std::byte> want(out.size(), std::byte{0x55});
@@ -132,9 +126,8 @@ TEST_CASE("the limiter clamps, silences what is no number, and counts")
 
 TEST_CASE("sample formats have names and sizes")
 {
-    for (const format_kind f : all_formats) {
+    for (const format_kind f : all_formats)
         CHECK(from_string<format_kind>(to_string(f)) == f);
-    }
     CHECK(from_string<format_kind>("s24") == format_kind::s24_3);
     CHECK(from_string<format_kind>("s24-4") == format_kind::s24_4);
     CHECK(bytes_of(format_kind::s24_3) == 3);

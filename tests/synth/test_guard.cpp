@@ -29,9 +29,8 @@ score loud(unsigned tactors, std::vector<std::pair<double, double>> times, doubl
     std::vector<burst> bursts;
     for (const auto& [onset, duration] : times) {
         std::vector<drive> drives;
-        for (unsigned i = 0; i < tactors; ++i) {
+        for (unsigned i = 0; i < tactors; ++i)
             drives.push_back({i, 1.0});
-        }
         bursts.push_back(make_burst(onset, duration, drives));
     }
     plan p = make_plan(std::move(bursts));
@@ -46,18 +45,16 @@ score loud(unsigned tactors, std::vector<std::pair<double, double>> times, doubl
 double largest_step(const std::vector<double>& x)
 {
     double most = 0.0;
-    for (std::size_t i = 1; i < x.size(); ++i) {
+    for (std::size_t i = 1; i < x.size(); ++i)
         most = std::max(most, std::abs(x[i] - x[i - 1]));
-    }
     return most;
 }
 
 double largest(const std::vector<double>& x, double from_s, double to_s)
 {
     double most = 0.0;
-    for (auto i = static_cast<std::size_t>(from_s * rate); i < static_cast<std::size_t>(to_s * rate); ++i) {
+    for (auto i = static_cast<std::size_t>(from_s * rate); i < static_cast<std::size_t>(to_s * rate); ++i)
         most = std::max(most, std::abs(x[i]));
-    }
     return most;
 }
 
@@ -88,15 +85,13 @@ TEST_CASE("more power than allowed is held down from the first wave on, and with
     for (const unsigned tactors : {4U, 9U, 64U}) {
         const score s = loud(tactors, {{0.1, 0.5}}, 0.7, no_longest(4.771212547196624));
         std::vector<std::vector<double>> x;
-        for (unsigned c = 0; c < tactors; ++c) {
+        for (unsigned c = 0; c < tactors; ++c)
             x.push_back(channel(s, c));
-        }
         double most = 0.0;
         for (std::size_t i = 0; i < x[0].size(); ++i) {
             double sum = 0.0;
-            for (const auto& c : x) {
+            for (const auto& c : x)
                 sum += c[i] * c[i];
-            }
             most = std::max(most, sum);
         }
         CAPTURE(tactors);
@@ -152,9 +147,8 @@ TEST_CASE("no window of ten seconds has more than five of drive, whatever the pa
         std::vector<unsigned> sounds;
         for (std::size_t i = 0; i + piece <= x.size(); i += piece) {
             double most = 0.0;
-            for (std::size_t j = i; j < i + piece; ++j) {
+            for (std::size_t j = i; j < i + piece; ++j)
                 most = std::max(most, std::abs(x[j]));
-            }
             sounds.push_back(most > 0.01 ? 1 : 0);
         }
         unsigned sum = 0;
@@ -214,9 +208,8 @@ TEST_CASE("weak drives do not count, and limits that are none are told")
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (const drive_limits& l :
          {drive_limits{.power_dbfs = nan}, drive_limits{.max_drive_s = 0.0}, drive_limits{.max_drive_s = nan},
-          drive_limits{.window_s = nan}, drive_limits{.window_s = 1e9}, drive_limits{.power_dbfs = -500.0}}) {
+          drive_limits{.window_s = nan}, drive_limits{.window_s = 1e9}, drive_limits{.power_dbfs = -500.0}})
         CHECK_THROWS_AS(loud(1, {{0.0, 0.1}}, 0.1, l), error);
-    }
 }
 
 TEST_CASE("what is not a number reaches no format")

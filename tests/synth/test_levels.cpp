@@ -23,9 +23,8 @@ const plan one = make_plan({make_burst(0.0, 0.07, {{0, 0.6}, {1, 0.8}})});
 double peak(const score& s, unsigned c)
 {
     double p = 0.0;
-    for (const double x : channel(s, c)) {
+    for (const double x : channel(s, c))
         p = std::max(p, std::abs(x));
-    }
     return p;
 }
 
@@ -88,9 +87,8 @@ TEST_CASE("polarity turns a channel round")
     const auto x = channel(s, 0);
     const auto y = channel(s, 1);
     CHECK(peak(s, 0) > 0.1);
-    for (std::size_t k = 0; k < x.size(); ++k) {
+    for (std::size_t k = 0; k < x.size(); ++k)
         REQUIRE(x[k] == -y[k]);
-    }
 }
 
 TEST_CASE("levels that cannot be are refused")
@@ -239,9 +237,8 @@ TEST_CASE("what comes to the limit but for the noise of its last digits is let p
 {
     const auto sum = [](double amplitude) {
         std::vector<placed_plan> all;
-        for (const double a : {0.13, 0.16, 0.17, 0.2, amplitude}) {
+        for (const double a : {0.13, 0.16, 0.17, 0.2, amplitude})
             all.push_back({make_plan({make_burst(0.0, 0.1, {{0, a}})}), 0.0, {}});
-        }
         render_options o;
         o.level_dbfs = 0.0;
         return message([&] { score(row(1), all, o); });
@@ -284,9 +281,8 @@ TEST_CASE("options that cannot be rendered are refused")
     CHECK(holds(with([](auto& o, auto&, auto&) { o.channels = 16385; }), "16385"));
     CHECK(holds(with([](auto& o, auto&, auto&) { o.ramp_s = -0.001; }), "ramp_s"));
     CHECK(holds(with([](auto& o, auto&, auto&) { o.ramp_s = std::nan(""); }), "ramp_s"));
-    for (const double hz : {24000.0, 1e9, 0.0, -250.0, std::nan("")}) {
+    for (const double hz : {24000.0, 1e9, 0.0, -250.0, std::nan("")})
         CHECK(holds(with([hz](auto&, auto& p, auto&) { p.carrier_hz = hz; }), "48000 Hz"));
-    }
     CHECK(with([](auto&, auto& p, auto&) { p.carrier_hz = 23999.0; }) == "no error");
     for (const double s : {-0.1, 1e300, std::nan("")}) {
         CHECK(holds(with([s](auto&, auto&, auto& start) { start = s; }), "start"));

@@ -39,17 +39,15 @@ TEST_CASE("a marker is at each stroke's first frame, for its length, at full sca
     REQUIRE(x.size() == s.frames());
     for (std::size_t i = 0; i < x.size(); ++i) {
         bool on = false;
-        for (const std::uint64_t start : s.starts()) {
+        for (const std::uint64_t start : s.starts())
             on = on || (i >= start && i < start + 240);
-        }
         REQUIRE(x[i] == (on ? 1.0 : 0.0));
     }
     CHECK(s.starts()[1] == 5923);
     render_options plain = marked(4, 6);
     plain.marker_channel.reset();
-    for (const unsigned c : {0U, 1U, 2U, 3U, 5U}) {
+    for (const unsigned c : {0U, 1U, 2U, 3U, 5U})
         CHECK((channel(s, c) == channel(two_strokes(plain), c)));
-    }
 }
 
 TEST_CASE("markers have the same bytes whatever the blocks, in every format, and two at once are one")

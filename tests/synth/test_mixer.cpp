@@ -113,9 +113,8 @@ TEST_CASE("the order of adding does not change what is heard")
 {
     std::mt19937_64 random(2);
     std::vector<drive_event> events;
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < 60; ++i)
         events.push_back(make_event(random() % 2000, 1 + static_cast<std::uint32_t>(random() % 700), 0.01));
-    }
     mixer a = make_mixer();
     mixer b = make_mixer();
     for (std::size_t i = 0; i < events.size(); ++i) {
@@ -124,17 +123,15 @@ TEST_CASE("the order of adding does not change what is heard")
     }
     const auto x = take(a, 3000);
     const auto y = take(b, 3000);
-    for (std::size_t i = 0; i < x.size(); ++i) {
+    for (std::size_t i = 0; i < x.size(); ++i)
         REQUIRE(std::abs(x[i] - y[i]) < 1e-6F);
-    }
 }
 
 TEST_CASE("a full mixer refuses, loses nothing, and takes more when a drive has ended")
 {
     mixer m = make_mixer(4);
-    for (std::uint32_t i = 0; i < 4; ++i) {
+    for (std::uint32_t i = 0; i < 4; ++i)
         CHECK(m.add(make_event(i * 100, 100)));
-    }
     CHECK(m.available() == 0);
     CHECK_FALSE(m.add(make_event(400, 100)));
     CHECK_FALSE(silent(take(m, 100)));
@@ -164,9 +161,8 @@ TEST_CASE("drives that are no numbers are silence, and so are channels that are 
         e.drive[1] = {bad, bad, 0};
         CHECK(m.add(e));
         const auto x = take(m, 100);
-        for (std::size_t k = 0; k < 100; ++k) {
+        for (std::size_t k = 0; k < 100; ++k)
             CHECK(x[2 * k] == 0.0F);
-        }
         CHECK(x[2 * 48 + 1] == doctest::Approx(0.25));
     }
 }
@@ -249,9 +245,8 @@ TEST_CASE("a cut is at once, and fades are refused beyond 256")
         m.add(e);
     }
     take(m, 100);
-    for (std::uint32_t i = 0; i < 256; ++i) {
+    for (std::uint32_t i = 0; i < 256; ++i)
         CHECK(m.fade_out(i, 1000));
-    }
     CHECK_FALSE(m.fade_out(256, 1000));
     CHECK(m.fade_out(0, 1000));
     CHECK(m.fade_out(256, 0));
@@ -263,9 +258,8 @@ TEST_CASE("a cut is at once, and fades are refused beyond 256")
     CHECK(m.size() == 42);
     CHECK(m.fade_out(299, 500));
     take(m, 500);
-    for (std::uint32_t i = 0; i < 300; ++i) {
+    for (std::uint32_t i = 0; i < 300; ++i)
         CHECK(m.fade_out(i, 0));
-    }
     CHECK(m.size() == 0);
     CHECK(silent(take(m, 100)));
 }

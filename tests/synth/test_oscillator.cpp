@@ -80,9 +80,8 @@ TEST_CASE("a carrier that starts after an hour has the phase of the hour")
     REQUIRE(s.frames() == 3600U * 48000U + 480U);
     renderer r(s, format_kind::float32);
     std::vector<float> x(48000);
-    for (int second = 0; second < 3600; ++second) {
+    for (int second = 0; second < 3600; ++second)
         r.process(std::as_writable_bytes(std::span(x)));
-    }
     r.process(std::as_writable_bytes(std::span(x).first(480)));
     for (std::uint64_t k = 96; k < 384; ++k) {
         const long double cycles = 251.3L * static_cast<long double>(3600U * 48000U + k) / 48000.0L;

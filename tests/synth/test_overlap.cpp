@@ -88,9 +88,8 @@ TEST_CASE("what is joined falls as finely as it would alone, however slowly it h
         REQUIRE(x.size() == y.size());
         const auto last = static_cast<std::size_t>(48000 * release_s);
         const double near = last > 128 ? 0.6 * 0.002 : 1e-6; // long ones are drawn by 64 lines
-        for (std::size_t k = x.size() - last; k < x.size(); ++k) {
+        for (std::size_t k = x.size() - last; k < x.size(); ++k)
             REQUIRE(std::abs(x[k] - y[k]) < near);
-        }
     }
 }
 
@@ -147,9 +146,8 @@ TEST_CASE("bursts that touch are not joined, each has its own phase")
 TEST_CASE("a long chain of overlaps is one carrier")
 {
     std::vector<burst> bursts;
-    for (int i = 0; i < 50; ++i) {
+    for (int i = 0; i < 50; ++i)
         bursts.push_back(make_burst(0.04 * i, 0.1, {{0, 0.3}}));
-    }
     const score s = score_of(make_plan(bursts, 251.0), 0.0);
     const auto x = channel(s, 0);
     for (std::size_t k = 4800; k + 9600 < x.size(); ++k) {

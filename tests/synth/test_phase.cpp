@@ -20,9 +20,8 @@ namespace {
 plan row_of_bursts(double carrier_hz = 250.0, double soa_s = 0.07)
 {
     std::vector<burst> bursts;
-    for (int k = 0; k < 40; ++k) {
+    for (int k = 0; k < 40; ++k)
         bursts.push_back(make_burst(k * soa_s, soa_s, {{0, 1.0}}));
-    }
     return make_plan(std::move(bursts), carrier_hz);
 }
 
@@ -136,9 +135,8 @@ TEST_CASE("no ramp where the carrier crosses zero at both ends of a burst, else 
             const bool expected = phase == phase_kind::stroke ? e.ramped : e.ramped_alone;
             const auto first = static_cast<std::size_t>(std::llround(e.onset_s * o.rate));
             const std::size_t quarter = first + 768; // 1 ms, half way up a ramp of 2 ms
-            if (quarter + 768 >= x.size()) {
+            if (quarter + 768 >= x.size())
                 continue; // the shortest ones are only to be taken
-            }
             CAPTURE(e.onset_s);
             CAPTURE(e.duration_s);
             CAPTURE(static_cast<int>(phase));

@@ -169,9 +169,8 @@ TEST_CASE("events come in order of start and cover exactly what sounds")
 TEST_CASE("a burst of more tactors than an event holds is several events of one carrier")
 {
     std::vector<drive> drives;
-    for (unsigned i = 0; i < 9; ++i) {
+    for (unsigned i = 0; i < 9; ++i)
         drives.push_back({i, 0.1 * (i + 1)});
-    }
     const score s(row(9), {{make_plan({make_burst(0.01, 0.07, drives)}), {}}}, {});
     synth::event_source source(s);
     unsigned next = 0;
@@ -181,9 +180,8 @@ TEST_CASE("a burst of more tactors than an event holds is several events of one 
         CHECK(e->start == 480);
         CHECK(e->length == 3360);
         CHECK(e->drives == n);
-        for (unsigned i = 0; i < n; ++i) {
+        for (unsigned i = 0; i < n; ++i)
             CHECK(e->drive[i].channel == next++);
-        }
         source.pop();
     }
     CHECK(source.peek() == nullptr);
@@ -226,11 +224,9 @@ TEST_CASE("continuous strokes are linear between control points, one carrier thr
             const auto amplitude = [&](double t) {
                 burst b;
                 p.curve->at(std::min(t, duration), b);
-                for (const drive& d : b.drives) {
-                    if (d.tactor == c) {
+                for (const drive& d : b.drives)
+                    if (d.tactor == c)
                         return d.amplitude;
-                    }
-                }
                 return 0.0;
             };
             std::int64_t step = 0;
@@ -239,9 +235,8 @@ TEST_CASE("continuous strokes are linear between control points, one carrier thr
                     return std::min(
                         n, static_cast<std::int64_t>(std::llround(static_cast<double>(i) * 0.001 * rate)));
                 };
-                while (frame_of(step + 1) <= k) {
+                while (frame_of(step + 1) <= k)
                     ++step;
-                }
                 const auto from = static_cast<double>(frame_of(step));
                 const auto to = static_cast<double>(frame_of(step + 1));
                 const double a = amplitude(0.001 * static_cast<double>(step));
@@ -260,9 +255,8 @@ TEST_CASE("a continuous stroke may be silent in part or throughout")
     plan p = make_continuous(3, 0.2);
     p.curve = test::make_curve(0.2, [](double t, burst& out) {
         out.drives.clear();
-        if (t > 0.1) {
+        if (t > 0.1)
             out.drives.push_back({1, 1.0});
-        }
     });
     const score s(row(3), {{p, {}}}, {});
     const auto x = channel(s, 1);

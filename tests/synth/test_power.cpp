@@ -50,15 +50,13 @@ std::vector<signal> mixed(const std::vector<synth::drive_event>& events, unsigne
                           std::size_t frames, double dbfs)
 {
     synth::mixer m(std::vector<double>(channels, 1.0), format_kind::float32, events.size(), power_of(dbfs));
-    for (const synth::drive_event& e : events) {
+    for (const synth::drive_event& e : events)
         REQUIRE(m.add(e));
-    }
     std::vector<float> all(frames * channels);
     m.process(frames, reinterpret_cast<std::byte*>(all.data()));
     std::vector<signal> x(channels, signal(frames));
-    for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t i = 0; i < all.size(); ++i)
         x[i % channels][i / channels] = static_cast<double>(all[i]);
-    }
     return x;
 }
 
@@ -68,19 +66,16 @@ void transform(std::vector<std::complex<double>>& a)
     const std::size_t n = a.size();
     for (std::size_t i = 1, j = 0; i < n; ++i) {
         std::size_t bit = n / 2;
-        for (; (j & bit) != 0; bit /= 2) {
+        for (; (j & bit) != 0; bit /= 2)
             j ^= bit;
-        }
         j ^= bit;
-        if (i < j) {
+        if (i < j)
             std::swap(a[i], a[j]);
-        }
     }
     for (std::size_t length = 2; length <= n; length *= 2) {
         std::vector<std::complex<double>> w(length / 2);
-        for (std::size_t k = 0; k < w.size(); ++k) {
+        for (std::size_t k = 0; k < w.size(); ++k)
             w[k] = std::polar(1.0, -2.0 * pi * static_cast<double>(k) / static_cast<double>(length));
-        }
         for (std::size_t i = 0; i < n; i += length) {
             for (std::size_t k = 0; k < length / 2; ++k) {
                 const std::complex<double> odd = a[i + k + length / 2] * w[k];
@@ -111,9 +106,8 @@ double greatest_power(const std::vector<signal>& x)
     double most = 0.0;
     for (std::size_t k = 0; k < x[0].size(); ++k) {
         double sum = 0.0;
-        for (const signal& c : x) {
+        for (const signal& c : x)
             sum += c[k] * c[k];
-        }
         most = std::max(most, sum);
     }
     return most;
@@ -148,9 +142,8 @@ TEST_CASE("tactors that rise slowly together are held down without a click")
 {
     for (const double ramp : {0.1, 0.5}) {
         std::vector<synth::drive_event> nine;
-        for (std::uint32_t c = 0; c < 9; ++c) {
+        for (std::uint32_t c = 0; c < 9; ++c)
             nine.push_back(voice(0.05, 1.25, ramp, 250.0, c, 1.0));
-        }
         for (const double dbfs : {three, 0.0, -20.0}) {
             CAPTURE(ramp);
             CAPTURE(dbfs);
@@ -165,12 +158,10 @@ TEST_CASE("tactors that rise slowly together are held down without a click")
 TEST_CASE("what sounds goes on without a click when other tactors begin at once")
 {
     std::vector<synth::drive_event> all;
-    for (std::uint32_t c = 0; c < 3; ++c) {
+    for (std::uint32_t c = 0; c < 3; ++c)
         all.push_back(voice(0.05, 1.25, 0.2, 250.0, c, 1.0));
-    }
-    for (std::uint32_t c = 3; c < 9; ++c) {
+    for (std::uint32_t c = 3; c < 9; ++c)
         all.push_back(voice(0.45, 0.3, 0.0, 250.0, c, 1.0));
-    }
     for (const double dbfs : {three, -6.0, -20.0}) {
         CAPTURE(dbfs);
         const std::vector<signal> x = mixed(all, 9, frames, dbfs);
@@ -210,9 +201,8 @@ TEST_CASE("no frame has more power than allowed, however the voices begin")
     std::mt19937_64 random(6);
     for (int run = 0; run < 12; ++run) {
         const auto voices = random_voices(random, run % 3 == 0 ? 0.0 : 0.001, run % 2 == 0);
-        for (const double dbfs : {-6.0, -20.0, -40.0}) {
+        for (const double dbfs : {-6.0, -20.0, -40.0})
             CHECK(within(greatest_power(mixed(voices, 9, frames, dbfs)), dbfs));
-        }
     }
 }
 
@@ -226,9 +216,8 @@ TEST_CASE("the power is held in the same frames whatever the block sizes")
             g.drive_frames = rate / 5;
             g.window_frames = rate / 2;
             synth::mixer m(std::vector<double>(9, 0.4), format_kind::s32, voices.size(), g);
-            for (const synth::drive_event& e : voices) {
+            for (const synth::drive_event& e : voices)
                 m.add(e);
-            }
             std::vector<std::byte> out(frames * 9 * 4);
             for (std::size_t done = 0; done < frames;) {
                 const std::size_t n = std::min(frames - done, 1 + random() % largest_block);
@@ -259,9 +248,8 @@ TEST_CASE("what beats on a tactor keeps its part when others begin in the first 
     }
     const auto played = [&](std::size_t first) {
         synth::mixer m(std::vector<double>(9, 1.0), format_kind::s32, all.size(), power_of(three));
-        for (const synth::drive_event& e : all) {
+        for (const synth::drive_event& e : all)
             REQUIRE(m.add(e));
-        }
         std::vector<std::byte> out(rate / 2 * 9 * 4);
         m.process(first, out.data());
         m.process(rate / 2 - first, out.data() + first * 9 * 4);

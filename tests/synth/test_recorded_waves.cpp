@@ -44,9 +44,8 @@ TEST_CASE("a recording is the carrier's cycle, without what folds back")
 {
     // 63 samples with every harmonic, some of them strong.
     std::vector<float> cycle;
-    for (int i = 0; i < 63; ++i) {
+    for (int i = 0; i < 63; ++i)
         cycle.push_back(static_cast<float>(i * i % 17) - 8.0F);
-    }
     for (const double hz : {250.7, 997.1}) {
         const auto x = lines(played(tone(recorded(cycle, texture_kind::cycle), hz)));
         CHECK(stray_db(x, hz) < -80.0);
@@ -57,23 +56,19 @@ TEST_CASE("a recording is the carrier's cycle, without what folds back")
 TEST_CASE("a recording in its own time has its samples at its rate, and its frequencies at another")
 {
     std::vector<float> samples(4801);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
+    for (std::size_t i = 0; i < samples.size(); ++i)
         samples[i] = 0.25F * static_cast<float>(std::sin(static_cast<double>(i * i) * 1e-4));
-    }
     const auto same = played(tone(recorded(samples, texture_kind::time, rate), 250.0, 0.1));
     double mean = 0.0;
-    for (const float v : samples) {
+    for (const float v : samples)
         mean += static_cast<double>(v) / static_cast<double>(samples.size());
-    }
     const double gain = same[700] / (static_cast<double>(samples[700]) - mean);
-    for (std::size_t i = 0; i < same.size(); ++i) {
+    for (std::size_t i = 0; i < same.size(); ++i)
         REQUIRE(std::abs(same[i] - gain * (static_cast<double>(samples[i]) - mean)) < 1e-6);
-    }
     // 300 Hz for a second at 8 kHz.
     std::vector<float> tone_of(8000);
-    for (std::size_t i = 0; i < tone_of.size(); ++i) {
+    for (std::size_t i = 0; i < tone_of.size(); ++i)
         tone_of[i] = static_cast<float>(std::sin(2 * pi * 300.0 * static_cast<double>(i) / 8000.0));
-    }
     const auto x = lines(played(tone(recorded(tone_of, texture_kind::time), 250.0)));
     CHECK(strongest(x, 300.0) == doctest::Approx(1.0).epsilon(0.01));
     CHECK(stray_db(x, 1e9, 300.0) < -80.0);
@@ -83,9 +78,8 @@ TEST_CASE("a recording along the path follows the target's speed")
 {
     // One cycle of a sine over 10 mm of a path of 40 mm: 4 cycles, in 1 s and then in 4 s.
     std::vector<float> cycle;
-    for (int i = 0; i < 64; ++i) {
+    for (int i = 0; i < 64; ++i)
         cycle.push_back(static_cast<float>(std::sin(2 * pi * i / 64.0)));
-    }
     const array a = row(3);
     stroke s{
         "", trajectory::timed({{0.0, {0, 0}}, {1.0, {20, 0}}, {2.0, {20, 0}}, {6.0, {40, 0}}}), {}, {}, {}};
@@ -117,14 +111,12 @@ TEST_CASE("a recording sounds alike in whatever unit its samples are")
         for (const double factor : {0x1p-20, 0x1p-120, 0x1p15, 0x1p128}) {
             CAPTURE(factor);
             std::vector<float> samples = sine_of(480, 7.0, 0.75);
-            for (float& v : samples) {
+            for (float& v : samples)
                 v = static_cast<float>(factor * static_cast<double>(v));
-            }
             const auto x = played(tone(recorded(samples, texture), 250.0, 0.1));
             REQUIRE(x.size() == as_it_is.size());
-            for (std::size_t i = 0; i < x.size(); ++i) {
+            for (std::size_t i = 0; i < x.size(); ++i)
                 REQUIRE(std::abs(x[i] - as_it_is[i]) < 1e-6);
-            }
         }
     }
 }

@@ -63,9 +63,8 @@ TEST_CASE("a wave's peak is the amplitude that was asked for")
     std::vector<float> samples{0.0F, 0.1F, 0.3F, -0.2F, 0.05F, -0.1F, 0.2F};
     std::vector<waveform> all{noise(50, 500), noise(100, 110), recorded(samples, texture_kind::cycle),
                               recorded(samples, texture_kind::time)};
-    for (const waveform_kind k : shapes) {
+    for (const waveform_kind k : shapes)
         all.push_back(shape(k));
-    }
     for (const waveform& w : all) {
         CAPTURE(waveform_text(w));
         const double peak = greatest(played(tone(w, 100.0, 6.0), -6.0));
@@ -81,9 +80,8 @@ TEST_CASE("noise lies between its frequencies, and its seed says which it is")
     const double most = *std::max_element(x.begin(), x.end());
     for (std::size_t i = 0; i < x.size(); ++i) {
         const double hz = static_cast<double>(i) * line_hz;
-        if (hz < 100.0 - 8.0 * line_hz || hz > 300.0 + 8.0 * line_hz) {
+        if (hz < 100.0 - 8.0 * line_hz || hz > 300.0 + 8.0 * line_hz)
             REQUIRE(x[i] < 1e-4 * most);
-        }
     }
     CHECK(played(tone(noise(100, 300, 1), 250.0)) == played(tone(noise(100, 300, 1), 200.0)));
     CHECK(played(tone(noise(100, 300, 1), 250.0)) != played(tone(noise(100, 300, 2), 250.0)));
@@ -128,9 +126,8 @@ TEST_CASE("blocks make no difference to any wave")
     std::vector<waveform> all{noise(50, 500), recorded({0.0F, 1.0F, -1.0F, 0.5F}, texture_kind::cycle),
                               recorded({0.0F, 1.0F, -1.0F, 0.5F}, texture_kind::time),
                               shape(waveform_kind::sine)};
-    for (const waveform_kind k : shapes) {
+    for (const waveform_kind k : shapes)
         all.push_back(shape(k));
-    }
     for (const waveform& w : all) {
         plan p = make_random(random, 3, 20, 0.3);
         p.wave = w;
@@ -188,9 +185,8 @@ COUNTING_TEST_CASE("waves are played without allocating")
     renderer r(s, format_kind::float32);
     std::vector<std::byte> out(500 * s.channels() * 4);
     const test::count_allocations count;
-    while (r.position() < s.frames()) {
+    while (r.position() < s.frames())
         r.process(out);
-    }
     CHECK(count.calls() == 0);
 }
 

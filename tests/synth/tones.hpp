@@ -86,9 +86,8 @@ inline double strongest(const std::vector<double>& spectrum, double hz)
 {
     const auto at = static_cast<std::ptrdiff_t>(std::lround(hz / line_hz));
     double power = 0.0;
-    for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(at - 5, 0); i <= at + 5; ++i) {
+    for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(at - 5, 0); i <= at + 5; ++i)
         power += spectrum[static_cast<std::size_t>(i)] * spectrum[static_cast<std::size_t>(i)] / 2.0044;
-    }
     return std::sqrt(power);
 }
 
@@ -98,9 +97,8 @@ inline double stray_db(const std::vector<double>& spectrum, double hz, double of
     double stray = 0.0;
     for (std::size_t i = 0; i < spectrum.size(); ++i) {
         const double turns = (static_cast<double>(i) * line_hz - offset_hz) / hz;
-        if (std::abs(turns - std::round(turns)) * hz > 8.0 * line_hz) {
+        if (std::abs(turns - std::round(turns)) * hz > 8.0 * line_hz)
             stray = std::max(stray, spectrum[i]);
-        }
     }
     return 20.0 * std::log10(stray / *std::max_element(spectrum.begin(), spectrum.end()));
 }

@@ -60,12 +60,11 @@ walk_verdict judge(const array& a, const walk_answers& felt)
 {
     walk_verdict v;
     std::vector<std::vector<std::size_t>> driven(a.tactors.size()); // what was driven when this one was felt
-    for (std::size_t i = 0; i < felt.size(); ++i) {
+    for (std::size_t i = 0; i < felt.size(); ++i)
         if (felt[i])
             driven[*felt[i]].push_back(i);
         else
             v.problems.push_back(fmt::format("{} was felt nowhere", channel_of(a, i)));
-    }
     for (std::size_t place = 0; place < driven.size(); ++place) {
         if (driven[place].size() < 2)
             continue;

@@ -164,12 +164,11 @@ std::vector<std::string> complete(const CLI::App& app, const std::vector<std::st
     lines out;
     if (words.empty())
         return out;
-    for (const CLI::App* command : app.get_subcommands({})) {
+    for (const CLI::App* command : app.get_subcommands({}))
         if (words.size() == 1)
             offer(out, words[0], command->get_name(), command->get_description());
         else if (command->get_name() == words[0])
             complete_command_line(out, *command, {words.begin() + 1, words.end()});
-    }
     if (words.size() == 1 && starts_with(words[0], "-"))
         offer_options(out, app, words[0]);
     return out;

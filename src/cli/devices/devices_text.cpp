@@ -97,12 +97,11 @@ std::string pcms_text(const device_list& d)
             s += pcm_text(p, d);
     s += "\nOther PCMs\n";
     std::string untried;
-    for (const pcm_info& p : d.pcms) {
+    for (const pcm_info& p : d.pcms)
         if (!p.tried)
             untried += (untried.empty() ? "" : " ") + p.name;
         else if (!p.hardware)
             s += pcm_text(p, d);
-    }
     if (!untried.empty())
         s += fmt::format("\n{}{}",
                          wrapped("  ", "Not tried, since to open them may start a card or a sound server (-D "

@@ -281,12 +281,11 @@ void person_session::rest(const study::session_step& s)
     on_page(rest_screen(p_, s));
     bool ended = false;
     const bool there = stage_.pass(break_s, [&](double) {
-        for (auto k = keys_.come_early() ? keys_.poll() : std::nullopt; k; k = keys_.poll()) {
+        for (auto k = keys_.come_early() ? keys_.poll() : std::nullopt; k; k = keys_.poll())
             if (k->asked == operator_key::go_on)
                 ended = true;
             else if (k->asked)
                 obey(*k->asked);
-        }
         return !ended && flow_.next() == s;
     });
     if (!there)

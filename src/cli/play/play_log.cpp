@@ -55,9 +55,9 @@ void take_back(int fd, ssize_t written)
 {
     const off_t end = ::lseek(fd, 0, SEEK_CUR);
     struct stat s {};
-    if (end >= written && ::fstat(fd, &s) == 0 && s.st_size == end) {
-        [[maybe_unused]] const int ignored = ::ftruncate(fd, end - written);
-    }
+    if (end < written || ::fstat(fd, &s) != 0 || s.st_size != end)
+        return;
+    [[maybe_unused]] const int ignored = ::ftruncate(fd, end - written);
 }
 
 } // namespace

@@ -201,10 +201,9 @@ private:
     // Whether the stroke has ended; what is left of a piece is the worst of its strokes.
     bool ended(const net::json& n, stroke_outcome& out)
     {
-        while (const auto m = server_.notification()) {
+        while (const auto m = server_.notification())
             if ((*m)["method"] == "stroke" && (*m)["params"].value("state", "") != "started")
                 ends_.push_back((*m)["params"]);
-        }
         const auto found =
             std::find_if(ends_.begin(), ends_.end(), [&](const net::json& e) { return e["stroke"] == n; });
         if (found == ends_.end())

@@ -8,32 +8,28 @@ namespace {
 
 std::optional<double> absurd(point p)
 {
-    for (const double v : {p.x_mm, p.y_mm}) {
+    for (const double v : {p.x_mm, p.y_mm})
         if (!(std::abs(v) <= max_mm))
             return v;
-    }
     return std::nullopt;
 }
 
 std::optional<double> absurd(const shape& c)
 {
     if (const auto* b = std::get_if<cubic>(&c)) {
-        for (const point p : b->p) {
+        for (const point p : b->p)
             if (const auto bad = absurd(p))
                 return bad;
-        }
         return std::nullopt;
     }
     const auto& e = std::get<elliptic>(c);
-    for (const double v : {e.centre.x_mm, e.centre.y_mm, e.u.x_mm, e.u.y_mm, e.v.x_mm, e.v.y_mm, e.sweep}) {
+    for (const double v : {e.centre.x_mm, e.centre.y_mm, e.u.x_mm, e.u.y_mm, e.v.x_mm, e.v.y_mm, e.sweep})
         if (!std::isfinite(v))
             return v;
-    }
     for (const axis a : {axis::x, axis::y}) {
-        for (const double t : turns(c, a)) {
+        for (const double t : turns(c, a))
             if (const auto bad = absurd(position(c, t)))
                 return bad;
-        }
     }
     return std::nullopt;
 }
@@ -80,14 +76,12 @@ outline mapped(outline o, const affine& m)
 
 std::optional<double> absurd_coordinate(const outline& o)
 {
-    for (const point p : o.vertices) {
+    for (const point p : o.vertices)
         if (const auto bad = absurd(p))
             return bad;
-    }
-    for (const outline::curve& c : o.curves) {
+    for (const outline::curve& c : o.curves)
         if (const auto bad = absurd(c.form))
             return bad;
-    }
     return std::nullopt;
 }
 

@@ -107,10 +107,9 @@ std::vector<double> speed_turns_of(const cubic& c)
     const auto [t0, t1] =
         boost::math::tools::quadratic_roots(d[0] - 2.0 * d[1] + d[2], 2.0 * (d[1] - d[0]), d[0]);
     std::vector<double> ends{0.0};
-    for (const double t : {std::min(t0, t1), std::max(t0, t1)}) {
+    for (const double t : {std::min(t0, t1), std::max(t0, t1)})
         if (t > ends.back() && t < 1.0)
             ends.push_back(t);
-    }
     ends.push_back(1.0);
     std::vector<double> roots;
     for (std::size_t i = 0; i + 1 < ends.size(); ++i) {

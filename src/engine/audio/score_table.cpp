@@ -201,10 +201,9 @@ void score_table::stop(state_kind s, reason_kind why) noexcept
     stopping_ = true;
     stop_state_ = s;
     stop_reason_ = why;
-    for (std::uint32_t i = 0; i < top_; ++i) {
+    for (std::uint32_t i = 0; i < top_; ++i)
         if (entries_[i].used)
             want_fade(entries_[i], stop_state_, stop_reason_);
-    }
 }
 
 void score_table::mute() noexcept

@@ -152,12 +152,11 @@ void feeder::begun(active& a, std::uint64_t frame)
     a.base = frame;
     if (keeps_beginnings_)
         beginnings_.push_back({a.id, frame});
-    if (begins_ && a.music) {
+    if (begins_ && a.music)
         for (const std::uint64_t start : a.music->starts())
             begins_(a.id, frame + start);
-    } else if (begins_) {
+    else if (begins_)
         begins_(a.id, frame);
-    }
     if (a.due_ns && clock_.valid() && frame >= clock_.first)
         a.late_s = late(clock_.time_of(frame), *a.due_ns, clock_.ns_per_frame);
     else if (!a.due_ns && a.at != 0 && frame > a.at && a.music)

@@ -133,10 +133,9 @@ private:
             seen_[c] = true;
             order_.push_back(static_cast<column>(c));
         }
-        for (const column c : {t_s, x_mm, y_mm}) {
+        for (const column c : {t_s, x_mm, y_mm})
             if (!seen_[c])
                 fail({}, fmt::format("no column {}", names[c]), header_hint);
-        }
     }
 
     // Touch screens give several places the time of one report: the last is where the finger is.

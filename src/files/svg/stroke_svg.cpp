@@ -69,10 +69,9 @@ public:
 private:
     void children(xml_node n, const scope& s)
     {
-        for (const xml_node c : n.children()) {
+        for (const xml_node c : n.children())
             if (c.type() == pugi::node_element)
                 visit(c, s);
-        }
     }
 
     // What is not named here draws nothing by itself: defs, symbol, clipPath, mask, marker, pattern, text ...

@@ -53,10 +53,9 @@ affine one(std::string_view name, const std::vector<double>& v, std::size_t offs
         return {1.0, 0.0, tangent(v[0]), 1.0, 0.0, 0.0};
     if (name == "skewY" && n == 1)
         return {1.0, tangent(v[0]), 0.0, 1.0, 0.0, 0.0};
-    for (const std::string_view known : {"translate", "scale", "rotate", "skewX", "skewY"}) {
+    for (const std::string_view known : {"translate", "scale", "rotate", "skewX", "skewY"})
         if (name == known)
             wrong_count(name, n, offset);
-    }
     throw value_fault{offset, fmt::format("{} is not a transform", quoted(name)),
                       "known: matrix, translate, scale, rotate, skewX, skewY"};
 }

@@ -93,10 +93,9 @@ svg_length parse_svg_length(std::string_view text)
         return {v, svg_length::unit::none};
     if (unit == "%")
         return {v, svg_length::unit::percent};
-    for (const known_unit& u : units) {
+    for (const known_unit& u : units)
         if (u.name == unit)
             return {v * u.mm, svg_length::unit::mm};
-    }
     throw value_fault{at, fmt::format("unit {} is not known", quoted(unit)),
                       "known units: mm, cm, in, pt, pc, px, Q, %"};
 }

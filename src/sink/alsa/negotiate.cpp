@@ -26,12 +26,11 @@ constexpr unsigned most_periods = 1024;
 std::string asked(const alsa_options& o)
 {
     std::string formats;
-    if (o.format) {
+    if (o.format)
         formats = to_string(*o.format);
-    } else {
+    else
         for (const format_kind f : format_preference)
             formats += fmt::format("{}{}", formats.empty() ? "" : " or ", to_string(f));
-    }
     return fmt::format("{} channel{} at {} Hz in {}", o.channels, o.channels == 1 ? "" : "s", o.rate,
                        formats);
 }
@@ -44,10 +43,9 @@ std::span<const format_kind> wanted_formats(const alsa_options& o)
 // Whether one setting alone is within what the device can do.
 bool takes_format(snd_pcm_t* p, const hw_params& space, std::span<const format_kind> formats)
 {
-    for (const format_kind f : formats) {
+    for (const format_kind f : formats)
         if (snd_pcm_hw_params_test_format(p, space.get(), to_alsa(f)) == 0)
             return true;
-    }
     return false;
 }
 

@@ -29,10 +29,9 @@ std::string formats(const hw_params& p)
     const std::unique_ptr<snd_pcm_format_mask_t, deleter<snd_pcm_format_mask_free>> mask(raw);
     snd_pcm_hw_params_get_format_mask(p.get(), mask.get());
     std::string names;
-    for (const format_kind f : format_preference) {
+    for (const format_kind f : format_preference)
         if (snd_pcm_format_mask_test(mask.get(), to_alsa(f)) != 0)
             names += fmt::format(" {}", to_string(f));
-    }
     return names.empty() ? " none that tactor plays" : names;
 }
 

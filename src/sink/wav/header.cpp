@@ -52,9 +52,8 @@ void check_format(format_kind f, unsigned channels)
 std::string number(std::uint64_t value, unsigned bytes)
 {
     std::string s;
-    for (unsigned i = 0; i < bytes; ++i) {
+    for (unsigned i = 0; i < bytes; ++i)
         s += static_cast<char>(value >> (8 * i) & 0xFFU);
-    }
     return s;
 }
 
@@ -69,9 +68,8 @@ std::string format_chunk(format_kind f, unsigned channels, unsigned rate)
     const std::uint64_t frame = std::uint64_t{channels} * bytes;
     std::string s = number(is_float(f) ? float_tag : integer_tag, 2) + number(channels, 2) + number(rate, 4) +
                     number(rate * frame, 4) + number(frame, 2) + number(8ULL * bytes, 2);
-    if (is_float(f)) {
+    if (is_float(f))
         s += number(0, 2); // bytes of extension
-    }
     return chunk("fmt ", s);
 }
 
@@ -83,15 +81,13 @@ std::string header(format_kind f, container c, unsigned channels, unsigned rate,
     const bool large = c == container::rf64;
     const std::uint64_t data = frames * channels * bytes_of(f);
     std::string chunks = format_chunk(f, channels, rate);
-    if (is_float(f)) {
+    if (is_float(f))
         chunks += chunk("fact", number(large ? elsewhere : frames, 4));
-    }
     constexpr std::uint64_t ds64_bytes = 8 + 28;
     const std::uint64_t riff = 4 + (large ? ds64_bytes : 0) + chunks.size() + 8 + data + padding(data);
     std::string s = (large ? "RF64" : "RIFF") + number(large ? elsewhere : riff, 4) + "WAVE";
-    if (large) {
+    if (large)
         s += chunk("ds64", number(riff, 8) + number(data, 8) + number(frames, 8) + number(0, 4));
-    }
     return s + chunks + "data" + number(large ? elsewhere : data, 4);
 }
 

@@ -33,21 +33,18 @@ bool write(const score& s, format_kind f, const std::filesystem::path& file, con
     renderer r(s, f);
     to.write(before.data(), static_cast<std::int64_t>(before.size()));
     while (done < s.frames() && to.good()) {
-        if (!go_on()) {
+        if (!go_on())
             return false;
-        }
         const std::uint64_t n = std::min(at_once, s.frames() - done);
         r.process(std::span(block).first(n * frame_bytes));
-        if (!r.failure().empty()) {
+        if (!r.failure().empty())
             throw error(error_kind::bad_input, "stroke", r.failure());
-        }
         to.write(block.data(), static_cast<std::int64_t>(n * frame_bytes));
         done += n;
     }
     to.write("", padding(s.frames() * frame_bytes));
-    if (to.given_up() || (to.good() && !go_on())) {
+    if (to.given_up() || (to.good() && !go_on()))
         return false;
-    }
     to.commit();
     return true;
 }

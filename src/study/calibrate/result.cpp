@@ -23,14 +23,13 @@ namespace {
 std::string toml_string(std::string_view s)
 {
     std::string q = "\"";
-    for (const char c : s) {
+    for (const char c : s)
         if (c == '"' || c == '\\')
             q += fmt::format("\\{}", c);
         else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
             q += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
         else
             q += c;
-    }
     return q + '"';
 }
 

@@ -23,9 +23,8 @@ drive_guard::drive_guard(std::size_t channels, std::uint64_t limit, std::uint64_
       fade_(std::max<std::int64_t>(std::llround(fade_s * rate), 1)),
       cells_(limit > 0 && limit < window ? channels : 0)
 {
-    for (cell& c : cells_) {
+    for (cell& c : cells_)
         c.closed_at = c.opens_at = -fade_;
-    }
 }
 
 void drive_guard::add(cell& c, const stretch& s) const noexcept
@@ -96,9 +95,8 @@ std::int64_t drive_guard::half_gone(const cell& c) const noexcept
     std::int64_t left = limit_ / 2;
     for (std::size_t i = c.count; i-- > 0;) {
         const stretch& s = c.at(i);
-        if (s.driven > left) {
+        if (s.driven > left)
             return s.end - left + window_;
-        }
         left -= s.driven;
     }
     return 0;
@@ -121,12 +119,10 @@ double drive_guard::gain(const cell& c, std::int64_t at) const noexcept
 {
     const bool falls = at < c.opens_at;
     const std::int64_t k = at - (falls ? c.closed_at : c.opens_at);
-    if (k < 0) {
+    if (k < 0)
         return 1.0; // it is cut later in this block
-    }
-    if (k >= fade_) {
+    if (k >= fade_)
         return falls ? 0.0 : 1.0;
-    }
     const double half = 0.5 * sincos_cycles(0.5 * static_cast<double>(k) / static_cast<double>(fade_)).cos;
     return falls ? 0.5 + half : 0.5 - half;
 }
@@ -145,9 +141,8 @@ void drive_guard::apply(std::size_t channel, std::uint64_t clock, unsigned n, do
     for (unsigned j = 0; j < n; ++j) {
         const double g = gain(c, static_cast<std::int64_t>(clock) + j);
         x[j] *= g;
-        if (j >= known) {
+        if (j >= known)
             envelope[j] *= g * g;
-        }
     }
 }
 
@@ -162,9 +157,8 @@ drive_history drive_guard::history(std::uint64_t clock) const
         h.channels[i].opens_s = seconds(c.opens_at - now);
         for (std::size_t k = 0; k < c.count; ++k) {
             const stretch& s = c.at(k);
-            if (s.end <= now - window_) {
+            if (s.end <= now - window_)
                 continue;
-            }
             h.channels[i].stretches.push_back(
                 {seconds(s.begin - now), seconds(s.end - now), seconds(s.driven)});
         }
@@ -178,9 +172,8 @@ void drive_guard::resume(const drive_history& h) noexcept
     const auto up = [this](double s) { return static_cast<std::int64_t>(std::ceil(s * rate_ - 1e-4)); };
     for (std::size_t i = 0; i < std::min(cells_.size(), h.channels.size()); ++i) {
         cell& c = cells_[i];
-        for (const drive_history::stretch& s : h.channels[i].stretches) {
+        for (const drive_history::stretch& s : h.channels[i].stretches)
             add(c, {up(s.begin_s), up(s.end_s), up(s.driven_s)});
-        }
         c.opens_at = std::max(-fade_, up(h.channels[i].opens_s));
         c.closed_at = std::min(c.opens_at, -fade_);
         c.was_closed = c.opens_at > 0;

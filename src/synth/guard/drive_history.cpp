@@ -44,9 +44,8 @@ void drive_history::pass(double seconds) noexcept
 void drive_history::end_now() noexcept
 {
     for (channel& c : channels) {
-        while (!c.stretches.empty() && c.stretches.back().begin_s >= 0.0) {
+        while (!c.stretches.empty() && c.stretches.back().begin_s >= 0.0)
             c.stretches.pop_back();
-        }
         if (!c.stretches.empty()) {
             driven_stretch& last = c.stretches.back();
             last.end_s = std::min(last.end_s, 0.0);
@@ -93,9 +92,8 @@ void forget(drive_history& h, double older_s)
 void coarsen(drive_history& h, std::size_t most)
 {
     for (drive_history::channel& c : h.channels) {
-        if (c.stretches.size() <= most) {
+        if (c.stretches.size() <= most)
             continue;
-        }
         const auto newer = c.stretches.end() - static_cast<std::ptrdiff_t>(most - 1);
         driven_stretch old = c.stretches.front();
         for (auto s = c.stretches.begin() + 1; s != newer; ++s) {

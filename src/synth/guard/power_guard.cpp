@@ -36,16 +36,14 @@ void power_guard::step(double sum) noexcept
     const double target = held_ > most_ ? std::sqrt(most_ / held_) : 1.0;
     near_ += blend_ * (target - near_);
     gain_ += blend_ * (near_ - gain_);
-    if (target >= 1.0 && std::min(near_, gain_) > 1.0 - noise) {
+    if (target >= 1.0 && std::min(near_, gain_) > 1.0 - noise)
         near_ = gain_ = 1.0;
-    }
 }
 
 void power_guard::admit(std::span<const powered_channel> channels, unsigned frame) noexcept
 {
-    for (const powered_channel& c : channels) {
+    for (const powered_channel& c : channels)
         let_[c.channel] = c.envelope[frame];
-    }
 }
 
 void power_guard::passed(std::span<const powered_channel> channels, unsigned n) noexcept
@@ -58,9 +56,8 @@ void power_guard::passed(std::span<const powered_channel> channels, unsigned n) 
 void power_guard::keep(std::span<const powered_channel> channels) noexcept
 {
     std::fill(other_.begin(), other_.end(), 0.0);
-    for (const powered_channel& c : channels) {
+    for (const powered_channel& c : channels)
         other_[c.channel] = let_[c.channel];
-    }
     let_.swap(other_);
 }
 
@@ -70,9 +67,8 @@ void power_guard::squeeze(std::span<const powered_channel> channels, unsigned fr
                           double headroom) noexcept
 {
     double base = 0.0;
-    for (const powered_channel& c : channels) {
+    for (const powered_channel& c : channels)
         base += std::min(let_[c.channel], c.envelope[frame]);
-    }
     const double scale = base > headroom ? headroom / base : 1.0;
     const double rise = base < headroom ? (headroom - base) / (sum - base) : 0.0;
     for (const powered_channel& c : channels) {
@@ -87,11 +83,9 @@ void power_guard::squeeze(std::span<const powered_channel> channels, unsigned fr
 std::uint64_t power_guard::apply(std::span<const powered_channel> channels, unsigned n) noexcept
 {
     std::array<double, block_frames> sum{};
-    for (const powered_channel& c : channels) {
-        for (unsigned j = 0; j < n; ++j) {
+    for (const powered_channel& c : channels)
+        for (unsigned j = 0; j < n; ++j)
             sum[j] += c.envelope[j];
-        }
-    }
     keep(channels);
     std::uint64_t changed = 0;
     bool squeezed = true; // in the frame before: let_ is known
@@ -101,33 +95,28 @@ std::uint64_t power_guard::apply(std::span<const powered_channel> channels, unsi
         const bool fits = sum[j] <= headroom * (1.0 + noise);
         changed += fits && gain_ >= 1.0 ? 0 : 1;
         if (!fits) {
-            if (!squeezed) {
+            if (!squeezed)
                 admit(channels, j - 1);
-            }
             squeeze(channels, j, sum[j], headroom);
         }
         sum[j] = fits ? gain_ : 1.0;
         squeezed = !fits;
     }
     if (changed > 0) {
-        for (const powered_channel& c : channels) {
-            for (unsigned j = 0; j < n; ++j) {
+        for (const powered_channel& c : channels)
+            for (unsigned j = 0; j < n; ++j)
                 c.x[j] *= sum[j];
-            }
-        }
     }
-    if (!squeezed) {
+    if (!squeezed)
         admit(channels, n - 1);
-    }
     return changed;
 }
 
 void power_guard::silence(std::uint64_t frames) noexcept
 {
     std::fill(let_.begin(), let_.end(), 0.0);
-    for (; frames > 0 && !passes(0.0); --frames) {
+    for (; frames > 0 && !passes(0.0); --frames)
         step(0.0);
-    }
 }
 
 } // namespace tactor::synth

@@ -44,9 +44,8 @@ void write(const lanes& from, unsigned n, std::byte* out, std::size_t stride) no
         store<Row>(__builtin_shufflevector(ab_next, cd_next, 0, 1, 4, 5), out + 2 * stride);
         store<Row>(__builtin_shufflevector(ab_next, cd_next, 2, 3, 6, 7), out + 3 * stride);
     }
-    for (; i < n; ++i, out += stride) {
+    for (; i < n; ++i, out += stride)
         store<Row>(quad{(*from[0])[i], (*from[1])[i], (*from[2])[i], (*from[3])[i]}, out);
-    }
 }
 
 } // namespace
@@ -54,11 +53,10 @@ void write(const lanes& from, unsigned n, std::byte* out, std::size_t stride) no
 void write_abreast(const std::array<const lane*, abreast>& from, std::size_t bytes, unsigned n,
                    std::byte* out, std::size_t stride) noexcept
 {
-    if (bytes == 2) {
+    if (bytes == 2)
         write<short_quad>(from, n, out, stride);
-    } else {
+    else
         write<quad>(from, n, out, stride);
-    }
 }
 
 } // namespace tactor::synth

@@ -23,34 +23,29 @@ const double* carrier_block::get(const voice& v, const fade* f, std::uint64_t at
     const place here{at, n, v.cycles_per_frame, v.phase, v.sound};
     const auto phase = static_cast<std::int64_t>(v.phase + at);
     if (!(here == k.plain_place)) {
-        if (v.sound == nullptr) {
+        if (v.sound == nullptr)
             sine_block(tables_.get(v.cycles_per_frame), v.cycles_per_frame, phase, n, k.plain.data(), w);
-        } else {
+        else
             v.sound->fill(phase, n, k.plain.data(), w);
-        }
         k.plain_place = here;
     }
     const auto first = static_cast<std::int64_t>(v.window_place + at);
     const bool modulated = v.sound != nullptr && v.sound->am_depth != 0.0;
-    if (f == nullptr && !modulated && window_is_flat(first, first + n, v.window)) {
+    if (f == nullptr && !modulated && window_is_flat(first, first + n, v.window))
         return k.plain.data();
-    }
     shape wanted{v.window_place, v.window, 0, 0};
     if (f != nullptr) {
         wanted.fade_place = static_cast<std::int64_t>(at - f->start);
         wanted.fade_length = f->length;
     }
-    if (here == k.shaped_place && wanted == k.shaped_shape) {
+    if (here == k.shaped_place && wanted == k.shaped_shape)
         return k.shaped.data();
-    }
     std::copy(k.plain.begin(), k.plain.begin() + n, k.shaped.begin());
-    if (modulated) {
+    if (modulated)
         modulate_block(tables_, v.sound->am_cycles_per_frame, v.sound->am_depth, phase, n, k.shaped.data());
-    }
     window_block(tables_, first, v.window, 0, n, k.shaped.data());
-    if (f != nullptr) {
+    if (f != nullptr)
         fade_block(tables_, wanted.fade_place, f->length, 0, n, k.shaped.data());
-    }
     k.shaped_place = here;
     k.shaped_shape = wanted;
     return k.shaped.data();
@@ -81,18 +76,16 @@ TACTOR_CLONES void set_constant(const double* s, double a, unsigned lo, unsigned
 {
     const double* __restrict in = s;
     double* __restrict out = sum;
-    for (unsigned j = lo; j < hi; ++j) {
+    for (unsigned j = lo; j < hi; ++j)
         out[j] = a * in[j];
-    }
 }
 
 TACTOR_CLONES void add_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept
 {
     const double* __restrict in = s;
     double* __restrict out = sum;
-    for (unsigned j = lo; j < hi; ++j) {
+    for (unsigned j = lo; j < hi; ++j)
         out[j] += a * in[j];
-    }
 }
 
 TACTOR_CLONES void set_line(const double* s, double a, double slope, double k, unsigned lo, unsigned hi,
@@ -100,9 +93,8 @@ TACTOR_CLONES void set_line(const double* s, double a, double slope, double k, u
 {
     const double* __restrict in = s;
     double* __restrict out = sum;
-    for (int j = static_cast<int>(lo); j < static_cast<int>(hi); ++j) {
+    for (int j = static_cast<int>(lo); j < static_cast<int>(hi); ++j)
         out[j] = 0.0 + (a + slope * (k + j)) * in[j]; // no zero has a sign, as in a sum
-    }
 }
 
 TACTOR_CLONES void add_line(const double* s, double a, double slope, double k, unsigned lo, unsigned hi,
@@ -110,9 +102,8 @@ TACTOR_CLONES void add_line(const double* s, double a, double slope, double k, u
 {
     const double* __restrict in = s;
     double* __restrict out = sum;
-    for (int j = static_cast<int>(lo); j < static_cast<int>(hi); ++j) {
+    for (int j = static_cast<int>(lo); j < static_cast<int>(hi); ++j)
         out[j] += (a + slope * (k + j)) * in[j];
-    }
 }
 
 } // namespace tactor::synth

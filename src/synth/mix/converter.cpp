@@ -22,9 +22,8 @@ TACTOR_CLONES void to_float(const channel_samples& c, unsigned n, std::uint32_t*
 {
     const double* __restrict x = c.x;
     const double gain = c.gain;
-    for (unsigned i = 0; i < n; ++i) {
+    for (unsigned i = 0; i < n; ++i)
         v[i] = std::bit_cast<std::uint32_t>(static_cast<float>(gain * x[i] + 0.0)); // -0 + 0 = +0
-    }
 }
 
 TACTOR_CLONES void to_integer(const channel_samples& c, unsigned n, double scale,
@@ -58,9 +57,8 @@ void to_bits(format_kind f, const channel_samples& c, unsigned n, lane& v) noexc
 template <std::size_t Bytes>
 void scatter(const lane& v, unsigned n, std::byte* out, std::size_t stride) noexcept
 {
-    for (unsigned i = 0; i < n; ++i) {
+    for (unsigned i = 0; i < n; ++i)
         std::memcpy(out + i * stride, &v[i], Bytes);
-    }
 }
 
 void scatter(const lane& v, std::size_t bytes, unsigned n, std::byte* out, std::size_t stride) noexcept
@@ -84,9 +82,8 @@ void interleave(format_kind f, std::span<const channel_samples> sounding, std::s
 {
     const std::size_t sample = bytes_of(f);
     const std::size_t stride = channels * sample;
-    if (sounding.size() < channels) {
+    if (sounding.size() < channels)
         std::memset(out, 0, n * stride);
-    }
     std::array<lane, abreast> lanes;
     std::size_t written = 0; // channels below are done
     while (!sounding.empty()) {

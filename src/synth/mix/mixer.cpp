@@ -64,12 +64,10 @@ bool mixer::add(const drive_event& e) noexcept
     impl& m = *impl_;
     const voice v = make_voice(e, m.strips.size());
     if ((v.drives == 0 && v.points == 0) || v.end <= m.position || m.fading.find(e.score) != fades::none ||
-        !m.plays(v)) {
+        !m.plays(v))
         return true;
-    }
-    if (m.voices.available() == 0) {
+    if (m.voices.available() == 0)
         return false;
-    }
     m.voices.add(v);
     return true;
 }
@@ -79,23 +77,19 @@ bool mixer::fade_out(std::uint32_t score, std::uint32_t fade) noexcept
     impl& m = *impl_;
     std::int32_t i = m.fading.find(score);
     if (fade == 0) {
-        if (i != fades::none) {
+        if (i != fades::none)
             m.fading.end(i);
-        }
         m.voices.forget_if([score](const voice& v) { return v.score == score; });
         return true;
     }
-    if (i != fades::none) {
+    if (i != fades::none)
         return true;
-    }
     i = m.fading.begin(score, m.position, fade);
-    if (i == fades::none) {
+    if (i == fades::none)
         return false;
-    }
     m.voices.forget_if([&m, score, i](voice& v) {
-        if (v.score != score) {
+        if (v.score != score)
             return false;
-        }
         v.fade = i;
         return v.start >= m.fading[i].end();
     });

@@ -41,14 +41,12 @@ bool adds_up(const voice& v, const voice& next) noexcept
 void mixer::impl::find_beats(unsigned from, unsigned n) noexcept
 {
     list_carriers();
-    if (carriers.empty()) {
+    if (carriers.empty())
         return;
-    }
     for (const std::uint32_t c : sounding) {
         strips[c].summed(n); // a lone voice's sine would be lost
-        if (strips[c].beats) {
+        if (strips[c].beats)
             std::fill(envelopes[c].begin() + from, envelopes[c].begin() + n, 0.0);
-        }
     }
     while (from < n) {
         const unsigned to = std::min(n, from + static_cast<unsigned>(crest::frames));
@@ -66,20 +64,17 @@ void mixer::impl::list_carriers() noexcept
         const voice& v = voices[active[i]];
         bool beats = false;
         each_channel(v, [&](std::uint32_t c) { beats = beats || strips[c].beats; });
-        if (beats) {
+        if (beats)
             carriers.emplace_back(v.cycles_per_frame, i);
-        }
     }
     std::sort(carriers.begin(), carriers.end());
 }
 
 void mixer::impl::find_crests(unsigned from, unsigned to) noexcept
 {
-    for (const std::uint32_t c : sounding) {
-        if (strips[c].beats) {
+    for (const std::uint32_t c : sounding)
+        if (strips[c].beats)
             crests[c].reach.fill(0.0);
-        }
-    }
     for (std::size_t i = 0; i < carriers.size(); ++i) {
         const voice& v = voices[voices.active()[carriers[i].second]];
         each_stretch(v, [&](const stretch& s) {
@@ -90,9 +85,8 @@ void mixer::impl::find_crests(unsigned from, unsigned to) noexcept
                 add_wave(v, s, wave::cosine, from, to, crests[c].y.data());
             }
         });
-        if (i + 1 == carriers.size() || !adds_up(v, voices[voices.active()[carriers[i + 1].second]])) {
+        if (i + 1 == carriers.size() || !adds_up(v, voices[voices.active()[carriers[i + 1].second]]))
             add_carrier(from, to);
-        }
     }
     for (const std::uint32_t c : sounding) {
         if (strips[c].beats) {

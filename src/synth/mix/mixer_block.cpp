@@ -20,13 +20,11 @@ void mixer::impl::segment(unsigned n, std::byte* out) noexcept
 {
     voices.activate(position + n);
     const std::span<const std::uint32_t> active = voices.active();
-    for (std::size_t i = 0; i < active.size(); ++i) {
+    for (std::size_t i = 0; i < active.size(); ++i)
         mix(voices[active[i]], i + 1 == active.size(), n);
-    }
     limit(n);
-    if (!envelopes.empty()) {
+    if (!envelopes.empty())
         guard(n);
-    }
     write(n, out);
 }
 
@@ -57,9 +55,8 @@ void mixer::impl::mix(const voice& v, bool last, unsigned n) noexcept
             if (d.slope == 0.0 && to - from == n) {
                 t.lone = s;
                 t.gain = d.from;
-                if (!last) {
+                if (!last)
                     t.summed(n);
-                }
                 continue;
             }
             std::fill_n(t.sum.begin(), n, 0.0);
@@ -105,9 +102,8 @@ void mixer::impl::mix_line(const voice& v, const double* s, unsigned n) noexcept
             to = stop;
         }
     }
-    if (from >= to) {
+    if (from >= to)
         return;
-    }
     strip& t = strips[v.line.channel];
     if (t.spare && v.cycles_per_frame != 0.0) {
         limited += to - from; // there is no tactor that it could be meant for
@@ -116,18 +112,16 @@ void mixer::impl::mix_line(const voice& v, const double* s, unsigned n) noexcept
     const auto first = static_cast<unsigned>(from - position);
     const auto end = static_cast<unsigned>(to - position);
     const bool alone = !t.sounding;
-    if (alone) {
+    if (alone)
         begin_strip(v.line.channel, v, first);
-    } else {
+    else
         t.join(v);
-    }
     t.reach(first, end, peak);
     double* sum = alone ? t.sum.data() : t.summed(n);
     unsigned filled = 0;
     each_stretch(v.line, v.points, v.start, [&](const stretch& p) {
-        if (p.end <= position || p.start >= position + n) {
+        if (p.end <= position || p.start >= position + n)
             return;
-        }
         if (!alone) {
             add_stretch(s, p, position, n, sum);
             return;
@@ -136,20 +130,18 @@ void mixer::impl::mix_line(const voice& v, const double* s, unsigned n) noexcept
         std::fill(sum + filled, sum + begin, 0.0);
         filled = set_stretch(s, p, position, n, sum);
     });
-    if (alone) {
+    if (alone)
         std::fill(sum + filled, sum + n, 0.0);
-    }
 }
 
 void mixer::impl::limit(unsigned n) noexcept
 {
     for (const std::uint32_t c : sounding) {
         strip& t = strips[c];
-        if (t.spare) {
+        if (t.spare)
             limit_block(t.summed(n), n, 1.0); // two markers at once are one
-        } else if (!within_limit(t.peak, t.limit)) {
+        else if (!within_limit(t.peak, t.limit))
             limited += limit_block(t.summed(n), n, t.limit);
-        }
     }
 }
 
@@ -159,11 +151,10 @@ void mixer::impl::write(unsigned n, std::byte* out) noexcept
     samples.clear();
     for (const std::uint32_t c : sounding) {
         strip& t = strips[c];
-        if (t.lone != nullptr) {
+        if (t.lone != nullptr)
             samples.push_back({c, t.lone, t.gain});
-        } else {
+        else
             samples.push_back({c, t.sum.data(), 1.0});
-        }
         t.lone = nullptr;
         t.sounding = false;
     }

@@ -35,18 +35,14 @@ void mixer::impl::guard(unsigned n) noexcept
     const bool together = !power.passes(most);
     look_from(together, n);
     find_envelopes(n);
-    if (duty.on()) {
+    if (duty.on())
         count_drive(n);
-    }
-    if (power.on()) {
+    if (power.on())
         find_beats(together ? 0 : n - 1, n);
-    }
-    if (duty.on()) {
+    if (duty.on())
         cut(n);
-    }
-    if (power.on()) {
+    if (power.on())
         guard_power(together, n);
-    }
 }
 
 // As little as will do: an envelope takes as long as the samples.
@@ -54,9 +50,8 @@ void mixer::impl::look_from(bool together, unsigned n) noexcept
 {
     for (const std::uint32_t c : sounding) {
         strip& t = strips[c];
-        if (t.spare) {
+        if (t.spare)
             continue;
-        }
         const bool known = !duty.on() || t.steady || t.is_quiet();
         t.look = together || !known ? 0 : power.on() ? n - 1 : n;
         t.only_crests = t.beats && known && power.on();
@@ -68,9 +63,8 @@ void mixer::impl::add_wave(const voice& v, const stretch& p, wave w, unsigned lo
                            double* sum) noexcept
 {
     const std::uint64_t at = position + look;
-    if (p.end <= at || p.start >= position + n) {
+    if (p.end <= at || p.start >= position + n)
         return;
-    }
     const double* s = carrier.get(v, v.fade == fades::none ? nullptr : &fading[v.fade], at, n - look, w);
     add_stretch(s, p, at, n - look, sum);
 }
@@ -82,9 +76,8 @@ void mixer::impl::find_envelopes(unsigned n) noexcept
         each_stretch(v, [&](const stretch& s) {
             const std::uint32_t c = s.drive.channel;
             const strip& t = strips[c];
-            if (t.look < n && !t.only_crests) {
+            if (t.look < n && !t.only_crests)
                 add_wave(v, s, wave::cosine, t.look, n, envelopes[c].data() + t.look);
-            }
         });
     }
     for (const std::uint32_t c : sounding) {
@@ -104,14 +97,12 @@ void mixer::impl::count_drive(unsigned n) noexcept
 {
     for (const std::uint32_t c : sounding) {
         const strip& t = strips[c];
-        if (t.spare || t.is_quiet()) {
+        if (t.spare || t.is_quiet())
             continue;
-        }
-        if (t.steady) {
+        if (t.steady)
             duty.drive(c, clock + t.since, clock + t.until);
-        } else {
+        else
             duty.follow(c, clock, envelopes[c].data(), n);
-        }
     }
 }
 
@@ -119,27 +110,23 @@ void mixer::impl::cut(unsigned n) noexcept
 {
     for (const std::uint32_t c : sounding) {
         strip& t = strips[c];
-        if (!t.spare && duty.acts(c, clock, n)) {
+        if (!t.spare && duty.acts(c, clock, n))
             duty.apply(c, clock, n, t.summed(n), envelopes[c].data(), t.look);
-        }
     }
 }
 
 void mixer::impl::guard_power(bool together, unsigned n) noexcept
 {
     powered.clear();
-    for (const std::uint32_t c : sounding) {
-        if (!strips[c].spare) {
+    for (const std::uint32_t c : sounding)
+        if (!strips[c].spare)
             powered.push_back({c, strips[c].sum.data(), envelopes[c].data()});
-        }
-    }
     if (!together) {
         power.passed(powered, n);
         return;
     }
-    for (const powered_channel& c : powered) {
+    for (const powered_channel& c : powered)
         strips[c.channel].summed(n);
-    }
     power_limited += power.apply(powered, n);
 }
 

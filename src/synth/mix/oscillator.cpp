@@ -80,18 +80,15 @@ static_assert(base_angles::most >= block_frames / table_frames + 1);
 
 oscillator_tables::oscillator_tables() : tables_(rows * places)
 {
-    for (auto& keys : keys_) {
+    for (auto& keys : keys_)
         keys.fill(std::numeric_limits<double>::quiet_NaN());
-    }
 }
 
 std::size_t oscillator_tables::place_for_new(const std::array<double, places>& keys) noexcept
 {
-    for (std::size_t i = 0; i < places; ++i) {
-        if (std::isnan(keys[i])) {
+    for (std::size_t i = 0; i < places; ++i)
+        if (std::isnan(keys[i]))
             return i;
-        }
-    }
     chance_ = chance_ * 1664525U + 1013904223U;
     return chance_ >> (32U - place_bits);
 }
@@ -100,11 +97,9 @@ const oscillator_table& oscillator_tables::get(double cycles_per_frame) noexcept
 {
     const std::size_t number = row_of(cycles_per_frame, rows);
     auto& keys = keys_[number];
-    for (std::size_t i = 0; i < places; ++i) {
-        if (keys[i] == cycles_per_frame) {
+    for (std::size_t i = 0; i < places; ++i)
+        if (keys[i] == cycles_per_frame)
             return tables_[number * places + i];
-        }
-    }
     const std::size_t i = place_for_new(keys);
     keys[i] = cycles_per_frame;
     oscillator_table& t = tables_[number * places + i];
@@ -124,9 +119,8 @@ TACTOR_CLONES void sine_block(const oscillator_table& t, double cycles_per_frame
         const unsigned length = std::min(n, table_frames - offset);
         const double base_sin = w == wave::sine ? base.sin[i] : base.cos[i];
         const double base_cos = w == wave::sine ? base.cos[i] : -base.sin[i];
-        for (unsigned j = 0; j < length; ++j) {
+        for (unsigned j = 0; j < length; ++j)
             o[j] = base_sin * c[j] + base_cos * s[j];
-        }
         out += length;
         n -= length;
         offset = 0;
@@ -140,9 +134,8 @@ TACTOR_CLONES void times_cosine(const oscillator_table& t, sine_cosine base, dou
     const double* __restrict c = t.cos.data() + p.offset;
     double* __restrict o = out + p.lo;
     const unsigned n = p.hi - p.lo;
-    for (unsigned j = 0; j < n; ++j) {
+    for (unsigned j = 0; j < n; ++j)
         o[j] *= offset + scale * (base.cos * c[j] - base.sin * s[j]);
-    }
 }
 
 } // namespace tactor::synth

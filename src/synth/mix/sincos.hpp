@@ -65,9 +65,8 @@ inline sine_cosine sincos_turns(double x) noexcept
 /// The same for anything; what is not finite counts as 0.
 inline sine_cosine sincos_cycles(double x) noexcept
 {
-    if (!(std::abs(x) < most_turns)) {
+    if (!(std::abs(x) < most_turns))
         x = std::isfinite(x) ? std::fmod(x, 1.0) : 0.0;
-    }
     return sincos_turns(x);
 }
 

@@ -17,9 +17,8 @@ voice make_voice(const drive_event& e, std::size_t channels) noexcept
     v.window = {e.window, e.ramp, e.release == as_ramp ? e.ramp : e.release, e.shape};
     v.score = e.score;
     v.sound = e.sound;
-    if (!std::isfinite(e.cycles_per_frame) || e.length == 0) {
+    if (!std::isfinite(e.cycles_per_frame) || e.length == 0)
         return v;
-    }
     if (e.points != 0) {
         const auto last = e.line.amplitude.begin() + e.points;
         if (e.line.channel < channels &&
@@ -33,9 +32,8 @@ voice make_voice(const drive_event& e, std::size_t channels) noexcept
         const channel_drive& d = e.drive[i];
         const double slope = (d.to - d.from) / e.length;
         const bool silent = d.from == 0.0 && d.to == 0.0;
-        if (d.channel < channels && std::isfinite(d.from) && std::isfinite(slope) && !silent) {
+        if (d.channel < channels && std::isfinite(d.from) && std::isfinite(slope) && !silent)
             v.drive[v.drives++] = {d.from, slope, d.channel};
-        }
     }
     return v;
 }
@@ -53,9 +51,8 @@ void schedule::clear() noexcept
     heap_.clear();
     active_.clear();
     free_.clear();
-    for (std::size_t i = voices_.size(); i-- > 0;) {
+    for (std::size_t i = voices_.size(); i-- > 0;)
         free_.push_back(static_cast<std::uint32_t>(i));
-    }
     earliest_end_ = ~std::uint64_t{0};
 }
 
@@ -85,9 +82,8 @@ void schedule::insert(std::uint32_t slot) noexcept
     auto place = active_.end();
     while (place != active_.begin()) {
         const voice& before = voices_[*(place - 1)];
-        if (before.start < v.start || (before.start == v.start && before.order < v.order)) {
+        if (before.start < v.start || (before.start == v.start && before.order < v.order))
             break;
-        }
         --place;
     }
     active_.insert(place, slot);
@@ -101,9 +97,8 @@ std::uint64_t schedule::next_start() const noexcept
 
 void schedule::retire(std::uint64_t by) noexcept
 {
-    if (earliest_end_ <= by) {
+    if (earliest_end_ <= by)
         forget_active([by](const voice& v) { return v.end <= by; });
-    }
 }
 
 void schedule::heapify() noexcept

@@ -54,12 +54,10 @@ struct voice {
 template <class Visit>
 void each_channel(const voice& v, Visit visit)
 {
-    for (std::uint32_t i = 0; i < v.drives; ++i) {
+    for (std::uint32_t i = 0; i < v.drives; ++i)
         visit(v.drive[i].channel);
-    }
-    if (v.points != 0) {
+    if (v.points != 0)
         visit(v.line.channel);
-    }
 }
 
 /// Frames of the stream in which a channel's amplitude is linear: drive.from + drive.slope * k at start + k.
@@ -88,12 +86,10 @@ void each_stretch(const channel_line& l, std::uint32_t points, std::uint64_t sta
 template <class Visit>
 void each_stretch(const voice& v, Visit visit)
 {
-    for (std::uint32_t i = 0; i < v.drives; ++i) {
+    for (std::uint32_t i = 0; i < v.drives; ++i)
         visit(stretch{v.start, v.end, v.drive[i]});
-    }
-    if (v.points != 0) {
+    if (v.points != 0)
         each_stretch(v.line, v.points, v.start, visit);
-    }
 }
 
 /// Takes over what of an event can sound on `channels` channels; drives that are not finite are silence.
@@ -170,13 +166,11 @@ void schedule::forget_if(Gone gone) noexcept
 {
     forget_active(gone);
     std::size_t kept = 0;
-    for (const waiting& w : heap_) {
-        if (gone(voices_[w.slot])) {
+    for (const waiting& w : heap_)
+        if (gone(voices_[w.slot]))
             free_.push_back(w.slot);
-        } else {
+        else
             heap_[kept++] = w;
-        }
-    }
     heap_.resize(kept);
     heapify();
 }

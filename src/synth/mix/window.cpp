@@ -38,9 +38,8 @@ struct part {
 void half_cosine(oscillator_tables& tables, std::int64_t first, std::uint64_t ramp, double scale, part p,
                  double* out) noexcept
 {
-    if (p.empty()) {
+    if (p.empty())
         return;
-    }
     const oscillator_table& t = tables.get(cycles_of(ramp));
     for_each_part(first, p.lo, p.hi, [&](const table_part& q) {
         times_cosine(t, sincos_cycles(turns(q.base, ramp)), 0.5, scale, q, out);
@@ -52,12 +51,10 @@ double exponential(double x) noexcept
 {
     const double z = x / 32.0;
     double y = 1.0;
-    for (int i = 10; i > 0; --i) {
+    for (int i = 10; i > 0; --i)
         y = 1.0 + y * z / i;
-    }
-    for (int i = 0; i < 5; ++i) {
+    for (int i = 0; i < 5; ++i)
         y *= y;
-    }
     return y;
 }
 
@@ -96,9 +93,8 @@ burst_window even(std::uint64_t length, std::uint64_t ramp) noexcept
 
 void zero(part p, double* out) noexcept
 {
-    if (!p.empty()) {
+    if (!p.empty())
         std::fill(out + p.lo, out + p.hi, 0.0);
-    }
 }
 
 } // namespace
@@ -106,12 +102,10 @@ void zero(part p, double* out) noexcept
 double window_at(std::int64_t k, const burst_window& w) noexcept
 {
     const auto n = static_cast<std::int64_t>(w.length);
-    if (k < 0 || k > n) {
+    if (k < 0 || k > n)
         return 0.0;
-    }
-    if (k < static_cast<std::int64_t>(w.attack)) {
+    if (k < static_cast<std::int64_t>(w.attack))
         return rising(k, w.attack, w.shape);
-    }
     return n - k < static_cast<std::int64_t>(w.release) ? falling(n - k, w.release, w.shape) : 1.0;
 }
 
@@ -134,9 +128,8 @@ bool window_is_flat(std::int64_t from, std::int64_t to, std::uint64_t length, st
 void window_block(oscillator_tables& tables, std::int64_t first, const burst_window& w, unsigned lo,
                   unsigned hi, double* out) noexcept
 {
-    if (w.attack == 0 && w.release == 0) {
+    if (w.attack == 0 && w.release == 0)
         return;
-    }
     const auto n = static_cast<std::int64_t>(w.length);
     const auto attack = static_cast<std::int64_t>(w.attack);
     const std::int64_t end = first + block_frames;
@@ -149,12 +142,10 @@ void window_block(oscillator_tables& tables, std::int64_t first, const burst_win
         half_cosine(tables, first - n, w.release, -0.5, fall, out);
         return;
     }
-    for (unsigned j = rise.lo; j < rise.hi; ++j) {
+    for (unsigned j = rise.lo; j < rise.hi; ++j)
         out[j] *= rising(first + j, w.attack, w.shape);
-    }
-    for (unsigned j = fall.lo; j < fall.hi; ++j) {
+    for (unsigned j = fall.lo; j < fall.hi; ++j)
         out[j] *= falling(n - (first + j), w.release, w.shape);
-    }
 }
 
 void window_block(oscillator_tables& tables, std::int64_t first, std::uint64_t length, std::uint64_t ramp,

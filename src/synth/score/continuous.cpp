@@ -25,12 +25,10 @@ std::string unplayable(const burst& b, std::size_t tactors)
 {
     for (std::size_t i = 0; i < b.drives.size(); ++i) {
         const drive& d = b.drives[i];
-        if (d.tactor >= tactors || !std::isfinite(d.amplitude)) {
+        if (d.tactor >= tactors || !std::isfinite(d.amplitude))
             return fmt::format("tactor {} at amplitude {} cannot be rendered", d.tactor, d.amplitude);
-        }
-        if (i > 0 && b.drives[i - 1].tactor >= d.tactor) {
+        if (i > 0 && b.drives[i - 1].tactor >= d.tactor)
             return fmt::format("tactor {} after tactor {}", d.tactor, b.drives[i - 1].tactor);
-        }
     }
     return {};
 }
@@ -62,9 +60,8 @@ void tell(std::string& failure, double t_s, std::string_view why) noexcept
 void check_drives(const burst& b, double t_s, std::size_t tactors)
 {
     const std::string why = unplayable(b, tactors);
-    if (!why.empty()) {
+    if (!why.empty())
         throw error(error_kind::bad_input, "stroke at " + seconds_text(t_s), why);
-    }
 }
 
 void control_points::reserve(std::size_t tactors)
@@ -77,13 +74,11 @@ void control_points::add(std::size_t i) noexcept
 {
     auto r = rows.begin();
     for (const drive& d : now.drives) {
-        while (r != rows.end() && r->tactor < d.tactor) {
+        while (r != rows.end() && r->tactor < d.tactor)
             ++r;
-        }
         if (r == rows.end() || r->tactor != d.tactor) {
-            if (d.amplitude == 0.0) {
+            if (d.amplitude == 0.0)
                 continue;
-            }
             r = rows.insert(r, {d.tactor, {}});
         }
         r->amplitude[i] = d.amplitude;
@@ -103,9 +98,8 @@ bool checked_sample(const plan& p, std::uint64_t k, std::span<const double> prom
     try {
         curve_access::of(*p.curve).sample(k, seen, out);
         std::string why = unplayable(out, promised.size());
-        if (why.empty()) {
+        if (why.empty())
             why = above(out, promised);
-        }
         if (!why.empty()) {
             tell(failure, t, why);
             return false;
@@ -127,18 +121,16 @@ bool expander::next_points() noexcept
     next_ = 0;
     control_points& c = *points_;
     c.rows.clear();
-    if (position_ >= item_->end()) {
+    if (position_ >= item_->end())
         return false;
-    }
     failed_ = failing_;
     c.frame[0] = 0;
     c.add(0);
     c.count = 1;
     while (!failing_ && c.count < points_per_line && step_end_ < item_->end()) {
         const std::uint64_t before = step_end_;
-        while (step_end_ == before) {
+        while (step_end_ == before)
             step_end_ = item_->start + control_frame(++step_, score_->rate, item_->length);
-        }
         if (!checked_sample(score_->plans[item_->plan].schedule, step_, score_->promised[item_->plan], c.seen,
                             c.now, c.failure)) {
             failing_ = true;
@@ -149,9 +141,8 @@ bool expander::next_points() noexcept
         c.frame[c.count] = static_cast<std::uint16_t>(step_end_ - position_);
         c.add(c.count++);
     }
-    if (failed_) {
+    if (failed_)
         c.rows.clear();
-    }
     return true;
 }
 

@@ -22,9 +22,8 @@ std::vector<bool> overlapping(const item_list& list)
     std::size_t longest = 0;
     for (std::size_t i = 0; i < items.size(); ++i) {
         const item& it = items[i];
-        if (it.kind == item_kind::marker) {
+        if (it.kind == item_kind::marker)
             continue;
-        }
         if (list.heard_from(it) < end) {
             overlaps[i] = true;
             overlaps[longest] = true;
@@ -41,9 +40,8 @@ std::vector<bool> overlapping(const item_list& list)
 double harmless_intensity(const score::impl& s, const array& a)
 {
     double least = HUGE_VAL;
-    for (std::size_t i = 0; i < s.tactors.size(); ++i) {
+    for (std::size_t i = 0; i < s.tactors.size(); ++i)
         least = std::min(least, tactor_limit(a, i) / std::abs(s.tactors[i].gain));
-    }
     return least * (1.0 - 1e-12); // for the rounding of the phantom
 }
 
@@ -57,12 +55,10 @@ continuous_items::continuous_items(const score::impl& s, const array& a)
 bool continuous_items::have_bounds()
 {
     const auto& items = score_.list.items;
-    for (std::size_t i = 0; i < items.size(); ++i) {
+    for (std::size_t i = 0; i < items.size(); ++i)
         if (items[i].kind == item_kind::continuous &&
-            !std::all_of(most(i).begin(), most(i).end(), [](double b) { return std::isfinite(b); })) {
+            !std::all_of(most(i).begin(), most(i).end(), [](double b) { return std::isfinite(b); }))
             return false;
-        }
-    }
     return true;
 }
 
@@ -70,31 +66,27 @@ bool continuous_items::have_bounds()
 std::vector<double> continuous_items::at_levels(std::size_t number, std::vector<double> amplitudes) const
 {
     const std::uint32_t plan = score_.list.items[number].plan;
-    for (std::size_t i = 0; i < amplitudes.size(); ++i) {
+    for (std::size_t i = 0; i < amplitudes.size(); ++i)
         amplitudes[i] *= std::abs(score_.tactors[i].gain) * score_.most_equalised(i, plan);
-    }
     return amplitudes;
 }
 
 const std::vector<double>& continuous_items::most(std::size_t number)
 {
     const auto there = most_.find(number);
-    if (there != most_.end()) {
+    if (there != most_.end())
         return there->second;
-    }
     const auto intensity = greatest_intensity(score_.plans[score_.list.items[number].plan].schedule);
-    if (!intensity) {
+    if (!intensity)
         return looked_at(number);
-    }
     return most_[number] = std::vector<double>(score_.tactors.size(), *intensity);
 }
 
 const std::vector<double>& continuous_items::looked_at(std::size_t number)
 {
     const auto there = looked_at_.find(number);
-    if (there != looked_at_.end()) {
+    if (there != looked_at_.end())
         return there->second;
-    }
     const plan& p = score_.plans[score_.list.items[number].plan].schedule;
     const std::size_t tactors = score_.tactors.size();
     // What is harmless alone may not be together with others.

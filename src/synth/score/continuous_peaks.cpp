@@ -22,9 +22,8 @@ public:
     {
         next_ = std::max(next_, static_cast<std::uint64_t>(from_s / continuous_step_s));
         const auto end = static_cast<std::uint64_t>(std::ceil(to_s / continuous_step_s));
-        for (; next_ <= std::min(end, last_); ++next_) {
+        for (; next_ <= std::min(end, last_); ++next_)
             at_point(next_);
-        }
     }
 
     void at_all() { at_points(0.0, plan_.stroke_duration_s); }
@@ -32,9 +31,8 @@ public:
     /// As if the target went over every tactor.
     void everywhere(double intensity)
     {
-        for (double& peak : peaks_) {
+        for (double& peak : peaks_)
             peak = std::max(peak, intensity);
-        }
     }
 
     std::vector<double> peaks() && { return std::move(peaks_); }
@@ -44,9 +42,8 @@ private:
     {
         curve_access::of(*plan_.curve).sample(k, seen_, now_);
         check_drives(now_, now_.onset_s, peaks_.size());
-        for (const drive& d : now_.drives) {
+        for (const drive& d : now_.drives)
             peaks_[d.tactor] = std::max(peaks_[d.tactor], std::abs(d.amplitude));
-        }
     }
 
     const plan& plan_;
@@ -68,9 +65,8 @@ const trajectory* known(const plan& p)
 std::optional<double> greatest_intensity(const plan& p)
 {
     const trajectory* motion = known(p);
-    if (motion == nullptr) {
+    if (motion == nullptr)
         return std::nullopt;
-    }
     double greatest = 0.0;
     detail::for_each_span(*motion, [&](const detail::trajectory_span& s) {
         greatest = s.intensity <= greatest ? greatest : s.intensity;
@@ -90,12 +86,10 @@ std::vector<double> continuous_peaks(const plan& p, std::size_t tactors, double 
     const double looked_s = static_cast<double>(most) * continuous_step_s;
     detail::for_each_span(*motion, [&](const detail::trajectory_span& s) {
         const bool looked_at = !(s.intensity <= harmless);
-        if (looked_at && s.from_s < looked_s) {
+        if (looked_at && s.from_s < looked_s)
             l.at_points(s.from_s, std::min(s.to_s, looked_s));
-        }
-        if (!looked_at || s.to_s > looked_s) {
+        if (!looked_at || s.to_s > looked_s)
             l.everywhere(s.intensity);
-        }
         return true;
     });
     return std::move(l).peaks();

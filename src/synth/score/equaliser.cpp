@@ -15,18 +15,15 @@ namespace {
 double hz_at(const plan& p, double t_s)
 {
     // Of a recording along the path, the course says how often it comes round.
-    if (p.course.empty() || p.wave.kind == waveform_kind::recording) {
+    if (p.course.empty() || p.wave.kind == waveform_kind::recording)
         return p.carrier_hz;
-    }
     const auto after = std::upper_bound(p.course.begin(), p.course.end(), t_s,
                                         [](double t, const carrier_point& c) { return t < c.t_s; });
-    if (after == p.course.begin()) {
+    if (after == p.course.begin())
         return after->hz;
-    }
     const carrier_point& before = *(after - 1);
-    if (after == p.course.end()) {
+    if (after == p.course.end())
         return before.hz;
-    }
     return std::lerp(before.hz, after->hz, (t_s - before.t_s) / (after->t_s - before.t_s));
 }
 
@@ -34,18 +31,16 @@ double hz_at(const plan& p, double t_s)
 
 double score::impl::equalised(std::size_t tactor, std::uint32_t plan, std::uint64_t frame) const
 {
-    if (measured.empty()) {
+    if (measured.empty())
         return 1.0;
-    }
     const double t_s = (static_cast<double>(frame) - static_cast<double>(starts[plan])) / rate;
     return synth::threshold_factor(measured[tactor], hz_at(plans[plan].schedule, t_s));
 }
 
 double score::impl::most_equalised(std::size_t tactor, std::uint32_t plan) const
 {
-    if (measured.empty()) {
+    if (measured.empty())
         return 1.0;
-    }
     const tactor_spec& t = measured[tactor];
     const tactor::plan& p = plans[plan].schedule;
     double most = synth::threshold_factor(t, hz_at(p, 0.0));
@@ -57,11 +52,9 @@ double score::impl::most_equalised(std::size_t tactor, std::uint32_t plan) const
         high = std::max(high, c.hz);
     }
     // Between two points of the course the carrier may pass one of the thresholds.
-    for (const threshold_point& q : t.thresholds) {
-        if (q.hz > low && q.hz < high) {
+    for (const threshold_point& q : t.thresholds)
+        if (q.hz > low && q.hz < high)
             most = std::max(most, synth::threshold_factor(t, q.hz));
-        }
-    }
     return most;
 }
 
@@ -72,9 +65,8 @@ namespace tactor::synth {
 
 double threshold_factor(const tactor_spec& t, double hz)
 {
-    if (t.thresholds.empty()) {
+    if (t.thresholds.empty())
         return 1.0;
-    }
     const double db = *threshold_at(t, hz) - *threshold_at(t, reference_hz);
     return std::pow(10.0, db / 20.0);
 }

@@ -18,9 +18,8 @@ struct event_source::impl {
         : piece(std::move(data)), expanders(piece->open_items), points(piece->open_continuous)
     {
         free_expanders.reserve(expanders.size());
-        for (expander& e : expanders) {
+        for (expander& e : expanders)
             free_expanders.push_back(&e);
-        }
         free_points.reserve(points.size());
         for (control_points& p : points) {
             p.reserve(piece->tactors.size());
@@ -98,9 +97,8 @@ void event_source::impl::release(expander* e) noexcept
         next_item = piece->list.items.size();
     }
     free_expanders.push_back(e);
-    if (e->points() != nullptr) {
+    if (e->points() != nullptr)
         free_points.push_back(e->points());
-    }
 }
 
 event_source::event_source(const score& s) : impl_(std::make_unique<impl>(detail::access::shared(s)))

@@ -152,9 +152,8 @@ void expander::draw(const control_points::row& r) noexcept
 {
     const control_points& c = *points_;
     std::size_t points = c.count;
-    while (points > 2 && r.amplitude[points - 1] == 0.0 && r.amplitude[points - 2] == 0.0) {
+    while (points > 2 && r.amplitude[points - 1] == 0.0 && r.amplitude[points - 2] == 0.0)
         --points;
-    }
     stretch(position_, c.frame[points - 1]);
     event_.points = static_cast<std::uint32_t>(points);
     const tactor_level& t = score_->tactors[r.tactor];
@@ -163,9 +162,8 @@ void expander::draw(const control_points::row& r) noexcept
     l.frame = c.frame;
     for (std::size_t i = 0; i < points; ++i) {
         l.amplitude[i] = t.gain * r.amplitude[i];
-        if (!score_->measured.empty()) {
+        if (!score_->measured.empty())
             l.amplitude[i] *= score_->equalised(r.tactor, item_->plan, position_ + c.frame[i]);
-        }
     }
 }
 

@@ -38,9 +38,8 @@ inline bool between_zeros(double from, double to) noexcept
 inline double ramp_seconds(std::optional<double> ramp_s, double carrier_s, double duration_s,
                            double carrier_hz) noexcept
 {
-    if (ramp_s) {
+    if (ramp_s)
         return *ramp_s;
-    }
     const bool smooth =
         between_zeros(2.0 * carrier_s * carrier_hz, 2.0 * (carrier_s + duration_s) * carrier_hz);
     return smooth ? 0.0 : default_ramp_s;
@@ -63,12 +62,10 @@ inline std::uint32_t ramp_frames(std::optional<double> ramp_s, double carrier_s,
 inline std::uint32_t attack_frames(double ramp_s, const burst_envelope& e, double rate,
                                    std::uint64_t length) noexcept
 {
-    if (e.kind == envelope_kind::tukey) {
+    if (e.kind == envelope_kind::tukey)
         return ramp_frames(0.5 * e.tukey_part * static_cast<double>(length) / rate, rate, length);
-    }
-    if (!e.release_s) {
+    if (!e.release_s)
         return ramp_frames(e.attack_s.value_or(ramp_s), rate, length);
-    }
     const std::uint64_t rise = frame_at(e.attack_s.value_or(ramp_s), rate);
     const std::uint64_t fall = frame_at(*e.release_s, rate);
     const double fits = static_cast<double>(length) / static_cast<double>(std::max(rise + fall, length));
@@ -81,9 +78,8 @@ inline std::uint32_t attack_frames(double ramp_s, const burst_envelope& e, doubl
 inline std::uint32_t release_frames(const burst_envelope& e, double rate, std::uint64_t length,
                                     std::uint32_t attack) noexcept
 {
-    if (e.kind == envelope_kind::tukey || !e.release_s) {
+    if (e.kind == envelope_kind::tukey || !e.release_s)
         return attack;
-    }
     return static_cast<std::uint32_t>(
         std::min({frame_at(*e.release_s, rate), length - attack, longest_event}));
 }

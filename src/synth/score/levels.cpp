@@ -46,9 +46,8 @@ void refuse_tactor(const array& a, std::size_t i, std::string_view why, std::str
 {
     const source_place& at = a.tactors[i].where;
     const std::string name = fmt::format("tactor {}", i);
-    if (at.text().empty()) {
+    if (at.text().empty())
         throw error(error_kind::bad_input, name, why, hint);
-    }
     throw error(error_kind::bad_input, at, fmt::format("{} {}", name, why), hint);
 }
 

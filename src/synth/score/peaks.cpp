@@ -102,9 +102,8 @@ std::vector<double> peaks_of(const score::impl& s, const continuous_peaks_of& co
             break;
         case item_kind::continuous: {
             const std::vector<double> peaks = continuous(i);
-            for (std::size_t k = 0; k < peaks.size(); ++k) {
+            for (std::size_t k = 0; k < peaks.size(); ++k)
                 all.note(k, it, from, peaks[k]);
-            }
             break;
         }
         case item_kind::marker:
@@ -124,9 +123,8 @@ std::vector<double> peaks_of(const score::impl& s, const continuous_peaks_of& co
 void check(const array& a, std::size_t i, double peak, const render_options& o)
 {
     const double limit_db = std::min(0.0, a.tactors[i].max_dbfs);
-    if (peak <= tactor_limit(a, i)) {
+    if (peak <= tactor_limit(a, i))
         return;
-    }
     const double excess_db = std::max(0.01, std::ceil((in_db(peak) - limit_db) * 100.0) / 100.0);
     const bool limited = limit_db < 0.0;
     const std::string limit =
@@ -154,11 +152,9 @@ std::vector<double> check_peaks(score::impl& s, const array& a, const render_opt
 {
     continuous_items continuous(s, a);
     const auto within = [&](const std::vector<double>& peaks) {
-        for (std::size_t i = 0; i < peaks.size(); ++i) {
-            if (!(peaks[i] <= tactor_limit(a, i))) {
+        for (std::size_t i = 0; i < peaks.size(); ++i)
+            if (!(peaks[i] <= tactor_limit(a, i)))
                 return false;
-            }
-        }
         return true;
     };
     // Nearly always the intensities say that all is well, and hours need not be looked through.
@@ -170,9 +166,8 @@ std::vector<double> check_peaks(score::impl& s, const array& a, const render_opt
         }
     }
     std::vector<double> peaks = peaks_of(s, [&](std::size_t i) { return continuous.peaks(i); });
-    for (std::size_t i = 0; i < peaks.size(); ++i) {
+    for (std::size_t i = 0; i < peaks.size(); ++i)
         check(a, i, peaks[i], o);
-    }
     s.promised = continuous.promised();
     return peaks;
 }

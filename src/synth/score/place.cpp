@@ -34,16 +34,13 @@ void check(const burst& b, std::size_t number, std::size_t tactors)
         refuse(number, fmt::format("it starts at {} and lasts {}", seconds_text(b.onset_s),
                                    seconds_text(b.duration_s)));
     }
-    if (!std::isfinite(b.intensity)) {
+    if (!std::isfinite(b.intensity))
         refuse(number, fmt::format("its intensity is {}", b.intensity));
-    }
     for (const drive& d : b.drives) {
-        if (d.tactor >= tactors) {
+        if (d.tactor >= tactors)
             refuse(number, fmt::format("tactor {} is not in the array, which has {}", d.tactor, tactors));
-        }
-        if (!std::isfinite(d.amplitude)) {
+        if (!std::isfinite(d.amplitude))
             refuse(number, fmt::format("the amplitude of tactor {} is {}", d.tactor, d.amplitude));
-        }
     }
 }
 
@@ -101,9 +98,8 @@ public:
     bursts_by_start(std::span<const burst> bursts, unsigned rate) : bursts_(bursts), rate_(rate)
     {
         const auto earlier = [](const burst& a, const burst& b) { return a.onset_s < b.onset_s; };
-        if (std::is_sorted(bursts.begin(), bursts.end(), earlier)) {
+        if (std::is_sorted(bursts.begin(), bursts.end(), earlier))
             return; // as planners leave them
-        }
         order_.resize(bursts.size());
         std::iota(order_.begin(), order_.end(), std::size_t{0});
         std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
@@ -118,9 +114,8 @@ public:
         for (std::size_t i = 0; i < bursts_.size(); ++i) {
             const burst& b = bursts_[order_.empty() ? i : order_[i]];
             const stretch s = stretch_of(b, rate_);
-            if (s.to > s.from) {
+            if (s.to > s.from)
                 f(b, s);
-            }
         }
     }
 
@@ -150,9 +145,8 @@ public:
     std::uint64_t place()
     {
         find_joined();
-        if (any_joined_) {
+        if (any_joined_)
             append_joined();
-        }
         append_bursts();
         return end_;
     }
@@ -186,12 +180,10 @@ private:
         bursts_.for_each([&](const burst& b, const stretch& s) {
             for (const drive& d : b.drives) {
                 const bool goes_on = runs[d.tactor].takes(s);
-                if (!joined_[number++]) {
+                if (!joined_[number++])
                     continue;
-                }
-                if (!goes_on) {
+                if (!goes_on)
                     join(d.tactor, members[d.tactor]);
-                }
                 const std::uint32_t attack = ramp(b, s);
                 const std::uint32_t release =
                     release_frames(options_.envelope, options_.rate, s.to - s.from, attack);
@@ -199,9 +191,8 @@ private:
                     {start_ + s.from, s.to - s.from, attack, release, d.amplitude, cap_of(b)});
             }
         });
-        for (std::size_t i = 0; i < tactors_; ++i) {
+        for (std::size_t i = 0; i < tactors_; ++i)
             join(i, members[i]);
-        }
         std::stable_sort(out_.items.begin() + static_cast<std::ptrdiff_t>(before), out_.items.end(),
                          [](const item& a, const item& b) {
                              return std::tie(a.start, a.tactor) < std::tie(b.start, b.tactor);
@@ -210,9 +201,8 @@ private:
 
     void join(std::size_t tactor, std::vector<item_member>& members)
     {
-        if (members.empty()) {
+        if (members.empty())
             return;
-        }
         item it;
         it.kind = item_kind::joined;
         it.plan = number_;
@@ -220,9 +210,8 @@ private:
         it.start = members.front().start;
         it.first = out_.members.size();
         it.count = static_cast<std::uint32_t>(members.size());
-        for (const item_member& m : members) {
+        for (const item_member& m : members)
             it.length = std::max(it.length, m.end() - it.start);
-        }
         out_.members.insert(out_.members.end(), members.begin(), members.end());
         out_.items.push_back(it);
         members.clear();
@@ -235,18 +224,14 @@ private:
         std::size_t number = 0;
         bursts_.for_each([&](const burst& b, const stretch& s) {
             single.clear();
-            for (const drive& d : b.drives) {
-                if (!joined_[number++]) {
+            for (const drive& d : b.drives)
+                if (!joined_[number++])
                     single.push_back(d);
-                }
-            }
-            if (single.empty()) {
+            if (single.empty())
                 return;
-            }
             const auto lower = [](const drive& x, const drive& y) { return x.tactor < y.tactor; };
-            if (!std::is_sorted(single.begin(), single.end(), lower)) {
+            if (!std::is_sorted(single.begin(), single.end(), lower))
                 std::stable_sort(single.begin(), single.end(), lower);
-            }
             item it;
             it.start = start_ + s.from;
             it.length = s.to - s.from;
@@ -286,9 +271,8 @@ std::uint64_t place_bursts(std::span<const burst> bursts, std::size_t first, con
                            std::uint32_t plan, std::uint64_t start, std::size_t tactors,
                            const render_options& o, item_list& out)
 {
-    for (std::size_t i = 0; i < bursts.size(); ++i) {
+    for (std::size_t i = 0; i < bursts.size(); ++i)
         check(bursts[i], first + i, tactors);
-    }
     return placer(bursts, p, plan, start, tactors, o, out).place();
 }
 
@@ -302,18 +286,16 @@ std::uint64_t place_end(const plan& p, std::uint32_t plan, std::uint64_t start, 
         }
     }
     const std::uint64_t total = start + frame_at(p.total_s, o.rate);
-    if (!p.curve) {
+    if (!p.curve)
         return std::max(total, bursts_end);
-    }
     item it;
     it.kind = item_kind::continuous;
     it.start = start;
     it.length = frame_at(p.stroke_duration_s, o.rate);
     it.ramp = attack_frames(plain_ramp_s(0.0, p.stroke_duration_s, p, o), o.envelope, o.rate, it.length);
     it.plan = plan;
-    if (it.length > 0) {
+    if (it.length > 0)
         out.items.push_back(it);
-    }
     return std::max(total, it.end());
 }
 
@@ -330,9 +312,8 @@ double burst_ramp_s(double onset_s, double duration_s, double carrier_hz, const 
 
 double burst_ramp_s(double onset_s, double duration_s, const plan& p, const render_options& o) noexcept
 {
-    if (o.envelope.kind == envelope_kind::tukey) {
+    if (o.envelope.kind == envelope_kind::tukey)
         return 0.5 * o.envelope.tukey_part * duration_s;
-    }
     return o.envelope.attack_s.value_or(synth::plain_ramp_s(onset_s, duration_s, p, o));
 }
 

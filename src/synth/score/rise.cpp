@@ -23,9 +23,8 @@ double part_of(const burst_window& w, std::uint64_t from, std::uint64_t to, doub
 {
     const double kept = std::exp(-1.0 / rise);
     double y = 0.0;
-    for (std::uint64_t k = from; k < to; ++k) {
+    for (std::uint64_t k = from; k < to; ++k)
         y = kept * y + (1.0 - kept) * window_at(static_cast<std::int64_t>(k), w);
-    }
     return y;
 }
 
@@ -54,17 +53,15 @@ public:
         for (const item& it : s_.list.items) {
             switch (it.kind) {
             case item_kind::burst:
-                for (std::uint64_t k = it.first; k < it.first + it.count; ++k) {
+                for (std::uint64_t k = it.first; k < it.first + it.count; ++k)
                     take_burst(it, s_.list.drive_tactors[k], s_.list.drive_amplitudes[k], more);
-                }
                 break;
             case item_kind::joined:
                 moved(motions_[it.tactor], it.end(), s_.list.members[it.first].intensity);
                 break;
             case item_kind::continuous:
-                for (motion& m : motions_) {
+                for (motion& m : motions_)
                     moved(m, it.end(), 1.0);
-                }
                 break;
             case item_kind::marker:
                 break;
@@ -96,9 +93,8 @@ private:
         const double unit = std::abs(s_.tactors[tactor].gain) * s_.equalised(tactor, it.plan, it.start);
         const double headroom = (tactor_limit(a_, tactor) * (1.0 - 2e-9) - peaks_[tactor]) / unit;
         const boost b = boost_of(it, l, release, amplitude, before, headroom, *rise_s);
-        if (b.amplitude * unit > least_boost) {
+        if (b.amplitude * unit > least_boost)
             add(it, tactor, b, more);
-        }
         const auto length = static_cast<double>(it.length);
         m.strength = before * l.left(length) + amplitude * l.fallen(length) +
                      b.amplitude * l.fallen(static_cast<double>(b.length)) *
@@ -110,17 +106,15 @@ private:
     boost boost_of(const item& it, const lag& l, std::uint32_t release, double amplitude, double before,
                    double headroom, double rise_s) const
     {
-        if (!(headroom > 0.0 && amplitude > before)) {
+        if (!(headroom > 0.0 && amplitude > before))
             return {};
-        }
         const double half_cycle = 0.5 * s_.rate / s_.plans[it.plan].schedule.carrier_hz;
         const double longest = std::min(static_cast<double>(it.length), enough_rises * rise_s * s_.rate);
         const double shortest = std::max(1.0, static_cast<double>(it.ramp) + release);
         const auto first = static_cast<std::uint64_t>(std::ceil(shortest / half_cycle));
         const auto last = static_cast<std::uint64_t>(longest / half_cycle);
-        if (last < std::max<std::uint64_t>(first, 1)) {
+        if (last < std::max<std::uint64_t>(first, 1))
             return {};
-        }
         const auto needed = [&](std::uint64_t half_cycles) -> boost {
             const std::uint64_t frames = frame_at(static_cast<double>(half_cycles) * half_cycle, 1.0);
             const auto t = static_cast<double>(frames);
@@ -130,11 +124,10 @@ private:
         std::uint64_t low = std::max<std::uint64_t>(first, 1);
         for (std::uint64_t high = last; low < high;) {
             const std::uint64_t middle = low + (high - low) / 2;
-            if (needed(middle).amplitude <= headroom) {
+            if (needed(middle).amplitude <= headroom)
                 high = middle;
-            } else {
+            else
                 low = middle + 1;
-            }
         }
         boost b = needed(low);
         b.amplitude = std::min(b.amplitude, headroom);
@@ -186,9 +179,8 @@ double lag::fallen(double frames) const noexcept
 bool boost_rises(score::impl& s, const array& a, const std::vector<double>& peaks)
 {
     const auto rises = [](const tactor_spec& t) { return t.rise_s.has_value(); };
-    if (std::none_of(a.tactors.begin(), a.tactors.end(), rises)) {
+    if (std::none_of(a.tactors.begin(), a.tactors.end(), rises))
         return false;
-    }
     const std::size_t before = s.list.items.size();
     booster(s, a, peaks).run();
     return s.list.items.size() > before;

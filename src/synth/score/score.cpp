@@ -63,9 +63,8 @@ void check_options(const render_options& o)
                                 "use 0 or more, e.g. 0.002");
     }
     const auto check_ramp = [](const char* what, std::optional<double> s) {
-        if (s && !(*s >= 0.0 && *s <= 10.0)) {
+        if (s && !(*s >= 0.0 && *s <= 10.0))
             throw detail::bad_field(what, fmt::format("{} s is not a ramp", *s), "use 0 to 10, e.g. 0.01");
-        }
     };
     check_ramp("attack_s", o.envelope.attack_s);
     check_ramp("release_s", o.envelope.release_s);
@@ -78,9 +77,8 @@ void check_options(const render_options& o)
 
 void check_marker(const array& a, const render_options& o, unsigned channels)
 {
-    if (!o.marker_channel) {
+    if (!o.marker_channel)
         return;
-    }
     const std::string what = fmt::format("marker channel {}", *o.marker_channel);
     if (*o.marker_channel >= channels) {
         throw error(error_kind::bad_input, what,
@@ -129,9 +127,8 @@ void check_carrier(double carrier_hz, unsigned rate)
 
 std::uint64_t start_frame(std::optional<double> start_s, unsigned rate, std::uint64_t end_before)
 {
-    if (!start_s) {
+    if (!start_s)
         return end_before;
-    }
     if (!(*start_s >= 0.0 && *start_s <= latest_start_s)) {
         throw error(error_kind::bad_input, "start of the stroke",
                     fmt::format("{} s cannot be rendered", *start_s),
@@ -169,9 +166,8 @@ std::size_t most_open(const std::deque<item>& items, End end, Weight weight)
 void sort_by_start(std::deque<item>& items)
 {
     const auto earlier = [](const item& x, const item& y) { return x.start < y.start; };
-    if (!std::is_sorted(items.begin(), items.end(), earlier)) {
+    if (!std::is_sorted(items.begin(), items.end(), earlier))
         std::stable_sort(items.begin(), items.end(), earlier);
-    }
 }
 
 void measure(score::impl& s)
@@ -215,15 +211,13 @@ struct score_builder::impl {
         s->envelope = o.envelope;
         s->channels = channels_of(a, o);
         check_marker(a, o, s->channels);
-        if (o.limits) {
+        if (o.limits)
             synth::check_limits(*o.limits);
-        }
         s->guards = o.limits;
         s->tactors = synth::tactor_levels(a, o);
         const auto curved = [](const tactor_spec& t) { return !t.thresholds.empty(); };
-        if (o.sl_db && std::any_of(a.tactors.begin(), a.tactors.end(), curved)) {
+        if (o.sl_db && std::any_of(a.tactors.begin(), a.tactors.end(), curved))
             s->measured = a.tactors;
-        }
         s->limits = synth::channel_limits(a, s->channels);
     }
 
@@ -297,14 +291,12 @@ score score_builder::take()
 {
     score::impl& s = *impl_->s;
     const render_options& o = impl_->o;
-    if (o.marker_channel) {
+    if (o.marker_channel)
         place_markers(s, synth::frame_at(o.marker_s, o.rate), *o.marker_channel);
-    }
     sort_by_start(s.list.items);
     std::vector<double> peaks = synth::check_peaks(s, impl_->a, o);
-    if (synth::boost_rises(s, impl_->a, peaks)) {
+    if (synth::boost_rises(s, impl_->a, peaks))
         sort_by_start(s.list.items);
-    }
     s.asked = std::move(peaks);
     measure(s);
     const auto made = detail::access::make<score>(std::shared_ptr<const score::impl>(std::move(impl_->s)));
@@ -315,9 +307,8 @@ score score_builder::take()
 score::score(const array& a, std::vector<placed_plan> plans, const render_options& o)
 {
     score_builder b(a, o);
-    for (placed_plan& p : plans) {
+    for (placed_plan& p : plans)
         b.add(std::move(p.schedule), p.start_s, p.anchor);
-    }
     *this = b.take();
 }
 

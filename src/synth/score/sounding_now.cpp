@@ -16,9 +16,8 @@ double amplitude_at(const channel_line& l, std::uint32_t points, std::uint64_t f
     const auto end = l.frame.begin() + points;
     const auto after = std::upper_bound(l.frame.begin(), end, frame);
     const auto i = static_cast<std::size_t>(after - l.frame.begin());
-    if (after == end) {
+    if (after == end)
         return l.amplitude[i - 1];
-    }
     const double part = static_cast<double>(frame - l.frame[i - 1]) / (l.frame[i] - l.frame[i - 1]);
     return l.amplitude[i - 1] + part * (l.amplitude[i] - l.amplitude[i - 1]);
 }
@@ -34,9 +33,8 @@ const std::vector<double>& sounding_now::at(std::uint64_t asked)
 {
     const std::uint64_t frame = latest_ = std::max(asked, latest_);
     for (const drive_event* e = source_.peek(); e != nullptr && e->start <= frame; e = source_.peek()) {
-        if (e->start + e->length > frame) {
+        if (e->start + e->length > frame)
             open_.push_back(*e);
-        }
         source_.pop();
     }
     std::erase_if(open_, [frame](const drive_event& e) { return e.start + e.length <= frame; });
@@ -48,9 +46,8 @@ const std::vector<double>& sounding_now::at(std::uint64_t asked)
             const channel_drive& d = e.drive[i];
             add(d.channel, d.from + part * (d.to - d.from));
         }
-        if (e.points != 0) {
+        if (e.points != 0)
             add(e.line.channel, amplitude_at(e.line, e.points, frame - e.start));
-        }
     }
     for (std::size_t i = 0; i < levels_.size(); ++i) {
         const tactor_level& t = detail::access::of(score_).tactors[i];

@@ -31,13 +31,11 @@ void reverse_bits(spectrum& x)
     const std::size_t n = x.size();
     for (std::size_t i = 1, j = 0; i < n; ++i) {
         std::size_t bit = n >> 1U;
-        for (; (j & bit) != 0; bit >>= 1U) {
+        for (; (j & bit) != 0; bit >>= 1U)
             j ^= bit;
-        }
         j ^= bit;
-        if (i < j) {
+        if (i < j)
             std::swap(x[i], x[j]);
-        }
     }
 }
 
@@ -54,9 +52,8 @@ void fourier_sum(spectrum& x)
     reverse_bits(x);
     const std::size_t n = x.size();
     spectrum turn(std::max<std::size_t>(n / 2, 1));
-    for (std::size_t k = 0; k < turn.size(); ++k) {
+    for (std::size_t k = 0; k < turn.size(); ++k)
         turn[k] = unit(static_cast<double>(k) / static_cast<double>(n));
-    }
     for (std::size_t half = 1; half < n; half *= 2) {
         const std::size_t step = n / (2 * half);
         for (std::size_t from = 0; from < n; from += 2 * half) {
@@ -83,16 +80,14 @@ spectrum fourier_coefficients(std::span<const float> x, std::size_t count)
     }
     fourier_sum(a);
     fourier_sum(b);
-    for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t i = 0; i < n; ++i)
         a[i] = times(a[i], b[i]);
-    }
     // The sum once more gives the convolution backwards.
     fourier_sum(a);
     spectrum c(count);
     const double scale = 1.0 / (static_cast<double>(n) * static_cast<double>(m));
-    for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t k = 0; k < count; ++k)
         c[k] = scale * times(a[(n - k) % n], chirp(k, m, -1.0));
-    }
     return c;
 }
 

@@ -31,9 +31,8 @@ std::vector<course_part> course_of(const std::vector<carrier_point>& points, uns
         const carrier_point& to = points[std::min(i + 1, points.size() - 1)];
         const double frames = (to.t_s - from.t_s) * rate;
         const double change = frames > 0.0 ? (to.hz - from.hz) / rate / frames : 0.0;
-        if (frames > 0.0 || i + 1 == points.size()) {
+        if (frames > 0.0 || i + 1 == points.size())
             parts.push_back({from.t_s * rate, cycles, from.hz / rate, 0.5 * change});
-        }
         cycles += 0.5 * (to.t_s - from.t_s) * (from.hz + to.hz);
         cycles -= std::floor(cycles);
     }
@@ -94,9 +93,8 @@ void fill_in(timbre& t, const plan& p, unsigned rate)
         t.samples = std::make_shared<const wave_samples>(recorded_loop(*w.recorded, rate));
     } else {
         check_free_place("carrier_hz", highest_hz(p) + am_hz, rate);
-        if (w.kind == waveform_kind::sine) {
+        if (w.kind == waveform_kind::sine)
             return;
-        }
         const std::size_t harmonics = harmonics_below(highest_hz(p), am_hz, rate);
         t.form = timbre::form_kind::cycle;
         t.samples = std::make_shared<const wave_samples>(
@@ -118,9 +116,8 @@ std::shared_ptr<const timbre> make_timbre(const plan& p, unsigned rate)
     validate(p.wave);
     validate(p.am);
     const bool modulated = p.am.hz > 0.0 && p.am.depth > 0.0;
-    if (p.wave.kind == waveform_kind::sine && !modulated && p.course.empty()) {
+    if (p.wave.kind == waveform_kind::sine && !modulated && p.course.empty())
         return nullptr;
-    }
     auto t = std::make_shared<timbre>();
     t->cycles_per_frame = p.carrier_hz / rate;
     t->course = course_of(p.course, rate);
@@ -141,9 +138,8 @@ std::shared_ptr<const timbre> timbre_shelf::get(const plan& p, unsigned rate)
 {
     const auto there =
         std::find_if(places_.begin(), places_.end(), [&](const place& q) { return sound_alike(q.asked, p); });
-    if (there != places_.end()) {
+    if (there != places_.end())
         return there->made;
-    }
     std::shared_ptr<const timbre> made = make_timbre(p, rate);
     if (made && places_.size() < most_places) {
         plan asked;

@@ -15,9 +15,8 @@ namespace {
 TACTOR_CLONES void linear_turns(double first, double cycles_per_frame, unsigned n, double* out) noexcept
 {
     double* __restrict o = out;
-    for (int j = 0; j < static_cast<int>(n); ++j) {
+    for (int j = 0; j < static_cast<int>(n); ++j)
         o[j] = (first + j) * cycles_per_frame;
-    }
 }
 
 TACTOR_CLONES void swept_turns(const course_part& p, double first, unsigned n, double* out) noexcept
@@ -38,18 +37,16 @@ TACTOR_CLONES void sines(const double* turns, unsigned n, bool cosine, double* o
     const double* __restrict in = turns;
     double* __restrict o = out;
     const double ahead = cosine ? 0.25 : 0.0;
-    for (int j = 0; j < static_cast<int>(n); ++j) {
+    for (int j = 0; j < static_cast<int>(n); ++j)
         o[j] = sincos_turns(in[j] + ahead).sin;
-    }
 }
 
 TACTOR_CLONES void widen(const float* from, unsigned n, double* to) noexcept
 {
     const float* __restrict in = from;
     double* __restrict out = to;
-    for (unsigned j = 0; j < n; ++j) {
+    for (unsigned j = 0; j < n; ++j)
         out[j] = static_cast<double>(in[j]);
-    }
 }
 
 void read_loop(const wave_samples& loop, std::int64_t first, unsigned n, double* out) noexcept
@@ -77,11 +74,10 @@ TACTOR_CLONES void rest_of(double power, unsigned n, double* x) noexcept
 
 void play(const timbre& t, const double* turns, unsigned n, wave w, double* out) noexcept
 {
-    if (t.is_sine()) {
+    if (t.is_sine())
         sines(turns, n, w == wave::cosine, out);
-    } else {
+    else
         read_cycle(*t.samples, turns, n, out);
-    }
 }
 
 /// Each frame by its own place on the carrier alone, so that blocks make no difference.
@@ -97,14 +93,12 @@ void follow(const timbre& t, std::int64_t first, unsigned n, wave w, double* out
     auto next = std::upper_bound(t.course.begin(), t.course.end(), static_cast<double>(first), after);
     for (unsigned done = 0; done < n;) {
         const auto at = static_cast<double>(first + done);
-        while (next != t.course.end() && next->start <= at) {
+        while (next != t.course.end() && next->start <= at)
             ++next;
-        }
         const course_part& p = next == t.course.begin() ? *next : *(next - 1);
         unsigned length = n - done;
-        if (next != t.course.end()) {
+        if (next != t.course.end())
             length = static_cast<unsigned>(std::min<double>(length, std::ceil(next->start - at)));
-        }
         if (p.rests()) {
             std::fill_n(out + done, length, 0.0); // a constant would push the tactor off its place
         } else {
@@ -141,14 +135,12 @@ TACTOR_CLONES void read_cycle(const wave_samples& cycle, const double* turns, un
 
 void timbre::fill(std::int64_t first, unsigned n, double* out, wave w) const noexcept
 {
-    if (form == form_kind::loop) {
+    if (form == form_kind::loop)
         read_loop(*samples, first, n, out);
-    } else {
+    else
         follow(*this, first, n, w, out);
-    }
-    if (w == wave::cosine && !is_sine()) {
+    if (w == wave::cosine && !is_sine())
         rest_of(power, n, out);
-    }
 }
 
 void modulate_block(oscillator_tables& tables, double cycles_per_frame, double depth, std::int64_t first,

@@ -33,9 +33,8 @@ double peak_of(const wave_samples& x)
 void scale(wave_samples& x, double peak)
 {
     const double gain = peak > 0.0 ? 1.0 / (peak * above_peak) : 0.0;
-    for (float& v : x) {
+    for (float& v : x)
         v = static_cast<float>(gain * static_cast<double>(v));
-    }
 }
 
 /// Between the points, too.
@@ -49,13 +48,11 @@ double cycle_peak(const wave_samples& cycle)
     const std::size_t all = between * (cycle.size() - cycle_margin);
     for (std::size_t at = 0; at < all; at += block_frames) {
         const auto n = static_cast<unsigned>(std::min<std::size_t>(block_frames, all - at));
-        for (unsigned j = 0; j < n; ++j) {
+        for (unsigned j = 0; j < n; ++j)
             turns[j] = static_cast<double>(at + j) / (between * points);
-        }
         read_cycle(cycle, turns.data(), n, x.data());
-        for (unsigned j = 0; j < n; ++j) {
+        for (unsigned j = 0; j < n; ++j)
             peak = std::max(peak, std::abs(x[j]));
-        }
     }
     return peak;
 }
@@ -101,14 +98,12 @@ std::vector<float> unit_samples(const recording& r)
 wave_samples cycle_of(spectrum harmonics)
 {
     const std::size_t points = harmonics.size();
-    for (std::size_t h = 1; h < points; h += 2) {
+    for (std::size_t h = 1; h < points; h += 2)
         harmonics[h] = -harmonics[h]; // half a cycle
-    }
     fourier_sum(harmonics);
     wave_samples x(points + cycle_margin);
-    for (std::size_t i = 0; i < x.size(); ++i) {
+    for (std::size_t i = 0; i < x.size(); ++i)
         x[i] = static_cast<float>(harmonics[(i + points - 1) % points].real());
-    }
     return x;
 }
 
@@ -198,9 +193,8 @@ wave_samples resampled(const std::vector<float>& in, std::size_t size)
 wave_samples shape_cycle(waveform_kind shape, std::size_t harmonics)
 {
     spectrum x(points_for(harmonics));
-    for (std::size_t h = 1; h <= harmonics; ++h) {
+    for (std::size_t h = 1; h <= harmonics; ++h)
         x[h] = {0.0, -harmonic_of(shape, h)}; // -i exp(i a) has the sine of a
-    }
     wave_samples cycle = cycle_of(std::move(x));
     scale(cycle, cycle_peak(cycle));
     return cycle;
@@ -246,13 +240,11 @@ wave_samples recorded_loop(const recording& r, unsigned rate)
     const double frames = static_cast<double>(r.samples.size()) * rate / r.rate_hz;
     wave_samples x = unit_samples(r);
     const std::size_t size = std::max<std::size_t>(static_cast<std::size_t>(std::llround(frames)), 2);
-    if (x.size() != size) {
+    if (x.size() != size)
         x = resampled(x, size);
-    }
     const double mean = std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
-    for (float& v : x) {
+    for (float& v : x)
         v = static_cast<float>(static_cast<double>(v) - mean);
-    }
     const double peak = peak_of(x);
     require_left(peak, r);
     scale(x, peak);

@@ -87,12 +87,9 @@ class comma_locale {
 public:
     comma_locale() : before_(std::locale::global(std::locale(std::locale(), new comma)))
     {
-        for (const char* name :
-             {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "fr_FR.utf8", "de_DE", "fr_FR"}) {
-            if (std::setlocale(LC_ALL, name) != nullptr) {
+        for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "fr_FR.utf8", "de_DE", "fr_FR"})
+            if (std::setlocale(LC_ALL, name) != nullptr)
                 break;
-            }
-        }
     }
     ~comma_locale()
     {

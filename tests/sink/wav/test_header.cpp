@@ -17,9 +17,8 @@ namespace {
 std::uint64_t number(const std::string& s, std::size_t at, unsigned bytes)
 {
     std::uint64_t n = 0;
-    for (unsigned i = bytes; i-- > 0;) {
+    for (unsigned i = bytes; i-- > 0;)
         n = n << 8U | static_cast<unsigned char>(s.at(at + i));
-    }
     return n;
 }
 

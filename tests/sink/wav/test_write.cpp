@@ -250,9 +250,8 @@ TEST_CASE("a device is written to, not replaced")
 
 TEST_CASE("what may not be written is a failure at run time")
 {
-    if (::geteuid() == 0) {
+    if (::geteuid() == 0)
         return;
-    }
     const folder dir;
     std::ofstream(dir / "old.wav") << "old";
     fs::permissions(dir / "old.wav", fs::perms::owner_read);
@@ -284,9 +283,8 @@ TEST_CASE("a plan that fails in mid-stroke leaves no file; the renderer fades ou
         plan p = make_continuous(4, 0.5);
         p.curve = test::make_curve(0.5, [&broken, amplitude, good = *p.curve](double t, burst& out) {
             good.at(t, out);
-            if (broken && t >= 0.25) {
+            if (broken && t >= 0.25)
                 out.drives[0].amplitude = amplitude;
-            }
         });
         // What sounds beside it ends with it.
         const plan beside = make_plan({make_burst(0.2, 0.2, {{3, 0.5}})});
@@ -326,9 +324,8 @@ TEST_CASE("a plan that fails in mid-stroke leaves no file; the renderer fades ou
             }
         }
         std::vector<std::byte> same(whole.size());
-        for (std::size_t frame = 0; frame < s.frames(); ++frame) {
+        for (std::size_t frame = 0; frame < s.frames(); ++frame)
             by_frames.process(std::span(same).subspan(frame * bytes, bytes));
-        }
         CHECK(same == half);
     }
 }
