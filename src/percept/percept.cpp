@@ -11,7 +11,7 @@
 #include "percept/running_speed.hpp"
 #include "percept/summaries.hpp"
 #include "percept/summing.hpp"
-#include "plan/numbers.hpp"
+#include "plan/rounded.hpp"
 
 namespace tactor {
 inline namespace v0 {

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/words.hpp"
-#include "plan/numbers.hpp"
+#include "plan/rounded.hpp"
 
 namespace tactor::detail {
 namespace {

@@ -8,7 +8,7 @@
 #include "plan/brush_points.hpp"
 #include "plan/brush_timing.hpp"
 #include "plan/job.hpp"
-#include "plan/numbers.hpp"
+#include "plan/rounded.hpp"
 
 namespace tactor::detail {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "plan/numbers.hpp"
+#include "plan/rounded.hpp"
 
 namespace tactor::detail {
 namespace {

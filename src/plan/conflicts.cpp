@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "plan/job.hpp"
-#include "plan/numbers.hpp"
+#include "plan/rounded.hpp"
 
 namespace tactor::detail {
 

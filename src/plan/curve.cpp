@@ -12,7 +12,7 @@
 #include "core/trajectory/limits.hpp"
 #include "core/words.hpp"
 #include "plan/curve_impl.hpp"
-#include "plan/numbers.hpp"
+#include "plan/rounded.hpp"
 
 namespace tactor {
 inline namespace v0 {

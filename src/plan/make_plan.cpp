@@ -10,8 +10,8 @@
 #include "core/words.hpp"
 #include "plan/course.hpp"
 #include "plan/job.hpp"
-#include "plan/numbers.hpp"
 #include "plan/options.hpp"
+#include "plan/rounded.hpp"
 
 namespace tactor {
 inline namespace v0 {

@@ -8,7 +8,7 @@
 
 #include "core/bad_input.hpp"
 #include "core/words.hpp"
-#include "plan/numbers.hpp"
+#include "plan/rounded.hpp"
 
 namespace tactor {
 inline namespace v0 {

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "plan/job.hpp"
-#include "plan/numbers.hpp"
 #include "plan/options.hpp"
+#include "plan/rounded.hpp"
 
 namespace tactor::detail {
 namespace {

@@ -41,9 +41,9 @@ stream_setup checked(stream_setup s)
     return s;
 }
 
-rt::pacer make_pacer(const stream_setup& s)
+detail::pacer make_pacer(const stream_setup& s)
 try {
-    return rt::pacer(s.rate, s.buffer_frames, s.period_frames);
+    return detail::pacer(s.rate, s.buffer_frames, s.period_frames);
 } catch (const std::system_error& e) {
     detail::refused_by_system(s.name, e.code().value(), e.what());
 }
@@ -64,7 +64,7 @@ struct paced_sink::impl {
 
     stream_setup setup;
     std::size_t frame_bytes;
-    rt::pacer pacer;
+    detail::pacer pacer;
     std::uint64_t written = 0; // in this epoch
     bool running = false;
 };

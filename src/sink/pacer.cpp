@@ -7,7 +7,7 @@
 #include <sys/timerfd.h>
 #include <unistd.h>
 
-namespace tactor::rt {
+namespace tactor::detail {
 
 pacer::pacer(unsigned rate, unsigned buffer_frames, unsigned period_frames)
     : queue_(rate, buffer_frames),
@@ -25,16 +25,16 @@ pacer::~pacer()
 
 void pacer::start(std::uint64_t written) noexcept
 {
-    queue_.start(monotonic_ns(), written);
+    queue_.start(rt::monotonic_ns(), written);
 }
 
 void pacer::arm() noexcept
 {
     const std::int64_t t = queue_.time_of_room(period_);
     itimerspec when{};
-    when.it_value = to_timespec(t);
+    when.it_value = rt::to_timespec(t);
     // Forgets expirations, too: nobody needs to read them.
     ::timerfd_settime(fd_, TFD_TIMER_ABSTIME, &when, nullptr);
 }
 
-} // namespace tactor::rt
+} // namespace tactor::detail

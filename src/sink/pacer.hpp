@@ -8,7 +8,7 @@
 #include "rt/clock.hpp"
 #include "sink/virtual_queue.hpp"
 
-namespace tactor::rt {
+namespace tactor::detail {
 
 /// A virtual queue and a timerfd that is readable when a period fits into it.
 class pacer {
@@ -24,7 +24,7 @@ public:
     void start(std::uint64_t written) noexcept;
     void wrote(std::uint64_t frames) noexcept { queue_.wrote(frames); }
     std::uint64_t played(std::int64_t now) noexcept { return queue_.played(now); }
-    std::uint64_t available() noexcept { return queue_.available(monotonic_ns()); }
+    std::uint64_t available() noexcept { return queue_.available(rt::monotonic_ns()); }
 
     /// Sets the timer to when a period fits; a time in the past makes it readable at once. It stays readable
     /// until it is set again.
@@ -38,4 +38,4 @@ private:
     int fd_;
 };
 
-} // namespace tactor::rt
+} // namespace tactor::detail

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace tactor::rt {
+namespace tactor::detail {
 namespace {
 
 constexpr std::uint64_t second = 1'000'000'000;
@@ -45,4 +45,4 @@ std::int64_t virtual_queue::time_of_room(std::uint64_t frames) const noexcept
     return origin_ + duration(must_have_left);
 }
 
-} // namespace tactor::rt
+} // namespace tactor::detail

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace tactor::rt {
+namespace tactor::detail {
 
 /// Frames that leave at the sample rate, in pure arithmetic: the time comes from outside. Deadlines are
 /// counted from one origin, so nothing drifts. Where the writer comes too late the clock waits for it
@@ -35,4 +35,4 @@ private:
     std::int64_t origin_ = 0;
 };
 
-} // namespace tactor::rt
+} // namespace tactor::detail

@@ -5,7 +5,7 @@
 
 #include "core/words.hpp"
 #include "plan/job.hpp"
-#include "plan/numbers.hpp"
+#include "plan/rounded.hpp"
 
 namespace tactor::detail {
 

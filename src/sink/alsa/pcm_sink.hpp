@@ -47,7 +47,7 @@ private:
     handle handle_;
     stream_setup setup_;
     status status_;
-    rt::pacer pacer_;
+    detail::pacer pacer_;
     std::size_t max_descriptors_;
     std::uint64_t written_ = 0;
     std::uint64_t played_ = 0;

@@ -15,7 +15,7 @@
 namespace pacer_test {
 
 using namespace tactor;
-using rt::virtual_queue;
+using detail::virtual_queue;
 
 TEST_CASE("a virtual queue plays at its rate, without drift over a week")
 {
@@ -77,7 +77,7 @@ TEST_CASE("time that runs backwards plays nothing back")
 
 TEST_CASE("the timer becomes readable when a period fits")
 {
-    rt::pacer p(48000, 288, 96);
+    detail::pacer p(48000, 288, 96);
     const std::int64_t begun = rt::monotonic_ns();
     p.start(288);
     p.arm();

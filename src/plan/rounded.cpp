@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "plan/numbers.hpp"
+#include "plan/rounded.hpp"
 
 #include <cmath>
 

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// In which time a burst, or a continuous stroke, rises.
+#pragma once
+
+#include <tactor/plan.hpp>
+#include <tactor/render.hpp>
+
+namespace tactor::synth {
+
+/// Where its envelope does not say.
+double plain_ramp_s(double onset_s, double duration_s, const plan& p, const render_options& o) noexcept;
+
+} // namespace tactor::synth
