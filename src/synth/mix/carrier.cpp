@@ -53,8 +53,7 @@ const double* carrier_block::get(const voice& v, const fade* f, std::uint64_t at
 
 void add_stretch(const double* s, const stretch& p, std::uint64_t at, unsigned n, double* sum) noexcept
 {
-    const auto from = static_cast<unsigned>(std::max(p.start, at) - at);
-    const auto to = static_cast<unsigned>(std::min(p.end, at + n) - at);
+    const auto [from, to] = p.within(at, n);
     if (p.drive.slope == 0.0) {
         add_constant(s, p.drive.from, from, to, sum);
     } else {
@@ -63,13 +62,11 @@ void add_stretch(const double* s, const stretch& p, std::uint64_t at, unsigned n
     }
 }
 
-unsigned set_stretch(const double* s, const stretch& p, std::uint64_t at, unsigned n, double* sum) noexcept
+void set_stretch(const double* s, const stretch& p, std::uint64_t at, unsigned n, double* sum) noexcept
 {
-    const auto from = static_cast<unsigned>(std::max(p.start, at) - at);
-    const auto to = static_cast<unsigned>(std::min(p.end, at + n) - at);
+    const auto [from, to] = p.within(at, n);
     const auto k = static_cast<double>(static_cast<std::int64_t>(at - p.start));
     set_line(s, p.drive.from, p.drive.slope, k, from, to, sum);
-    return to;
 }
 
 TACTOR_CLONES void set_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept

@@ -53,8 +53,8 @@ private:
 /// sum[j] += amplitude * s[j] for those of n frames from frame `at` of the stream on that are in the stretch.
 void add_stretch(const double* s, const stretch& p, std::uint64_t at, unsigned n, double* sum) noexcept;
 
-/// The same, where nothing is in the sum yet. Returns the first of the n frames that comes after the stretch.
-unsigned set_stretch(const double* s, const stretch& p, std::uint64_t at, unsigned n, double* sum) noexcept;
+/// The same, where nothing is in the sum yet.
+void set_stretch(const double* s, const stretch& p, std::uint64_t at, unsigned n, double* sum) noexcept;
 
 /// sum[j] = a * s[j] for lo <= j < hi.
 void set_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept;

@@ -55,8 +55,9 @@ std::uint64_t mixer::drives_cut() const noexcept
 bool mixer::impl::plays(const voice& v) const noexcept
 {
     bool only_spare = true;
-    each_channel(v, [&](std::uint32_t c) { only_spare = only_spare && strips[c].spare; });
-    return v.cycles_per_frame != 0.0 || only_spare;
+    if (v.cycles_per_frame == 0.0)
+        each_channel(v, [&](std::uint32_t c) { only_spare = only_spare && strips[c].spare; });
+    return only_spare;
 }
 
 bool mixer::add(const drive_event& e) noexcept

@@ -77,7 +77,7 @@ void mixer::impl::find_crests(unsigned from, unsigned to) noexcept
             crests[c].reach.fill(0.0);
     for (std::size_t i = 0; i < carriers.size(); ++i) {
         const voice& v = voices[voices.active()[carriers[i].second]];
-        each_stretch(v, [&](const stretch& s) {
+        each_stretch(v, position + from, to - from, [&](const stretch& s) {
             const std::uint32_t c = s.drive.channel;
             if (strips[c].beats) {
                 crests[c].touched = true;

@@ -88,50 +88,38 @@ void mixer::impl::begin_strip(std::uint32_t channel, const voice& v, unsigned fr
 // start.
 void mixer::impl::mix_line(const voice& v, const double* s, unsigned n) noexcept
 {
-    const channel_line& l = v.line;
-    double peak = 0.0;
-    std::uint64_t from = position + n;
-    std::uint64_t to = position;
-    for (std::uint32_t i = 0; i + 1 < v.points; ++i) {
-        const std::uint64_t start = std::max(v.start + l.frame[i], position);
-        const std::uint64_t stop = std::min(v.start + l.frame[i + 1], position + n);
-        const double most = std::max(std::abs(l.amplitude[i]), std::abs(l.amplitude[i + 1]));
-        if (start < stop && most != 0.0) {
-            peak = std::max(peak, most);
-            from = std::min(from, start);
-            to = stop;
-        }
-    }
-    if (from >= to)
-        return;
     strip& t = strips[v.line.channel];
-    if (t.spare && v.cycles_per_frame != 0.0) {
-        limited += to - from; // there is no tactor that it could be meant for
+    const bool meant = !t.spare || v.cycles_per_frame == 0.0;
+    const bool alone = !t.sounding;
+    double* sum = alone ? t.sum.data() : t.summed(n);
+    unsigned first = n;
+    unsigned end = 0;
+    double peak = 0.0;
+    each_stretch(v, position, n, [&](const stretch& p) {
+        const auto [from, to] = p.within(position, n);
+        if (meant && !alone) {
+            add_stretch(s, p, position, n, sum);
+        } else if (meant) {
+            std::fill(sum + end, sum + from, 0.0);
+            set_stretch(s, p, position, n, sum);
+        }
+        first = std::min(first, from);
+        end = to;
+        peak = std::max(peak, p.drive.peak(p.end - p.start));
+    });
+    if (end == 0)
+        return;
+    if (!meant) {
+        limited += end - first; // there is no tactor that it could be meant for
         return;
     }
-    const auto first = static_cast<unsigned>(from - position);
-    const auto end = static_cast<unsigned>(to - position);
-    const bool alone = !t.sounding;
-    if (alone)
+    if (alone) {
+        std::fill(sum + end, sum + n, 0.0);
         begin_strip(v.line.channel, v, first);
-    else
+    } else {
         t.join(v);
+    }
     t.reach(first, end, peak);
-    double* sum = alone ? t.sum.data() : t.summed(n);
-    unsigned filled = 0;
-    each_stretch(v.line, v.points, v.start, [&](const stretch& p) {
-        if (p.end <= position || p.start >= position + n)
-            return;
-        if (!alone) {
-            add_stretch(s, p, position, n, sum);
-            return;
-        }
-        const auto begin = static_cast<unsigned>(std::max(p.start, position) - position);
-        std::fill(sum + filled, sum + begin, 0.0);
-        filled = set_stretch(s, p, position, n, sum);
-    });
-    if (alone)
-        std::fill(sum + filled, sum + n, 0.0);
 }
 
 void mixer::impl::limit(unsigned n) noexcept

@@ -73,7 +73,7 @@ void mixer::impl::find_envelopes(unsigned n) noexcept
 {
     for (const std::uint32_t slot : voices.active()) {
         const voice& v = voices[slot];
-        each_stretch(v, [&](const stretch& s) {
+        each_stretch(v, position, n, [&](const stretch& s) {
             const std::uint32_t c = s.drive.channel;
             const strip& t = strips[c];
             if (t.look < n && !t.only_crests)

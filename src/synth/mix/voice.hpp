@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "synth/mix/window.hpp"
@@ -65,31 +66,32 @@ struct stretch {
     std::uint64_t start = 0;
     std::uint64_t end = 0;
     voice_drive drive = {};
+
+    /// The first, and the one after the last, of the n frames from frame `at` on that are in it; some are.
+    std::pair<unsigned, unsigned> within(std::uint64_t at, unsigned n) const noexcept
+    {
+        return {static_cast<unsigned>(std::max(start, at) - at),
+                static_cast<unsigned>(std::min(end, at + n) - at)};
+    }
 };
 
-/// Calls `visit` for each stretch of a line, in order of time, in which it is not zero.
+/// Calls `visit` for each stretch of each channel that has frames among the n from frame `at` on; those of a
+/// line in order of time, where it is not zero.
 template <class Visit>
-void each_stretch(const channel_line& l, std::uint32_t points, std::uint64_t start, Visit visit)
+void each_stretch(const voice& v, std::uint64_t at, unsigned n, Visit visit)
 {
-    for (std::uint32_t i = 0; i + 1 < points; ++i) {
-        const double from = l.amplitude[i];
-        const double to = l.amplitude[i + 1];
-        const auto length = static_cast<std::uint32_t>(l.frame[i + 1] - l.frame[i]);
-        if (from != 0.0 || to != 0.0) {
-            visit(
-                stretch{start + l.frame[i], start + l.frame[i + 1], {from, (to - from) / length, l.channel}});
-        }
-    }
-}
-
-/// Calls `visit` for each stretch of each channel.
-template <class Visit>
-void each_stretch(const voice& v, Visit visit)
-{
-    for (std::uint32_t i = 0; i < v.drives; ++i)
+    const auto look = [&](std::uint64_t start, std::uint64_t end) { return start < at + n && end > at; };
+    for (std::uint32_t i = 0; i < v.drives && look(v.start, v.end); ++i)
         visit(stretch{v.start, v.end, v.drive[i]});
-    if (v.points != 0)
-        each_stretch(v.line, v.points, v.start, visit);
+    for (std::uint32_t i = 0; i + 1 < v.points; ++i) {
+        const double from = v.line.amplitude[i];
+        const double to = v.line.amplitude[i + 1];
+        const std::uint64_t start = v.start + v.line.frame[i];
+        const std::uint64_t end = v.start + v.line.frame[i + 1];
+        if (look(start, end) && (from != 0.0 || to != 0.0))
+            visit(
+                stretch{start, end, {from, (to - from) / static_cast<double>(end - start), v.line.channel}});
+    }
 }
 
 /// Takes over what of an event can sound on `channels` channels; drives that are not finite are silence.

@@ -114,16 +114,16 @@ bool checked_sample(const plan& p, std::uint64_t k, std::span<const double> prom
     return true;
 }
 
-/// Moves on to the next control points, or to where the plan failed.
+/// Moves on to the next control points. False at the end, and where the plan failed.
 bool expander::next_points() noexcept
 {
     position_ = step_end_;
     next_ = 0;
     control_points& c = *points_;
     c.rows.clear();
-    if (position_ >= item_->end())
-        return false;
     failed_ = failing_;
+    if (failed_ || position_ >= item_->end())
+        return false;
     c.frame[0] = 0;
     c.add(0);
     c.count = 1;
@@ -131,18 +131,17 @@ bool expander::next_points() noexcept
         const std::uint64_t before = step_end_;
         while (step_end_ == before)
             step_end_ = item_->start + control_frame(++step_, score_->rate, item_->length);
-        if (!checked_sample(score_->plans[item_->plan].schedule, step_, score_->promised[item_->plan], c.seen,
-                            c.now, c.failure)) {
-            failing_ = true;
-            failed_ = c.count == 1;
+        failing_ = !checked_sample(score_->plans[item_->plan].schedule, step_, score_->promised[item_->plan],
+                                   c.seen, c.now, c.failure);
+        if (failing_) {
             step_end_ = before;
-            break;
+        } else {
+            c.frame[c.count] = static_cast<std::uint16_t>(step_end_ - position_);
+            c.add(c.count++);
         }
-        c.frame[c.count] = static_cast<std::uint16_t>(step_end_ - position_);
-        c.add(c.count++);
     }
-    if (failed_)
-        c.rows.clear();
+    if (c.count == 1)
+        c.rows.clear(); // nothing lies between one point and none
     return true;
 }
 

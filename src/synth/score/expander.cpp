@@ -135,14 +135,14 @@ void expander::continuous_event() noexcept
 {
     control_points& c = *points_;
     while (next_ == c.rows.size()) {
-        if (failed_ || !next_points()) {
-            done_ = true;
-            return;
-        }
-        if (failed_) {
+        const bool told = failed_;
+        if (!told && next_points())
+            continue;
+        if (failed_ && !told)
             stretch(position_, 0); // what others begin until here comes before the end of all
-            return;
-        }
+        else
+            done_ = true;
+        return;
     }
     draw(c.rows[next_++]);
 }
