@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/kind_names.hpp"
 #include "core/words.hpp"
 
 namespace tactor::cli {
@@ -24,17 +25,13 @@ template <class Enum>
 struct choice {
     std::string names(const char* separator) const
     {
-        std::string all;
-        for (const Enum v : values_of<Enum>())
-            all += (all.empty() ? "" : separator) + std::string(to_string(v));
-        return all;
+        return fmt::format("{}", fmt::join(detail::names_of<Enum>(), separator));
     }
 
     Enum parse(const std::string& option, const std::string& text) const
     {
-        for (const Enum v : values_of<Enum>())
-            if (to_string(v) == text)
-                return v;
+        if (const auto v = detail::kind_named<Enum>(text))
+            return *v;
         throw error(error_kind::bad_input, option, fmt::format("\"{}\" is not known", text),
                     "one of " + names(", "));
     }

@@ -12,6 +12,7 @@
 
 #include <tactor/envelope.hpp>
 
+#include "core/kind_names.hpp"
 #include "core/suggest.hpp"
 #include "files/setup_parts.hpp"
 
@@ -139,15 +140,6 @@ public:
     }
 
 private:
-    template <class Kind>
-    static std::vector<std::string_view> names_of()
-    {
-        std::vector<std::string_view> names;
-        for (const Kind k : values_of<Kind>())
-            names.push_back(to_string(k));
-        return names;
-    }
-
     [[noreturn]] void fail(std::string_view hint) const
     {
         fail_at(table_.where(node_), fmt::format("{} is {}", key_.name, shown(node_)), hint);

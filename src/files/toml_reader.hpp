@@ -17,6 +17,7 @@
 #include <tactor/geometry.hpp>
 #include <tactor/kinds.hpp>
 
+#include "core/kind_names.hpp"
 #include "core/limits.hpp"
 
 namespace tactor::detail {
@@ -64,11 +65,8 @@ public:
     template <class Kind>
     std::optional<Kind> kind(std::string_view key) const
     {
-        std::vector<std::string_view> names;
-        for (const Kind k : values_of<Kind>())
-            names.push_back(to_string(k));
-        const auto name = choice(key, names);
-        return name ? std::optional(from_string<Kind>(*name)) : std::nullopt;
+        const auto name = choice(key, names_of<Kind>());
+        return name ? kind_named<Kind>(*name) : std::nullopt;
     }
     /// `shape` shows a wrong value's author how it is written.
     std::optional<toml_table> table(std::string_view key, std::string title, std::string_view shape) const;

@@ -8,7 +8,9 @@
 #include <map>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "core/kind_names.hpp"
 #include "core/words.hpp"
 
 namespace tactor::python {
@@ -67,13 +69,11 @@ bool compensation(const std::string& name, py::handle v)
 template <class Enum>
 Enum one_of(const std::string& name, py::handle v)
 {
-    std::string known;
-    for (const Enum e : values_of<Enum>()) {
-        if (py::isinstance<py::str>(v) && v.cast<std::string>() == to_string(e))
-            return e;
-        known += (known.empty() ? "" : ", ") + std::string(to_string(e));
-    }
-    refuse(name, fmt::format("{} is not known", shown(v)), "one of " + known);
+    if (py::isinstance<py::str>(v))
+        if (const auto e = detail::kind_named<Enum>(v.cast<std::string>()))
+            return *e;
+    refuse(name, fmt::format("{} is not known", shown(v)),
+           fmt::format("one of {}", fmt::join(detail::names_of<Enum>(), ", ")));
 }
 
 std::string text(const std::string& name, py::handle v)

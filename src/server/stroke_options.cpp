@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/kind_names.hpp"
 #include "server/faults.hpp"
 
 namespace tactor::server {
@@ -20,17 +21,13 @@ using net::json;
 template <typename Kind>
 Kind word(const json& v, const std::string& what)
 {
-    std::vector<std::string_view> names;
-    for (const Kind k : values_of<Kind>())
-        names.push_back(to_string(k));
     if (v.is_string())
-        for (const Kind k : values_of<Kind>())
-            if (v.get_ref<const std::string&>() == to_string(k))
-                return k;
+        if (const auto k = detail::kind_named<Kind>(v.get_ref<const std::string&>()))
+            return *k;
     bad_param(what,
               v.is_string() ? fmt::format("\"{}\" is not known", v.get_ref<const std::string&>())
                             : "it is no text",
-              fmt::format("one of {}", fmt::join(names, ", ")));
+              fmt::format("one of {}", fmt::join(detail::names_of<Kind>(), ", ")));
 }
 
 bool flag(const json& v, const std::string& what)

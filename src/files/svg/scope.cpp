@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/kind_names.hpp"
 #include "core/limits.hpp"
 #include "core/suggest.hpp"
 #include "core/trajectory/limits.hpp"
@@ -17,9 +18,8 @@ constexpr double highest_carrier_hz = 20000.0;
 
 easing_kind easing_of(const svg_document& doc, xml_node n, std::string_view name)
 {
-    for (const easing_kind k : values_of<easing_kind>())
-        if (to_string(k) == name)
-            return k;
+    if (const auto k = kind_named<easing_kind>(name))
+        return *k;
     doc.fail(n, fmt::format("data-easing of {}: {}", svg_document::called(n), quoted(name)),
              "linear, in-out or minimum-jerk");
 }

@@ -5,8 +5,11 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <tactor/error.hpp>
+
+#include "core/kind_names.hpp"
 
 namespace tactor::study {
 namespace {
@@ -65,15 +68,11 @@ void read_kind(const toml_table& t, std::string_view key, Enum& into)
     const auto text = t.text(key);
     if (!text)
         return;
-    std::string all;
-    for (const Enum e : tactor::values_of<Enum>()) {
-        if (to_string(e) == *text) {
-            into = e;
-            return;
-        }
-        all += (all.empty() ? "" : ", ") + std::string(to_string(e));
-    }
-    t.fail(key, fmt::format("{} is {}", key, detail::shown(*t.node(key))), "one of " + all);
+    const auto e = detail::kind_named<Enum>(*text);
+    if (!e)
+        t.fail(key, fmt::format("{} is {}", key, detail::shown(*t.node(key))),
+               fmt::format("one of {}", fmt::join(detail::names_of<Enum>(), ", ")));
+    into = *e;
 }
 
 void read_law(const toml_table& t, plan_options& o)
