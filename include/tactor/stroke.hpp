@@ -14,6 +14,7 @@
 
 #include <tactor/api.hpp>
 #include <tactor/choices.hpp>
+#include <tactor/error.hpp>
 #include <tactor/geometry.hpp>
 #include <tactor/kinds.hpp>
 #include <tactor/movement.hpp>
@@ -135,6 +136,8 @@ struct stroke {
     std::optional<double> speed_mm_s = {};
     start_anchor anchor = {};
     stroke_choices choices = {};
+    /// Where a file says choices.soa_s, or else choices.burst_s, for messages; line 0: no file does.
+    source_place choices_at = {};
     /// Wants to be as large as the array has space for, this far from its edge: see fit_strokes().
     std::optional<double> fit_margin_mm = {};
     /// With it: strokes of the same number, above 0, are fitted as one picture; 0: this one by itself.

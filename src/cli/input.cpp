@@ -87,6 +87,8 @@ std::string only_argument(const settings& s)
 // Which of several strokes it is about, said once: the planner knows its name, but not its number.
 error in_piece(const error& x, const std::string& argument, std::size_t number, const std::string& name)
 {
+    if (x.place().line != 0)
+        return x; // its line says which
     const std::string which =
         name.empty() ? fmt::format("stroke {}", number) : fmt::format("stroke {} \"{}\"", number, name);
     const bool said = x.subject() == "stroke" || x.subject() == fmt::format("stroke \"{}\"", name);
@@ -120,6 +122,11 @@ piece open_argument(const settings& s, const environment& e, const layout& faces
     return {argument, f.strokes, f.plans, {}, f.moved};
 }
 
+bool has_own_carrier(const stroke& s)
+{
+    return s.carrier_hz || !s.carrier_profile.empty();
+}
+
 // Calls f(stroke), and says of which it is that it throws.
 template <class F>
 void for_each_stroke(const piece& p, F f)
@@ -137,8 +144,12 @@ void for_each_stroke(const piece& p, F f)
 
 error of_stroke(const error& x, const piece& p, std::size_t i)
 {
-    return p.strokes.size() == 1 ? in_file(x, p.name)
-                                 : in_piece(in_options(x), p.name, i + 1, p.strokes[i].name);
+    const stroke& s = p.strokes[i];
+    const error about = has_own_carrier(s) && x.subject() == "carrier_hz"
+                            ? x.reworded("stroke", fmt::format("carrier_hz: {}", x.why()), x.hint())
+                            : x;
+    return p.strokes.size() == 1 ? in_file(about, p.name)
+                                 : in_piece(in_options(about), p.name, i + 1, s.name);
 }
 
 std::vector<piece> open_pieces(const settings& s, const environment& e, const layout& faces)
@@ -205,7 +216,16 @@ std::string note_text(note_kind n)
 
 score make_score(const piece& p, const environment& e, const render_options& render)
 {
-    return score(e.tactors, p.plans, render);
+    score_builder made(e.tactors, render);
+    for (std::size_t i = 0; i < p.plans.size(); ++i) {
+        const placed_plan& q = p.plans[i];
+        try {
+            made.add(q.schedule, q.start_s, q.anchor);
+        } catch (const error& x) {
+            throw i < p.strokes.size() ? of_stroke(x, p, i) : x;
+        }
+    }
+    return made.take();
 }
 
 } // namespace tactor::cli

@@ -114,13 +114,31 @@ plan_options chosen(plan_options o, const stroke_choices& c)
     return o;
 }
 
+/// Whether an SOA or burst that cannot be is the stroke's own doing.
+bool is_own(const error& e, const stroke_choices& c)
+{
+    return (e.field() == "soa_s" && c.soa_s) || (e.field() == "burst_s" && (c.burst_s || c.soa_s));
+}
+
+void check_chosen(const plan_options& o, const stroke& s)
+{
+    try {
+        detail::check_options(o);
+    } catch (const error& e) {
+        if (s.choices_at.line == 0 || !is_own(e, s.choices))
+            throw;
+        throw e.reworded(s.choices_at.text(), fmt::format("{}: {}", e.subject(), e.why()), e.hint())
+            .with_place(s.choices_at);
+    }
+}
+
 plan planned(const array& a, const layout& l, const stroke& s, const plan_options& common,
              const detail::burst_taker& take)
 {
     if (s.fit_margin_mm)
         return planned(a, l, fit_as_asked({s}, l).front(), common, take);
     const plan_options o = chosen(common, s.choices);
-    detail::check_options(o);
+    check_chosen(o, s);
     if (l.places().size() != a.tactors.size())
         throw error(
             error_kind::bad_input, "layout",

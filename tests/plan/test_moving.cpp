@@ -119,6 +119,35 @@ TEST_CASE("what a stroke chooses wins over what is asked of all")
     CHECK(refusal(palm, s, {}).find("duration of a burst: ") == 0);
 }
 
+TEST_CASE("an SOA or a burst that a stroke chooses and cannot have is told with its place")
+{
+    const auto told = [](const char* text, plan_options o = {}) {
+        const stroke s = parse_strokes_toml(text, "w.toml").front();
+        try {
+            static_cast<void>(make_plan(palm, s, o));
+        } catch (const error& e) {
+            return std::pair<std::string, unsigned>{e.what(), e.place().line};
+        }
+        return std::pair<std::string, unsigned>{};
+    };
+    using is = std::pair<std::string, unsigned>;
+    const char* soa = "[stroke]\npath = \"M 0 10 H 40\"\nsoa_s = 9\n";
+    CHECK(told(soa) ==
+          is{"w.toml:3:9: soa_s: 9 s is out of bounds: an SOA is longer than 0.0473 s and at most "
+             "0.07 s (use 0.07)",
+             3});
+    CHECK(told("[stroke]\npath = \"M 0 10 H 40\"\nburst_s = 0.2\n") ==
+          is{"w.toml:3:11: duration of a burst: 0.2 s is longer than the SOA of 0.07 s, and bursts must not "
+             "overlap (use at most 0.07 s, or a longer SOA)",
+             3});
+    // The stroke's SOA is what is too short for the duration of all.
+    CHECK(told("[stroke]\npath = \"M 0 10 H 40\"\nsoa_s = 0.05\n", {.burst_s = 0.06}).second == 3);
+    // What is asked of all is not the file's doing.
+    CHECK(told("[stroke]\npath = \"M 0 10 H 40\"\nburst_s = 0.02\n", {.soa_s = 90.0}).first.find("soa_s: ") ==
+          0);
+    CHECK(told("[stroke]\npath = \"M 0 10 H 40\"\nsoa_s = 0.05\nburst_s = 0.05\n").second == 0);
+}
+
 TEST_CASE("a stroke that asks to be fitted is")
 {
     stroke s = along("M 100 100 L 900 700", 1.4);

@@ -24,6 +24,9 @@ stroke chosen(const toml_table& t, stroke s)
         t.fail("burst_s",
                fmt::format("burst_s is {}, longer than soa_s of {}", *s.choices.burst_s, *s.choices.soa_s),
                "bursts must not overlap: at most soa_s");
+    for (const char* key : {"burst_s", "soa_s"})
+        if (t.has(key))
+            s.choices_at = t.where(key);
     s.fit_margin_mm = read_fit(t);
     return s;
 }
