@@ -168,6 +168,17 @@ TEST_CASE("outside the array the nearest point plays, and is counted; or it is a
         CHECK_THROWS_AS(r.live->to({0.0, 0.0}, bad), error);
     }
     CHECK_THROWS_AS(r.live->to({0.0, 0.0}, -0.1), error);
+    const auto field = [&](point p, double intensity) {
+        try {
+            r.live->to(p, intensity);
+        } catch (const error& e) {
+            return std::string(e.field());
+        }
+        return std::string();
+    };
+    CHECK(field({nan, 0.0}, 1.0) == "x_mm");
+    CHECK(field({0.0, nan}, 1.0) == "y_mm");
+    CHECK(field({0.0, 0.0}, nan) == "intensity");
     CHECK(r.live->to({0.0, 0.0}, 1e300)); // held at the channel's limit
     CHECK(r.live->limited_points == 1);
     r.play(9600);

@@ -125,7 +125,8 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
 {
     const std::int64_t stamp = at_ns ? *at_ns : rt::monotonic_ns();
     if (!std::isfinite(p.x_mm) || !std::isfinite(p.y_mm))
-        throw refused("point", fmt::format("the point ({}, {})", p.x_mm, p.y_mm), "finite millimetres");
+        throw refused(std::isfinite(p.x_mm) ? "y_mm" : "x_mm",
+                      fmt::format("the point ({}, {})", p.x_mm, p.y_mm), "finite millimetres");
     if (stamp < 0)
         throw refused("at_ns", fmt::format("a point at {} ns", stamp),
                       "CLOCK_MONOTONIC, ns, or none for now");
