@@ -209,7 +209,7 @@ void feeder::end_all(const report& r)
         if (cancelled || why == reason_kind::none)
             tell({.id = id, .state = state_kind::cancelled});
         else
-            tell({.id = id, .state = state_kind::interrupted, .reason = why, .why = text(why, r.code)});
+            tell(interrupted(id, why, text(why, r.code)));
     };
     while (!in_use_.empty()) {
         slot& s = slots_[in_use_.front()];

@@ -169,5 +169,7 @@ private:
 
 /// A reason for people, with the negative errno that is known of it; empty for `none`.
 std::string text(reason_kind r, int code);
+/// Of a stroke that was cut short before it began.
+stroke_report interrupted(stroke_id id, reason_kind r, std::string why);
 
 } // namespace tactor::engine

@@ -92,17 +92,11 @@ void feeder::look_at_waiting_live(std::uint64_t written)
         if (asked == live_voice::wish::cancel)
             tell({.id = next->first, .state = state_kind::cancelled});
         else if (asked == live_voice::wish::fail)
-            tell({.id = next->first,
-                  .state = state_kind::interrupted,
-                  .reason = reason_kind::plan,
-                  .why = v.failure()});
+            tell(interrupted(next->first, reason_kind::plan, v.failure()));
         else if (asked == live_voice::wish::end && !v.has_point())
             tell({.id = next->first, .state = state_kind::finished});
         else if (v.starved())
-            tell({.id = next->first,
-                  .state = state_kind::interrupted,
-                  .reason = reason_kind::starved,
-                  .why = text(reason_kind::starved, 0)});
+            tell(interrupted(next->first, reason_kind::starved, text(reason_kind::starved, 0)));
         else {
             ++next;
             continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cerrno>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -52,6 +53,11 @@ std::string text(reason_kind r, int code)
         return "the player was closed";
     }
     return "";
+}
+
+stroke_report interrupted(stroke_id id, reason_kind r, std::string why)
+{
+    return {.id = id, .state = state_kind::interrupted, .reason = r, .why = std::move(why)};
 }
 
 } // namespace tactor::engine
