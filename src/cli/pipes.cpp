@@ -11,6 +11,7 @@
 #include <tactor/error.hpp>
 
 #include "cli/say.hpp"
+#include "core/owned_fd.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -43,11 +44,8 @@ void refuse_unreadable(const std::string& file)
                     "name a file to read, or - for standard input");
     if (!S_ISCHR(s.st_mode))
         return;
-    const int fd = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
-    const bool terminal = fd >= 0 && ::isatty(fd) == 1;
-    if (fd >= 0)
-        ::close(fd);
-    if (terminal)
+    const detail::owned_fd fd(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+    if (fd && ::isatty(fd.get()) == 1)
         throw error(error_kind::bad_input, file, "is a terminal", "name a file to read");
 }
 

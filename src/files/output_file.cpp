@@ -56,16 +56,6 @@ int descriptor_in(const fs::path& p)
     throw error(error_kind::bad_input, source_place{file.string()}, why, hint);
 }
 
-/// So that the new name survives a power cut, too; not every file system can.
-void sync_folder(const fs::path& folder) noexcept
-{
-    const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (fd >= 0) {
-        ::fsync(fd);
-        ::close(fd);
-    }
-}
-
 /// Where anybody may put a link, what it points to is not what the user meant.
 bool is_shared(const fs::path& folder)
 {
@@ -94,6 +84,13 @@ fs::path follow_links(const fs::path& asked)
 }
 
 } // namespace
+
+void sync_folder(const fs::path& folder) noexcept
+{
+    const owned_fd fd(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (fd)
+        ::fsync(fd.get());
+}
 
 output_file::output_file(const fs::path& file, patience go_on) : asked_(file), go_on_(std::move(go_on))
 {
@@ -127,8 +124,8 @@ output_file::output_file(const fs::path& file, patience go_on) : asked_(file), g
 void output_file::open_descriptor(int descriptor)
 {
     directly_ = true;
-    fd_ = ::fcntl(descriptor, F_DUPFD_CLOEXEC, 3);
-    if (fd_ < 0)
+    fd_ = owned_fd(::fcntl(descriptor, F_DUPFD_CLOEXEC, 3));
+    if (!fd_)
         fail(errno);
 }
 
@@ -137,8 +134,8 @@ void output_file::open_directly()
 {
     directly_ = true;
     for (;;) {
-        fd_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
-        if (fd_ >= 0)
+        fd_ = owned_fd(::open(target_.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK));
+        if (fd_)
             return;
         if (errno != ENXIO || !fs::is_fifo(target_))
             fail(errno);
@@ -156,7 +153,7 @@ bool output_file::still_wanted()
 
 bool output_file::wait_for_room()
 {
-    pollfd p{.fd = fd_, .events = POLLOUT, .revents = 0};
+    pollfd p{.fd = fd_.get(), .events = POLLOUT, .revents = 0};
     while (::poll(&p, 1, moment_ms) == 0)
         if (!still_wanted())
             return false;
@@ -169,8 +166,8 @@ void output_file::open_beside()
     std::random_device seed;
     for (int i = 0; i < attempts; ++i) {
         temporary_ = folder_of(target_) / fmt::format(".{}.{:08x}.part", stem, seed());
-        fd_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (fd_ >= 0) {
+        fd_ = owned_fd(::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+        if (fd_) {
             keep_owner_and_rights();
             return;
         }
@@ -191,18 +188,17 @@ void output_file::keep_owner_and_rights() noexcept
     if (::stat(target_.c_str(), &there) != 0)
         return;
     struct stat ours {};
-    if (::fstat(fd_, &ours) == 0 && (ours.st_uid != there.st_uid || ours.st_gid != there.st_gid) &&
-        ::fchown(fd_, there.st_uid, there.st_gid) != 0 && ::fchown(fd_, uid_t(-1), there.st_gid) != 0) {
+    if (::fstat(fd_.get(), &ours) == 0 && (ours.st_uid != there.st_uid || ours.st_gid != there.st_gid) &&
+        ::fchown(fd_.get(), there.st_uid, there.st_gid) != 0 &&
+        ::fchown(fd_.get(), uid_t(-1), there.st_gid) != 0) {
         // Another group's members may then read no more than anybody.
         there.st_mode &= ~mode_t{S_IRWXG} | ((there.st_mode & S_IRWXO) << 3U);
     }
-    (void)::fchmod(fd_, there.st_mode & rights);
+    (void)::fchmod(fd_.get(), there.st_mode & rights);
 }
 
 output_file::~output_file()
 {
-    if (fd_ >= 0)
-        ::close(fd_);
     if (!temporary_.empty())
         ::unlink(temporary_.c_str());
 }
@@ -233,7 +229,7 @@ std::int64_t output_file::write(const void* data, std::int64_t bytes)
     // A pipe takes PIPE_BUF bytes without waiting once it has space.
     while (done < bytes && good() && (!directly_ || wait_for_room())) {
         const std::int64_t now = directly_ ? std::min<std::int64_t>(bytes - done, PIPE_BUF) : bytes - done;
-        const ssize_t n = ::write(fd_, from + done, static_cast<std::size_t>(now));
+        const ssize_t n = ::write(fd_.get(), from + done, static_cast<std::size_t>(now));
         if (n > 0)
             done += n;
         else if (n == 0 || (errno != EINTR && errno != EAGAIN))
@@ -249,12 +245,10 @@ void output_file::commit()
     if (given_up_)
         fail(ECANCELED);
     // Else a power cut could leave an empty file under the name.
-    if (!temporary_.empty() && ::fsync(fd_) != 0)
+    if (!temporary_.empty() && ::fsync(fd_.get()) != 0)
         fail(errno);
     // A network file system may tell of a full disk only now.
-    const int closed = ::close(fd_);
-    fd_ = -1;
-    if (closed != 0 && errno != EINTR)
+    if (fd_.close() != 0 && errno != EINTR)
         fail(errno);
     if (temporary_.empty())
         return;

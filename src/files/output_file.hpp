@@ -7,7 +7,13 @@
 #include <filesystem>
 #include <functional>
 
+#include "core/owned_fd.hpp"
+
 namespace tactor::detail {
+
+/// Brings the names in a folder (empty: this one) to the disk, so that they survive a power cut, too. Not
+/// every file system can, and none says so.
+void sync_folder(const std::filesystem::path& folder) noexcept;
 
 /// Opens a new file beside `file`; commit() gives it that name, the destructor removes it otherwise: whoever
 /// looks finds the old file, whole, or the new one, which keeps the old one's owner and rights. Of a link
@@ -58,7 +64,7 @@ private:
     std::filesystem::path temporary_; ///< beside the target, until that is replaced by it
     bool directly_ = false;           ///< no other file is there: a pipe, a device, a descriptor
     patience go_on_;
-    int fd_ = -1;
+    owned_fd fd_;
     int failure_ = 0;
     bool given_up_ = false;
 };

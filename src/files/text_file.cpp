@@ -13,22 +13,11 @@
 
 #include <tactor/error.hpp>
 
+#include "core/owned_fd.hpp"
 #include "core/refused.hpp"
+
 namespace tactor::detail {
 namespace {
-
-struct open_file {
-    explicit open_file(const std::filesystem::path& file) : fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {}
-    ~open_file()
-    {
-        if (fd >= 0)
-            ::close(fd);
-    }
-    open_file(const open_file&) = delete;
-    open_file& operator=(const open_file&) = delete;
-
-    int fd;
-};
 
 [[noreturn]] void refuse(std::string_view name, int code)
 {
@@ -74,10 +63,10 @@ whole_text read_text_file(const std::filesystem::path& file, std::size_t max_byt
     std::error_code ignored;
     if (std::filesystem::is_directory(file, ignored))
         throw error(error_kind::bad_input, source_place{file.string()}, "is a folder", "name a file in it");
-    const open_file in(file);
-    if (in.fd < 0)
+    const owned_fd in(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+    if (!in)
         refuse(file.string(), errno);
-    return read_text(in.fd, file.string(), max_bytes);
+    return read_text(in.get(), file.string(), max_bytes);
 }
 
 void refuse_other_kind(std::string_view text, const std::string& name)

@@ -134,12 +134,6 @@ owned_fd bind_internet(const host_and_port& at, const std::string& what, int typ
 
 } // namespace
 
-owned_fd::~owned_fd()
-{
-    if (fd_ >= 0)
-        ::close(fd_);
-}
-
 host_and_port parse_host(std::string_view text, const std::string& what)
 {
     host_and_port at;

@@ -12,28 +12,11 @@
 
 #include <sys/types.h>
 
+#include "core/owned_fd.hpp"
+
 namespace tactor::net {
 
-/// A descriptor that is closed with this.
-class owned_fd {
-public:
-    owned_fd() noexcept = default;
-    explicit owned_fd(int fd) noexcept : fd_(fd) {}
-    owned_fd(owned_fd&& o) noexcept : fd_(std::exchange(o.fd_, -1)) {}
-    owned_fd& operator=(owned_fd&& o) noexcept
-    {
-        std::swap(fd_, o.fd_);
-        return *this;
-    }
-    ~owned_fd();
-
-    int get() const noexcept { return fd_; }
-    int release() noexcept { return std::exchange(fd_, -1); }
-    explicit operator bool() const noexcept { return fd_ >= 0; }
-
-private:
-    int fd_ = -1;
-};
+using detail::owned_fd;
 
 struct host_and_port {
     std::string host = "127.0.0.1";

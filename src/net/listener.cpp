@@ -28,14 +28,12 @@ listener::listener(asio::io_context& io, int fd, std::string when_full,
 listener::~listener()
 {
     fd_.release();
-    if (spare_ >= 0)
-        ::close(spare_);
 }
 
 void listener::keep_spare() noexcept
 {
-    if (spare_ < 0)
-        spare_ = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+    if (!spare_)
+        spare_ = detail::owned_fd(::open("/dev/null", O_RDONLY | O_CLOEXEC));
 }
 
 void listener::start()
@@ -85,16 +83,17 @@ void listener::take()
 bool listener::turn_away() noexcept
 {
     keep_spare();
-    if (spare_ < 0)
+    if (!spare_)
         return false;
-    ::close(std::exchange(spare_, -1));
-    const int fd = ::accept4(fd_.native_handle(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
-    if (fd >= 0) {
-        static_cast<void>(::send(fd, when_full_.data(), when_full_.size(), MSG_DONTWAIT | MSG_NOSIGNAL));
-        ::close(fd);
-    }
+    spare_.close();
+    detail::owned_fd next(::accept4(fd_.native_handle(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    const bool came = static_cast<bool>(next);
+    if (came)
+        static_cast<void>(
+            ::send(next.get(), when_full_.data(), when_full_.size(), MSG_DONTWAIT | MSG_NOSIGNAL));
+    next.close();
     keep_spare();
-    return fd >= 0;
+    return came;
 }
 
 } // namespace tactor::net

@@ -39,7 +39,7 @@ private:
     boost::asio::steady_timer pause_;
     std::string when_full_;
     std::function<void(socket_type)> taken_;
-    int spare_ = -1;
+    detail::owned_fd spare_;
 };
 
 } // namespace tactor::net

@@ -5,7 +5,6 @@
 #include <system_error>
 
 #include <sys/timerfd.h>
-#include <unistd.h>
 
 namespace tactor::detail {
 
@@ -14,13 +13,8 @@ pacer::pacer(unsigned rate, unsigned buffer_frames, unsigned period_frames)
       period_(period_frames),
       fd_(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC))
 {
-    if (fd_ < 0)
+    if (!fd_)
         throw std::system_error(errno, std::generic_category(), "timerfd");
-}
-
-pacer::~pacer()
-{
-    ::close(fd_);
 }
 
 void pacer::start(std::uint64_t written) noexcept
@@ -34,7 +28,7 @@ void pacer::arm() noexcept
     itimerspec when{};
     when.it_value = rt::to_timespec(t);
     // Forgets expirations, too: nobody needs to read them.
-    ::timerfd_settime(fd_, TFD_TIMER_ABSTIME, &when, nullptr);
+    ::timerfd_settime(fd_.get(), TFD_TIMER_ABSTIME, &when, nullptr);
 }
 
 } // namespace tactor::detail

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "core/owned_fd.hpp"
 #include "rt/clock.hpp"
 #include "sink/virtual_queue.hpp"
 
@@ -15,11 +16,8 @@ class pacer {
 public:
     /// \throws std::system_error when there is no timer to be had.
     pacer(unsigned rate, unsigned buffer_frames, unsigned period_frames);
-    ~pacer();
-    pacer(const pacer&) = delete;
-    pacer& operator=(const pacer&) = delete;
 
-    int fd() const noexcept { return fd_; }
+    int fd() const noexcept { return fd_.get(); }
 
     void start(std::uint64_t written) noexcept;
     void wrote(std::uint64_t frames) noexcept { queue_.wrote(frames); }
@@ -35,7 +33,7 @@ public:
 private:
     virtual_queue queue_;
     unsigned period_;
-    int fd_;
+    owned_fd fd_;
 };
 
 } // namespace tactor::detail

@@ -64,48 +64,36 @@ void take_back(int fd, ssize_t written)
 
 play_log::play_log(bool verbose, std::string file) : verbose_(verbose), file_(std::move(file))
 {
-    if (file_.empty())
-        return;
-    try {
+    if (!file_.empty())
         open();
-    } catch (...) {
-        if (fd_ >= 0)
-            ::close(fd_);
-        throw;
-    }
-}
-
-play_log::~play_log()
-{
-    if (fd_ >= 0)
-        ::close(fd_);
 }
 
 void play_log::open()
 {
     // No link is followed, and no pipe is waited for.
-    fd_ = ::open(file_.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+    fd_ = detail::owned_fd(
+        ::open(file_.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666));
     const int code = errno;
     struct stat s {};
-    if (fd_ < 0 && code == ELOOP)
+    if (!fd_ && code == ELOOP)
         throw error(error_kind::bad_input, file_, "is a link",
                     "name the file itself; --verbose writes to standard error");
-    if (fd_ < 0 && code == EISDIR)
+    if (!fd_ && code == EISDIR)
         throw error(error_kind::bad_input, file_, "is a folder", "name a file in it");
-    if (fd_ < 0)
+    if (!fd_)
         throw error(code == ENOENT || code == ENOTDIR ? error_kind::bad_input : error_kind::runtime, file_,
                     std::strerror(code));
-    if (::fstat(fd_, &s) != 0 || !S_ISREG(s.st_mode))
+    if (::fstat(fd_.get(), &s) != 0 || !S_ISREG(s.st_mode))
         throw error(error_kind::bad_input, file_, "is no regular file",
                     "name a file; --verbose writes to standard error");
-    if (!may_be_appended_to(fd_))
+    if (!may_be_appended_to(fd_.get()))
         throw error(error_kind::bad_input, file_, "there is such a file already, and it is no log",
                     "choose another name: lines are appended to logs only");
 }
 
 log_function play_log::function()
 {
-    if (!verbose_ && fd_ < 0)
+    if (!verbose_ && !fd_)
         return {};
     return [this](log_kind k, std::string_view text) { write(k, text); };
 }
@@ -115,17 +103,17 @@ void play_log::write(log_kind k, std::string_view text)
     const std::string line = fmt::format("{} {} {}\n", time_text(), to_string(k), shown(text));
     if (verbose_)
         say_text(stderr, goes_to_journal(stderr) ? shown(text) + "\n" : line, k);
-    if (fd_ < 0)
+    if (!fd_)
         return;
-    const ssize_t n = ::write(fd_, line.data(), line.size());
+    const ssize_t n = ::write(fd_.get(), line.data(), line.size());
     if (n == static_cast<ssize_t>(line.size()))
         return;
     const int code = n < 0 ? errno : ENOSPC;
     if (n > 0)
-        take_back(fd_, n);
+        take_back(fd_.get(), n);
     // The stroke goes on: a log that ends early is no reason to stop it.
     say(stderr, "tactor: warning: {}: {}: the log ends here\n", shown(file_), std::strerror(code));
-    ::close(std::exchange(fd_, -1));
+    fd_.close();
 }
 
 } // namespace tactor::cli

@@ -7,6 +7,8 @@
 
 #include <tactor/log.hpp>
 
+#include "core/owned_fd.hpp"
+
 namespace tactor::cli {
 
 /// "2026-03-01T09:30:00.125Z warning xrun 1: ...": UTC, kind, text. Outlives the player that writes to it.
@@ -16,7 +18,6 @@ public:
     /// unless its name is empty. \throws error: bad_input for a name that is a link, no regular file, or a
     /// file that holds something else; runtime for what the system refuses.
     play_log(bool verbose, std::string file);
-    ~play_log();
     play_log(const play_log&) = delete;
     play_log& operator=(const play_log&) = delete;
 
@@ -29,7 +30,7 @@ private:
 
     bool verbose_;
     std::string file_;
-    int fd_ = -1;
+    detail::owned_fd fd_;
 };
 
 } // namespace tactor::cli

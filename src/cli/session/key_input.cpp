@@ -16,15 +16,15 @@ namespace tactor::cli {
 namespace {
 
 // All in one, for who waits for one. A file is always ready, and cannot be waited for.
-int open_any(const std::list<keypad>& keypads, int besides)
+detail::owned_fd open_any(const std::list<keypad>& keypads, int besides)
 {
-    const int any = ::epoll_create1(EPOLL_CLOEXEC);
-    const auto add = [any](int descriptor) {
+    detail::owned_fd any(::epoll_create1(EPOLL_CLOEXEC));
+    const auto add = [&any](int descriptor) {
         epoll_event readable{};
         readable.events = EPOLLIN;
-        return ::epoll_ctl(any, EPOLL_CTL_ADD, descriptor, &readable) == 0;
+        return ::epoll_ctl(any.get(), EPOLL_CTL_ADD, descriptor, &readable) == 0;
     };
-    bool all = any >= 0 && (besides < 0 || add(besides));
+    bool all = any && (besides < 0 || add(besides));
     for (const keypad& k : keypads)
         all = all && add(k.descriptor());
     if (!all)
@@ -55,8 +55,6 @@ key_input::~key_input()
 {
     if (terminal_)
         ::tcsetattr(STDIN_FILENO, TCSANOW, &before_);
-    if (any_ >= 0)
-        ::close(any_);
 }
 
 void key_input::forget()
@@ -90,8 +88,8 @@ void key_input::fill()
 void key_input::end()
 {
     ended_ = true;
-    if (any_ >= 0) // it would be ready for ever
-        static_cast<void>(::epoll_ctl(any_, EPOLL_CTL_DEL, STDIN_FILENO, nullptr));
+    if (any_) // it would be ready for ever
+        static_cast<void>(::epoll_ctl(any_.get(), EPOLL_CTL_DEL, STDIN_FILENO, nullptr));
 }
 
 std::optional<char> key_input::pressed()

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "cli/session/keypad.hpp"
+#include "core/owned_fd.hpp"
 
 namespace CLI {
 class App;
@@ -33,7 +34,7 @@ public:
     /// Whether keys come as they are pressed.
     bool has_keys() const noexcept { return terminal_ || !keypads_.empty(); }
     /// Can be read when next() may have something, or what is besides can be.
-    int descriptor() const noexcept { return any_ < 0 ? STDIN_FILENO : any_; }
+    int descriptor() const noexcept { return any_ ? any_.get() : STDIN_FILENO; }
     /// Of keys: what was pressed up to now is not an answer to what comes.
     void forget();
     /// The next key, or the next line without blanks; nothing where there is none yet. Does not wait.
@@ -51,8 +52,8 @@ private:
     void end();
 
     std::list<keypad> keypads_;
-    int any_ = -1;     ///< an epoll of all, where standard input is not all there is
-    termios before_{}; // before terminal_, whose initializer fills it
+    detail::owned_fd any_; ///< an epoll of all, where standard input is not all there is
+    termios before_{};     // before terminal_, whose initializer fills it
     bool terminal_;
     std::string text_ = {};
     bool ended_ = false;

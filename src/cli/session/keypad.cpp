@@ -50,27 +50,17 @@ keypad::keypad(std::string device)
     : device_(std::move(device)),
       descriptor_(::open(device_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY))
 {
-    if (descriptor_ < 0)
+    if (!descriptor_)
         throw error(error_kind::not_available, device_, std::strerror(errno),
                     errno == EACCES ? "a udev rule gives it to you: tactor-experiment(1)"
                                     : "the keypads that are there: ls /dev/input/by-id");
-    try {
-        hold();
-    } catch (...) {
-        ::close(descriptor_);
-        throw;
-    }
-}
-
-keypad::~keypad()
-{
-    ::close(descriptor_);
+    hold();
 }
 
 void keypad::hold()
 {
     std::array<unsigned char, KEY_MAX / 8 + 1> keys{};
-    if (::ioctl(descriptor_, EVIOCGBIT(EV_KEY, keys.size()), keys.data()) < 0)
+    if (::ioctl(descriptor_.get(), EVIOCGBIT(EV_KEY, keys.size()), keys.data()) < 0)
         throw error(error_kind::bad_input, device_, "it is no input device",
                     "as /dev/input/by-id/...-event-kbd");
     bool any = false;
@@ -80,7 +70,7 @@ void keypad::hold()
     if (!any)
         throw error(error_kind::bad_input, device_, "it has no key that answers anything",
                     "a keypad, a button box, or buttons with the codes of the digits");
-    if (::ioctl(descriptor_, EVIOCGRAB, 1) < 0)
+    if (::ioctl(descriptor_.get(), EVIOCGRAB, 1) < 0)
         throw error(error_kind::not_available, device_, std::strerror(errno), "another program holds it");
 }
 
@@ -88,7 +78,7 @@ std::optional<char> keypad::next()
 {
     input_event e{};
     for (;;) {
-        const ssize_t n = ::read(descriptor_, &e, sizeof e);
+        const ssize_t n = ::read(descriptor_.get(), &e, sizeof e);
         if (n < 0 && errno == EINTR)
             continue;
         if (n < 0 && errno == EAGAIN)

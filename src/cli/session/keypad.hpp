@@ -8,6 +8,8 @@
 #include <optional>
 #include <string>
 
+#include "core/owned_fd.hpp"
+
 namespace tactor::cli {
 
 /// What a key of an input device (its code in linux/input-event-codes.h) answers, as the key of a terminal: 1
@@ -22,12 +24,11 @@ public:
     /// may not be read or is held by somebody; (bad_input) where it is no input device, or has no key that
     /// answers.
     explicit keypad(std::string device);
-    ~keypad();
     keypad(const keypad&) = delete;
     keypad& operator=(const keypad&) = delete;
 
     /// Can be read when next() may have something.
-    int descriptor() const noexcept { return descriptor_; }
+    int descriptor() const noexcept { return descriptor_.get(); }
     /// The next key that was pressed and answers something. Does not wait. \throws error (runtime) where it
     /// is gone.
     std::optional<char> next();
@@ -36,7 +37,7 @@ private:
     void hold();
 
     std::string device_;
-    int descriptor_;
+    detail::owned_fd descriptor_;
 };
 
 } // namespace tactor::cli

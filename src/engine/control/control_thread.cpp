@@ -10,7 +10,8 @@
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/post.hpp>
 #include <sys/epoll.h>
-#include <unistd.h>
+
+#include "core/owned_fd.hpp"
 
 namespace tactor::engine {
 namespace {
@@ -20,13 +21,12 @@ using boost::asio::posix::stream_descriptor;
 // Asio takes files and devices that are always readable, and says so only when it is to wait for one.
 void check_waitable(int fd)
 {
-    const int set = ::epoll_create1(EPOLL_CLOEXEC);
-    if (set < 0)
+    const detail::owned_fd set(::epoll_create1(EPOLL_CLOEXEC));
+    if (!set)
         throw std::system_error(errno, std::generic_category(), "epoll");
     epoll_event wanted{};
     wanted.events = EPOLLIN;
-    const int code = ::epoll_ctl(set, EPOLL_CTL_ADD, fd, &wanted) < 0 ? errno : 0;
-    ::close(set);
+    const int code = ::epoll_ctl(set.get(), EPOLL_CTL_ADD, fd, &wanted) < 0 ? errno : 0;
     if (code != 0)
         throw std::system_error(code, std::generic_category());
 }

@@ -4,10 +4,10 @@
 #include <cerrno>
 
 #include <sys/eventfd.h>
-#include <unistd.h>
 
 #include <tactor/error.hpp>
 
+#include "core/owned_fd.hpp"
 #include "sink/alsa/error_text.hpp"
 #include "sink/alsa/library_messages.hpp"
 
@@ -18,11 +18,8 @@ namespace {
 // another is, and fails, makes libasound give the whole configuration up.)
 int lack_of_descriptors() noexcept
 {
-    const int fd = ::eventfd(0, EFD_CLOEXEC);
-    if (fd < 0)
-        return -errno;
-    ::close(fd);
-    return 0;
+    const detail::owned_fd one(::eventfd(0, EFD_CLOEXEC));
+    return one ? 0 : -errno;
 }
 
 bool defines_pcms(snd_config_t* top)

@@ -27,32 +27,13 @@ namespace fs = std::filesystem;
     throw error(error_kind::runtime, file.string(), std::strerror(code), what_is_kept(code));
 }
 
-// A name must survive a power cut, too; not every file system can say that it did.
-void sync_names(const fs::path& folder) noexcept
+detail::owned_fd opened(const fs::path& file, int flags)
 {
-    const int fd = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (fd >= 0) {
-        ::fsync(fd);
-        ::close(fd);
-    }
+    detail::owned_fd fd(::open(file.c_str(), flags | O_CLOEXEC | O_NOFOLLOW));
+    if (!fd)
+        fail_on_disk(file, errno);
+    return fd;
 }
-
-class descriptor {
-public:
-    descriptor(const fs::path& file, int flags) : fd_(::open(file.c_str(), flags | O_CLOEXEC | O_NOFOLLOW))
-    {
-        if (fd_ < 0)
-            fail_on_disk(file, errno);
-    }
-    ~descriptor() { ::close(fd_); }
-    descriptor(const descriptor&) = delete;
-    descriptor& operator=(const descriptor&) = delete;
-
-    int get() const noexcept { return fd_; }
-
-private:
-    int fd_;
-};
 
 // 0, or an errno.
 int write_to_disk(int fd, std::string_view text)
@@ -76,12 +57,11 @@ void write_whole(const fs::path& file, std::string_view text)
     if (out.failure() != 0)
         fail_on_disk(file, out.failure());
     out.commit();
-    sync_names(file.parent_path());
 }
 
 void append_line(const fs::path& file, std::string_view line)
 {
-    const descriptor d(file, O_WRONLY | O_APPEND);
+    const detail::owned_fd d = opened(file, O_WRONLY | O_APPEND);
     struct stat before {};
     if (::fstat(d.get(), &before) != 0)
         fail_on_disk(file, errno);
@@ -93,7 +73,7 @@ void append_line(const fs::path& file, std::string_view line)
 
 void cut_broken_line(const fs::path& file)
 {
-    const descriptor d(file, O_RDWR);
+    const detail::owned_fd d = opened(file, O_RDWR);
     struct stat is {};
     if (::fstat(d.get(), &is) != 0)
         fail_on_disk(file, errno);
@@ -117,7 +97,7 @@ bool there(const fs::path& p) noexcept
 void make_folder(const fs::path& folder)
 {
     if (::mkdir(folder.c_str(), 0777) == 0) {
-        sync_names(folder.parent_path());
+        detail::sync_folder(folder.parent_path());
         return;
     }
     const int code = errno;
@@ -145,23 +125,17 @@ void remove_leftovers(const fs::path& folder) noexcept
 folder_lock::folder_lock(const fs::path& folder)
     : fd_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC))
 {
-    if (fd_ < 0)
+    if (!fd_)
         throw error(error_kind::runtime, folder.string(), std::strerror(errno),
                     "name a folder that can be read and written");
-    if (::flock(fd_, LOCK_EX | LOCK_NB) == 0)
+    if (::flock(fd_.get(), LOCK_EX | LOCK_NB) == 0)
         return;
     const int code = errno;
-    ::close(fd_);
     if (code == EWOULDBLOCK)
         throw error(error_kind::bad_input, folder.string(), "another session is running in this folder",
                     "end that one first; two experimenters need a folder each");
     throw error(error_kind::runtime, folder.string(), std::strerror(code),
                 "name a folder that can be locked");
-}
-
-folder_lock::~folder_lock()
-{
-    ::close(fd_);
 }
 
 } // namespace tactor::study

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <string_view>
 
+#include "core/owned_fd.hpp"
+
 namespace tactor::study {
 
 /// Writes a file beside its name, dot-named, and gives it the name when it is on the disk. \throws error.
@@ -32,12 +34,9 @@ class folder_lock {
 public:
     /// \throws error (bad_input) where another has it, (runtime) for what the system refuses.
     explicit folder_lock(const std::filesystem::path& folder);
-    ~folder_lock();
-    folder_lock(const folder_lock&) = delete;
-    folder_lock& operator=(const folder_lock&) = delete;
 
 private:
-    int fd_;
+    detail::owned_fd fd_;
 };
 
 } // namespace tactor::study

@@ -24,17 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// The log's own name must survive a power cut, too; not every file system can.
-void sync_folder_of(const fs::path& file) noexcept
-{
-    const fs::path folder = file.parent_path().empty() ? fs::path(".") : file.parent_path();
-    const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (fd >= 0) {
-        ::fsync(fd);
-        ::close(fd);
-    }
-}
-
 json parse_settings(const fs::path& file)
 {
     json j = json::parse(read_file(file), nullptr, false);
@@ -68,19 +57,8 @@ fs::path settings_file(const fs::path& log)
 calibration_log::calibration_log(fs::path file, bool resume, calibration_settings& s)
     : file_(std::move(file)), synced_(s.simulate.empty())
 {
-    try {
-        open();
-        settle(resume, s);
-    } catch (...) {
-        if (fd_ >= 0)
-            ::close(fd_);
-        throw;
-    }
-}
-
-calibration_log::~calibration_log()
-{
-    ::close(fd_);
+    open();
+    settle(resume, s);
 }
 
 void calibration_log::fail(int code) const
@@ -91,14 +69,15 @@ void calibration_log::fail(int code) const
 // O_NONBLOCK: somebody's pipe is not waited for.
 void calibration_log::open()
 {
-    fd_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW, 0666);
+    fd_ =
+        detail::owned_fd(::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW, 0666));
     struct stat is {};
-    if (fd_ < 0)
+    if (!fd_)
         throw error(error_kind::runtime, file_.string(), std::strerror(errno),
                     "name a log that can be written");
-    if (::fstat(fd_, &is) != 0 || !S_ISREG(is.st_mode))
+    if (::fstat(fd_.get(), &is) != 0 || !S_ISREG(is.st_mode))
         throw error(error_kind::bad_input, file_.string(), "it is no regular file", "name another log");
-    if (::flock(fd_, LOCK_EX | LOCK_NB) != 0)
+    if (::flock(fd_.get(), LOCK_EX | LOCK_NB) != 0)
         throw error(error_kind::bad_input, file_.string(), "another session is writing it",
                     "end that one first, or name another log");
 }
@@ -129,7 +108,7 @@ void calibration_log::settle(bool resume, calibration_settings& s)
     if (text.empty())
         write(fmt::format("{}\n", log_header()));
     if (synced_)
-        sync_folder_of(file_);
+        detail::sync_folder(file_.parent_path()); // the log has a name that must last, too
 }
 
 // The file's text up to its last line end; the rest, which a crash left, is cut off.
@@ -142,10 +121,10 @@ std::string calibration_log::take_whole_lines()
     if (begin != header.substr(0, begin.size()) || (whole > 0 && text.find('\n') != header.size()))
         throw error(error_kind::bad_input, file_.string(), "it is no log of a calibration",
                     "name another log");
-    if (whole < text.size() && ::ftruncate(fd_, static_cast<off_t>(whole)) != 0)
+    if (whole < text.size() && ::ftruncate(fd_.get(), static_cast<off_t>(whole)) != 0)
         fail(errno);
     text.resize(whole);
-    if (::lseek(fd_, 0, SEEK_END) < 0)
+    if (::lseek(fd_.get(), 0, SEEK_END) < 0)
         fail(errno);
     for (std::size_t at = std::min(header.size() + 1, text.size()); at < text.size();) {
         const std::size_t end = text.find('\n', at);
@@ -158,13 +137,13 @@ std::string calibration_log::take_whole_lines()
 void calibration_log::write(const std::string& text)
 {
     for (std::size_t done = 0; done < text.size();) {
-        const ssize_t n = ::write(fd_, text.data() + done, text.size() - done);
+        const ssize_t n = ::write(fd_.get(), text.data() + done, text.size() - done);
         if (n > 0)
             done += static_cast<std::size_t>(n);
         else if (n == 0 || errno != EINTR)
             fail(n == 0 ? ENOSPC : errno);
     }
-    if (synced_ && ::fdatasync(fd_) != 0)
+    if (synced_ && ::fdatasync(fd_.get()) != 0)
         fail(errno);
 }
 

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/owned_fd.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/calibrate/observer.hpp"
 
@@ -31,7 +32,6 @@ public:
     /// \throws error: bad_input where a log is there already (not `resume`), it is in use, it is none, or
     ///         it was begun otherwise; runtime for what the system refuses.
     calibration_log(std::filesystem::path file, bool resume, calibration_settings& s);
-    ~calibration_log();
     calibration_log(const calibration_log&) = delete;
     calibration_log& operator=(const calibration_log&) = delete;
 
@@ -50,7 +50,7 @@ private:
     [[noreturn]] void fail(int code) const;
 
     std::filesystem::path file_;
-    int fd_ = -1;
+    detail::owned_fd fd_;
     bool synced_;
     std::vector<std::string> lines_ = {};
 };

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// A descriptor that is closed with its owner.
+#pragma once
+
+#include <utility>
+
+#include <unistd.h>
+
+namespace tactor::detail {
+
+class owned_fd {
+public:
+    owned_fd() noexcept = default;
+    /// Takes it over; one below 0, which a call of the system gave with an errno, is none.
+    explicit owned_fd(int fd) noexcept : fd_(fd) {}
+    owned_fd(owned_fd&& o) noexcept : fd_(o.release()) {}
+    owned_fd& operator=(owned_fd&& o) noexcept
+    {
+        std::swap(fd_, o.fd_);
+        return *this;
+    }
+    ~owned_fd() { close(); }
+
+    int get() const noexcept { return fd_; }
+    int release() noexcept { return std::exchange(fd_, -1); }
+    /// What close(2) gives; 0 where there is none.
+    int close() noexcept { return fd_ >= 0 ? ::close(release()) : 0; }
+    explicit operator bool() const noexcept { return fd_ >= 0; }
+
+private:
+    int fd_ = -1;
+};
+
+} // namespace tactor::detail
