@@ -6,18 +6,22 @@
 #include <numbers>
 #include <random>
 #include <string>
+#include <utility>
 
+#include <boost/math/quadrature/gauss.hpp>
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
 #include <tactor/path.hpp>
 
+#include "core/path/cubic_length.hpp"
 #include "rounds.hpp"
 
 namespace path_length_test {
 
 using tactor::path;
 using tactor::point;
+using tactor::test::rounds;
 
 namespace {
 
@@ -54,7 +58,7 @@ TEST_CASE("the parts of a Bezier are as long as the whole, from nanometres to a 
         return unit(random) < 0.5 ? -v : v;
     };
     int tried = 0;
-    for (int n = 0; n < tactor::test::rounds(10000); ++n) {
+    for (int n = 0; n < rounds(10000); ++n) {
         control p;
         for (point& q : p)
             q = {number(), n % 3 == 0 ? 0.0 : number()};
@@ -82,7 +86,7 @@ TEST_CASE("the parts of a Bezier are as long as the whole, from nanometres to a 
         CHECK(std::abs(whole.length_mm() - both) < 1e-6);
         CHECK(tactor::distance_mm(whole.at(first), parts[0][3]) < 1e-5);
     }
-    CHECK(tried > tactor::test::rounds(9000));
+    CHECK(tried > rounds(9000));
 }
 
 TEST_CASE("flat ellipses turn sharply and keep their length")
@@ -96,6 +100,34 @@ TEST_CASE("flat ellipses turn sharply and keep their length")
         CHECK(std::abs(p.length_mm() - want) < 1e-5 * b + 1e-7);
         CHECK(tactor::distance_mm(p.at(0.25 * p.length_mm()), {0.0, b}) < 1e-6);
         CHECK(tactor::distance_mm(p.at(0.5 * p.length_mm()), {-100.0, 0.0}) < 1e-6);
+    }
+}
+
+TEST_CASE("several nodes at once give the last digit of Boost's quadrature")
+{
+    std::mt19937_64 g(15);
+    std::uniform_real_distribution<double> place(-50.0, 50.0);
+    std::uniform_real_distribution<double> part(0.0, 1.0);
+    for (int round = 0; round < rounds(20000); ++round) {
+        tactor::detail::cubic c{};
+        for (point& p : c.p)
+            p = {place(g), place(g)};
+        double from = part(g);
+        double to = part(g);
+        if (to < from)
+            std::swap(from, to);
+        const auto speed = [&](double t) {
+            const double r = 1.0 - t;
+            const auto& p = c.p;
+            const auto along = [&](double a, double b, double z, double y) {
+                return 3.0 * r * r * (b - a) + 6.0 * r * t * (z - b) + 3.0 * t * t * (y - z);
+            };
+            const double dx = along(p[0].x_mm, p[1].x_mm, p[2].x_mm, p[3].x_mm);
+            const double dy = along(p[0].y_mm, p[1].y_mm, p[2].y_mm, p[3].y_mm);
+            return std::sqrt(dx * dx + dy * dy);
+        };
+        REQUIRE(tactor::detail::cubic_length(c, from, to) ==
+                boost::math::quadrature::gauss<double, 15>::integrate(speed, from, to));
     }
 }
 

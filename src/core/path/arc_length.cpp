@@ -30,29 +30,42 @@ bool kink_at_end(const shape& c, const interval& i)
     return i.length > harmless_mm && std::min(speed(c, i.from), speed(c, i.to)) < 0.1 * mean;
 }
 
+/// Two entries, and how much less and more than what is looked for lies before them.
+struct bracket {
+    double from;
+    double to;
+    double below;
+    double above;
+    double first_speed;
+    double last_speed;
+};
+
 /// A first guess between two entries: the cubic in s with the right slopes at both, or the chord where that
 /// leaves them.
-double guess(const shape& c, double from, double to, double below, double above)
+double guess(const bracket& b)
 {
+    const auto& [from, to, below, above, first_speed, last_speed] = b;
     const double all = above - below;
     const double u = -below / all;
     const double chord = from + u * (to - from);
-    const double first = all / speed(c, from) - (to - from);
-    const double last = all / speed(c, to) - (to - from);
+    const double first = all / first_speed - (to - from);
+    const double last = all / last_speed - (to - from);
     const double t = chord + u * (1.0 - u) * ((1.0 - u) * first - u * last);
     return t > from && t < to ? t : chord;
 }
 
 /// Where the length from `from` on, less what is `below`, is nothing. Halley's steps, two or three of them;
 /// nothing where they do not settle, as beside cusps.
-std::optional<double> newton(const shape& c, double from, double to, double below, double above)
+std::optional<double> newton(const shape& c, const bracket& b)
 {
+    const double from = b.from;
+    const double to = b.to;
     constexpr int most_steps = 5;
     // The next step would be of its cube: beyond the last digit.
     constexpr double settled = 1e-6;
-    double t = guess(c, from, to, below, above);
+    double t = guess(b);
     for (int i = 0; i < most_steps; ++i) {
-        const double off = below + length_between(c, from, t);
+        const double off = b.below + length_between(c, from, t);
         const speed_change v = speed_and_rate(c, t);
         const double straight = off / v.speed;
         const double step = straight / (1.0 - 0.5 * straight * v.rate / v.speed);
@@ -93,6 +106,11 @@ arc_length::arc_length(const shape& c) : even_(is_even(c)), t_{0.0}, s_{0.0}
             }
         }
     }
+    if (even_)
+        return;
+    speed_.reserve(t_.size());
+    for (const double t : t_)
+        speed_.push_back(speed(c, t));
 }
 
 double arc_length::at(const shape& c, double t) const noexcept
@@ -121,7 +139,7 @@ double arc_length::parameter(const shape& c, double s_mm) const noexcept
     const double above = s_[k + 1] - s_mm;
     if (!(below < 0.0))
         return t_[k];
-    if (const auto t = newton(c, t_[k], t_[k + 1], below, above))
+    if (const auto t = newton(c, {t_[k], t_[k + 1], below, above, speed_[k], speed_[k + 1]}))
         return *t;
     std::uintmax_t steps = 64;
     const auto [low, high] = boost::math::tools::toms748_solve(

@@ -24,6 +24,7 @@ private:
     bool even_; ///< the parameter goes with the length
     std::vector<double> t_;
     std::vector<double> s_;
+    std::vector<double> speed_; ///< at those; none where the parameter goes with the length
 };
 
 } // namespace tactor::detail

@@ -11,6 +11,7 @@
 #include <boost/math/tools/toms748_solve.hpp>
 
 #include "core/distance.hpp"
+#include "core/path/cubic_length.hpp"
 
 namespace tactor::detail {
 namespace {
@@ -179,6 +180,8 @@ speed_change speed_and_rate(const shape& c, double t) noexcept
 
 double length_between(const shape& c, double from, double to) noexcept
 {
+    if (const auto* b = std::get_if<cubic>(&c); b != nullptr && from < to)
+        return cubic_length(*b, from, to);
     return std::visit(
         [from, to](const auto& s) {
             return boost::math::quadrature::gauss<double, 15>::integrate(

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "synth/mix/clones.hpp"
+#include "core/clones.hpp"
 #include "synth/tone/timbre.hpp"
 
 namespace tactor::synth {

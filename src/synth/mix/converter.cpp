@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "core/clones.hpp"
 #include "synth/mix/abreast.hpp"
-#include "synth/mix/clones.hpp"
 #include "synth/mix/oscillator.hpp"
 #include "synth/mix/sincos.hpp"
 

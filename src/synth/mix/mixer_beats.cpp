@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "synth/mix/clones.hpp"
+#include "core/clones.hpp"
 #include "synth/mix/mixer_impl.hpp"
 
 namespace tactor::synth {

@@ -4,7 +4,7 @@
 // carriers beat on a channel, the power counts at the crests: a gain that followed the beat would be heard.
 #include <algorithm>
 
-#include "synth/mix/clones.hpp"
+#include "core/clones.hpp"
 #include "synth/mix/mixer_impl.hpp"
 
 namespace tactor::synth {

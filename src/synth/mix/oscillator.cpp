@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "synth/mix/clones.hpp"
+#include "core/clones.hpp"
 
 namespace tactor::synth {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "synth/mix/clones.hpp"
+#include "core/clones.hpp"
 
 namespace tactor::synth {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "synth/mix/vector_path.hpp"
 
-#include "synth/mix/clones.hpp"
+#include "core/clones.hpp"
 
 namespace tactor::synth {
 namespace {

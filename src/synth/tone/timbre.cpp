@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "synth/mix/clones.hpp"
+#include "core/clones.hpp"
 #include "synth/mix/sincos.hpp"
 
 namespace tactor::synth {
