@@ -36,7 +36,7 @@ public:
         const double a_v = scale_.amplitude(out.intensity);
         if (seen.holds(p) && a_v > 0.0 && std::isfinite(a_v)) {
             out.position = p;
-            drives_of_three(*three_, faces_, seen, p, a_v, out.drives);
+            drives_of_same(*three_, faces_, seen, p, a_v, out.drives);
             return;
         }
         out.position = faces_.contains(p) ? p : faces_.nearest(p);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -61,6 +62,28 @@ public:
         return at_distances({distance(three[0], p), distance(three[1], p), distance(three[2], p)}, a_v);
     }
 
+    double two_around(point p, rank_pair& two) const override
+    {
+        const layout::impl& l = detail::access::of(layout_);
+        std::vector<unsigned> faces;
+        l.faces_at(p, faces);
+        const auto is_large = [&](unsigned f) { return l.faces[f].size() > few; };
+        if (std::any_of(faces.begin(), faces.end(), is_large) || tactor_at(l, faces, p))
+            return 0.0;
+        const auto found = segment_at(l, faces, p);
+        if (!found)
+            return 0.0;
+        two = *found;
+        return free_along_mm(l, faces, two, p);
+    }
+
+    std::array<double, 2> amplitudes_of_two(const rank_pair& two, point p, double a_v) const override
+    {
+        const double d1 = distance(two.first, p);
+        const double d2 = distance(two.second, p);
+        return {std::sqrt(d2 / (d1 + d2)) * a_v, std::sqrt(d1 / (d1 + d2)) * a_v};
+    }
+
 private:
     static std::array<double, 3> at_distances(const std::array<double, 3>& distances, double a_v)
     {
@@ -80,10 +103,9 @@ private:
 
     void on_segment(rank_pair ends, point p, double a_v, std::vector<drive>& out) const
     {
-        const double d1 = distance(ends.first, p);
-        const double d2 = distance(ends.second, p);
-        add_drive(layout_, ends.first, std::sqrt(d2 / (d1 + d2)) * a_v, out);
-        add_drive(layout_, ends.second, std::sqrt(d1 / (d1 + d2)) * a_v, out);
+        const std::array<double, 2> a = amplitudes_of_two(ends, p, a_v);
+        add_drive(layout_, ends.first, a[0], out);
+        add_drive(layout_, ends.second, a[1], out);
     }
 
     bool in_face(unsigned face, point p, double a_v, std::vector<drive>& out) const

@@ -14,17 +14,62 @@ namespace {
 // On a border, where no disc is, the neighbours mostly have none either.
 constexpr unsigned not_asked = 16;
 
+// What is so much nearer to a segment than it must be to count as on it is so for every formula's rounding.
+constexpr double surely_on_mm = 0.5 * same_place_mm;
+
+template <std::size_t N>
+void add_drives(const std::array<double, N>& amplitudes, const layout& l, const same_tactors& seen,
+                std::vector<drive>& out)
+{
+    const std::vector<unsigned>& index_of = access::of(l).index_of;
+    for (std::size_t k = 0; k < N; ++k) {
+        const std::uint8_t i = seen.by_index[k];
+        if (amplitudes[i] > 0.0)
+            out.push_back({index_of[seen.ranks[i]], amplitudes[i]});
+    }
+}
+
+// The three, or the two, that the model takes from p on.
+void take_around(const model_of_three& m, const layout::impl& l, point p, same_tactors& seen)
+{
+    seen.count = 3;
+    seen.radius_mm = std::max(m.three_around(p, seen.ranks), 0.0);
+    if (seen.radius_mm > 0.0)
+        return;
+    rank_pair two{};
+    seen.radius_mm = std::max(m.two_around(p, two), 0.0);
+    if (seen.radius_mm == 0.0)
+        return;
+    seen.count = 2;
+    seen.ranks = {two.first, two.second, 0};
+    seen.ends = {l.points[two.first], l.points[two.second]};
+}
+
 } // namespace
 
-void drives_of_three(const model_of_three& m, const layout& l, const same_tactors& seen, point p, double a_v,
-                     std::vector<drive>& out)
+bool same_tactors::is_on_segment(point p) const noexcept
 {
-    const std::array<double, 3> a = m.amplitudes(seen.three, p, a_v);
-    const std::vector<unsigned>& index_of = access::of(l).index_of;
+    return segment_distance_mm(ends[0], ends[1], p) <= surely_on_mm;
+}
+
+double model_of_three::two_around(point, rank_pair&) const
+{
+    return 0.0;
+}
+
+std::array<double, 2> model_of_three::amplitudes_of_two(const rank_pair&, point, double) const
+{
+    return {};
+}
+
+void drives_of_same(const model_of_three& m, const layout& l, const same_tactors& seen, point p, double a_v,
+                    std::vector<drive>& out)
+{
     out.clear();
-    for (const std::uint8_t i : seen.by_index)
-        if (a[i] > 0.0)
-            out.push_back({index_of[seen.three[i]], a[i]});
+    if (seen.count == 3)
+        add_drives(m.amplitudes(seen.ranks, p, a_v), l, seen, out);
+    else
+        add_drives(m.amplitudes_of_two({seen.ranks[0], seen.ranks[1]}, p, a_v), l, seen, out);
 }
 
 void look_around(const model_of_three& m, const layout& l, point p, same_tactors& seen)
@@ -33,16 +78,16 @@ void look_around(const model_of_three& m, const layout& l, point p, same_tactors
         --seen.in_vain;
         return;
     }
+    const layout::impl& in = access::of(l);
     seen.centre = p;
-    seen.radius_mm = std::max(m.three_around(p, seen.three), 0.0);
+    take_around(m, in, p, seen);
     if (seen.radius_mm == 0.0) {
         seen.in_vain = not_asked;
         return;
     }
-    const std::vector<unsigned>& index_of = access::of(l).index_of;
     seen.by_index = {0, 1, 2};
-    std::sort(seen.by_index.begin(), seen.by_index.end(), [&](std::uint8_t a, std::uint8_t b) {
-        return index_of[seen.three[a]] < index_of[seen.three[b]];
+    std::sort(seen.by_index.begin(), seen.by_index.begin() + seen.count, [&](std::uint8_t a, std::uint8_t b) {
+        return in.index_of[seen.ranks[a]] < in.index_of[seen.ranks[b]];
     });
 }
 
@@ -62,6 +107,23 @@ double free_mm(const layout::impl& l, unsigned face, point p, bool by_distance)
         }
     }
     return least * (1.0 - 1e-9); // for the rounding of these distances
+}
+
+double free_along_mm(const layout::impl& l, const std::vector<unsigned>& faces, rank_pair on, point p)
+{
+    double least = std::numeric_limits<double>::infinity();
+    for (const unsigned face : faces) {
+        const std::vector<unsigned>& ring = l.faces[face];
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            const point a = l.points[ring[i]];
+            least = std::min(least, length_mm(p, a));
+            for (std::size_t k = 0; k < i; ++k)
+                if (rank_pair(std::minmax(ring[i], ring[k])) != on)
+                    least = std::min(least, segment_distance_mm(a, l.points[ring[k]], p));
+        }
+    }
+    // What counts as on the others reaches so far, and what counts as on this one.
+    return (least - 3.0 * same_place_mm - l.clear_mm) * (1.0 - 1e-9);
 }
 
 } // namespace tactor::detail

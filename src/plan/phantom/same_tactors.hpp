@@ -13,23 +13,29 @@
 
 namespace tactor::detail {
 
-/// A disc within which a model takes the same three tactors. Belongs to one reader.
+/// Where a model takes the same tactors: three in a disc, or two on what of the segment between them lies in
+/// a disc. Belongs to one reader.
 struct same_tactors {
     point centre = {};
     double radius_mm = 0.0;                    ///< 0: nothing is known
-    rank_triple three = {};                    ///< in the model's order
-    std::array<std::uint8_t, 3> by_index = {}; ///< places in `three`, by the tactors' indices
+    rank_triple ranks = {};                    ///< in the model's order
+    std::array<std::uint8_t, 3> by_index = {}; ///< places in `ranks`, by the tactors' indices
+    unsigned count = 3;                        ///< 2: they are the ends of the segment
+    std::array<point, 2> ends = {};            ///< of the segment
     unsigned in_vain = 0;                      ///< places that will not be asked about next
 
     bool holds(point p) const noexcept
     {
         const double dx = p.x_mm - centre.x_mm;
         const double dy = p.y_mm - centre.y_mm;
-        return dx * dx + dy * dy < radius_mm * radius_mm;
+        return dx * dx + dy * dy < radius_mm * radius_mm && (count == 3 || is_on_segment(p));
     }
+
+private:
+    bool is_on_segment(point p) const noexcept;
 };
 
-/// A model that takes three tactors nearly everywhere.
+/// A model that takes three tactors nearly everywhere, and may take two on the segment between them.
 class model_of_three : public phantom_model {
 public:
     /// The three that it takes at p and around it, and how far around, mm; 0 where it takes others at p, or
@@ -37,18 +43,26 @@ public:
     virtual double three_around(point p, rank_triple& three) const = 0;
     /// What weights() gives them, in their order, within that disc.
     virtual std::array<double, 3> amplitudes(const rank_triple& three, point p, double a_v) const = 0;
+
+    /// The same where p is on the segment between two: how far along it, mm. This one: nowhere.
+    virtual double two_around(point p, rank_pair& two) const;
+    virtual std::array<double, 2> amplitudes_of_two(const rank_pair& two, point p, double a_v) const;
 };
 
 /// What weights() gives at p, which `seen` holds; a_v > 0.
-void drives_of_three(const model_of_three& m, const layout& l, const same_tactors& seen, point p, double a_v,
-                     std::vector<drive>& out);
+void drives_of_same(const model_of_three& m, const layout& l, const same_tactors& seen, point p, double a_v,
+                    std::vector<drive>& out);
 
-/// Makes `seen` a disc around p, which is in the array, if there is one.
+/// Makes `seen` a disc around p, which is in the array, if there is one, or else a segment's part.
 void look_around(const model_of_three& m, const layout& l, point p, same_tactors& seen);
 
 /// How far p, which keeps clear of all lines through two tactors of a face, may move until it comes near one
 /// of them, or, where the order of its tactors' distances matters, near a place where that changes. Not above
 /// 0: it may not.
 double free_mm(const layout::impl& l, unsigned face, point p, bool by_distance);
+
+/// How far p, which is on a segment between two tactors and on no other segment of the faces that hold it,
+/// may move along it until it comes near another one. Not above 0: it may not.
+double free_along_mm(const layout::impl& l, const std::vector<unsigned>& faces, rank_pair on, point p);
 
 } // namespace tactor::detail
