@@ -88,7 +88,9 @@ void each_stretch(const voice& v, std::uint64_t at, unsigned n, Visit visit)
         const double to = v.line.amplitude[i + 1];
         const std::uint64_t start = v.start + v.line.frame[i];
         const std::uint64_t end = v.start + v.line.frame[i + 1];
-        if (look(start, end) && (from != 0.0 || to != 0.0))
+        if (start >= at + n)
+            return;
+        if (end > at && (from != 0.0 || to != 0.0))
             visit(
                 stretch{start, end, {from, (to - from) / static_cast<double>(end - start), v.line.channel}});
     }

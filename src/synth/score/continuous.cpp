@@ -45,6 +45,19 @@ std::string above(const burst& b, std::span<const double> promised)
     return {};
 }
 
+/// Whether there is nothing to say of it.
+bool is_good(const burst& b, std::span<const double> promised) noexcept
+{
+    std::size_t first_free = 0;
+    for (const drive& d : b.drives) {
+        if (d.tactor < first_free || d.tactor >= promised.size() ||
+            !(std::abs(d.amplitude) <= promised[d.tactor] * rounding))
+            return false;
+        first_free = std::size_t{d.tactor} + 1;
+    }
+    return true;
+}
+
 /// Called where nothing may be thrown, not even for want of memory for the reason.
 void tell(std::string& failure, double t_s, std::string_view why) noexcept
 {
@@ -97,13 +110,11 @@ bool checked_sample(const plan& p, std::uint64_t k, std::span<const double> prom
     const double t = p.curve->time_s(k);
     try {
         curve_access::of(*p.curve).sample(k, seen, out);
-        std::string why = unplayable(out, promised.size());
-        if (why.empty())
-            why = above(out, promised);
-        if (!why.empty()) {
-            tell(failure, t, why);
-            return false;
-        }
+        if (is_good(out, promised))
+            return true;
+        const std::string why = unplayable(out, promised.size());
+        tell(failure, t, why.empty() ? above(out, promised) : why);
+        return false;
     } catch (const std::exception& e) {
         tell(failure, t, e.what());
         return false;
@@ -111,7 +122,6 @@ bool checked_sample(const plan& p, std::uint64_t k, std::span<const double> prom
         tell(failure, t, "an exception that is no std::exception");
         return false;
     }
-    return true;
 }
 
 /// Moves on to the next control points. False at the end, and where the plan failed.
