@@ -6,12 +6,30 @@
 #include <system_error>
 
 namespace tactor::detail {
+namespace {
+
+/// Of the exception that is being handled; 0 where it has none.
+int errno_in_hand() noexcept
+{
+    try {
+        throw;
+    } catch (const error& e) {
+        return e.os_code();
+    } catch (const std::system_error& e) {
+        const std::error_category& c = e.code().category();
+        return c == std::generic_category() || c == std::system_category() ? e.code().value() : 0;
+    } catch (...) {
+        return 0;
+    }
+}
+
+} // namespace
 
 void throw_caused(const error& e)
 {
-    if (std::current_exception() != nullptr)
-        std::throw_with_nested(e);
-    throw error(e);
+    if (std::current_exception() == nullptr)
+        throw error(e);
+    std::throw_with_nested(e.os_code() != 0 ? e : e.with_os_code(errno_in_hand()));
 }
 
 void throw_caused(const error& e, int code)

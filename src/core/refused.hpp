@@ -9,7 +9,8 @@
 
 namespace tactor::detail {
 
-/// Throws it; the exception that is being handled, if there is one, is nested in it as its cause.
+/// Throws it; the exception that is being handled, if there is one, is nested in it as its cause, whose errno
+/// it has too unless it has one of its own.
 [[noreturn]] void throw_caused(const error& e);
 /// Throws it; its cause is what the system said: a std::system_error of that errno, where it is not 0.
 [[noreturn]] void throw_caused(const error& e, int code);

@@ -2,9 +2,12 @@
 // The parts of an error.
 #include <array>
 #include <cerrno>
+#include <exception>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <type_traits>
 #include <utility>
 
@@ -109,4 +112,25 @@ TEST_CASE("what the system refuses has its errno")
 {
     CHECK(thrown_by([] { detail::refused_by_system("thread", EAGAIN, "none"); }).os_code() == EAGAIN);
     CHECK(thrown_by([] { detail::throw_caused(error(error_kind::runtime, "a", "b")); }).os_code() == 0);
+}
+
+TEST_CASE("an error has the errno of what is nested in it, unless it has one of its own")
+{
+    const auto around = [](const auto& cause, int own) {
+        return thrown_by([&] {
+                   try {
+                       throw cause;
+                   } catch (const std::exception&) {
+                       detail::throw_caused(error(error_kind::runtime, "a", "b").with_os_code(own));
+                   }
+               })
+            .os_code();
+    };
+    CHECK(around(error(error_kind::bad_input, "c", "d").with_os_code(ENOENT), 0) == ENOENT);
+    CHECK(around(error(error_kind::bad_input, "c", "d"), 0) == 0);
+    CHECK(around(std::system_error(EBADF, std::generic_category()), 0) == EBADF);
+    CHECK(around(std::system_error(EBADF, std::system_category()), 0) == EBADF);
+    CHECK(around(std::system_error(make_error_code(error_kind::runtime)), 0) == 0);
+    CHECK(around(std::runtime_error("e"), 0) == 0);
+    CHECK(around(std::system_error(EBADF, std::generic_category()), EIO) == EIO);
 }

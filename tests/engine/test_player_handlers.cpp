@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the program's handlers may do to the player: anything; and what is called after the end.
 #include <atomic>
+#include <cerrno>
 #include <exception>
 #include <memory>
 #include <optional>
@@ -59,7 +60,7 @@ private:
     int fd_;
 };
 
-std::string refused_trigger(int fd)
+std::string refused_trigger(int fd, int code = 0)
 {
     fake_dac dac;
     const running_clock clock(dac);
@@ -69,6 +70,7 @@ std::string refused_trigger(int fd)
         const player p(pcm::adopt(dac.pcm(), nine()), palm(), patient(), std::move(lines));
     } catch (const error& e) {
         CHECK(e.kind() == error_kind::bad_input);
+        CHECK(e.os_code() == code);
         CHECK(dac.closed());
         return e.what();
     }
@@ -290,11 +292,11 @@ TEST_CASE("after the end all members may be called, and an empty function is ref
 
 TEST_CASE("a trigger whose descriptor cannot be polled is an error")
 {
-    has(refused_trigger(-1), "trigger: its descriptor -1: Bad file descriptor");
-    has(refused_trigger(1 << 30), "Bad file descriptor");
+    has(refused_trigger(-1, EBADF), "trigger: its descriptor -1: Bad file descriptor");
+    has(refused_trigger(1 << 30, EBADF), "Bad file descriptor");
     const int file = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
     REQUIRE(file >= 0);
-    has(refused_trigger(file), "Operation not permitted");
+    has(refused_trigger(file, EPERM), "Operation not permitted");
     ::close(file);
     const int event = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
     CHECK(refused_trigger(event) == "no error");
