@@ -17,6 +17,7 @@
 
 #include <tactor/error.hpp>
 
+#include "core/refused.hpp"
 #include "rt/clock.hpp"
 
 namespace tactor::gpio {
@@ -62,10 +63,11 @@ private:
 
 [[noreturn]] void fail(const char* step, int code)
 {
-    throw error(error_kind::not_available, "amplifier",
-                fmt::format("the process that holds its line did not start: {}: {}", step,
-                            std::generic_category().message(code)),
-                "the limit on processes or descriptors may be reached: ulimit -u, ulimit -n");
+    detail::throw_caused(error(error_kind::not_available, "amplifier",
+                               fmt::format("the process that holds its line did not start: {}: {}", step,
+                                           std::generic_category().message(code)),
+                               "the limit on processes or descriptors may be reached: ulimit -u, ulimit -n"),
+                         code);
 }
 
 /// Signals stay blocked in the holder for good: none of the player's handlers may run there.

@@ -19,6 +19,8 @@
 
 #include <tactor/error.hpp>
 
+#include "core/refused.hpp"
+
 namespace tactor::net {
 namespace {
 
@@ -27,7 +29,7 @@ namespace {
     const auto kind = code == EADDRINUSE || code == EACCES || code == EADDRNOTAVAIL
                           ? error_kind::not_available
                           : error_kind::runtime;
-    throw error(kind, what, std::strerror(code));
+    detail::throw_caused(error(kind, what, std::strerror(code)), code);
 }
 
 sockaddr_un unix_address(const std::string& path)
@@ -163,8 +165,11 @@ owned_fd listen_unix(const std::string& path, mode_t mode, std::optional<gid_t> 
     const std::string folder = slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
     // Two servers that start at once look and bind one after the other.
     const owned_fd lock(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    if (!lock)
-        throw error(error_kind::bad_input, what, std::strerror(errno), "its folder must be there");
+    if (!lock) {
+        const int code = errno;
+        detail::throw_caused(
+            error(error_kind::bad_input, what, std::strerror(code), "its folder must be there"), code);
+    }
     ::flock(lock.get(), LOCK_EX);
     make_free(path);
     owned_fd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));

@@ -3,14 +3,19 @@
 #include <doctest/doctest.h>
 
 #include <cerrno>
+#include <cstddef>
 #include <exception>
 #include <functional>
+#include <memory>
+#include <span>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include <tactor/alsa.hpp>
 #include <tactor/error.hpp>
 #include <tactor/gpio.hpp>
+#include <tactor/player.hpp>
 #include <tactor/render.hpp>
 #include <tactor/setup.hpp>
 #include <tactor/stroke.hpp>
@@ -18,7 +23,10 @@
 
 #include "folder.hpp"
 #include "has.hpp"
+#include "player_support.hpp"
+#include "rig.hpp"
 #include "scores.hpp"
+#include "sink/alsa/adopt.hpp"
 
 namespace causes_test {
 
@@ -46,6 +54,16 @@ int system_cause(const std::function<void()>& call)
     return 0;
 }
 
+int os_code(const std::function<void()>& call)
+{
+    try {
+        call();
+    } catch (const error& e) {
+        return e.os_code();
+    }
+    return 0;
+}
+
 // The text of the nested error of ours; "" where nothing is nested.
 std::string own_cause(const std::function<void()>& call)
 {
@@ -61,6 +79,23 @@ std::string own_cause(const std::function<void()>& call)
     return "";
 }
 
+// The first write says this.
+class broken_sink final : public forwarding_sink {
+public:
+    broken_sink(std::unique_ptr<sink> s, io_result said) : forwarding_sink(std::move(s)), said_(said) {}
+    io_result write(std::span<const std::byte>) noexcept override { return said_; }
+
+private:
+    io_result said_;
+};
+
+int cause_of_start(io_result said)
+{
+    fake_dac dac;
+    return system_cause(
+        [&] { const player p(std::make_unique<broken_sink>(pcm::adopt(dac.pcm(), nine()), said), palm()); });
+}
+
 } // namespace
 
 TEST_CASE("what the system refused is nested with its errno")
@@ -73,12 +108,23 @@ TEST_CASE("what the system refused is nested with its errno")
           ENOENT);
 }
 
+TEST_CASE("a stream that does not start has the errno of its device")
+{
+    CHECK(cause_of_start({io_kind::failed, 0, -EIO}) == EIO);
+    CHECK(cause_of_start({io_kind::lost, 0, -ENODEV}) == ENODEV);
+    CHECK(cause_of_start({io_kind::failed, 0, 0}) == 0);
+}
+
 TEST_CASE("an error of a file within a file is nested in that of the outer")
 {
     const folder here;
     const auto outer = here.write("outer.toml", "[array]\nfile = \"none.toml\"\n");
     const std::string cause = own_cause([&] { static_cast<void>(load_setup(outer)); });
     has(cause, "none.toml: No such file or directory");
+    CHECK(os_code([&] { static_cast<void>(load_setup(outer)); }) == ENOENT);
+    const auto sound = here.write("s.toml", "[stroke]\npoints = [[0, 0], [9, 0]]\nduration_s = 1\n"
+                                            "waveform = \"./none.wav\"\n");
+    CHECK(os_code([&] { static_cast<void>(load_strokes(sound)); }) == ENOENT);
     const std::string geometry = own_cause([] {
         static_cast<void>(parse_strokes_toml("[stroke]\npoints = [[0, 0], [0, 0]]\nduration_s = 1\n", "s"));
     });

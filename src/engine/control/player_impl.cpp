@@ -190,11 +190,14 @@ void player::impl::check_start(const player_options& o)
     const std::string what = fmt::format("stream on \"{}\"", out->setup().name);
     const io_result& r = audio.started();
     if (r.status == io_kind::lost)
-        throw error(error_kind::not_available, what, "the device is gone", "plug it in again");
+        detail::throw_caused(error(error_kind::not_available, what, "the device is gone", "plug it in again"),
+                             -r.code);
     if (r.status != io_kind::ok)
-        throw error(error_kind::runtime, what,
-                    fmt::format("it does not start ({})", engine::text(reason_kind::failed, r.code)),
-                    "try another PCM, or a longer period");
+        detail::throw_caused(
+            error(error_kind::runtime, what,
+                  fmt::format("it does not start ({})", engine::text(reason_kind::failed, r.code)),
+                  "try another PCM, or a longer period"),
+            -r.code);
     if (o.require_realtime && audio.fifo_error() != 0)
         detail::throw_caused(error(error_kind::not_available, "real-time priority",
                                    std::error_code(audio.fifo_error(), std::generic_category()).message(),

@@ -8,6 +8,7 @@
 #include <tactor/error.hpp>
 
 #include "core/owned_fd.hpp"
+#include "core/refused.hpp"
 #include "sink/alsa/error_text.hpp"
 #include "sink/alsa/library_messages.hpp"
 
@@ -36,8 +37,10 @@ configuration parse(const std::string& text)
     snd_config_t* c = nullptr;
     const int code = snd_config_load_string(&c, text.c_str(), text.size());
     if (code < 0)
-        throw error(error_kind::bad_input, "ALSA configuration text",
-                    with_detail(snd_strerror(code), said.first()), "see the ALSA documentation of .asoundrc");
+        detail::throw_caused(error(error_kind::bad_input, "ALSA configuration text",
+                                   with_detail(snd_strerror(code), said.first()),
+                                   "see the ALSA documentation of .asoundrc"),
+                             -code);
     return configuration(c);
 }
 

@@ -49,6 +49,7 @@ alsa_options configured(const std::string& text, unsigned channels = 9)
 struct failure {
     error_kind kind = error_kind::runtime;
     std::string text;
+    int os_code = 0;
 
     bool says(const std::string& part) const { return text.find(part) != std::string::npos; }
 };
@@ -59,7 +60,7 @@ failure failure_of(F f)
     try {
         f();
     } catch (const error& e) {
-        return {e.kind(), e.what()};
+        return {e.kind(), e.what(), e.os_code()};
     }
     FAIL("no error");
     return {};
@@ -171,6 +172,7 @@ TEST_CASE("configuration text that ALSA cannot read is bad input")
     const failure e = failure_of_open(configured("pcm.t { type "));
     CHECK(e.kind == error_kind::bad_input);
     CHECK(e.says("ALSA configuration text"));
+    CHECK(e.os_code == EINVAL);
     CHECK(failure_of_open(configured("pcm.other { type null }")).kind == error_kind::not_available);
     CHECK(failure_of_open(configured("pcm.t { type no_such_type }")).kind == error_kind::not_available);
 }

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// Where nobody can listen, and why.
+#include "net/listen.hpp"
+
+#include <cerrno>
+#include <functional>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include <tactor/error.hpp>
+
+#include "folder.hpp"
+
+namespace listen_test {
+
+using namespace tactor;
+using namespace tactor::net;
+
+namespace {
+
+int os_code(const std::function<void()>& call)
+{
+    try {
+        call();
+    } catch (const error& e) {
+        return e.os_code();
+    }
+    return 0;
+}
+
+} // namespace
+
+TEST_CASE("what the system refuses a listener has its errno")
+{
+    const folder here;
+    CHECK(os_code([&] { listen_unix((here / "none/s").string(), 0600, {}); }) == ENOENT);
+    CHECK(os_code([&] { listen_unix((here.write("file") / "s").string(), 0600, {}); }) == ENOTDIR);
+    const owned_fd first = listen_tcp({}, "port");
+    CHECK(os_code([&] { listen_tcp(parse_host(local_address(first.get()), "port"), "port"); }) == EADDRINUSE);
+}
+
+} // namespace listen_test
