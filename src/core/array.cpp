@@ -69,13 +69,21 @@ std::optional<grid_lines> find_grid(const array& a)
 array make_grid(std::string name, unsigned rows, unsigned columns, double pitch_x_mm, double pitch_y_mm)
 {
     const std::size_t count = std::size_t{rows} * columns;
-    if (rows == 0 || columns == 0 || rows > detail::max_tactors || count > detail::max_tactors)
+    const auto possible = [](unsigned n) { return n >= 1 && n <= detail::max_tactors; };
+    if (!possible(rows) || !possible(columns) || count > detail::max_tactors)
         throw error(error_kind::bad_input, "grid", fmt::format("{} rows x {} columns", rows, columns),
-                    fmt::format("1 to {} tactors", detail::max_tactors));
-    for (const double pitch : {pitch_x_mm, pitch_y_mm})
+                    fmt::format("1 to {} tactors", detail::max_tactors))
+            .with_field(!possible(rows)      ? "rows"
+                        : !possible(columns) ? "columns"
+                                             : "");
+    const auto check_pitch = [](const char* field, double pitch) {
         if (!std::isfinite(pitch) || pitch <= 0.0)
             throw error(error_kind::bad_input, "grid", fmt::format("the pitch is {} mm", pitch),
-                        "it must be more than 0");
+                        "it must be more than 0")
+                .with_field(field);
+    };
+    check_pitch("pitch_x_mm", pitch_x_mm);
+    check_pitch("pitch_y_mm", pitch_y_mm);
 
     array a;
     a.name = std::move(name);

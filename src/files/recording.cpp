@@ -131,7 +131,8 @@ waveform noise_of(std::string_view band)
     const auto high = dash ? detail::scan_number(band, ++at) : std::nullopt;
     if (!high || at != band.size())
         throw error(error_kind::bad_input, "waveform", fmt::format("\"noise:{}\" is not noise:LO-HI", band),
-                    "give two frequencies in Hz, such as noise:50-500");
+                    "give two frequencies in Hz, such as noise:50-500")
+            .with_field("wave");
     w.low_hz = *low;
     w.high_hz = *high;
     return w;
@@ -187,7 +188,8 @@ waveform parse_waveform(std::string_view text, const std::filesystem::path& fold
     }
     if (!waveform_names_file(text))
         throw error(error_kind::bad_input, "waveform", fmt::format("{} is not known", detail::quoted(text)),
-                    "one of sine, square, triangle, sawtooth, noise:LO-HI, FILE.wav");
+                    "one of sine, square, triangle, sawtooth, noise:LO-HI, FILE.wav")
+            .with_field("wave");
     w.kind = waveform_kind::recording;
     w.recorded = std::make_shared<const recording>(load_recording(folder / std::filesystem::path(text)));
     return w;

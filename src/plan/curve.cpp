@@ -59,7 +59,8 @@ std::shared_ptr<const curve::impl> checked(double duration_s, curve_samples s)
 {
     if (!(duration_s > 0.0 && duration_s <= detail::longest_stroke_s))
         throw error(error_kind::bad_input, "curve", fmt::format("it lasts {:g} s", duration_s),
-                    fmt::format("more than 0 and at most {:g} s", detail::longest_stroke_s));
+                    fmt::format("more than 0 and at most {:g} s", detail::longest_stroke_s))
+            .with_field("duration_s");
     const std::uint64_t size = detail::samples_of(duration_s);
     if (s.positions.size() != size || s.intensities.size() != size || s.ends.size() != size)
         throw error(error_kind::bad_input, "curve",

@@ -13,6 +13,7 @@
 
 #include <doctest/doctest.h>
 
+#include <tactor/array.hpp>
 #include <tactor/error.hpp>
 #include <tactor/movement.hpp>
 #include <tactor/path.hpp>
@@ -105,7 +106,44 @@ TEST_CASE("what the library refuses names its field")
           }).field() == "intensity");
     CHECK(thrown_by([&] { static_cast<void>(trajectory::along(line, 1.0).with_speed(0.0)); }).field() ==
           "speed_mm_s");
-    CHECK(thrown_by([] { static_cast<void>(parse_waveform("noise:50-1")); }).field() == "wave");
+    for (const char* text : {"noise:50-1", "noise:x", "sinus"})
+        CHECK(thrown_by([&] { static_cast<void>(parse_waveform(text)); }).field() == "wave");
+    const auto grid = [](unsigned rows, unsigned columns, double x_mm, double y_mm) {
+        return std::string(
+            thrown_by([&] { static_cast<void>(make_grid("", rows, columns, x_mm, y_mm)); }).field());
+    };
+    CHECK(grid(0, 3, 9.0, 9.0) == "rows");
+    CHECK(grid(3, 16385, 9.0, 9.0) == "columns");
+    CHECK(grid(3, 16384, 9.0, 9.0).empty()); // both together
+    CHECK(grid(3, 3, 0.0, 9.0) == "pitch_x_mm");
+    CHECK(grid(3, 3, 9.0, -1.0) == "pitch_y_mm");
+    const auto arc = [](double radius_mm, double from_deg, double sweep_deg) {
+        return std::string(
+            thrown_by([&] { static_cast<void>(path::arc({}, radius_mm, from_deg, sweep_deg)); }).field());
+    };
+    CHECK(arc(0.0, 0.0, 90.0) == "radius_mm");
+    CHECK(arc(1.0, 1e7, 90.0) == "from_deg");
+    CHECK(arc(1.0, 0.0, 0.0) == "sweep_deg");
+    CHECK(thrown_by([] { static_cast<void>(path::polyline({})); }).field() == "points");
+    CHECK(thrown_by([] { static_cast<void>(trajectory::timed({})); }).field() == "points");
+}
+
+TEST_CASE("what an array refuses of a tactor names its value")
+{
+    const auto with = [](auto change) {
+        array a = make_grid("two", 1, 2, 20.0, 20.0);
+        change(a.tactors[1]);
+        return std::string(thrown_by([&] { validate(a); }).field());
+    };
+    CHECK(with([](tactor_spec& t) { t.position.x_mm = 1e9; }) == "x_mm");
+    CHECK(with([](tactor_spec& t) { t.position.y_mm = 1e9; }) == "y_mm");
+    CHECK(with([](tactor_spec& t) { t.channel = 1U << 20; }) == "channel");
+    CHECK(with([](tactor_spec& t) { t.gain_db = 99.0; }) == "gain_db");
+    CHECK(with([](tactor_spec& t) { t.max_dbfs = 1.0; }) == "max_dbfs");
+    CHECK(with([](tactor_spec& t) { t.thresholds = {{100.0, 1.0}}; }) == "thresholds");
+    CHECK(with([](tactor_spec& t) { t.rise_s = 2.0; }) == "rise_s");
+    CHECK(with([](tactor_spec& t) { t.threshold_dbfs = 1.0; }) == "threshold_dbfs");
+    CHECK(with([](tactor_spec& t) { t.polarity = 0; }) == "polarity");
 }
 
 TEST_CASE("what the system refuses has its errno")

@@ -111,6 +111,8 @@ TEST_CASE("of a process that did not live what it was about to drive counts unti
                          "drive history: -1 s ahead (give 0 to 86400 s)", error);
     CHECK_THROWS_WITH_AS(static_cast<void>(ahead.with_ahead(16385, 1.0)),
                          "drive history: 16385 channels (give 0 to 16384)", error);
+    CHECK(field_of([&] { static_cast<void>(ahead.with_ahead(9, -1.0)); }) == "ahead_s");
+    CHECK(field_of([&] { static_cast<void>(ahead.with_ahead(16385, 1.0)); }) == "channels");
 }
 
 TEST_CASE("what two gave one array adds up")

@@ -13,6 +13,7 @@
 
 #include "clock_runner.hpp"
 #include "has.hpp"
+#include "message_of.hpp"
 #include "player_support.hpp"
 #include "scores.hpp"
 #include "sink/alsa/adopt.hpp"
@@ -87,7 +88,29 @@ std::string said(const array& a, const score& s)
     }
 }
 
+// The field of what a player of nine channels at 48 kHz does not take.
+std::string refused_field(const score& s)
+{
+    fake_dac dac;
+    const running_clock clock(dac);
+    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    return field_of([&] { p.submit(s); });
+}
+
 } // namespace
+
+TEST_CASE("a score of another rate or of other channels than the stream's is refused by the one that differs")
+{
+    const auto with = [](unsigned channels, unsigned rate) {
+        render_options o = on_nine_channels();
+        o.channels = channels;
+        o.rate = rate;
+        return refused_field(burst_on(0, o));
+    };
+    CHECK(with(9, 44100) == "rate");
+    CHECK(with(10, 48000) == "channels");
+    CHECK(with(10, 44100).empty());
+}
 
 TEST_CASE("a score that drives a channel without a tactor is refused, one that does not is played")
 {
@@ -144,6 +167,7 @@ TEST_CASE("a marker on a tactor's channel is refused, one on a spare channel is 
     CHECK(said(eight, s).empty());
     CHECK(said(palm(), s) == "stroke: its marker is on channel 8, where the player's array has a tactor "
                              "(choose a spare channel for it)");
+    CHECK(refused_field(s) == "marker_channel");
 }
 
 } // namespace fitting_test

@@ -176,6 +176,7 @@ TEST_CASE("samples that make no curve are refused")
     CHECK(refused(0.01, good).empty());
     for (const double duration : {0.0, -1.0, HUGE_VAL, std::nan(""), 86401.0})
         CHECK(refused(duration, good).find("curve: it lasts") == 0);
+    CHECK(field_of([&] { curve(0.0, good); }) == "duration_s");
     CHECK(refused(0.011, good).find("0.011 s has 12 samples") != std::string::npos);
     const auto with = [&](auto change) {
         curve_samples s = good;

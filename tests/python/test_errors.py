@@ -23,6 +23,9 @@ def test_their_parts(palm, stroke):
     assert str(e.value) == f"{e.value.what}: {e.value.why} ({e.value.hint})"
     assert (e.value.file, e.value.line, e.value.column) == (None, None, None)
     assert (e.value.field, e.value.errno) == ("soa", 0)
+    with pytest.raises(tactor.InputError) as e:
+        tactor.Array.grid("flat", 2, 2, (10.0, 0.0))
+    assert e.value.field == "pitch_mm"
 
 
 def test_files_with_line_and_column(tmp_path):

@@ -18,3 +18,15 @@ std::string message_of(F call)
     }
     return {};
 }
+
+/// The field that the complaint of a call is about; "" for none, "no error" where it does not complain.
+template <class F>
+std::string field_of(F call)
+{
+    try {
+        call();
+    } catch (const tactor::error& e) {
+        return std::string(e.field());
+    }
+    return "no error";
+}

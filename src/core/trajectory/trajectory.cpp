@@ -156,7 +156,8 @@ trajectory trajectory::timed(std::vector<timed_point> points)
 {
     if (points.size() < 2)
         throw error(error_kind::bad_input, "timed points", fmt::format("{} of at least 2", points.size()),
-                    "give where it starts and where it ends");
+                    "give where it starts and where it ends")
+            .with_field("points");
     double length = 0.0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         check_point(points, i);

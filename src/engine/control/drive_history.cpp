@@ -140,10 +140,12 @@ drive_history drive_history::with_ahead(unsigned channels, double ahead_s) const
 {
     if (channels > most_channels)
         throw error(error_kind::bad_input, "drive history", fmt::format("{} channels", channels),
-                    fmt::format("give 0 to {}", most_channels));
+                    fmt::format("give 0 to {}", most_channels))
+            .with_field("channels");
     if (!(ahead_s >= 0.0 && ahead_s <= longest_ahead_s))
         throw error(error_kind::bad_input, "drive history", fmt::format("{} s ahead", ahead_s),
-                    fmt::format("give 0 to {} s", longest_ahead_s));
+                    fmt::format("give 0 to {} s", longest_ahead_s))
+            .with_field("ahead_s");
     const std::int64_t now_ns = rt::monotonic_ns();
     synth::drive_history h = impl_ != nullptr ? impl_->as_of(now_ns) : synth::drive_history{};
     h.add_ahead(channels, ahead_s);

@@ -60,7 +60,10 @@ void check_fits(const score& s, const stream_setup& stream, std::span<const doub
         throw error(error_kind::bad_input, "stroke",
                     fmt::format("made for {} at {} Hz, the stream has {} at {} Hz",
                                 counted(s.channels(), "channel"), s.rate(), stream.channels, stream.rate),
-                    "render it with the stream's rate and channels");
+                    "render it with the stream's rate and channels")
+            .with_field(s.channels() == stream.channels ? "rate"
+                        : s.rate() == stream.rate       ? "channels"
+                                                        : "");
     const score::impl& made = detail::access::of(s);
     for (std::size_t i = 0; i < made.asked.size(); ++i)
         if (made.asked[i] > 0.0)
@@ -69,7 +72,8 @@ void check_fits(const score& s, const stream_setup& stream, std::span<const doub
         throw error(
             error_kind::bad_input, "stroke",
             fmt::format("its marker is on channel {}, where the player's array has a tactor", *made.marker),
-            "choose a spare channel for it");
+            "choose a spare channel for it")
+            .with_field("marker_channel");
 }
 
 } // namespace tactor::engine

@@ -7,6 +7,7 @@ import typing as _t
 # The library speaks of its fields; here options have the names of the tool's.
 _NAMES = {
     "soa_s": "soa", "burst_s": "burst", "carrier_hz": "carrier", "ramp_s": "ramp", "sl_db": "sl", "margin_mm": "fit_margin",
+    "pitch_x_mm": "pitch_mm", "pitch_y_mm": "pitch_mm",
     "duration of a burst": "burst", "fit_strokes()": "fit=True", "snap = true": "snap=True", "drop_points = true": "drop_points=True",
 }
 _CHOICE = r"(?<![\w.-])(timing|outside|algorithm) = ([\w-]+)"

@@ -272,12 +272,14 @@ std::uint64_t place_bursts(std::span<const burst> bursts, std::size_t first, con
 std::uint64_t place_end(const plan& p, std::uint32_t plan, std::uint64_t start, std::uint64_t bursts_end,
                         const render_options& o, item_list& out)
 {
-    for (const double s : {p.total_s, p.stroke_duration_s}) {
-        if (!(s >= 0.0 && s <= longest_plan_s)) {
+    const auto check_length = [](const char* field, double s) {
+        if (!(s >= 0.0 && s <= longest_plan_s))
             throw error(error_kind::bad_input, "plan", "it lasts " + seconds_text(s),
-                        fmt::format("between 0 and {} s can be rendered", longest_plan_s));
-        }
-    }
+                        fmt::format("between 0 and {} s can be rendered", longest_plan_s))
+                .with_field(field);
+    };
+    check_length("total_s", p.total_s);
+    check_length("stroke_duration_s", p.stroke_duration_s);
     const std::uint64_t total = start + frame_at(p.total_s, o.rate);
     if (!p.curve)
         return std::max(total, bursts_end);
