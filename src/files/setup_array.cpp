@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
 // [array] and [[tactor]].
 #include <algorithm>
+#include <optional>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "core/kind_names.hpp"
 #include "files/setup_parts.hpp"
 #include "files/text_file.hpp"
 
@@ -72,6 +76,15 @@ array read_included(const toml_table& table, const setup_source& source, located
     return *std::exchange(out.said.array, std::nullopt);
 }
 
+// Without a word it is unknown; nobody says so.
+std::optional<actuator_kind> read_actuator(const toml_table& t)
+{
+    std::vector<std::string_view> known = names_of<actuator_kind>();
+    std::erase(known, to_string(actuator_kind::unknown));
+    const auto name = t.choice("actuator", known);
+    return name ? kind_named<actuator_kind>(*name) : std::nullopt;
+}
+
 // One level, or [[Hz, dBFS], ...] in order of frequency.
 void read_threshold(const toml_table& entry, tactor_spec& t)
 {
@@ -114,8 +127,7 @@ void read_tactor(const toml_table& entry, tactor_spec& t)
                        "1, or -1 where it is wired the other way round");
         t.polarity = *sign > 0.0 ? 1 : -1;
     }
-    if (const auto a = entry.choice("actuator", {"piezo", "voice-coil", "lra", "erm"}))
-        t.actuator = from_string<actuator_kind>(*a);
+    t.actuator = read_actuator(entry).value_or(t.actuator);
 }
 
 // Without a grid: each entry is a tactor and says where it is.
@@ -216,10 +228,10 @@ void read_array(const toml_table& root, const setup_source& source, located_setu
         a.name = *name;
     else if (a.name.empty())
         a.name = std::filesystem::path(source.name).stem().string();
-    if (const auto actuator = table.choice("actuator", {"piezo", "voice-coil", "lra", "erm"}))
+    if (const auto actuator = read_actuator(table))
         for (tactor_spec& t : a.tactors)
             if (t.actuator == actuator_kind::unknown)
-                t.actuator = from_string<actuator_kind>(*actuator);
+                t.actuator = *actuator;
     a.where = root.has("array") ? table.where() : entries.front().where();
     out.said.array = std::move(a);
 }

@@ -86,8 +86,7 @@ void read_sync(const toml_table& root, located_setup& out)
         s.in = read_line(*edge);
         s.edge = edge->kind<edge_kind>("edge").value_or(s.edge);
         s.debounce_s = seconds(edge->number("debounce_ms", {0.0, 10000.0})).value_or(s.debounce_s);
-        if (const auto word = edge->choice("pull", {"up", "down", "none", "as-is"}))
-            s.pull = from_string<pull_kind>(*word);
+        s.pull = edge->kind<pull_kind>("pull").value_or(s.pull);
     }
     s.channel = t->whole("channel", 0, max_channels - 1);
     out.sync_channel_at = t->where("channel");

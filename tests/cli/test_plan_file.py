@@ -175,6 +175,7 @@ class PlanFile(ToolTest):
         refuses(changed(bursts, 9, "bursts", 3, "drives", 0, "tactor"), "bursts[3]", "tactor 9 of 9")
         refuses(changed(bursts, 0.0, "bursts", 3, "onset_s"), "bursts[3]", "before")
         refuses(changed(bursts, "tango", "render", "overlap"), "render.overlap", '"tango"')
+        refuses(changed(bursts, "tango", "render", "phase"), 'render.phase: is "tango", which is not known')
         refuses(changed(bursts, [], "bursts"), "bursts")
         refuses(changed(good, 0.002, "continuous", "step_s"), "continuous.step_s", "0.001")
         self.write("loud.json", json.dumps(changed(good, 1e300, "continuous", "points", 5, "drives", 0, "amplitude")))

@@ -184,6 +184,10 @@ TEST_CASE("GPIO lines: a chip and an offset, or a name, each line once")
     CHECK(complaint(with("offset = 27", "offset = 17")) ==
           "t.toml:18:7: the line is in use at t.toml:13:8 (give each purpose a GPIO line of its own)");
     CHECK(complaint(with("falling", "fall")) == "t.toml:20:33: edge is 'fall' (did you mean 'falling'?)");
+    for (const pull_kind k : values_of<pull_kind>())
+        CHECK(read(with("pull = \"up\"", fmt::format("pull = \"{}\"", to_string(k)))).sync->pull == k);
+    CHECK(complaint(with("\"up\"", "\"sideways\"")) ==
+          "t.toml:20:70: pull is 'sideways' (known values: as-is, none, up, down)");
     CHECK(complaint(with("settle_ms = 12.5", "settle_ms = -1")) ==
           "t.toml:15:13: settle_ms is -1 (allowed: 0 to 10000)");
     CHECK(complaint(with("active_low = true", "active_low = 1")) ==

@@ -175,6 +175,14 @@ TEST_CASE("wrong types and ranges, at the value")
     CHECK(complaint(one + "polarity = true\n") == "palm.toml:4:12: polarity is true (give a number)");
     CHECK(complaint(one + "actuator = \"peizo\"\n") ==
           "palm.toml:4:12: actuator is 'peizo' (did you mean 'piezo'?)");
+    for (const actuator_kind k : values_of<actuator_kind>()) {
+        const std::string line = fmt::format("actuator = \"{}\"\n", to_string(k));
+        if (k == actuator_kind::unknown)
+            CHECK(complaint(one + line) == "palm.toml:4:12: actuator is 'unknown' (known values: piezo, "
+                                           "voice-coil, lra, erm)");
+        else
+            CHECK(array_of(one + line).tactors[0].actuator == k);
+    }
     CHECK(complaint("[[tactor]]\nx_mm = inf\ny_mm = 0\n") ==
           "palm.toml:2:8: x_mm is inf (allowed: -1000000 to 1000000)");
     CHECK(complaint("[[tactor]]\nx_mm = 1e7\ny_mm = 0\n") ==

@@ -149,6 +149,11 @@ TEST_CASE("values out of range, at the value")
     CHECK(complaint(path + "intensity = 1.5") == "w.toml:3:13: intensity is 1.5 (allowed: 0 to 1)");
     CHECK(complaint(path + "start_s = -1") == "w.toml:3:11: start_s is -1 (allowed: 0 to 86400)");
     CHECK(complaint(path + "carrier_hz = 0").starts_with("w.toml:3:14: carrier_hz is 0"));
+    CHECK(complaint(path + "texture = \"weave\"") ==
+          "w.toml:3:11: texture is 'weave' (known values: cycle, time, length)");
+    for (const texture_kind k : values_of<texture_kind>())
+        CHECK(complaint(path + fmt::format("texture = \"{}\"", to_string(k))) ==
+              "w.toml:3:11: [stroke] has texture, which nothing uses (add waveform = \"FILE.wav\")");
     CHECK(complaint(path + "name = 3") == "w.toml:3:8: name is 3 (give a string in quotes)");
     CHECK(complaint("path = 3") == "w.toml:2:8: path is 3 (give a string in quotes)");
 }

@@ -213,7 +213,7 @@ render_options render_of(const fields& plan)
     render_options o;
     o.rate = f.count("rate");
     o.channels = f.count("channels");
-    o.phase = f.one_of("phase", {phase_kind::stroke, phase_kind::burst});
+    o.phase = f.kind<phase_kind>("phase");
     o.ramp_s = f.number_or_null("ramp_s");
     if (f.has("sl_db"))
         o.sl_db = f.number("sl_db");
@@ -238,8 +238,7 @@ placed_plan plan_of(const fields& f, const array& a, std::vector<burst> bursts, 
     p.stroke_length_mm = drawn.number("length_mm");
     p.carrier_hz = drawn.number("carrier_hz");
     take_sound(drawn, p);
-    p.overlap =
-        f.object("render").one_of("overlap", {overlap_kind::energy, overlap_kind::max, overlap_kind::sum});
+    p.overlap = f.object("render").kind<overlap_kind>("overlap");
     p.soa_s = f.number_or_null("soa_s");
     p.total_s = f.number("total_s");
     check_bursts(f, a, bursts);

@@ -3,7 +3,6 @@
 /// From the objects of tactor-plan/1 to values.
 #pragma once
 
-#include <initializer_list>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,6 +10,8 @@
 
 #include <nlohmann/json.hpp>
 #include <tactor/tactor.hpp>
+
+#include "core/kind_names.hpp"
 
 namespace tactor::cli {
 
@@ -29,14 +30,13 @@ public:
     bool flag(const char* name) const;
     bool has(const char* name) const;
     bool is_null(const char* name) const;
-    /// The value among these whose name it is.
-    template <class Enum>
-    Enum one_of(const char* name, std::initializer_list<Enum> known) const
+    /// A value of a closed set, by its name.
+    template <class Kind>
+    Kind kind(const char* name) const
     {
         const std::string given = text(name);
-        for (const Enum e : known)
-            if (to_string(e) == given)
-                return e;
+        if (const auto k = detail::kind_named<Kind>(given))
+            return *k;
         refuse(name, "is \"" + given + "\", which is not known");
     }
     fields object(const char* name) const;

@@ -88,8 +88,7 @@ void take_sound(const fields& stroke, plan& p)
         p.wave.seed = static_cast<std::uint64_t>(seed);
     }
     if (stroke.has("texture"))
-        p.wave.texture =
-            stroke.one_of("texture", {texture_kind::cycle, texture_kind::time, texture_kind::length});
+        p.wave.texture = stroke.kind<texture_kind>("texture");
     if (stroke.has("texture_mm"))
         p.wave.texture_mm = stroke.number("texture_mm");
     if (stroke.has("am_hz"))
@@ -111,8 +110,7 @@ burst_envelope envelope_of(const fields& render)
     if (!render.has("envelope"))
         return e;
     const fields f = render.object("envelope");
-    e.kind = f.one_of("kind", {envelope_kind::raised_cosine, envelope_kind::linear,
-                               envelope_kind::exponential, envelope_kind::tukey});
+    e.kind = f.kind<envelope_kind>("kind");
     e.attack_s = f.number_or_null("attack_s");
     e.release_s = f.number_or_null("release_s");
     e.tukey_part = f.number("tukey_part");

@@ -33,7 +33,7 @@ std::optional<waveform> read_waveform(const toml_table& t, const std::filesystem
 {
     const auto text = t.text("waveform");
     const auto seed = t.number("noise_seed", {0.0, 9007199254740992.0});
-    const auto texture = t.choice("texture", {"cycle", "time", "length"});
+    const auto texture = t.kind<texture_kind>("texture");
     const auto texture_mm = t.number("texture_mm", {0.0, max_mm, true});
     waveform w;
     if (text && folder == nullptr && waveform_names_file(*text))
@@ -49,8 +49,7 @@ std::optional<waveform> read_waveform(const toml_table& t, const std::filesystem
     if (seed && *seed != static_cast<double>(static_cast<std::uint64_t>(*seed)))
         t.fail("noise_seed", fmt::format("noise_seed is {}", *seed), "give a whole number");
     w.seed = static_cast<std::uint64_t>(seed.value_or(static_cast<double>(w.seed)));
-    if (texture)
-        w.texture = from_string<texture_kind>(*texture);
+    w.texture = texture.value_or(w.texture);
     need_with(t, "texture_mm", w.texture == texture_kind::length, "add texture = \"length\"");
     w.texture_mm = texture_mm.value_or(0.0);
     said_at(t, "waveform", [&] { validate(w); });
