@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdlib>
 #include <filesystem>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -182,7 +183,8 @@ array find_array(const settings& s, option_list& options, environment& e)
         config.output.channels.reset();
         return preset_array(*s.array_name);
     }
-    if (!fs::exists(*s.array_name) && s.array_name->find_first_of("./") == std::string::npos)
+    std::error_code unknown; // such as for a name that no file can have
+    if (!fs::exists(*s.array_name, unknown) && s.array_name->find_first_of("./") == std::string::npos)
         return preset_array(*s.array_name); // its error lists the presets
     check_readable(*s.array_name);
     const setup file = load_setup(*s.array_name);

@@ -137,8 +137,10 @@ void output_file::open_directly()
         fd_ = owned_fd(::open(target_.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK));
         if (fd_)
             return;
-        if (errno != ENXIO || !fs::is_fifo(target_))
-            fail(errno);
+        const int code = errno;
+        std::error_code unknown;
+        if (code != ENXIO || !fs::is_fifo(target_, unknown))
+            fail(code);
         ::poll(nullptr, 0, moment_ms);
         if (!still_wanted())
             return;

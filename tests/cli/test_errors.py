@@ -61,6 +61,7 @@ class CommandLine(ToolTest):
         self.refused(2, "render", "park2016-1", says=["-o"])
         self.refused(2, "plan", "park2016-9", says=["park2016-9", "park2016-1"])
         self.refused(2, "plan", "park2016-1", "--array", "palm-3x4", says=["palm-3x4", "palm-3x3"])
+        self.refused(2, "plan", "park2016-1", "--array", "a" * 300, says=["tactor: array: there is no preset 'aaa", "palm-3x3"])
         self.refused(2, "plan", "park2016-1", "--algorithm", "park2017", says=["park2017", "park2016"])
         self.refused(2, "plan", "park2016-1", "--format", "xml", says=["xml", "json"])
 

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <system_error>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -30,14 +31,24 @@ std::string quoted(const std::string& s)
     return q + '"';
 }
 
+// How a file is named in another one. Where that cannot be told, as it is named here.
+std::string named_in(const std::string& name, const std::string& file)
+{
+    std::error_code failed;
+    const fs::path whole = fs::absolute(file, failed);
+    if (failed)
+        return file;
+    const fs::path folder = fs::absolute(name, failed).parent_path();
+    const fs::path near = failed ? whole : fs::proximate(whole, folder, failed);
+    return failed ? whole.string() : near.string();
+}
+
 // Takes the array from where it is and says nothing but the channels.
 std::string overlay(const std::string& name, const environment& e, const std::vector<unsigned>& channels)
 {
     std::string base = fmt::format("preset = {}", quoted(e.tactors.name));
     if (!e.array_file.empty())
-        base = fmt::format(
-            "file = {}",
-            quoted(fs::proximate(fs::absolute(e.array_file), fs::absolute(name).parent_path()).string()));
+        base = fmt::format("file = {}", quoted(named_in(name, e.array_file)));
     std::string s =
         fmt::format("# Channels as felt on a walk (tactor check --walk).\n[array]\nname = {}\n{}\n",
                     quoted(e.tactors.name), base);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -17,7 +18,11 @@ using json = nlohmann::ordered_json;
 std::string name_of(const waveform& w)
 {
     const std::string text = waveform_text(w);
-    return w.kind == waveform_kind::recording ? std::filesystem::absolute(text).string() : text;
+    if (w.kind != waveform_kind::recording)
+        return text;
+    std::error_code nowhere;
+    const std::filesystem::path whole = std::filesystem::absolute(text, nowhere);
+    return nowhere ? text : whole.string();
 }
 
 } // namespace
