@@ -19,7 +19,7 @@ try {
 
     // Another phantom model than the default, and a peak of -6 instead of -12 dBFS.
     const tactor::plan plan = tactor::make_plan(palm, stroke, {.phantom = tactor::phantom_kind::barycentric});
-    const tactor::score score(palm, {{plan}}, {.level_dbfs = -6.0});
+    const tactor::score score(palm, plan, {.level_dbfs = -6.0});
     // The same samples that a player would send to a device, without one.
     tactor::write_wav(score, tactor::format_kind::s24_3, argv[1]);
     std::printf("%s: %u channels, %.3f s\n", argv[1], score.channels(),
