@@ -60,6 +60,10 @@ def complaints(name, text, everything, tried):
     for opened in re.findall(r"^namespace [^{]*\{\n[^\n]*", code, re.M):
         if not re.match(r"namespace tactor(::detail \{| \{\ninline namespace v0 \{)", opened):
             yield f"{name}: {opened}: what is exported is in the inline namespace v0"
+    for part in re.split(r"^namespace ", code, flags=re.M):
+        if part.startswith("tactor::detail {"):
+            for m in re.finditer(r"TACTOR_API\b[^;{]*", part):
+                yield f"{name}: {m[0]}: what is exported is in the inline namespace v0"
     if re.search(r"\benum\s+(?!class)\w+\s*\{", code):
         yield f"{name}: an enumeration without class"
     for m in DROPPED.finditer(code):

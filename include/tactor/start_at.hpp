@@ -19,17 +19,6 @@ concept whole_number = std::integral<T> && !std::same_as<T, bool>;
 template <typename T>
 concept no_count = std::floating_point<T> || std::same_as<T, bool>;
 
-[[noreturn]] TACTOR_API void refuse_frame(long long stream_frame);
-
-template <whole_number T>
-constexpr std::uint64_t stream_frame(T n)
-{
-    if constexpr (std::signed_integral<T>)
-        if (n < 0)
-            refuse_frame(n);
-    return static_cast<std::uint64_t>(n);
-}
-
 } // namespace tactor::detail
 
 namespace tactor {
@@ -57,8 +46,11 @@ public:
     template <detail::whole_number T>
     [[nodiscard]] static constexpr start_at frame(T stream_frame)
     {
+        if constexpr (std::signed_integral<T>)
+            if (stream_frame < 0)
+                refuse_frame(stream_frame);
         start_at s;
-        s.frame_ = detail::stream_frame(stream_frame);
+        s.frame_ = static_cast<std::uint64_t>(stream_frame);
         return s;
     }
     template <detail::no_count T>
@@ -89,6 +81,7 @@ public:
 
 private:
     constexpr start_at() noexcept = default;
+    [[noreturn]] TACTOR_API static void refuse_frame(long long stream_frame);
 
     start_kind kind_ = start_kind::frame;
     std::uint64_t frame_ = 0;

@@ -162,7 +162,6 @@ HAS_NOT = {
     "route_of pcm_route require_device_name card_of card_info card_holders count_range": "what devices and Player look at themselves",
     "probe_realtime_rights realtime_rights": "Player.stats()['realtime'], and `tactor check`",
     "parse_setup default_settings": "Array.from_file reads files",
-    "refuse_frame": "the compiler's",
     "wav_progress": "Ctrl-C gives up",
 }
 

@@ -15,19 +15,15 @@
 #include "core/refused.hpp"
 #include "engine/control/player_impl.hpp"
 
-namespace tactor::detail {
+namespace tactor {
+inline namespace v0 {
 
-void refuse_frame(long long stream_frame)
+void start_at::refuse_frame(long long stream_frame)
 {
     throw error(error_kind::bad_input, "start", fmt::format("frame {}", stream_frame),
                 "frames of the stream count from 0; start_at::now() is as soon as possible")
         .with_field("start");
 }
-
-} // namespace tactor::detail
-
-namespace tactor {
-inline namespace v0 {
 
 player::player(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines lines)
 try : impl_(std::make_shared<impl>(std::move(s), a, o, std::move(lines))) {
