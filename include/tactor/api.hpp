@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Export marker: what carries it is the interface of libtactor; everything else in the shared
-/// library is hidden.
+/// Export marker: names that carry it are the interface of libtactor; everything else in the shared library
+/// is hidden.
 #pragma once
 
 // Each header includes this one before all that needs it. CMake asks for the compiler's default, C++17.

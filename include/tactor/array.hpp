@@ -49,11 +49,12 @@ struct tactor_spec {
     std::optional<double> threshold_dbfs = {}; ///< measured detection threshold, dBFS
     int polarity = 1;                          ///< 1, or -1 where the actuator is wired the other way round
     actuator_kind actuator = actuator_kind::unknown;
-    /// Thresholds at several frequencies, ascending: between them linear in dB over the logarithm of the
-    /// frequency, outside them that of the nearest. They count in place of threshold_dbfs.
+    /// Thresholds at several frequencies, ascending. Between two of them the threshold is linear in dB over
+    /// the logarithm of the frequency; outside them it is that of the nearest one. They replace
+    /// threshold_dbfs.
     std::vector<threshold_point> thresholds = {};
-    std::optional<double> rise_s = {}; ///< until it moves with 1 - 1/e of its strength, s
-    source_place where = {};           ///< where the file says so, for error messages
+    std::optional<double> rise_s = {}; ///< time until it moves with 1 - 1/e of its strength, s
+    source_place where = {};           ///< place in the array file, for error messages
 };
 
 /// A set of tactors. A plain value.
@@ -92,9 +93,9 @@ struct grid_lines {
 /// A built-in array by name. \throws error (bad_input) that lists the presets.
 [[nodiscard]] TACTOR_API array preset_array(std::string_view name);
 
-/// Checks what every array must satisfy: at least one tactor, finite places, no two tactors on one
-/// place or one channel, limits and gains in range (max_dbfs <= 0, polarity 1 or -1, channel < 16384). A file
-/// that names a channel must stay below 1024, which no PCM exceeds. O(n log n).
+/// Checks what every array must satisfy: at least one tactor, finite places, no two tactors on one place or
+/// one channel, limits and gains in range (max_dbfs <= 0, polarity 1 or -1, channel < 16384). Channels in a
+/// file must be below 1024, which no PCM exceeds. O(n log n).
 /// \throws error (bad_input) naming the tactors and their line.
 TACTOR_API void validate(const array& a);
 

@@ -48,7 +48,7 @@ private:
     boost::asio::executor_work_guard<executor> work_;
 };
 
-/// An executor, or that of what has one: a context, a socket, a timer.
+/// An executor, or the one of an object that has one: a context, a socket, a timer.
 template <typename Where>
 auto executor_of(Where& where)
 {
@@ -58,7 +58,7 @@ auto executor_of(Where& where)
         return where;
 }
 
-/// Whether a completion token is a plain callback, of which nobody knows in which context it is to run.
+/// Whether a completion token is a plain callback, which names no context to run in.
 template <typename Token>
 constexpr bool runs_nowhere = std::is_invocable_v<std::decay_t<Token>&, std::exception_ptr, stroke_report>&&
     std::is_same_v<boost::asio::associated_executor_t<std::decay_t<Token>>, boost::asio::system_executor>;
@@ -86,13 +86,13 @@ void wait_for_stroke(const Named& named, player& p, Handler&& h, Start id_of)
 namespace tactor {
 inline namespace v0 {
 
-/// Waits for a stroke's end: handler(std::exception_ptr, stroke_report). `where` is an executor, or what has
-/// one (an io_context, a socket): the handler runs there, unless it has an associated executor of its own
-/// (boost::asio::bind_executor), never in this call and never in a thread of the player; with use_future or
-/// use_awaitable the exception is rethrown there. Both are kept at work until then: io_context::run() does
-/// not return before. The exception is an error (bad_input) for a stroke that is not known; a stroke that was
-/// cancelled or interrupted is none: the report says so. The player must live until the handler was called,
-/// or be closed before: closing ends all strokes.
+/// Waits for a stroke's end, then calls handler(std::exception_ptr, stroke_report). `where` is an executor or
+/// an object that has one (an io_context, a socket). The handler runs there, or on its own associated
+/// executor if it has one (boost::asio::bind_executor); never in this call and never in a thread of the
+/// player. With use_future or use_awaitable the exception is rethrown there. Both executors are kept at work
+/// until then: io_context::run() does not return before. For a stroke that is not known the exception is an
+/// error (bad_input). A stroke that was cancelled or interrupted gives no exception: the report says so. The
+/// player must live until the handler was called, or be closed before: closing ends all strokes.
 template <typename Where, typename Token>
 auto async_wait(Where&& where, player& p, stroke_id id, Token&& token)
 {
@@ -112,8 +112,8 @@ auto async_wait(player& p, stroke_id id, Token&& token)
     return async_wait(boost::asio::system_executor(), p, id, std::forward<Token>(token));
 }
 
-/// Submits a score and waits for its end, as async_wait() does. What submit() throws comes as the exception.
-/// The score is submitted when the operation is initiated: at once with callbacks and futures.
+/// Submits a score and waits for its end, as async_wait() does. An exception from submit() is passed to the
+/// handler. The score is submitted when the operation is initiated: at once with callbacks and futures.
 template <typename Where, typename Token>
 auto async_play(Where&& where, player& p, score s, start_at start, Token&& token)
 {

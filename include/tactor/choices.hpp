@@ -99,8 +99,8 @@ TACTOR_API observer_kind from_string<observer_kind>(std::string_view name);
 template <>
 TACTOR_API std::span<const observer_kind> values_of<observer_kind>() noexcept;
 
-/// What one stroke has in place of the common options of a plan (plan_options); a phantom wins over a model
-/// of your own, too.
+/// One stroke's own values in place of those in plan_options. `phantom` also replaces a model of your own
+/// (plan_options::custom_phantom).
 struct stroke_choices {
     std::optional<algorithm_kind> algorithm = {};
     std::optional<phantom_kind> phantom = {};
@@ -110,7 +110,7 @@ struct stroke_choices {
     friend bool operator==(const stroke_choices&, const stroke_choices&) = default;
 };
 
-/// From when a start counts.
+/// The time that a start counts from.
 enum class start_from_kind {
     piece, ///< from the start of the piece
     start, ///< from the start of a stroke before
@@ -127,15 +127,16 @@ TACTOR_API std::span<const start_from_kind> values_of<start_from_kind>() noexcep
 /// piece.
 struct start_anchor {
     start_from_kind from = start_from_kind::piece;
-    /// `start`: of the stroke so many before this one. `end`: when the last of so many before it has ended.
+    /// A number of strokes. `start`: counts from the start of the stroke that is so many before this one.
+    /// `end`: from the time when the last so many before this one have all ended.
     unsigned back = 1;
 
     friend bool operator==(const start_anchor&, const start_anchor&) = default;
 };
 
-/// When a stroke starts, in seconds from the start of the piece; starts and ends of those before it in order.
-/// Without `start_s` it is when the one before it has ended.
-/// \throws error (bad_input) where that is before the piece.
+/// When a stroke starts, in seconds from the start of the piece. `starts_s` and `ends_s` are those of the
+/// strokes before it, in order. Without `start_s` the stroke starts when the one before it ends.
+/// \throws error (bad_input) where the stroke would start before the piece.
 [[nodiscard]] TACTOR_API double resolve_start_s(std::optional<double> start_s, const start_anchor& anchor,
                                                 std::span<const double> starts_s,
                                                 std::span<const double> ends_s);

@@ -24,8 +24,8 @@ inline constexpr double continuous_step_s = 0.001;
 struct curve_samples {
     std::vector<point> positions = {};
     std::vector<double> intensities = {}; ///< A_v
-    std::vector<std::size_t> ends = {}; ///< for each sample, how many of `drives` are its or an earlier one's
-    std::vector<drive> drives = {};     ///< each sample's in order of tactor
+    std::vector<std::size_t> ends = {};   ///< by sample: how many of `drives` it and earlier ones have
+    std::vector<drive> drives = {};       ///< each sample's in order of tactor
 
     /// Appends position, intensity and drives of `b`.
     TACTOR_API void add(const burst& b);
@@ -33,10 +33,11 @@ struct curve_samples {
     friend bool operator==(const curve_samples&, const curve_samples&) = default;
 };
 
-/// Position, intensity and drives of a continuous stroke each continuous_step_s, the last at its end; linear
-/// between. A value: two are equal where all their samples are. Copies and moves share what is inside (what
-/// is moved from stays what it was); any thread may call. make_plan() stores the samples of short strokes.
-/// Those of a stroke of more than some seconds are computed as they are read: an hour needs no more memory.
+/// Position, intensity and drives of a continuous stroke every continuous_step_s, and at its end; linear
+/// between. A value: two are equal where all their samples are. Copies and moves share the samples, and a
+/// curve that was moved from keeps its value; any thread may call. make_plan() stores the samples of short
+/// strokes. For a stroke of more than some seconds they are computed when they are read: an hour needs no
+/// more memory.
 class TACTOR_API curve {
 public:
     /// `samples`: ceil(duration_s / continuous_step_s) + 1 of them.

@@ -13,8 +13,8 @@
 namespace tactor {
 inline namespace v0 {
 
-/// For how long each channel was driven lately, and when that was: what drive_limits::max_drive_s goes by.
-/// One player gives it (player::history()), the next goes on from it; save() and restore() bring it to
+/// When and for how long each channel was driven lately: drive_limits::max_drive_s counts this time. One
+/// player gives it (player::history()), the next one goes on from it; save() and restore() bring it to
 /// another process. A value, cheap to copy, empty at first. Any thread.
 class TACTOR_API drive_history {
 public:
@@ -24,20 +24,21 @@ public:
 
     /// Whether no channel is known to have been driven.
     [[nodiscard]] bool empty() const noexcept;
-    /// This, and what another player or process gave the same array: no channel counts as driven for longer
-    /// than there was time.
+    /// This history together with what another player or process gave the same array. In no stretch of time
+    /// does a channel count as driven for longer than the stretch lasts.
     [[nodiscard]] drive_history with(const drive_history& other) const;
-    /// This, and each of so many channels driven for `ahead_s` from now on: what to save while a stroke
-    /// plays, for the process may not live to say what came of it. What is still to come when a player goes
-    /// on from it did not come. \throws error (bad_input) for more than 16384 channels, and for what is no
-    /// time of 0 to 86400 s.
+    /// This history, as if each of the first `channels` channels were driven for `ahead_s` from now on. Save
+    /// it while a stroke plays: if the process is killed, it cannot save how long it really drove them. A
+    /// player that goes on from it drops the part that is still to come then.
+    /// \throws error (bad_input) for more than 16384 channels, and for a time that is not 0 to 86400 s.
     [[nodiscard]] drive_history with_ahead(unsigned channels, double ahead_s) const;
 
-    /// A text of a few lines, numbers in ns: at most 64 stretches of time a channel, the oldest taken
-    /// together, which leave the window later then, never sooner.
+    /// A text of a few lines, numbers in ns. It has at most 64 stretches of time for each channel: the oldest
+    /// are joined, so that they leave the window later, never sooner.
     [[nodiscard]] std::string save() const;
-    /// What save() said on this machine since it was started, as of now; empty where it was before that.
-    /// \throws error (bad_input) for a text that is not whole.
+    /// The history that save() wrote, as of now. Empty for a text from another machine, or from before this
+    /// machine was last started.
+    /// \throws error (bad_input) for a text that is not complete.
     [[nodiscard]] static drive_history restore(std::string_view text);
 
 private:

@@ -44,36 +44,36 @@ struct source_place {
 ///
 /// what() reads "WHAT: WHY (HINT)", or "WHAT: WHY" without a hint.
 ///
-/// Where something else went wrong first, that is nested in it (std::rethrow_if_nested()): the error of the
-/// file that another one names, or what the system said, as a std::system_error with its errno.
-/// Where memory runs out std::bad_alloc is passed on; what reads TOML ends the process then (toml++ 3 does).
-/// Copies share what it says, and do not throw.
+/// Where another failure was the cause, it is nested in this error (std::rethrow_if_nested()): the error of a
+/// file that another one names, or what the system said, as a std::system_error with its errno. Where memory
+/// runs out, std::bad_alloc comes through; while TOML is read, the process ends (toml++ 3 does so). Copies
+/// share the texts, and do not throw.
 class TACTOR_API error : public std::system_error {
 public:
     error(error_kind kind, std::string_view what, std::string_view why, std::string_view hint = {});
-    /// About a place, the text of which is WHAT.
+    /// About a place: its text is WHAT.
     error(error_kind kind, const source_place& at, std::string_view why, std::string_view hint = {});
 
     /// The kind of failure.
     [[nodiscard]] error_kind kind() const noexcept;
     [[nodiscard]] const char* what() const noexcept override;
-    // The parts of it, for programs that set them apart; valid while the error or a copy of it lives.
+    // The parts of what(), for programs that show them apart; valid while the error or a copy of it lives.
     [[nodiscard]] std::string_view subject() const noexcept; ///< WHAT
     [[nodiscard]] std::string_view why() const noexcept;     ///< WHY
     [[nodiscard]] std::string_view hint() const noexcept;    ///< HINT; may be empty
-    /// The option or value that it is about, as this library or, with a place(), its file calls it ("soa_s");
-    /// empty where it is about none, or about how several go together.
+    /// The option or value that the error is about, under its name in this library or, with a place(), in the
+    /// file ("soa_s"). Empty where it is about none, or about several that do not go together.
     [[nodiscard]] std::string_view field() const noexcept;
-    /// Where in a file or text; without file and line where it is about none.
+    /// The place in a file or text; without file and line where the error is about none.
     [[nodiscard]] const source_place& place() const noexcept;
     /// errno of the call that failed; 0 where none did.
     [[nodiscard]] int os_code() const noexcept;
 
-    /// The same, about a field, at a place, or with an errno.
+    /// This error with a field, a place or an errno.
     [[nodiscard]] error with_field(std::string_view field) const;
     [[nodiscard]] error with_place(source_place at) const;
     [[nodiscard]] error with_os_code(int code) const;
-    /// The same in other words.
+    /// This error in other words.
     [[nodiscard]] error reworded(std::string_view what, std::string_view why, std::string_view hint) const;
 
     error(const error&) noexcept = default;

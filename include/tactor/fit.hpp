@@ -20,7 +20,8 @@ struct fitting {
     point to = {};
     double scale = 1.0;
     double margin_mm = 0.0;
-    /// Direction, of length 1, of an array in one line; only what goes along it is left of the picture.
+    /// Direction, of length 1, of an array in one line. Of the picture only the extent along this line is
+    /// left.
     std::optional<point> line = {};
 
     /// Where a place of the picture is now.
@@ -59,8 +60,8 @@ struct fitted_strokes {
 [[nodiscard]] TACTOR_API fitted_strokes fit_strokes(const std::vector<stroke>& strokes, const layout& l,
                                                     double margin_mm = 0.0);
 
-/// The same for each stroke that asks for it by stroke::fit_margin_mm, by itself or with those of its
-/// stroke::fit_group, which do not ask any more. Throws as above.
+/// The same for each stroke with a stroke::fit_margin_mm: by itself, or together with the others of its
+/// stroke::fit_group. The strokes returned have neither any more. Throws as above.
 [[nodiscard]] TACTOR_API std::vector<stroke> fit_as_asked(std::vector<stroke> strokes, const layout& l);
 
 } // namespace v0

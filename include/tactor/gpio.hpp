@@ -17,24 +17,24 @@ inline namespace v0 {
 
 /// The amplifier's enable line, owned by a small process of its own, the holder. The holder switches the line
 /// off when it is told to, 150 ms after the last beat() or set(), and when this process ends in any way,
-/// SIGKILL included. The line is requested as off. Blocks until the holder has it. This forks: call it before
-/// there are real-time threads and before memory is locked.
-/// \throws error (not_available): no such chip or line (it says which there are), a line in use (by whom), or
-///         one that may not be opened (which group to join).
+/// SIGKILL included. The line is requested as off. Blocks until the holder has it. This call forks: make it
+/// before there are real-time threads and before memory is locked.
+/// \throws error (not_available): no such chip or line (the message lists those that there are), a line in
+///         use (by whom), or one that may not be opened (which group to join).
 [[nodiscard]] TACTOR_API std::unique_ptr<enable_line> open_amplifier(const amplifier_settings& s);
 
-/// A line of this process's own, requested as an output that is off; switched off again when destroyed. For
+/// A line that this process owns, requested as an output that is off; switched off again when destroyed. For
 /// sync pulses. Throws like open_amplifier.
 [[nodiscard]] TACTOR_API std::unique_ptr<enable_line> open_output(const gpio_line_name& line,
                                                                   bool active_low = false);
 
-/// Edges that follow another of these within `debounce_s` (0 to 10) are dropped. Throws like open_amplifier,
-/// and bad_input for a time that cannot be.
+/// Opens an input that reports edges. An edge that comes within `debounce_s` (0 to 10) after another of them
+/// is dropped. Throws like open_amplifier, and bad_input for a `debounce_s` out of range.
 [[nodiscard]] TACTOR_API std::unique_ptr<edge_input> open_edges(const gpio_line_name& line, edge_kind edge,
                                                                 double debounce_s = 0.001,
                                                                 pull_kind pull = pull_kind::as_is);
 
-/// What `tactor devices` lists.
+/// One line of a GPIO chip, as the kernel describes it.
 struct gpio_line_info {
     unsigned offset = 0;
     std::string name = {};     ///< empty: none
@@ -52,16 +52,17 @@ struct gpio_chip_info {
 /// All GPIO chips, by path. Does not throw for chips that cannot be opened. Blocks shortly.
 [[nodiscard]] TACTOR_API std::vector<gpio_chip_info> list_gpio();
 
-/// A line that there is.
+/// An existing line and its chip.
 struct gpio_line_place {
     std::string path = {};  ///< of its chip
     std::string label = {}; ///< of its chip
     gpio_line_info line = {};
 };
 
-/// Looks a line up as open_output() would, without requesting it: nothing is driven. Blocks shortly.
-/// \throws error: not_available when there is no such chip or line (which there are), or the chip may not be
-///         opened (which group to join); bad_input for a name that says neither.
+/// Looks up a line as open_output() would, without requesting it: nothing is driven. Blocks shortly.
+/// \throws error: not_available when there is no such chip or line (the message lists those that there are),
+///         or the chip may not be opened (which group to join); bad_input for a name with neither chip and
+///         offset nor a line's name.
 [[nodiscard]] TACTOR_API gpio_line_place find_gpio_line(const gpio_line_name& line);
 
 } // namespace v0

@@ -12,12 +12,12 @@
 namespace tactor {
 inline namespace v0 {
 
-/// The value that to_string() prints so: from_string<phantom_kind>("barycentric").
+/// The value whose to_string() is `name`: from_string<phantom_kind>("barycentric").
 /// \throws error (bad_input) that lists the names.
 template <typename Kind>
 [[nodiscard]] Kind from_string(std::string_view name) = delete;
 
-/// All values, in the order of their declaration, for menus and for going through them.
+/// All values, in the order of their declaration, for menus and loops.
 template <typename Kind>
 [[nodiscard]] std::span<const Kind> values_of() noexcept = delete;
 

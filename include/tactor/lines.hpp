@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Lines: outputs that are on or off and inputs that report edges, which a player switches and watches, and
-/// which GPIO line is meant. <tactor/gpio.hpp> opens those of this computer; derive from them for hardware of
-/// your own.
+/// The lines of a player: outputs that it switches on and off, and inputs whose edges it watches; and how a
+/// GPIO line is named. <tactor/gpio.hpp> opens those of this computer; derive from these classes for hardware
+/// of your own.
 #pragma once
 
 #include <cstdint>

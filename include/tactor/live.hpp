@@ -16,27 +16,27 @@ namespace tactor {
 inline namespace v0 {
 
 struct live_options {
-    /// What of it counts: `algorithm` (continuous: the carrier runs and the phantom's weights follow the
-    /// points; park2016: bursts, each SOA one at the newest position), `phantom` or `custom_phantom`,
+    /// These members count: `algorithm` (continuous: the carrier runs and the phantom's weights follow the
+    /// points; park2016: a burst each SOA, at the newest position), `phantom` or `custom_phantom`,
     /// `carrier_hz`, `outside`; for bursts `soa_s` and `profile`, which give their duration.
     plan_options plan{.algorithm = algorithm_kind::continuous, .outside = outside_kind::clamp};
     /// Levels, phase and the bursts' ramp; rate and channels are the stream's.
     render_options render = {};
-    /// A producer that gives no point for so long, s, 0.001 to 86400, has failed: the stroke fades out and
-    /// ends interrupted. Counted from player::begin() on, before the first point too; in frames of the
-    /// stream, so not while the system sleeps.
+    /// Time-out, s, 0.001 to 86400. A producer that gives no point for so long has failed: the stroke fades
+    /// out and ends interrupted. Counted from player::begin() on, before the first point too; in frames of
+    /// the stream, so not while the system sleeps.
     double timeout_s = 0.5;
-    /// A stroke that has sounded for so long, s, 0.001 to 86400, to a period, fades out and ends interrupted;
-    /// none: it may go on for ever.
+    /// Longest time that the stroke may sound, s, 0.001 to 86400, exact to a period. Then it fades out and
+    /// ends interrupted. None: it may go on for ever.
     std::optional<double> longest_s = {};
-    /// For points that come in bursts, as over a network, s, 0 (off) to 1: the stroke moves evenly, in place
-    /// and intensity, to where each point is, and is there so long after it came. It is the mean over this
-    /// window of where it was told to be: what moves evenly is half of it behind. end() waits for the last
-    /// point.
+    /// Window over which points are smoothed, s, 0 (off) to 1; for points that come in bursts, as over a
+    /// network. The stroke's place and intensity are the mean of the points over the window that ends now. So
+    /// the stroke moves evenly to each new point, and reaches it one window after the point came; behind
+    /// points that move evenly it is late by half the window. end() waits until the last point is reached.
     double smooth_s = 0.0;
 };
 
-/// What became of the points so far.
+/// Counts of the points so far.
 struct live_counts {
     std::uint64_t points = 0;  ///< taken by to()
     std::uint64_t outside = 0; ///< of these, moved to the nearest point of the array
@@ -44,10 +44,9 @@ struct live_counts {
 };
 
 /// The producer's end of a live stroke. Cheap to copy; all copies feed the same stroke, and a move is a copy.
-/// May outlive the player. Without end() or cancel(), or when no copy is left, the stroke ends when points no
-/// longer come (live_options::timeout_s).
-/// Any thread may call all members; none waits for the audio thread or the player, only (for a
-/// microsecond) for another call of to() on the same stroke.
+/// May outlive the player. Without end() or cancel(), or when no copy is left, the stroke ends by its
+/// time-out (live_options::timeout_s). Any thread may call all members. None waits for the audio thread or
+/// the player; a call may wait (for a microsecond) for another call of to() on the same stroke.
 class TACTOR_API live_stroke {
 public:
     [[nodiscard]] stroke_id id() const noexcept;
@@ -58,13 +57,13 @@ public:
     /// Continuous: the next period that is written begins to move the weights from the last point's to
     /// this one's. The move takes one period, at least continuous_step_s. The buffer's delay comes on top.
     /// Bursts: the next burst has this place. It starts one SOA later at most.
-    /// With live_options::smooth_s both begin then to move there.
+    /// With live_options::smooth_s, both begin at that time to move there.
     ///
-    /// `at_ns`: CLOCK_MONOTONIC of when the touch was there, which stroke_report::delay counts from; none:
-    /// now. When the stroke gets there does not depend on it.
+    /// `at_ns`: when the touch was there, CLOCK_MONOTONIC; stroke_report::delay is counted from it. None:
+    /// now. It has no influence on when the stroke gets there.
     ///
-    /// False when the stroke has ended; its report says why. A phantom model that gives a tactor more than
-    /// the intensity (what the scale makes of it) ends it as interrupted.
+    /// False when the stroke has ended; its report says why. If the phantom model gives a tactor more than
+    /// the intensity (as the intensity scale gives it), the stroke ends interrupted.
     /// \throws error (bad_input): a number that is not finite, an intensity or a time stamp below
     ///         0, or (with outside_kind::error) a point outside the array. The stroke then stays where it
     ///         was.

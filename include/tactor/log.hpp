@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What the library says of its own doing, to programs that want to hear it; off by default.
+/// Messages of the library about its own work, for programs that want them; off by default.
 #pragma once
 
 #include <functional>
@@ -29,8 +29,9 @@ TACTOR_API std::span<const log_kind> values_of<log_kind>() noexcept;
 
 /// Takes one line without a line end, UTF-8, for people: its words may change with each version. An empty
 /// function turns it off. Called by the thread that opens a device or a player, then by the player's control
-/// thread, where no lock is held: it may call the player. Never by the audio thread, but what takes long
-/// keeps drives waiting. What it throws is dropped, and so are lines for which there is no memory.
+/// thread, where no lock is held: it may call the player. The audio thread never calls it, but a slow
+/// function keeps drives waiting. Exceptions from it are dropped, and so are lines for which there is no
+/// memory.
 using log_function = std::function<void(log_kind, std::string_view)>;
 
 } // namespace v0

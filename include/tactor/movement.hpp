@@ -14,7 +14,7 @@
 namespace tactor {
 inline namespace v0 {
 
-/// How a target gets from rest to rest. With u from 0 to 1 the part of the time, the part of the way is
+/// How a target gets from rest to rest. Where u is the part of the time, from 0 to 1, the part of the way is
 enum class easing_kind {
     linear,       ///< u: at once at its speed
     in_out,       ///< u^2 (3 - 2 u): its speed is a parabola, at most 1.5 times the mean
@@ -44,13 +44,13 @@ struct rest {
     friend bool operator==(const rest&, const rest&) = default;
 };
 
-/// How a target moves along a path. The default is even. Between the points of a profile all is linear, and
-/// before the first and after the last it is as there; parts ascend. Speeds are linear over the way, not over
-/// the time: between two of them speed grows or falls exponentially in time.
+/// How a target moves along a path. The default is even. A profile is linear between its points, and constant
+/// before the first and after the last; parts ascend. Speeds are linear over the way, not over the time:
+/// between two of them speed grows or falls exponentially in time.
 struct movement {
-    /// Time of all, rests included. None: as the speeds say.
+    /// Time of the whole movement, rests included. None: the speeds give it.
     std::optional<double> duration_s = {};
-    /// Of each stretch from rest to rest. It keeps the time in which the stretch would be crossed without it.
+    /// Of each stretch from rest to rest. The stretch takes the same time as without easing.
     easing_kind easing = easing_kind::linear;
     std::vector<profile_point> speed_mm_s =
         {}; ///< more than 0; with a duration their ratios count. Empty: even

@@ -41,11 +41,12 @@ inline constexpr double most_sigma_v_mm_s = 1e6;
 /// The model, its parameters and what it was built for, in a sentence that goes with its numbers.
 [[nodiscard]] TACTOR_API std::string describe(const low_speed_observer& o);
 
-/// Where taps are felt that begin at `onsets_s` (ascending) and are felt at `alone` each by itself: the x
-/// that minimises sum |alone_i - x_i|^2 / sigma^2 + sum |x_(i+1) - x_i|^2 / (sigma_v (t_(i+1) - t_i))^2. Taps
-/// at the same time are felt at one place. O(n), and exact to rounding. Any thread. \throws error (bad_input)
-/// for parameters out of bounds, lists of different lengths, what is not finite, and
-///         onsets that do not ascend.
+/// Where taps are felt. They begin at `onsets_s` (ascending); each by itself would be felt at `alone`. The
+/// result is the x that minimises
+/// sum |alone_i - x_i|^2 / sigma^2 + sum |x_(i+1) - x_i|^2 / (sigma_v (t_(i+1) - t_i))^2.
+/// Taps at the same time are felt at one place. O(n), and exact to rounding. Any thread.
+/// \throws error (bad_input) for parameters out of bounds, lists of different lengths, numbers that are not
+///         finite, and onsets that do not ascend.
 [[nodiscard]] TACTOR_API std::vector<point>
 felt_places(const low_speed_observer& o, std::span<const double> onsets_s, std::span<const point> alone);
 
@@ -70,13 +71,13 @@ struct tap_summary {
 };
 
 /// What the observer feels of a plan's bursts; those without drives are not felt. `p` must be a plan of `s`
-/// on `a`. O(n log m) in n bursts and the m points of the stroke. \throws error (bad_input) as felt_places()
-/// does, where the plan is continuous, for which the observer has
-///         no prediction, and where it names a tactor that the array does not have.
+/// on `a`. O(n log m) in n bursts and the m points of the stroke.
+/// \throws error (bad_input) as felt_places() does, for a continuous plan, for which the observer has no
+///         prediction, and for a plan that names a tactor that the array does not have.
 [[nodiscard]] TACTOR_API std::vector<tap> predict_taps(const array& a, const stroke& s, const plan& p,
                                                        const low_speed_observer& o = {});
 
-/// The same for somebody else. \throws error (bad_input) as predict_percept() does of a person.
+/// The same for another person. \throws error (bad_input) as predict_percept() does for a person.
 [[nodiscard]] TACTOR_API std::vector<tap> predict_taps(const array& a, const stroke& s, const plan& p,
                                                        const low_speed_observer& o, const person& who);
 
@@ -92,12 +93,14 @@ struct compensated_places {
     friend bool operator==(const compensated_places&, const compensated_places&) = default;
 };
 
-/// m = (I + K) x for taps that are to be felt at x. Where some m_i lies outside the array, the m in its hull
-/// that minimises sum |x(m) - x|^2 instead: a convex problem, solved until the sum is within 1e-15 of its
-/// least (2e-10 where links are very strong), in units of the array's size squared. O(n) in taps where all
-/// fit, else O(n h) in the h corners of the hull, some twenty times. Any thread. \throws error (bad_input) as
-/// felt_places() does, for taps that begin together, for more than 4 million taps times corners, and where
-/// taps are pulled too strongly for an answer (k of ten million and more).
+/// The places at which taps must be played to be felt at x: m = (I + K) x. Where some m_i lies outside the
+/// array, the result is the m in its hull that minimises sum |x(m) - x|^2: a convex problem, solved until the
+/// sum is within 1e-15 of its least (2e-10 where links are very strong), in units of the array's size
+/// squared. O(n) in taps where all fit, else O(n h) in the h corners of the hull, some twenty times. Any
+/// thread.
+/// \throws error (bad_input) as felt_places() does, for taps that begin together, for more than 4 million
+///         taps times corners, and where taps are pulled too strongly for an answer (k of ten million and
+///         more).
 [[nodiscard]] TACTOR_API compensated_places compensate(const layout& l, const low_speed_observer& o,
                                                        std::span<const double> onsets_s,
                                                        std::span<const point> targets);
@@ -108,18 +111,18 @@ struct compensated_plan {
     low_speed_observer observer = {};
     std::vector<tap> taps = {}; ///< predict_taps() of the schedule
     std::size_t at_edge = 0;    ///< as in compensated_places
-    /// Of the places felt, were each burst felt by itself at its own point: how far they are from the target.
+    /// How far the places felt are from the target, if each burst by itself is felt exactly at its own point.
     double residual_rms_mm = 0.0;
     double residual_largest_mm = 0.0;
 
     friend bool operator==(const compensated_plan&, const compensated_plan&) = default;
 };
 
-/// make_plan() whose bursts are moved for an observer who would feel each, by itself, at its own point, as
-/// with phantom_kind::barycentric; other phantoms add the distance of their centres of energy. One of the
-/// plan's warnings says so, and what is left of the error. \throws error (bad_input) as make_plan() and
-/// compensate()
-///         do, and for `continuous`.
+/// Plans as make_plan() does, then moves the bursts for the observer. It takes each burst by itself to be
+/// felt at its own point, as it is with phantom_kind::barycentric; with other phantoms, the distance from
+/// that point to the centre of energy is added to the error. One of the plan's warnings says that bursts are
+/// moved, and what error is left.
+/// \throws error (bad_input) as make_plan() and compensate() do, and for `continuous`.
 [[nodiscard]] TACTOR_API compensated_plan make_compensated_plan(const array& a, const layout& l,
                                                                 const stroke& s, const plan_options& o,
                                                                 const low_speed_observer& m = {});

@@ -15,12 +15,12 @@
 namespace tactor {
 inline namespace v0 {
 
-/// One open or closed curve of lines, arcs and Beziers. Immutable; copies share it, and so do moves: what is
-/// moved from stays what it was. All members may be called from any thread and do not block.
+/// One open or closed curve of lines, arcs and Beziers. Immutable; copies and moves share it, and a path that
+/// was moved from keeps its value. All members may be called from any thread and do not block.
 class TACTOR_API path {
 public:
     /// SVG path data in millimetres, e.g. "M 0 10 C 20 -5 20 45 40 30".
-    /// \throws error (bad_input) with the column for what is not path data, for numbers that are not
+    /// \throws error (bad_input) for a text that is not path data (with the column), for numbers that are not
     ///         finite or beyond 1e6 mm, for more than one subpath and for a path without length.
     [[nodiscard]] static path from_svg(std::string_view data);
 
@@ -47,7 +47,7 @@ public:
     /// SVG path data of the curve, for plots.
     [[nodiscard]] std::string svg() const;
 
-    path(const path&) noexcept = default; ///< and no move: there is no path without a curve
+    path(const path&) noexcept = default; ///< for moves, too: a path always has its curve
     path& operator=(const path&) noexcept = default;
 
     struct impl;

@@ -24,8 +24,8 @@ struct percept_sample {
     double intensity = 0.0; ///< square root of the summed energy, linear
     double target_intensity = 1.0;
     bool shared = false; ///< a tactor serves two bursts
-    /// Speed of the felt position, smoothed over percept_window_s. None near the ends, where the window
-    /// would reach out of the movement or back to before anything was felt.
+    /// Speed of the felt position, smoothed over percept_window_s. None where this window would reach out of
+    /// the movement, or back to a time before anything was felt.
     std::optional<double> speed_mm_s = {};
 };
 
@@ -49,38 +49,39 @@ inline constexpr double percept_window_s = 0.1;
 /// The longest movement that is looked at, s.
 inline constexpr double longest_percept_s = 3600.0;
 
-/// In what one person differs from the one for whom the plan was made.
+/// How one person differs from the one for whom the plan was made.
 struct person {
-    /// By tactor, how much more is felt of it, dB: less where the threshold is higher than was taken. Empty:
-    /// none.
+    /// By tactor: how much more strongly it is felt, dB; below 0 where the threshold is higher than assumed.
+    /// Empty: no difference.
     std::vector<double> sensitivity_db = {};
-    /// By tactor, from where it was taken to be to where it is felt, mm. Empty: none.
+    /// By tactor: from its assumed place to the place where it is felt, mm. Empty: no difference.
     std::vector<point> shift = {};
 };
 
-/// What is felt at 0, 1, 2 ... ms, as long as the target moves: up to the end of the stroke, and at the end
-/// where it is a multiple of 1 ms (within 1 ns). `p` must be a plan of `s` on `a`; `who` is somebody else
-/// than the one it was made for.
+/// What is felt at 0, 1, 2 ... ms, as long as the target moves. The last sample is at the end of the stroke
+/// if that is a multiple of 1 ms (within 1 ns), else just before it. `p` must be a plan of `s` on `a`; `who`
+/// is another person than the one for whom it was made.
 ///
-/// A burst sounds from its onset until before its end (within 1 ns). Only at the very end of the movement
-/// does a burst that ends there count as well, unless another begins there. Bursts that overlap on one tactor
-/// are joined as the plan says (plan::join).
+/// A burst sounds from its onset until before its end (within 1 ns). There is one exception: a burst that
+/// ends with the movement still counts at that time, unless another begins there. Bursts that overlap on one
+/// tactor are joined as the plan says (plan::overlap).
 ///
-/// Speed: where nothing sounds, the position felt last is held; the average over percept_window_s runs over
-/// the positions so completed; speed is the central difference of the average.
+/// Speed: where nothing sounds, the position felt last is held. The positions completed in this way are
+/// averaged over percept_window_s; speed is the central difference of the average.
 ///
 /// O(samples * log n) for a stroke of n points, and O(1) for each burst in as many as overlap with it. An
 /// hour is 3,600,001 samples, 317 MB: follow_percept() and summarise() keep none.
 ///
 /// \throws error (bad_input) where the stroke is longer than longest_percept_s, the plan names a tactor that
-///         the array does not have, or a list of `who` is neither empty nor one finite number for each one.
+///         the array does not have, or a list of `who` is neither empty nor has one finite number for each
+///         tactor.
 [[nodiscard]] TACTOR_API std::vector<percept_sample> predict_percept(const array& a, const stroke& s,
                                                                      const plan& p, const person& who = {});
 
 /// The same samples, each handed to `each` in the calling thread, in order, once its speed is known. Memory
 /// does not grow with the length of the stroke.
-/// \throws error as predict_percept(), before the first sample or, for the plan's tactors, when it comes to
-///         them; what `each` throws.
+/// \throws error as predict_percept(): before the first sample; for a tactor that the array does not have,
+///         when the plan comes to it. Exceptions from `each` come through.
 TACTOR_API void follow_percept(const array& a, const stroke& s, const plan& p, const person& who,
                                const std::function<void(const percept_sample&)>& each);
 
@@ -88,7 +89,7 @@ TACTOR_API void follow_percept(const array& a, const stroke& s, const plan& p, c
 /// population (divided by n).
 [[nodiscard]] TACTOR_API percept_summary summarise(const std::vector<percept_sample>& samples);
 
-/// Of all samples of predict_percept(), without keeping them. \throws error as that does.
+/// Sums up all samples of predict_percept() without keeping them. \throws error as predict_percept().
 [[nodiscard]] TACTOR_API percept_summary summarise(const array& a, const stroke& s, const plan& p,
                                                    const person& who = {});
 

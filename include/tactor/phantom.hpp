@@ -25,8 +25,9 @@ struct drive {
     friend bool operator==(const drive&, const drive&) = default;
 };
 
-/// Delaunay faces of an array (rendering model, section 4). Tactors on one circumcircle form one
-/// face. Immutable; copies and moves share it (what is moved from stays what it was); any thread may call.
+/// Delaunay faces of an array (rendering model, section 4). Tactors on one circumcircle form one face.
+/// Immutable; copies and moves share it, and a layout that was moved from keeps its value; any thread may
+/// call.
 class TACTOR_API layout {
 public:
     /// O(n log n). \throws error (bad_input) as validate() does, and where two tactors are nearer to each
@@ -67,15 +68,16 @@ public:
     /// Name for plans and logs.
     [[nodiscard]] virtual std::string_view name() const noexcept = 0;
     /// Replaces `out` by the drives for a phantom of intensity `a_v` at p, in order of tactor, each amplitude
-    /// finite and > 0; above a_v it is played by no live stroke, which ends there. p is inside the hull.
-    /// Called where plans are made, of a continuous stroke for each sample (at most ten million of them), and
-    /// for each point of a live stroke.
+    /// finite and > 0. If an amplitude is above a_v, a live stroke does not play the point but ends. p is
+    /// inside the hull. Called where plans are made, for a continuous stroke once a sample (at most ten
+    /// million of them), and for each point of a live stroke.
     virtual void weights(point p, double a_v, std::vector<drive>& out) const = 0;
 };
 
-/// A built-in model on a layout. O(log n) in the tactors for each point, and O(k log k) in those of the
-/// face, which matters only where hundreds lie on one circle. A point outside the hull is taken for the
-/// nearest point of it. \throws error (bad_input), from weights(), for what is not finite or below 0.
+/// A built-in model on a layout. O(log n) in the tactors for each point, and O(k log k) in those of the face,
+/// which matters only where hundreds lie on one circle. A point outside the hull is taken for the nearest
+/// point of it. \throws error (bad_input), from weights(), for a point or an intensity that is not finite,
+/// and for an intensity below 0.
 [[nodiscard]] TACTOR_API std::shared_ptr<const phantom_model> make_phantom(phantom_kind k, const layout& l);
 
 } // namespace v0

@@ -47,7 +47,7 @@ struct intensity_scale {
 struct plan_options {
     algorithm_kind algorithm = algorithm_kind::park2016;
     phantom_kind phantom = phantom_kind::inverse_distance;
-    /// A model of your own instead of `phantom`; shared as long as it is asked.
+    /// A model of your own instead of `phantom`; kept as long as it is asked for drives.
     std::shared_ptr<const phantom_model> custom_phantom = {};
     timing_profile profile = {};
     double soa_s = 0.07; ///< intercept < soa <= max_soa (with burst_s up to 10); for `fit` the longest one
@@ -95,8 +95,8 @@ struct carrier_point {
     friend bool operator==(const carrier_point&, const carrier_point&) = default;
 };
 
-/// Who plays, when and how strongly: bursts or a curve. A value: the same input gives the same plan, and what
-/// is in it can be compared, stored and made again.
+/// Which tactors play, when and how strongly: bursts or a curve. A value: the same input gives the same plan,
+/// and its contents can be compared, stored and made again.
 struct plan {
     std::string algorithm = {}; ///< the planner's name: of an algorithm_kind, or your own
     std::string phantom = {};
@@ -113,18 +113,17 @@ struct plan {
     std::vector<std::string> warnings = {};
     waveform wave = {};
     modulation am = {};
-    /// The frequency over time, linear between points, in order of time; none: carrier_hz all along. Of a
-    /// recording that lies along the path, how often it comes round.
+    /// The frequency over time, linear between points, in order of time. None: carrier_hz all along. For a
+    /// recording that lies along the path, how often it is repeated.
     std::vector<carrier_point> course = {};
 
     friend bool operator==(const plan&, const plan&) = default;
 };
 
-/// Plans one stroke on an array. `l` must be the layout of `a`.
-/// What the stroke chooses (stroke::choices) wins over `o`; one that asks to be fitted (fit_margin_mm) is.
-/// O(log n) in the tactors for each burst.
-/// \throws error (bad_input): SOA out of bounds, path outside the array (where it leaves it), timing
-///         that cannot be done (the nearest duration that can), no grid for Tactile Brush.
+/// Plans one stroke on an array. `l` must be the layout of `a`. The stroke's own choices (stroke::choices)
+/// win over `o`. A stroke with a fit_margin_mm is fitted first. O(log n) in the tactors for each burst.
+/// \throws error (bad_input): SOA out of bounds, path outside the array (with the place where it leaves it),
+///         timing that is not possible (with the nearest duration that is), no grid for Tactile Brush.
 [[nodiscard]] TACTOR_API plan make_plan(const array& a, const layout& l, const stroke& s,
                                         const plan_options& o);
 

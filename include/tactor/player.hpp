@@ -29,17 +29,18 @@ struct player_options {
     /// How far ahead drives are handed to the audio thread; two buffers and four periods at least.
     double horizon_s = 0.5;
     double fade_s = 0.010; ///< fade on cancel and stop
-    /// A device whose position does not get on for so long (16 periods at least) is lost.
+    /// A device whose position stands still for so long, and for 16 periods at least, counts as lost.
     double stall_s = 0.5;
     bool realtime = true;          ///< ask for SCHED_FIFO
     bool require_realtime = false; ///< \throws instead of going on without it
     int priority = 65;
-    /// What the array may be given in all and over time, whatever the scores ask for.
+    /// Limits on the power of all tactors and on the time of each, whatever the scores ask for.
     drive_limits limits = {};
-    /// Of the player before, where this one goes on on the same array: a device that was lost and is opened
-    /// again does not give a tactor its time back. Channels count from 0 in both.
+    /// History of the player before, if it had the same array: when a lost device is opened again, a tactor
+    /// does not get the time back that it has used up. Channels count from 0 in both.
     drive_history driven = {};
-    /// Told of the stream's start and end, xruns and recovery, mutes of the amplifier, and limits that acted.
+    /// Is told of the stream's start and end, xruns and recovery, mutes of the amplifier, and limits that
+    /// acted.
     log_function log = {};
 };
 
@@ -55,11 +56,11 @@ struct player_stats {
     std::uint64_t stalls = 0;
     /// How often the amplifier's line refused to be switched off. It is tried again for a second.
     std::uint64_t off_failures = 0;
-    /// That was in vain: the amplifier may be on. player::ended() says so too.
+    /// All these tries failed: the amplifier may be on. player::ended() says so too.
     bool left_on = false;
     std::uint64_t sync_pulses = 0; ///< sent on player_lines::sync_out
     std::uint64_t sync_missed = 0; ///< not sent, because their time was over or the line failed
-    double sync_mean_late_s = 0.0; ///< line's switching against the DAC clock's time of the frame
+    double sync_mean_late_s = 0.0; ///< the line's switching after the frame's time by the DAC clock
     double sync_worst_late_s = 0.0;
     std::uint64_t ring_low_water = 0; ///< fewest drives that waited while a stroke played
     double latest_wakeup_s = 0.0;
@@ -67,10 +68,11 @@ struct player_stats {
     /// second.
     std::uint64_t minor_faults = 0;
     std::uint64_t major_faults = 0; ///< those that had to wait for a disk
-    /// The audio thread has SCHED_FIFO. It gives that up where it has worked for some 0.1 s without a pause,
-    /// so that it neither keeps a processor to itself nor has the process ended (RLIMIT_RTTIME).
+    /// The audio thread has SCHED_FIFO. It gives SCHED_FIFO up after working for some 0.1 s without a pause:
+    /// so it neither keeps a processor to itself nor makes the kernel end the process (RLIMIT_RTTIME).
     bool realtime = false;
-    /// How long the stream stood in the newest 64 xruns, oldest first; 0 where the device cannot tell.
+    /// How long the stream stood still in each of the newest 64 xruns, oldest first; 0 where the device
+    /// cannot tell.
     std::vector<double> xrun_s = {};
 };
 
@@ -85,36 +87,36 @@ struct player_position {
 /// Lines that the player drives or listens to; each may be empty.
 struct player_lines {
     std::unique_ptr<enable_line> amplifier = {}; ///< on only while the stream is known to run
-    double settle_s = 0.010;                     ///< turn-on time of the amplifier, silence
+    double settle_s = 0.010;                     ///< turn-on time of the amplifier, spent in silence
     std::unique_ptr<enable_line> sync_out = {};  ///< a pulse at each stroke's first sample at the DAC
     double pulse_s = 0.005;
     std::unique_ptr<edge_input> trigger = {}; ///< starts armed strokes
     double trigger_delay_s = 0.050;           ///< from the edge to the first sample at the DAC
 };
 
-/// Which tactor cannot be felt by itself on a stream of this wiring, and why: its channel reaches none of the
-/// device's, or only such as another tactor's reaches, too. Empty: there is none, or it cannot be known
-/// (stream_wiring::hidden_by).
+/// The first tactor that cannot be felt by itself on a stream of this wiring, and why: its channel reaches no
+/// channel of the device, or only channels that other tactors' channels reach, too. Empty: there is no such
+/// tactor, or it cannot be known (stream_wiring::hidden_by).
 [[nodiscard]] TACTOR_API std::string lost_tactor(const array& a, const stream_wiring& w);
 
-/// Owns the sink, the audio thread and the control thread. Its members may be called from any thread
-/// but the audio thread; they lock, so that several producers are safe. Numbers may be any: what cannot be is
-/// an error, never a crash. Where memory runs out std::bad_alloc is passed on, and what was called has done
-/// nothing; the player's own threads wait for memory and lose nothing.
+/// Owns the sink, the audio thread and the control thread. Its members may be called from any thread but the
+/// audio thread; they lock, so that several producers are safe. All numbers may be given: an impossible one
+/// is an error, never a crash. Where memory runs out, std::bad_alloc comes through, and the call that failed
+/// has done nothing; the player's own threads wait for memory and lose nothing.
 ///
-/// Handlers (on_report(), on_end()) may call all members, and may destroy the player. One that throws ends
-/// the stream: all strokes fade out, interrupted, with what it threw as the reason, which ended() gives as
-/// well.
+/// Handlers (on_report(), on_end()) may call all members, and may destroy the player. A handler that throws
+/// ends the stream: all strokes fade out and end interrupted. The reason in their reports is what the handler
+/// threw; ended() gives it as well.
 class TACTOR_API player {
 public:
     /// Starts the stream with silence. `a` gives the limit of each channel.
     /// \throws error: not_available or runtime when the stream does not start, runtime too when there are not
-    ///         enough descriptors or threads (it takes 7 to 9 descriptors), bad_input for options that cannot
-    ///         be, no sink, a tactor on a channel that the stream does not have, and a trigger whose
+    ///         enough descriptors or threads (it takes 7 to 9 descriptors), bad_input for options out of
+    ///         range, no sink, a tactor on a channel that the stream does not have, and a trigger whose
     ///         descriptor cannot be polled.
     player(std::unique_ptr<sink> s, const array& a, const player_options& o = {}, player_lines lines = {});
-    /// stop(), then closes: all strokes have been reported when it returns, and the sink is closed; in a
-    /// handler too, which is then called from within for the strokes that were left.
+    /// Calls stop() and closes the sink. When it returns, all strokes have been reported. This also holds in
+    /// a handler: for the strokes that are left, the handlers are then called from within the destructor.
     ~player();
     player(const player&) = delete;
     player& operator=(const player&) = delete;
@@ -126,10 +128,10 @@ public:
     /// side. With N periods in the buffer, a score that starts now has its first sample in the device's
     /// buffer one period after this call at the latest, and at the DAC after N + 1 periods at the latest.
     /// A score that starts at a given time is punctual if this call is made N + 1 periods before it.
-    /// \throws error: bad_input when rate or channels differ from the stream's, and for what the player's
-    ///         array would leave out or cut: a score that drives a channel without a tactor there (a
-    ///         continuous stroke may come to any of its own array), or a tactor above its limit there, and a
-    ///         marker on a tactor's channel; runtime when the stream has ended.
+    /// \throws error: bad_input when rate or channels differ from the stream's, and for a score that the
+    ///         player's array would not play in full: it drives a channel without a tactor there (a
+    ///         continuous stroke counts for all tactors of its own array), it drives a tactor above its limit
+    ///         there, or it has its marker on a tactor's channel; runtime when the stream has ended.
     stroke_id submit(const score& s, start_at start = start_at::now());
 
     /// Starts all armed strokes: their first samples are at the DAC at a CLOCK_MONOTONIC time, ns, or as
@@ -139,11 +141,11 @@ public:
     template <detail::no_count T>
     std::size_t fire(T seconds) = delete;
 
-    /// Begins a stroke that is fed point by point; silent until the first, which must come within
+    /// Begins a stroke that is fed point by point; it is silent until its first point, which must come within
     /// live_options::timeout_s. It ends in a report like all strokes. At most 64 sound at a time; further
-    /// ones wait until one of them ends, and begin with their newest point. A stroke without a point does
-    /// not count. \throws error: bad_input for options that cannot be (levels, carrier, SOA, Tactile
-    ///         Brush), runtime when the stream has ended.
+    /// ones wait until one of them ends, and begin with their newest point. A stroke without a point does not
+    /// count. \throws error: bad_input for options out of range (levels, carrier, SOA) and for Tactile Brush,
+    /// runtime when the stream has ended.
     [[nodiscard]] live_stroke begin(const live_options& o = {});
 
     /// Fades a stroke out. One that waits (for its time, a trigger, the amplifier, a point) ends at once,
@@ -165,25 +167,27 @@ public:
     /// Called in the control thread for each ended stroke. Set it before the first submit().
     void on_report(std::function<void(const stroke_report&)> handler);
 
-    /// Calls `done` once when a stroke has ended: in the control thread, or at once and here when it has
-    /// ended already; what it throws here comes out here. False, without a call, for a stroke that is not
-    /// known (any more). Several may be set for one stroke. See <tactor/asio.hpp> for completion tokens.
+    /// Calls `done` once when a stroke has ended: in the control thread, or, if it has ended already, at once
+    /// in this call, which then passes on what `done` throws. Returns false, without calling, for a stroke
+    /// that is not known (any more). Several functions may be set for one stroke. See <tactor/asio.hpp> for
+    /// completion tokens.
     /// \throws error (bad_input) for an empty function.
     [[nodiscard]] bool on_end(stroke_id id, std::function<void(const stroke_report&)> done);
 
-    /// Fades everything out, plays silence until it is out, stops. What that ends counts as cancelled
-    /// (interrupted, where the destructor does it). What is not silent after 0.4 s, for the device's buffer
-    /// is longer, is cut then, after the amplifier went off. Returns when that is done and reported; in a
-    /// handler at once.
+    /// Fades all strokes out, plays silence until the fade has been played, and stops the stream. Strokes
+    /// that this ends count as cancelled (interrupted, where the destructor does it). If the device's buffer
+    /// is so long that strokes still sound after 0.4 s, they are cut then, after the amplifier went off.
+    /// Returns when all this is done and reported; in a handler, it returns at once.
     void stop();
 
-    /// How the stream has ended; nothing while it goes on. A stream that has ended stays so: open the device
-    /// again (reopen_alsa()) for a new player.
+    /// How the stream has ended; nothing while it goes on. A stream that has ended does not start again: open
+    /// the device anew (reopen_alsa()) for a new player.
     [[nodiscard]] std::optional<stream_end> ended() const;
 
     [[nodiscard]] player_position position() const noexcept;
     [[nodiscard]] player_stats stats() const;
-    /// What the array was given lately, for the next player on it. Waits for the audio thread to be through.
+    /// How long each channel was driven lately, for the next player on the array. Waits until the audio
+    /// thread has ended.
     /// \throws error (runtime) while the stream goes on: stop() it first.
     [[nodiscard]] drive_history history() const;
 

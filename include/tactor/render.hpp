@@ -24,19 +24,20 @@
 namespace tactor {
 inline namespace v0 {
 
-/// What the array may be given at run time, over and above each channel's own max_dbfs: what the channels
-/// get after all strokes are summed, by its envelope. Plans within these limits are not touched in a single
-/// bit. The defaults are safe guesses: know your actuators.
+/// What the array may be given at run time, besides each channel's own max_dbfs. Both limits act on the
+/// envelopes of the channels, after all strokes are summed. Samples of plans within these limits are not
+/// changed in a single bit. The defaults are safe guesses: know your actuators.
 struct drive_limits {
     /// Greatest power of all tactors together, in dB above one channel's sine at full scale: the sum of the
-    /// squared envelopes in every frame, where carriers beat on a tactor at their crests. Default: that of
-    /// three; infinite: no limit. The gain of all falls within some 10 ms, without a click, and returns with
-    /// 50 ms; what begins at once meanwhile fades in.
+    /// squared envelopes in every frame. Where carriers beat on a tactor, the crests of the beat count.
+    /// Default: the power of three such sines; infinite: no limit. The gain of all tactors falls within some
+    /// 10 ms, without a click, and returns with a time constant of 50 ms; a drive that begins abruptly
+    /// meanwhile is faded in.
     double power_dbfs = 4.771212547196624;
-    /// Longest time that one tactor is driven (above -40 dBFS) within any window; then its channel fades out
-    /// until half of that time has left the window. No window holds more than this and one fade of 20 ms.
-    /// What begins oftener than each 1/256 of the window may be cut so much early. Not below window_s: no
-    /// limit.
+    /// Longest time that one tactor is driven (above -40 dBFS) within any window. Then its channel fades out,
+    /// and stays silent until half of that time has left the window. No window holds more than this and one
+    /// fade of 20 ms. Time is counted in steps of 1/256 of the window: a tactor that begins to be driven more
+    /// than once in a step may be cut up to one step too early. Not below window_s: no limit.
     double max_drive_s = 5.0;
     double window_s = 10.0;
 };
@@ -48,7 +49,7 @@ struct render_options {
     /// burst's begin and at its end (both within 1 % of a half cycle), else 2 ms; burst by burst.
     std::optional<double> ramp_s = {};
     double level_dbfs = -12.0;        ///< peak for amplitude 1, <= 0; a tactor's gain_db is added
-    std::optional<double> sl_db = {}; ///< instead: dB above each tactor's threshold_dbfs
+    std::optional<double> sl_db = {}; ///< instead of level_dbfs: dB above each tactor's threshold_dbfs
     unsigned channels = 0;            ///< 0: as many as the array needs
     /// Applied by the renderer; the player has its own. None: the piece as it was designed.
     std::optional<drive_limits> limits = {};
@@ -59,29 +60,30 @@ struct render_options {
     burst_envelope envelope = {};
 };
 
-/// Ramp of a burst (or of a continuous stroke, whose onset is 0) in seconds: o.ramp_s, or the default. Both
-/// ends of a burst that is shorter than two of them have half of it.
+/// Ramp of a burst (or of a continuous stroke, whose onset is 0) in seconds: o.ramp_s, or the default. A
+/// burst that is shorter than two ramps has a ramp of half its length at each end.
 [[nodiscard]] TACTOR_API double burst_ramp_s(double onset_s, double duration_s, double carrier_hz,
                                              const render_options& o) noexcept;
 
-/// The same of a burst of a plan: by its waveform and its carrier, which may not be at zero where a sine is.
+/// The same for a burst of a plan: its waveform and carrier count; they need not cross zero where a sine
+/// does.
 [[nodiscard]] TACTOR_API double burst_ramp_s(double onset_s, double duration_s, const plan& p,
                                              const render_options& o) noexcept;
 
 /// A plan and when it starts.
 struct placed_plan {
     plan schedule = {};
-    /// Seconds from the start of the piece, or as `anchor` says; none: at the end of the plan before it (the
-    /// first: 0).
+    /// Seconds from the start of the piece, or from the time that `anchor` says. None: at the end of the plan
+    /// before it (the first: 0).
     std::optional<double> start_s = {};
-    start_anchor anchor = {}; ///< from when start_s counts
+    start_anchor anchor = {}; ///< what start_s counts from
 };
 
 /// When each plan starts, in seconds. \throws error (bad_input) for one that would start before the piece.
 [[nodiscard]] TACTOR_API std::vector<double> starts_of(std::span<const placed_plan> plans);
 
 /// Plans at a sample rate and at levels: frames and channels. Immutable, cheap to copy; a move is a copy, so
-/// that what is moved from stays what it was.
+/// a score that was moved from keeps its value.
 class TACTOR_API score {
 public:
     /// \throws error (bad_input): carrier at or above half the rate, a level that a tactor may not
@@ -114,11 +116,11 @@ private:
     std::shared_ptr<const impl> impl_;
 };
 
-/// Makes a score stroke by stroke. What it plans itself is never there as a whole: an hour of park2016 takes
-/// 4 MB in place of 11. One thread at a time.
+/// Makes a score stroke by stroke. A plan that it makes itself is never in memory as a whole: an hour of
+/// park2016 takes 4 MB in place of 11. One thread at a time.
 class TACTOR_API score_builder {
 public:
-    /// \throws error (bad_input) for what render_options or the array ask that cannot be.
+    /// \throws error (bad_input) for impossible render_options or an impossible array.
     score_builder(const array& a, const render_options& o);
     ~score_builder();
     score_builder(const score_builder&) = delete;
@@ -129,11 +131,12 @@ public:
 
     /// Plans a stroke as make_plan() does and adds it at its start. `l` must be the layout of the array. The
     /// bursts of park2016 are handed on as they come, the other algorithms plan as a whole.
-    /// \throws error (bad_input) as make_plan() does, and where the plan cannot be rendered; the builder is
-    ///         of no more use then.
+    /// \throws error (bad_input) as make_plan() does, and where the plan cannot be rendered; then the builder
+    ///         cannot be used any more.
     void add(const layout& l, const stroke& s, const plan_options& o);
 
-    /// The score of what was added, with the same samples as that of the plans; the builder begins anew.
+    /// The score of all that was added: its samples are those of a score that is made of the plans. The
+    /// builder begins anew.
     /// \throws error (bad_input) for levels that a tactor may not have.
     [[nodiscard]] score take();
 
@@ -142,9 +145,9 @@ private:
     std::unique_ptr<impl> impl_;
 };
 
-/// Renders a score offline, block by block. The same mixer as in the player: same score, same
-/// samples, whatever the block sizes. One thread at a time. What is moved from can be destroyed and assigned
-/// to; its other members throw error (bad_input).
+/// Renders a score offline, block by block. The same mixer as in the player: same score, same samples,
+/// whatever the block sizes. One thread at a time. A renderer that was moved from can be destroyed and
+/// assigned to; its other members throw error (bad_input).
 class TACTOR_API renderer {
 public:
     renderer(const score& s, format_kind f);
@@ -153,16 +156,16 @@ public:
     renderer& operator=(renderer&&) noexcept;
 
     /// Fills `out` with the next interleaved frames, as many as it has space for, and goes on; silence after
-    /// the end. Where a continuous stroke fails, all fades out before that, within 10 ms, and silence
-    /// follows. Allocates nothing but what failure() says.
+    /// the end. Where a continuous stroke fails, all strokes fade out before that, within 10 ms, and silence
+    /// follows. Allocates nothing but the text of failure().
     /// \throws error (bad_input) where `out` is no whole number of frames (channels * bytes_of(format)).
     void process(std::span<std::byte> out);
 
     /// Next frame to be rendered.
     [[nodiscard]] std::uint64_t position() const;
 
-    /// Why the rest is silence: for want of memory, say, a continuous stroke could not be followed further,
-    /// or it asked for more than its levels were checked with. Empty while all is well.
+    /// Why the rest is silence: a continuous stroke could not be followed further, for want of memory for
+    /// example, or it asked for more than its levels were checked with. Empty while all is well.
     [[nodiscard]] const std::string& failure() const;
 
 private:

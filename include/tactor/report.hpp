@@ -46,7 +46,7 @@ enum class reason_kind {
     none,      ///< neither: it finished or was cancelled; the stream was stopped by stop()
     xrun,      ///< the device ran dry
     suspended, ///< the system was suspended
-    lost,      ///< the device is gone, does not get on any more, or had one xrun after the other
+    lost,      ///< the device is gone, its position stands still, or it had one xrun after the other
     failed,    ///< the device failed
     late,      ///< the computer was too slow to prepare the stroke in time
     crowded,   ///< too many strokes at once
@@ -54,8 +54,8 @@ enum class reason_kind {
     starved,   ///< live_options::timeout_s: no more points came
     too_long,  ///< live_options::longest_s
     muted,     ///< the amplifier was off
-    amplifier, ///< its line cannot be switched
-    left_on,   ///< nor switched off: it may be on
+    amplifier, ///< the amplifier's line cannot be switched
+    left_on,   ///< the amplifier's line cannot be switched off: it may be on
     plan,      ///< the plan or a model of one's own failed, or gave more than was promised
     handler,   ///< one of the program's handlers threw
 };
@@ -66,12 +66,13 @@ TACTOR_API reason_kind from_string<reason_kind>(std::string_view name);
 template <>
 TACTOR_API std::span<const reason_kind> values_of<reason_kind>() noexcept;
 
-/// How long points of a live stroke took from their time stamps until the DAC had the first frame that they
-/// changed. The first of a stroke as stroke_report::started_ns has it, the others as the DAC's clock expects
-/// when they are rendered; those that come before it is known, in a stream's first periods, are not counted,
-/// nor those that a newer one overtook before the next period.
+/// How long points of a live stroke took, from their time stamps until the first frame that they changed was
+/// at the DAC. For the first point of a stroke this time is stroke_report::started_ns; for the others, the
+/// one that the DAC's clock expects when they are rendered. Two kinds of points are not counted: those that
+/// come before this clock is known, in a stream's first periods, and those that a newer one overtook before
+/// the next period.
 struct live_delay {
-    std::uint64_t points = 0; ///< that were counted
+    std::uint64_t points = 0; ///< how many were counted
     double least_s = 0.0;     ///< below 0 where a time stamp lies in the future
     double mean_s = 0.0;
     double most_s = 0.0;
@@ -82,11 +83,12 @@ struct stroke_report {
     state_kind state = state_kind::finished;
     std::uint64_t frames = 0;               ///< frames of it that were played, from its first on
     reason_kind reason = reason_kind::none; ///< why it was interrupted
-    std::string why = {};                   ///< the same for people, with what is known of it
-    /// How much later than asked for its first sample came; 0 when in time, and for start_at::now().
+    std::string why = {};                   ///< the same in words, with what else is known
+    /// How much later than asked for its first sample was at the DAC; 0 when in time, and for
+    /// start_at::now().
     double late_s = 0.0;
-    /// CLOCK_MONOTONIC of its first sample at the DAC, as the DAC's clock had it when that sample passed;
-    /// none when it never sounded (`frames` is 0).
+    /// When its first sample was at the DAC, CLOCK_MONOTONIC, as the DAC's clock said while that sample
+    /// passed; none when it never sounded (`frames` is 0).
     std::optional<std::int64_t> started_ns = {};
     std::optional<live_delay> delay = {}; ///< of a live stroke, once a point of it has sounded
 };
@@ -97,11 +99,11 @@ struct stream_end {
     std::string why = {};                   ///< the same for people; empty for none
 };
 
-/// What wait() came to.
+/// How a call of wait() ended.
 enum class wait_kind {
-    ended,   ///< the stroke has, and here is its report
-    timeout, ///< it has not yet: the time was over, or a handler asked, where it does not block
-    taken,   ///< it has, but its report was given before, or dropped for 4096 newer ones
+    ended,   ///< the stroke has ended, and here is its report
+    timeout, ///< it has not ended: the time was over, or a handler asked, where wait() does not block
+    taken,   ///< it has ended, but its report was given before, or dropped for 4096 newer ones
     unknown, ///< this player never had such a stroke
 };
 
@@ -118,7 +120,7 @@ public:
     wait_result(stroke_report r) noexcept : outcome_(wait_kind::ended), report_(std::move(r)) {}
 
     [[nodiscard]] wait_kind outcome() const noexcept { return outcome_; }
-    /// Whether there is a report. Where there is none, there is nothing to ask of it.
+    /// Whether there is a report. Without one, `*` and `->` must not be used.
     explicit operator bool() const noexcept { return report_.has_value(); }
     const stroke_report& operator*() const noexcept { return *report_; }
     const stroke_report* operator->() const noexcept { return &*report_; }

@@ -22,9 +22,9 @@ inline namespace v0 {
 
 /// [output]: the PCM. Anything not said is chosen by the program.
 struct output_settings {
-    std::optional<std::string> pcm = {};        ///< ALSA name; another's file: see require_device_name()
+    std::optional<std::string> pcm = {};        ///< ALSA name; check others' by require_device_name()
     source_place pcm_at = {};                   ///< where the file says it
-    bool pcm_included = false;                  ///< by a file that the one read names under [array]
+    bool pcm_included = false;                  ///< said in a file that the one read names under [array]
     std::optional<unsigned> rate = {};          ///< Hz, 8000 to 768000
     std::optional<unsigned> channels = {};      ///< exact channel count
     std::optional<unsigned> period_frames = {}; ///< frames in a period, 50 us at least
@@ -38,18 +38,18 @@ struct sync_settings {
     std::optional<unsigned> channel = {}; ///< marker on a spare PCM channel
     std::optional<gpio_line_name> in = {};
     edge_kind edge = edge_kind::rising;
-    double debounce_s = 0.001; ///< edges that follow another within this are dropped
+    double debounce_s = 0.001; ///< an edge that follows another within this time is dropped
     pull_kind pull = pull_kind::as_is;
 };
 
-/// [limits]: see drive_limits. Anything not said is that one's default.
+/// [limits]: see drive_limits. Values that are not given are the defaults there.
 struct limit_settings {
     std::optional<double> power_dbfs = {};
     std::optional<double> max_drive_s = {};
     std::optional<double> window_s = {};
 };
 
-/// [serve]: what tactor serve listens on and allows. Anything not said is that program's default.
+/// [serve]: what tactor serve listens on and allows. Values that are not given are that program's defaults.
 struct serve_settings {
     std::optional<std::string> socket = {}; ///< path of the Unix socket
     std::optional<std::string> tcp = {};    ///< "[HOST:]PORT", as for osc and http
@@ -73,8 +73,8 @@ struct serve_settings {
     std::optional<unsigned> max_all_unread_bytes = {}; ///< that wait for all together
 };
 
-/// [defaults]: what strokes, plans and their sound have where nothing else is said. The file was looked at
-/// for what cannot be at all; what goes together, and with a sample rate, is checked where it is used.
+/// [defaults]: values for strokes, plans and their sound where nothing else is said. Reading the file checks
+/// each value by itself. Whether values go together, and fit a sample rate, is checked where they are used.
 struct default_settings {
     std::optional<double> speed_mm_s = {}; ///< of strokes that say neither speed nor duration
 
@@ -123,7 +123,7 @@ struct default_settings {
     friend bool operator==(const default_settings&, const default_settings&) = default;
 };
 
-/// Of whom and at which carrier an array file's thresholds are: its [calibration].
+/// [calibration] of an array file: whose thresholds it has, and at which carrier.
 struct calibration_origin {
     std::string participant = {};
     double carrier_hz = 0.0;

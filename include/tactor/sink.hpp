@@ -22,15 +22,15 @@ inline namespace v0 {
 
 /// Which channels of the device the channels of a stream reach.
 struct stream_wiring {
-    /// Of each channel of the stream those that it reaches, ascending (of a second device they count from
-    /// 1024); none: what is played on it is lost. Empty: each reaches the one of its own number.
+    /// By channel of the stream: the device's channels that it reaches, ascending (those of a second device
+    /// count from 1024). A channel with none is lost. Empty: each channel reaches the one of its own number.
     std::vector<std::vector<unsigned>> outputs = {};
-    /// What is between and may give any channel any place, so that `outputs` cannot be known: "type pulse".
-    /// Empty: they are known.
+    /// The part in between that may give any channel any place, so that `outputs` cannot be known: "type
+    /// pulse". Empty: `outputs` is known.
     std::string hidden_by = {};
 };
 
-/// What was negotiated. Does not change while the sink lives, but for has_clock.
+/// The stream as it was negotiated. While the sink lives, only has_clock may change.
 struct stream_setup {
     std::string name; ///< as the user named it
     unsigned channels = 0;
@@ -46,13 +46,13 @@ struct stream_setup {
     [[nodiscard]] std::size_t frame_bytes() const noexcept { return channels * bytes_of(format); }
 };
 
-/// What a call on a sink came to. A plain value: the audio thread throws nothing.
+/// How a call on a sink ended. A plain value: the audio thread throws nothing.
 enum class io_kind {
     ok,
     again,     ///< no space now
     xrun,      ///< the device ran dry; the stream has stopped
     suspended, ///< the system sleeps or slept
-    lost,      ///< unplugged, or it does not move any more
+    lost,      ///< unplugged, or its position stands still
     failed,    ///< anything else; final
 };
 
@@ -73,7 +73,7 @@ struct stream_position {
     std::uint64_t written = 0; ///< frames given in this epoch, the prefill included
     std::uint64_t played = 0;  ///< of these, how many have reached the DAC
     std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC of the reading
-    bool valid = false;        ///< one that stays so is a device that stands still: player_options::stall_s
+    bool valid = false;        ///< false for player_options::stall_s: the device stands still
 };
 
 /// A stream of interleaved frames. Order of calls: write() silence (prefill), start(), then wait on
@@ -94,8 +94,8 @@ public:
     virtual io_kind start() noexcept = 0;
     /// Tries to come back from `suspended`; `again` while the device is not ready.
     virtual io_kind resume() noexcept = 0;
-    /// For how long the stream has stood still when an xrun was just reported, ns; 0 where that cannot be
-    /// told. Asked before prepare().
+    /// How long the stream has stood still since the xrun that was just reported, ns; 0 where that is not
+    /// known. Called before prepare().
     virtual std::int64_t xrun_ns() noexcept;
 
     /// Upper bound of the number of descriptors.
@@ -114,14 +114,14 @@ public:
     virtual void drop() noexcept = 0;
 };
 
-/// A sink for what has no clock of its own: a socket, a pipe, a simulation. Frames leave it at the sample
-/// rate by CLOCK_MONOTONIC; where the writer comes too late that clock waits, so that there are no xruns.
-/// Derive from it and say what becomes of the frames.
+/// A sink for a target without a clock of its own: a socket, a pipe, a simulation. Frames leave it at the
+/// sample rate by CLOCK_MONOTONIC. Where the writer comes too late, the sink's time waits for it, so that
+/// there are no xruns. Derive from it and implement take().
 class TACTOR_API paced_sink : public sink {
 public:
     /// Of `s`, name, channels (1 to 16384), rate (8000 to 768000 Hz) and format count; period_frames (50 us
     /// at least) and buffer_frames (two periods at least) may be 0, which means 96 frames and three periods.
-    /// \throws error: bad_input for numbers that cannot be, runtime when there is no timer to be had.
+    /// \throws error: bad_input for numbers out of range, runtime when no timer is available.
     explicit paced_sink(stream_setup s);
     ~paced_sink() override;
 

@@ -13,7 +13,7 @@
 
 namespace tactor::detail {
 
-/// What can count frames or nanoseconds. Seconds in a double would be taken for 0 or 1 of them.
+/// Types that can count frames or nanoseconds. Seconds in a double would be taken for a count of 0 or 1.
 template <typename T>
 concept whole_number = std::integral<T> && !std::same_as<T, bool>;
 template <typename T>
@@ -40,9 +40,9 @@ public:
 
     /// With the next period that is written.
     [[nodiscard]] static constexpr start_at now() noexcept { return {}; }
-    /// From a frame of the stream on; one that has been written already means as soon as possible, and one
-    /// that never comes waits to be cancelled. Frames of the stream count on over an xrun.
-    /// \throws error (bad_input) for a negative one.
+    /// From a frame of the stream on. A frame that has been written already means as soon as possible; a
+    /// stroke whose frame never comes waits until it is cancelled. The count of frames goes on over an xrun.
+    /// \throws error (bad_input) for a negative frame.
     template <detail::whole_number T>
     [[nodiscard]] static constexpr start_at frame(T stream_frame)
     {
@@ -55,8 +55,8 @@ public:
     }
     template <detail::no_count T>
     static start_at frame(T seconds) = delete;
-    /// CLOCK_MONOTONIC, ns, at which the first sample is to be at the DAC: within half a frame and the error
-    /// of the DAC clock. What is over already means as soon as possible; see stroke_report::late_s. Any
+    /// The first sample is at the DAC at this time, CLOCK_MONOTONIC in ns: within half a frame and the error
+    /// of the DAC clock. A time that has passed means as soon as possible; see stroke_report::late_s. Any
     /// number may be given.
     template <detail::no_count T>
     static start_at time(T seconds) = delete;

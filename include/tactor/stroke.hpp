@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A stroke: a path and when the target is where on it.
+/// A stroke: a path, and where on it the target is at each time.
 #pragma once
 
 #include <filesystem>
@@ -39,8 +39,8 @@ struct meeting {
     friend bool operator==(const meeting&, const meeting&) = default;
 };
 
-/// Position and intensity over time (rendering model, section 2). Immutable; copies and moves share it (what
-/// is moved from stays what it was); any thread may call.
+/// Position and intensity over time (rendering model, section 2). Immutable; copies and moves share it, and a
+/// trajectory that was moved from keeps its value; any thread may call.
 class TACTOR_API trajectory {
 public:
     /// A touch that rests at (0, 0) mm for a second.
@@ -70,12 +70,12 @@ public:
     /// The same movement in another time, rests included. Throws like along().
     [[nodiscard]] trajectory with_duration(double duration_s) const;
 
-    /// The same movement at another mean speed while it moves; the rests of a movement along a path stay as
-    /// long as they are, and what has no length stays as it is. \throws error (bad_input) unless speed_mm_s
-    /// is finite, above 0 and leaves a duration that can be.
+    /// The same movement at another mean speed, in which rests do not count. The rests of a movement along a
+    /// path keep their time; a movement without length stays as it is.
+    /// \throws error (bad_input) unless speed_mm_s is finite, above 0 and gives a possible duration.
     [[nodiscard]] trajectory with_speed(double speed_mm_s) const;
 
-    /// Played backwards: at each time what this one is as long before its end.
+    /// Played backwards: at time t it is where this one is at duration - t.
     [[nodiscard]] trajectory reversed() const;
 
     /// The same movement with every intensity times `factor`. \throws error (bad_input) unless factor
@@ -87,7 +87,7 @@ public:
     [[nodiscard]] std::vector<double> meets_x(double x_mm) const;
     [[nodiscard]] std::vector<double> meets_y(double y_mm) const;
 
-    trajectory(const trajectory&) noexcept = default; ///< and no move: see path
+    trajectory(const trajectory&) noexcept = default; ///< for moves, too: see path
     trajectory& operator=(const trajectory&) noexcept = default;
 
     struct impl;
@@ -102,7 +102,7 @@ private:
 /// Speed of a stroke that says neither duration nor speed.
 inline constexpr double default_speed_mm_s = 60.0;
 
-/// What must be said of a stroke.
+/// A remark that a user of the stroke must get.
 enum class note_kind {
     none,
     reconstructed, ///< a preset whose original is not in print
@@ -116,7 +116,7 @@ TACTOR_API std::span<const note_kind> values_of<note_kind>() noexcept;
 
 /// The carrier at a part of the path.
 struct carrier_part {
-    double part = 0.0; ///< of the path's length that lies behind the target, 0 to 1
+    double part = 0.0; ///< of the path's length that the target has covered, 0 to 1
     double hz = 250.0; ///< 1 to 384000
 
     friend bool operator==(const carrier_part&, const carrier_part&) = default;
@@ -130,17 +130,20 @@ struct stroke {
     std::optional<double> start_s = {};
     std::optional<double> carrier_hz = {}; ///< instead of the common carrier
     note_kind note = note_kind::none;
-    /// What was odd about the input and taken nevertheless; make_plan() hands it on to plan::warnings.
+    /// Oddities of the input that were accepted; make_plan() hands them on to plan::warnings.
     std::vector<std::string> warnings = {};
     /// The speed from which the motion's time follows; none where a time is given. fit_strokes() keeps it.
     std::optional<double> speed_mm_s = {};
     start_anchor anchor = {};
     stroke_choices choices = {};
-    /// Where a file says choices.soa_s, or else choices.burst_s, for messages; line 0: no file does.
+    /// The place in a file of choices.soa_s, or else of choices.burst_s, for messages; line 0: it is not in a
+    /// file.
     source_place choices_at = {};
-    /// Wants to be as large as the array has space for, this far from its edge: see fit_strokes().
+    /// The stroke is to be as large as the array has space for, so far from the array's edge: see
+    /// fit_strokes().
     std::optional<double> fit_margin_mm = {};
-    /// With it: strokes of the same number, above 0, are fitted as one picture; 0: this one by itself.
+    /// With fit_margin_mm: strokes with the same number above 0 are fitted as one picture; 0: this one by
+    /// itself.
     unsigned fit_group = 0;
     std::optional<waveform> wave = {}; ///< instead of the common waveform
     std::optional<modulation> am = {}; ///< instead of the common modulation

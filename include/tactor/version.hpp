@@ -15,15 +15,15 @@
 #define TACTOR_VERSION_NUMBER(major, minor, patch) ((major)*1000000 + (minor)*1000 + (patch))
 #define TACTOR_VERSION TACTOR_VERSION_NUMBER(TACTOR_VERSION_MAJOR, TACTOR_VERSION_MINOR, TACTOR_VERSION_PATCH)
 
-// All of tactor is in an inline namespace that a 0.x which breaks programs renames (v0_2, say): what was
-// compiled for another one does not link, instead of misbehaving. Programs say tactor::.
+// All of tactor is in an inline namespace. A version 0.x that breaks programs renames it (v0_2, say): so
+// programs that were compiled for another version do not link, instead of misbehaving. Programs say tactor::.
 namespace tactor {
 inline namespace v0 {
 
 /// "0.1.0".
 [[nodiscard]] TACTOR_API const char* version() noexcept;
 
-/// What a bug report should say of this library: how and with what it was built, and which of its loops this
+/// Facts for a bug report about this library: how and with what it was built, and which of its loops this
 /// processor runs. Some lines for people. Any thread.
 [[nodiscard]] TACTOR_API std::string build_facts();
 

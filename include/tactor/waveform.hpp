@@ -17,13 +17,13 @@
 namespace tactor {
 inline namespace v0 {
 
-/// The shapes have the carrier's frequency and only those of their harmonics that are below half the rate;
-/// each begins at a crossing of zero upwards. Noise lies between two frequencies. The peak of each is the
+/// The shapes have the carrier's frequency and those of their harmonics that are below half the rate; each
+/// begins where it crosses zero upwards. Noise lies between two frequencies. The peak of each is the
 /// amplitude that is asked for: a square has up to 1.6 times a sine's power, and noise a tenth of it.
 enum class waveform_kind { sine, square, triangle, sawtooth, noise, recording };
 
 /// How recorded samples are laid along a stroke: as the carrier's cycle; in their own time, from the stroke's
-/// first frame on; or along the path, by its length. What ends before the stroke begins again.
+/// first frame on; or along the path, by its length. Samples that are shorter than the stroke are repeated.
 enum class texture_kind { cycle, time, length };
 
 TACTOR_API std::string_view to_string(waveform_kind k) noexcept;
@@ -42,14 +42,14 @@ TACTOR_API std::span<const texture_kind> values_of<texture_kind>() noexcept;
 struct recording {
     std::string file = {};    ///< where they came from, for messages
     double rate_hz = 48000.0; ///< above 0
-    /// Finite, in any unit, and not all the same: what is played of them is their shape, with a peak of 1 and
-    /// without their mean.
+    /// Finite, in any unit, and not all the same. Only their shape is played: their mean is taken out, and
+    /// their peak becomes 1.
     std::vector<float> samples = {};
 
     friend bool operator==(const recording&, const recording&) = default;
 };
 
-/// Frequencies of noise, Hz: at least so far from each other and from 0.
+/// The frequencies of noise are at least so far from each other and from 0, Hz.
 inline constexpr double least_noise_hz = 1.0;
 /// Most samples of a recording that is a cycle, or lies along a path by its length.
 inline constexpr std::size_t most_cycle_samples = std::size_t{1} << 16;
@@ -64,10 +64,10 @@ struct waveform {
     std::uint64_t seed = 1; ///< noise: the same number gives the same noise
     std::shared_ptr<const recording> recorded = {}; ///< recording only
     texture_kind texture = texture_kind::cycle;     ///< recording only
-    /// texture_kind::length: so much of the path, mm, has the whole recording; 0: all of it.
+    /// texture_kind::length: length of path on which the whole recording lies once, mm; 0: the whole path.
     double texture_mm = 0.0;
 
-    /// Compares recordings by what is in them.
+    /// Compares recordings by their contents.
     TACTOR_API friend bool operator==(const waveform& a, const waveform& b);
 };
 
@@ -82,14 +82,15 @@ struct modulation {
 
 /// "sine", "square", "triangle", "sawtooth", "noise:LO-HI" or the name of a WAV file, relative to `folder`,
 /// which is read: one channel of integers or floats. May block on the file system.
-/// \throws error (bad_input) for what is none of these.
+/// \throws error (bad_input) for any other text.
 [[nodiscard]] TACTOR_API waveform parse_waveform(std::string_view text,
                                                  const std::filesystem::path& folder = {});
 
-/// Whether parse_waveform() would open a file for this text: to refuse one from somebody who may name none.
+/// Whether parse_waveform() would open a file for this text: to refuse it from somebody who may not name
+/// files.
 [[nodiscard]] TACTOR_API bool waveform_names_file(std::string_view text) noexcept;
 
-/// What parse_waveform() takes: of noise its frequencies, of a recording its file.
+/// The text that parse_waveform() takes: for noise with its frequencies, for a recording its file.
 [[nodiscard]] TACTOR_API std::string waveform_text(const waveform& w);
 
 /// "HZ" or "HZ:DEPTH". \throws error (bad_input).
