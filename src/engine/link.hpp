@@ -24,20 +24,20 @@ struct stream_status {
     std::uint64_t played = 0;
     std::uint64_t stroke_frame = 0;
     stroke_id stroke = {};
-    bool sounding = false; ///< whether `stroke` says anything
+    bool sounding = false; ///< whether `stroke` is set
     bool running = false;
     stream_stage stage = stream_stage::idle;
     std::uint64_t epoch = 0;        ///< number of the start of the DAC, from 1
     std::uint64_t epoch_played = 0; ///< frames played since that
 };
 
-/// Between the audio thread and the one that drives the amplifier's line. As it stands here: no amplifier.
+/// Shared by the audio thread and the one that drives the amplifier's line. As initialised: no amplifier.
 struct amplifier_link {
     std::atomic<bool> ready{true};             ///< strokes may begin
     std::atomic<bool> off{true};               ///< the line is off; the DAC may stop
-    std::atomic<bool> stuck{false};            ///< it is given up: it cannot be told whether it is off
+    std::atomic<bool> stuck{false};            ///< the line is given up: it may be on or off
     std::atomic<bool> failed{false};           ///< the line cannot be switched: the stream has to end
-    std::atomic<std::uint32_t> mutes{0};       ///< each time it went off before its time
+    std::atomic<std::uint32_t> mutes{0};       ///< how often it went off before its time
     std::atomic<bool> ending{false};           ///< audio thread: the last sound is out, or the device is gone
     rt::event_fd wake;                         ///< audio thread: something has changed
     rt::triple_buffer<stream_status> status{}; ///< for the thread that drives the line
@@ -82,7 +82,7 @@ struct link {
     rt::event_fd to_control;
     /// Set by the feeder when the command ring is full; the audio thread then says when it no longer is.
     std::atomic<bool> feeder_waits{false};
-    /// For the control side: who reads has the player's mutex. No reader shares a buffer with another, so
+    /// For the control side, which reads under the player's mutex. No two readers share a buffer, so
     /// that none ever waits for the audio thread, whatever their priorities are.
     rt::triple_buffer<stream_status> status;
     rt::triple_buffer<clock_line> clock;      ///< what is known of the DAC's clock; for the control side

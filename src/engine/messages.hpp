@@ -17,8 +17,8 @@ class live_voice;
 inline constexpr std::uint32_t voices = 512;
 
 /// Names one handing-over of a score to the audio thread: place in its table plus voices * generation. A
-/// score that must be handed over again after an xrun gets a new one, and what is still in the ring under
-/// the old one is ignored.
+/// score that must be handed over again after an xrun gets a new ticket; commands that are still in the ring
+/// under the old one are ignored.
 using ticket = std::uint32_t;
 
 constexpr std::uint32_t place_of(ticket t) noexcept

@@ -26,12 +26,12 @@ struct loop_options {
     std::uint64_t horizon_frames = 24'000; ///< the control side is woken each eighth of it
     std::int64_t stall_ns = 500'000'000;   ///< a device that stands still for so long is lost
     std::size_t drives = 8192;             ///< capacity of the mixer
-    bool amplifier = false;                ///< somebody drives one after link::amplifier
+    bool amplifier = false;                ///< there is one, driven through link::amplifier
     /// How long the end waits for the amplifier to be off: a holder that hangs takes a second, and a line
     /// that refuses is tried again for another.
     std::int64_t off_ns = 2'000'000'000;
     synth::guard_settings guards{};
-    synth::drive_history driven = {}; ///< what the array was given before, as of now
+    synth::drive_history driven = {}; ///< how long channels were driven before, as of now
 };
 
 /// Owns the mixer and everything that happens to the stream. After the constructor no member but the
@@ -43,14 +43,14 @@ public:
     /// First epoch: prepare, silence, start.
     io_result start(std::int64_t now) noexcept;
 
-    /// One wake-up; `ready` is what the sink made of the descriptors, `again` when it was not asked.
+    /// One wake-up; `ready` is what sink::ready() returned, or `again` when it was not called.
     void step(io_kind ready, std::int64_t now) noexcept TACTOR_NONBLOCKING;
 
     /// Whether the stream has ended; the last report is in the ring then.
     bool over() const noexcept { return phase_ == phase::over; }
-    /// Whether the sink's descriptors are worth polling now.
+    /// Whether the sink's descriptors should be polled now.
     bool polls_sink() const noexcept;
-    /// What the array was given lately. Once the audio thread is through.
+    /// How long channels were driven lately. Only once the audio thread has ended.
     synth::drive_history driven() const { return mixer_.history(); }
     /// Drives that wait or sound.
     std::size_t drives() const noexcept { return mixer_.size(); }
@@ -103,7 +103,7 @@ private:
     bool stop_asked_ = false;
     std::int64_t stop_asked_ns_ = 0;
     reason_kind stop_why_ = reason_kind::none;
-    std::uint32_t mutes_ = 0;                 ///< link::amplifier's, as far as obeyed
+    std::uint32_t mutes_ = 0;                 ///< link::amplifier's, those obeyed so far
     bool end_runs_ = false;                   ///< closing: the stream is fed with zeros meanwhile
     reason_kind end_why_ = reason_kind::none; ///< closing
     int end_code_ = 0;
@@ -117,10 +117,10 @@ private:
     std::uint64_t played_ = 0;     ///< of this epoch
     std::uint64_t told_ = 0;       ///< stream frame at which the control side was last woken
     std::int64_t epoch_ns_ = 0;    ///< when the DAC was started
-    std::int64_t moved_ns_ = 0;    ///< when the position last got on
+    std::int64_t moved_ns_ = 0;    ///< when the position last moved
     bool fresh_ = false;           ///< it has just started, which may have taken longer than a stall
     unsigned still_steps_ = 0;     ///< wake-ups since then
-    unsigned idle_steps_ = 0;      ///< wake-ups since the position got on or a frame was taken
+    unsigned idle_steps_ = 0;      ///< wake-ups since the position moved or a frame was taken
     std::int64_t suspended_ns_ = 0;
     std::array<std::int64_t, 3> recoveries_{};
     std::size_t recovered_ = 0;

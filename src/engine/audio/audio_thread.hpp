@@ -17,7 +17,7 @@ namespace tactor::engine {
 class audio_thread {
 public:
     /// Starts the stream and, with it, the thread. The references must outlive it.
-    /// \throws std::system_error when there is no thread to be had.
+    /// \throws std::system_error when no thread can be started.
     audio_thread(audio_loop& loop, sink& s, link& l, const rt::thread_options& o);
 
     /// How the start of the stream went.

@@ -33,10 +33,11 @@ public:
     /// `batch_frames`: steps of the position; 0 where it moves frame by frame.
     dac_clock(unsigned rate, unsigned batch_frames) noexcept;
 
-    /// The DAC starts again: what follows belongs to stream frames from `first` on.
+    /// The DAC starts again: later readings belong to stream frames from `first` on.
     void begin_epoch(std::uint64_t first) noexcept;
     /// At `time_ns` the stream frame `frame` was at the DAC. A frame that is not beyond the latest is
-    /// ignored; a reading far off the line too, unless eight in a row are: then the line begins anew.
+    /// ignored, and so is a reading far off the line. After eight such readings in a row the line begins
+    /// anew.
     void add(std::int64_t time_ns, std::uint64_t frame) noexcept;
 
     const clock_line& line() const noexcept { return line_; }

@@ -13,8 +13,8 @@
 
 namespace tactor::engine {
 
-/// Its calls are the ones that may go to the kernel; ALSA locks a mutex of the handle's own, which only the
-/// audio thread has.
+/// These calls may enter the kernel. In them ALSA locks a mutex of the handle, which only the audio thread
+/// uses.
 class device {
 public:
     explicit device(sink& s) noexcept : sink_(s) {}

@@ -13,8 +13,8 @@
 
 namespace tactor::engine {
 
-/// Exactly one end for each score that was begun. Frames are those of the epoch (the mixer's) unless
-/// called stream frames. Audio thread only, nothing allocates.
+/// Each score that was begun gets exactly one end. Frames are those of the epoch (the mixer's) unless called
+/// stream frames. Audio thread only, nothing allocates.
 class score_table {
 public:
     /// `reserve`: drives of the mixer that are kept for live strokes.
@@ -23,45 +23,52 @@ public:
     {
     }
 
-    /// Whether this beginning has been cancelled (and reported) before it came; asked once.
+    /// Whether this ticket was cancelled, and reported, before its begin came. Called once for each begin.
     bool called_off(ticket t) noexcept;
     /// `offset`: stream frame at which the epoch began.
     void begin(const command& c, std::uint64_t offset) noexcept;
     /// False when the mixer has no space now; the command must be given again.
     bool add(const command& c) noexcept;
-    /// There are more drives than there is space for: what comes too late in the next time does so for that.
+    /// There are more drives than space: if drives come too late within the next crowd_frames, this is the
+    /// reason.
     void crowd() noexcept;
     void end(ticket t) noexcept;
-    /// There will be no more drives from frame `at` of the score on, for its plan failed.
+    /// The plan failed: from frame `at` of the score on there are no more drives.
     void fail(ticket t, std::uint64_t at) noexcept;
-    /// A live stroke; silent until its first point comes and fewer than live_voices sound. There must be a
-    /// place.
+    /// Adds a live stroke. It is silent until its first point has come and fewer than live_voices sound.
+    /// There must be a free place.
     void begin_live(const request& r) noexcept;
-    /// Ends live strokes whose producer wants it, or is silent for too long, and those that last too long.
+    /// Ends live strokes whose producer has asked for it, or is silent for too long, and those that last too
+    /// long.
     void look_at_wishes() noexcept;
-    /// Adds the live strokes' drives of the next frames; before each mix. `offset` as in begin(); `clock` may
-    /// be unknown.
+    /// Adds the live strokes' drives of the next frames; called before each mix. `offset` as in begin();
+    /// `clock` may be unknown.
     void render_live(std::uint64_t frames, std::uint64_t offset, const clock_line& clock) noexcept;
-    /// Fades out what would break off for want of drives within two periods; before each mix.
+    /// Fades out scores that will break off within two periods because their next drives have not come.
+    /// Called before each mix.
     void fade_what_runs_out(std::uint64_t period) noexcept;
-    /// Fades out what failed, so that it is silent where its drives end; before each mix.
+    /// Fades out scores whose plan failed, so that they are silent where their drives end. Called before each
+    /// mix.
     void fade_what_failed(std::uint64_t period) noexcept;
-    /// Also for a score whose begin() is still to come.
+    /// Fades a score out, or ends it at once if it has not begun. Its begin() may still be to come.
     void cancel(ticket t) noexcept;
-    /// Fades everything out; scores not yet begun end at once, as do those that come later.
+    /// Fades everything out. Scores that have not begun end at once, and so do those that come later.
     void stop(bool closing) noexcept;
     /// The same, with a reason.
     void stop(state_kind s, reason_kind why) noexcept;
-    /// The amplifier is off: fades what sounds, returns what has not begun.
+    /// The amplifier is off: fades out the scores that sound, and returns those that have not begun.
     void mute() noexcept;
 
-    /// Notes when the first sample of each was at the DAC, once `played` frames have reached it. `clock` must
-    /// be valid, for the epoch that began at stream frame `offset`. Before update() and interrupt().
+    /// Notes when the first sample of each score was at the DAC, as soon as it is among the `played` frames.
+    /// `clock` must be valid, for the epoch that began at stream frame `offset`. Called before update() and
+    /// interrupt().
     void note_starts(std::uint64_t played, std::uint64_t offset, const clock_line& clock) noexcept;
-    /// Ends what is over when `played` frames have reached the DAC, and starts fades that had to wait.
+    /// Ends the scores that are over when `played` frames have reached the DAC, and starts fades that had to
+    /// wait.
     void update(std::uint64_t played) noexcept;
 
-    /// The stream broke: ends what had begun to sound, and with `give_back` returns the rest.
+    /// The stream broke: ends the scores that had begun to sound. With `give_back` it returns the others,
+    /// else it ends them, too.
     void interrupt(reason_kind why, int code, std::uint64_t played, bool give_back) noexcept;
 
     bool empty() const noexcept { return used_ == 0; }
@@ -71,10 +78,10 @@ public:
     bool being_fed() const noexcept;
 
 private:
-    /// Base of a live stroke before its first point, and the length of one that is fed.
+    /// Base of a live stroke before its first point, and length of a live stroke that is still fed.
     static constexpr std::uint64_t never = std::uint64_t{1} << 62;
 
-    /// For so long a mixer or a ring that was full is what makes drives late.
+    /// If drives come too late within so many frames after the mixer or a ring was full, this is the reason.
     static constexpr std::uint64_t crowd_frames = 8192;
 
     struct entry {
@@ -116,11 +123,11 @@ private:
     std::uint32_t fade_;
     std::size_t reserve_;
     std::array<entry, voices> entries_{};
-    std::uint64_t full_until_ = 0; ///< what comes too late before this frame had to wait for space
+    std::uint64_t full_until_ = 0; ///< drives that come too late before this frame had to wait for space
     std::uint32_t used_ = 0;
     std::uint32_t top_ = 0; ///< entries from here on were never used
-    /// By place: beginnings in the command ring that have been cancelled and reported. Those come first, as a
-    /// place is given again only when its ticket has ended.
+    /// By place: how many begins in the command ring have been cancelled and reported. They come before any
+    /// other begin of this place: a place is given again only when its ticket has ended.
     std::array<std::uint32_t, voices> called_off_{};
     std::array<entry*, live_places> live_{}; ///< in order of their beginning
     std::size_t live_count_ = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Drives the amplifier's line after what the audio thread says of the stream, and looks after that thread.
+/// Drives the amplifier's line by what the audio thread says of the stream, and watches that thread.
 #pragma once
 
 #include <cstdint>
@@ -21,18 +21,19 @@ struct driver_options {
     std::int64_t persist_ns = 1'000'000'000; ///< an "off" that is refused is tried again for so long
 };
 
-/// One thread at a time, without one of its own. It may block in the line's set(), so this is neither the
-/// audio thread nor the one that runs the program's handlers, which could keep the holder waiting.
+/// Has no thread of its own; one caller at a time. The line's set() may block, so the caller is not the audio
+/// thread. It is not the thread of the program's handlers either: a slow handler could keep the holder
+/// waiting.
 class amplifier_driver {
 public:
     /// `clock`: CLOCK_MONOTONIC, ns. The references must outlive it.
     amplifier_driver(link& l, enable_line& line, const driver_options& o,
                      std::function<std::int64_t()> clock);
 
-    /// After each wake-up, and next_ns() after the last one at the latest.
+    /// To be called after each wake-up, and at the latest next_ns() after the call before.
     void update() noexcept;
     std::int64_t next_ns() const noexcept;
-    /// Off at once, for good. What was refused is tried again by update(), while trying() is true.
+    /// Off at once, for good. If the line refuses, update() tries again while trying() is true.
     void close() noexcept;
     /// Whether an "off" was refused and is being tried again.
     bool trying() const noexcept { return line_state_ == line_state::refused && !stuck_; }
@@ -61,7 +62,7 @@ private:
     std::uint64_t epoch_ = 0;
     std::uint64_t xruns_ = 0;
     std::uint64_t periods_ = 0;
-    std::int64_t idle_ns_ = 0; ///< for so long no period was written
+    std::int64_t idle_ns_ = 0; ///< time in which no period was written
     std::int64_t updated_ns_ = 0;
     std::int64_t beaten_ns_ = 0;
     bool stalled_ = false;

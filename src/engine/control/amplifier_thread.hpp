@@ -13,9 +13,9 @@ namespace tactor::engine {
 /// Woken by the audio thread, and by time.
 class amplifier_thread {
 public:
-    /// \throws std::system_error when there is no thread to be had.
+    /// \throws std::system_error when no thread can be started.
     amplifier_thread(link& l, enable_line& line, const driver_options& o, const rt::thread_options& t);
-    /// Switches off, when it is not off already. Blocks while that is refused and tried again.
+    /// Switches off, unless it is off already. Blocks while the line refuses and is tried again.
     ~amplifier_thread();
     amplifier_thread(const amplifier_thread&) = delete;
     amplifier_thread& operator=(const amplifier_thread&) = delete;

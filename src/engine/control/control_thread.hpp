@@ -15,13 +15,12 @@ namespace tactor::engine {
 /// their place beside it in the same io_context.
 class control_thread {
 public:
-    /// \throws std::system_error or boost::system::system_error when there are no descriptors or threads to
-    /// be
-    ///         had.
+    /// \throws std::system_error or boost::system::system_error when descriptors or threads cannot be
+    ///         created.
     control_thread(rt::event_fd& e, std::function<void()> woken);
-    /// Ends the thread; `woken` and `readable` are not called any more. In the thread itself, that is within
-    /// one of these, it returns at once, and the thread ends when they have returned: what it was given may
-    /// be gone by then.
+    /// Ends the thread; `woken` and `readable` are not called any more. If one of these destroys this object,
+    /// in the thread itself, the destructor returns at once, and the thread ends when they have returned: the
+    /// event and the descriptor may be gone by then.
     ~control_thread();
     control_thread(const control_thread&) = delete;
     control_thread& operator=(const control_thread&) = delete;

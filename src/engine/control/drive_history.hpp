@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What stands behind a drive_history: a moment, and what was driven as of then.
+/// The contents of a drive_history: how long channels were driven, as of one moment.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ struct drive_history::impl {
     synth::drive_history channels;
     std::int64_t taken_ns = 0; ///< CLOCK_MONOTONIC
 
-    /// As of `now_ns`: what went by since counts as silence.
+    /// As of `now_ns`: the time since `taken_ns` counts as silence, but for drives that were still to come.
     synth::drive_history as_of(std::int64_t now_ns) const;
-    /// As of now, and nothing is still to come.
+    /// As of now, without the drives that are still to come.
     synth::drive_history until_now() const;
 };
 

@@ -10,7 +10,7 @@
 namespace tactor::engine {
 namespace {
 
-// Drives that strokes which begin together are given at once: the mixer has space for twice as many.
+// Strokes that begin together are given so many drives at once: the mixer has space for twice as many.
 constexpr std::size_t drives_ahead = 4096;
 
 } // namespace
@@ -46,7 +46,7 @@ void feeder::pump(std::uint64_t written, const clock_line& clock)
     find_due(written);
     look_at_waiting_live(written);
     admit_live();
-    // While a score waits for space, the others may not use up what becomes free.
+    // While a score waits for space, the others may not use up the space that becomes free.
     feed(written, admit(written) ? horizon_ : horizon_ / 2);
 }
 
@@ -68,7 +68,7 @@ bool feeder::admit(std::uint64_t written)
                                                .due_ns = t.due_ns,
                                                .at = at,
                                                .source = synth::event_source(t.music)});
-        // What begins later is fed in time, in the order of all.
+        // A score that begins later is fed in time, in the common order.
         hand_over_beginning(*slots_[place].use, ticket_of(place), soon ? std::max<std::size_t>(share, 1) : 0);
         waiting_.erase(waiting_.begin());
     }
@@ -107,7 +107,7 @@ command feeder::next_command(active& a, ticket t)
 {
     const synth::drive_event* e = a.source->peek();
     if (e == nullptr) {
-        a.failure = a.source->failure(); // the first to be done: there may be no memory for it
+        a.failure = a.source->failure(); // before all else: there may be no memory for it
         a.fed = true;
         if (!a.failure.empty())
             return {.what = command::kind::fail, .score = t, .at = a.source->failed_at()};
@@ -122,12 +122,12 @@ command feeder::next_command(active& a, ticket t)
 std::uint64_t feeder::next_start(active& a, std::uint64_t written) noexcept
 {
     const synth::drive_event* e = a.source->peek();
-    // Until the audio thread says where it begins, what is certain is: not before this.
+    // Until the audio thread says where it begins, only this is certain: not before here.
     const std::uint64_t base = a.begun ? a.base : std::max(a.at, written);
     return e != nullptr ? base + e->start : 0;
 }
 
-// Hands over drives, the one that starts first first, until there is none within the horizon, or no space.
+// Hands over drives in order of their start, until none is left within the horizon, or no space.
 void feeder::feed(std::uint64_t written, std::uint64_t horizon)
 {
     next_.clear();
@@ -177,7 +177,7 @@ void feeder::handle(const report& r)
 {
     if (r.what == report::kind::stream_over)
         return end_all(r);
-    slot& s = slots_[place_of(r.score)]; // nobody else's: it is released by the last report of its ticket
+    slot& s = slots_[place_of(r.score)]; // still this ticket's: only its last report releases it
     active& a = *s.use;
     if (r.what != report::kind::begun && ended_)
         ended_(a.id, r.what == report::kind::over && r.frame > 0);

@@ -41,8 +41,9 @@ public:
     /// False when the stroke has ended, or is not known, or is being cancelled already.
     bool cancel(stroke_id id);
 
-    /// `begins`: called for each stroke that begins, with the frame of the stream; `ended` for each that
-    /// goes no further, with whether any of it was played: it ended, or an xrun came before it had begun.
+    /// `begins` is called for each stroke that begins, with its first frame of the stream. `ended` is called
+    /// for each stroke that goes no further, with whether any of it was played: it ended, or an xrun came
+    /// before it had begun.
     void on_first_frames(std::function<void(stroke_id, std::uint64_t)> begins,
                          std::function<void(stroke_id, bool)> ended)
     {
@@ -50,18 +51,18 @@ public:
         ended_ = std::move(ended);
     }
 
-    /// Hands over what belongs within the horizon after stream frame `written`, as far as it fits. What is
-    /// to start at a time waits until the clock is known.
+    /// Hands over the drives within the horizon after stream frame `written`, as far as they fit. Strokes
+    /// that are to start at a time wait until the clock is known.
     void pump(std::uint64_t written, const clock_line& clock = {});
 
-    /// Whether the audio thread must be woken for what was handed over since the last call: a stroke begins.
-    /// Drives of strokes that sound are soon enough with the next period.
+    /// Whether the audio thread must be woken: since the last call, a stroke that begins was handed over.
+    /// Drives of strokes that sound are still in time with the next period.
     bool take_urgent() noexcept { return std::exchange(urgent_, false); }
 
     /// Takes in what the audio thread reports.
     void handle(const report& r);
 
-    /// Reports of strokes that ended, in order of their ends, for who takes them from the list.
+    /// Reports of strokes that ended, in order of their ends; the caller takes them from the list.
     std::list<stroke_report>& reports() noexcept { return reports_; }
 
     /// A stroke that began: its first frame was written, as that frame of the stream.
@@ -69,16 +70,16 @@ public:
         stroke_id id = {};
         std::uint64_t frame = 0;
     };
-    /// Beginnings are kept from now on, for who takes them from the list.
+    /// From now on beginnings are kept; the caller takes them from the list.
     void keep_beginnings() noexcept { keeps_beginnings_ = true; }
     std::list<first_frame>& beginnings() noexcept { return beginnings_; }
 
     using live_map = std::map<stroke_id, std::shared_ptr<live_voice>>;
-    /// Live strokes that have ended, to be taken out and let go where no lock is held: with the last of one
-    /// goes its phantom model, which is the program's own.
+    /// Live strokes that have ended. They are to be taken out and destroyed where no lock is held: the last
+    /// share of one destroys its phantom model, which may be the program's own.
     live_map& gone_live() noexcept { return gone_live_; }
 
-    /// Whether there are any.
+    /// Whether there are reports.
     bool has_reports() const noexcept { return !reports_.empty(); }
     /// Whether the stroke has not ended, or its report has not been taken yet.
     bool knows(stroke_id id) const;
@@ -86,7 +87,7 @@ public:
     bool stream_over() const noexcept { return stream_over_; }
     /// How it ended; no reason when it was stopped.
     const stream_end& end() const noexcept { return end_; }
-    /// From now on what has not been handed over counts as cut by the closing of the player.
+    /// From now on, strokes that have not been handed over count as cut because the player was closed.
     void set_closing() noexcept { closing_ = true; }
 
 private:
@@ -109,7 +110,7 @@ private:
         bool fed = false;
         bool cancelled = false;
     };
-    /// The next drive of one that is being fed.
+    /// The next drive of a score that is being fed.
     struct next_drive {
         std::uint64_t start = 0; ///< stream frame
         std::uint32_t order = 0; ///< in in_use_
@@ -169,7 +170,7 @@ private:
 
 /// A reason for people, with the negative errno that is known of it; empty for `none`.
 std::string text(reason_kind r, int code);
-/// Of a stroke that was cut short before it began.
+/// The report of a stroke that was cut short before it began.
 stroke_report interrupted(stroke_id id, reason_kind r, std::string why);
 
 } // namespace tactor::engine

@@ -39,7 +39,7 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
 
     /// Starts the stream.
     impl(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines l);
-    /// Starts the other threads; what it throws leaves none.
+    /// Starts the other threads; if it throws, none of them is left.
     void start(const player_options& o);
     /// Ends them all, and closes the sink and the lines. Once, after start().
     void close();

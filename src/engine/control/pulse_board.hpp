@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Sync pulses that are to come, between who plans them and the thread that sends them.
+/// Sync pulses that are to come, between the control side, which plans them, and the thread that sends them.
 #pragma once
 
 #include <array>
@@ -38,18 +38,18 @@ public:
         std::uint32_t turn = 0;
     };
 
-    // Who plans: one caller at a time.
+    // The planning side: one caller at a time.
 
-    /// Puts a pulse where it can be sent. Gives back what found no place: nothing, a later pulse that made
-    /// way, or `p` itself.
+    /// Puts a pulse on the board, from where it can be sent. Returns the pulse that found no place: none, a
+    /// later one that made way, or `p` itself.
     std::optional<pulse> offer(const pulse& p) noexcept;
-    /// How many there were that nobody took.
+    /// Removes a stroke's pulses that nobody has taken; returns how many there were.
     std::size_t forget(stroke_id id) noexcept;
     void forget_other_epochs(std::uint64_t epoch) noexcept;
 
-    // Who sends.
+    // The sending side.
 
-    /// The first that waits, of the clock's epoch.
+    /// The first pulse that waits, of the clock's epoch.
     std::optional<seen> next(const clock_line& line) const noexcept;
     /// Takes it, to be sent at once; false where it has been called off, or made way, since it was seen.
     bool take(const seen& s) noexcept { return end_turn(s.place, s.turn); }
@@ -57,8 +57,8 @@ public:
 private:
     struct place {
         std::atomic<std::uint32_t> turn{0};
-        // Atomic because a place may change hands while the sender reads it; the turn tells, and what was
-        // read is thrown away.
+        // Atomic because a place may change hands while the sender reads it; `turn` shows this, and the
+        // sender then throws away what it has read.
         std::atomic<stroke_id> id{};
         std::atomic<std::uint64_t> epoch{0};
         std::atomic<std::uint64_t> frame{0};

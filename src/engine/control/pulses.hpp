@@ -22,19 +22,19 @@ struct pulse_stats {
     double worst_late_s = 0.0;
 };
 
-/// All pulses that wait, a score of many strokes may have thousands: the first ones stand on the board. One
+/// All pulses that wait; a score of many strokes may have thousands. The first ones stand on the board. One
 /// caller at a time.
 class pulse_plan {
 public:
     explicit pulse_plan(pulse_board& b) noexcept : board_(b) {}
 
-    /// A stroke's first sample at a frame of the epoch that runs, which `line` tells; what belongs to others
-    /// is forgotten. False where that frame is not to come in it.
+    /// Adds the pulse for a stroke's first sample, at a frame of the running epoch, which `line` names;
+    /// forgets the pulses of other epochs. False where this frame does not come in the epoch.
     bool add(stroke_id id, std::uint64_t frame, const clock_line& line);
-    /// The stroke has ended: what it has not come to does not happen. Where its first frame was played, that
-    /// is a pulse that was missed.
+    /// The stroke has ended: its pulses that still wait are not sent. Where its first frame was played, they
+    /// count as missed.
     void forget(stroke_id id, bool was_played);
-    /// Hands over what has a place by now. False where there was nothing to hand over.
+    /// Moves pulses to the board as far as it has places. False where none was moved.
     bool hand_over();
     std::uint64_t missed() const noexcept { return missed_; }
 
@@ -44,7 +44,7 @@ private:
     std::uint64_t missed_ = 0;
 };
 
-/// What the emitter needs of time.
+/// The clock that the emitter needs.
 class pulse_time {
 public:
     virtual ~pulse_time() = default;
@@ -52,9 +52,9 @@ public:
     virtual void sleep_until(std::int64_t time_ns) noexcept = 0;
 };
 
-/// A pulse whose time was so long ago is not sent any more: a wrong time is worse than none.
+/// A pulse that is later than this is not sent any more: a wrong time is worse than none.
 inline constexpr std::int64_t latest_pulse_ns = 20'000'000;
-/// From so long before a pulse is due on the emitter sleeps for it alone.
+/// So long before a pulse is due, the emitter begins to sleep for this pulse alone.
 inline constexpr std::int64_t pulse_lead_ns = 2'000'000;
 
 /// Sends one pulse after the other.
@@ -69,7 +69,7 @@ public:
     bool await(std::int64_t due_ns) noexcept;
     /// Sends what was awaited. Blocks until the pulse is over.
     void send(std::int64_t due_ns) noexcept;
-    /// Counts what came too late.
+    /// Counts a pulse that came too late.
     void miss() noexcept { ++stats_.missed; }
     const pulse_stats& stats() const noexcept { return stats_; }
 

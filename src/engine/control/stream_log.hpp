@@ -23,13 +23,13 @@ public:
     {
     }
 
-    /// Whether anybody listens: the rest does nothing otherwise.
+    /// Whether there is a function to tell; without one the other members do nothing.
     bool on() const noexcept { return static_cast<bool>(to_); }
     const log_function& function() const noexcept { return to_; }
 
     /// What has changed since the last look, at a CLOCK_MONOTONIC.
     void look(const stream_status& s, std::int64_t now_ns) noexcept;
-    /// That the stream is over, once; empty: it was stopped in order.
+    /// Notes once that the stream is over, and why; empty: it was stopped in order.
     void end(const std::string& why) noexcept;
     void tell() noexcept;
 

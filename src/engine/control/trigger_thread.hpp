@@ -15,22 +15,22 @@
 
 namespace tactor::engine {
 
-/// Not the audio thread, whose periods would be the pulse's jitter, but one above it, which therefore may not
-/// wait for anybody: it has neither mutex nor heap in common with another thread. The members are the control
-/// side's, one caller at a time.
+/// Pulses are not sent by the audio thread, because its periods would be their jitter. This thread stands
+/// above it, so it may not wait for any other: it has neither mutex nor heap in common with another thread.
+/// The members are for the control side, one caller at a time.
 class trigger_thread {
 public:
-    /// Reads link::sync_clock for the due times. \throws std::system_error when there is no thread to be had.
+    /// Reads link::sync_clock for the due times. \throws std::system_error when no thread can be started.
     trigger_thread(link& l, enable_line& line, std::int64_t pulse_ns, const rt::thread_options& t);
     /// The line is off after it.
     ~trigger_thread();
     trigger_thread(const trigger_thread&) = delete;
     trigger_thread& operator=(const trigger_thread&) = delete;
 
-    /// A pulse when this frame of the stream is at the DAC, in the epoch that runs now as `clock` says.
+    /// Plans a pulse for when this frame of the stream is at the DAC, in the running epoch of `clock`.
     void add(stroke_id id, std::uint64_t frame, const clock_line& clock);
     void forget(stroke_id id, bool was_played) { plan_.forget(id, was_played); }
-    /// link::to_control has been signalled: there may be places for pulses that had none.
+    /// Called when link::to_control was signalled: there may be places now for pulses that had none.
     void hand_over();
     pulse_stats stats() noexcept;
 

@@ -29,10 +29,10 @@ struct live_stroke::impl {
     impl(stroke_id number, const array& a, const layout& l, const stream_setup& s, const live_options& o);
 
     bool to(point p, double intensity, std::optional<std::int64_t> at_ns = {});
-    /// The amplitudes of a place into one set, by channel; whether a limit held one. What the model gives
-    /// beyond what it was asked for is told in `excess`.
+    /// Writes the amplitudes of a place, by channel; returns whether a limit held one. Where the model gives
+    /// more than it was asked for, `excess` says so.
     bool amplitudes_at(point p, double intensity, std::span<double> by_channel);
-    /// Those on the way to a place.
+    /// The same for the course on the way to a place.
     bool course_to(const engine::smoothing::place& p, engine::live_course& course);
 
     stroke_id id;

@@ -22,7 +22,8 @@ namespace tactor::engine {
 
 /// Live strokes that the audio thread renders at once.
 inline constexpr std::size_t live_voices = 64;
-/// Those, and what waits for its first point or for one of them to end. More wait on the control side.
+/// These, and live strokes that wait for their first point or for another one to end. More wait on the
+/// control side.
 inline constexpr std::size_t live_places = voices / 2;
 
 struct live_setup {
@@ -62,7 +63,7 @@ inline constexpr double least_live_soa_s = 0.01;
 std::size_t live_drives(std::size_t channels, unsigned period_frames, unsigned rate) noexcept;
 
 /// The producer writes amplitudes by channel; the audio thread makes drives of them, period by period, so
-/// that no point waits for a plan. What the producer asks for besides is a flag.
+/// that no point waits for a plan. All other wishes of the producer are a flag.
 class live_voice {
 public:
     enum class wish : std::uint32_t { go_on, end, cancel, fail };
@@ -72,7 +73,7 @@ public:
     // The producer, one thread at a time.
     live_course& draft() noexcept { return points_.draft(); }
     void publish() noexcept { points_.publish(); }
-    /// Frames of the stroke that are rendered: the next is where a point that comes now begins to count.
+    /// Frames of the stroke that are rendered: a point that comes now counts from the next frame on.
     std::uint64_t rendered() const noexcept { return rendered_.load(std::memory_order_relaxed); }
 
     /// Ends it as interrupted, for this reason; once.
@@ -80,7 +81,7 @@ public:
 
     // Any thread.
     void ask(wish w) noexcept;
-    /// Why; for who has been told that it failed.
+    /// Why it failed; only for a caller that knows that it failed.
     const std::string& failure() const noexcept { return failure_; }
     bool closed() const noexcept { return closed_.load(std::memory_order_acquire); }
     /// It has ended, or will without further points.
@@ -98,7 +99,8 @@ public:
         const live_course& c = points_.value();
         return has_begun_ && c.length != 0 && c.start + c.length > position - base_;
     }
-    /// Before it begins: so many frames more have gone by. Then in the hands of the one who keeps it waiting.
+    /// Counts so many frames more before it begins. Called by the side that has it meanwhile: the feeder, and
+    /// after the hand-over the audio thread.
     void wait(std::uint64_t frames) noexcept;
     /// Whether wait() has seen a point.
     bool has_point() const noexcept { return has_point_; }
@@ -109,16 +111,16 @@ public:
     bool render(synth::mixer& m, std::uint64_t frames, std::uint64_t offset,
                 const clock_line& clock) noexcept;
     bool starved() const noexcept { return idle_ > setup_.timeout; }
-    /// Whether it has sounded as long as it may by this frame of the mixer.
+    /// Whether, at this frame of the mixer, it has sounded as long as it may.
     bool lasted(std::uint64_t position) const noexcept
     {
         return has_begun_ && position - base_ >= setup_.longest;
     }
     /// Continuous: falls to zero in `frames`. False when the mixer had no space.
     bool fade(synth::mixer& m, std::uint32_t frames) noexcept;
-    /// Frame at which what has been added is over.
+    /// Frame at which the drives added so far are over.
     std::uint64_t end() const noexcept { return end_; }
-    /// How long its points took. With when its first frame was at the DAC.
+    /// How long its points took; `started_ns`: when its first frame was at the DAC.
     live_delay delay(std::int64_t started_ns) const noexcept;
 
 private:

@@ -10,8 +10,8 @@
 
 namespace tactor::engine {
 
-/// A place is the mean, over a window that ends now, of where the stroke was told to be: a step becomes an
-/// even movement that takes the window, and what moves evenly is half of it behind.
+/// The place of a stroke is the mean of the places that it was told, over a window that ends now. So a step
+/// becomes an even movement that takes one window, and an even movement is half a window late.
 class smoothing {
 public:
     struct place {
@@ -22,12 +22,12 @@ public:
     /// \param window frames, 1 or more
     explicit smoothing(std::uint64_t window) : window_(window) {}
 
-    /// From this frame on it is to be there. Frames do not go back; of the same frame the newest counts, and
-    /// before the first it has always been there.
+    /// From this frame on the stroke is told to be at `p`. Frames do not go back. For the same frame the
+    /// newest place counts; before the first frame it has always been at the first place.
     void to(std::uint64_t frame, const place& p);
-    /// Where it is at a frame after the newest, if nothing more comes.
+    /// Where the stroke is at a frame after the newest, if no other place comes.
     place at(std::uint64_t frame) const;
-    /// Frames from the newest on until it is there.
+    /// Frames from the newest on until the stroke is at its place.
     std::uint64_t settles_in() const noexcept { return given_.size() < 2 ? 0 : window_; }
 
 private:
