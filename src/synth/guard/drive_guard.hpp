@@ -12,8 +12,8 @@
 
 namespace tactor::synth {
 
-/// At an envelope of this or below (-40 dBFS, and what rounding makes of it) a tactor is not heated, and not
-/// driven.
+/// A tactor with an envelope of this or below (-40 dBFS, and what rounding makes of it) is not heated, and
+/// does not count as driven.
 inline constexpr double least_counted_drive = 0.01 * (1.0 + 1e-9);
 
 /// Limits how long a channel is driven within a sliding window of time. A channel that has used up its limit
@@ -35,19 +35,21 @@ public:
     /// A channel is driven in frames from ... to - 1, which are in one block. Calls for one channel in
     /// order of `from`.
     void drive(std::size_t channel, std::uint64_t from, std::uint64_t to) noexcept;
-    /// The same for what the squared envelope of a block of n frames says that begins with frame `clock`.
+    /// The same for a block of n frames that begins with frame `clock`, by its squared envelope.
     void follow(std::size_t channel, std::uint64_t clock, const double* envelope, unsigned n) noexcept;
-    /// Whether such a block is not to pass as it is, once its drive is known.
+    /// Whether such a block must be changed; known once its drive has been counted.
     bool acts(std::size_t channel, std::uint64_t clock, unsigned n) const noexcept;
-    /// Applies what came of it to the block, and to the squared envelope from its frame `known` on.
+    /// Applies the gain that results to the block, and to the squared envelope from the block's frame `known`
+    /// on.
     void apply(std::size_t channel, std::uint64_t clock, unsigned n, double* x, double* envelope,
                unsigned known) const noexcept;
-    /// How often a channel was cut; where another guard had cut it, once it is driven again before it may be.
+    /// How often a channel was cut. A cut that resume() has taken over counts if the channel is driven during
+    /// it.
     std::uint64_t cuts() const noexcept { return cuts_; }
 
-    /// What was counted until frame `clock` and is still in the window. Allocates.
+    /// The drive that was counted until frame `clock` and is still in the window. Allocates.
     drive_history history(std::uint64_t clock) const;
-    /// Goes on from it with frame 0; before the first drive.
+    /// Goes on from a history with frame 0; only before the first drive.
     void resume(const drive_history& h) noexcept;
 
 private:
@@ -67,7 +69,7 @@ private:
         std::int64_t sum = 0; ///< of what the stretches hold
         std::int64_t closed_at = 0;
         std::int64_t opens_at = 0;
-        bool was_closed = false; ///< by another guard, and nothing was driven into that yet
+        bool was_closed = false; ///< by another guard, and nothing was driven into that cut yet
 
         stretch& at(std::size_t i) noexcept { return ring[(first + i) % ring.size()]; }
         const stretch& at(std::size_t i) const noexcept { return ring[(first + i) % ring.size()]; }

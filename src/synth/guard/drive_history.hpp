@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// For how long each channel was driven lately: what outlives a mixer, so that a device that is opened again
-/// does not give a tactor its time back.
+/// For how long each channel was driven lately. It outlives a mixer: when a device is opened again, a tactor
+/// does not get the time back that it has used up.
 #pragma once
 
 #include <cstddef>
@@ -27,25 +27,26 @@ struct drive_history {
     };
     std::vector<channel> channels = {}; ///< none where there is no limit
 
-    /// So much time went by in silence since: what was still to come then came, as far as it went by.
+    /// So much time has gone by since. Drives that were to come in this time count as driven; the rest was
+    /// silence.
     void pass(double seconds) noexcept;
-    /// What is still to come does not.
+    /// Drops the drives that are still to come.
     void end_now() noexcept;
-    /// Each of so many channels is driven from now on for so long.
+    /// Adds drives that are still to come: the first n channels are driven from now on for so long.
     void add_ahead(std::size_t n, double seconds);
-    /// Whether all channels are.
+    /// Whether all channels are empty.
     bool empty() const noexcept;
 };
 
-/// Of an array that two have driven, taken at the same moment: what one alone says and what both say. No
-/// channel counts as driven for longer than there was time.
+/// The history of an array that two players have driven, from the histories of both at the same moment. In no
+/// stretch of time does a channel count as driven for longer than the stretch lasts.
 drive_history together(const drive_history& a, const drive_history& b);
 
-/// What ended longer ago than that is no longer in it.
+/// Drops the stretches that ended longer ago than `older_s`.
 void forget(drive_history& h, double older_s);
 
-/// At most so many stretches a channel, the oldest taken together: what counts leaves the window later then,
-/// never sooner. `most` is 1 at least.
+/// Leaves at most so many stretches for each channel: the oldest are joined, so that they leave the window
+/// later, never sooner. `most` is 1 at least.
 void coarsen(drive_history& h, std::size_t most);
 
 } // namespace tactor::synth

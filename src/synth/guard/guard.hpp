@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What the whole array, and one tactor over time, may be given, as drive_guard and power_guard take it.
+/// drive_limits in the units of power_guard and drive_guard.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace tactor::synth {
 
-/// That drive_limits may have.
+/// The longest window that drive_limits may have, s.
 inline constexpr double longest_window_s = 3600.0;
 
-/// Limits in the mixer's units; none as they are.
+/// Limits in the mixer's units; as initialised: no limits.
 struct guard_settings {
     double power = std::numeric_limits<double>::infinity(); ///< greatest sum of squared envelopes
     std::uint64_t drive_frames = 0;
@@ -21,7 +21,7 @@ struct guard_settings {
     unsigned rate = 48000;
 };
 
-/// \throws error (bad_input) for what is not a limit.
+/// \throws error (bad_input) for impossible limits.
 void check_limits(const drive_limits& l);
 /// Limits at a sample rate. Throws like check_limits.
 guard_settings guards_of(const drive_limits& l, unsigned rate);

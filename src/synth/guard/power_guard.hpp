@@ -19,13 +19,14 @@ struct powered_channel {
 
 /// Holds the sum over the channels of the squared envelopes, and with it that of x^2, at or below a limit in
 /// every frame, without a click: the gain of all follows the envelopes, not the waves, and takes about 10 ms.
-/// Where envelopes rise faster than that, what rises waits for the headroom that the gain makes: what sounds
-/// already is never cut off, and what begins fades in. The gain comes back 20 ms after the loud part with a
-/// time constant of 50 ms. State changes frame by frame, so that block sizes make no difference.
+/// Where an envelope rises faster than that, its rise waits for the headroom that the gain makes: channels
+/// that sound already are never cut off, and one that begins fades in. The gain comes back 20 ms after the
+/// loud part with a time constant of 50 ms. State changes frame by frame, so that block sizes make no
+/// difference.
 class power_guard {
 public:
-    /// `most`: greatest sum of squares; not finite: no limit. `reach`: what `channels` channels could come
-    /// to.
+    /// `most`: greatest sum of squares; not finite: no limit. `reach`: the greatest sum that `channels`
+    /// channels could reach.
     power_guard(std::size_t channels, double most, double reach, unsigned rate);
 
     /// Whether it can ever act.
@@ -35,7 +36,8 @@ public:
     {
         return !on_ || (held_ <= most_ && gain_ >= 1.0 && sum_of_squares <= most_ * (1.0 - 1e-12));
     }
-    /// After such a block: the squared envelopes in its last frame matter to the next.
+    /// To be called after a block that passes: the squared envelopes in its last frame matter to the next
+    /// block.
     void passed(std::span<const powered_channel> channels, unsigned n) noexcept;
     /// Scales n frames of the channels, at most block_frames; returns how many it changed.
     std::uint64_t apply(std::span<const powered_channel> channels, unsigned n) noexcept;
@@ -53,10 +55,10 @@ private:
     bool on_;
     double decay_;
     double blend_;
-    double held_;       ///< greatest sum of late; never below most_
+    double held_;       ///< greatest recent sum; never below most_
     double near_ = 1.0; ///< half-way smoothed
     double gain_ = 1.0; ///< of all
-    /// By channel, in the frame before: the squared envelope that it had, or was let have, but for gain_.
+    /// By channel: the squared envelope in the frame before, as far as it was let through, without gain_.
     std::vector<double> let_;
     std::vector<double> other_; ///< takes the place of let_ from block to block
 };

@@ -19,7 +19,7 @@ public:
     /// call for the same wave.
     const double* get(const voice& v, const fade* f, std::uint64_t at, unsigned n,
                       wave w = wave::sine) noexcept;
-    /// Whether neither a window nor a fade shapes what get() gave for the sine.
+    /// Whether `s`, which get() gave for the sine, is shaped by neither a window nor a fade.
     bool is_plain(const double* s) const noexcept { return s == kept_[0].plain.data(); }
     void forget() noexcept;
 

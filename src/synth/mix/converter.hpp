@@ -18,9 +18,9 @@ struct channel_samples {
     double gain = 1.0;
 };
 
-/// Writes n (at most block_frames) interleaved frames of `channels` channels: gain * x where `sounding`, in
-/// order of channel, has one, else zero. Integers are the value times 2^(bits - 1), rounded to the nearest
-/// with ties to even, from -2^(bits - 1) to 2^(bits - 1) - 1: readers that divide by 2^(bits - 1), as
+/// Writes n (at most block_frames) interleaved frames of `channels` channels: gain * x for a channel that is
+/// in `sounding` (in order of channel), else zero. Integers are the value times 2^(bits - 1), rounded to the
+/// nearest with ties to even, from -2^(bits - 1) to 2^(bits - 1) - 1: readers that divide by 2^(bits - 1), as
 /// libsndfile does, get it back. 1.0 is the one value that does not fit; it becomes the greatest integer.
 /// Float is the nearest float. Never a negative zero.
 void interleave(format_kind f, std::span<const channel_samples> sounding, std::size_t channels, unsigned n,

@@ -24,9 +24,9 @@ namespace tactor::synth {
 class mixer {
 public:
     /// `limits`: greatest absolute value of each channel, linear, 0 ... 1; its size is the channel count.
-    /// `capacity`: drives that may wait or sound at once.
-    /// A channel whose limit is 0 has no tactor: markers sound on it, and nothing else does. Markers sound
-    /// nowhere else. `guards` hold what the channels are given together and over time.
+    /// `capacity`: drives that may wait or sound at once. A channel whose limit is 0 has no tactor: markers
+    /// sound on it, and nothing else does. Markers sound nowhere else. `guards` limit the power of all
+    /// channels together and the time of each.
     mixer(std::span<const double> limits, format_kind format, std::size_t capacity = 8192,
           const guard_settings& guards = {});
     ~mixer();
@@ -35,27 +35,28 @@ public:
     /// Drives that can be added now.
     std::size_t available() const noexcept;
 
-    /// Adds a drive, in any order; one that began in the past starts at once, in its middle (with the
-    /// right phase). False when there is no space: nothing is lost, try later.
+    /// Adds a drive; they may come in any order. A drive whose start has passed begins at once, in its middle
+    /// (with the right phase). False when there is no space: the drive was not added, try again later.
     bool add(const drive_event& e) noexcept;
 
     /// Renders the next frames. Same drives, same samples, whatever the block sizes.
     void process(std::size_t frames, std::byte* out) noexcept;
 
-    /// Fades all drives of a score to zero, from the next frame on, in `fade` frames (0: cut), and
-    /// forgets them; drives of that score that are added later are dropped until the fade has ended and
-    /// forgotten after it: the caller stops feeding them. False if 256 fades run already.
+    /// Fades all drives of a score to zero, from the next frame on, in `fade` frames (0: cut), and forgets
+    /// them. Drives of that score that are added while the fade runs are dropped. Once it has ended, the
+    /// mixer does not know of it any more, so the caller must stop adding such drives. False if 256 fades run
+    /// already.
     bool fade_out(std::uint32_t score, std::uint32_t fade) noexcept;
 
     /// For how long each channel was driven lately, for the next mixer of the same array. Allocates; nobody
     /// may be in process().
     drive_history history() const;
-    /// Counts on from what another mixer, at any rate, had counted; call drive_history::pass() for the time
-    /// that went by meanwhile. Before the first process(). Allocates nothing.
+    /// Goes on from the history of another mixer, at any rate; call drive_history::pass() for the time that
+    /// went by meanwhile. Only before the first process(). Allocates nothing.
     void resume(const drive_history& h) noexcept;
 
-    /// Drops everything at once and counts frames from 0: a new epoch. What the channels were given before
-    /// still counts.
+    /// Drops everything at once and counts frames from 0: a new epoch. For how long the channels were driven
+    /// before still counts.
     void reset() noexcept;
 
     /// Next frame.

@@ -32,7 +32,7 @@ struct strip {
     double gain = 1.0;
     double limit = 0.0;
     double peak = 0.0;     ///< what the voices could reach together
-    double together = 0.0; ///< what those could that last until `until`, a frame of the block
+    double together = 0.0; ///< what those that last until `until`, a frame of the block, could reach
     unsigned until = 0;
     unsigned since = 0;            ///< frame of the block at which the first voice begins
     unsigned look = block_frames;  ///< the envelope is needed from this frame of the block on
@@ -55,8 +55,8 @@ struct strip {
     }
     /// The most that its squared envelope may be.
     double most() const noexcept { return limit * limit * power; }
-    /// A voice that is not the first. Waves that are no sines add up by their amplitudes, unless they are
-    /// one.
+    /// Takes a voice that is not the first. Waves that are not sines add up by their amplitudes, unless they
+    /// are the same wave.
     void join(const voice& v) noexcept
     {
         const bool sines =
@@ -66,9 +66,9 @@ struct strip {
         beats = beats || cycles_per_frame != v.cycles_per_frame || another;
         power = v.sound != nullptr ? std::max(power, v.sound->power) : power;
     }
-    /// Whether it is not driven in this block, whatever the voices do.
+    /// Whether the channel counts as not driven in this block, whatever the voices do.
     bool is_quiet() const noexcept { return std::min(peak, limit) * std::sqrt(power) <= least_counted_drive; }
-    /// The sum, where a lone voice stood in for it.
+    /// The sum; it is computed now if a lone voice stood in for it.
     double* summed(unsigned n) noexcept
     {
         if (lone != nullptr) {
@@ -79,7 +79,7 @@ struct strip {
     }
 };
 
-/// Of a cache line's alignment in a vector, too.
+/// Keeps a cache line's alignment in a vector, too.
 struct alignas(64) aligned_block : block {};
 
 /// Some frames of a channel where carriers beat.

@@ -13,7 +13,7 @@
 
 namespace tactor::synth {
 
-/// Most frames that are mixed at once. What a block holds does not depend on where it begins.
+/// Most frames that are mixed at once. The samples do not depend on where a block begins.
 inline constexpr unsigned block_frames = 512;
 /// Frames from one exact angle to the next.
 inline constexpr unsigned table_frames = 64;
@@ -29,8 +29,9 @@ struct oscillator_table {
     alignas(64) std::array<double, table_frames> cos;
 };
 
-/// The tables of the frequencies in use, up to 1024: a few places for each by its bits. A new one takes a
-/// place by chance: where more come round in turn than there are places, the oldest is what is needed next.
+/// The tables of the frequencies in use, up to 1024. The bits of a frequency select a few places for it. A
+/// new one takes one of them by chance, not the oldest: if more frequencies come round in turn than there are
+/// places, the oldest is needed next.
 class oscillator_tables {
 public:
     oscillator_tables();
@@ -49,9 +50,9 @@ private:
     std::vector<oscillator_table> tables_;
 };
 
-/// What lies between two multiples of table_frames of a carrier's own count: `base` is the frame of the
-/// multiple. The angle addition starts there, wherever the blocks of the stream lie, so that a stroke has the
-/// same samples wherever it begins.
+/// The part of a block between two multiples of table_frames in a carrier's own count of frames; `base` is
+/// the frame of the lower multiple. The angle addition starts there, wherever the blocks of the stream lie,
+/// so that a stroke has the same samples wherever it begins.
 struct table_part {
     std::int64_t base = 0;
     unsigned lo = 0; ///< in the block

@@ -62,7 +62,7 @@ inline sine_cosine sincos_turns(double x) noexcept
     return {negative(odd ? c : s, quarters >> 1 & 1), negative(odd ? s : c, (quarters + 1) >> 1 & 1)};
 }
 
-/// The same for anything; what is not finite counts as 0.
+/// The same for any x; one that is not finite counts as 0.
 inline sine_cosine sincos_cycles(double x) noexcept
 {
     if (!(std::abs(x) < most_turns))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Which of the loops that clones.hpp makes this processor runs.
+/// Which of the loops that clones.hpp compiles runs on this processor.
 #pragma once
 
 namespace tactor::synth {

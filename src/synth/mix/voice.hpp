@@ -67,7 +67,8 @@ struct stretch {
     std::uint64_t end = 0;
     voice_drive drive = {};
 
-    /// The first, and the one after the last, of the n frames from frame `at` on that are in it; some are.
+    /// Of the n frames from frame `at` on: the first that is in the stretch, and the one after the last. At
+    /// least one must be in it.
     std::pair<unsigned, unsigned> within(std::uint64_t at, unsigned n) const noexcept
     {
         return {static_cast<unsigned>(std::max(start, at) - at),
@@ -75,8 +76,8 @@ struct stretch {
     }
 };
 
-/// Calls `visit` for each stretch of each channel that has frames among the n from frame `at` on; those of a
-/// line in order of time, where it is not zero.
+/// Calls `visit` for each stretch of each channel that has frames among the n from frame `at` on. The
+/// stretches of a line come in order of time, without those that are zero.
 template <class Visit>
 void each_stretch(const voice& v, std::uint64_t at, unsigned n, Visit visit)
 {
@@ -96,7 +97,8 @@ void each_stretch(const voice& v, std::uint64_t at, unsigned n, Visit visit)
     }
 }
 
-/// Takes over what of an event can sound on `channels` channels; drives that are not finite are silence.
+/// The voice of an event. Drives of channels from `channels` on are left out; drives that are not finite are
+/// silence.
 voice make_voice(const drive_event& e, std::size_t channels) noexcept;
 
 /// A fixed number of voices: some wait in a heap, the others sound, in the order of (start, arrival) always,

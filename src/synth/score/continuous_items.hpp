@@ -14,21 +14,21 @@ namespace tactor::synth {
 
 class continuous_items {
 public:
-    /// Both must live as long; the items go by start.
+    /// Both must outlive this object; the items are in order of start.
     continuous_items(const score::impl& s, const array& a);
 
-    /// Whether all bounds are finite; otherwise there is something to tell that only a look will find.
+    /// Whether all bounds are finite. If they are not, there is an error, and only peaks() finds which.
     bool have_bounds();
-    /// Upper bounds of peaks(), linear, by tactor: the greatest intensity at the gain of each. Of a plan that
-    /// says nothing of its intensity, the peaks themselves.
+    /// Upper bounds of peaks(), linear, by tactor: the greatest intensity at the gain of each. For a plan
+    /// whose intensity is not known to be a bound, the peaks themselves.
     std::vector<double> bounds(std::size_t number);
-    /// Greatest level of each tactor, linear; see continuous_peaks(). What is harmless in a stroke that no
-    /// other one overlaps is not looked at.
+    /// Greatest level of each tactor, linear; see continuous_peaks(). Harmless parts of a stroke are not
+    /// looked at if no other stroke overlaps it.
     /// \throws error (bad_input) for plans that cannot be rendered.
     std::vector<double> peaks(std::size_t number);
 
-    /// The amplitudes behind the peaks that were asked for last, or else behind the bounds, by plan and
-    /// tactor: more must not come. Empty for plans that are not continuous.
+    /// By plan and tactor, the greatest amplitudes that may come: those behind peaks() where they were asked
+    /// for, else those behind bounds(). Empty for plans that are not continuous.
     std::vector<std::vector<double>> promised();
 
 private:

@@ -27,10 +27,10 @@ public:
     /// Moves on.
     void pop() noexcept;
 
-    /// Why there is no next event although the score is not through: a plan threw, or gave what cannot be
-    /// rendered. Empty while all is well.
+    /// Why there is no next event although the score has not ended: a plan threw, or gave something that
+    /// cannot be rendered. Empty while all is well.
     const std::string& failure() const noexcept;
-    /// Frame of the score up to which the plan that failed could be followed.
+    /// Frame of the score up to which the failed plan could be followed.
     std::uint64_t failed_at() const noexcept;
 
 private:

@@ -19,7 +19,7 @@ namespace tactor::synth {
 /// A continuous stroke at a few control points.
 struct control_points {
     void reserve(std::size_t tactors);
-    /// Takes over what `now` drives, as point number i.
+    /// Takes the drives of `now` as those of point number i.
     void add(std::size_t i) noexcept;
 
     struct row {
@@ -45,7 +45,7 @@ public:
     std::size_t item_number() const noexcept { return number_; }
     control_points* points() const noexcept { return points_; }
     void advance() noexcept;
-    /// Done before its end, for its plan failed: points()->failure says why.
+    /// Whether it was done before the item's end because the plan failed: points()->failure says why.
     bool failed() const noexcept { return failed_; }
     /// Frame of the score up to which there were events.
     std::uint64_t position() const noexcept { return position_; }
@@ -82,7 +82,8 @@ struct joined_stretch {
 };
 
 /// The stretch from frame `at` on in which the amplitude is taken as linear: to the next start or end of a
-/// member, in ramps to the next 64th of the ramp. `first`: member before which all have ended; moved on.
+/// member, and within ramps to the next 64th of the ramp. `first`: all members before this one have ended; it
+/// is moved on.
 joined_stretch join_members(const item_member* members, std::size_t count, std::size_t& first,
                             std::uint64_t at, overlap_kind rule,
                             envelope_kind shape = envelope_kind::raised_cosine) noexcept;
@@ -90,13 +91,13 @@ joined_stretch join_members(const item_member* members, std::size_t count, std::
 /// Frame of control point k of a stroke of `length` frames, from its start. Points beyond the end are at it.
 std::uint64_t control_frame(std::uint64_t k, unsigned rate, std::uint64_t length) noexcept;
 
-/// \throws error (bad_input) where a continuous plan drives what is no tactor, with what is no amplitude, or
-/// out of order.
+/// \throws error (bad_input) where a continuous plan drives a tactor that is not there, gives an impossible
+///         amplitude, or is out of order.
 void check_drives(const burst& b, double t_s, std::size_t tactors);
 
-/// Sample k of a continuous plan, in order of tactor. False, and why, where it cannot be computed or drives
-/// what is no tactor, with what is no amplitude, or with more than was `promised` for the tactor. Allocates
-/// only then.
+/// Sample k of a continuous plan, in order of tactor. False, with the reason in `failure`, where it cannot be
+/// computed, drives a tactor that is not there, or gives an amplitude that is impossible or above the one
+/// `promised` for the tactor. Allocates only then.
 bool checked_sample(const plan& p, std::uint64_t k, std::span<const double> promised,
                     detail::same_tactors& seen, burst& out, std::string& failure) noexcept;
 

@@ -19,22 +19,22 @@ inline constexpr double half_cycle_tolerance = 0.01;
 /// Longest drive in one event; longer ones are cut without a seam.
 inline constexpr std::uint64_t longest_event = std::uint64_t{1} << 30;
 
-/// Nearest frame. A tie goes up, and so does what misses a tie by the noise of its last digits:
+/// Nearest frame. A tie goes up, and so does a time that misses a tie only by the noise of its last digits:
 /// otherwise o_k + d and o_(k+1), equal on paper, could end up in two frames.
 inline std::uint64_t frame_at(double seconds, double rate) noexcept
 {
     return static_cast<std::uint64_t>(std::floor(seconds * rate + 0.5 + 1e-6));
 }
 
-/// Whether a carrier crosses zero at both ends of a burst, which are at so many of its half cycles.
+/// Whether a carrier crosses zero at both ends of a burst, `from` and `to`, which are in half cycles of it.
 inline bool between_zeros(double from, double to) noexcept
 {
     const auto on_zero = [](double at) { return std::abs(at - std::round(at)) <= half_cycle_tolerance; };
     return on_zero(from) && on_zero(to) && to - from >= 1.0 - half_cycle_tolerance;
 }
 
-/// Ramp that was asked for, or the default one of a burst. The carrier has run for `carrier_s` when it
-/// begins; whole frames, to which both are rounded, do not count.
+/// Ramp that was asked for, or the default one of a burst. The carrier has run for `carrier_s` when the burst
+/// begins. Both times are the exact ones, not those rounded to whole frames.
 inline double ramp_seconds(std::optional<double> ramp_s, double carrier_s, double duration_s,
                            double carrier_hz) noexcept
 {
@@ -57,8 +57,8 @@ inline std::uint32_t ramp_frames(std::optional<double> ramp_s, double carrier_s,
     return ramp_frames(ramp_seconds(ramp_s, carrier_s, duration_s, carrier_hz), rate, length);
 }
 
-/// Frames in which a burst of `length` rises; `ramp_s`: where its envelope does not say. Ramps that do not
-/// fit are shortened alike.
+/// Frames in which a burst of `length` rises; `ramp_s` is used where its envelope has no attack. Ramps that
+/// do not fit are shortened in the same ratio.
 inline std::uint32_t attack_frames(double ramp_s, const burst_envelope& e, double rate,
                                    std::uint64_t length) noexcept
 {
@@ -74,7 +74,7 @@ inline std::uint32_t attack_frames(double ramp_s, const burst_envelope& e, doubl
                  longest_event));
 }
 
-/// Frames in which it falls.
+/// Frames in which the burst falls.
 inline std::uint32_t release_frames(const burst_envelope& e, double rate, std::uint64_t length,
                                     std::uint32_t attack) noexcept
 {

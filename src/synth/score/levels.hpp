@@ -10,8 +10,8 @@
 
 namespace tactor::synth {
 
-/// Levels of tactors with thresholds at several frequencies are for this one; what another carrier needs
-/// comes on top.
+/// Levels of tactors with thresholds at several frequencies hold at this frequency; a factor for another
+/// carrier comes on top.
 inline constexpr double reference_hz = 250.0;
 
 /// An amplitude in dBFS.
@@ -20,19 +20,19 @@ double in_db(double amplitude);
 /// Gain of each tactor. \throws error (bad_input) for levels over full scale and missing thresholds.
 std::vector<tactor_level> tactor_levels(const array& a, const render_options& o);
 
-/// What a tactor with a sensation level gets more at a carrier than at reference_hz.
+/// Factor on the gain of a tactor with a sensation level, at a carrier other than reference_hz.
 double threshold_factor(const tactor_spec& t, double hz);
 
-/// Greatest peak that a tactor may have, linear: its max_dbfs or full scale, and the noise of last digits.
+/// Greatest peak that a tactor may have, linear: its max_dbfs or full scale, plus the noise of last digits.
 double tactor_limit(const array& a, std::size_t i);
 
 /// \throws error (bad_input): the tactor's line in the array file and number, why and hint.
 [[noreturn]] void refuse_tactor(const array& a, std::size_t i, std::string_view why, std::string_view hint);
 
-/// Compares what the items ask of each tactor, added up where they sound together, with its limit and with
-/// full scale; continuous strokes too are bounded, not sampled. \throws error (bad_input) with the tactor's
-/// line. Returns what they come to at most, by tactor, linear, and leaves in the score what its continuous
-/// plans may not exceed.
+/// Compares the levels that the items ask of each tactor, added up where they sound together, with its limit
+/// and with full scale. For continuous strokes, too, these are bounds, not samples. Returns the greatest
+/// level of each tactor, linear, and stores in the score what its continuous plans may not exceed.
+/// \throws error (bad_input) with the tactor's line.
 std::vector<double> check_peaks(score::impl& s, const array& a, const render_options& o);
 
 } // namespace tactor::synth

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// In which time a burst, or a continuous stroke, rises.
+/// The ramp with which a burst, or a continuous stroke, rises.
 #pragma once
 
 #include <tactor/plan.hpp>
@@ -8,7 +8,7 @@
 
 namespace tactor::synth {
 
-/// Where its envelope does not say.
+/// The ramp where the envelope does not give one.
 double plain_ramp_s(double onset_s, double duration_s, const plan& p, const render_options& o) noexcept;
 
 } // namespace tactor::synth

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Actuators that need time to start: what they are given more at the beginning of a burst.
+/// Actuators that need time to start: the boost that they get at the beginning of a burst.
 #pragma once
 
 #include <vector>
@@ -18,9 +18,10 @@ public:
     /// Of bursts that rise in `attack` frames and fall in `release`; `rise` in frames, above 0.
     lag(double rise, std::uint32_t attack, std::uint32_t release, envelope_kind shape);
 
-    /// What is left of a strength after so many frames.
+    /// The part of a strength that is left after so many frames.
     double left(double frames) const noexcept;
-    /// Where strength 1 is asked for, `frames` after the burst's begin, not before the end of its attack.
+    /// The strength reached `frames` after the burst's begin, if strength 1 is asked for; not for times
+    /// before the end of its attack.
     double risen(double frames) const noexcept;
     /// The same at the end of a burst of so many frames, after its release.
     double fallen(double frames) const noexcept;
@@ -33,10 +34,10 @@ private:
     double of_release_; ///< what the release itself adds
 };
 
-/// Adds to each burst of a tactor with a rise_s what makes its actuator reach the burst's strength as soon as
-/// its limit allows: a second burst over the first half cycles of the carrier. Only for bursts that sound on
-/// their tactor alone. `peaks`: of each tactor before, linear; what is left to its limit may be used. Returns
-/// whether there are new items, which stand at the end.
+/// Lets the actuators of tactors with a rise_s reach a burst's strength as soon as the tactor's limit allows:
+/// adds a second burst over the first half cycles of the carrier. Only for bursts that sound on their tactor
+/// alone. `peaks`: greatest level of each tactor before, linear; the rest up to its limit may be used.
+/// Returns whether there are new items, which stand at the end.
 bool boost_rises(score::impl& s, const array& a, const std::vector<double>& peaks);
 
 } // namespace tactor::synth

@@ -15,7 +15,7 @@
 
 namespace tactor::synth {
 
-/// A tactor's way to its channel.
+/// The channel of a tactor, and its gain.
 struct tactor_level {
     std::uint32_t channel = 0;
     double gain = 0.0; ///< linear peak for amplitude 1, polarity included
@@ -55,9 +55,10 @@ static_assert(sizeof(item) == 40);
 
 /// All items of a score by start, and what they refer to.
 struct item_list {
-    // They grow without being copied, which would take half as much again.
+    // Deques grow without being copied: a copy would take half as much memory again.
     std::deque<item> items;
-    // The drives of bursts: amplitude 1 is the intensity asked for. Two of them, for one would be padded.
+    // The drives of bursts: amplitude 1 is the intensity asked for. Two deques, for one of pairs would be
+    // padded.
     std::deque<std::uint16_t> drive_tactors;
     std::deque<double> drive_amplitudes;
     std::vector<item_member> members;
@@ -84,10 +85,10 @@ struct score::impl {
     std::vector<synth::tactor_level> tactors; ///< by index
     std::vector<tactor_spec> measured;        ///< thresholds by frequency; empty where they do not count
     std::vector<double> limits;               ///< by channel
-    /// Greatest amplitude by plan and tactor that levels were checked with, of continuous ones.
+    /// By plan and tactor, for continuous plans: greatest amplitude that levels were checked with.
     std::vector<std::vector<double>> promised;
-    /// By tactor: what it is driven with at most, linear; 0 where it is not driven. A continuous stroke may
-    /// come to any. What a slow actuator's rise gets on top is not in it.
+    /// By tactor: greatest level that it is driven with, linear; 0 where it is not driven. A continuous
+    /// stroke counts for all tactors. The boost for a slow actuator's rise is not included.
     std::vector<double> asked;
     std::optional<unsigned> marker; ///< its channel, where there is one
     synth::item_list list;
@@ -101,9 +102,9 @@ struct score::impl {
     std::size_t open_continuous = 0; ///< of these, continuous ones
     std::size_t open_events = 0;     ///< most events that sound in one frame
 
-    /// What a tactor gets beyond its gain in a frame of the score, for its threshold at the carrier there.
+    /// Factor on a tactor's gain in a frame of the score, for its threshold at the carrier there.
     double equalised(std::size_t tactor, std::uint32_t plan, std::uint64_t frame) const;
-    /// The most of it in all of a plan.
+    /// The greatest such factor in a plan.
     double most_equalised(std::size_t tactor, std::uint32_t plan) const;
 };
 

@@ -12,13 +12,15 @@
 
 namespace tactor::synth {
 
-/// Walks along with a score, so that nothing is kept of what is over. Control side, one thread at a time.
+/// Walks along with a score, so that nothing is kept of drives that are over. Control side, one thread at a
+/// time.
 class sounding_now {
 public:
     explicit sounding_now(const score& s);
 
-    /// Amplitude of each tactor in a frame of the score, by index; 1 is the intensity asked for. A
-    /// frame before one that was asked for counts as that. Valid until the next call.
+    /// Amplitude of each tactor in a frame of the score, by index; 1 is the intensity asked for. Frames may
+    /// not go back: an earlier frame than the last one asked for counts as that one. Valid until the next
+    /// call.
     const std::vector<double>& at(std::uint64_t asked);
 
 private:

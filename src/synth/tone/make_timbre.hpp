@@ -12,8 +12,8 @@
 
 namespace tactor::synth {
 
-/// Nothing for a sine of one frequency, which needs none.
-/// \throws error (bad_input) for what cannot be made at that rate.
+/// The timbre of a plan; null for a sine of one frequency, which needs none.
+/// \throws error (bad_input) for a timbre that cannot be made at that rate.
 std::shared_ptr<const timbre> make_timbre(const plan& p, unsigned rate);
 
 /// Whether the carrier crosses zero where its phase says so: bursts between two such places need no ramp.
@@ -27,7 +27,7 @@ public:
 
 private:
     struct place {
-        plan asked; ///< of which only what is heard counts
+        plan asked; ///< only the parts that are heard count
         std::shared_ptr<const timbre> made;
     };
     std::vector<place> places_;

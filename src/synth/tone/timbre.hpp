@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What a drive vibrates with, where that is not one sine. Made before anything sounds, then only read: the
-/// audio thread gets a pointer to it, and who hands over the drives keeps it until they are over.
+/// The wave of a drive, if it is not one sine. It is made before anything sounds, and then only read: the
+/// audio thread gets a pointer to it, and the side that hands over the drives keeps it until they are over.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ struct course_part {
     bool rests() const noexcept { return cycles_per_frame == 0.0 && half_slope == 0.0; }
 };
 
-/// Of any wave between -1 and 1.
+/// Upper bound of `power` for any wave between -1 and 1.
 inline constexpr double most_power = 2.0;
 
 /// Points of a cycle, or frames of a loop.
@@ -43,12 +43,13 @@ struct timbre {
     double am_depth = 0.0;
 
     bool is_sine() const noexcept { return form == form_kind::sine; }
-    /// out[j] is the sample of frame first + j for j < n, at most block_frames; -1 to 1. Modulation is not in
-    /// it. A cosine is what makes an envelope of it: sin^2 + cos^2 = power.
+    /// out[j] is the sample of frame first + j for j < n, at most block_frames; -1 to 1, without the
+    /// modulation. With wave::cosine it is the sample that makes an envelope of the other: sin^2 + cos^2 =
+    /// power.
     void fill(std::int64_t first, unsigned n, double* out, wave w) const noexcept;
 };
 
-/// Points beside a cycle's that interpolation needs: one before, and two and a last after.
+/// Points that interpolation needs besides a cycle's own: one before, and two and a last after.
 inline constexpr std::size_t cycle_margin = 4;
 
 /// out[j] = the cycle at place turns[j], any number of turns below 1e15, between four points by Lagrange.

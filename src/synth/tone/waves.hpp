@@ -12,15 +12,15 @@
 
 namespace tactor::synth {
 
-/// Most harmonics of a cycle: beyond them a slow one has nothing that is felt.
+/// Most harmonics of a cycle: in a slow cycle nothing above them is felt.
 inline constexpr std::size_t most_harmonics = 4096;
 
 /// Square, triangle or sawtooth by its harmonics 1 to `harmonics`, with a peak of 1, as read_cycle() takes
 /// it.
 wave_samples shape_cycle(waveform_kind shape, std::size_t harmonics);
 
-/// One cycle of recorded samples, with no more harmonics than that and than it has; without its mean, and
-/// with a peak of 1. \throws error (bad_input) when nothing of it is left.
+/// One cycle of recorded samples, with at most `harmonics` harmonics and no more than it has; without its
+/// mean, and with a peak of 1. \throws error (bad_input) when nothing of it is left.
 wave_samples recorded_cycle(const recording& r, std::size_t harmonics);
 
 /// Noise that repeats after some 5 s, with nothing outside low_hz to high_hz; its peak is 1.
