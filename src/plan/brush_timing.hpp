@@ -20,8 +20,8 @@ std::vector<double> parts_s(const timing_profile& p, const std::vector<double>& 
 /// The shortest duration in which the same movement is possible: each part is linear in it.
 double shortest_duration_s(const timing_profile& p, const std::vector<double>& tau_s);
 
-/// Places of the virtual tactors that are left, ascending, when those with the smallest gaps go one by
-/// one until the schedule is possible or only both ends are left. O(n log n).
+/// Virtual tactors are left out, the one with the smallest gap first, until the schedule is possible or only
+/// both ends are left. Returns the places of those that are left, ascending. O(n log n).
 std::vector<std::size_t> thin_out(const timing_profile& p, const std::vector<double>& tau_s);
 
 } // namespace tactor::detail

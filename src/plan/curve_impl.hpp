@@ -22,8 +22,8 @@ struct curve::impl {
     impl(const impl&) = delete;
     impl& operator=(const impl&) = delete;
 
-    /// As curve::sample(). `seen` is the reader's own, of this curve: samples that are near each other are
-    /// read faster one after the other.
+    /// As curve::sample(). `seen` belongs to the reader, and to this curve: it makes reading faster if
+    /// samples that are near each other are read one after the other.
     void sample(std::uint64_t k, detail::same_tactors& seen, burst& out) const;
 
     /// Position, intensity and drives of sample k, which is there.
@@ -46,7 +46,7 @@ struct curve_access {
 
 namespace tactor::detail {
 
-/// So many samples belong to a stroke.
+/// Number of samples of a stroke.
 std::uint64_t samples_of(double duration_s) noexcept;
 double sample_time_s(std::uint64_t k, double duration_s) noexcept;
 

@@ -14,7 +14,7 @@
 
 namespace tactor::detail {
 
-/// Of all bursts of a plan, what warnings are made of.
+/// Counts over all bursts of a plan, for its warnings.
 struct burst_count {
     std::size_t all = 0;
     std::size_t too_long = 0;  ///< for the timing law
@@ -24,8 +24,8 @@ struct burst_count {
     double first_s = 0.0;    ///< duration of the first
 };
 
-/// Takes the next bursts of a plan, which end where nothing sounds; what else is known of it by then is its
-/// carrier, its phantom and such.
+/// Takes the next bursts of a plan; at their end nothing sounds. `so_far` has what else is known of the plan
+/// by then: its carrier, its phantom and such.
 using burst_taker = std::function<void(const plan& so_far, std::span<const burst> next)>;
 
 /// Bursts that are handed over at once where they are not kept.
@@ -46,14 +46,14 @@ struct job {
     std::string name() const;
 };
 
-/// Plans a stroke as make_plan() does, but hands its bursts over as they come in place of keeping them.
+/// Plans a stroke as make_plan() does, but hands its bursts over as they come, instead of keeping them.
 plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan_options& o,
                     const burst_taker& take);
 
 /// Counts the plan's bursts, and hands them over where they are not kept.
 void pass_on(const job& j, plan& p);
 
-/// The algorithms; each fills in what is its own.
+/// The algorithms; each fills in its own part of the plan.
 void plan_park(const job& j, plan& out);
 void plan_brush(const job& j, plan& out);
 void plan_continuous(const job& j, plan& out);
@@ -78,8 +78,8 @@ class follower {
 public:
     explicit follower(const job& j) : job_(j) {}
 
-    /// Where the target is, or with `clamp` the point of the hull nearest to it. Times that are
-    /// asked for must not decrease with `error`.
+    /// Where the target is, or with `clamp` the point of the hull nearest to it. With `error`, the times
+    /// asked for must not decrease.
     /// \throws error (bad_input) that says where the path leaves the array.
     point at(double t_s);
 

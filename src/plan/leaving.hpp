@@ -7,8 +7,9 @@
 
 namespace tactor::detail {
 
-/// The hull is convex: what leaves it between two corners of the path does so on a curve, and is farthest
-/// out where the curve turns, seen from an edge of the hull. So corners and turns are all that is looked at.
+/// Looks only at the corners of the path and at the turns of its curves. This is enough, because the hull is
+/// convex: between two corners only a curve can leave it, and it is farthest out where it turns, seen from an
+/// edge of the hull.
 /// \throws error (bad_input) that says where the path leaves the array first.
 void check_inside(const job& j);
 

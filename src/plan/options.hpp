@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What a plan may be asked for.
+/// Checks of plan_options.
 #pragma once
 
 #include <tactor/plan.hpp>
 
 namespace tactor::detail {
 
-/// Eq. (1) turned round, and Eq. (11): a burst never outlasts its SOA. No check of bounds.
+/// Eq. (1) solved for the duration, and Eq. (11): a burst never outlasts its SOA. No check of bounds.
 double law_duration_s(const timing_profile& p, double soa_s);
 
 /// \throws error (bad_input) for a law that no SOA can follow.

@@ -60,8 +60,8 @@ struct layout::impl {
 
     /// Replaces `out` by the faces that hold p within same_place_mm; never none. p must be in the hull.
     void faces_at(point p, std::vector<unsigned>& out) const;
-    /// The one face that holds p, where p keeps clear of its edges. Looks only where the point before was:
-    /// none means that faces_at() will find out.
+    /// The one face that holds p, if p keeps clear of its edges. Looks only at the face of the point before;
+    /// if it returns none, faces_at() must be asked.
     std::optional<unsigned> clear_face(point p) const noexcept;
     /// Whether p keeps clear of all segments between the tactors of a face too.
     bool clear_of_diagonals(unsigned face, point p) const noexcept;

@@ -16,13 +16,14 @@ inline double dot(point a, point b) noexcept
     return a.x_mm * b.x_mm + a.y_mm * b.y_mm;
 }
 
-/// What lies beyond an edge of the hull: more than `reach` in the direction `out`, which has length 1.
+/// The region beyond an edge of the hull: more than `reach` in the direction `out`, which has length 1.
 struct beyond {
     point out;
     double reach = 0.0;
 };
 
-/// The sides of the hull. Where all tactors are in one line that is a line: its two sides and its two ends.
+/// The sides of the hull. Where all tactors are in one line, the hull is that line: its two sides and two
+/// ends.
 std::vector<beyond> sides_of(const layout::impl& l);
 
 /// Two tactors as far apart as any in a line, and nearly so elsewhere.

@@ -18,7 +18,7 @@ std::shared_ptr<const phantom_model> make_gaussian(const layout& l);
 /// \throws error (bad_input) for a point or an intensity that is no finite number, or < 0.
 point check_request(const layout& l, point p, double a_v);
 
-/// Adds a drive for the tactor of that rank unless its amplitude is nothing.
+/// Adds a drive for the tactor of that rank if its amplitude is above 0.
 void add_drive(const layout& l, unsigned rank, double amplitude, std::vector<drive>& out);
 
 /// Brings drives into the order of tactor.

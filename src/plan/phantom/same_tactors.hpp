@@ -22,7 +22,7 @@ struct same_tactors {
     std::array<std::uint8_t, 3> by_index = {}; ///< places in `ranks`, by the tactors' indices
     unsigned count = 3;                        ///< 2: they are the ends of the segment
     std::array<point, 2> ends = {};            ///< of the segment
-    unsigned in_vain = 0;                      ///< places that will not be asked about next
+    unsigned in_vain = 0;                      ///< so many next places are not asked about
 
     bool holds(point p) const noexcept
     {
@@ -38,27 +38,28 @@ private:
 /// A model that takes three tactors nearly everywhere, and may take two on the segment between them.
 class model_of_three : public phantom_model {
 public:
-    /// The three that it takes at p and around it, and how far around, mm; 0 where it takes others at p, or
-    /// where p is on the border between two choices.
+    /// The three tactors that it takes at p and around it; returns how far around, mm. 0 where it does not
+    /// take three at p, or where p is on the border between two choices.
     virtual double three_around(point p, rank_triple& three) const = 0;
     /// What weights() gives them, in their order, within that disc.
     virtual std::array<double, 3> amplitudes(const rank_triple& three, point p, double a_v) const = 0;
 
-    /// The same where p is on the segment between two: how far along it, mm. This one: nowhere.
+    /// The two tactors that it takes at p, which is on the segment between them; returns how far along it,
+    /// mm. 0 where it does not. As it stands here: nowhere.
     virtual double two_around(point p, rank_pair& two) const;
     virtual std::array<double, 2> amplitudes_of_two(const rank_pair& two, point p, double a_v) const;
 };
 
-/// What weights() gives at p, which `seen` holds; a_v > 0.
+/// The drives that weights() gives at p, which `seen` holds; a_v > 0.
 void drives_of_same(const model_of_three& m, const layout& l, const same_tactors& seen, point p, double a_v,
                     std::vector<drive>& out);
 
-/// Makes `seen` a disc around p, which is in the array, if there is one, or else a segment's part.
+/// Makes `seen` a disc around p, or a part of the segment that p is on, if there is one; p is in the array.
 void look_around(const model_of_three& m, const layout& l, point p, same_tactors& seen);
 
-/// How far p, which keeps clear of all lines through two tactors of a face, may move until it comes near one
-/// of them, or, where the order of its tactors' distances matters, near a place where that changes. Not above
-/// 0: it may not.
+/// How far p may move until it comes near a line through two tactors of the face; p keeps clear of all these
+/// lines. With `by_distance` also: until it comes near a place where the order of its tactors' distances
+/// changes. Not above 0: it may not move.
 double free_mm(const layout::impl& l, unsigned face, point p, bool by_distance);
 
 /// How far p, which is on a segment between two tactors and on no other segment of the faces that hold it,
