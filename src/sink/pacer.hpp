@@ -14,7 +14,7 @@ namespace tactor::detail {
 /// A virtual queue and a timerfd that is readable when a period fits into it.
 class pacer {
 public:
-    /// \throws std::system_error when there is no timer to be had.
+    /// \throws std::system_error when no timer can be created.
     pacer(unsigned rate, unsigned buffer_frames, unsigned period_frames);
 
     int fd() const noexcept { return fd_.get(); }

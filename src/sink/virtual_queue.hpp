@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The queue that a device without a clock should have had.
+/// Stands in for the queue that a device without a clock does not have.
 #pragma once
 
 #include <cstdint>

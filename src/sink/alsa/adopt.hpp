@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A PCM that is open already as a sink: for devices that live in the test itself.
+/// Makes a sink of a PCM that is open already: for devices that live in the test itself.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace tactor::pcm {
 
-/// Configures and owns `p`, closed on failure too. Throws as open_alsa() does; `o.pcm` is but a name.
+/// Configures `p` and owns it; closes it on failure, too. Throws as open_alsa() does; `o.pcm` is only a name.
 /// `as_card`: its clock is taken for a card's, which goes on whatever happens here.
 std::unique_ptr<sink> adopt(snd_pcm_t* p, const alsa_options& o, bool as_card = false);
 

@@ -9,10 +9,10 @@
 
 namespace tactor::pcm {
 
-/// What a state alone says; a negative value is an error number (a device that is gone).
+/// The meaning of a state alone; a negative value is an error number (a device that is gone).
 io_kind of_state(int state) noexcept;
 
-/// What a negative return value in a state says.
+/// The meaning of a negative return value in a state.
 io_kind of_error(long code, int state) noexcept;
 
 } // namespace tactor::pcm

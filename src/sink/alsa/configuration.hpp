@@ -17,8 +17,9 @@ using configuration = std::unique_ptr<snd_config_t, detail::deleter<snd_config_d
 /// \throws error (bad_input) for what ALSA cannot read.
 configuration parse(const std::string& text);
 
-/// ALSA's configuration as snd_pcm_open() finds it, kept from being reread meanwhile. Not read without a free
-/// descriptor: libasound goes without the files that it cannot open, and keeps that until one changes.
+/// ALSA's configuration as snd_pcm_open() finds it; it is not reread while this object lives. Without a free
+/// descriptor it is not read at all: libasound would leave out the files that it cannot open, and keep this
+/// configuration until one of them changes.
 class system_configuration {
 public:
     system_configuration();

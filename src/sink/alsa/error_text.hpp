@@ -15,7 +15,7 @@ namespace tactor::pcm {
 /// "text (detail)", or "text" without a detail.
 std::string with_detail(const std::string& text, const std::string& detail);
 
-/// What there is instead of what was asked for.
+/// What exists instead of the PCM that was asked for.
 struct surroundings {
     std::vector<std::string> pcms = {}; ///< names that the configuration defines
     system_root root = "/";
@@ -25,7 +25,7 @@ struct surroundings {
 /// Why a PCM could not be opened (negative errno) and what to do. `detail`: libasound's own words.
 error open_error(const std::string& name, int code, const std::string& detail, const surroundings& s = {});
 
-/// A call that should have worked did not.
+/// The error of a call that should have worked.
 error call_error(const std::string& name, const char* call, int code);
 
 } // namespace tactor::pcm

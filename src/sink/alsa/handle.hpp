@@ -19,7 +19,7 @@ inline constexpr unsigned most_channels = max_pcm_channels;
 
 using detail::deleter;
 
-/// What a plugin has to say of its end is not for standard error.
+/// Silent: what a plugin says when it is closed is not for standard error.
 struct closer {
     void operator()(snd_pcm_t* p) const noexcept
     {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What libasound has to say, for error messages instead of the user's standard error.
+/// libasound's messages, for error messages instead of the user's standard error.
 ///
-/// libasound has one handler of messages for the process, which is the host program's business, and in its
-/// default one a handler for each thread: that is taken for as long as the calls take, and put back.
+/// libasound has one message handler for the process; it is the host program's business. The default one
+/// passes messages to a handler of each thread: this one is replaced during the calls, and then put back.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace tactor::pcm {
 
-/// snd_lib_error_set_local(), which alsa-lib 1.2.8 declares to C++ as if it were written in it.
+/// snd_lib_error_set_local(): alsa-lib 1.2.8 declares it without extern "C".
 snd_local_error_handler_t set_local_handler(snd_local_error_handler_t h) __asm__("snd_lib_error_set_local");
 
 /// Silences libasound on this thread while it lives, unless the host has a handler of its own. No lock and no
@@ -34,8 +34,8 @@ private:
     snd_local_error_handler_t before_;
 };
 
-/// Collects libasound's first message of this thread while it lives. What it says within the life of a second
-/// one is that one's.
+/// Collects libasound's first message of this thread while it lives. Messages within the life of a second
+/// object belong to the second one.
 class library_messages : quiet {
 public:
     library_messages() noexcept;

@@ -16,15 +16,16 @@ namespace tactor::pcm {
 /// \throws error (bad_input) for numbers that no PCM can have.
 void check(const alsa_options& o);
 
-/// All that the PCM takes with interleaved samples and without resampling; `name` is for errors.
+/// The whole configuration space of the PCM with interleaved samples and without resampling; `name` is for
+/// errors.
 /// \throws error (not_available).
 hw_params configuration_space(snd_pcm_t* p, const std::string& name);
 
-/// Why channels, rate and format asked for cannot be had together; empty: they can.
+/// Why the channels, rate and format asked for are not possible together; empty: they are.
 std::string misfit(snd_pcm_t* p, const hw_params& space, const alsa_options& o);
 
-/// Sets exactly the channels and the rate asked for, the first format that fits, and the nearest
-/// period and buffer; returns what the device made of it.
+/// Sets exactly the channels and the rate asked for, the first format that fits, and the nearest period and
+/// buffer; returns the set-up that the device has then.
 /// \throws error (not_available) with the set asked for and what the device can do.
 stream_setup negotiate(snd_pcm_t* p, const alsa_options& o);
 

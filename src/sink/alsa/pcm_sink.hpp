@@ -15,13 +15,13 @@ namespace tactor::pcm {
 
 /// Frames go to snd_pcm_writei(). A device that turns out at start() to have no clock is paced by a timer.
 ///
-/// A card plays its buffer round and round, and tells the kernel where in it. Where nobody asked for a whole
-/// buffer (interrupts were off, the processor or the machine stood still), the round is not in the position,
-/// and nothing says xrun: a stream that moved, and that was not looked at for so long, has run dry here,
-/// whatever the kernel says.
+/// A card plays its buffer round and round, and tells the kernel the place in it. If nobody asks for this
+/// place during a whole round (interrupts were off, the processor or the machine stood still), the round is
+/// missing from the position, and no xrun is reported. So a stream that moved, and was not looked at during a
+/// whole round, counts as run dry here, whatever the kernel says.
 class pcm_sink final : public sink {
 public:
-    /// `on_card`: what plays is a card of the kernel's.
+    /// `on_card`: the PCM plays on a card of the kernel's.
     pcm_sink(handle h, stream_setup s, bool on_card);
 
     const stream_setup& setup() const noexcept override { return setup_; }

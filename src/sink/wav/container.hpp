@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Which of the two files that hold waves.
+/// Which of the two containers a WAV file has.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,8 @@ namespace tactor::wav {
 
 enum class container { wave, rf64 };
 
-/// RF64 where the 32-bit sizes of WAVE do not do; 4096 bytes are left for what stands around the samples.
+/// RF64 where the 32-bit sizes of WAVE are too small; 4096 bytes are reserved for the chunks beside the
+/// samples.
 constexpr container container_for(std::uint64_t frames, std::uint64_t frame_bytes) noexcept
 {
     constexpr std::uint64_t most = 0xFFFFFFFFU - 4096U;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What stands before the samples in a WAV file. All sizes are known beforehand, so that a pipe can take the
+/// The chunks before the samples in a WAV file. All sizes are known beforehand, so that a pipe can take the
 /// file.
 #pragma once
 
@@ -13,10 +13,10 @@
 
 namespace tactor::wav {
 
-/// RIFF's chunks up to the first sample: fmt (18 bytes and a fact chunk for float, as the format asks of all
-/// that is not integer PCM), and ds64 where the container is RF64. No PEAK chunk: it holds the time of day,
-/// and the same stroke would not give the same bytes. \throws error (bad_input) for a format that WAV cannot
-/// hold (s24 in four bytes).
+/// RIFF's chunks up to the first sample: fmt (18 bytes and a fact chunk for float, as the format requires for
+/// everything but integer PCM), and ds64 where the container is RF64. No PEAK chunk: it holds the time of
+/// day, and the same stroke would not give the same bytes. \throws error (bad_input) for a format that WAV
+/// cannot hold (s24 in four bytes).
 std::string header(format_kind f, container c, unsigned channels, unsigned rate, std::uint64_t frames);
 
 /// A chunk has an even number of bytes: 1 where a byte of padding follows the samples.

@@ -29,7 +29,7 @@ std::vector<unsigned> playback_devices(const system_root& root, unsigned card_in
 /// What the driver calls a playback device; empty where it says nothing.
 std::string playback_device_name(const system_root& root, unsigned card_index, unsigned device);
 
-/// The card and the device that an ALSA name says, as in "hw:CARD=Tactor,DEV=1" or "plughw:0,1".
+/// The card and the device that an ALSA name refers to, as in "hw:CARD=Tactor,DEV=1" or "plughw:0,1".
 struct device_name {
     std::string card = {}; ///< id or index
     unsigned device = 0;
@@ -44,14 +44,14 @@ struct holder {
     std::string program = {};
 };
 
-/// A playback device of a card, or any of its devices, or any of any card.
+/// One playback device of a card; without `device` any of the card, without both any of any card.
 struct which_device {
     std::optional<unsigned> card = {};
     std::optional<unsigned> device = {};
 };
 
-/// Processes that have such a playback device open, by number. Of other users' processes only what the
-/// sound driver tells is seen.
+/// Processes that have such a playback device open, in order of pid. Of other users' processes only those are
+/// seen that the sound driver tells of.
 std::vector<holder> playback_holders(const system_root& root, const which_device& wanted);
 
 /// The group whose members may open the playback devices; empty where that cannot be told.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The list of PCMs, on a system that may be made of files.
+/// The list of PCMs; tests give it a system that is made of files.
 #pragma once
 
 #include <alsa/asoundlib.h>
@@ -11,12 +11,12 @@
 
 namespace tactor::pcm {
 
-/// list_pcms(), whose cards are those of `root`.
+/// As list_pcms(), with the cards of `root`.
 std::vector<pcm_info> list(const system_root& root, const std::optional<alsa_options>& wanted);
 
 std::vector<process_info> processes(const std::vector<holder>& holders);
 
-/// Fills in what an open PCM can do and whether that fits.
+/// Fills in the abilities of an open PCM, and whether they fit.
 void look_at(snd_pcm_t* p, const std::optional<alsa_options>& wanted, pcm_info& into);
 
 } // namespace tactor::pcm

@@ -19,7 +19,8 @@ struct known_name {
 /// ALSA lists them, then the others.
 std::vector<known_name> known_names();
 
-/// All that a configuration defines under `pcm`, those that need arguments too; for those who mistyped one.
+/// All PCMs that a configuration defines under `pcm`, those that need arguments too; as hints for a mistyped
+/// name.
 std::vector<std::string> defined_pcms(snd_config_t* top);
 
 } // namespace tactor::pcm

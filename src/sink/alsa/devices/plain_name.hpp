@@ -8,14 +8,14 @@
 
 namespace tactor::pcm {
 
-/// What makes this text more than the name of a device; empty: nothing does. Names are
+/// Why this text is more than the name of a device; empty: it is not. Names are
 ///
 ///     NAME = BASE [":" ARGUMENT {"," ARGUMENT}] | "plug:" ["SLAVE="] (INNER | "'" NAME "'")
 ///     ARGUMENT = [KEY "="] VALUE
 ///
-/// with letters, digits, "_" and "-" (in a VALUE "." too); INNER is a NAME without a comma, which would end
-/// it, and no NAME within "plug:" begins so again. ALSA itself takes far more: definitions in braces,
-/// quoted text, escapes. Looks at the text only; what a name stands for, find_route() tells.
+/// with letters, digits, "_" and "-" (in a VALUE "." too). INNER is a NAME without a comma, which would end
+/// it. A NAME within "plug:" does not begin with "plug:" again. ALSA itself takes far more: definitions in
+/// braces, quoted text, escapes. Looks at the text only; find_route() tells what a name stands for.
 std::string not_plain(std::string_view name);
 
 } // namespace tactor::pcm

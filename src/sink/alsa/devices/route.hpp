@@ -12,7 +12,7 @@
 
 namespace tactor::pcm {
 
-/// The members of a compound by name; none of anything else.
+/// Calls `visit` for each member of a compound, with its name; for other nodes it calls nothing.
 template <typename Visit>
 void each_member(snd_config_t* compound, Visit visit)
 {
@@ -27,7 +27,7 @@ void each_member(snd_config_t* compound, Visit visit)
     }
 }
 
-/// Of plugins on plugins; a definition may name itself.
+/// Most plugins on plugins that are followed: a definition may name itself.
 inline constexpr int deepest = 8;
 
 template <typename Names>
@@ -36,24 +36,24 @@ bool among(const Names& names, std::string_view type)
     return std::find(names.begin(), names.end(), type) != names.end();
 }
 
-/// Stands for the type of a definition that leads to itself, or farther than anyone's does.
+/// Stands for the type of a definition that leads to itself, or farther than any real one does.
 inline constexpr const char* endless = "?";
 
-/// The types of the plugins that playing on a PCM goes through, as their definitions say them: "plug", "hw".
-/// What is not defined has none.
+/// The types of the plugins that a PCM plays through, as their definitions name them: "plug", "hw". A PCM
+/// that is not defined has none.
 std::vector<std::string> find_route(snd_config_t* top, const std::string& name);
 /// By the system's configuration.
 std::vector<std::string> find_route(const std::string& name);
 
-/// The first type that has more effect than sound: "file", which writes a file or starts a command, and any
-/// that is not known. Empty: there is none.
+/// The first type that has other effects than sound: "file", which writes a file or starts a command, and any
+/// unknown type. Empty: there is none.
 std::string unsafe_type(const std::vector<std::string>& route);
 
-/// The first type that starts something that lasts when it is opened: a mixer its card, a client its server;
-/// and any that is not known. Empty: opening changes nothing.
+/// The first type that starts something lasting when it is opened: a mixer starts its card, a client its
+/// server. An unknown type counts, too. Empty: opening changes nothing.
 std::string lasting_type(const std::vector<std::string>& route);
 
-/// Whether opening it empties a file or starts a command.
+/// Whether opening the PCM empties a file or starts a command.
 bool writes(const std::vector<std::string>& route);
 
 /// "PipeWire", "PulseAudio" or "JACK", where the route ends in one; else empty.

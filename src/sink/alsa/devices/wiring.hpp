@@ -12,7 +12,7 @@
 
 namespace tactor::pcm {
 
-/// Of a PCM that is opened with so many channels and none converted, as open() does.
+/// The wiring of a PCM that is opened with so many channels, none of them converted, as open() does.
 stream_wiring find_wiring(snd_config_t* top, const std::string& name, unsigned channels);
 /// By the text of the options, or the system's configuration.
 stream_wiring find_wiring(const alsa_options& o);
