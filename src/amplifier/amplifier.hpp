@@ -11,8 +11,8 @@ namespace tactor::engine {
 struct amplifier_options {
     std::int64_t settle_ns = 10'000'000;  ///< turn-on time, of silence
     std::uint64_t proof_frames = 192;     ///< the DAC has played so much before it counts as running
-    std::int64_t calm_ns = 1'000'000'000; ///< xruns within this mute; without one for so long it comes back
-    unsigned most_xruns = 2;              ///< so many within calm_ns mute
+    std::int64_t calm_ns = 1'000'000'000; ///< most_xruns within it mute; so long without one ends the mute
+    unsigned most_xruns = 2;              ///< so many xruns within calm_ns mute
 };
 
 enum class amplifier_event {
@@ -21,8 +21,8 @@ enum class amplifier_event {
     switched,  ///< the line has followed line() to on
     xrun,      ///< the DAC ran dry and stopped
     suspended, ///< the system sleeps
-    stalled,   ///< the audio thread does not get on
-    recovered, ///< it does again
+    stalled,   ///< the audio thread stands still
+    recovered, ///< it runs again
     lapsed,    ///< the line went off by itself
     silent,    ///< the last sound is out: the stream is about to be stopped
     lost,      ///< the device is gone

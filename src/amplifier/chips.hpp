@@ -33,10 +33,10 @@ struct located_line {
     unsigned offset = 0;
 };
 
-/// The same, but only where it is.
+/// The same, but returns only where the line is.
 located_line locate(const gpio_line_name& wanted);
 
-/// Opens every chip, and nothing else that is called so.
+/// Opens every chip, and no other file that has such a name.
 std::vector<chip> read_chips();
 
 /// Who holds a line now; empty: nobody, or it cannot be known.

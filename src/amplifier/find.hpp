@@ -18,9 +18,10 @@ struct line_place {
     unsigned offset = 0;
 };
 
-/// A chip is named by path or by label, a line by name or by offset; a name is looked for on the chip
-/// that is given, or on all.
-/// \throws error: not_available, with what there is instead; bad_input when neither is said.
+/// A chip is named by path or by label, a line by name or by offset; a name is looked for on the chip that is
+/// given, or on all.
+/// \throws error: not_available, with what there is instead; bad_input without a name and without chip and
+///         offset.
 line_place find_line(std::span<const chip> chips, const gpio_line_name& wanted);
 
 } // namespace tactor::gpio

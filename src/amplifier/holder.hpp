@@ -17,11 +17,11 @@
 
 namespace tactor::gpio {
 
-/// What the holder is to hold.
+/// The line that the holder takes over.
 struct held_line {
     bool (*set)(void* line, bool on) noexcept = nullptr; ///< async-signal-safe
     void* line = nullptr;                                ///< must live until start_holder() has returned
-    std::vector<int> descriptors = {}; ///< what `set` needs; with a -1 the holder closes none of ours
+    std::vector<int> descriptors = {}; ///< what `set` needs; if one is -1, the holder closes none of ours
 };
 
 /// A line in the hands of a holder. One thread at a time.
@@ -57,9 +57,9 @@ private:
     bool rescued_ = false;
 };
 
-/// Forks twice, so that the holder is nobody's child that has to be waited for. The line must be off; it is
-/// in the holder's hands when this returns, and the caller then gives up its own copy.
-/// `rescue` is called when the holder was lost: switch the line off, true if that worked.
+/// Forks twice, so that the holder is not a child that a process has to wait for. The line must be off. When
+/// this returns, the line is in the holder's hands, and the caller gives up its own copy. `rescue` is called
+/// when the holder was lost: it switches the line off, and returns whether that worked.
 /// \throws error (not_available).
 std::unique_ptr<holder_link> start_holder(const held_line& line, std::function<bool()> rescue,
                                           const holder_limits& limits = {});

@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: MIT
 /// \file
 /// The holder: a process that owns the amplifier's line and outlives the player by as long as it takes to
-/// switch off. What it runs after fork() is async-signal-safe, for the player may have threads: it neither
-/// allocates nor locks, and everything it needs was made before.
+/// switch off. After fork() it only runs code that is async-signal-safe, because the player may have threads:
+/// it neither allocates nor locks, and everything it needs was made before.
 #pragma once
 
 #include <cstdint>
 
 namespace tactor::gpio {
 
-/// How long the two wait for each other. What ships is the default; tests of what does not hang on time wait
-/// longer.
+/// How long the player and the holder wait for each other. Programs use the defaults; tests that are not
+/// about time wait longer.
 struct holder_limits {
     /// Without a command or a beat for so long, a line that is on goes off. Beats come every 50 ms.
     int silence_ms = 150;
     /// A holder that does not answer for so long is taken for lost. It runs for microseconds at a time.
     int answer_ms = 500;
-    /// Until its greeting.
+    /// How long the player waits for the holder's greeting.
     int start_ms = 5000;
-    /// So many beats without an answer, and it is lost, too.
+    /// After so many beats without an answer the holder is taken for lost, too.
     unsigned unanswered = 10;
 };
 

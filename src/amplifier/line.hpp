@@ -23,7 +23,7 @@ inline std::string text(const char* s)
     return s ? s : "";
 }
 
-/// Why it returned nothing: it sets errno wherever it does.
+/// Why libgpiod returned nothing: it sets errno wherever it does so.
 inline int failure() noexcept
 {
     return errno != 0 ? errno : EIO;
@@ -56,7 +56,7 @@ public:
     virtual ~output() = default;
     /// One ioctl; neither allocates nor locks, so a forked process may call it.
     virtual bool set(bool on) noexcept = 0;
-    /// Of the request: who has it open has the line. -1 when it could not be found out.
+    /// Descriptor of the request; a process that has it open has the line. -1 when it could not be found out.
     virtual int descriptor() const noexcept = 0;
 };
 
@@ -67,7 +67,7 @@ struct requested {
     int code = 0;
 };
 
-/// Whether there is a libgpiod behind all this.
+/// Whether this build has a libgpiod.
 bool built_in() noexcept;
 /// All but the group. A chip that cannot be opened is not an error.
 chip read_chip(const std::string& path);
