@@ -7,7 +7,8 @@
 * Nothing is made from an impl in public, and nobody gets at one: no public data().
 * Classes with virtual functions cannot be copied.
 * A function that has a result is [[nodiscard]]: to drop it is a mistake (to_string() and its kin apart; write_wav(), whose
-  work is the file). So are members that are const or static: they do nothing else.
+  work is the file). So are members that are const or static, for they do nothing else, and virtual ones: what a device
+  answers is not dropped.
 * What is exported is in the inline namespace of this version: v0 of 0.1, v0_N of a 0.N that breaks programs.
 
 Usage: headers.py SOURCE_ROOT. Prints each line that breaks a rule, then counts.
@@ -71,7 +72,7 @@ def complaints(name, text, everything, tried):
         if m[1] not in MAY_DROP and not before.endswith("template <>"):
             yield f"{name}: {m[1]}() is not [[nodiscard]]"
     for m in MEMBER.finditer(code):
-        only_asks = "static " in m[1] or re.search(r"\)\s*const\b", m[0])
+        only_asks = "static " in m[1] or "virtual " in m[1] or re.search(r"\)\s*const\b", m[0])
         if only_asks and not re.search(r"=\s*delete", m[0]):
             yield f"{name}: {m[2]}() is not [[nodiscard]]"
     for cls, body in CLASS.findall(code):

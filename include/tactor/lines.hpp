@@ -67,12 +67,12 @@ public:
     /// Switches. False when that failed. An "on" that failed stops the player's stream; an "off" is called
     /// again every 10 ms for a second, and once more when the player closes, see player_stats::left_on. One
     /// ioctl or write of a few microseconds, no allocation. Not the audio thread.
-    virtual bool set(bool on) noexcept = 0;
+    [[nodiscard]] virtual bool set(bool on) noexcept = 0;
     /// Says that the player lives; called every 50 ms while the line is on, by the thread that calls set().
     /// False when the line is no longer on: it went off by itself because the player was silent for too long
     /// (stopped by a signal, or hanging), or it was lost. Until the next set(true) it stays off. Does not
     /// block.
-    virtual bool beat() noexcept { return true; }
+    [[nodiscard]] virtual bool beat() noexcept { return true; }
 };
 
 /// One edge on an input.
@@ -91,7 +91,7 @@ public:
     /// Readable when an edge waits; owned by this object.
     [[nodiscard]] virtual int descriptor() const noexcept = 0;
     /// The next edge, or nothing. Does not block.
-    virtual std::optional<gpio_edge> read() noexcept = 0;
+    [[nodiscard]] virtual std::optional<gpio_edge> read() noexcept = 0;
 };
 
 } // namespace v0

@@ -3,6 +3,7 @@
 /// Strokes that are fed point by point while they sound: from a sensor, a finger, a simulation.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -68,6 +69,11 @@ public:
     ///         0, or (with outside_kind::error) a point outside the array. The stroke then stays where it
     ///         was.
     bool to(double x_mm, double y_mm, double intensity = 1.0, std::optional<std::int64_t> at_ns = {});
+    /// A time stamp is no intensity, and seconds are no time stamp.
+    template <std::same_as<std::int64_t> T>
+    bool to(double x_mm, double y_mm, T time_stamp) = delete;
+    template <std::floating_point T>
+    bool to(double x_mm, double y_mm, double intensity, T seconds) = delete;
 
     /// No more points come: fades out (continuous), or plays its last burst to the end. It ends finished.
     void end() noexcept;

@@ -3,6 +3,7 @@
 /// The engine: plays scores on a sink in real time.
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -157,6 +158,8 @@ public:
     /// by wait(), and to the handler when there is one. Of reports that nobody waits for, the 4096 newest are
     /// kept.
     wait_result wait(stroke_id id, std::optional<double> timeout_s = {});
+    template <std::same_as<std::int64_t> T>
+    wait_result wait(stroke_id id, T nanoseconds) = delete;
 
     /// Called in the control thread for each stroke that begins, soon after its first frame was handed to the
     /// device and before its report: with the CLOCK_MONOTONIC, ns, at which that frame is (or was) at the

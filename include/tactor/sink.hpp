@@ -89,27 +89,27 @@ public:
     [[nodiscard]] virtual const stream_setup& setup() const noexcept = 0;
 
     /// Makes the stream ready to be filled: at first, and again after an xrun. Begins a new epoch.
-    virtual io_kind prepare() noexcept = 0;
+    [[nodiscard]] virtual io_kind prepare() noexcept = 0;
     /// Starts the DAC explicitly, after the prefill.
-    virtual io_kind start() noexcept = 0;
+    [[nodiscard]] virtual io_kind start() noexcept = 0;
     /// Tries to come back from `suspended`; `again` while the device is not ready.
-    virtual io_kind resume() noexcept = 0;
+    [[nodiscard]] virtual io_kind resume() noexcept = 0;
     /// How long the stream has stood still since the xrun that was just reported, ns; 0 where that is not
     /// known. Called before prepare().
-    virtual std::int64_t xrun_ns() noexcept;
+    [[nodiscard]] virtual std::int64_t xrun_ns() noexcept;
 
     /// Upper bound of the number of descriptors.
     [[nodiscard]] virtual std::size_t max_descriptors() const noexcept = 0;
     /// Fills `fds` with what to poll; returns how many.
-    virtual std::size_t descriptors(std::span<pollfd> fds) noexcept = 0;
+    [[nodiscard]] virtual std::size_t descriptors(std::span<pollfd> fds) noexcept = 0;
     /// Interprets the polled descriptors: `ok` space to write, `again` not yet, or an error.
-    virtual io_kind ready(std::span<pollfd> fds) noexcept = 0;
+    [[nodiscard]] virtual io_kind ready(std::span<pollfd> fds) noexcept = 0;
 
     /// Frames that can be written now.
-    virtual io_result available() noexcept = 0;
+    [[nodiscard]] virtual io_result available() noexcept = 0;
     /// Writes whole interleaved frames; may take fewer than there are, also none.
-    virtual io_result write(std::span<const std::byte> frames) noexcept = 0;
-    virtual stream_position position() noexcept = 0;
+    [[nodiscard]] virtual io_result write(std::span<const std::byte> frames) noexcept = 0;
+    [[nodiscard]] virtual stream_position position() noexcept = 0;
     /// Stops at once and discards what is queued.
     virtual void drop() noexcept = 0;
 };
@@ -126,22 +126,22 @@ public:
     ~paced_sink() override;
 
     [[nodiscard]] const stream_setup& setup() const noexcept final;
-    io_kind prepare() noexcept final;
-    io_kind start() noexcept final;
-    io_kind resume() noexcept final;
+    [[nodiscard]] io_kind prepare() noexcept final;
+    [[nodiscard]] io_kind start() noexcept final;
+    [[nodiscard]] io_kind resume() noexcept final;
     [[nodiscard]] std::size_t max_descriptors() const noexcept final;
-    std::size_t descriptors(std::span<pollfd> fds) noexcept final;
-    io_kind ready(std::span<pollfd> fds) noexcept final;
-    io_result available() noexcept final;
-    io_result write(std::span<const std::byte> frames) noexcept final;
-    stream_position position() noexcept final;
+    [[nodiscard]] std::size_t descriptors(std::span<pollfd> fds) noexcept final;
+    [[nodiscard]] io_kind ready(std::span<pollfd> fds) noexcept final;
+    [[nodiscard]] io_result available() noexcept final;
+    [[nodiscard]] io_result write(std::span<const std::byte> frames) noexcept final;
+    [[nodiscard]] stream_position position() noexcept final;
     void drop() noexcept final;
 
 protected:
     /// Takes the next frames of the stream, at most a period of them, interleaved, up to buffer_frames
     /// before their time; `first` counts from the epoch's start. Called by the audio thread: it must not
     /// block, lock, allocate or log. `ok`, or `lost` or `failed`, which end the stream.
-    virtual io_kind take(std::uint64_t first, std::span<const std::byte> frames) noexcept = 0;
+    [[nodiscard]] virtual io_kind take(std::uint64_t first, std::span<const std::byte> frames) noexcept = 0;
 
 private:
     struct impl;

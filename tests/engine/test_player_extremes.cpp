@@ -67,6 +67,16 @@ concept cancels = requires(player& p, T t)
 {
     p.cancel(t);
 };
+template <typename... T>
+concept moves = requires(live_stroke& l, T... t)
+{
+    l.to(1.0, 2.0, t...);
+};
+template <typename T>
+concept waits = requires(player& p, T t)
+{
+    p.wait(stroke_id{1}, t);
+};
 
 static_assert(cancels<stroke_id> && !cancels<int> && !cancels<unsigned>);
 static_assert(!std::is_default_constructible_v<start_at>);
@@ -74,6 +84,9 @@ static_assert(submits<start_at> && !submits<int> && !submits<std::uint64_t> && !
 static_assert(!std::is_constructible_v<start_at, int> && !std::is_constructible_v<start_at, double>);
 static_assert(takes_as_frame<int> && !takes_as_frame<double> && !takes_as_frame<bool>);
 static_assert(takes_as_time<std::int64_t> && !takes_as_time<double>);
+static_assert(moves<double> && moves<int> && !moves<std::int64_t>);
+static_assert(moves<double, std::int64_t> && !moves<double, double>);
+static_assert(waits<double> && waits<int> && !waits<std::int64_t>);
 static_assert(fires<std::int64_t> && !fires<double>);
 static_assert(start_at::frame(7).stream_frame() == 7 && start_at::frame(8U).stream_frame() == 8);
 

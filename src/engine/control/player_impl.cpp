@@ -119,6 +119,7 @@ std::unique_ptr<sink> not_null(std::unique_ptr<sink> s)
 
 player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines l)
     : out(not_null(std::move(s))),
+      stream(fmt::format("stream on \"{}\"", out->setup().name)),
       lines(checked(std::move(l), out->setup().rate)),
       feed(link, horizon_frames(o, out->setup())),
       tactors(engine::fitting(a, out->setup())),
@@ -187,14 +188,13 @@ void player::impl::start_lines(const player_options& o)
 
 void player::impl::check_start(const player_options& o)
 {
-    const std::string what = fmt::format("stream on \"{}\"", out->setup().name);
     const io_result& r = audio.started();
     if (r.status == io_kind::lost)
-        detail::throw_caused(error(error_kind::not_available, what, "the device is gone", "plug it in again"),
-                             -r.code);
+        detail::throw_caused(
+            error(error_kind::not_available, stream, "the device is gone", "plug it in again"), -r.code);
     if (r.status != io_kind::ok)
         detail::throw_caused(
-            error(error_kind::runtime, what,
+            error(error_kind::runtime, stream,
                   fmt::format("it does not start ({})", engine::text(reason_kind::failed, r.code)),
                   "try another PCM, or a longer period"),
             -r.code);
@@ -208,9 +208,9 @@ void player::impl::check_start(const player_options& o)
 void player::impl::log_start(const player_options& o) const
 {
     const stream_setup& s = out->setup();
-    detail::log(log.function(), log_kind::info, "stream on \"{}\" runs: {} at {} Hz, {} of {} frames{}",
-                s.name, counted(s.channels, "channel"), s.rate, s.buffer_frames / s.period_frames,
-                s.period_frames, s.has_clock ? "" : ", timed by us");
+    detail::log(log.function(), log_kind::info, "{} runs: {} at {} Hz, {} of {} frames{}", stream,
+                counted(s.channels, "channel"), s.rate, s.buffer_frames / s.period_frames, s.period_frames,
+                s.has_clock ? "" : ", timed by us");
     if (!o.realtime && !o.require_realtime)
         return;
     const int refused = audio.fifo_error();
@@ -268,8 +268,8 @@ void player::impl::check_open() const
     if (!stopping && !feed.stream_over())
         return;
     const stream_end over = end();
-    throw error(error_kind::runtime, fmt::format("stream on \"{}\"", out->setup().name),
-                over.reason == reason_kind::none ? "it was stopped" : over.why, "open a new player");
+    throw error(error_kind::runtime, stream, over.reason == reason_kind::none ? "it was stopped" : over.why,
+                "open a new player");
 }
 
 stream_end player::impl::end() const

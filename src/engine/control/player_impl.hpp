@@ -56,6 +56,7 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     stream_end end() const;
 
     std::unique_ptr<sink> out;
+    const std::string stream; ///< as messages call it
     player_lines lines;
     engine::link link;
     std::mutex mutex; ///< guards all that follows but the threads; the audio thread never sees it

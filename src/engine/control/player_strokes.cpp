@@ -56,12 +56,13 @@ bool player::impl::edges()
 
 live_stroke player::impl::begin(const live_options& o)
 {
-    std::unique_lock lock(mutex);
+    const stream_setup& setup = out->setup(); // a sink may be the program's own: not under the lock
+    const std::unique_lock lock(mutex);
     check_open();
     if (!faces)
         faces.emplace(tactors);
     const stroke_id id = next_id();
-    auto stroke = std::make_shared<live_stroke::impl>(id, tactors, *faces, out->setup(), o);
+    auto stroke = std::make_shared<live_stroke::impl>(id, tactors, *faces, setup, o);
     feed.submit(id, std::shared_ptr<engine::live_voice>(stroke, &stroke->voice));
     pump();
     return detail::access::make<live_stroke>(std::move(stroke));

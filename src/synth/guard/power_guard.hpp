@@ -20,8 +20,8 @@ struct powered_channel {
 /// Holds the sum over the channels of the squared envelopes, and with it that of x^2, at or below a limit in
 /// every frame, without a click: the gain of all follows the envelopes, not the waves, and takes about 10 ms.
 /// Where an envelope rises faster than that, its rise waits for the headroom that the gain makes: channels
-/// that sound already are never cut off, and one that begins fades in. The gain comes back 20 ms after the
-/// loud part with a time constant of 50 ms. State changes frame by frame, so that block sizes make no
+/// that sound already are never cut off, and one that begins fades in. The gain comes back with
+/// a time constant of 50 ms. State changes frame by frame, so that block sizes make no
 /// difference.
 class power_guard {
 public:
