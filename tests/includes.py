@@ -39,8 +39,8 @@ PUBLIC = {
 USES_ALL_PUBLIC = {"cli", "plot", "python", "server", "study"}
 # What those may know of the library's inside, which is in the tool: no program that embeds it needs these.
 INSIDE = {
-    "cli": {"core/kind_names.hpp", "core/owned_fd.hpp", "core/split.hpp", "core/suggest.hpp", "core/words.hpp", "files/channel_map.hpp", "files/output_file.hpp", "files/setup_defaults.hpp", "files/stroke/text.hpp", "files/text_file.hpp", "percept/summaries.hpp", "rt/advice.hpp", "rt/clock.hpp", "rt/event_fd.hpp", "synth/score/sounding_now.hpp"},
-    "study": {"core/kind_names.hpp", "core/owned_fd.hpp", "core/split.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_defaults.hpp", "files/text_file.hpp", "files/toml_reader.hpp", "rt/event_fd.hpp", "rt/thread.hpp", "synth/mix/converter.hpp"},
+    "cli": {"core/kind_names.hpp", "core/owned.hpp", "core/split.hpp", "core/suggest.hpp", "core/words.hpp", "files/channel_map.hpp", "files/output_file.hpp", "files/setup_defaults.hpp", "files/stroke/text.hpp", "files/text_file.hpp", "percept/summaries.hpp", "rt/advice.hpp", "rt/clock.hpp", "rt/event_fd.hpp", "synth/score/sounding_now.hpp"},
+    "study": {"core/kind_names.hpp", "core/owned.hpp", "core/split.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_defaults.hpp", "files/text_file.hpp", "files/toml_reader.hpp", "rt/event_fd.hpp", "rt/thread.hpp", "synth/mix/converter.hpp"},
     "plot": {"core/split.hpp", "core/words.hpp", "files/output_file.hpp", "synth/mix/sample_ranges.hpp"},
     "server": {"core/kind_names.hpp", "core/words.hpp"},
     "python": {"core/access.hpp", "core/kind_names.hpp", "core/path/impl.hpp", "core/path/outline.hpp", "core/profile.hpp", "core/words.hpp",
@@ -67,7 +67,7 @@ IMPURE = {"thread", "mutex", "condition_variable", "chrono", "atomic", "future",
 
 # But for what reads and writes files that a user named, by descriptors, and for a guess where to look first, which
 # threads share and no answer depends on.
-IMPURE_IN = {"src/core/owned_fd.hpp": {"unistd.h"}, "src/files/text_file.cpp": {"unistd.h"}, "src/files/output_file.cpp": {"unistd.h", "poll.h"},
+IMPURE_IN = {"src/core/owned.hpp": {"unistd.h"}, "src/files/text_file.cpp": {"unistd.h"}, "src/files/output_file.cpp": {"unistd.h", "poll.h"},
              "src/plan/faces/layout_impl.hpp": {"atomic"}}
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.M)

@@ -11,7 +11,7 @@
 #include <fcntl.h>
 #include <gpiod.h>
 
-#include "core/deleter.hpp"
+#include "core/owned.hpp"
 #include "rt/clock.hpp"
 
 namespace tactor::gpio {

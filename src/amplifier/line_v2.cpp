@@ -8,7 +8,7 @@
 #include <fcntl.h>
 #include <gpiod.h>
 
-#include "core/deleter.hpp"
+#include "core/owned.hpp"
 
 namespace tactor::gpio {
 namespace {

@@ -11,7 +11,7 @@
 #include <tactor/error.hpp>
 
 #include "cli/say.hpp"
-#include "core/owned_fd.hpp"
+#include "core/owned.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <tactor/error.hpp>
 
-#include "core/bad_input.hpp"
 #include "core/kind_table.hpp"
 #include "core/path/number.hpp"
+#include "core/refused.hpp"
 
 namespace tactor {
 inline namespace v0 {

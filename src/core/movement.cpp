@@ -12,10 +12,10 @@
 #include <tactor/error.hpp>
 
 #include "core/access.hpp"
-#include "core/bad_input.hpp"
 #include "core/moved.hpp"
 #include "core/path/impl.hpp"
 #include "core/profile.hpp"
+#include "core/refused.hpp"
 #include "core/trajectory/impl.hpp"
 
 namespace tactor {

@@ -9,9 +9,9 @@
 
 #include <tactor/error.hpp>
 
-#include "core/bad_input.hpp"
 #include "core/limits.hpp"
 #include "core/profile.hpp"
+#include "core/refused.hpp"
 #include "core/trajectory/limits.hpp"
 
 namespace tactor::detail {

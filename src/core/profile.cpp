@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "core/profile.hpp"
-#include "core/bad_input.hpp"
+#include "core/refused.hpp"
 
 #include <algorithm>
 

@@ -25,6 +25,11 @@ int errno_in_hand() noexcept
 
 } // namespace
 
+error bad_field(std::string_view field, std::string_view why, std::string_view hint)
+{
+    return error(error_kind::bad_input, field, why, hint).with_field(field);
+}
+
 void throw_caused(const error& e)
 {
     if (std::current_exception() == nullptr)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What the system does not give: descriptors, threads, memory in the kernel.
+/// Errors of wrong values of fields, and of what the system does not give: descriptors, threads, memory in
+/// the kernel.
 #pragma once
 
 #include <string_view>
@@ -8,6 +9,9 @@
 #include <tactor/error.hpp>
 
 namespace tactor::detail {
+
+/// About a field, which is its subject.
+[[nodiscard]] error bad_field(std::string_view field, std::string_view why, std::string_view hint = {});
 
 /// Throws it; the exception that is being handled, if there is one, is nested in it as its cause, whose errno
 /// it has too unless it has one of its own.

@@ -11,10 +11,10 @@
 
 #include <tactor/error.hpp>
 
-#include "core/bad_input.hpp"
 #include "core/kind_table.hpp"
 #include "core/path/number.hpp"
 #include "core/recording_name.hpp"
+#include "core/refused.hpp"
 #include "core/words.hpp"
 
 namespace tactor {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "core/owned_fd.hpp"
+#include "core/owned.hpp"
 
 namespace tactor::detail {
 

@@ -13,7 +13,7 @@
 
 #include <tactor/error.hpp>
 
-#include "core/owned_fd.hpp"
+#include "core/owned.hpp"
 #include "core/refused.hpp"
 
 namespace tactor::detail {

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/deleter.hpp"
+#include "core/owned.hpp"
 
 namespace tactor::detail {
 

@@ -12,7 +12,7 @@
 
 #include <sys/types.h>
 
-#include "core/owned_fd.hpp"
+#include "core/owned.hpp"
 
 namespace tactor::net {
 

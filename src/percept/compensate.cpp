@@ -9,7 +9,7 @@
 #include <tactor/observer.hpp>
 
 #include "core/access.hpp"
-#include "core/bad_input.hpp"
+#include "core/refused.hpp"
 #include "core/words.hpp"
 #include "percept/hull_fit.hpp"
 #include "percept/low_speed.hpp"

@@ -9,7 +9,7 @@
 
 #include <tactor/error.hpp>
 
-#include "core/bad_input.hpp"
+#include "core/refused.hpp"
 #include "core/words.hpp"
 
 namespace tactor::detail {

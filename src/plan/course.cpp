@@ -8,7 +8,7 @@
 
 #include <tactor/error.hpp>
 
-#include "core/bad_input.hpp"
+#include "core/refused.hpp"
 #include "core/trajectory/way.hpp"
 
 namespace tactor::detail {

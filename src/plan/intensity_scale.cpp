@@ -6,7 +6,7 @@
 #include <tactor/error.hpp>
 #include <tactor/plan.hpp>
 
-#include "core/bad_input.hpp"
+#include "core/refused.hpp"
 
 namespace tactor {
 inline namespace v0 {

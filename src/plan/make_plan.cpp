@@ -6,7 +6,7 @@
 
 #include <tactor/fit.hpp>
 
-#include "core/bad_input.hpp"
+#include "core/refused.hpp"
 #include "core/words.hpp"
 #include "plan/course.hpp"
 #include "plan/job.hpp"

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "core/bad_input.hpp"
+#include "core/refused.hpp"
 #include "core/words.hpp"
 #include "plan/rounded.hpp"
 

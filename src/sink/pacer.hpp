@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "core/owned_fd.hpp"
+#include "core/owned.hpp"
 #include "rt/clock.hpp"
 #include "sink/virtual_queue.hpp"
 

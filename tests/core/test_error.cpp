@@ -20,7 +20,6 @@
 #include <tactor/stroke.hpp>
 #include <tactor/waveform.hpp>
 
-#include "core/bad_input.hpp"
 #include "core/refused.hpp"
 
 using namespace tactor;

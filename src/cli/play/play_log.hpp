@@ -7,7 +7,7 @@
 
 #include <tactor/log.hpp>
 
-#include "core/owned_fd.hpp"
+#include "core/owned.hpp"
 
 namespace tactor::cli {
 

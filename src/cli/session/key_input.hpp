@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "cli/session/keypad.hpp"
-#include "core/owned_fd.hpp"
+#include "core/owned.hpp"
 
 namespace CLI {
 class App;

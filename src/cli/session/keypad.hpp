@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "core/owned_fd.hpp"
+#include "core/owned.hpp"
 
 namespace tactor::cli {
 

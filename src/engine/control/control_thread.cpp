@@ -11,7 +11,7 @@
 #include <boost/asio/post.hpp>
 #include <sys/epoll.h>
 
-#include "core/owned_fd.hpp"
+#include "core/owned.hpp"
 
 namespace tactor::engine {
 namespace {

@@ -15,7 +15,6 @@
 #include <tactor/error.hpp>
 #include <tactor/realtime.hpp>
 
-#include "core/bad_input.hpp"
 #include "core/log.hpp"
 #include "core/refused.hpp"
 #include "core/words.hpp"

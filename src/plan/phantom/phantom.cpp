@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/access.hpp"
-#include "core/bad_input.hpp"
+#include "core/refused.hpp"
 #include "plan/faces/layout_impl.hpp"
 #include "plan/phantom/phantom_models.hpp"
 

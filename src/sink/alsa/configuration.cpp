@@ -7,7 +7,7 @@
 
 #include <tactor/error.hpp>
 
-#include "core/owned_fd.hpp"
+#include "core/owned.hpp"
 #include "core/refused.hpp"
 #include "sink/alsa/error_text.hpp"
 #include "sink/alsa/library_messages.hpp"

@@ -8,7 +8,7 @@
 
 #include <alsa/asoundlib.h>
 
-#include "core/deleter.hpp"
+#include "core/owned.hpp"
 
 namespace tactor::pcm {
 

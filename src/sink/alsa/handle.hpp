@@ -10,7 +10,7 @@
 
 #include <tactor/alsa.hpp>
 
-#include "core/deleter.hpp"
+#include "core/owned.hpp"
 #include "sink/alsa/library_messages.hpp"
 
 namespace tactor::pcm {

@@ -7,7 +7,7 @@
 
 #include <tactor/error.hpp>
 
-#include "core/bad_input.hpp"
+#include "core/refused.hpp"
 
 namespace tactor::wav {
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "core/owned_fd.hpp"
+#include "core/owned.hpp"
 
 namespace tactor::study {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/owned_fd.hpp"
+#include "core/owned.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/calibrate/observer.hpp"
 

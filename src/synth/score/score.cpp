@@ -13,7 +13,7 @@
 #include <tactor/error.hpp>
 
 #include "core/access.hpp"
-#include "core/bad_input.hpp"
+#include "core/refused.hpp"
 #include "core/words.hpp"
 #include "plan/job.hpp"
 #include "synth/guard/guard.hpp"

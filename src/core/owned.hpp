@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A descriptor that is closed with its owner.
+/// Owners of what C libraries and the system hand out.
 #pragma once
 
 #include <utility>
@@ -9,6 +9,17 @@
 
 namespace tactor::detail {
 
+/// For std::unique_ptr<T, deleter<function>>.
+template <auto Free>
+struct deleter {
+    template <typename T>
+    void operator()(T* p) const noexcept
+    {
+        Free(p);
+    }
+};
+
+/// A descriptor that is closed with this.
 class owned_fd {
 public:
     owned_fd() noexcept = default;
