@@ -16,6 +16,7 @@
 #include <tactor/stroke.hpp>
 
 #include "clock_runner.hpp"
+#include "engine/live/live_voice.hpp"
 #include "player_support.hpp"
 #include "scores.hpp"
 #include "sink/alsa/adopt.hpp"
@@ -144,8 +145,8 @@ TEST_CASE("a phantom model may call the player when it is asked and when it goes
     }
     SUBCASE("of live strokes that did not begin: cancelled, or ended with the stream")
     {
-        std::vector<live_stroke> playing; // all places
-        for (std::size_t i = 0; i < 16; ++i)
+        std::vector<live_stroke> playing; // all places, so that the others wait for one
+        for (std::size_t i = 0; i < engine::live_places; ++i)
             REQUIRE(playing.emplace_back(p.begin(of_model(p, gone))).to(20.0, 20.0));
         const stroke_id first = p.begin(of_model(p, gone)).id();
         const stroke_id second = p.begin(of_model(p, gone)).id();
@@ -155,7 +156,7 @@ TEST_CASE("a phantom model may call the player when it is asked and when it goes
         p.stop();
         CHECK(p.wait(second)->state == state_kind::cancelled);
         playing.clear();
-        await(gone, 18);
+        await(gone, engine::live_places + 2);
     }
 }
 
