@@ -46,8 +46,8 @@ struct source_place {
 ///
 /// Where another failure was the cause, it is nested in this error (std::rethrow_if_nested()): the error of a
 /// file that another one names, or what the system said, as a std::system_error with its errno. Where memory
-/// runs out, std::bad_alloc comes through; while TOML is read, the process ends (toml++ 3 does so). Copies
-/// share the texts, and do not throw.
+/// runs out, std::bad_alloc comes through; while TOML is read, the process ends (toml++ 3 does so), and while
+/// ALSA is asked for PCMs, it may end (alsa-lib 1.2.8). Copies share the texts, and do not throw.
 class TACTOR_API error : public std::system_error {
 public:
     error(error_kind kind, std::string_view what, std::string_view why, std::string_view hint = {});

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// Calls that throw: devices, lines and sinks.
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include <tactor/alsa.hpp>
+#include <tactor/devices.hpp>
+#include <tactor/sink.hpp>
+
+#include "exhaustion_calls.hpp"
+#include "player_support.hpp"
+
+namespace tactor::test {
+namespace {
+
+class deaf_sink final : public paced_sink {
+public:
+    using paced_sink::paced_sink;
+
+private:
+    io_kind take(std::uint64_t, std::span<const std::byte>) noexcept override { return io_kind::ok; }
+};
+
+} // namespace
+
+call_table device_calls()
+{
+    using enum call_kind;
+    return {
+        {"open_alsa", [] { return open_alsa(nine()); }, opens_ends},
+        {"open_alsa, of a card", [] { return open_alsa({.pcm = "hw:0", .channels = 2}); }, opens_ends},
+        {"open_alsa, of nothing", [] { return open_alsa({.pcm = "no such PCM", .channels = 2}); },
+         opens_ends},
+        {"reopen_alsa", [] { return reopen_alsa(nine(), [n = 0](double) mutable { return n++ == 0; }); },
+         opens_ends},
+        {"reopen_alsa, never", [] { return reopen_alsa(nine(), {}); }},
+        {"require_device_name, of a command", [] { require_device_name("file:'|true',raw"); }},
+        {"paced_sink::paced_sink",
+         []() -> std::unique_ptr<paced_sink> {
+             return std::make_unique<deaf_sink>(stream_setup{.name = "deaf", .channels = 2, .rate = 48000});
+         },
+         opens},
+    };
+}
+
+} // namespace tactor::test

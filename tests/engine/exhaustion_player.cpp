@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+// Calls that throw: those of a player, of its live strokes, and of what it gives the next one.
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include <tactor/live.hpp>
+#include <tactor/player.hpp>
+
+#include "clock_runner.hpp"
+#include "exhaustion_calls.hpp"
+#include "player_support.hpp"
+#include "sink/alsa/adopt.hpp"
+
+namespace tactor::test {
+namespace {
+
+// A player with its DAC, which is made first and goes last.
+struct running {
+    fake_dac dac{};
+    running_clock clock{dac};
+    player p{pcm::adopt(dac.pcm(), nine()), palm(), patient()};
+};
+
+// What is made anew before each call.
+struct fresh {
+    std::unique_ptr<fake_dac> dac = {};
+    std::unique_ptr<running_clock> clock = {};
+    std::unique_ptr<sink> out = {};
+    std::unique_ptr<running> open = {};
+
+    void make_sink()
+    {
+        out.reset();
+        clock.reset();
+        dac = std::make_unique<fake_dac>();
+        clock = std::make_unique<running_clock>(*dac);
+        out = pcm::adopt(dac->pcm(), nine());
+    }
+    void make_player()
+    {
+        open.reset();
+        open = std::make_unique<running>();
+    }
+};
+
+live_options soon_over()
+{
+    return {.timeout_s = 0.001};
+}
+
+} // namespace
+
+struct player_things {
+    running open{};
+    fresh anew = {};
+    score s = tone(0.001);
+    stroke_id id = {};
+    std::optional<live_stroke> live = {};
+    drive_history driven = drive_history().with_ahead(9, 1.0);
+};
+
+std::shared_ptr<player_things> make_player_things()
+{
+    return std::make_shared<player_things>();
+}
+
+call_table player_calls(player_things& t)
+{
+    using enum call_kind;
+    player& p = t.open.p;
+    const auto submitted = [&t, &p] { t.id = p.submit(t.s); };
+    const auto armed = [&t, &p] { t.id = p.submit(t.s, start_at::trigger()); };
+    const auto begun = [&t, &p] {
+        if (t.live)
+            t.live->cancel();
+        t.live.emplace(p.begin({.timeout_s = 86400.0}));
+    };
+    const auto stopped = [&t] {
+        t.anew.make_player();
+        t.anew.open->p.stop();
+    };
+    return {
+        {"player::player", [&t] { const player made(std::move(t.anew.out), palm(), patient()); }, opens,
+         [&t] { t.anew.make_sink(); }},
+        {"player::submit", [&t, &p] { return p.submit(t.s); }},
+        {"player::submit, from a frame on", [&t, &p] { return p.submit(t.s, start_at::frame(0)); }},
+        {"player::submit, from a time on", [&t, &p] { return p.submit(t.s, start_at::time(0)); }},
+        {"player::submit, when triggered", [&t, &p] { return p.submit(t.s, start_at::trigger()); }},
+        {"player::submit, to a stream that has ended", [&t] { return t.anew.open->p.submit(t.s); }, plain,
+         stopped},
+        {"player::fire", [&p] { return p.fire(0); }, plain, armed},
+        {"player::begin", [&p] { return p.begin(soon_over()); }},
+        {"player::begin, of bursts",
+         [&p] {
+             live_options o = soon_over();
+             o.plan.algorithm = algorithm_kind::park2016;
+             return p.begin(o);
+         }},
+        {"player::cancel", [&t, &p] { return p.cancel(t.id); }, plain, armed},
+        {"player::wait", [&t, &p] { return p.wait(t.id); }, plain, submitted},
+        {"player::on_begin", [&p] { p.on_begin([](stroke_id, std::optional<std::int64_t>) {}); }},
+        {"player::on_report", [&p] { p.on_report([](const stroke_report&) {}); }},
+        {"player::on_end", [&t, &p] { return p.on_end(t.id, [](const stroke_report&) {}); }, plain, armed},
+        {"player::on_end, of nothing", [&t, &p] { return p.on_end(t.id, {}); }},
+        {"player::stop", [&t] { t.anew.open->p.stop(); }, plain, [&t] { t.anew.make_player(); }},
+        {"player::ended", [&t] { return t.anew.open->p.ended(); }, plain, stopped},
+        {"player::stats", [&p] { return p.stats(); }},
+        {"player::history", [&t] { return t.anew.open->p.history(); }, plain, stopped},
+        {"player::history, while it plays", [&p] { return p.history(); }},
+        {"live_stroke::to", [&t] { return t.live->to(20.0, 20.0); }, plain, begun},
+        {"live_stroke::to, nowhere", [&t] { return t.live->to(1.0 / 0.0, 20.0); }, plain, begun},
+        {"lost_tactor",
+         [] {
+             return lost_tactor(palm(), {.outputs = {{0}, {0}}});
+         }},
+        {"drive_history::with", [&t] { return t.driven.with(t.driven); }},
+        {"drive_history::with_ahead", [&t] { return t.driven.with_ahead(9, 1.0); }},
+        {"drive_history::with_ahead, for ever", [&t] { return t.driven.with_ahead(9, 1e6); }},
+        {"drive_history::restore, of nothing",
+         [] { return drive_history::restore("a longer text than this"); }},
+    };
+}
+
+} // namespace tactor::test

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: MIT
+// When memory runs out: std::bad_alloc, or an error that says so; and nothing is lost or left behind.
+#include <atomic>
+#include <cerrno>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <tactor/error.hpp>
+#include <tactor/player.hpp>
+
+#include "clock_runner.hpp"
+#include "count_allocations.hpp"
+#include "exhaustion_calls.hpp"
+#include "player_support.hpp"
+#include "scores.hpp"
+#include "sink/alsa/adopt.hpp"
+
+namespace no_memory_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+// Calls again and again with more memory each time, until there is enough.
+template <typename Call>
+std::uint64_t until_it_fits(Call call)
+{
+    for (std::uint64_t granted = 0;; ++granted) {
+        REQUIRE(granted < 100'000);
+        refuse_allocations(granted, UINT64_MAX);
+        bool fits = false;
+        try {
+            call();
+            fits = true;
+        } catch (const std::bad_alloc&) {
+            fits = false;
+        } catch (...) {
+            refuse_allocations(0, 0);
+            throw;
+        }
+        refuse_allocations(0, 0);
+        if (fits)
+            return granted;
+    }
+}
+
+// What a call came to: what an error says, "" for none.
+struct outcome {
+    bool no_memory = false;
+    std::string said = {};
+    std::int64_t bytes_kept = 0; ///< where it threw std::bad_alloc
+
+    bool operator==(const outcome& o) const { return no_memory == o.no_memory && said == o.said; }
+};
+
+// With so many allocations, and then so many that are refused.
+outcome outcome_of(const exhausted_call& c, std::uint64_t granted, std::uint64_t refused)
+{
+    if (c.before)
+        c.before();
+    outcome o;
+    const auto says = [&o](const char* what, const char* before = "") {
+        refuse_allocations(0, 0);
+        o.said = std::string(before) + what;
+    };
+    const count_allocations counted;
+    refuse_allocations(granted, refused);
+    try {
+        c.call();
+    } catch (const std::bad_alloc&) {
+        o.no_memory = true;
+    } catch (const error& e) {
+        says(e.what());
+        o.no_memory = e.os_code() == ENOMEM;
+    } catch (const std::exception& e) {
+        says(e.what(), "not a tactor::error: ");
+    } catch (...) {
+        says("something else");
+    }
+    refuse_allocations(0, 0);
+    if (o.no_memory && o.said.empty())
+        o.bytes_kept = counted.bytes();
+    return o;
+}
+
+// All that come after some are refused, or one of them only. Returns how many the call makes.
+std::uint64_t try_without(const exhausted_call& c)
+{
+    const outcome usual = outcome_of(c, 0, 0);
+    CHECK_FALSE(usual.no_memory);
+    for (std::uint64_t granted = 0;; ++granted) {
+        CAPTURE(granted);
+        REQUIRE(granted < 100'000);
+        const outcome all = outcome_of(c, granted, UINT64_MAX);
+        const outcome one = outcome_of(c, granted, 1);
+        for (const outcome& o : {all, one}) {
+            const bool well = o.no_memory || o == usual;
+            CHECK_MESSAGE(well, o.said);
+            CHECK(o.bytes_kept <= 0);
+            if (!well)
+                return granted;
+        }
+        if (all.no_memory)
+            CHECK(outcome_of(c, 0, 0) == usual);
+        else
+            return granted;
+    }
+}
+
+void try_all(const call_table& calls)
+{
+    for (const exhausted_call& c : calls) {
+        CAPTURE(c.name);
+        if (!c.ends())
+            try_without(c);
+    }
+}
+
+} // namespace
+
+COUNTING_TEST_CASE("without memory a call throws std::bad_alloc and has done nothing")
+{
+    fake_dac dac;
+    const running_clock clock(dac);
+    std::map<stroke_id, int> told;
+    std::vector<stroke_id> accepted;
+    std::mutex mutex;
+    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    p.on_report([&](const stroke_report& r) {
+        const std::lock_guard lock(mutex);
+        ++told[r.id];
+    });
+    accepted.reserve(100);
+    const score s = tone(0.001);
+    std::uint64_t calls = 0;
+    for (const start_at when :
+         {start_at::now(), start_at::frame(0), start_at::time(0), start_at::trigger()}) {
+        calls += until_it_fits([&] { accepted.push_back(p.submit(s, when)); });
+        calls += until_it_fits([&] { accepted.push_back(p.submit(s, start_at::trigger())); });
+        calls += until_it_fits([&] { p.cancel(accepted.back()); });
+    }
+    calls += until_it_fits([&] { p.fire(0); });
+    calls += until_it_fits([&] {
+        live_stroke live = p.begin();
+        accepted.push_back(live.id());
+        live.to(1.0, 1.0);
+        live.end();
+    });
+    CHECK(calls > 8);
+    p.submit(s, start_at::trigger());
+    until_it_fits([&] { static_cast<void>(p.on_end(accepted.back(), [](const stroke_report&) {})); });
+    until_it_fits([&] { static_cast<void>(p.stats()); });
+    until_it_fits([&] { static_cast<void>(p.ended()); });
+    until_it_fits([&] { p.stop(); });
+    for (const stroke_id id : accepted) {
+        CAPTURE(id);
+        CHECK(told[id] == 1);
+        CHECK(p.wait(id));
+    }
+}
+
+COUNTING_TEST_CASE("every call without memory says so at each of its allocations, and works again")
+{
+    const call_things t;
+    try_all(value_calls(t));
+    try_all(file_calls(t));
+    try_all(plan_calls(t));
+    try_all(sound_calls(t));
+    try_all(device_calls());
+    const auto p = make_player_things();
+    try_all(player_calls(*p));
+}
+
+COUNTING_TEST_CASE("the player's own thread waits for memory: every stroke ends, and is told once")
+{
+    fake_dac dac;
+    const running_clock clock(dac);
+    std::map<stroke_id, int> told;
+    std::atomic<unsigned> ended{0};
+    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    p.on_report([&](const stroke_report& r) {
+        refuse_allocations(0, 0);
+        ++told[r.id];
+        ++ended;
+        ended.notify_all();
+        refuse_allocations(ended % 5, 3); // what comes next in this thread
+    });
+    constexpr unsigned strokes = 30;
+    const score s = tone(0.002);
+    for (unsigned i = 0; i < strokes; ++i) {
+        const stroke_id id = p.submit(s, i % 3 == 0 ? start_at::time(0) : start_at::frame(96 * i));
+        if (i % 7 == 0)
+            p.cancel(id);
+    }
+    for (unsigned n = ended; n < strokes; n = ended)
+        ended.wait(n);
+    p.stop();
+    CHECK(told.size() == strokes);
+    for (const auto& [id, times] : told)
+        CHECK(times == 1);
+}
+
+} // namespace no_memory_test
