@@ -17,6 +17,9 @@ namespace tactor::test {
 namespace {
 
 const std::string csv_text = "t_s,x_mm,y_mm\n0,0,0\n1,10,0\n";
+const std::string svg_text =
+    R"(<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="40mm" viewBox="0 0 40 40">)"
+    R"(<path d="M 0 10 L 40 30"/></svg>)";
 const std::string toml_text = "[[stroke]]\npath = \"M 0 0 L 40 40\"\n";
 const std::string array_text = "[array]\ngrid = { rows = 1, columns = 2, pitch_mm = 20.0 }\n";
 
@@ -44,6 +47,8 @@ call_table file_calls(const call_things& t)
          [from, csv_file] { *from = detail::owned_fd(::open(csv_file.c_str(), O_RDONLY | O_CLOEXEC)); }},
         {"parse_strokes_toml", [] { return parse_strokes_toml(toml_text, "s.toml"); }, ends},
         {"parse_strokes_csv", [] { return parse_strokes_csv(csv_text, "s.csv"); }},
+        {"parse_strokes_svg", [] { return parse_strokes_svg(svg_text, "s.svg"); }},
+        {"parse_strokes", [] { return parse_strokes(svg_text, "input"); }},
         {"parse_strokes, of TOML", [] { return parse_strokes(toml_text, "input"); }, ends},
         {"load_setup", [array_file] { return load_setup(array_file); }, opens_ends},
         {"parse_setup", [] { return parse_setup(array_text, "a.toml"); }, ends},

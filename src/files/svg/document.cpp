@@ -2,6 +2,7 @@
 #include "files/svg/document.hpp"
 
 #include <functional>
+#include <new>
 
 #include <fmt/format.h>
 
@@ -16,6 +17,8 @@ svg_document::svg_document(std::string_view text, const std::string& name)
 {
     refuse_other_kind(text_, name_);
     const pugi::xml_parse_result r = tree_.load_buffer_inplace(buffer_.data(), buffer_.size());
+    if (r.status == pugi::status_out_of_memory)
+        throw std::bad_alloc();
     if (!r) {
         const auto offset = static_cast<std::size_t>(r.offset > 0 ? r.offset : 0);
         throw error(error_kind::bad_input, place_of(text_, offset, name_), r.description(),
