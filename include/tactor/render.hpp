@@ -117,7 +117,8 @@ private:
 };
 
 /// Makes a score stroke by stroke. A plan that it makes itself is never in memory as a whole: an hour of
-/// park2016 takes 4 MB in place of 11. One thread at a time.
+/// park2016 takes 4 MB in place of 11. One thread at a time. Where an add() throws, a part of the stroke may
+/// be in the score: the builder cannot be used any more.
 class TACTOR_API score_builder {
 public:
     /// \throws error (bad_input) for impossible render_options or an impossible array.
@@ -131,12 +132,11 @@ public:
 
     /// Plans a stroke as make_plan() does and adds it at its start. `l` must be the layout of the array. The
     /// bursts of park2016 are handed on as they come, the other algorithms plan as a whole.
-    /// \throws error (bad_input) as make_plan() does, and where the plan cannot be rendered; then the builder
-    ///         cannot be used any more.
+    /// \throws error (bad_input) as make_plan() does, and where the plan cannot be rendered.
     void add(const layout& l, const stroke& s, const plan_options& o);
 
     /// The score of all that was added: its samples are those of a score that is made of the plans. The
-    /// builder begins anew.
+    /// builder begins anew, where this throws, too.
     /// \throws error (bad_input) for levels that a tactor may not have.
     [[nodiscard]] score take();
 

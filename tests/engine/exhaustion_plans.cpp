@@ -95,6 +95,7 @@ call_table sound_calls(const call_things& t)
     const auto sine = make_plan(t.a, t.l, t.s, planned_by(algorithm_kind::continuous));
     const auto sound = std::make_shared<score>(t.a, std::vector<placed_plan>{{.schedule = sine}});
     const auto rendered_by = std::make_shared<renderer>(*sound, format_kind::s16);
+    const auto builder = std::make_shared<score_builder>(t.a, render_options{});
     return {
         {"starts_of", [plans] { return starts_of(plans); }},
         {"starts_of, before the piece", [early] { return starts_of(early); }},
@@ -112,6 +113,11 @@ call_table sound_calls(const call_things& t)
          [&t] {
              score_builder made(t.a, {});
              made.add(t.l, t.s, {});
+         }},
+        {"score_builder::take", [builder] { return builder->take(); }, call_kind::plain,
+         [builder, &t] {
+             static_cast<void>(builder->take());
+             builder->add(t.p);
          }},
         {"renderer::renderer", [sound] { const renderer made(*sound, format_kind::s16); }},
         {"renderer::process",

@@ -289,19 +289,19 @@ void score_builder::add(const layout& l, const stroke& s, const plan_options& o)
 
 score score_builder::take()
 {
-    score::impl& s = *impl_->s;
-    const render_options& o = impl_->o;
+    // First, so that no half of a score is left behind where memory runs out or levels are refused.
+    const auto done = std::exchange(impl_, std::make_unique<impl>(impl_->a, impl_->o));
+    score::impl& s = *done->s;
+    const render_options& o = done->o;
     if (o.marker_channel)
         place_markers(s, synth::frame_at(o.marker_s, o.rate), *o.marker_channel);
     sort_by_start(s.list.items);
-    std::vector<double> peaks = synth::check_peaks(s, impl_->a, o);
-    if (synth::boost_rises(s, impl_->a, peaks))
+    std::vector<double> peaks = synth::check_peaks(s, done->a, o);
+    if (synth::boost_rises(s, done->a, peaks))
         sort_by_start(s.list.items);
     s.asked = std::move(peaks);
     measure(s);
-    const auto made = detail::access::make<score>(std::shared_ptr<const score::impl>(std::move(impl_->s)));
-    impl_ = std::make_unique<impl>(impl_->a, impl_->o);
-    return made;
+    return detail::access::make<score>(std::shared_ptr<const score::impl>(std::move(done->s)));
 }
 
 score::score(const array& a, std::vector<placed_plan> plans, const render_options& o)
