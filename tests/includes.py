@@ -14,7 +14,7 @@ MAY_INCLUDE = {
     "plan": {"core"},
     "percept": {"core", "plan"},
     "synth": {"core", "plan"},
-    "rt": set(),
+    "rt": {"core"},
     "sink": {"core", "rt"},
     "sink/alsa": {"core", "rt", "sink"},
     "sink/wav": {"core", "files", "plan", "synth", "sink"},

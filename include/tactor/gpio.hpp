@@ -50,6 +50,7 @@ struct gpio_chip_info {
 };
 
 /// All GPIO chips, by path. Does not throw for chips that cannot be opened. Blocks shortly.
+/// \throws error (runtime) when the process has no descriptors left.
 [[nodiscard]] TACTOR_API std::vector<gpio_chip_info> list_gpio();
 
 /// An existing line and its chip.
@@ -62,7 +63,7 @@ struct gpio_line_place {
 /// Looks up a line as open_output() would, without requesting it: nothing is driven. Blocks shortly.
 /// \throws error: not_available when there is no such chip or line (the message lists those that there are),
 ///         or the chip may not be opened (which group to join); bad_input for a name with neither chip and
-///         offset nor a line's name.
+///         offset nor a line's name; runtime as list_gpio().
 [[nodiscard]] TACTOR_API gpio_line_place find_gpio_line(const gpio_line_name& line);
 
 } // namespace v0

@@ -14,6 +14,7 @@
 #include <sys/sysmacros.h>
 
 #include "amplifier/errors.hpp"
+#include "rt/system_files.hpp"
 
 namespace tactor::gpio {
 namespace {
@@ -61,10 +62,11 @@ std::vector<std::string> chip_paths(const std::filesystem::path& folder)
 {
     std::vector<std::pair<unsigned, std::string>> found;
     std::error_code ec;
-    for (std::filesystem::directory_iterator it(folder, ec), end; it != end; it.increment(ec)) {
-        const auto number = chip_number(it->path().filename().string());
-        if (number && !it->is_symlink(ec))
-            found.emplace_back(*number, it->path().string());
+    for (const std::string& name : rt::names_in(folder.string())) {
+        const auto number = chip_number(name);
+        const std::filesystem::path path = folder / name;
+        if (number && !std::filesystem::is_symlink(path, ec))
+            found.emplace_back(*number, path.string());
     }
     std::sort(found.begin(), found.end());
     std::vector<std::string> paths;

@@ -13,6 +13,7 @@
 
 #include "core/owned.hpp"
 #include "rt/clock.hpp"
+#include "rt/system_files.hpp"
 
 namespace tactor::gpio {
 namespace {
@@ -37,12 +38,10 @@ std::vector<int> output_descriptors()
 {
     std::vector<int> found;
     std::error_code ignored;
-    for (std::filesystem::directory_iterator it("/proc/self/fd", ignored), end; it != end;
-         it.increment(ignored)) {
-        const std::string name = it->path().filename().string();
+    for (const std::string& name : rt::names_in("/proc/self/fd")) {
         int fd = -1;
         std::from_chars(name.data(), name.data() + name.size(), fd);
-        if (std::filesystem::read_symlink(it->path(), ignored) == "anon_inode:gpio-linehandle")
+        if (std::filesystem::read_symlink("/proc/self/fd/" + name, ignored) == "anon_inode:gpio-linehandle")
             found.push_back(fd);
     }
     return found;

@@ -7,8 +7,10 @@
 
 #include <tactor/alsa.hpp>
 #include <tactor/devices.hpp>
+#include <tactor/gpio.hpp>
 #include <tactor/sink.hpp>
 
+#include "amplifier/line.hpp"
 #include "exhaustion_calls.hpp"
 #include "player_support.hpp"
 
@@ -28,6 +30,8 @@ private:
 call_table device_calls()
 {
     using enum call_kind;
+    const gpio_line_name line{.name = "no-such-line"};
+    const call_kind looks = gpio::built_in() ? opens : plain;
     return {
         {"open_alsa", [] { return open_alsa(nine()); }, opens_ends},
         {"open_alsa, of a card", [] { return open_alsa({.pcm = "hw:0", .channels = 2}); }, opens_ends},
@@ -37,6 +41,11 @@ call_table device_calls()
          opens_ends},
         {"reopen_alsa, never", [] { return reopen_alsa(nine(), {}); }},
         {"require_device_name, of a command", [] { require_device_name("file:'|true',raw"); }},
+        {"list_gpio", [] { return list_gpio(); }, opens},
+        {"find_gpio_line", [line] { return find_gpio_line(line); }, looks},
+        {"open_output", [line] { return open_output(line); }, looks},
+        {"open_edges", [line] { return open_edges(line, edge_kind::rising); }, looks},
+        {"open_amplifier", [line] { return open_amplifier({.line = line}); }, looks},
         {"paced_sink::paced_sink",
          []() -> std::unique_ptr<paced_sink> {
              return std::make_unique<deaf_sink>(stream_setup{.name = "deaf", .channels = 2, .rate = 48000});

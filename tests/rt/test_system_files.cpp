@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#include "rt/system_files.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <tactor/error.hpp>
+
+#include "count_allocations.hpp"
+#include "descriptors_left.hpp"
+#include "folder.hpp"
+
+namespace system_files_test {
+
+using namespace tactor;
+
+TEST_CASE("what is in a folder and in a file; what is not there is empty")
+{
+    const folder here;
+    const std::string text(10'000, 'x');
+    const auto file = here.write("a", text);
+    here.write("b/c");
+    std::vector<std::string> names = rt::names_in(here.path().string());
+    std::sort(names.begin(), names.end());
+    CHECK(names == std::vector<std::string>{"a", "b"});
+    CHECK(rt::text_of(file.string()) == text);
+    CHECK(rt::names_in(here / "none").empty());
+    CHECK(rt::names_in(file).empty());
+    CHECK(rt::text_of(here / "none").empty());
+    CHECK(rt::text_of(here.path().string()).empty());
+}
+
+EXHAUSTING_TEST_CASE("without a descriptor nothing is taken for empty")
+{
+    const auto code_of = [](auto call) {
+        const test::descriptors_left none(0);
+        try {
+            call();
+        } catch (const error& e) {
+            return e.os_code();
+        }
+        return 0;
+    };
+    CHECK(code_of([] { static_cast<void>(rt::names_in("/proc")); }) == EMFILE);
+    CHECK(code_of([] { static_cast<void>(rt::text_of("/proc/self/status")); }) == EMFILE);
+}
+
+} // namespace system_files_test
