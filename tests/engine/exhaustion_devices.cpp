@@ -41,6 +41,8 @@ call_table device_calls()
          opens_ends},
         {"reopen_alsa, never", [] { return reopen_alsa(nine(), {}); }},
         {"require_device_name, of a command", [] { require_device_name("file:'|true',raw"); }},
+        {"card_of", [] { return card_of("hw:0"); }, opens},
+        {"card_holders", [] { return card_holders(0); }, opens},
         {"list_gpio", [] { return list_gpio(); }, opens},
         {"find_gpio_line", [line] { return find_gpio_line(line); }, looks},
         {"open_output", [line] { return open_output(line); }, looks},

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "sink/alsa/devices/system_files.hpp"
 
-#include <fstream>
+#include "core/split.hpp"
+#include "rt/system_files.hpp"
 
 namespace tactor::pcm {
 
@@ -15,10 +16,12 @@ std::string trimmed(std::string_view s)
 
 std::vector<std::string> lines_of(const fs::path& file)
 {
+    const std::string text = rt::text_of(file.string());
     std::vector<std::string> lines;
-    std::ifstream in(file);
-    for (std::string line; std::getline(in, line);)
-        lines.push_back(line);
+    for (const std::string_view line : tactor::detail::split(text, '\n'))
+        lines.emplace_back(line);
+    if (lines.back().empty()) // after the last one's end
+        lines.pop_back();
     return lines;
 }
 
@@ -35,9 +38,8 @@ std::string field(const fs::path& file, std::string_view key)
 std::vector<fs::path> entries(const fs::path& folder)
 {
     std::vector<fs::path> all;
-    std::error_code gone;
-    for (fs::directory_iterator i(folder, gone), end; !gone && i != end; i.increment(gone))
-        all.push_back(i->path());
+    for (const std::string& name : rt::names_in(folder.string()))
+        all.push_back(folder / name);
     return all;
 }
 

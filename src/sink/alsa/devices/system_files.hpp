@@ -27,6 +27,7 @@ std::optional<T> number(std::string_view text)
 /// Without blanks at both ends.
 std::string trimmed(std::string_view s);
 
+/// Empty where the file cannot be read. \throws error (runtime), here and below, without a descriptor.
 std::vector<std::string> lines_of(const std::filesystem::path& file);
 
 /// The value after "key:" in a file of such lines.
