@@ -35,10 +35,12 @@ public:
 
     /// A text of a few lines, numbers in ns. It has at most 64 stretches of time for each channel: the oldest
     /// are joined, so that they leave the window later, never sooner.
+    /// \throws error (runtime) when the process has no descriptors left: it asks which start of the machine
+    ///         this is.
     [[nodiscard]] std::string save() const;
     /// The history that save() wrote, as of now. Empty for a text from another machine, or from before this
     /// machine was last started.
-    /// \throws error (bad_input) for a text that is not complete.
+    /// \throws error: bad_input for a text that is not complete, runtime as save().
     [[nodiscard]] static drive_history restore(std::string_view text);
 
 private:

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include <tactor/live.hpp>
@@ -59,6 +60,7 @@ struct player_things {
     stroke_id id = {};
     std::optional<live_stroke> live = {};
     drive_history driven = drive_history().with_ahead(9, 1.0);
+    std::string saved = driven.save();
 };
 
 std::shared_ptr<player_things> make_player_things()
@@ -118,6 +120,8 @@ call_table player_calls(player_things& t)
         {"drive_history::with", [&t] { return t.driven.with(t.driven); }},
         {"drive_history::with_ahead", [&t] { return t.driven.with_ahead(9, 1.0); }},
         {"drive_history::with_ahead, for ever", [&t] { return t.driven.with_ahead(9, 1e6); }},
+        {"drive_history::save", [&t] { return t.driven.save(); }, opens},
+        {"drive_history::restore", [&t] { return drive_history::restore(t.saved); }, opens},
         {"drive_history::restore, of nothing",
          [] { return drive_history::restore("a longer text than this"); }},
     };

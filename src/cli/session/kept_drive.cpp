@@ -188,8 +188,10 @@ std::string kept_drive::write(const std::string& file, const drive_history& h)
     if (folder_.empty())
         return {};
     const std::string path = folder_ + "/" + file;
-    std::string text = h.empty() ? "" : h.save();
+    std::string text;
     try {
+        if (!h.empty())
+            text = h.save();
         if (text.empty()) {
             std::filesystem::remove(path);
         } else {

@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <fstream>
 #include <iterator>
 #include <memory>
 #include <string>
@@ -20,6 +19,7 @@
 #include "core/limits.hpp"
 #include "core/split.hpp"
 #include "rt/clock.hpp"
+#include "rt/system_files.hpp"
 #include "synth/guard/guard.hpp"
 
 namespace tactor {
@@ -41,9 +41,8 @@ constexpr std::int64_t longest_ns = 4'000'000'000'000'000'000;
 /// CLOCK_MONOTONIC counts from it.
 std::string this_boot()
 {
-    std::ifstream file("/proc/sys/kernel/random/boot_id");
-    std::string id;
-    file >> id;
+    const std::string text = rt::text_of("/proc/sys/kernel/random/boot_id");
+    const std::string id = text.substr(0, text.find('\n'));
     return id.empty() ? "unknown" : id;
 }
 
