@@ -65,8 +65,8 @@ struct pcm_info {
 /// list also says which of them take exactly its channels, rate and format, as open_alsa() would ask for; its
 /// PCM is listed even where nothing else lists it. Blocks for some milliseconds. Any thread, but one at a
 /// time.
-/// \throws error: bad_input for numbers in `wanted` that no PCM can have. PCMs that cannot be opened say so
-///         in the list.
+/// \throws error: bad_input for numbers in `wanted` that no PCM can have; runtime, as all below, when the
+///         process has no descriptors left. PCMs that cannot be opened say so in the list.
 [[nodiscard]] TACTOR_API std::vector<pcm_info> list_pcms(const std::optional<alsa_options>& wanted = {});
 
 /// The plugins between a PCM and its device, as ALSA's configuration says.

@@ -57,7 +57,16 @@ system_configuration::system_configuration() : refused_(lack_of_descriptors())
         snd_config_unref(top_);
     top_ = nullptr;
     snd_config_update_free_global();
-    snd_config_update_ref(&top_);
+    const int code = snd_config_update_ref(&top_);
+    if (code == -EMFILE || code == -ENFILE) // the first file was opened, and one that it names was not
+        refused_ = code;
+}
+
+snd_config_t* system_configuration::read() const
+{
+    if (refused_ != 0)
+        tactor::detail::refused_by_system("ALSA's configuration", -refused_, snd_strerror(refused_));
+    return top_;
 }
 
 system_configuration::~system_configuration()

@@ -29,6 +29,8 @@ public:
 
     /// Null where there is none, or where it was not read.
     snd_config_t* get() const noexcept { return top_; }
+    /// The same. \throws error (runtime) where it was not read: that is no answer.
+    snd_config_t* read() const;
     /// The negative errno for which it was not read; else 0.
     int refused() const noexcept { return refused_; }
 

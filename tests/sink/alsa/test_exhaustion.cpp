@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // ALSA's configuration where descriptors run out: what could not be read is not kept for read.
+#include <cerrno>
 #include <cstdlib>
 #include <string>
 #include <vector>
@@ -60,19 +61,26 @@ alsa_options of(const char* pcm)
     return {.pcm = pcm, .channels = 9};
 }
 
-// With so many descriptors: whether it opened.
-bool opens_with(unsigned descriptors, const char* pcm)
+// Whether a call did not want for descriptors.
+template <typename Call>
+bool answers(Call call)
 {
-    const test::descriptors_left few(descriptors);
     try {
-        static_cast<void>(open_alsa(of(pcm)));
+        call();
         return true;
     } catch (const error& e) {
         CHECK(e.kind() == error_kind::runtime);
         has(e.what(), "Too many open files");
         has(e.what(), "ulimit -n");
+        CHECK(e.os_code() == EMFILE);
         return false;
     }
+}
+
+bool opens_with(unsigned descriptors, const char* pcm)
+{
+    const test::descriptors_left few(descriptors);
+    return answers([pcm] { static_cast<void>(open_alsa(of(pcm))); });
 }
 
 } // namespace
@@ -100,15 +108,18 @@ TEST_CASE("who waits for a lost PCM is told of a want of descriptors")
         doctest::Contains("Too many open files"), error);
 }
 
-TEST_CASE("what asks for names without descriptors leaves nothing broken behind")
+TEST_CASE("what asks for names without descriptors says so, and leaves nothing broken behind")
 {
     for (unsigned n = 0; n < 10; ++n) {
         CAPTURE(n);
         const own_configuration fresh;
         {
             const test::descriptors_left few(n);
-            static_cast<void>(route_of("mine"));
-            static_cast<void>(list_pcms());
+            // Its files are open at the same time: one and the one that it names.
+            CHECK(answers([] { CHECK(route_of("mine").types.size() == 2); }) == (n >= 2));
+            CHECK(answers([] { static_cast<void>(wiring_of("mine", 9)); }) == (n >= 2));
+            CHECK(answers([] { require_device_name("mine"); }) == (n >= 2));
+            CHECK(answers([] { static_cast<void>(list_pcms()); }) == (n >= 2));
         }
         CHECK(route_of("mine").types == std::vector<std::string>{"plug", "null"});
         CHECK(open_alsa(of("mine"))->setup().channels == 9);

@@ -67,7 +67,7 @@ std::vector<known_name> known_names()
     const library_messages silent;
     const system_configuration system; // before the hints, which read it whatever there is to read it with
     snd_config_t* pcms = nullptr;
-    if (system.get() == nullptr || snd_config_search(system.get(), "pcm", &pcms) < 0)
+    if (system.read() == nullptr || snd_config_search(system.get(), "pcm", &pcms) < 0)
         return {};
     std::vector<known_name> names = hinted();
     each_member(pcms, [&](const std::string& id, snd_config_t* definition) {

@@ -93,7 +93,7 @@ std::vector<std::string> find_route(snd_config_t* top, const std::string& name)
 std::vector<std::string> find_route(const std::string& name)
 {
     const library_messages silent;
-    return find_route(system_configuration().get(), name);
+    return find_route(system_configuration().read(), name);
 }
 
 std::string unsafe_type(const std::vector<std::string>& route)

@@ -243,7 +243,7 @@ stream_wiring find_wiring(snd_config_t* top, const std::string& name, unsigned c
 stream_wiring find_wiring(const alsa_options& o)
 {
     if (o.config_text.empty())
-        return find_wiring(system_configuration().get(), o.pcm, o.channels);
+        return find_wiring(system_configuration().read(), o.pcm, o.channels);
     return find_wiring(parse(o.config_text).get(), o.pcm, o.channels);
 }
 
