@@ -18,9 +18,9 @@ struct realtime_rights {
     std::optional<std::uint64_t> lockable_bytes = 0;
 };
 
-/// Of this process, now. The library asks for priorities itself and never locks the memory of its host. Does
-/// not throw for files that cannot be read: no rights then. Blocks shortly.
-[[nodiscard]] TACTOR_API realtime_rights probe_realtime_rights();
+/// Of this process, now. The library asks for priorities itself and never locks the memory of its host. No
+/// files are read; does not block.
+[[nodiscard]] TACTOR_API realtime_rights probe_realtime_rights() noexcept;
 
 } // namespace v0
 } // namespace tactor

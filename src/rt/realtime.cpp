@@ -2,46 +2,43 @@
 #include <tactor/realtime.hpp>
 
 #include <algorithm>
-#include <fstream>
+#include <array>
+#include <cstdint>
 
+#include <linux/capability.h>
 #include <sched.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 namespace tactor {
 inline namespace v0 {
 namespace {
 
-constexpr unsigned cap_ipc_lock = 14; // capabilities(7)
-constexpr unsigned cap_sys_nice = 23;
-
-std::uint64_t effective_capabilities()
+std::uint64_t effective_capabilities() noexcept
 {
-    std::ifstream in("/proc/self/status");
-    for (std::string key; in >> key;) {
-        if (key == "CapEff:") {
-            std::uint64_t set = 0;
-            in >> std::hex >> set;
-            return set;
-        }
-    }
-    return 0;
+    // Not from /proc/self/status, for which there may be no descriptor.
+    __user_cap_header_struct version{.version = _LINUX_CAPABILITY_VERSION_3, .pid = 0};
+    std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> sets{};
+    if (::syscall(SYS_capget, &version, sets.data()) != 0)
+        return 0;
+    return std::uint64_t{sets[1].effective} << 32U | sets[0].effective;
 }
 
 } // namespace
 
-realtime_rights probe_realtime_rights()
+realtime_rights probe_realtime_rights() noexcept
 {
     const std::uint64_t capabilities = effective_capabilities();
     const auto has = [capabilities](unsigned bit) { return (capabilities >> bit & 1U) != 0; };
     realtime_rights r;
     rlimit limit{};
-    if (has(cap_sys_nice))
+    if (has(CAP_SYS_NICE))
         r.priority = sched_get_priority_max(SCHED_FIFO);
     else if (getrlimit(RLIMIT_RTPRIO, &limit) == 0)
         r.priority = static_cast<int>(
             std::min<rlim_t>(limit.rlim_cur, static_cast<rlim_t>(sched_get_priority_max(SCHED_FIFO))));
-    if (has(cap_ipc_lock))
+    if (has(CAP_IPC_LOCK))
         r.lockable_bytes.reset();
     else if (getrlimit(RLIMIT_MEMLOCK, &limit) == 0)
         r.lockable_bytes =
