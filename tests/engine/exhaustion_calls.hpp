@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// \file
 /// All calls of the library that may throw, to be tried without descriptors and without memory.
-/// Each overload stands under its name once, a member's with that of its class. Other ways to call it have
-/// more after a comma.
+/// tests/exhaustion.py holds that none is missing: each overload stands under its name once, a member's with
+/// that of its class. Other ways to call it have more after a comma.
 #pragma once
 
 #include <functional>
