@@ -189,8 +189,8 @@ void add_renderer(algorithm_kind method)
     }
 }
 
-/// A minute from corner to corner of nine tactors: straight, curved, and along a row of them, which are on
-/// the border between two faces.
+/// A minute from corner to corner of nine tactors: straight, along a cubic and an arc of an ellipse, and
+/// along a row of them, which are on the border between two faces, with two phantom models.
 void add_renderer_ways()
 {
     const array a = bench::square(9);
@@ -198,15 +198,26 @@ void add_renderer_ways()
     const auto& [left, top] = a.tactors.front().position;
     const auto at = [&](double u, double v) { return point{left + u * (x - left), top + v * (y - top)}; };
     const auto svg = [](point p) { return fmt::format("{} {}", p.x_mm, p.y_mm); };
-    const std::vector<std::pair<std::string, path>> ways{
+    struct way {
+        std::string name;
+        path drawn;
+        phantom_kind phantom = phantom_kind::inverse_distance;
+    };
+    const path row = path::from_svg("M " + svg(at(0.0, 0.5)) + " L " + svg(at(1.0, 0.5)));
+    const std::vector<way> ways{
         {"line", path::from_svg("M " + svg(at(0.05, 0.1)) + " L " + svg(at(0.95, 0.8)))},
+        {"ellipse", path::from_svg("M " + svg(at(0.05, 0.5)) +
+                                   fmt::format(" A {} {} 0 0 1 ", 0.45 * (x - left), 0.35 * (y - top)) +
+                                   svg(at(0.95, 0.5)))},
         {"cubic", path::from_svg("M " + svg(at(0.05, 0.25)) + " C " + svg(at(0.5, 0.95)) + " " +
                                  svg(at(0.5, 0.05)) + " " + svg(at(0.95, 0.75)))},
-        {"row", path::from_svg("M " + svg(at(0.0, 0.5)) + " L " + svg(at(1.0, 0.5)))}};
-    for (const auto& [name, way] : ways) {
+        {"row", row},
+        {"row_barycentric", row, phantom_kind::barycentric}};
+    for (const auto& [name, drawn, phantom] : ways) {
         plan_options o;
         o.algorithm = algorithm_kind::continuous;
-        const score s(a, {{make_plan(a, stroke{name, trajectory::along(way, 60.0)}, o), {}}},
+        o.phantom = phantom;
+        const score s(a, {{make_plan(a, stroke{name, trajectory::along(drawn, 60.0)}, o), {}}},
                       bench::levels(1));
         add(fmt::format("renderer/continuous/{}", name), [s](benchmark::State& state) { whole(state, s); });
     }
