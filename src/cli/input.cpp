@@ -222,7 +222,9 @@ score make_score(const piece& p, const environment& e, const render_options& ren
         try {
             made.add(q.schedule, q.start_s, q.anchor);
         } catch (const error& x) {
-            throw i < p.strokes.size() ? of_stroke(x, p, i) : x;
+            if (i < p.strokes.size())
+                throw of_stroke(x, p, i);
+            throw;
         }
     }
     return made.take();
