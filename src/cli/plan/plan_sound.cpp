@@ -17,7 +17,7 @@ using json = nlohmann::ordered_json;
 // Whoever plays the plan may be elsewhere.
 std::string name_of(const waveform& w)
 {
-    const std::string text = waveform_text(w);
+    std::string text = waveform_text(w);
     if (w.kind != waveform_kind::recording)
         return text;
     std::error_code nowhere;
