@@ -104,14 +104,36 @@ class Counting(AnalyzeTest):
                                 "d": None, "d_ci": None, "p_holm": None})
         self.assertIn("taste: motion-3: no variance over participants, so no t test", told["warnings"])
         self.assertIsNone(told["runs"]["marks"]["means"]["park2016"]["motion"]["motion-1"]["ci"])
+        self.assertIn("marks: park2016, motion-1: no variance over participants, so no interval", told["warnings"])
 
     def test_all_alike_has_no_analysis_of_variance(self):
         text = studies.definition("same", studies.FOUR, studies.TWO, [studies.run("marks", "rate", 8)])
         studies.write_study(self.dir / "same", text, ["1", "2", "3"], lambda *_: 3)
-        run = self.analysis("same")["runs"]["marks"]
+        told = self.analysis("same")
+        run = told["runs"]["marks"]
+        for method in studies.TWO:
+            self.assertIn(f"marks: {method}, all: no variance over participants, so no interval", told["warnings"])
         self.assertEqual({run["anova"]["motion"][k] for k in ("F", "p", "epsilon_gg", "mauchly_w", "eta2_partial")}, {None})
         self.assertEqual((run["paired"]["t"], run["paired"]["difference"], run["paired"]["p_signflip"]), (None, 0, 1))
         self.assertEqual({p["p"] for p in run["tukey"]["park2016"]}, {None})
+
+    def test_equal_means_whose_sums_were_rounded_otherwise_are_no_result(self):
+        # Each rates both methods alike, each motion of one as another of the other: thirds in another order.
+        numbers = studies.Numbers(7)
+        sums = {code: [3 + numbers.below(12) for _ in studies.FOUR] for code in "123456"}
+        text = studies.definition("equal", studies.FOUR, studies.TWO, [studies.run("marks", "rate", 24)])
+
+        def answers(code, _, cell, n):
+            at = studies.FOUR.index(cell[0])
+            return (sums[code][at if cell[1] == "park2016" else (at + 1) % 4] + n) // 3
+        studies.write_study(self.dir / "equal", text, list(sums), answers)
+        folder = self.dir / "equal"
+        told = self.analysis(folder)
+        run = told["runs"]["marks"]
+        self.assertEqual([run["paired"][k] for k in ("difference", "t", "p", "d_z", "p_signflip")], [0, None, None, None, 1])
+        self.assertIsNone(run["anova"]["method"]["F"])
+        self.assertIn("marks: methods: no variance over participants, so no t test", told["warnings"])
+        self.assertIn("park2016 - tactile-brush: 0.00, signs 1.000", self.ok("analyze", folder).stdout)
 
     def test_one_participant_has_means_and_no_tests(self):
         folder = self.study("simulated")
@@ -163,6 +185,18 @@ class Forms(AnalyzeTest):
                                told["uniformity-rating"]["means"]["tactile-brush"]["all"]["mean"], 9)
         self.assertTrue(any(r["attempt"] == "2" for r in rows))
 
+    def test_r_reads_names_of_any_letters(self):
+        name = '"x" # \\\\'
+        text = studies.definition("odd", ["motion #1", 'a "b" \\\\ c'], studies.TWO,
+                                  [studies.run(name, "rate", 4), studies.run("y", "rate", 4)])
+        folder = self.dir / "odd"
+        studies.write_study(folder, text, ["1", "2"], lambda *_: 3, simulated=True)
+        lines = self.ok("analyze", folder, "--format", "tsv").stdout.splitlines()
+        notes = next(i for i, line in enumerate(lines) if not line.startswith("#"))
+        self.assertIn(f"skip = {notes}, ", lines[2])
+        self.assertTrue(lines[notes].startswith("participant\trun\t"))
+        self.assertTrue(lines[3].endswith(f"subset(d, run == {json.dumps(name)}))"), lines[3])
+
     def test_text_fits_a_terminal_and_says_what_the_paper_found(self):
         text = self.ok("analyze", self.study("simulated")).stdout
         self.assertLessEqual(max(map(len, text.splitlines())), 80)
@@ -211,6 +245,11 @@ class Forms(AnalyzeTest):
             where = folder / "derivatives/tactor" / name
             self.ok("analyze", folder, "-o", where)
             self.assertTrue(where.read_bytes().startswith(head))
+        # However that folder is written.
+        shutil.rmtree(folder / "derivatives")
+        self.ok("analyze", f"./{folder.name}/", "-o", folder / "derivatives/tactor/b.svg")
+        shutil.rmtree(folder / "derivatives")
+        self.ok("analyze", folder, "-o", f"{folder.name}/../{folder.name}/derivatives/tactor/b.svg")
         self.refused(2, "analyze", folder, "-o", self.dir / "nowhere/a.svg", says=["nowhere"])
         self.refused(2, "analyze", folder, "-o", "a.jpg", says=[".jpg"])
 
@@ -326,6 +365,31 @@ class Refusals(AnalyzeTest):
         path.write_text(json.dumps(told | {"experiment": {"text": text + "# changed\n"}}))
         self.assertIn("the texts of their experiments differ", self.ok("analyze", self.folder).stderr)
         path.write_text(good)
+
+    def test_what_is_there_and_cannot_be_reached_is_no_missing_participant(self):
+        # As git-annex leaves what was not fetched; a folder that was moved and linked; a file for a folder.
+        beh = self.folder / "sub-02/beh"
+        for name, target, why in ((beh / "sub-02_task-taste_beh.tsv", "../../.annex/none", "is a link to nothing"),
+                                  (beh, "beh", "symbolic links"), (beh, "/nowhere", "is a link to nothing"),
+                                  (self.folder / "sub-02", "sub-02", "symbolic links"),
+                                  (self.folder / "sourcedata/sub-02/session.json", "none", "is a link to nothing"),
+                                  (beh, None, "is no folder")):
+            with self.subTest(f"{name} {why}"):
+                name.rename(self.dir / "aside")
+                if target:
+                    name.symlink_to(target)
+                else:
+                    name.write_text("")
+                self.says(str(name.relative_to(self.dir)), why)
+                name.unlink()
+                (self.dir / "aside").rename(name)
+        self.ok("analyze", self.folder)
+
+    def test_a_study_of_nobody(self):
+        folder = self.dir / "nobody"
+        folder.mkdir()
+        (folder / "participants.tsv").write_text("participant_id\n")
+        self.refused(2, "analyze", folder, says=["participants.tsv: nobody is in it"])
 
     def test_files_of_no_run_are_not_overlooked(self):
         self.folder.joinpath(BEH.replace("taste", "other")).write_text("trial\n")

@@ -46,10 +46,16 @@ def run(name, task, trials, motions=None, methods=None, scale=None):
 def definition(name, motions, methods, runs):
     text = f'[experiment]\nname = "{name}"\n'
     for kind, names in (("motion", motions), ("method", methods)):
-        text += "".join(f'[[{kind}]]\nname = "{n}"\n' for n in names)
+        text += "".join(f"[[{kind}]]\nname = {json.dumps(n)}\n" for n in names)
     for r in runs:
         text += "[[run]]\n" + "".join(f"{k} = {json.dumps(v)}\n" for k, v in r.items())
     return text
+
+
+def names_in(text):
+    """The motions and the methods of a definition."""
+    return ([json.loads(n) for k, n in re.findall(r'\[\[(\w+)\]\]\nname = (".*")', text) if k == kind]
+            for kind in ("motion", "method"))
 
 
 def cells(r, motions, methods):
@@ -66,8 +72,7 @@ def table(rows):
 
 def write_study(folder, text, people, answers, simulated=False, void=None):
     """answers(code, run, cell, n) is the answer of the n-th trial of a cell, or None where there is none."""
-    motions, methods = ([n for k, n in re.findall(r'\[\[(\w+)\]\]\nname = "(.*)"', text) if k == kind]
-                        for kind in ("motion", "method"))
+    motions, methods = names_in(text)
     (folder / "sourcedata").mkdir(parents=True)
     (folder / "participants.tsv").write_text("participant_id\tage\tsex\thandedness\n" + "".join(
         f"sub-{c}\tn/a\tn/a\tn/a\n" for c in people))
@@ -217,8 +222,7 @@ STUDIES = {"simulated": simulated, "ties": ties, "missing": missing, "constant":
 def for_r(folder, file):
     """What analyze.R reads of the definition."""
     text = json.loads(next(folder.glob("sourcedata/sub-*/session.json")).read_text())["experiment"]["text"]
-    motions, methods = ([n for k, n in re.findall(r'\[\[(\w+)\]\]\nname = "(.*)"', text) if k == kind]
-                        for kind in ("motion", "method"))
+    motions, methods = names_in(text)
     file.write_text("".join("\t".join((
         r["name"], r["task"], ",".join(m for m in motions if m in r.get("motions", motions)),
         ",".join(m for m in methods if m in r.get("methods", methods)))) + "\n" for r in runs_of(text)))

@@ -61,6 +61,10 @@ TEST_CASE("epsilon is 1 where all differences vary alike and 1 / (k - 1) where t
     CHECK(greenhouse_geisser({{2.0, 0.0}, {0.0, 2.0}}) == doctest::Approx(1.0));
     CHECK(greenhouse_geisser({{1.0, 1.0}, {1.0, 1.0}}) == doctest::Approx(0.5));
     CHECK(mauchly({{2.0, 0.0}, {0.0, 2.0}}, 5, 3)->w == doctest::Approx(1.0));
+    for (const double v : {0.1, 0.3, 0.7, 1.1, 2.3}) { // and never above, whatever rounding does
+        CHECK(greenhouse_geisser({{v, 0.0, 0.0}, {0.0, v, 0.0}, {0.0, 0.0, v}}) <= 1.0);
+        CHECK(mauchly({{v, 0.0, 0.0}, {0.0, v, 0.0}, {0.0, 0.0, v}}, 5, 4)->w <= 1.0);
+    }
     CHECK(!mauchly({{1.0, 1.0}, {1.0, 1.0}}, 5, 3)); // singular
     CHECK(!mauchly({{2.0, 0.0}, {0.0, 2.0}}, 1, 3)); // two people, three levels
 }

@@ -77,6 +77,28 @@ TEST_CASE("what has no variance has a mean and signs, and no test")
     CHECK(!test_mean({}, 50.0).mean);
 }
 
+TEST_CASE("what rounding leaves of equal values is no variance, and has no sign")
+{
+    // Differences of ratings from 1 to 5 whose means are equal, added up in another order.
+    const std::vector<double> noise{4.4e-16, 2.2e-16, 4.4e-16, 4.4e-16, 2.2e-16, 4.4e-16};
+    CHECK(varies(noise));
+    CHECK(!varies(noise, 5e-12));
+    const t_test none = test_mean(noise, 0.0, 5e-12);
+    CHECK(!none.t);
+    CHECK(!none.d);
+    CHECK(*none.p_signflip == 1.0);
+    CHECK(!quick_test_mean(noise, 0.0, 5e-12).p);
+    // All of one sign, and the same but for rounding.
+    const t_test one = test_mean(std::vector<double>{0.25, 0.25 + 2.2e-16, 0.25 - 4.4e-16, 0.25}, 0.0, 5e-12);
+    CHECK(!one.t);
+    CHECK(*one.p_signflip == 0.125);
+    // Per cent of halves that were added up from thirds.
+    const std::vector<double> halves{50.0 + 7e-15, 50.0 + 7e-15, 50.0 + 1.4e-14, 50.0 + 7e-15};
+    CHECK(*test_mean(halves, 50.0).p_signflip == 1.0);
+    // What is there is left: half of a scale's last step in a million trials.
+    CHECK(test_mean(std::vector<double>{0.0, 5e-7, 0.0, 5e-7}, 0.0, 5e-12).t);
+}
+
 TEST_CASE("signs are exact, with ties and zeros")
 {
     for (const std::vector<double>& v :

@@ -70,11 +70,24 @@ void print_choose(std::FILE* out, const study::run_analysis& r)
     say(out, "  per cent of trials in which {} was chosen, against 50\n", r.run.methods.back());
     print_tests(out, r.cells[0], r.run.motions);
     const study::t_test& first = r.first_interval;
-    if (first.t)
-        fmt::print(out, "  first interval chosen: {:.1f} %, t({:.0f}) = {:.2f}, {}\n", *first.mean, *first.df,
-                   *first.t, p_clause(first.p));
+    if (first.mean)
+        fmt::print(out, "  first interval chosen: {:.1f} %{}\n", *first.mean,
+                   first.t ? fmt::format(", t({:.0f}) = {:.2f}, {}", *first.df, *first.t, p_clause(first.p))
+                           : "");
     print_effect(out, "motion", r.effects.second);
     print_pairs(out, r.pairs[0], r.run.motions, "");
+}
+
+std::string paired_text(const study::t_test& t)
+{
+    std::string text = value_text(t.mean);
+    if (t.t)
+        text += fmt::format(" ({}), t({:.0f}) = {:.2f}, {}", interval_text(t.ci), *t.df, *t.t, p_clause(t.p));
+    if (t.p_signflip)
+        text += fmt::format(", signs {}", p_text(t.p_signflip));
+    if (t.d)
+        text += fmt::format("; d_z = {:.2f} ({})", *t.d, interval_text(t.d_ci));
+    return text;
 }
 
 void print_rate(std::FILE* out, const study::run_analysis& r)
@@ -90,13 +103,10 @@ void print_rate(std::FILE* out, const study::run_analysis& r)
         for (std::size_t k = 0; k < r.run.motions.size(); ++k)
             say(out, "  {:<{}} {} {}\n", "", w, r.run.motions[k], cell(r.cells[m].motion[k]));
     }
-    if (r.run.methods.size() > 1 && r.paired.t)
+    if (r.run.methods.size() > 1 && r.paired.mean)
         say(out, "{}",
             wrapped(fmt::format("  {} - {}: ", r.run.methods.back(), r.run.methods.front()),
-                    fmt::format("{:.2f} ({}), t({:.0f}) = {:.2f}, {}, signs {}; d_z = {:.2f} ({})",
-                                *r.paired.mean, interval_text(r.paired.ci), *r.paired.df, *r.paired.t,
-                                p_clause(r.paired.p), p_text(r.paired.p_signflip), *r.paired.d,
-                                interval_text(r.paired.d_ci))));
+                    paired_text(r.paired)));
     print_effect(out, "method", r.effects.first);
     print_effect(out, "motion", r.effects.second);
     print_effect(out, "method:motion", r.effects.interaction);

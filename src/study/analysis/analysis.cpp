@@ -73,7 +73,7 @@ void analyse_values(run_analysis& r, const std::vector<cell_values>& all)
     std::vector<double> differences;
     for (const cell_values& v : all)
         differences.push_back(*compared_value(r.run, v));
-    r.paired = test_mean(differences, 0.0);
+    r.paired = test_mean(differences, 0.0, rounding_in(r.run));
 }
 
 void count_answers(run_analysis& r, const std::vector<const run_data*>& data)
@@ -145,19 +145,18 @@ void warn_of_figures(analysis& a, const run_analysis& r)
             a.warnings.push_back(
                 fmt::format("{}: {}: too many participants for the exact test", r.run.name, what));
     };
-    const bool tested = r.run.task != task_kind::rate;
+    const auto warn_of_cell = [&](const std::string& what, const t_test& t) {
+        if (r.run.task != task_kind::rate)
+            warn(what, t);
+        else if (t.n > 1 && !t.ci)
+            a.warnings.push_back(
+                fmt::format("{}: {}: no variance over participants, so no interval", r.run.name, what));
+    };
     for (std::size_t row = 0; row < r.cells.size(); ++row) {
         const std::string of = r.run.task == task_kind::choose ? "" : r.run.methods[row] + ", ";
-        if (tested)
-            warn(of + "all", r.cells[row].all);
-        for (std::size_t m = 0; m < r.cells[row].motion.size(); ++m) {
-            const t_test& t = r.cells[row].motion[m];
-            if (tested)
-                warn(of + r.run.motions[m], t);
-            else if (t.n > 1 && !t.ci)
-                a.warnings.push_back(fmt::format("{}: {}{}: no variance over participants, so no interval",
-                                                 r.run.name, of, r.run.motions[m]));
-        }
+        warn_of_cell(of + "all", r.cells[row].all);
+        for (std::size_t m = 0; m < r.cells[row].motion.size(); ++m)
+            warn_of_cell(of + r.run.motions[m], r.cells[row].motion[m]);
     }
     warn("first interval", r.first_interval);
     warn("methods", r.paired);

@@ -2,6 +2,7 @@
 #include "study/analysis/cells.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace tactor::study {
@@ -46,6 +47,11 @@ std::optional<cell_values> values_of(const run_outline& run, const std::vector<t
     return sums;
 }
 
+double rounding_in(const run_outline& run) noexcept
+{
+    return 1e-12 * (run.task == task_kind::rate ? static_cast<double>(run.scale) : 100.0);
+}
+
 double average_of(const std::vector<double>& row)
 {
     return std::accumulate(row.begin(), row.end(), 0.0) / static_cast<double>(row.size());
@@ -57,7 +63,8 @@ std::optional<double> compared_value(const run_outline& run, const cell_values& 
         return average_of(cells.back());
     if (cells.size() < 2)
         return {};
-    return average_of(cells.back()) - average_of(cells.front());
+    const double difference = average_of(cells.back()) - average_of(cells.front());
+    return std::abs(difference) > rounding_in(run) ? difference : 0.0;
 }
 
 double first_chosen(const std::vector<trial>& trials)

@@ -78,13 +78,13 @@ void answer_all(prepared_run& p, const simulated_observer& who, const run_defini
 }
 
 // `values` by participant; who has none lacks a cell, and is left out as in the analysis.
-void count_study(power_at& at, const std::vector<std::optional<double>>& values, double against)
+void count_study(power_at& at, const std::vector<std::optional<double>>& values, const run_outline& run)
 {
     std::vector<double> there;
     for (std::size_t i = 0; i < at.participants; ++i)
         if (values[i])
             there.push_back(*values[i]);
-    const t_test t = quick_test_mean(there, against);
+    const t_test t = quick_test_mean(there, chance(run), rounding_in(run));
     if (!t.p)
         ++at.untested;
     else if (*t.p < significant_p) {
@@ -124,7 +124,7 @@ std::optional<std::vector<run_power>> simulate_power(const experiment_definition
                 values.push_back(cells ? compared_value(run.outline, *cells) : std::nullopt);
             }
             for (power_at& at : p.at)
-                count_study(at, values, chance(run.outline));
+                count_study(at, values, run.outline);
         }
     }
     for (run_power& p : all)

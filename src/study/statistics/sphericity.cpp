@@ -54,7 +54,7 @@ double greenhouse_geisser(const std::vector<std::vector<double>>& cross)
         for (const double v : row)
             squares += v * v;
     const double sum = trace(cross);
-    return sum * sum / (static_cast<double>(cross.size()) * squares);
+    return std::min(1.0, sum * sum / (static_cast<double>(cross.size()) * squares)); // but for rounding
 }
 
 std::optional<mauchly_test> mauchly(const std::vector<std::vector<double>>& cross, std::size_t df,
@@ -68,7 +68,7 @@ std::optional<mauchly_test> mauchly(const std::vector<std::vector<double>>& cros
     for (auto& row : scaled)
         for (double& v : row)
             v *= p / trace(cross);
-    const double w = determinant(std::move(scaled));
+    const double w = std::min(1.0, determinant(std::move(scaled)));
     // What is singular has a w of rounding errors, some 1e-16.
     if (w < 1e-13)
         return {};

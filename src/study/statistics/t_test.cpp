@@ -15,6 +15,8 @@
 namespace tactor::study {
 namespace {
 
+constexpr double few_digits = 1e-12;
+
 double mean_of(std::span<const double> v)
 {
     return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
@@ -51,7 +53,7 @@ double noncentrality(double t, double df, double below)
 
 } // namespace
 
-bool varies(std::span<const double> values)
+bool varies(std::span<const double> values, double rounding)
 {
     double largest = 0.0;
     double low = values.empty() ? 0.0 : values[0];
@@ -61,7 +63,7 @@ bool varies(std::span<const double> values)
         low = std::min(low, x);
         high = std::max(high, x);
     }
-    return high - low > 1e-12 * largest;
+    return high - low > std::max(few_digits * largest, rounding);
 }
 
 double p_of_t(double t, double df)
@@ -77,7 +79,7 @@ std::optional<interval> noncentrality_interval(double t, double df)
     return interval{noncentrality(t, df, 0.975), noncentrality(t, df, 0.025)};
 }
 
-t_test quick_test_mean(std::span<const double> values, double against)
+t_test quick_test_mean(std::span<const double> values, double against, double rounding)
 {
     t_test r;
     r.n = values.size();
@@ -87,7 +89,7 @@ t_test quick_test_mean(std::span<const double> values, double against)
     if (values.size() < 2)
         return r;
     r.df = static_cast<double>(r.n - 1);
-    if (!varies(values)) {
+    if (!varies(values, rounding)) {
         r.se = 0.0;
         return r;
     }
@@ -97,14 +99,19 @@ t_test quick_test_mean(std::span<const double> values, double against)
     return r;
 }
 
-t_test test_mean(std::span<const double> values, double against)
+t_test test_mean(std::span<const double> values, double against, double rounding)
 {
-    t_test r = quick_test_mean(values, against);
+    t_test r = quick_test_mean(values, against, rounding);
     if (values.size() < 2)
         return r;
+    // Signs mean nothing where the difference is rounding's alone.
     std::vector<double> off(values.begin(), values.end());
-    for (double& x : off)
+    for (double& x : off) {
+        const double least = std::max(few_digits * std::max(std::abs(x), std::abs(against)), rounding);
         x -= against;
+        if (std::abs(x) <= least)
+            x = 0.0;
+    }
     r.p_signflip = sign_flip_p(off);
     if (!r.t)
         return r;

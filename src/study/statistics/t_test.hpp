@@ -27,14 +27,15 @@ struct t_test {
     std::optional<interval> d_ci = {};     ///< from the noncentral t distribution
 };
 
-/// Whether the values differ by more than what rounding makes of equal ones.
-bool varies(std::span<const double> values);
+/// Whether the values differ by more than what rounding makes of equal ones: some digits of the values, and
+/// `rounding` where they are differences of larger ones.
+bool varies(std::span<const double> values, double rounding = 0.0);
 
-/// Tests the mean of finite values against a number.
-t_test test_mean(std::span<const double> values, double against);
+/// Tests the mean of finite values against a number; `rounding` as in varies().
+t_test test_mean(std::span<const double> values, double against, double rounding = 0.0);
 
 /// The same without intervals, effect size and exact test, which take a thousand times as long.
-t_test quick_test_mean(std::span<const double> values, double against);
+t_test quick_test_mean(std::span<const double> values, double against, double rounding = 0.0);
 
 /// Two-sided p of Student's t.
 double p_of_t(double t, double df);
