@@ -10,11 +10,23 @@ namespace {
 
 using study::task_kind;
 
+// A text in quotes, as R reads it.
+std::string in_quotes(std::string_view text)
+{
+    std::string q;
+    for (const char c : text) {
+        if (c == '"' || c == '\\')
+            q += '\\';
+        q += c;
+    }
+    return fmt::format("\"{}\"", q);
+}
+
 // What fits a run: participants differ, and of the stimuli nothing is taken to be a sample.
 std::string model_of(const study::run_outline& r)
 {
     const char* motion = r.motions.size() > 1 ? "motion" : "1";
-    const std::string data = fmt::format("data = subset(d, run == \"{}\")", r.name);
+    const std::string data = fmt::format("data = subset(d, run == {})", in_quotes(r.name));
     switch (r.task) {
     case task_kind::choose:
         return fmt::format("glmer(chosen ~ {} + order + (1 | participant), family = binomial, {})", motion,
@@ -55,9 +67,12 @@ void print_trials(std::FILE* out, const study::dataset& d)
     std::string text;
     if (d.simulated)
         text += "# simulated: these are no people's answers\n";
-    text += "# library(lme4)\n"
-            "# d <- read.delim(\"trials.tsv\", comment.char = \"#\", na.strings = \"n/a\", quote = \"\", "
-            "colClasses = c(participant = \"character\"))\n";
+    // Names may have "#" in them: the notes are counted, not told by their first letter.
+    const std::size_t notes = 2 + (d.simulated ? 1 : 0) + d.experiment.runs.size();
+    text += fmt::format("# library(lme4)\n"
+                        "# d <- read.delim(\"trials.tsv\", skip = {}, na.strings = \"n/a\", quote = \"\", "
+                        "colClasses = c(participant = \"character\"))\n",
+                        notes);
     for (const study::run_outline& r : d.experiment.runs)
         text += fmt::format("# {}\n", model_of(r));
     text +=

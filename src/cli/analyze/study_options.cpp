@@ -47,7 +47,9 @@ void make_derivatives(const std::filesystem::path& folder, const std::filesystem
 {
     const std::filesystem::path ours = folder / "derivatives" / "tactor";
     std::error_code ignored;
-    if (file.parent_path().lexically_normal() == ours.lexically_normal())
+    // However both are written.
+    if (std::filesystem::weakly_canonical(std::filesystem::absolute(file, ignored).parent_path(), ignored) ==
+        std::filesystem::weakly_canonical(std::filesystem::absolute(ours, ignored), ignored))
         std::filesystem::create_directories(ours, ignored);
 }
 

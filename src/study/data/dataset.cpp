@@ -45,13 +45,12 @@ std::vector<std::string> read_participants(const fs::path& folder)
 // Data of somebody who is not in the list would be left out without a word.
 void refuse_strangers(const fs::path& folder, const std::vector<std::string>& known)
 {
-    std::error_code failed;
-    for (const fs::directory_entry& e : fs::directory_iterator(folder, failed)) {
-        const std::string name = e.path().filename().string();
+    for (const fs::path& path : list_folder(folder)) {
+        const std::string name = path.filename().string();
         if (!name.starts_with(prefix))
             continue;
         if (std::find(known.begin(), known.end(), name.substr(prefix.size())) == known.end())
-            throw error(error_kind::bad_input, e.path().string(), "it is of nobody in participants.tsv",
+            throw error(error_kind::bad_input, path.string(), "it is of nobody in participants.tsv",
                         "add a line, or move it away");
     }
 }
@@ -170,21 +169,22 @@ public:
     void add(const std::string& code)
     {
         const std::string sub = std::string(prefix) + code;
-        const fs::path file = folder_ / "sourcedata" / sub / "session.json";
-        std::error_code ignored;
-        const fs::path beh = folder_ / sub / "beh";
-        if (!fs::exists(file, ignored) && !fs::exists(beh, ignored)) {
+        const fs::path file = fs::path("sourcedata") / sub / "session.json";
+        const fs::path beh = fs::path(sub) / "beh";
+        const bool has_tables = is_there(folder_, beh);
+        if (!is_there(folder_, file) && !has_tables) {
             set_.participants.push_back(code); // in the list, but not here yet
             set_.data.emplace_back();
             return;
         }
-        take_session(code, read_session(file));
+        take_session(code, read_session(folder_ / file));
         std::vector<run_data> runs;
         for (const run_outline& run : set_.experiment.runs) {
             const fs::path table = beh / fmt::format("{}_task-{}_beh.tsv", sub, run.file_name);
-            runs.push_back(fs::exists(table, ignored) ? read_run(table, run) : run_data{});
+            runs.push_back(is_there(folder_, table) ? read_run(folder_ / table, run) : run_data{});
         }
-        refuse_unknown_tables(beh, sub);
+        if (has_tables)
+            refuse_unknown_tables(folder_ / beh, sub);
         set_.participants.push_back(code);
         set_.data.push_back(std::move(runs));
     }
@@ -228,15 +228,14 @@ private:
     // A table that no run of the experiment has would be left out without a word.
     void refuse_unknown_tables(const fs::path& beh, const std::string& sub) const
     {
-        std::error_code failed;
-        for (const fs::directory_entry& e : fs::directory_iterator(beh, failed)) {
-            const std::string name = e.path().filename().string();
+        for (const fs::path& path : list_folder(beh)) {
+            const std::string name = path.filename().string();
             const auto of_run = [&](const run_outline& r) {
                 return name == fmt::format("{}_task-{}_beh.tsv", sub, r.file_name);
             };
             if (!name.starts_with('.') && name.ends_with("_beh.tsv") &&
                 std::none_of(set_.experiment.runs.begin(), set_.experiment.runs.end(), of_run))
-                throw error(error_kind::bad_input, e.path().string(), "it is of no run of the experiment",
+                throw error(error_kind::bad_input, path.string(), "it is of no run of the experiment",
                             "move it away");
         }
     }
@@ -257,6 +256,9 @@ dataset read_dataset(const fs::path& folder, const selection& who)
                     fs::exists(folder, failed) ? "it is no folder" : "No such file or directory",
                     "name the folder of a study");
     const std::vector<std::string> known = read_participants(folder);
+    if (known.empty())
+        throw error(error_kind::bad_input, (folder / "participants.tsv").string(), "nobody is in it",
+                    "tactor experiment adds a line for each participant");
     refuse_strangers(folder, known);
     reader r(folder);
     for (const std::string& code : select(known, who))

@@ -53,6 +53,46 @@ std::string read_file(const std::filesystem::path& file, std::size_t most)
     return text;
 }
 
+bool is_there(const std::filesystem::path& study, const std::filesystem::path& below)
+{
+    namespace fs = std::filesystem;
+    fs::path at = study;
+    const auto refuse = [&at](std::string_view why) {
+        throw error(error_kind::bad_input, at.string(), why,
+                    "mend it, or leave its participant out with --exclude");
+    };
+    const auto kind_of = [&refuse](const fs::path& p, auto ask) {
+        std::error_code failed;
+        const fs::file_status s = ask(p, failed);
+        if (failed && s.type() != fs::file_type::not_found)
+            refuse(failed.message());
+        return s.type();
+    };
+    using ask = fs::file_status (*)(const fs::path&, std::error_code&);
+    for (const fs::path& part : below) {
+        if (at != study && kind_of(at, static_cast<ask>(fs::status)) != fs::file_type::directory)
+            refuse("it is no folder");
+        at /= part;
+        if (kind_of(at, static_cast<ask>(fs::symlink_status)) == fs::file_type::not_found)
+            return false;
+        if (kind_of(at, static_cast<ask>(fs::status)) == fs::file_type::not_found)
+            refuse("it is a link to nothing");
+    }
+    return true;
+}
+
+std::vector<std::filesystem::path> list_folder(const std::filesystem::path& folder)
+{
+    std::vector<std::filesystem::path> all;
+    std::error_code failed;
+    for (std::filesystem::directory_iterator i(folder, failed), end; !failed && i != end; i.increment(failed))
+        all.push_back(i->path());
+    if (failed)
+        throw error(error_kind::bad_input, folder.string(), failed.message(),
+                    "it must be readable as a whole");
+    return all;
+}
+
 text_table::text_table(const std::filesystem::path& file) : file_(file.string()), text_(read_file(file))
 {
     std::string_view rest = text_;

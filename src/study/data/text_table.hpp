@@ -21,6 +21,14 @@ inline constexpr std::size_t most_bytes = std::size_t{64} << 20;
 /// \throws error (bad_input) naming it.
 std::string read_file(const std::filesystem::path& file, std::size_t most = most_bytes);
 
+/// Whether something of a study is there. \throws error (bad_input) for what is there and cannot be reached:
+/// a link to nothing, a folder that may not be searched, a part of the path that is no folder. It would be
+/// taken for data that never were.
+bool is_there(const std::filesystem::path& study, const std::filesystem::path& below);
+
+/// What is in a folder, in no order. \throws error (bad_input) where it cannot be read.
+std::vector<std::filesystem::path> list_folder(const std::filesystem::path& folder);
+
 /// A table with a header line. "n/a" is a value that is not there.
 class text_table {
 public:
