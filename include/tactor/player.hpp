@@ -52,7 +52,7 @@ struct player_stats {
     std::uint64_t xruns = 0;
     std::uint64_t limited_frames = 0;       ///< samples that a channel's own limit changed
     std::uint64_t power_limited_frames = 0; ///< frames in which drive_limits::power_dbfs acted
-    std::uint64_t drives_cut = 0; ///< how often a tactor was faded out after drive_limits::max_drive_s
+    std::uint64_t drives_cut = 0;           ///< drives cut short, or silent, for drive_limits::max_drive_s
     /// How often the amplifier was switched off because the audio thread, or the whole process, stood still.
     std::uint64_t stalls = 0;
     /// How often the amplifier's line refused to be switched off. It is tried again for a second.

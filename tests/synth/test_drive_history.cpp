@@ -117,22 +117,27 @@ TEST_CASE("what is too old for any window is forgotten")
     CHECK(h.empty());
 }
 
-TEST_CASE("a channel that another guard had cut counts as cut again where it is driven too early")
+TEST_CASE("a channel that another guard had cut is closed where it is driven too early")
 {
     drive_guard first(2, 500, 1000, 1000);
-    first.drive(0, 0, 600);
-    CHECK(first.cuts() == 1);
+    CHECK(first.drive(0, 0, 500));
+    CHECK_FALSE(first.drive(0, 500, 520));
     drive_guard second(2, 500, 1000, 1000);
     second.resume(first.history(600));
-    second.drive(1, 0, 100);
-    CHECK(second.cuts() == 0);
-    second.drive(0, 100, 150);
-    second.drive(0, 200, 250);
-    CHECK(second.cuts() == 1);
+    CHECK(second.drive(1, 0, 100));
+    CHECK_FALSE(second.drive(0, 100, 150));
+    CHECK_FALSE(second.drive(0, 200, 250));
     drive_guard later(2, 500, 1000, 1000);
     later.resume(first.history(1600));
-    later.drive(0, 100, 150);
-    CHECK(later.cuts() == 0);
+    CHECK(later.drive(0, 100, 150));
+}
+
+TEST_CASE("a channel of which nothing is known but that it was driven is not faded in")
+{
+    drive_guard g(1, 500, 1000, 1000);
+    g.resume(one_channel({{-0.1, 0.0, 0.1}}));
+    CHECK(g.drive(0, 0, 10));
+    CHECK_FALSE(g.acts(0, 0, 10));
 }
 
 TEST_CASE("what has left the window is no history")

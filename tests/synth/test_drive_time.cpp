@@ -211,6 +211,26 @@ TEST_CASE("a quiet stroke on a channel that was cut is silent, too, whatever the
         CHECK(play(events, 3.0, g, 1.0, block).x == whole.x);
 }
 
+TEST_CASE("each drive that meets a closed channel counts, however quiet, whatever the block sizes")
+{
+    const synth::guard_settings g = time_of(0.5, 2.0);
+    const auto cuts = [&](std::vector<synth::drive_event> more, std::size_t block = 160) {
+        more.insert(more.begin(), voice(0.0, 0.7, 0.5)); // closed from 0.5 s on, until 2.27 s
+        return play(more, 3.0, g, 1.0, block).cuts;
+    };
+    CHECK(cuts({}) == 1);
+    CHECK(cuts({voice(0.9, 0.1, 0.5)}) == 2);
+    CHECK(cuts({voice(0.9, 0.1, 0.5), voice(1.2, 0.1, 0.003)}) == 3);
+    CHECK(cuts({voice(2.5, 0.1, 0.5)}) == 1);                       // open again
+    CHECK(cuts({voice(2.26, 0.2, 0.5)}) == 2);                      // faded in
+    CHECK(cuts({voice(0.9, 0.1, 0.5), voice(1.0, 0.1, 0.5)}) == 2); // without a gap it is one
+    CHECK(cuts({voice(0.9, 0.1, 0.5), voice(1.01, 0.1, 0.5)}) == 3);
+    for (const std::size_t block : {1, 7, 161, 500})
+        CHECK(cuts({voice(0.9, 0.1, 0.5), voice(1.2, 0.1, 0.003)}, block) == 3);
+    // Its last sample is the last that it may have: nothing is changed.
+    CHECK(play({voice(0.0, 0.5, 0.5)}, 1.0, g).cuts == 0);
+}
+
 TEST_CASE("the next mixer counts on, at another rate, and less for the time between")
 {
     const auto first = [] {

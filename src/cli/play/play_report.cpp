@@ -152,10 +152,11 @@ std::string describe(const stream_setup& d)
 void warn_of_cuts(const drive_limits& l, const player_stats& s)
 {
     if (s.drives_cut != 0)
-        fmt::print(stderr,
-                   "tactor: warning: tactors were driven for longer than {} s in {} s and faded out, {} "
-                   "([limits] max_drive_s in the array file or configuration)\n",
-                   l.max_drive_s, l.window_s, counted(s.drives_cut, "time"));
+        fmt::print(
+            stderr,
+            "tactor: warning: tactors were driven for longer than {} s in {} s: {} cut short or silent "
+            "([limits] max_drive_s in the array file or configuration)\n",
+            l.max_drive_s, l.window_s, counted(s.drives_cut, "drive"));
 }
 
 std::optional<error> left_on(const player_stats& s)

@@ -95,8 +95,9 @@ void stream_log::look_at_limits()
 {
     if (const std::uint64_t n = grown(link_.count.drives_cut, cut_); n != 0)
         add(log_kind::warning,
-            fmt::format("{} faded out: driven for longer than {} in {}", counted(n, "tactor"),
-                        seconds_text(limits_.max_drive_s), seconds_text(limits_.window_s)));
+            fmt::format("{} cut short or silent: a tactor was driven for longer than {} in {}",
+                        counted(n, "drive"), seconds_text(limits_.max_drive_s),
+                        seconds_text(limits_.window_s)));
     if (const std::uint64_t n = grown(link_.count.power_limited, power_limited_); n != 0)
         add(log_kind::warning, fmt::format("the power of all tactors was held at {} dBFS in {}",
                                            plain_number(limits_.power_dbfs), counted(n, "frame")));

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "synth/mix/sincos.hpp"
 
@@ -11,6 +10,7 @@ namespace tactor::synth {
 namespace {
 
 constexpr double fade_s = 0.02;
+constexpr double pause_s = 0.001; // longer than a sine is at zero
 constexpr double counted = least_counted_drive * least_counted_drive;
 
 } // namespace
@@ -21,6 +21,7 @@ drive_guard::drive_guard(std::size_t channels, std::uint64_t limit, std::uint64_
       window_(static_cast<std::int64_t>(window)),
       grain_(window_ / static_cast<std::int64_t>(grains) + 1),
       fade_(std::max<std::int64_t>(std::llround(fade_s * rate), 1)),
+      pause_(std::max<std::int64_t>(std::llround(pause_s * rate), 1)),
       cells_(limit > 0 && limit < window ? channels : 0)
 {
     for (cell& c : cells_)
@@ -59,14 +60,13 @@ void drive_guard::release(cell& c, std::int64_t begin) noexcept
     }
 }
 
-void drive_guard::drive(std::size_t channel, std::uint64_t from, std::uint64_t to) noexcept
+bool drive_guard::drive(std::size_t channel, std::uint64_t from, std::uint64_t to) noexcept
 {
     cell& c = cells_[channel];
     const auto end = static_cast<std::int64_t>(to);
     auto at = static_cast<std::int64_t>(from);
     while (at < end) {
         if (at >= c.closed_at && at < c.opens_at) {
-            cuts_ += std::exchange(c.was_closed, false) ? 1 : 0;
             at = c.opens_at; // counted when it was closed
             continue;
         }
@@ -79,6 +79,7 @@ void drive_guard::drive(std::size_t channel, std::uint64_t from, std::uint64_t t
             at += n;
         }
     }
+    return end <= c.closed_at || static_cast<std::int64_t>(from) >= c.opens_at + fade_;
 }
 
 void drive_guard::close(cell& c, std::int64_t at) noexcept
@@ -86,7 +87,6 @@ void drive_guard::close(cell& c, std::int64_t at) noexcept
     add(c, {at, at + fade_, fade_});
     c.closed_at = at;
     c.opens_at = std::max(at + fade_, half_gone(c));
-    ++cuts_;
 }
 
 /// First frame whose window holds no more than half of the limit, if nothing more is driven.
@@ -135,11 +135,16 @@ bool drive_guard::acts(std::size_t channel, std::uint64_t clock, unsigned n) con
 }
 
 void drive_guard::apply(std::size_t channel, std::uint64_t clock, unsigned n, double* x, double* envelope,
-                        unsigned known) const noexcept
+                        unsigned known) noexcept
 {
-    const cell& c = cells_[channel];
+    cell& c = cells_[channel];
     for (unsigned j = 0; j < n; ++j) {
-        const double g = gain(c, static_cast<std::int64_t>(clock) + j);
+        const std::int64_t at = static_cast<std::int64_t>(clock) + j;
+        const double g = gain(c, at);
+        if (g < 1.0 && x[j] != 0.0) {
+            cuts_ += at - c.changed_at > pause_ ? 1 : 0;
+            c.changed_at = at;
+        }
         x[j] *= g;
         if (j >= known)
             envelope[j] *= g * g;
@@ -174,9 +179,9 @@ void drive_guard::resume(const drive_history& h) noexcept
         cell& c = cells_[i];
         for (const drive_history::stretch& s : h.channels[i].stretches)
             add(c, {up(s.begin_s), up(s.end_s), up(s.driven_s)});
-        c.opens_at = std::max(-fade_, up(h.channels[i].opens_s));
+        // What is open by now sounds from silence: it needs no fade.
+        c.opens_at = h.channels[i].opens_s > 0.0 ? up(h.channels[i].opens_s) : -fade_;
         c.closed_at = std::min(c.opens_at, -fade_);
-        c.was_closed = c.opens_at > 0;
     }
 }
 

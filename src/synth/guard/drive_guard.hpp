@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "synth/guard/drive_history.hpp"
@@ -33,8 +34,8 @@ public:
         return on() ? static_cast<std::uint64_t>(fade_) : ~std::uint64_t{0};
     }
     /// A channel is driven in frames from ... to - 1, which are in one block. Calls for one channel in
-    /// order of `from`.
-    void drive(std::size_t channel, std::uint64_t from, std::uint64_t to) noexcept;
+    /// order of `from`. False where a part of it is changed.
+    bool drive(std::size_t channel, std::uint64_t from, std::uint64_t to) noexcept;
     /// The same for a block of n frames that begins with frame `clock`, by its squared envelope.
     void follow(std::size_t channel, std::uint64_t clock, const double* envelope, unsigned n) noexcept;
     /// Whether such a block must be changed; known once its drive has been counted.
@@ -42,9 +43,9 @@ public:
     /// Applies the gain that results to the block, and to the squared envelope from the block's frame `known`
     /// on.
     void apply(std::size_t channel, std::uint64_t clock, unsigned n, double* x, double* envelope,
-               unsigned known) const noexcept;
-    /// How often a channel was cut. A cut that resume() has taken over counts if the channel is driven during
-    /// it.
+               unsigned known) noexcept;
+    /// How many drives were changed: cut short, or silent for being given to a channel that was closed, also
+    /// by a guard before this one. What sounds again within 1 ms is the same drive.
     std::uint64_t cuts() const noexcept { return cuts_; }
 
     /// The drive that was counted until frame `clock` and is still in the window. Allocates.
@@ -69,7 +70,7 @@ private:
         std::int64_t sum = 0; ///< of what the stretches hold
         std::int64_t closed_at = 0;
         std::int64_t opens_at = 0;
-        bool was_closed = false; ///< by another guard, and nothing was driven into that cut yet
+        std::int64_t changed_at = std::numeric_limits<std::int64_t>::min() / 2; ///< last sample that was
 
         stretch& at(std::size_t i) noexcept { return ring[(first + i) % ring.size()]; }
         const stretch& at(std::size_t i) const noexcept { return ring[(first + i) % ring.size()]; }
@@ -85,6 +86,7 @@ private:
     std::int64_t window_;
     std::int64_t grain_;
     std::int64_t fade_;
+    std::int64_t pause_;
     std::vector<cell> cells_;
     std::uint64_t cuts_ = 0;
 };

@@ -67,7 +67,7 @@ public:
     std::uint64_t limited() const noexcept;
     /// Frames in which the limit on the summed power acted.
     std::uint64_t power_limited() const noexcept;
-    /// How often a channel was cut because it was driven for too long.
+    /// How many drives were cut short or silenced because their channel was driven for too long.
     std::uint64_t drives_cut() const noexcept;
 
 private:
