@@ -51,6 +51,23 @@ class Definition(ExperimentTest):
         self.refused(2, "experiment", "park2061", "--dry-run", says=("park2016, or a file",))
         self.refused(2, "experiment", "none.toml", "--dry-run", says=("none.toml",))
 
+    def test_what_a_limit_would_change_is_said_before_anybody_sits_down(self):
+        long = SMALL.replace("gap_s = 0.25", "level = { dbfs = -18 }", 1).replace('path = "M0 20H40"\nduration = 0.7',
+                                                                                   'path = "M0 20H2"\nduration = 6', 1)
+        self.small(long.replace('algorithm = "tactile-brush"', 'algorithm = "continuous"', 1))
+        for more in (("--dry-run",), ("--participant", "01", "-o", "study", "--simulate", "seed=1"),
+                     ("--participant", "01", "-o", "study", "-D", "null")):
+            self.refused(2, "experiment", "small.toml", *more, says=("small.toml:6:", "max_drive_s, 5 s in 10 s"))
+        self.assertFalse((self.dir / "study").exists())
+        palm = '[array]\npreset = "palm-3x3"\n'
+        self.write("more.toml", palm + "[limits]\nmax_drive_s = 10\n")
+        self.write("weak.toml", palm + "[limits]\npower_dbfs = -30\n")
+        self.ok("experiment", "small.toml", "--dry-run", "--array", "more.toml")
+        self.small(long.replace("duration = 6", "duration = 0.7", 1))
+        self.ok("experiment", "small.toml", "--dry-run")
+        self.refused(2, "experiment", "small.toml", "--dry-run", "--array", "weak.toml",
+                     says=("small.toml:", "power_dbfs, -30 dB, would change it"))
+
     def test_real_sessions_need_measured_thresholds(self):
         self.refused(2, "experiment", "park2016", "--participant", "01", "-o", "study", "-D", "null",
                      says=("no threshold", "tactor calibrate"))

@@ -52,12 +52,13 @@ attribute = "uniformity"
 trials = 2
 )";
 
-environment nine_tactors(double longest_drive_s)
+environment nine_tactors(double longest_drive_s, double window_s)
 {
     environment e;
     e.tactors = palm();
     e.config.limits.emplace();
     e.config.limits->max_drive_s = longest_drive_s;
+    e.config.limits->window_s = window_s;
     return e;
 }
 
@@ -68,8 +69,8 @@ struct set_up {
     stage there;
     std::optional<running_clock> clock; // after the stage, which blocks the signals of threads to come
 
-    explicit set_up(double longest_drive_s = 5.0)
-        : where(nine_tactors(longest_drive_s)), there(nine(), {}, where, source(dac))
+    explicit set_up(double longest_drive_s = 5.0, double window_s = 10.0)
+        : where(nine_tactors(longest_drive_s, window_s)), there(nine(), {}, where, source(dac))
     {
         clock.emplace(dac, running_clock::capture_kind::kept);
     }
@@ -208,6 +209,32 @@ TEST_CASE("a stimulus that a limit changed says so")
     const given_stimulus g = s.there.give("trial", tone(0.5), 0.0, nobody);
     CHECK(g.flaw.empty());
     CHECK(g.limited);
+    s.there.finish();
+}
+
+TEST_CASE("a stimulus that falls silent because of those before says so")
+{
+    set_up s(0.3, 3600.0); // an hour, on a DAC that does not wait for the test
+    CHECK_FALSE(s.there.give("trial", tone(0.25), 0.0, nobody).limited);
+    // Its tactor is closed in the midst of this one, and still for the next.
+    CHECK(s.there.give("trial", tone(0.2), 0.0, nobody).limited);
+    CHECK(s.there.give("trial", tone(0.2), 0.0, nobody).limited);
+    CHECK(s.there.give("trial", tone(0.01), 0.0, nobody).limited);
+    CHECK_FALSE(s.there.give("another", tone(0.2, 4), 0.0, nobody).limited);
+    CHECK(s.there.make_room(tone(0.2), 0.1, [](double) { return false; })); // somebody ends it
+    CHECK(s.there.give("trial", tone(0.2), 0.1, nobody).limited);
+    s.there.finish();
+}
+
+TEST_CASE("a stimulus that has waited for room is whole")
+{
+    set_up s(0.3, 60.0);
+    for (int i = 0; i < 4; ++i) {
+        CHECK(s.there.make_room(tone(0.25), 0.1, [](double) { return true; }));
+        const given_stimulus g = s.there.give("trial", tone(0.25), 0.1, nobody);
+        CHECK(g.flaw.empty());
+        CHECK_FALSE(g.limited);
+    }
     s.there.finish();
 }
 

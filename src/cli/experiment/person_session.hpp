@@ -46,6 +46,8 @@ private:
         unsigned choice = 0; ///< 0: the experimenter repeats the trial
         double time_s = 0.0;
     };
+    /// Waits until no tactor would be driven for too long. False where the device is gone.
+    bool make_room(const study::session_step& s, const study::planned_trial& t, const score& stimuli);
     bool animate(const study::session_step& s, const study::planned_trial& t);
     given_stimulus give(const study::session_step& s, const study::planned_trial& t);
     asked_answer ask(const study::session_step& s, const given_stimulus& g);

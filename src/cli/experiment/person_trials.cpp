@@ -46,9 +46,28 @@ bool person_session::animate(const study::session_step& s, const study::planned_
     });
 }
 
+// Before the target is shown, which the stimulus follows at once.
+bool person_session::make_room(const study::session_step& s, const study::planned_trial& t,
+                               const score& stimuli)
+{
+    double ahead_s = lead_s;
+    if (run_of(s).animation)
+        ahead_s += p_.definition.motions[t.motion].drawn.motion.duration_s();
+    bool told = false;
+    return stage_.make_room(stimuli, ahead_s, [&](double) {
+        if (!std::exchange(told, true)) {
+            on_page(idle_screen(p_, "wait"));
+            show(p_.definition.page["wait"] + " ");
+        }
+        heed();
+        return !repeat_ && !quit_;
+    });
+}
+
 given_stimulus person_session::give(const study::session_step& s, const study::planned_trial& t)
 {
-    if (run_of(s).animation && !animate(s, t))
+    const score stimuli = p_.stimuli.make_score(t);
+    if (!make_room(s, t, stimuli) || (run_of(s).animation && !animate(s, t)))
         return {.flaw = "the device is gone"};
     on_page(stimulus_screen(p_, s));
     given_stimulus g;
@@ -56,12 +75,11 @@ given_stimulus person_session::give(const study::session_step& s, const study::p
         std::optional<noise_around> noise;
         if (!p_.definition.masking.through_run)
             noise.emplace(stage_);
-        g = stage_.give(fmt::format("trial {}", s.which.trial), p_.stimuli.make_score(t), lead_s,
-                        [&](std::uint64_t) {
-                            heed();
-                            if (repeat_ || quit_)
-                                stage_.cut();
-                        });
+        g = stage_.give(fmt::format("trial {}", s.which.trial), stimuli, lead_s, [&](std::uint64_t) {
+            heed();
+            if (repeat_ || quit_)
+                stage_.cut();
+        });
     }
     heed(); // what was pressed too early is no answer
     if (quit_)

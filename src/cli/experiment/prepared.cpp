@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/experiment/limit_check.hpp"
 #include "cli/plan/plan_output.hpp"
 #include "cli/plan/plan_sound.hpp"
 #include "cli/play/play_options.hpp"
@@ -194,6 +195,7 @@ prepared_experiment prepare(const experiment_options& o, settings& s, option_lis
                                 [&](const stroke& k, const plan& p, const score& sounds) {
                                     return plan_text(e, render, k, p, sounds);
                                 });
+    check_limits(d, runs, stimuli, limits_of({}, e));
     std::vector<std::string> warnings = stimuli.warnings();
     if (assumed)
         warnings.push_back(

@@ -29,8 +29,19 @@ play_options without_picture(play_options o)
 } // namespace
 
 stage::stage(const alsa_options& device, const play_options& o, const environment& e, stream_source source)
-    : environment_(e), options_(without_picture(o)), session_(device, options_, e, std::move(source))
+    : environment_(e),
+      options_(without_picture(o)),
+      session_(device, options_, e, std::move(source)),
+      room_(session_.setup().channels, limits_of(options_, environment_), session_.setup().rate)
 {
+}
+
+bool stage::make_room(const score& s, double lead_s, const std::function<bool(double)>& watch)
+{
+    const std::uint64_t at =
+        before_ + session_.position().played + static_cast<std::uint64_t>(std::llround(lead_s * s.rate()));
+    const std::uint64_t wait = room_.wait(s, at).value_or(0); // it never has room: it will be told as changed
+    return wait == 0 || pass(static_cast<double>(wait) / s.rate(), watch);
 }
 
 void stage::mask(sink_opener open, const study::masking_options& o)
@@ -106,6 +117,8 @@ given_stimulus stage::give(const std::string& name, const score& s, double lead_
         g.first_frame = at + static_cast<std::uint64_t>(std::llround(std::max(0.0, r.late_s) * s.rate()));
     g.started_ns = r.started_ns.value_or(rt::monotonic_ns() - (r.frames > 0 ? length : 0));
     g.ended_ns = g.started_ns + length;
+    if (g.first_frame)
+        room_.played(s, before_ + *g.first_frame);
     if (r.state != state_kind::finished)
         g.flaw = r.state == state_kind::cancelled ? "it was cut off" : r.why;
     else if (g.xruns > 0)
@@ -139,7 +152,9 @@ void stage::wait_for(int descriptor)
 
 bool stage::reopen()
 {
+    const std::uint64_t passed = session_.position().played;
     const bool back = session_.reopen();
+    before_ += back ? passed : 0;
     check_signal();
     return back;
 }

@@ -12,6 +12,7 @@
 #include "cli/input.hpp"
 #include "cli/play/play_session.hpp"
 #include "study/masking/masker.hpp"
+#include "synth/score/drive_room.hpp"
 
 namespace tactor::cli {
 
@@ -42,6 +43,10 @@ public:
     void mask(sink_opener open, const study::masking_options& o);
     /// On the PCM of this name, in stereo.
     void mask(const std::string& pcm, const study::masking_options& o);
+
+    /// Lets the stream's time pass until a score has room that begins so long after that: until no tactor
+    /// would be driven for longer than the limits allow, with what was given here before. As pass().
+    bool make_room(const score& s, double lead_s, const std::function<bool(double passed_s)>& watch);
 
     /// Told some 25 times a second at which of its frames the stimulus is.
     using watcher = std::function<void(std::uint64_t stimulus_frame)>;
@@ -82,6 +87,8 @@ private:
     sink_opener open_masker_ = {};
     study::masking_options masking_ = {};
     std::unique_ptr<study::masker> masker_; ///< null: no noise
+    synth::drive_room room_;
+    std::uint64_t before_ = 0; ///< frames of the streams before this one; what lay between them did not pass
 };
 
 /// Ends the noise, whatever ends the trial.

@@ -120,12 +120,14 @@ std::uint64_t stimulus_set::frames(const planned_trial& t) const
     return t.method_2 ? second(t) + at(t.motion, *t.method_2).frames : at(t.motion, t.method_1).frames;
 }
 
-score stimulus_set::make_score(const planned_trial& t) const
+score stimulus_set::make_score(const planned_trial& t, const std::optional<drive_limits>& limits) const
 {
     std::vector<placed_plan> plans{{at(t.motion, t.method_1).schedule, 0.0}};
     if (t.method_2)
         plans.push_back({at(t.motion, *t.method_2).schedule, static_cast<double>(second(t)) / options_.rate});
-    return score(array_, std::move(plans), options_);
+    render_options o = options_;
+    o.limits = limits;
+    return score(array_, std::move(plans), o);
 }
 
 } // namespace tactor::study

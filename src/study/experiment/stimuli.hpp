@@ -56,8 +56,8 @@ public:
     /// Frames from the trial's first to its last, the gap included, and of the second stimulus' begin.
     std::uint64_t frames(const planned_trial& t) const;
     std::uint64_t second(const planned_trial& t) const;
-    /// Both stimuli as one score, to the frame.
-    score make_score(const planned_trial& t) const;
+    /// Both stimuli as one score, to the frame; a renderer holds it to the limits, where there are any.
+    score make_score(const planned_trial& t, const std::optional<drive_limits>& limits = {}) const;
 
 private:
     stimulus make(const motion_definition& motion, const method_definition& method, const array& a,
