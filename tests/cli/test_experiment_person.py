@@ -7,6 +7,7 @@ import os
 import pty
 import re
 import select
+import shutil
 import signal
 import struct
 import subprocess
@@ -276,9 +277,44 @@ class ByLines(PersonTest):
 
     def test_no_consent_no_data(self):
         self.refused(1, *self.args(), stdin="n\n", says=("sub-01: did not agree",))
-        self.assertFalse((self.dir / "study/sourcedata").exists())
-        self.assertFalse((self.dir / "study/participants.tsv").exists())
+        self.assertFalse((self.dir / "study").exists())
+        (self.dir / "study").mkdir()
+        self.refused(1, *self.args(), stdin="n\n", says=("sub-01: did not agree",))
+        self.refused(3, *self.args(device="hw:CARD=Nowhere"), says=("hw:CARD=Nowhere",))
+        self.assertEqual(list((self.dir / "study").iterdir()), [])
         self.ok(*self.args(), stdin=self.ANSWERS)
+        self.assertNotIn("simulated", (self.dir / "study/README").read_text().lower())
+
+    def test_who_did_not_agree_leaves_no_word_to_the_next(self):
+        self.refused(1, *self.args(), stdin="n\n", says=("did not agree",))
+        self.ok("experiment", "short.toml", "--participant", "02", "-o", "study", "--simulate", "seed=1")
+        for name in ("README", "dataset_description.json", "participants.json", "task-pairs_beh.json"):
+            self.assertIn("simulated", (self.dir / "study" / name).read_text().lower(), name)
+
+    def test_descriptions_and_sessions_are_of_one_kind(self):
+        self.ok("experiment", "short.toml", "--participant", "02", "-o", "study", "--simulate", "seed=1")
+        for name in ("sourcedata", "sub-02"):
+            shutil.rmtree(self.dir / "study" / name)
+        self.refused(2, *self.args(), says=("dataset_description.json: it is of simulated sessions", "a folder each"))
+        (self.dir / "study/dataset_description.json").write_text('{"Name": "ours", "BIDSVersion": "1.8.0"}')
+        self.ok(*self.args(), stdin=self.ANSWERS)
+        self.assertIn("ours", (self.dir / "study/dataset_description.json").read_text())
+
+    def test_what_cannot_be_written_is_told_before_anybody_is_asked(self):
+        def told(status, *says, code="01"):
+            self.assertNotIn("agree", self.refused(status, *self.args(code=code), stdin=self.ANSWERS, says=says).stdout)
+            self.assertFalse((self.dir / "study/sourcedata").exists())
+        told(2, "File name too long", "a shorter code", code="9" * 235)
+        self.assertFalse((self.dir / "study").exists())
+        self.write("study/dataset_description.json", "{}")
+        self.write("study/sub-01", "a file")
+        told(2, "study/sub-01", "Not a directory")
+        if os.geteuid() != 0:  # root may write everywhere
+            (self.dir / "study/sourcedata").mkdir()
+            (self.dir / "study").chmod(0o555)
+            self.refused(1, *self.args(code="02"), stdin=self.ANSWERS, says=("Permission denied", "nobody was asked"))
+            (self.dir / "study").chmod(0o755)
+            self.assertEqual(contents(self.dir / "study/sourcedata"), {})
 
     def test_a_tactor_that_is_not_felt_ends_it_and_may_be_driven_again(self):
         result = self.refused(1, *self.args(), stdin="y\nr\nx\ny\nb\ny\nn\n", says=("tactor 1: it was not felt", "--walk"))

@@ -40,6 +40,7 @@ int hold_session(const prepared_experiment& p, const experiment_options& o, cons
         say(stdout, "{}: the session is finished\n", who);
         return status_ok;
     }
+    store.try_to_write(p.definition.runs);
     int signal = 0;
     if (o.simulate) {
         store.begin(p.stimuli.all());

@@ -2,6 +2,7 @@
 #include "study/bids/describe.hpp"
 
 #include <array>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,6 +16,10 @@ using ordered = nlohmann::ordered_json;
 
 constexpr const char* simulated_note = "SIMULATED: nobody was asked. The answers come from a model; they "
                                        "test the software and say nothing about people.";
+
+// How a data set says what wrote it.
+constexpr std::string_view held_by = "tactor experiment";
+constexpr std::string_view simulated_by = "tactor experiment --simulate";
 
 std::string description_text(const ordered& j)
 {
@@ -50,12 +55,28 @@ std::string dataset_text(const experiment_definition& d, bool simulated)
               {"BIDSVersion", "1.8.0"},
               {"DatasetType", "raw"}};
     j["Authors"] = d.authors;
-    j["GeneratedBy"] = {
-        {{"Name", "tactor"},
-         {"Version", std::string(version())},
-         {"Description", simulated ? std::string("tactor experiment --simulate. ") + simulated_note
-                                   : std::string("tactor experiment")}}};
+    j["GeneratedBy"] = {{{"Name", "tactor"},
+                         {"Version", std::string(version())},
+                         {"Description", simulated ? fmt::format("{}. {}", simulated_by, simulated_note)
+                                                   : std::string(held_by)}}};
     return description_text(j);
+}
+
+std::optional<bool> says_simulated(const std::string& dataset_description)
+{
+    const ordered j = ordered::parse(dataset_description, nullptr, false);
+    if (!j.is_object() || !j.contains("GeneratedBy") || !j["GeneratedBy"].is_array())
+        return {};
+    for (const ordered& by : j["GeneratedBy"]) {
+        const std::string text = by.is_object() && by.contains("Description") && by["Description"].is_string()
+                                     ? by["Description"].get<std::string>()
+                                     : std::string();
+        if (text.starts_with(simulated_by))
+            return true;
+        if (text.starts_with(held_by))
+            return false;
+    }
+    return {};
 }
 
 std::string readme_text(const experiment_definition& d, bool simulated)

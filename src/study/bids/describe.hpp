@@ -3,6 +3,7 @@
 /// The texts of the files that describe a study. Each says so where nobody was asked.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "study/experiment/definition.hpp"
@@ -11,6 +12,8 @@ namespace tactor::study {
 
 /// dataset_description.json
 std::string dataset_text(const experiment_definition& d, bool simulated);
+/// What a dataset_description.json says of that; nothing where tactor experiment did not write it.
+std::optional<bool> says_simulated(const std::string& dataset_description);
 /// README
 std::string readme_text(const experiment_definition& d, bool simulated);
 /// participants.json

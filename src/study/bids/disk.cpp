@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "study/bids/disk.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
@@ -11,6 +12,8 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include <fmt/format.h>
 
 #include <tactor/error.hpp>
 
@@ -107,6 +110,30 @@ void make_folder(const fs::path& folder)
     if (code != EEXIST || !fs::is_directory(folder, ignored))
         throw error(error_kind::runtime, folder.string(), std::strerror(code == EEXIST ? ENOTDIR : code),
                     "name a folder that can be written");
+}
+
+void try_to_write(const fs::path& file)
+{
+    fs::path folder = file.parent_path();
+    while (!there(folder))
+        folder = folder.parent_path();
+    const std::string tail = ".part"; // remove_leftovers() knows it, should this end here
+    const std::size_t length = std::max(file.filename().string().size(), tail.size() + 2);
+    const fs::path probe = folder / ("." + std::string(length - tail.size() - 1, 'x') + tail);
+    const detail::owned_fd fd(::open(probe.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666));
+    if (fd && (!there(file) || ::access(file.c_str(), W_OK) == 0)) {
+        ::unlink(probe.c_str());
+        return;
+    }
+    const int code = errno;
+    ::unlink(probe.c_str());
+    const bool named_so = code == ENAMETOOLONG;
+    throw error(named_so || code == ENOTDIR ? error_kind::bad_input : error_kind::runtime, file.string(),
+                fmt::format("it could not be written: {}", std::strerror(code)),
+                named_so ? "a shorter code of the participant, or name of the run"
+                : code == ENOSPC || code == EDQUOT
+                    ? "free some space; nobody was asked anything yet"
+                    : "name a folder that can be written; nobody was asked anything yet");
 }
 
 void remove_leftovers(const fs::path& folder) noexcept

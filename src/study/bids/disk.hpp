@@ -26,6 +26,11 @@ bool there(const std::filesystem::path& p) noexcept;
 /// Makes a folder, where it is not there, in one that is. \throws error (runtime).
 void make_folder(const std::filesystem::path& folder);
 
+/// Whether a file can be written under this name, when its folders will have been made: tried with another
+/// name of that length. \throws error: bad_input for a name that cannot be, runtime for what the system
+/// refuses.
+void try_to_write(const std::filesystem::path& file);
+
 /// Removes what a crash left of write_whole() in a folder.
 void remove_leftovers(const std::filesystem::path& folder) noexcept;
 

@@ -62,7 +62,7 @@ void session_store::settle(bool resume)
 {
     const fs::path file = source_ / "session.json";
     const fs::path data = folder_.path() / ("sub-" + code_) / "beh";
-    for (const fs::path& p : {source_, source_ / "plans", data.parent_path(), data})
+    for (const fs::path& p : {source_.parent_path(), source_, source_ / "plans", data.parent_path(), data})
         remove_leftovers(p);
     if (!there(file)) {
         if (there(data))
@@ -90,6 +90,14 @@ void session_store::settle(bool resume)
     resumed_ = true;
 }
 
+void session_store::try_to_write(const std::vector<run_definition>& runs) const
+{
+    folder_.try_to_write(code_);
+    for (const run_definition& r : runs)
+        study::try_to_write(table_of(r));
+    study::try_to_write(source_ / "session.json");
+}
+
 void session_store::begin(const std::vector<const stimulus*>& stimuli)
 {
     make_folder(folder_.path() / "sourcedata");
@@ -103,6 +111,7 @@ void session_store::begin(const std::vector<const stimulus*>& stimuli)
     }
     if (!resumed_)
         write_whole(source_ / "session.json", session_text(facts_));
+    folder_.describe();
 }
 
 fs::path session_store::table_of(const run_definition& r) const

@@ -31,7 +31,11 @@ public:
     session_store(const session_store&) = delete;
     session_store& operator=(const session_store&) = delete;
 
-    /// Writes session.json, where it is not there, and each plan under its hash.
+    /// Whether there will be a place for each answer, before anybody is asked: tries each name that is to be
+    /// written. \throws as study::try_to_write().
+    void try_to_write(const std::vector<run_definition>& runs) const;
+
+    /// Writes session.json, where it is not there, and each plan under its hash, and what is of the study.
     void begin(const std::vector<const stimulus*>& stimuli);
 
     /// Whether this session goes on with one that was begun.

@@ -17,17 +17,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What is hidden does not count: a file manager's, or what a crash left.
-bool has_anything(const fs::path& folder)
+// What is hidden does not count: a file manager's, or what a crash left; nor does sourcedata, which is all
+// that there is of a session whose begin was broken off.
+bool has_other_things(const fs::path& folder)
 {
     std::error_code failed;
-    for (const fs::directory_entry& e : fs::directory_iterator(folder, failed))
-        if (!e.path().filename().string().starts_with('.'))
+    for (const fs::directory_entry& e : fs::directory_iterator(folder, failed)) {
+        const std::string name = e.path().filename().string();
+        if (!name.starts_with('.') && name != "sourcedata")
             return true;
+    }
     return false;
 }
 
-const fs::path& made(const fs::path& folder)
+// Whether it was not there before.
+bool made(const fs::path& folder)
 {
     if (folder.empty())
         throw error(error_kind::bad_input, "-o", "the folder's name is empty", "name a folder");
@@ -38,8 +42,9 @@ const fs::path& made(const fs::path& folder)
                     fmt::format("the folder \"{}\" does not exist", parent.string()), "make it first");
     if (there(folder) && !fs::is_directory(folder, ignored))
         throw error(error_kind::bad_input, folder.string(), "it is no folder", "name a folder for the study");
+    const bool is_new = !there(folder);
     make_folder(folder);
-    return folder;
+    return is_new;
 }
 
 // The lines of a table, without their ends; CR LF is as good.
@@ -93,14 +98,24 @@ void check_code(const std::string& code)
 }
 
 study_folder::study_folder(fs::path folder, const experiment_definition& d, bool simulated)
-    : folder_(folder.has_filename() ? std::move(folder) : folder.parent_path()), lock_(made(folder_))
+    : folder_(folder.has_filename() ? std::move(folder) : folder.parent_path()),
+      is_new_(made(folder_)),
+      lock_(folder_),
+      definition_(d),
+      simulated_(simulated)
 {
     remove_leftovers(folder_);
-    if (!there(folder_ / "dataset_description.json") && has_anything(folder_))
+    if (!there(folder_ / "dataset_description.json") && has_other_things(folder_))
         throw error(error_kind::bad_input, folder_.string(), "there are other things in it",
                     "a study needs a folder of its own");
     refuse_others(d, simulated);
-    describe(d, simulated);
+}
+
+study_folder::~study_folder()
+{
+    std::error_code not_empty;
+    if (is_new_)
+        fs::remove(folder_, not_empty);
 }
 
 void study_folder::refuse_others(const experiment_definition& d, bool simulated) const
@@ -123,19 +138,40 @@ void study_folder::refuse_others(const experiment_definition& d, bool simulated)
                                     who, s.experiment.name),
                         "each experiment needs a folder of its own");
     }
+    const fs::path description = folder_ / "dataset_description.json";
+    if (there(description) && says_simulated(read_file(description)).value_or(simulated) != simulated)
+        throw error(error_kind::bad_input, description.string(),
+                    fmt::format("it is of {} sessions, and this one is {}", simulated ? "real" : "simulated",
+                                simulated ? "simulated" : "real"),
+                    "simulated and real sessions need a folder each");
 }
 
-void study_folder::describe(const experiment_definition& d, bool simulated) const
+void study_folder::try_to_write(const std::string& code) const
 {
-    const auto put = [&](const std::string& name, const std::string& text) {
-        if (!there(folder_ / name))
-            write_whole(folder_ / name, text);
+    for (const run_definition& r : definition_.runs)
+        if (const fs::path file = description_of(r); !there(file))
+            study::try_to_write(file);
+    study::try_to_write(folder_ / "participants.tsv");
+    study::try_to_write(scans_of(code));
+}
+
+void study_folder::describe() const
+{
+    const auto put = [](const fs::path& file, const std::string& text) {
+        if (!there(file))
+            write_whole(file, text);
     };
-    put("dataset_description.json", dataset_text(d, simulated)); // first: by it the folder is known
-    put("README", readme_text(d, simulated));
-    put("participants.json", participants_text(simulated));
-    for (const run_definition& r : d.runs)
-        put(fmt::format("task-{}_beh.json", r.outline.file_name), task_text(r, simulated));
+    // First: by it the folder is known.
+    put(folder_ / "dataset_description.json", dataset_text(definition_, simulated_));
+    put(folder_ / "README", readme_text(definition_, simulated_));
+    put(folder_ / "participants.json", participants_text(simulated_));
+    for (const run_definition& r : definition_.runs)
+        put(description_of(r), task_text(r, simulated_));
+}
+
+fs::path study_folder::description_of(const run_definition& r) const
+{
+    return folder_ / fmt::format("task-{}_beh.json", r.outline.file_name);
 }
 
 fs::path study_folder::scans_of(const std::string& code) const

@@ -19,14 +19,26 @@ void check_code(const std::string& code);
 /// Holds the folder, alone, as long as it lives. One thread.
 class study_folder {
 public:
-    /// Makes the folder, or takes one that is a study's, and writes what is of the study where it is not
-    /// there yet: dataset_description.json, README, participants.json, a description of each run's table.
+    /// Makes the folder, or takes one that is a study's. `d` must live as long. One that was made and is
+    /// empty at the end is removed.
     /// \throws error: bad_input where the folder has other things in it, another session is running in it, or
     ///         somebody in it had another experiment, or was real where this is simulated, or the other way
     ///         round; runtime for what the system refuses.
     study_folder(std::filesystem::path folder, const experiment_definition& d, bool simulated);
+    ~study_folder();
+    study_folder(const study_folder&) = delete;
+    study_folder& operator=(const study_folder&) = delete;
 
     const std::filesystem::path& path() const noexcept { return folder_; }
+
+    /// Tries whether what is of the study, and lists a participant, can be written. \throws as
+    /// study::try_to_write().
+    void try_to_write(const std::string& code) const;
+
+    /// Writes what is of the study where it is not there yet: dataset_description.json, README,
+    /// participants.json, a description of each run's table. Where there is a session.json already, which
+    /// says what the folder is of. \throws error (runtime).
+    void describe() const;
 
     /// Adds a line to participants.tsv, with n/a in what it asks besides; nothing where there is one.
     void add_participant(const std::string& code);
@@ -39,11 +51,14 @@ public:
 
 private:
     void refuse_others(const experiment_definition& d, bool simulated) const;
-    void describe(const experiment_definition& d, bool simulated) const;
+    std::filesystem::path description_of(const run_definition& r) const;
     std::filesystem::path scans_of(const std::string& code) const;
 
     std::filesystem::path folder_;
+    bool is_new_;
     folder_lock lock_;
+    const experiment_definition& definition_;
+    bool simulated_;
 };
 
 } // namespace tactor::study
