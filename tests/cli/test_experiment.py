@@ -37,6 +37,16 @@ class Definition(ExperimentTest):
                 self.assertEqual(result.stdout, "")
             self.assertFalse((self.dir / "study").exists())
 
+    def test_advice_names_the_definition_s_keys(self):
+        for old, new, says in (
+                ("gap_s = 0.25", "level = { sl_db = 50 }", "(lower level.sl_db by 10.00 dB or more)"),
+                ('path = "M0 20H40"', 'path = "M0 20H90"', "(the method's outside, \"clamp\", plays the nearest point"),
+                ("duration = 0.7", "duration = 0.01", "; or the method's drop-points, true, leaves places out)"),
+                ('path = "M0 20H40"', 'path = "M3 17H40"', "(the method's snap, true, moves it there)")):
+            self.small(SMALL.replace(old, new, 1))
+            said = self.refused(2, "experiment", "small.toml", "--dry-run", says=(says,)).stderr
+            self.assertNotIn("--", said)
+
     def test_options_that_are_wrong(self):
         self.small()
         for args, says in (((), ("--participant",)),
@@ -151,6 +161,27 @@ class DryRun(ExperimentTest):
             plan = json.loads((self.dir / f"study/sourcedata/sub-01/plans/{stimulus['sha256']}.json").read_text())
             for peak in plan["render"]["peak_dbfs"]:
                 self.assertAlmostEqual(peak, 7 + {"park": -20, "brush": -40}[stimulus["method"]])
+
+    def felt(self, name, thresholds, extra=""):
+        self.write(name, '[array]\nname = "felt"\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n' + "".join(
+            f"[[tactor]]\ntactor = {i}\nthreshold_dbfs = {t}\n{extra if i == 8 else ''}" for i, t in enumerate(thresholds)))
+        return name
+
+    def test_the_walk_is_checked_and_has_the_methods_carrier(self):
+        # Along the middle row: tactor 8 is driven in the walk alone.
+        small = self.small(re.sub(r'\[\[motion\]\]\nname = "down".*?(?=\[\[method)', "", SMALL[:SMALL.rindex("[[run]]")], flags=re.S))
+        for felt in (self.felt("high.toml", [-40] * 8 + [-2]), self.felt("weak.toml", [-40] * 9, "max_dbfs = -60\n")):
+            said = self.refused(2, "experiment", small, "--dry-run", "--array", felt,
+                                says=("in the walk before the runs: tactor 8 would be driven at", "lower level.sl_db by"))
+            self.assertEqual(said.stdout, "")
+            self.refused(2, "experiment", small, "--array", felt, "--participant", "01", "-o", "study", "-D", "null",
+                         says=("tactor 8",))
+            self.assertFalse((self.dir / "study").exists())
+            self.simulate(definition=small, folder=felt[:4])  # nobody takes that walk
+        at_100 = self.small(SMALL.replace('algorithm = "', 'carrier = 100\nalgorithm = "'))
+        felt = self.felt("low.toml", ["[[100, -20], [250, -2]]"] * 9)
+        self.dry(at_100, "--array", felt)
+        self.refused(2, "experiment", self.small(), "--dry-run", "--array", felt, says=("would be driven at 5 dBFS",))
 
     def test_tactors_without_a_threshold_beside_some_with_several(self):
         self.write("some.toml", '[array]\nname = "some"\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n'

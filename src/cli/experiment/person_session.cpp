@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "cli/check/walk.hpp"
+#include "cli/experiment/array_walk.hpp"
 #include "cli/experiment/participant_screen.hpp"
 #include "cli/experiment/trials.hpp"
 #include "cli/say.hpp"
@@ -19,7 +20,6 @@ namespace {
 using json = nlohmann::ordered_json;
 using study::step_kind;
 
-constexpr double walk_carrier_hz = 250.0;
 constexpr const char* go_on = "what was answered is kept; --resume goes on";
 
 // Where the session is, for the flow.
@@ -128,7 +128,7 @@ void person_session::walk(unsigned tactor)
     if (tactor == 0)
         show(fmt::format("Each tactor vibrates once, in turn.\n\n{}\n", numbered_map(a)));
     on_page(walk_screen(p_, tactor, false));
-    const score s(a, walk_one(a, tactor, walk_carrier_hz).plans.front().schedule, p_.render);
+    const score s = walk_score(p_.definition, a, p_.render, tactor);
     const given_stimulus g = [&] {
         const noise_around noise(stage_);
         return stage_.give(fmt::format("tactor {}", tactor), s, 0.0, [](std::uint64_t) {});

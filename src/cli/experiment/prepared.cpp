@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/experiment/array_walk.hpp"
 #include "cli/experiment/limit_check.hpp"
 #include "cli/plan/plan_output.hpp"
 #include "cli/plan/plan_sound.hpp"
@@ -195,12 +196,14 @@ prepared_experiment prepare(const experiment_options& o, settings& s, option_lis
                                 [&](const stroke& k, const plan& p, const score& sounds) {
                                     return plan_text(e, render, k, p, sounds);
                                 });
+    const bool real = !o.dry_run && !o.simulate;
+    if (real || o.dry_run)
+        check_walk(d, e.tactors, render);
     check_limits(d, runs, stimuli, limits_of({}, e));
     std::vector<std::string> warnings = stimuli.warnings();
     if (assumed)
         warnings.push_back(
             fmt::format("tactors without a threshold: {} dBFS is taken for it", assumed_threshold_dbfs));
-    const bool real = !o.dry_run && !o.simulate;
     const std::string pcm = real ? device_options(s, {}, e, render.channels, render.rate).pcm : "null";
     return {std::move(d),
             code,

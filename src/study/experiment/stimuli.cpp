@@ -9,6 +9,7 @@
 
 #include <tactor/error.hpp>
 
+#include "study/experiment/definition_words.hpp"
 #include "study/random/sha256.hpp"
 
 namespace tactor::study {
@@ -66,7 +67,7 @@ stimulus stimulus_set::make(const motion_definition& motion, const method_defini
         return error(e.kind(), motion.where,
                      fmt::format("motion \"{}\" by method \"{}\" (line {}): {}: {}", motion.name, method.name,
                                  method.where.line, e.subject(), e.why()),
-                     e.hint());
+                     in_definition_words(e.hint()));
     };
     try {
         if (motion.drawn.motion.duration_s() > longest_stimulus_s)
