@@ -389,6 +389,12 @@ class Folder(ExperimentTest):
         self.simulate("02", definition="small.toml",
                       run=lambda *a: self.refused(2, *a, says=("another experiment", "folder of its own")))
 
+    def test_a_definition_that_was_changed_meanwhile_is_told(self):
+        self.assertNotIn("another text", self.simulate("02").stderr + self.simulate("01").stderr)
+        self.small(SMALL.replace("gap_s = 0.25", "gap_s = 0.5"))
+        told = self.simulate("03", definition="small.toml").stderr
+        self.assertIn("warning: study: sub-01, sub-02 had another text of this definition", told)
+
     def test_two_experimenters_in_one_folder(self):
         self.simulate()
         holder = os.open(self.dir / "study", os.O_RDONLY)

@@ -389,6 +389,14 @@ class Masking(PersonTest):
         pieces = self.covered("noise.raw")
         self.assertIn(len(pieces), range(1, 5))  # two tactors of the walk, two runs
 
+    def test_headphones_that_have_another_name_by_now(self):
+        args = self.args(definition=self.noisy())
+        self.refused(1, *args, "--masker", "raw:one.raw", stdin=AGREED + "1\n", says=("no answer any more",))
+        self.refused(2, *args, "--resume", says=('begun with masker "raw:one.raw", and now it is null',))
+        self.ok(*args, "--masker", "raw:two.raw", "--resume", stdin="y\ny\n" + "1\n2\n1\n2\n")
+        s = self.session()
+        self.assertEqual((s["masker"], [one["masker"] for one in s["streams"]]), ("raw:one.raw", ["raw:one.raw", "raw:two.raw"]))
+
     def test_its_level_is_checked_by_ear(self):
         check = ("experiment", self.noisy(), "--check-noise", "-D", "null")
         said = self.ok(*check, "--masker", "raw:noise.raw", stdin="s\ns\nn\nx\nn\nq\n").stdout

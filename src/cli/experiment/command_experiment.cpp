@@ -33,6 +33,8 @@ int hold_session(const prepared_experiment& p, const experiment_options& o, cons
     const sound_servers between = o.simulate ? sound_servers{} : check_real_session(p, o, s);
     net::owned_fd listening = o.simulate ? net::owned_fd() : open_page(o.page);
     study::study_folder folder(o.folder, p.definition, o.simulate.has_value());
+    for (const std::string& w : folder.warnings())
+        say(stderr, "tactor: warning: {}: {}\n", o.folder, w);
     study::session_store store(folder, p.participant, session_facts(p, o), o.resume);
     const std::string who =
         fmt::format("sub-{}{}", p.participant, o.simulate ? ": SIMULATED, nobody was asked" : "");

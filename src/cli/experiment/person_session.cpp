@@ -22,6 +22,11 @@ using study::step_kind;
 
 constexpr const char* go_on = "what was answered is kept; --resume goes on";
 
+json name_or_null(const std::string& name)
+{
+    return name.empty() ? json(nullptr) : json(name);
+}
+
 // Where the session is, for the flow.
 study::session_flow flow_of(const prepared_experiment& p, const study::session_store& store)
 {
@@ -39,13 +44,12 @@ study::session_flow flow_of(const prepared_experiment& p, const study::session_s
 } // namespace
 
 person_session::person_session(const prepared_experiment& p, study::session_store& store, stage& s,
-                               const answering& with, std::string pcm, sound_servers between)
+                               const answering& with, session_devices devices)
     : p_(p),
       store_(store),
       stage_(s),
       page_(with.page),
-      pcm_(std::move(pcm)),
-      between_(std::move(between)),
+      devices_(std::move(devices)),
       keys_(s, with),
       flow_(flow_of(p, store))
 {
@@ -169,11 +173,8 @@ void person_session::begin_store()
     if (agreed_)
         store_.note("consent", now);
     store_.note("walk", walked_);
-    const auto named = [](const std::string& server) {
-        return server.empty() ? json(nullptr) : json(server);
-    };
-    store_.note("sound_server", named(between_.array));
-    store_.note("masker_sound_server", named(between_.masker));
+    store_.note("sound_server", name_or_null(devices_.between.array));
+    store_.note("masker_sound_server", name_or_null(devices_.between.masker));
     note_stream();
 }
 
@@ -187,7 +188,8 @@ void person_session::note_stream()
     json all = store_.facts().contains("streams") ? store_.facts()["streams"] : json::array();
     all.push_back({{"stream", stream_},
                    {"opened", study::acq_time_text(study::utc_now_ns())},
-                   {"device", pcm_},
+                   {"device", devices_.pcm},
+                   {"masker", name_or_null(devices_.masker)},
                    {"display", page_ != nullptr ? "page" : "terminal"},
                    {"format", std::string(to_string(d.format))},
                    {"period_frames", d.period_frames},
@@ -203,7 +205,7 @@ void person_session::find_device()
         return;
     on_page(idle_screen(p_, "wait"));
     if (!stage_.reopen())
-        throw error(error_kind::runtime, pcm_, "it did not come back", go_on);
+        throw error(error_kind::runtime, devices_.pcm, "it did not come back", go_on);
     note_stream();
 }
 

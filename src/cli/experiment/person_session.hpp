@@ -19,12 +19,18 @@
 
 namespace tactor::cli {
 
+/// What sounds, for the data.
+struct session_devices {
+    std::string pcm;
+    std::string masker = {}; ///< empty: none
+    sound_servers between = {};
+};
+
 class person_session {
 public:
-    /// `pcm` and `between` are for the data. `page` (null: the terminal) is the participant's.
-    /// All must live as long.
+    /// `page` (null: the terminal) is the participant's. All must live as long.
     person_session(const prepared_experiment& p, study::session_store& store, stage& s, const answering& with,
-                   std::string pcm, sound_servers between);
+                   session_devices devices);
 
     /// All that is left of the session. \throws stage::left; error: runtime where nobody agreed, a tactor was
     /// not felt, there is no answer any more, the device did not come back, or the system refuses to write.
@@ -70,8 +76,7 @@ private:
     study::session_store& store_;
     stage& stage_;
     participant_page* page_;
-    std::string pcm_;
-    sound_servers between_;
+    session_devices devices_;
     session_keys keys_;
     study::session_flow flow_;
     std::optional<run_table> practice_ = {}; ///< of the run that is on

@@ -120,7 +120,7 @@ int hold_real_session(const prepared_experiment& p, const experiment_options& o,
         page.emplace(p.definition.page, p.where.tactors, std::move(listening));
     return until_left(*there, [&] {
         const answering with{page ? &*page : nullptr, o.keypads};
-        person_session(p, store, *there, with, p.pcm, between).hold();
+        person_session(p, store, *there, with, {p.pcm, o.masker, between}).hold();
     });
 }
 

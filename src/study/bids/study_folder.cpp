@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <tactor/error.hpp>
 
@@ -118,8 +119,9 @@ study_folder::~study_folder()
         fs::remove(folder_, not_empty);
 }
 
-void study_folder::refuse_others(const experiment_definition& d, bool simulated) const
+void study_folder::refuse_others(const experiment_definition& d, bool simulated)
 {
+    std::vector<std::string> otherwise;
     std::error_code failed;
     for (const fs::directory_entry& e : fs::directory_iterator(folder_ / "sourcedata", failed)) {
         const fs::path file = e.path() / "session.json";
@@ -137,6 +139,14 @@ void study_folder::refuse_others(const experiment_definition& d, bool simulated)
                         fmt::format("{} had another experiment: \"{}\" with other runs, motions or methods",
                                     who, s.experiment.name),
                         "each experiment needs a folder of its own");
+        if (s.text != d.text)
+            otherwise.push_back(who);
+    }
+    if (!otherwise.empty()) {
+        std::sort(otherwise.begin(), otherwise.end());
+        warnings_.push_back(fmt::format("{} had another text of this definition: levels, gaps, methods and "
+                                        "motions may have been others (session.json has them)",
+                                        fmt::join(otherwise, ", ")));
     }
     const fs::path description = folder_ / "dataset_description.json";
     if (there(description) && says_simulated(read_file(description)).value_or(simulated) != simulated)

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "study/bids/disk.hpp"
 #include "study/experiment/definition.hpp"
@@ -31,6 +32,9 @@ public:
 
     const std::filesystem::path& path() const noexcept { return folder_; }
 
+    /// What differs from the sessions that are there and is allowed to, a sentence each.
+    const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+
     /// Tries whether what is of the study, and lists a participant, can be written. \throws as
     /// study::try_to_write().
     void try_to_write(const std::string& code) const;
@@ -50,7 +54,7 @@ public:
     std::optional<std::string> scan_time(const std::string& code, const std::string& file_name) const;
 
 private:
-    void refuse_others(const experiment_definition& d, bool simulated) const;
+    void refuse_others(const experiment_definition& d, bool simulated);
     std::filesystem::path description_of(const run_definition& r) const;
     std::filesystem::path scans_of(const std::string& code) const;
 
@@ -59,6 +63,7 @@ private:
     folder_lock lock_;
     const experiment_definition& definition_;
     bool simulated_;
+    std::vector<std::string> warnings_ = {};
 };
 
 } // namespace tactor::study
