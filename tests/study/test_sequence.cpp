@@ -207,5 +207,14 @@ TEST_CASE("an order that cannot be found is refused, and one motion is no order"
     CHECK(make_run(with_run(many, 1), 0, "01", 1).trials.size() == 200);
 }
 
+TEST_CASE("of long runs fewer orders are drawn, so that it is known soon that there is none")
+{
+    static_assert(most_draws(1) == 1000000);
+    static_assert(most_draws(200) == 1000000);
+    static_assert(most_draws(10000) == 20000);
+    const std::string many = "task = \"rate\"\nattribute = \"similarity\"\ntrials = 10000\n";
+    CHECK(has(message_of([&] { make_run(with_run(many, 2), 0, "01", 1); }), "no order of 10000 trials"));
+}
+
 } // namespace
 } // namespace tactor::study::test_sequence

@@ -16,8 +16,6 @@
 namespace tactor::study {
 namespace {
 
-constexpr unsigned most_draws = 1000000;
-
 bool is_digit(char c)
 {
     return c >= '0' && c <= '9';
@@ -121,9 +119,9 @@ run_sequence make_run(const experiment_definition& d, std::size_t run, std::stri
     const run_definition& r = d.runs[run];
     random_numbers numbers(fmt::format("{}/{}/{}/{}", seed, d.name, code, r.outline.name));
     run_sequence s{run, {}, balanced(r, r.outline.trials, numbers)};
-    unsigned draws = 0;
+    std::size_t draws = 0;
     do {
-        if (++draws > most_draws)
+        if (++draws > most_draws(r.outline.trials))
             throw error(
                 error_kind::bad_input, r.where,
                 fmt::format("no order of {} trials was found in which no motion comes {} times in a row",

@@ -3,6 +3,7 @@
 /// In which order somebody gets the runs of an experiment, and the trials of each: the same on every machine.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -33,6 +34,12 @@ struct run_sequence {
 
 /// No more than so many trials with the same motion follow each other.
 inline constexpr std::size_t most_in_a_row = 3;
+
+/// How many orders of so many trials are drawn before it is said that none was found: a second or two.
+constexpr std::size_t most_draws(std::size_t trials) noexcept
+{
+    return std::min(std::size_t{1000000}, std::size_t{200000000} / std::max(trials, std::size_t{1}));
+}
 
 /// The seed where nobody says one: the first four bytes of the code's SHA-256.
 std::uint64_t seed_of(std::string_view code);
