@@ -30,7 +30,8 @@ class Definition(ExperimentTest):
                 ("duration = 0.7", "duration = 0.01", ("small.toml:6:", "method \"brush\"")),
                 ("gap_s = 0.25", "level = { sl_db = 50 }", ("full scale",)),
                 ("trials = 4", "trials = 0", ("small.toml:25:", "trials is 0")),
-                ('name = "how good"', 'name = "which one"', ("small.toml:", "one name"))):
+                ('name = "how good"', 'name = "which one"', ("small.toml:", "one name")),
+                ('name = "how good"', 'name = "Which One"', ("small.toml:28:", "differ in capitals only"))):
             self.small(SMALL.replace(old, new, 1))
             for more in (("--dry-run",), ("--participant", "01", "-o", "study", "--simulate", "seed=1")):
                 result = self.refused(2, "experiment", "small.toml", *more, says=says)
@@ -58,6 +59,12 @@ class Definition(ExperimentTest):
                            (("--simulate", "sigma=x"), ("--simulate", "sigma")),
                            (("--format", "xml"), ("text, json",))):
             self.refused(2, "experiment", "small.toml", *args, says=says)
+        for args, says in ((("--power", "4", "--check-noise", "--masker", "null"), ("--power", "nobody sits there")),
+                           (("--power", "4", "--display", "page"), ("--power", "nobody sits there")),
+                           (("--participant", "01", "-o", "study", "--format", "json"), ("--format", "only --dry-run")),
+                           (("--participant", "01", "-o", "study", "--masker", "null"), ("--masker", "nobody hears it")),
+                           (("--dry-run", "-o", "study", "--resume"), ("--resume", "no session is held"))):
+            self.refused(2, "experiment", "small.toml", "--simulate", "seed=1", *args, says=says)
         self.refused(2, "experiment", "park2061", "--dry-run", says=("park2016, or a file",))
         self.refused(2, "experiment", "none.toml", "--dry-run", says=("none.toml",))
 

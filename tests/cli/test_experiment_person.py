@@ -341,6 +341,22 @@ class ByLines(PersonTest):
         # Over the gap between two streams the clock of the day counts.
         self.assertGreater(float(rows[1]["onset"]), float(rows[0]["duration"]))
 
+    def test_a_session_that_ended_before_its_date_was_written_has_one(self):
+        self.refused(1, *self.args(), stdin=AGREED, says=("no answer any more",))
+        file = self.dir / "study/sourcedata/sub-01/session.json"
+        began = json.loads(file.read_text())
+        self.assertRegex(began["date"], r"^20\d\d-")
+        file.write_text(json.dumps(began | {"date": None}))
+        self.ok(*self.args("--resume"), stdin="y\ny\n" + "1\n" * 5)
+        self.assertRegex(self.session()["date"], r"^20\d\d-")
+
+    def test_authors_that_nobody_put_in_are_warned_of(self):
+        self.assertNotIn("authors", self.refused(1, *self.args(), stdin="n\n", says=("agree",)).stderr)
+        for said, warned in (("put your names here", True), ("A. Author", False)):
+            self.write("short.toml", SHORT.replace("gap_s", f'authors = ["{said}"]\ngap_s', 1))
+            told = self.refused(1, *self.args(), stdin="n\n", says=("agree",)).stderr
+            self.assertEqual('the data will say "put your names here"' in told, warned)
+
     def test_a_keypad_that_is_none_is_told_before_anything_is_written(self):
         self.refused(2, *self.args("--keypad", "/dev/null"), stdin=AGREED, says=("/dev/null: it is no input device",))
         self.refused(3, *self.args("--keypad", "/dev/input/nobody"), stdin=AGREED, says=("/dev/input/nobody: No such file",))

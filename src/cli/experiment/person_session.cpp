@@ -168,7 +168,7 @@ void person_session::begin_store()
         return;
     const std::string now = study::acq_time_text(study::utc_now_ns());
     store_.begin(p_.stimuli.all());
-    if (!store_.resumed())
+    if (store_.facts()["date"].is_null()) // new, or ended before it was written down
         store_.note("date", now);
     if (agreed_)
         store_.note("consent", now);

@@ -71,6 +71,17 @@ void warn_of_null(const std::string& pcm)
             pcm);
 }
 
+// What the shipped definition says in their place would be in the data for good.
+void warn_of_authors(const prepared_experiment& p)
+{
+    const std::vector<std::string>& said = p.definition.authors;
+    if (!said.empty() && said == study::load_definition("park2016").authors)
+        say(stderr,
+            "tactor: warning: the data will say \"{}\" for their authors (authors in a copy of the "
+            "definition)\n",
+            said.front());
+}
+
 // Whoever is asked about the target must have seen it.
 void warn_of_animation(const prepared_experiment& p)
 {
@@ -93,6 +104,7 @@ sound_servers check_real_session(const prepared_experiment& p, const experiment_
     if (!o.masker.empty())
         between.masker = check_server(o.masker, masker_cure, o);
     warn_of_null(p.pcm);
+    warn_of_authors(p);
     if (!o.page.shown())
         warn_of_animation(p);
     return between;

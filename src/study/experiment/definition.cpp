@@ -196,6 +196,25 @@ run_definition run_in(const toml_table& t)
     return r;
 }
 
+std::string without_capitals(std::string text)
+{
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    return text;
+}
+
+// Not every disk tells capitals from small letters.
+void check_file_names(const std::vector<run_definition>& runs)
+{
+    for (std::size_t i = 0; i < runs.size(); ++i)
+        for (std::size_t k = 0; k < i; ++k)
+            if (without_capitals(runs[i].outline.file_name) == without_capitals(runs[k].outline.file_name))
+                throw error(error_kind::bad_input, runs[i].where,
+                            fmt::format("the runs \"{}\" and \"{}\" differ in capitals only",
+                                        runs[k].outline.name, runs[i].outline.name),
+                            "another name: on some disks their files would be one");
+}
+
 template <class T, class Read>
 std::vector<T> read_all(const toml_table& root, std::string_view key, const Read& read)
 {
@@ -238,6 +257,7 @@ experiment_definition read_definition(std::string_view toml, const std::string& 
     const toml::table document = detail::parse_toml(toml, name);
     const toml_table root(document, "the file", name);
     experiment_definition d = design_in(root, toml, name, &folder);
+    check_file_names(d.runs);
     d.motions = read_all<motion_definition>(root, "motion",
                                             [&](const toml_table& t) { return read_motion(t, folder); });
     for (run_definition& r : d.runs) {
