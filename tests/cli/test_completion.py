@@ -99,6 +99,8 @@ class Completion(ToolTest):
         self.assertEqual(self.offered("experiment", ""), ["park2016", ":files .toml"])
         self.assertEqual(self.offered("experiment", "park2016", "-o", ""), [":folders"])
         self.assertEqual(self.offered("experiment", "--display", ""), ["page", "terminal"])
+        for command in ("experiment", "calibrate"):
+            self.assertIn("--verbose", self.offered(command, "--verb"))
         self.assertEqual(self.offered("analyze", "--format", "t"), ["text", "tsv"])
         self.assertEqual(self.offered("analyze", "--participants", ""), [])
         self.assertEqual(self.offered("nonsense", ""), [])

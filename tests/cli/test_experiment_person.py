@@ -341,6 +341,18 @@ class ByLines(PersonTest):
         # Over the gap between two streams the clock of the day counts.
         self.assertGreater(float(rows[1]["onset"]), float(rows[0]["duration"]))
 
+    def test_what_becomes_of_the_stream_is_told_and_appended_to_a_file(self):
+        told = self.refused(1, *self.args("--verbose", "--log", "stream.log"), stdin="n\n", says=("did not agree",)).stderr
+        log = (self.dir / "stream.log").read_text()
+        for text in (told, log):
+            self.assertRegex(text, r"20\d\d-\d\d-\d\dT\S+ info ")
+        for args in (("--simulate", "seed=1"), ("--dry-run",), ("--print",)):
+            for more, says in ((("--verbose",), "--verbose"), (("--log", "x.log"), "--log")):
+                self.refused(2, *self.args(*args, *more), says=(f"{says}: nothing is played",))
+        self.refused(2, "experiment", "short.toml", "--power", "4", "--simulate", "seed=1", "--verbose", says=("--power",))
+        self.refused(2, *self.args("--log", ""), says=("--log: the name is empty",))
+        self.assertFalse((self.dir / "x.log").exists())
+
     def test_a_session_that_ended_before_its_date_was_written_has_one(self):
         self.refused(1, *self.args(), stdin=AGREED, says=("no answer any more",))
         file = self.dir / "study/sourcedata/sub-01/session.json"

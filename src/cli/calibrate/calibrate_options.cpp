@@ -231,6 +231,7 @@ void add_calibrate_options(CLI::App& c, calibrate_options& o)
     add_masker_options(c, o);
     add_page_options(c, o.page);
     add_keypad_option(c, o.keypads);
+    add_verbose_option(c, o.stream); // --log is the trials'
     add(c, "--log", "FILE.tsv", "a line for each trial (default: the output's name with .tsv)",
         [&o](const std::string& t) { o.log = t; });
     c.add_flag("--resume", o.resume, "go on with the session that the log is of");
@@ -261,6 +262,8 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
     check_staircase(c);
     check_masker(o);
     check_page_options(o.page, o.simulate.has_value());
+    if (o.simulate && o.stream.verbose)
+        refuse("--verbose", "nothing is played", "leave it out, or --simulate");
     if (o.simulate && !o.keypads.empty())
         refuse("--keypad", "nobody is asked", "leave it out, or --simulate");
     c.masker = masker_text(o);

@@ -81,7 +81,7 @@ int ask_person(study::calibration& c, study::calibration_log& log, const setting
                const calibrate_options& asked)
 {
     const render_options render = settle_render(s, e);
-    const play_options o;
+    const play_options& o = asked.stream;
     const alsa_options device = device_options(s, o, e, render.channels, render.rate);
     const std::string server = settle_server(device.pcm);
     person who(device, o, e, render, c.settings(), asked.keypads, open_page(asked.page));

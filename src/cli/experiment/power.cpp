@@ -148,9 +148,10 @@ void check_power_options(const power_options& p, const experiment_options& o)
     if (session || o.dry_run || o.print)
         refuse_power("--power", "it holds no session, and writes nothing",
                      "leave out --participant, -o, --resume, --dry-run and --print");
-    if (o.check_noise || o.page.shown() || !o.masker.empty() || !o.keypads.empty())
+    const bool told = o.stream.verbose || !o.stream.log.empty();
+    if (told || o.check_noise || o.page.shown() || !o.masker.empty() || !o.keypads.empty())
         refuse_power("--power", "nothing is played, and nobody sits there",
-                     "leave out --check-noise, --masker, --display, --page and --keypad");
+                     "leave out --check-noise, --masker, --display, --page, --keypad, --verbose and --log");
 }
 
 int tell_power(const prepared_experiment& e, const power_options& p, const experiment_options& o)

@@ -20,13 +20,6 @@ namespace {
 constexpr double patience_s = 3600.0; // for a device that was lost; Ctrl-C ends it before
 constexpr unsigned most_keys = 9;
 
-play_options session_play_options()
-{
-    play_options o;
-    o.reopen_s = patience_s;
-    return o;
-}
-
 void check_keys(const prepared_experiment& p)
 {
     for (const study::run_definition& r : p.definition.runs)
@@ -113,7 +106,8 @@ sound_servers check_real_session(const prepared_experiment& p, const experiment_
 std::unique_ptr<stage> open_stage(const prepared_experiment& p, const experiment_options& o,
                                   const settings& s)
 {
-    const play_options how = session_play_options();
+    play_options how = o.stream;
+    how.reopen_s = patience_s;
     const alsa_options device = device_options(s, how, p.where, p.render.channels, p.render.rate);
     auto there = std::make_unique<stage>(device, how, p.where);
     if (!o.masker.empty())

@@ -90,14 +90,15 @@ std::string pcm_name(const settings& s, const output_settings& out)
 
 } // namespace
 
-void add_stream_options(CLI::App& c, play_options& o)
+void add_verbose_option(CLI::App& c, play_options& o)
 {
-    add_latency(c, o);
-    c.add_flag("--require-realtime", o.require_realtime, "fail without real-time priority and locked memory");
-    c.add_flag("--no-gpio", o.no_gpio, "leave the lines of [amplifier] and [sync] alone");
-    add_limits(c, o);
     c.add_flag("--verbose", o.verbose,
                "tell on standard error what is agreed on, xruns, mutes, limits that act");
+}
+
+void add_log_options(CLI::App& c, play_options& o)
+{
+    add_verbose_option(c, o);
     c.add_option_function<std::string>(
          "--log",
          [&o](const std::string& t) {
@@ -107,6 +108,15 @@ void add_stream_options(CLI::App& c, play_options& o)
          },
          "append the same to a file")
         ->type_name("FILE");
+}
+
+void add_stream_options(CLI::App& c, play_options& o)
+{
+    add_latency(c, o);
+    c.add_flag("--require-realtime", o.require_realtime, "fail without real-time priority and locked memory");
+    c.add_flag("--no-gpio", o.no_gpio, "leave the lines of [amplifier] and [sync] alone");
+    add_limits(c, o);
+    add_log_options(c, o);
 }
 
 void add_play_options(CLI::App& c, play_options& o)

@@ -42,6 +42,9 @@ struct play_options {
 void add_play_options(CLI::App& command, play_options& into);
 /// Those of them that say how the array is driven: latency, rights, lines, limits.
 void add_stream_options(CLI::App& command, play_options& into);
+/// Those of these that tell what becomes of the stream; --log is one, or where it means something else, none.
+void add_log_options(CLI::App& command, play_options& into);
+void add_verbose_option(CLI::App& command, play_options& into);
 
 /// Whether anything says which PCM to play on.
 bool names_device(const settings& s, const environment& e);
