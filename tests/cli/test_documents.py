@@ -59,7 +59,6 @@ NOT_RUN = {
 # Commands that run with something else in place of what is not here: (pattern, replacement, why).
 SOMEBODY = [(r"^((?:build/src/cli/)?tactor calibrate .*)-D hw:CARD=Tactor", r"\1--simulate threshold=-45", "there is nobody to answer"),
             (r"^((?:build/src/cli/)?tactor experiment (?!.*--check-noise).*)-D hw:CARD=Tactor", r"\1--simulate seed=1", "there is nobody to answer"),
-            (r"^((?:build/src/cli/)?tactor experiment (?!.*--check-noise).*) --masker hw:CARD=Phones", r"\1", "nor to hear noise"),
             (r" --page 4004$", "", "and nobody to look at a page")]
 INSTEAD = {
     "README.md": SOMEBODY,

@@ -62,7 +62,6 @@ class Definition(ExperimentTest):
         for args, says in ((("--power", "4", "--check-noise", "--masker", "null"), ("--power", "nobody sits there")),
                            (("--power", "4", "--display", "page"), ("--power", "nobody sits there")),
                            (("--participant", "01", "-o", "study", "--format", "json"), ("--format", "only --dry-run")),
-                           (("--participant", "01", "-o", "study", "--masker", "null"), ("--masker", "nobody hears it")),
                            (("--dry-run", "-o", "study", "--resume"), ("--resume", "no session is held"))):
             self.refused(2, "experiment", "small.toml", "--simulate", "seed=1", *args, says=says)
         self.refused(2, "experiment", "park2061", "--dry-run", says=("park2016, or a file",))

@@ -79,8 +79,6 @@ void check_experiment_options(const experiment_options& o)
         refuse_experiment("--check-noise", "in a simulated session nobody hears it", "leave one of them out");
     if (o.check_noise && o.masker.empty())
         refuse_experiment("--check-noise", "there is no device for the noise", "--masker PCM");
-    if (o.simulate && !o.masker.empty())
-        refuse_experiment("--masker", "in a simulated session nobody hears it", "leave one of them out");
     if (o.format == "json" && !o.dry_run)
         refuse_experiment("--format", "only --dry-run and --power have one", "leave it out");
     if (o.resume && (o.print || o.dry_run || o.check_noise))
