@@ -4,6 +4,7 @@ import json
 import re
 import signal
 import socket
+import urllib.request
 
 from experiments import ExperimentTest, read_table
 from harness import main
@@ -189,6 +190,28 @@ class OnceAndNoMore(PageTest):
         self.assertEqual(s.end(), 0, s.said)
         self.assertEqual(self.answers(), [("1", "1", "false", "2"), ("2", "1", "false", "1")])
         self.assertEqual(self.answers("marks", "rating"), [("1", "1", "false", "2"), ("2", "1", "false", "2")])
+
+    def test_a_target_that_nobody_saw_makes_its_trial_void(self):
+        s = self.start()
+        p = s.participant()
+        p.answer("consent", 1)
+        for _ in (0, 1):
+            p.answer("walk", 1)
+        p.until("introduce")
+        p.socket.close()
+        urllib.request.urlopen(f"http://{s.address}/").read()  # it has been noticed, then
+        s.key("g")
+        s.told(r"(?s)(trial 1 is void: the target moved on no page.*){2}")  # the practice's, and the first
+        p = s.participant()
+        while (now := p.next())["screen"] != "over":
+            if now["screen"] == "pause":
+                s.key("g")  # after five in a row
+            elif now["ask"]:
+                p.say(ask=now["ask"], answer=min(2, len(now["choices"])))
+        self.assertEqual(s.end(), 0, s.said)
+        rows = self.answers()
+        self.assertEqual(rows[0], ("1", "1", "true", "n/a"))
+        self.assertEqual(sorted((r[0], r[3]) for r in rows if r[2] == "false"), [("1", "2"), ("2", "2")])
 
     def test_killed_and_on_at_the_next_trial(self):
         s = self.start()

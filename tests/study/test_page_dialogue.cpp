@@ -103,8 +103,10 @@ TEST_CASE("of two pages the one that came last answers, and the other is told")
     CHECK_FALSE(d.hear(1, answer(1, 1), 0).answer);
     CHECK_FALSE(d.hear(3, answer(1, 1), 0).answer); // it has not said hello
     d.leave(1);                                     // changes nothing
+    CHECK(d.is_watched());
     CHECK(d.hear(2, answer(1, 1), 0).answer == '1');
     d.leave(2);
+    CHECK_FALSE(d.is_watched());
     CHECK(d.show(question(), 0).empty());
     CHECK_FALSE(d.hear(2, answer(2, 1), 0).answer);
 }

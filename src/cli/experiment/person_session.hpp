@@ -54,7 +54,8 @@ private:
     };
     /// Waits until no tactor would be driven for too long. False where the device is gone.
     bool make_room(const study::session_step& s, const study::planned_trial& t, const score& stimuli);
-    bool animate(const study::session_step& s, const study::planned_trial& t);
+    /// Shows the target. Why the trial is void by now, or nothing.
+    std::string animate(const study::session_step& s, const study::planned_trial& t);
     given_stimulus give(const study::session_step& s, const study::planned_trial& t);
     asked_answer ask(const study::session_step& s, const given_stimulus& g);
     void write(const study::session_step& s, const study::trial_row& row, std::int64_t started_ns);

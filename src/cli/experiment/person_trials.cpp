@@ -26,24 +26,30 @@ const study::planned_trial& person_session::trial_of(const study::session_step& 
     return s.practice ? run.practice[s.which.trial - 1] : run.trials[s.which.trial - 1];
 }
 
-bool person_session::animate(const study::session_step& s, const study::planned_trial& t)
+std::string person_session::animate(const study::session_step& s, const study::planned_trial& t)
 {
+    constexpr const char* gone = "the device is gone";
     const stroke& target = p_.definition.motions[t.motion].drawn;
     const double duration_s = target.motion.duration_s();
     if (page_ != nullptr) {
         page_->show(target_screen(p_, s, target));
-        return stage_.pass(duration_s, [&](double) {
+        const bool began = page_->is_watched();
+        const bool passed = stage_.pass(duration_s, [&](double) {
             heed();
             return !repeat_ && !quit_;
         });
+        if (!passed)
+            return gone;
+        return (began && page_->is_watched()) || repeat_ || quit_ ? "" : "the target moved on no page";
     }
     target_picture picture(p_.where.tactors, target);
     picture.draw(0.0);
-    return stage_.pass(duration_s, [&](double at_s) {
+    const bool passed = stage_.pass(duration_s, [&](double at_s) {
         heed();
         picture.draw(std::min(at_s, duration_s));
         return !repeat_ && !quit_;
     });
+    return passed ? "" : gone;
 }
 
 // Before the target is shown, which the stimulus follows at once.
@@ -67,8 +73,11 @@ bool person_session::make_room(const study::session_step& s, const study::planne
 given_stimulus person_session::give(const study::session_step& s, const study::planned_trial& t)
 {
     const score stimuli = p_.stimuli.make_score(t);
-    if (!make_room(s, t, stimuli) || (run_of(s).animation && !animate(s, t)))
+    if (!make_room(s, t, stimuli))
         return {.flaw = "the device is gone"};
+    if (run_of(s).animation)
+        if (std::string flaw = animate(s, t); !flaw.empty())
+            return {.flaw = std::move(flaw)};
     on_page(stimulus_screen(p_, s));
     given_stimulus g;
     if (!repeat_ && !quit_) {

@@ -34,6 +34,8 @@ public:
     /// A keypad's key: an answer as the page's own, by what a choice stands for, or by its number. Others,
     /// and what nobody sees, count nothing.
     void press(char key);
+    /// Whether somebody has the page before them.
+    bool is_watched();
     /// The answer to what is asked, where there is one.
     std::optional<page_answer> poll();
     /// Readable while there is an answer.

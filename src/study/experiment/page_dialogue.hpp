@@ -66,6 +66,8 @@ public:
     heard press(char key, std::int64_t now_ns);
 
     void leave(visitor v);
+    /// Whether there is a page that shows what is shown.
+    bool is_watched() const noexcept { return theirs_.has_value(); }
 
 private:
     std::string state(std::int64_t now_ns) const;
