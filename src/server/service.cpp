@@ -69,6 +69,7 @@ service::service(boost::asio::io_context& io, service_options o, stream_options 
 
 service::~service()
 {
+    ending_ = true;
     planner_.join();
 }
 
@@ -207,9 +208,7 @@ void service::disconnect(client_number number)
     input_ended(number);
     client& c = *found->second;
     c.levels_timer.cancel();
-    // What it asked for is played, whoever hears of it.
-    for (plan_job& j : c.jobs)
-        post_job(number, std::move(j));
+    keep_jobs(number);
     const auto kept = std::move(found->second); // its answers look for it, and find nobody
     clients_.erase(found);
     gather_levels();
@@ -227,16 +226,7 @@ void service::tell_stream(stream_state s, const std::string& reason)
 void service::close(std::function<void()> done)
 {
     closing_ = true;
-    for (const auto& [number, c] : clients_) {
-        for (const plan_job& j : c->jobs) {
-            planning_bytes_ -= j.bytes;
-            j.to.fault({net::code_no_stream, "not-available", "stream", "the server ends", ""});
-        }
-        jobs_ -= c->jobs.size();
-        c->jobs.clear();
-        if (c->planning)
-            c->planning->fault({net::code_no_stream, "not-available", "stream", "the server ends", ""});
-    }
+    refuse_jobs();
     stream_.close(std::move(done));
 }
 

@@ -3,6 +3,7 @@
 /// The service without its sockets: clients, their strokes, who is told what.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -136,14 +137,19 @@ private:
     reply_json hello_result();
     reply_json limits_json() const;
 
-    // service_strokes.cpp
+    // service_jobs.cpp
     void plan_or_play(client& c, const net::json& params, const answer& to, bool play, std::size_t bytes);
-    void drive(client& c, const net::json& params, const answer& to);
-    void next_job(client& c);
-    void post_job(client_number number, plan_job j);
-    void job_done(client_number number, const plan_job& job, std::shared_ptr<planned> p,
-                  std::vector<score> scores, std::string text, std::optional<net::rpc_fault> fault);
+    void queue_job(client_number number, plan_job j);
+    void next_job();
+    void keep_jobs(client_number gone);
+    void refuse_jobs();
+    void post_job(plan_job j);
+    void job_done(const plan_job& job, std::shared_ptr<planned> p, std::vector<score> scores,
+                  std::string text, std::optional<net::rpc_fault> fault);
     void submit_all(const plan_job& job, const std::shared_ptr<planned>& p, const std::vector<score>& scores);
+
+    // service_strokes.cpp
+    void drive(client& c, const net::json& params, const answer& to);
     std::vector<std::uint32_t> submit(client_number owner, const net::json& start, const planned& p,
                                       const std::vector<score>& scores, bool stopped);
     void check_free_place(const client& c) const;
@@ -180,9 +186,13 @@ private:
     std::map<std::pair<std::uint64_t, stroke_id>, std::uint32_t> by_player_;
     std::uint32_t last_stroke_ = 0;
     std::uint64_t stops_ = 0;
+    std::map<client_number, std::deque<plan_job>> queued_; ///< that wait to be planned
+    std::deque<client_number> turns_;                      ///< whose turn it is, of those that have some
+    std::optional<answer> planning_; ///< where the result of the one that is being planned goes
     std::size_t planning_bytes_ = 0;
     std::size_t jobs_ = 0;
     bool closing_ = false;
+    std::atomic<bool> ending_{false}; ///< the planner looks at it between strokes
     std::function<void(client_number)> told_all_;
     std::function<void()> stopped_;
     boost::asio::thread_pool planner_{1};

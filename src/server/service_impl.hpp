@@ -30,9 +30,7 @@ struct service::client {
     double levels_hz = 30.0;
     boost::asio::steady_timer levels_timer;
     std::vector<float> levels; ///< by channel, since the last notification
-    std::deque<plan_job> jobs;
-    std::optional<answer> planning; ///< where the result of the one that is being planned goes
-    std::size_t coming = 0;         ///< plays whose strokes have no number yet
+    std::size_t coming = 0;    ///< plays whose strokes have no number yet
     std::size_t unanswered = 0;
     std::set<std::uint32_t> strokes; ///< that have not ended
     std::size_t live = 0;

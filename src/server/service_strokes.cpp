@@ -1,60 +1,19 @@
 // SPDX-License-Identifier: MIT
-// play, plan, drive, cancel, stop, fire.
+// What was planned is played; drive, cancel, stop, fire.
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include <boost/asio/post.hpp>
 #include <fmt/format.h>
 
-#include "server/clock.hpp"
 #include "server/service_impl.hpp"
+#include "server/start_wish.hpp"
 
 namespace tactor::server {
 namespace {
 
 using net::json;
 using net::reply_json;
-
-constexpr double longest_wait_s = 86400.0;
-
-// "now" is no time, "armed" waits for fire.
-struct start_wish {
-    bool armed = false;
-    std::optional<std::int64_t> at_ns = {};
-};
-
-// Line ends within texts of JSON are escaped: these are blanks.
-std::string on_one_line(std::string json_text)
-{
-    std::replace(json_text.begin(), json_text.end(), '\n', ' ');
-    return json_text;
-}
-
-start_wish read_start(const json* start, std::int64_t now_ns)
-{
-    constexpr const char* forms = R"("now", "armed", {"delay_s":S}, {"monotonic_s":S} or {"unix_s":S})";
-    if (start == nullptr || *start == "now")
-        return {};
-    if (*start == "armed")
-        return {true, {}};
-    if (!start->is_object() || start->size() != 1)
-        bad_param("start", "it is not known", forms);
-    const std::string name = start->begin().key();
-    const json& value = start->begin().value();
-    const std::string what = "start." + name;
-    const double most_s = 9e9; // a time of day for centuries
-    if (name == "delay_s")
-        return {false, now_ns + std::llround(number(value, what, 0.0, longest_wait_s) * 1e9)};
-    if (name != "monotonic_s" && name != "unix_s")
-        bad_param(what, "it is not known", forms);
-    std::int64_t at = std::llround(number(value, what, 0.0, most_s) * 1e9);
-    if (name == "unix_s")
-        at += now_ns - unix_ns();
-    if (static_cast<double>(at - now_ns) * 1e-9 > longest_wait_s)
-        bad_param(what, "it is more than a day ahead", forms);
-    return {false, at};
-}
 
 } // namespace
 
@@ -67,124 +26,6 @@ void service::check_free_place(const client& c) const
     // Those of clients that have gone count here.
     if (strokes_.size() + jobs_ >= most * options_.limits.max_clients)
         limit_reached("max_strokes", "there are too many strokes of all clients", "try again later");
-}
-
-void service::plan_or_play(client& c, const json& params, const answer& to, bool play, std::size_t bytes)
-{
-    only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start"});
-    static_cast<void>(source_of(params));
-    static_cast<void>(read_start(member(params, "start"), options_.now_ns()));
-    if (const json* o = member(params, "options"))
-        static_cast<void>(with_options(options_.plans.owner, *o, options_for::planned));
-    if (closing_)
-        no_stream("the server ends");
-    check_free_place(c);
-    if (play && stream_.is_out())
-        no_stream(stream_.reason());
-    if (planning_bytes_ + bytes > options_.limits.max_all_unread_bytes)
-        limit_reached("max_all_unread_bytes", "too much waits to be planned");
-    planning_bytes_ += bytes;
-    ++jobs_;
-    ++c.coming;
-    c.jobs.push_back({to, params, bytes, play, stops_});
-    note_busy();
-    if (!c.planning)
-        next_job(c);
-}
-
-// One of each client at a time: who has many does not keep the others waiting.
-void service::next_job(client& c)
-{
-    if (c.jobs.empty())
-        return;
-    plan_job job = std::move(c.jobs.front());
-    c.jobs.pop_front();
-    c.planning = job.to;
-    post_job(c.number, std::move(job));
-}
-
-void service::post_job(client_number number, plan_job j)
-{
-    auto job = std::make_shared<plan_job>(std::move(j));
-    boost::asio::post(planner_, [this, number, job] {
-        std::shared_ptr<planned> p;
-        std::vector<score> scores;
-        std::string text;
-        std::optional<net::rpc_fault> fault;
-        try {
-            p = std::make_shared<planned>(make_planned(options_.plans, faces_, job->params));
-            for (std::size_t i = 0; job->play && i < p->plans.size(); ++i)
-                scores.push_back(p->score_of(options_.plans.tactors, i));
-            if (!job->play)
-                text = on_one_line(options_.plan_text(*p, options_.limits.max_unread_bytes / 2));
-        } catch (const std::bad_alloc&) {
-            fault = net::rpc_fault{net::code_limit, "limit", "plan", "it is too large to be sent",
-                                   "draw less, or plan it with the tool"};
-        } catch (...) {
-            fault = current_fault("params");
-        }
-        boost::asio::post(io_, [this, number, job, p, scores = std::move(scores), text = std::move(text),
-                                fault = std::move(fault)]() mutable {
-            job_done(number, *job, std::move(p), std::move(scores), std::move(text), std::move(fault));
-        });
-    });
-}
-
-void service::job_done(client_number number, const plan_job& job, std::shared_ptr<planned> p,
-                       std::vector<score> scores, std::string text, std::optional<net::rpc_fault> fault)
-{
-    planning_bytes_ -= job.bytes;
-    --jobs_;
-    client* c = find(number);
-    if (c != nullptr)
-        c->planning.reset();
-    if (closing_ && !fault)
-        fault = net::rpc_fault{net::code_no_stream, "not-available", "stream", "the server ends", ""};
-    if (fault || !job.play) {
-        if (c != nullptr)
-            --c->coming;
-        if (fault)
-            job.to.fault(*fault);
-        else
-            job.to.result_text(text);
-    } else {
-        // The stream may have to be started first.
-        stream_.when_ready([this, number, job, p, scores = std::move(scores)] {
-            if (client* then = find(number))
-                --then->coming;
-            submit_all(job, p, scores);
-            note_busy();
-        });
-    }
-    note_busy();
-    c = find(number);
-    if (c != nullptr && !c->planning)
-        next_job(*c);
-}
-
-void service::submit_all(const plan_job& job, const std::shared_ptr<planned>& p,
-                         const std::vector<score>& scores)
-{
-    try {
-        const client_number number = job.to.all->to;
-        if (const client* c = find(number);
-            c != nullptr && scores.size() > 1 &&
-            c->strokes.size() + c->coming + scores.size() > options_.limits.max_strokes)
-            limit_reached("max_strokes",
-                          fmt::format("{} strokes are more than the {} that a client may have at once",
-                                      scores.size(), options_.limits.max_strokes),
-                          "send fewer");
-        const json* start = member(job.params, "start");
-        const auto numbers =
-            submit(number, start == nullptr ? json("now") : *start, *p, scores, job.stops != stops_);
-        job.to.result({{"stroke", numbers.front()},
-                       {"strokes", numbers},
-                       {"total_s", p->total_s()},
-                       {"warnings", p->warnings()}},
-                      numbers);
-    } catch (...) {
-        job.to.fault(current_fault("stream"));
-    }
 }
 
 std::vector<std::uint32_t> service::submit(client_number owner, const json& start, const planned& p,

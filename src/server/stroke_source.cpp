@@ -82,6 +82,38 @@ void in_time(const planning& with, double seconds)
                       "draw less, or faster");
 }
 
+void few_enough(const planning& with, std::size_t strokes)
+{
+    if (strokes > with.max_strokes)
+        limit_reached("max_strokes",
+                      fmt::format("{} strokes are more than the {} that a client may have at once", strokes,
+                                  with.max_strokes),
+                      "send fewer");
+}
+
+// When each begins, and that they do not last too long, alone and together: so long takes planning them.
+void place_strokes(const planning& with, const stroke_settings& s, std::vector<stroke>& strokes)
+{
+    std::vector<double> starts_s;
+    std::vector<double> ends_s;
+    double together_s = 0.0;
+    for (stroke& k : strokes) {
+        if (s.duration_s)
+            k.motion = k.motion.with_duration(*s.duration_s);
+        else if (s.speed_mm_s && k.motion.length_mm() > 0.0)
+            k.motion = k.motion.with_speed(*s.speed_mm_s);
+        starts_s.push_back(resolve_start_s(k.start_s, k.anchor, starts_s, ends_s));
+        ends_s.push_back(starts_s.back() + k.motion.duration_s());
+        in_time(with, ends_s.back());
+        together_s += k.motion.duration_s();
+    }
+    if (together_s > with.max_stroke_s)
+        limit_reached("max_stroke_s",
+                      fmt::format("its strokes last {} together, and those of one request at most {}",
+                                  seconds_text(together_s), seconds_text(with.max_stroke_s)),
+                      "send them one by one");
+}
+
 // As the plan samples it.
 double loudest(const stroke& k, const plan& p)
 {
@@ -168,7 +200,8 @@ score planned::score_of(const array& a, std::size_t i) const
     return {a, plans[i].schedule, render};
 }
 
-planned make_planned(const planning& with, const layout& faces, const json& params)
+planned make_planned(const planning& with, const layout& faces, const json& params,
+                     const std::function<void()>& go_on)
 {
     const std::string source = source_of(params);
     const json* options = member(params, "options");
@@ -178,23 +211,20 @@ planned make_planned(const planning& with, const layout& faces, const json& para
         planned p{source, read_strokes(source, params[source], s), {}, s.render};
         if (source == "stroke")
             p.name = p.strokes.front().name;
+        few_enough(with, p.strokes.size());
         p.strokes = fit_as_asked(std::move(p.strokes), faces);
-        std::vector<double> starts_s;
-        std::vector<double> ends_s;
-        for (stroke& k : p.strokes) {
-            if (s.duration_s)
-                k.motion = k.motion.with_duration(*s.duration_s);
-            else if (s.speed_mm_s && k.motion.length_mm() > 0.0)
-                k.motion = k.motion.with_speed(*s.speed_mm_s);
-            starts_s.push_back(resolve_start_s(k.start_s, k.anchor, starts_s, ends_s));
-            ends_s.push_back(starts_s.back() + k.motion.duration_s());
-            in_time(with, ends_s.back());
-        }
+        place_strokes(with, s, p.strokes);
+        const auto between = [&] {
+            if (go_on)
+                go_on();
+        };
         for (const stroke& k : p.strokes) {
+            between();
             p.plans.push_back({make_plan(with.tactors, faces, k, s.plan), k.start_s, k.anchor});
             check_level(with, s, s.plan.scale.amplitude(loudest(k, p.plans.back().schedule)));
         }
         in_time(with, p.total_s());
+        between();
         static_cast<void>(score(with.tactors, p.plans, p.render)); // levels and carriers
         return p;
     } catch (const fault_error&) {

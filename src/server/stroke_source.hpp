@@ -3,6 +3,8 @@
 /// From the parameters of `play` and `plan` to plans and scores. Pure; runs off the thread of the sockets.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,7 +25,8 @@ struct planning {
     array tactors;
     stroke_settings owner; ///< with the stream's rate and channels
     double max_level_dbfs = -12.0;
-    double max_stroke_s = 600.0;
+    double max_stroke_s = 600.0; ///< of a stroke, and of those of one request together
+    std::size_t max_strokes = 64;
 };
 
 /// One request's strokes, planned.
@@ -45,8 +48,9 @@ struct planned {
 /// \throws fault_error for none or several.
 const char* source_of(const net::json& params);
 
-/// Reads and plans. \throws fault_error.
-planned make_planned(const planning& with, const layout& faces, const net::json& params);
+/// Reads and plans. \throws fault_error, and what `go_on` throws, which is called between strokes.
+planned make_planned(const planning& with, const layout& faces, const net::json& params,
+                     const std::function<void()>& go_on = {});
 
 /// One tactor for a while. \throws fault_error.
 planned make_drive(const planning& with, const net::json& params);

@@ -135,6 +135,47 @@ TEST_CASE("messages speak the protocol's words")
     CHECK(g.why.substr(0, 2) == "3:");
 }
 
+TEST_CASE("how many strokes, and how long together, is refused before any is planned")
+{
+    planning p = palm();
+    p.max_strokes = 3;
+    const auto strokes = [](std::size_t n, double seconds) {
+        std::string toml;
+        for (std::size_t i = 0; i < n; ++i)
+            toml +=
+                "[[stroke]]\npath = 'M 0 0 L 40 40'\nstart_s = 0\nduration_s = " + std::to_string(seconds) +
+                "\n";
+        return json{{"toml", toml}, {"options", {{"algorithm", "continuous"}}}};
+    };
+    std::size_t planned_ones = 0;
+    const auto refused = [&](const json& params) {
+        planned_ones = 0;
+        const auto f =
+            fault_from([&] { make_planned(p, layout(p.tactors), params, [&] { ++planned_ones; }); });
+        CHECK(f.code == net::code_limit);
+        CHECK(planned_ones == 0);
+        return f.what;
+    };
+    CHECK(refused(strokes(4, 0.1)) == "max_strokes");
+    CHECK(refused(strokes(3, 201.0)) == "max_stroke_s");
+    CHECK(make_planned(p, layout(p.tactors), strokes(1, 600.0)).plans.size() == 1);
+}
+
+TEST_CASE("planning ends between strokes where it is told to")
+{
+    const planning p = palm();
+    const json two{{"toml", "[[stroke]]\npath = 'M 0 0 L 40 40'\n[[stroke]]\npath = 'M 0 0 L 40 0'\n"}};
+    int asked = 0;
+    const auto f = fault_from([&] {
+        make_planned(p, layout(p.tactors), two, [&] {
+            if (++asked == 2)
+                no_stream("the server ends");
+        });
+    });
+    CHECK(f.code == net::code_no_stream);
+    CHECK(asked == 2);
+}
+
 TEST_CASE("the ceiling holds for level, intensity and dB SL")
 {
     planning p = palm();

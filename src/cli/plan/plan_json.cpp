@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -170,7 +172,8 @@ void print_plan(std::FILE* out, const record& r)
             rows.append_sample(row, b);
         else
             rows.append(row, b, burst_ramp_s(b.onset_s, b.duration_s, p, r.options));
-        std::fwrite(row.data(), 1, row.size(), out);
+        if (std::fwrite(row.data(), 1, row.size(), out) != row.size())
+            throw std::system_error(errno, std::generic_category(), "cannot write a plan");
         row = ",\n  ";
     });
     fmt::print(out, "]{},\n{}}}", sampled ? "}" : "", members(tail_json(r)));

@@ -65,6 +65,7 @@ server::planning planning_of(const settings& s, const environment& e, const serv
     p.owner.render.level_dbfs = std::min(p.owner.render.level_dbfs, p.max_level_dbfs);
     p.tactors = limited(e.tactors, p.max_level_dbfs);
     p.max_stroke_s = limits.max_stroke_s;
+    p.max_strokes = limits.max_strokes;
     return p;
 }
 

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+// play and plan: what waits to be planned, whose turn it is, and what becomes of it.
+#include <algorithm>
+#include <utility>
+
+#include <boost/asio/post.hpp>
+#include <fmt/format.h>
+
+#include "server/service_impl.hpp"
+#include "server/start_wish.hpp"
+
+namespace tactor::server {
+namespace {
+
+using net::json;
+
+// Whose turn it is for all that clients left behind when they went: together they are one.
+constexpr client_number nobody = 0;
+
+// Line ends within texts of JSON are escaped: these are blanks.
+std::string on_one_line(std::string json_text)
+{
+    std::replace(json_text.begin(), json_text.end(), '\n', ' ');
+    return json_text;
+}
+
+net::rpc_fault server_ends()
+{
+    return {net::code_no_stream, "not-available", "stream", "the server ends", ""};
+}
+
+} // namespace
+
+void service::plan_or_play(client& c, const json& params, const answer& to, bool play, std::size_t bytes)
+{
+    only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start"});
+    static_cast<void>(source_of(params));
+    static_cast<void>(read_start(member(params, "start"), options_.now_ns()));
+    if (const json* o = member(params, "options"))
+        static_cast<void>(with_options(options_.plans.owner, *o, options_for::planned));
+    if (closing_)
+        no_stream("the server ends");
+    check_free_place(c);
+    if (play && stream_.is_out())
+        no_stream(stream_.reason());
+    if (planning_bytes_ + bytes > options_.limits.max_all_unread_bytes)
+        limit_reached("max_all_unread_bytes", "too much waits to be planned");
+    planning_bytes_ += bytes;
+    ++jobs_;
+    ++c.coming;
+    queue_job(c.number, {to, params, bytes, play, stops_});
+    note_busy();
+    next_job();
+}
+
+void service::queue_job(client_number number, plan_job j)
+{
+    std::deque<plan_job>& own = queued_[number];
+    if (own.empty())
+        turns_.push_back(number);
+    own.push_back(std::move(j));
+}
+
+// One after the other, and one of each client in turn: who has many does not keep the others waiting.
+void service::next_job()
+{
+    if (planning_ || turns_.empty())
+        return;
+    const client_number number = turns_.front();
+    turns_.pop_front();
+    const auto own = queued_.find(number);
+    plan_job job = std::move(own->second.front());
+    own->second.pop_front();
+    if (own->second.empty())
+        queued_.erase(own);
+    else
+        turns_.push_back(number);
+    planning_ = job.to;
+    post_job(std::move(job));
+}
+
+// What a client asked for that has gone is played, whoever hears of it.
+void service::keep_jobs(client_number gone)
+{
+    auto own = queued_.extract(gone);
+    if (own.empty())
+        return;
+    std::erase(turns_, gone);
+    for (plan_job& j : own.mapped())
+        queue_job(nobody, std::move(j));
+}
+
+// Where the server ends.
+void service::refuse_jobs()
+{
+    ending_ = true;
+    turns_.clear();
+    for (const auto& [number, jobs] : std::exchange(queued_, {}))
+        for (const plan_job& j : jobs) {
+            planning_bytes_ -= j.bytes;
+            --jobs_;
+            j.to.fault(server_ends());
+        }
+    if (planning_)
+        planning_->fault(server_ends());
+}
+
+void service::post_job(plan_job j)
+{
+    auto job = std::make_shared<plan_job>(std::move(j));
+    boost::asio::post(planner_, [this, job] {
+        std::shared_ptr<planned> p;
+        std::vector<score> scores;
+        std::string text;
+        std::optional<net::rpc_fault> fault;
+        const auto go_on = [this] {
+            if (ending_)
+                throw fault_error(server_ends());
+        };
+        try {
+            p = std::make_shared<planned>(make_planned(options_.plans, faces_, job->params, go_on));
+            for (std::size_t i = 0; job->play && i < p->plans.size(); ++i) {
+                go_on();
+                scores.push_back(p->score_of(options_.plans.tactors, i));
+            }
+            if (!job->play)
+                text = on_one_line(options_.plan_text(*p, options_.limits.max_unread_bytes / 2));
+        } catch (const std::bad_alloc&) {
+            fault = net::rpc_fault{net::code_limit, "limit", "plan", "it is too large to be sent",
+                                   "draw less, or plan it with the tool"};
+        } catch (...) {
+            fault = current_fault("params");
+        }
+        boost::asio::post(io_, [this, job, p, scores = std::move(scores), text = std::move(text),
+                                fault = std::move(fault)]() mutable {
+            job_done(*job, std::move(p), std::move(scores), std::move(text), std::move(fault));
+        });
+    });
+}
+
+void service::job_done(const plan_job& job, std::shared_ptr<planned> p, std::vector<score> scores,
+                       std::string text, std::optional<net::rpc_fault> fault)
+{
+    planning_bytes_ -= job.bytes;
+    --jobs_;
+    planning_.reset();
+    const client_number number = job.to.all->to;
+    if (closing_ && !fault)
+        fault = server_ends();
+    if (fault || !job.play) {
+        if (client* c = find(number))
+            --c->coming;
+        if (fault)
+            job.to.fault(*fault);
+        else
+            job.to.result_text(text);
+    } else {
+        // The stream may have to be started first.
+        stream_.when_ready([this, number, job, p, scores = std::move(scores)] {
+            if (client* then = find(number))
+                --then->coming;
+            submit_all(job, p, scores);
+            note_busy();
+        });
+    }
+    note_busy();
+    next_job();
+}
+
+void service::submit_all(const plan_job& job, const std::shared_ptr<planned>& p,
+                         const std::vector<score>& scores)
+{
+    try {
+        const client_number number = job.to.all->to;
+        if (const client* c = find(number);
+            c != nullptr && scores.size() > 1 &&
+            c->strokes.size() + c->coming + scores.size() > options_.limits.max_strokes)
+            limit_reached("max_strokes",
+                          fmt::format("{} strokes are more than the {} that a client may have at once",
+                                      scores.size(), options_.limits.max_strokes),
+                          "send fewer");
+        const json* start = member(job.params, "start");
+        const auto numbers =
+            submit(number, start == nullptr ? json("now") : *start, *p, scores, job.stops != stops_);
+        job.to.result({{"stroke", numbers.front()},
+                       {"strokes", numbers},
+                       {"total_s", p->total_s()},
+                       {"warnings", p->warnings()}},
+                      numbers);
+    } catch (...) {
+        job.to.fault(current_fault("stream"));
+    }
+}
+
+} // namespace tactor::server
