@@ -21,17 +21,14 @@ constexpr std::chrono::seconds linger{1};
 line_connection::line_connection(socket_type s, const line_limits& l, write_budget& all)
     : socket_(std::move(s)),
       limits_(l),
-      all_(all),
+      share_(all, [this] { give_up_unread(); }),
       deadline_(socket_.get_executor()),
       linger_(socket_.get_executor()),
       chunk_(chunk_bytes)
 {
 }
 
-line_connection::~line_connection()
-{
-    all_.waiting -= waiting_;
-}
+line_connection::~line_connection() = default;
 
 void line_connection::start(handlers h)
 {
@@ -83,8 +80,6 @@ bool line_connection::take_lines()
         }
         if (!line.empty() && line.back() == '\r')
             line.remove_suffix(1);
-        armed_ = false;
-        deadline_.cancel();
         from = end + 1;
         if (!line.empty() && !handlers_.line(line)) {
             reading_ = false;
@@ -92,6 +87,11 @@ bool line_connection::take_lines()
         }
         if (closed_ || !reading_)
             return false;
+        met_ = met_ || (!line.empty() && (!handlers_.met || handlers_.met()));
+        if (met_) {
+            armed_ = false;
+            deadline_.cancel();
+        }
     }
     partial_.erase(0, from);
     if (partial_.size() > limits_.message_bytes) {
@@ -133,18 +133,21 @@ void line_connection::send(std::string line)
         return;
     line += '\n';
     const std::size_t n = line.size();
-    if (waiting_ + n > limits_.waiting_bytes || all_.waiting + n > all_.most) {
-        // Not here: whoever sends may be in the middle of going through all peers.
-        finishing_ = true;
-        boost::asio::post(socket_.get_executor(),
-                          [self = shared_from_this()] { self->give_up(line_fault::unread); });
+    if (share_.waiting() + n > limits_.waiting_bytes)
+        share_.give_up();
+    if (!share_.add(n))
         return;
-    }
-    waiting_ += n;
-    all_.waiting += n;
     queue_.push_back(std::move(line));
     if (in_flight_ == 0)
         write();
+}
+
+// Not here: whoever sends may be in the middle of going through all peers.
+void line_connection::give_up_unread()
+{
+    finishing_ = true;
+    boost::asio::post(socket_.get_executor(),
+                      [self = shared_from_this()] { self->give_up(line_fault::unread); });
 }
 
 void line_connection::write()
@@ -166,8 +169,7 @@ void line_connection::write()
 
 void line_connection::wrote(std::size_t n)
 {
-    waiting_ -= n;
-    all_.waiting -= n;
+    share_.take(n);
     queue_.erase(queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(in_flight_));
     in_flight_ = 0;
     if (!queue_.empty())

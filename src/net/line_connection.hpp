@@ -16,13 +16,9 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
 
-namespace tactor::net {
+#include "net/write_budget.hpp"
 
-/// What waits to be read by all peers together.
-struct write_budget {
-    std::size_t waiting = 0;
-    std::size_t most = 64U << 20;
-};
+namespace tactor::net {
 
 struct line_limits {
     std::size_t message_bytes = 1U << 20;
@@ -58,6 +54,8 @@ public:
         std::function<void(line_fault)> fault;
         /// Once, when the socket is closed. The connection may be forgotten.
         std::function<void()> closed;
+        /// Whether what came was the first message that is owed; none: any that is not empty is.
+        std::function<bool()> met = {};
     };
 
     line_connection(socket_type s, const line_limits& l, write_budget& all);
@@ -72,7 +70,7 @@ public:
     void finish();
     void close();
     /// Bytes that the peer has not taken.
-    std::size_t waiting() const noexcept { return waiting_; }
+    std::size_t waiting() const noexcept { return share_.waiting(); }
 
 private:
     void read();
@@ -80,21 +78,22 @@ private:
     bool take_lines();
     void arm(double seconds);
     void give_up(line_fault f);
+    void give_up_unread();
     void write();
     void wrote(std::size_t n);
 
     socket_type socket_;
     line_limits limits_;
-    write_budget& all_;
+    write_budget::share share_;
     handlers handlers_;
     boost::asio::steady_timer deadline_;
     boost::asio::steady_timer linger_;
     std::vector<char> chunk_;
     std::string partial_;
     std::deque<std::string> queue_;
-    std::size_t waiting_ = 0;
     std::size_t in_flight_ = 0; ///< lines
     bool armed_ = false;
+    bool met_ = false; ///< the first message has come
     bool reading_ = true;
     bool finishing_ = false;
     bool closed_ = false;

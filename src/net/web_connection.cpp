@@ -38,7 +38,7 @@ std::string_view view(boost::string_view s)
 struct web_connection::session : std::enable_shared_from_this<session> {
     session(socket_type s, const line_limits& l, write_budget& budget, std::vector<std::string> hosts)
         : limits(l),
-          all(budget),
+          share(budget, [this] { give_up(); }),
           allowed(std::move(hosts)),
           local(local_address(s.native_handle())),
           socket(std::move(s)),
@@ -48,7 +48,7 @@ struct web_connection::session : std::enable_shared_from_this<session> {
         parser.header_limit(most_header_bytes);
         parser.body_limit(0);
     }
-    ~session() { all.waiting -= waiting; }
+    ~session() = default;
     session(const session&) = delete;
     session& operator=(const session&) = delete;
 
@@ -60,13 +60,14 @@ struct web_connection::session : std::enable_shared_from_this<session> {
     void received();
     void send(std::string text);
     void write();
-    void finish(websocket::close_code code);
+    void give_up();
+    void finish(const websocket::close_reason& r);
     void hang_up_soon();
     void arm(double seconds);
     void close();
 
     line_limits limits;
-    write_budget& all;
+    write_budget::share share;
     std::vector<std::string> allowed;
     std::string local;
     handlers calls;
@@ -78,9 +79,9 @@ struct web_connection::session : std::enable_shared_from_this<session> {
     asio::steady_timer deadline;
     asio::steady_timer lingering;
     std::deque<std::string> queue;
-    std::size_t waiting = 0;
-    websocket::close_code code = websocket::close_code::normal;
+    websocket::close_reason why{websocket::close_code::normal};
     bool armed = false;
+    bool met = false; ///< the first message has come
     bool accepted = false;
     bool writing = false;
     bool reading = true;
@@ -189,7 +190,7 @@ void web_connection::session::upgrade()
         if (!self->queue.empty())
             self->write();
         else if (self->finishing)
-            self->finish(self->code);
+            self->finish(self->why);
     });
 }
 
@@ -214,14 +215,17 @@ void web_connection::session::received()
             arm(limits.message_s);
         return read();
     }
-    armed = false;
-    deadline.cancel();
     const std::string text(static_cast<const char*>(buffer.data().data()), buffer.size());
     buffer.consume(buffer.size());
     if (!ws->got_text())
-        return finish(websocket::close_code::unknown_data);
+        return finish({websocket::close_code::unknown_data, "text is taken"});
     if (!text.empty() && !calls.text(text))
-        return finish(websocket::close_code::policy_error);
+        return finish({websocket::close_code::policy_error, "this is not taken"});
+    met = met || (!text.empty() && (!calls.met || calls.met()));
+    if (met) {
+        armed = false;
+        deadline.cancel();
+    }
     read();
 }
 
@@ -230,17 +234,20 @@ void web_connection::session::send(std::string text)
     if (closed || finishing || !accepted)
         return;
     const std::size_t n = text.size();
-    if (waiting + n > limits.waiting_bytes || all.waiting + n > all.most) {
-        // Not here: whoever sends may be in the middle of going through all peers.
-        finishing = true;
-        asio::post(socket.get_executor(), [self = shared_from_this()] { self->close(); });
+    if (share.waiting() + n > limits.waiting_bytes)
+        share.give_up();
+    if (!share.add(n))
         return;
-    }
-    waiting += n;
-    all.waiting += n;
     queue.push_back(std::move(text));
     if (!writing && ws && ws->is_open())
         write();
+}
+
+// Not here: whoever sends may be in the middle of going through all peers.
+void web_connection::session::give_up()
+{
+    finishing = true;
+    asio::post(socket.get_executor(), [self = shared_from_this()] { self->close(); });
 }
 
 void web_connection::session::write()
@@ -254,22 +261,21 @@ void web_connection::session::write()
                             return;
                         if (e)
                             return self->close();
-                        self->waiting -= self->queue.front().size();
-                        self->all.waiting -= self->queue.front().size();
+                        self->share.take(self->queue.front().size());
                         self->queue.pop_front();
                         if (!self->queue.empty())
                             self->write();
                         else if (self->finishing)
-                            self->finish(self->code);
+                            self->finish(self->why);
                     });
 }
 
-void web_connection::session::finish(websocket::close_code c)
+void web_connection::session::finish(const websocket::close_reason& r)
 {
     if (closed || closing)
         return;
     if (!finishing)
-        code = c;
+        why = r;
     finishing = true;
     reading = false;
     deadline.cancel();
@@ -279,7 +285,7 @@ void web_connection::session::finish(websocket::close_code c)
     if (!queue.empty() || !ws->is_open())
         return;
     closing = true;
-    ws->async_close(code, [self = shared_from_this()](const beast::error_code&) { self->close(); });
+    ws->async_close(why, [self = shared_from_this()](const beast::error_code&) { self->close(); });
 }
 
 void web_connection::session::hang_up_soon()
@@ -299,7 +305,8 @@ void web_connection::session::arm(double seconds)
         if (e || !self->armed || self->closed)
             return;
         if (self->accepted && self->ws->is_open())
-            self->finish(websocket::close_code::policy_error);
+            self->finish({websocket::close_code::policy_error,
+                          self->met ? "a message took too long" : "the first message did not come"});
         else
             self->close();
     });
@@ -365,7 +372,7 @@ void web_connection::finish()
 
 std::size_t web_connection::waiting() const noexcept
 {
-    return session_->waiting;
+    return session_->share.waiting();
 }
 
 } // namespace tactor::net

@@ -42,6 +42,8 @@ public:
         std::function<bool(std::string_view)> text;
         /// Once, when the socket is closed. The connection may be forgotten.
         std::function<void()> closed;
+        /// Whether what came was the first message that is owed; none: any that is not empty is.
+        std::function<bool()> met = {};
     };
 
     web_connection(socket_type s, const line_limits& l, write_budget& all,

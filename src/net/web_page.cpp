@@ -4,6 +4,7 @@
 #include <random>
 
 #include <fmt/format.h>
+#include <sys/socket.h>
 
 namespace tactor::net {
 namespace {
@@ -15,6 +16,15 @@ std::string make_nonce()
 {
     std::random_device chance;
     return fmt::format("{:08x}{:08x}{:08x}{:08x}", chance(), chance(), chance(), chance());
+}
+
+// A whole reply.
+std::string unavailable(std::string_view why)
+{
+    const std::string text = fmt::format("{}, try again later\n", why);
+    return fmt::format("HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain\r\n"
+                       "Content-Length: {}\r\nConnection: close\r\n\r\n{}",
+                       text.size(), text);
 }
 
 } // namespace
@@ -33,12 +43,15 @@ web_reply make_page(std::string_view document, std::string_view host)
                         nonce, host)};
 }
 
+void turn_away(int socket)
+{
+    const std::string why = unavailable("there is no place");
+    static_cast<void>(::send(socket, why.data(), why.size(), MSG_DONTWAIT | MSG_NOSIGNAL));
+}
+
 std::string no_descriptors_for_browsers()
 {
-    const std::string text = "the server has as many files open as it may, try again later\n";
-    return fmt::format("HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain\r\n"
-                       "Content-Length: {}\r\nConnection: close\r\n\r\n{}",
-                       text.size(), text);
+    return unavailable("the server has as many files open as it may");
 }
 
 } // namespace tactor::net

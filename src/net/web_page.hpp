@@ -14,6 +14,9 @@ namespace tactor::net {
 /// nonce="NONCE", and talk to that host only.
 web_reply make_page(std::string_view document, std::string_view host);
 
+/// Tells a browser on this socket that there is no place, as far as it takes it.
+void turn_away(int socket);
+
 /// What browsers are told for whom no descriptor is left: a whole reply.
 std::string no_descriptors_for_browsers();
 

@@ -28,6 +28,7 @@
 #include "net/web_page.hpp"
 #include "server/osc/endpoint.hpp"
 #include "server/page/drawing_page.hpp"
+#include "server/way_back.hpp"
 
 namespace tactor::server {
 namespace {
@@ -41,42 +42,17 @@ using socket_type = line_connection::socket_type;
 constexpr auto farewell = std::chrono::seconds(2); // for what the last words take
 constexpr std::size_t short_visits = 32;           // of browsers at once, beside those that stay as clients
 
-/// A client's way back over a connection of either kind.
-template <class Connection>
-class link_over final : public client_link {
-public:
-    explicit link_over(std::shared_ptr<Connection> c) : connection_(std::move(c)) {}
-    void send(std::string message) override { connection_->send(std::move(message)); }
-    std::size_t waiting() const override { return connection_->waiting(); }
-    void finish() override { connection_->finish(); }
-
-private:
-    std::shared_ptr<Connection> connection_;
-};
-
-std::string refusal(std::string what, std::string why, std::string hint)
-{
-    return net::text_of(net::error_reply(
-        nullptr, {net::code_limit, "limit", std::move(what), std::move(why), std::move(hint)}));
-}
-
-// What those are told for whom no descriptor is left.
-std::string no_descriptors()
-{
-    return refusal("descriptors", "the server has as many files open as it may", "try again later") + "\n";
-}
-
 class server {
 public:
     server(asio::io_context& io, const endpoints& at, service_options o, stream_options s, network_options w)
         : io_(io),
           limits_(o.limits),
           allow_hosts_(std::move(w.allow_hosts)),
+          budget_(limits_.max_all_unread_bytes),
           service_(io, std::move(o), std::move(s)),
           farewell_(io),
           watchdog_(io)
     {
-        budget_.most = limits_.max_all_unread_bytes;
         if (at.socket)
             listeners_.push_back(
                 std::make_unique<listener>(io, at.socket.get(), no_descriptors(), [this](socket_type c) {
@@ -167,11 +143,12 @@ private:
                       if (service_.input_ended(n))
                           finish(n);
                   },
-                  [this, weak](line_fault f) {
-                      if (const auto self = weak.lock())
-                          say_why(*self, f);
+                  [this, n, weak](line_fault f) {
+                      const std::string why = why_given_up(f, limits_, service_.is_admitted(n));
+                      if (const auto self = weak.lock(); self && !why.empty())
+                          self->send(why);
                   },
-                  [this, n] { closed(n); }});
+                  [this, n] { closed(n); }, [this, n] { return service_.is_admitted(n); }});
     }
 
     void finish(client_number n)
@@ -184,7 +161,7 @@ private:
     void take_browser(socket_type s)
     {
         if (visitors_.size() >= limits_.max_clients + short_visits)
-            return; // the socket closes
+            return net::turn_away(s.native_handle()); // and the socket closes
         auto stream = net::web_socket(io_, std::move(s));
         if (!stream)
             return;
@@ -211,7 +188,8 @@ private:
                   [this, n, weak = std::weak_ptr(c)] {
                       visitors_.erase(weak.lock());
                       closed(*n);
-                  }});
+                  },
+                  [this, n] { return service_.is_admitted(*n); }});
     }
 
     net::web_reply page(std::string_view path, std::string_view host, std::string_view token)
@@ -223,17 +201,6 @@ private:
         if (!service_.admits(token))
             return {401, "text/plain", "the token is owed: Authorization: Bearer TOKEN\n", ""};
         return {200, "application/json", net::text_of(service_.status_now()) + "\n", ""};
-    }
-
-    void say_why(line_connection& c, line_fault f) const
-    {
-        if (f == line_fault::too_long)
-            c.send(refusal("max_message_bytes",
-                           fmt::format("a message of more than {} bytes", limits_.max_message_bytes),
-                           "send smaller ones"));
-        if (f == line_fault::too_slow)
-            c.send(refusal("max_message_s", fmt::format("no whole message in {} s", limits_.max_message_s),
-                           "send what is complete"));
     }
 
     void closed(client_number n)

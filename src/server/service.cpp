@@ -93,6 +93,12 @@ client_number service::connect(std::shared_ptr<client_link> link, client_kind k)
     return last_client_;
 }
 
+bool service::is_admitted(client_number number) const
+{
+    const auto found = clients_.find(number);
+    return found != clients_.end() && found->second->admitted;
+}
+
 service::client* service::find(client_number c)
 {
     const auto found = clients_.find(c);

@@ -74,6 +74,8 @@ public:
     void start() { stream_.start(); }
     /// Whether there is a place for one more.
     bool has_place(client_kind k) const;
+    /// Whether it is there, and no token of it is owed.
+    bool is_admitted(client_number number) const;
     client_number connect(std::shared_ptr<client_link> link, client_kind k);
     /// One message. False when the connection is to be closed unanswered.
     bool receive(client_number number, std::string_view text);

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """tactor serve at its limits: too many, too long, too slow, no descriptors, a full disk, no card."""
+import contextlib
 import json
 import os
 import resource
@@ -158,6 +159,18 @@ class Limits(ServeTest):
                 c.close()
         self.check_error(c.next()["error"], -32001, "max_message_s")
         self.assertIsNone(c.next())
+
+    def test_a_token_that_does_not_come(self):
+        token = self.write("token", "secret\n")
+        token.chmod(0o600)
+        s = self.serve("--tcp", "0", config=f'[serve]\ntoken_file = "{token}"\nmax_message_s = 0.2\n')
+        for said in (b"\n", b'{"jsonrpc":"2.0","id":1,"method":"hello"}\n'):
+            c = s.client(tcp=True)
+            with contextlib.suppress(BrokenPipeError, ConnectionResetError):
+                c.raw(said)
+            *_, last = iter(c.next, None)
+            self.check_error(last["error"], -32001, "max_message_s")
+            self.assertIn("token", last["error"]["data"]["why"])
 
     def test_who_does_not_read_is_dropped_and_others_play_on(self):
         s = self.serve(config="[serve]\nmax_unread_bytes = 100000\n")

@@ -212,10 +212,14 @@ class Web(ToolTest):
 
     def test_a_message_that_never_ends_and_a_silent_client(self):
         s = self.serve(config="[serve]\nmax_message_s = 1\n")
-        self.assertEqual(self.in_time(s).end(), 1008)
+        silent = self.in_time(s)
+        self.assertEqual((silent.end(), silent.reason), (1008, "the first message did not come"))
+        nothing = self.in_time(s)
+        nothing.frame(TEXT, b"")
+        self.assertEqual((nothing.end(), nothing.reason), (1008, "the first message did not come"))
         slow = self.in_time(s, "hello")
         slow.frame(TEXT, b'{"jsonrpc"', last=False)
-        self.assertEqual(slow.end(), 1008)
+        self.assertEqual((slow.end(), slow.reason), (1008, "a message took too long"))
         patient = self.in_time(s, "hello")
         self.assertEqual(self.in_time(s).end(), 1008)  # so long, patient has said nothing
         self.assertIn("result", patient.call("status"))
@@ -238,6 +242,14 @@ class Web(ToolTest):
                 break
             self.assertEqual(status, 503)
             p.socket.close()  # there may be more of them than descriptors
+
+    def test_visitors_beyond_the_places_are_told(self):
+        s = self.serve(config="[serve]\nmax_clients = 1\nkept_clients = 0\nmax_message_s = 3600\n")
+        waiting = [s.peer() for _ in range(33)]  # 32 that only ask for pages beside the clients
+        status, headers = s.peer().head()
+        self.assertEqual(status, 503)
+        self.assertEqual(headers["content-type"], "text/plain")
+        self.assertEqual(waiting[0].request("/")[0], 200)
 
     def test_the_end_is_told(self):
         s = self.serve()

@@ -35,6 +35,7 @@ class Peer:
         host, _, port = address.rpartition(":")
         self.socket = socket.create_connection((host, int(port)), PATIENCE_S)
         self.buffer = b""
+        self.reason = None
 
     def send(self, data):
         self.socket.sendall(data)
@@ -102,11 +103,12 @@ class Peer:
                 raise EOFError(payload)
 
     def end(self):
-        """The close frame's code; None for none."""
+        """The close frame's code; None for none. Its text is then in `reason`."""
         try:
             while True:
                 kind, payload = self.next_frame()
                 if kind == CLOSE:
+                    self.reason = payload[2:].decode()
                     return struct.unpack("!H", payload[:2])[0] if payload else None
         except EOFError:
             return None

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -18,9 +19,17 @@ using namespace tactor::net;
 
 namespace {
 
+struct machine {
+    explicit machine(std::size_t most = 64U << 20) : all(most) {}
+    boost::asio::io_context io;
+    write_budget all;
+};
+
 /// A connection and its peer, a plain descriptor.
 struct pair {
-    explicit pair(const line_limits& l = {})
+    explicit pair(const line_limits& l = {}, const std::shared_ptr<machine>& m = std::make_shared<machine>(),
+                  const std::function<bool(std::string_view)>& is_first = {})
+        : on(m), io(m->io), all(m->all)
     {
         int fds[2] = {-1, -1};
         REQUIRE(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, fds) == 0);
@@ -28,12 +37,14 @@ struct pair {
         line_connection::socket_type s(io);
         s.assign(boost::asio::generic::stream_protocol(AF_UNIX, 0), fds[0]);
         end = std::make_shared<line_connection>(std::move(s), l, all);
-        end->start({[this](std::string_view t) {
-                        lines.emplace_back(t);
-                        return true;
-                    },
-                    [this] { input_over = true; }, [this](line_fault f) { faults.push_back(f); },
-                    [this] { closed = true; }});
+        end->start(
+            {[this](std::string_view t) {
+                 lines.emplace_back(t);
+                 return true;
+             },
+             [this] { input_over = true; }, [this](line_fault f) { faults.push_back(f); },
+             [this] { closed = true; },
+             is_first ? [this, is_first] { return is_first(lines.back()); } : std::function<bool()>()});
     }
     ~pair()
     {
@@ -52,8 +63,9 @@ struct pair {
             REQUIRE(io.run_one() == 1);
     }
 
-    boost::asio::io_context io;
-    write_budget all;
+    std::shared_ptr<machine> on;
+    boost::asio::io_context& io;
+    write_budget& all;
     int peer = -1;
     std::shared_ptr<line_connection> end;
     std::vector<std::string> lines;
@@ -122,18 +134,73 @@ TEST_CASE("who does not read is dropped, and what waited is given back")
     p.io.poll();
     p.end.reset();
     p.io.poll();
-    CHECK(p.all.waiting == 0);
+    CHECK(p.all.waiting() == 0);
 }
 
-TEST_CASE("all together have a budget")
+TEST_CASE("an empty line is no first message, and after that no message that is late")
 {
-    pair p;
-    p.all.most = 50'000;
-    p.all.waiting = 45'000;
-    p.end->send(std::string(10'000, 'x'));
+    pair p({.message_s = 0.001});
+    p.write("\n\r\n\n");
     p.until([&] { return p.closed; });
-    CHECK(p.faults == std::vector<line_fault>{line_fault::unread});
-    p.all.waiting -= 45'000;
+    CHECK(p.lines.empty());
+    CHECK(p.faults == std::vector<line_fault>{line_fault::too_slow});
+}
+
+TEST_CASE("the first message may be owed until one is the right one")
+{
+    const auto is_right = [](std::string_view line) { return line == "right"; };
+    pair p({.message_s = 0.001}, std::make_shared<machine>(), is_right);
+    p.write("wrong\n");
+    p.until([&] { return p.closed; });
+    CHECK(p.faults == std::vector<line_fault>{line_fault::too_slow});
+    pair q({.message_s = 3600.0}, std::make_shared<machine>(), is_right);
+    q.write("wrong\nright\n");
+    q.until([&] { return q.lines.size() == 2; });
+    CHECK(q.faults.empty());
+}
+
+TEST_CASE("where all together have too much waiting, it ends for who has most")
+{
+    write_budget all(10'000);
+    std::vector<int> given_up;
+    const auto share = [&](int i) { return [&, i] { given_up.push_back(i); }; };
+    write_budget::share innocent(all, share(0));
+    write_budget::share hog(all, share(1));
+    {
+        write_budget::share gone(all, share(2));
+        CHECK(gone.add(9'000));
+    }
+    CHECK(all.waiting() == 0);
+    CHECK(innocent.add(1'000));
+    CHECK(hog.add(9'000));
+    CHECK(innocent.add(1'000));
+    CHECK(given_up == std::vector<int>{1});
+    CHECK(all.waiting() == 2'000);
+    CHECK_FALSE(hog.add(1));
+    hog.take(9'000); // what was on its way when it was given up
+    CHECK(all.waiting() == 2'000);
+    innocent.take(2'000);
+    CHECK_FALSE(innocent.add(10'001)); // more than there is
+    CHECK(given_up == std::vector<int>{1, 0});
+    CHECK(all.waiting() == 0);
+}
+
+TEST_CASE("a peer that is sent to is not given up for another that does not read")
+{
+    const auto both = std::make_shared<machine>(50'000);
+    pair reads({}, both);
+    pair deaf({}, both);
+    while (deaf.end->waiting() < 45'000) {
+        deaf.end->send(std::string(1'000, 'x'));
+        both->io.poll();
+    }
+    reads.end->send("heard" + std::string(5'000, '.'));
+    reads.until([&] { return deaf.closed; });
+    CHECK(deaf.faults == std::vector<line_fault>{line_fault::unread});
+    CHECK(reads.faults.empty());
+    char bytes[100];
+    REQUIRE(::read(reads.peer, bytes, sizeof bytes) == sizeof bytes);
+    CHECK(std::string_view(bytes, 6) == "heard.");
 }
 
 } // namespace line_connection_test

@@ -56,7 +56,7 @@ struct page_server::state {
 void page_server::state::take(net::listener::socket_type s)
 {
     if (all.size() >= most_connections)
-        return; // the socket closes
+        return net::turn_away(s.native_handle()); // and the socket closes
     auto stream = net::web_socket(io, std::move(s));
     if (!stream)
         return;
