@@ -53,6 +53,7 @@ class DrawingPage(BrowserTest, ToolTest):
             p.mouse("mouseMoved", *self.place(p, 0.1 + i * 0.04, 0.5))
         # The tactors move in the picture as they do on the skin.
         p.until("[...document.querySelectorAll('.beat')].some(b => Number(b.getAttribute('r')) > 0)")
+        p.mouse("mouseMoved", *self.place(p, 1.1, 1.1))  # beside the array
         p.mouse("mouseReleased", *self.place(p, 0.9, 0.9))
         self.assertEqual(self.next_stroke(watcher, "finished")["stroke"], first)
         p.until("!document.querySelector('#again').disabled")
@@ -66,7 +67,7 @@ class DrawingPage(BrowserTest, ToolTest):
             HTMLAnchorElement.prototype.click = () => {};
             document.querySelector('#save').click(); return text; })()""")
         self.write("drawn.csv", saved)
-        self.assertEqual(self.run_tool("plan", "drawn.csv", "--outside", "clamp").returncode, 0)
+        self.assertEqual(self.run_tool("plan", "drawn.csv").returncode, 0)
 
     def test_fingers_are_strokes_of_their_own(self):
         p, watcher = self.ready(self.serve(), size=(390, 844))
@@ -107,6 +108,15 @@ class DrawingPage(BrowserTest, ToolTest):
         self.assertEqual(ended["state"], "cancelled")
         self.assertNotIn("somebody", p.value("document.querySelector('#says').textContent"))
 
+    def test_space_stops_wherever_the_focus_is(self):
+        p, watcher = self.ready(self.serve())
+        for id in ("level", "file", "preset", "play", "field"):
+            p.value("play({path: 'M 0 0 L 40 40'}).then(() => 1)")
+            number = self.next_stroke(watcher, "started")["stroke"]
+            p.value(f"document.querySelector('#{id}').focus()")
+            p.key("Space", " ")
+            self.assertEqual(watcher.end_of(number)["state"], "cancelled", id)
+
     def test_somebody_else_stops(self):
         s = self.serve()
         p, watcher = self.ready(s)
@@ -141,7 +151,7 @@ class DrawingPage(BrowserTest, ToolTest):
         p.until("document.querySelector('#state').textContent.startsWith('running')")
 
     def test_another_origins_page_cannot_connect(self):
-        s = self.serve()
+        s = self.serve("--tcp", "0")
 
         class Evil(http.server.BaseHTTPRequestHandler):
             def do_GET(self):
@@ -161,7 +171,10 @@ class DrawingPage(BrowserTest, ToolTest):
             tried = "new Promise(done => { const w = new WebSocket(%s); w.onopen = () => done('open'); w.onerror = () => done('refused'); })"
             self.assertEqual(p.value(tried % json.dumps(address)), "refused")
             # A simple POST of a form, to here and to the TCP port, does nothing either.
-            p.value("fetch(%s, {method: 'POST', mode: 'no-cors', body: '{}'}).catch(() => 0).then(() => 1)" % json.dumps(s.where["http"]))
+            play = json.dumps({"jsonrpc": "2.0", "method": "play", "params": {"path": "M 0 0 L 40 40", "start": "armed"}}) + "\n"
+            for address in (s.where["http"], f"http://{s.where['tcp']}/"):
+                p.value("fetch(%s, {method: 'POST', mode: 'no-cors', body: %s}).catch(() => 0).then(() => 1)"
+                        % (json.dumps(address), json.dumps(play)))
             self.assertEqual(s.client().ok("status")["strokes"], [])
             evil.shutdown()
 
