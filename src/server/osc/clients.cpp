@@ -20,7 +20,7 @@ using net::osc_message;
 osc_clients::osc_clients(boost::asio::io_context& io, service& s, outside o)
     : io_(io), service_(s), outside_(std::move(o))
 {
-    service_.on_stop([this] { drop_held([](const held&) { return true; }); });
+    service_.on_stop([this] { drop_held(); });
 }
 
 osc_clients::~osc_clients()
@@ -50,7 +50,12 @@ void osc_clients::take(const osc_message& m, const endpoint& from)
     if (is_servers_own(m.address))
         return;
     try {
-        handle(read_osc(m), time_of(m), from);
+        osc_request r = read_osc(m);
+        // At once, whatever its time is.
+        if (r.method == "stop")
+            stop(std::move(r), from);
+        else
+            handle(std::move(r), time_of(m), from);
     } catch (...) {
         refuse(from, m.address, current_fault("values"));
     }
@@ -80,8 +85,6 @@ std::int64_t osc_clients::lead_ns()
 
 void osc_clients::handle(osc_request r, std::optional<std::int64_t> at_ns, const endpoint& from)
 {
-    if (r.method == "stop")
-        return stop(std::move(r), from);
     if (r.method == "subscribe")
         return subscribe(r, from);
     if (r.method == "to" || r.method == "end" || r.method == "cancel")
@@ -198,6 +201,11 @@ void osc_clients::do_held(const held& h)
         return ask_of(s, d->second, r);
     d->second.held = false;
     ask(s, r);
+}
+
+void osc_clients::drop_held()
+{
+    drop_held([](const held&) { return true; });
 }
 
 // Somebody stopped everything, or a sender its own: what has not begun does not begin.

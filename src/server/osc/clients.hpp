@@ -55,6 +55,8 @@ public:
     std::optional<std::int64_t> next_ns() const;
     /// Does what is due.
     void act();
+    /// What has not begun does not begin, and its senders are told.
+    void drop_held();
     /// Senders that are known.
     std::size_t count() const noexcept { return senders_.size(); }
 

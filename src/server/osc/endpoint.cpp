@@ -70,6 +70,7 @@ void osc_endpoint::stop()
     boost::system::error_code ignored;
     socket_.cancel(ignored);
     due_.cancel();
+    clients_.drop_held();
 }
 
 void osc_endpoint::take()
