@@ -28,7 +28,7 @@ void service::begin(client& c, const json& params, const answer& to)
     s.plan.outside = usual.plan.outside;
     if (const json* o = member(params, "options"))
         s = with_options(s, *o, options_for::live);
-    check_level(options_.plans, s, 1.0);
+    check_level(options_.plans, s, 1.0, s.plan.carrier_hz);
     live_options o;
     o.plan = s.plan;
     o.render = s.render;

@@ -144,25 +144,16 @@ const char* source_of(const json& params)
     return found;
 }
 
-// At whatever carrier; very low where none was measured.
-double highest_threshold(const tactor_spec& t)
-{
-    double highest = t.thresholds.empty() ? t.threshold_dbfs.value_or(-1e9) : -1e9;
-    for (const threshold_point& p : t.thresholds)
-        highest = std::max(highest, p.dbfs);
-    return highest;
-}
-
-void check_level(const planning& with, const stroke_settings& s, double intensity)
+void check_level(const planning& with, const stroke_settings& s, double intensity, double carrier_hz)
 {
     if (intensity <= 0.0)
         return;
     const double over_db = 20.0 * std::log10(intensity);
     double level = s.render.level_dbfs;
     if (s.render.sl_db) {
-        level = -1e9;
+        level = -1e9; // where none was measured, which is refused elsewhere
         for (const tactor_spec& t : with.tactors.tactors)
-            level = std::max(level, highest_threshold(t) + *s.render.sl_db);
+            level = std::max(level, threshold_at(t, carrier_hz).value_or(-1e9) + *s.render.sl_db);
     }
     if (level + over_db <= with.max_level_dbfs + rounding_db)
         return;
@@ -221,7 +212,8 @@ planned make_planned(const planning& with, const layout& faces, const json& para
         for (const stroke& k : p.strokes) {
             between();
             p.plans.push_back({make_plan(with.tactors, faces, k, s.plan), k.start_s, k.anchor});
-            check_level(with, s, s.plan.scale.amplitude(loudest(k, p.plans.back().schedule)));
+            const plan& made = p.plans.back().schedule;
+            check_level(with, s, s.plan.scale.amplitude(loudest(k, made)), made.carrier_hz);
         }
         in_time(with, p.total_s());
         between();
@@ -250,7 +242,7 @@ planned make_drive(const planning& with, const json& params)
     constexpr double usual_s = 0.5;
     const double seconds = given == nullptr ? usual_s : number(*given, "duration_s", 0.001, 86400);
     in_time(with, seconds);
-    check_level(with, with.owner, intensity);
+    check_level(with, with.owner, intensity, with.owner.plan.carrier_hz);
     planned p{"drive", {}, {}, with.owner.render};
     const point where = with.tactors.tactors[static_cast<std::size_t>(tactor)].position;
     plan schedule{.algorithm = "drive", .phantom = "none"};

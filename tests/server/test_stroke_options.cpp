@@ -197,6 +197,14 @@ TEST_CASE("the ceiling holds for level, intensity and dB SL")
     CHECK_FALSE(plays(path({{"level_dbfs", -11.99}})));
     CHECK(plays(path({{"sl", 28}})));
     CHECK_FALSE(plays(path({{"sl", 28.01}})));
+    // What counts is the threshold at the stroke's own carrier.
+    planning measured = p;
+    for (tactor_spec& t : measured.tactors.tactors)
+        t.thresholds = {{50.0, -10.0}, {250.0, -40.0}};
+    CHECK(make_planned(measured, faces, path({{"sl", 20}, {"carrier", 250}})).plans.size() == 1);
+    CHECK(fault_from([&] {
+              make_planned(measured, faces, path({{"sl", 20}, {"carrier", 50}}));
+          }).what == "options.sl");
     const auto points = [](double intensity, double level) {
         return json{{"points", {{0, 0, 0}, {0.5, 20, 20, intensity}, {1, 40, 40}}},
                     {"options", {{"algorithm", "continuous"}, {"level_dbfs", level}}}};
