@@ -2,6 +2,7 @@
 """Clients in the tool: play --socket, stop, status, and live strokes from standard input, here and through a server."""
 import json
 import signal
+import socket
 import subprocess
 
 from harness import PATIENCE_S, TOOL, ToolTest, main
@@ -82,6 +83,33 @@ class Remote(ToolTest):
         p.communicate(timeout=PATIENCE_S)
         self.assertEqual(p.returncode, 130)
         self.assertEqual(watcher.end_of(n)["state"], "cancelled")
+
+    def test_a_signal_ends_what_a_server_does_not_answer(self):
+        hung = str(self.dir / "hung.sock")
+        with socket.socket(socket.AF_UNIX) as door:
+            door.bind(hung)
+            door.listen()
+            for command in (("status",), ("status", "--watch"), ("stop",), ("play", "park2016-1"), ("play", "--live", "-")):
+                for sent, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
+                    p = self.begun(*command, "--socket", hung)
+                    with door.accept()[0] as taken:
+                        self.assertTrue(taken.recv(1)) # it has asked
+                        p.send_signal(sent)
+                        p.communicate(timeout=PATIENCE_S)
+                    self.assertEqual(p.returncode, status, command)
+
+    def test_a_second_signal_does_not_wait_for_the_fade(self):
+        s = self.serve()
+        watcher = s.client()
+        watcher.ok("subscribe", events=["strokes"])
+        p = self.begun("play", *LONG, "--socket", s.where["socket"])
+        self.started(watcher)
+        s.process.send_signal(signal.SIGSTOP)
+        for sent in (signal.SIGINT, signal.SIGTERM): # two of one kind may come as one
+            p.send_signal(sent)
+        p.communicate(timeout=PATIENCE_S)
+        self.assertIn(p.returncode, (130, 143))
+        s.process.send_signal(signal.SIGCONT)
 
     def test_status_watches(self):
         s = self.serve()

@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <poll.h>
 
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
@@ -61,8 +60,8 @@ void print_json_line(const net::json& j)
     fmt::print("{}\n", j.dump(-1, ' ', false, net::json::error_handler_t::replace));
 }
 
-// Until a signal comes, or the server ends.
-int watch(rpc_client& server, const status_options& o, interrupt& stop)
+// Until the server ends. Throws interrupted.
+int watch(rpc_client& server, const status_options& o)
 {
     for (;;) {
         while (const auto n = server.notification()) {
@@ -74,17 +73,13 @@ int watch(rpc_client& server, const status_options& o, interrupt& stop)
             if ((*n)["method"] == "stream" && (*n)["params"].value("state", "") == "closing")
                 return status_ok;
         }
-        pollfd fds[] = {{stop.descriptor(), POLLIN, 0}, {server.descriptor(), POLLIN, 0}};
-        ::poll(fds, 2, -1);
-        if (const int s = stop.poll())
-            return interrupt::status(s);
+        server.wait();
     }
 }
 
-int status(const status_options& o)
+int status(const status_options& o, interrupt& stop)
 {
-    interrupt stop;
-    rpc_client server(o.socket);
+    rpc_client server(o.socket, stop);
     if (o.watch)
         server.call("subscribe", {{"events", {"strokes", "stream"}}});
     const net::json s = server.call("status");
@@ -93,7 +88,19 @@ int status(const status_options& o)
     else
         print_status(s);
     std::fflush(stdout);
-    return o.watch ? watch(server, o, stop) : static_cast<int>(status_ok);
+    return o.watch ? watch(server, o) : static_cast<int>(status_ok);
+}
+
+// Also while the server does not answer.
+template <typename F>
+int until_interrupted(F ask)
+{
+    interrupt stop;
+    try {
+        return ask(stop);
+    } catch (const interrupted& i) {
+        return interrupt::status(i.signal);
+    }
 }
 
 } // namespace
@@ -106,7 +113,7 @@ command add_status(CLI::App& app)
     c->add_flag("--watch", o->watch, "go on with what changes, line by line");
     add_format_option(*c, o->format, {"text", "json"}, "how to print it (default text)");
     c->footer("Example: tactor status --format json");
-    return [o] { return status(*o); };
+    return [o] { return until_interrupted([&](interrupt& stop) { return status(*o, stop); }); };
 }
 
 command add_stop(CLI::App& app)
@@ -116,8 +123,10 @@ command add_stop(CLI::App& app)
     add_socket(*c, o->socket);
     c->footer("Example: tactor stop");
     return [o] {
-        rpc_client(o->socket).call("stop");
-        return static_cast<int>(status_ok);
+        return until_interrupted([&](interrupt& stop) {
+            rpc_client(o->socket, stop).call("stop");
+            return static_cast<int>(status_ok);
+        });
     };
 }
 

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <set>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
-#include <poll.h>
 #include <unistd.h>
 
 #include <tactor/stroke.hpp>
@@ -28,6 +28,7 @@ namespace tactor::cli {
 namespace {
 
 // What a server's owner decides, or the server does not do.
+constexpr std::chrono::seconds to_finish{10}; // for a server to fade out, after a signal
 constexpr std::array owners{"array", "config",     "device",  "rate",      "sample-format",
                             "fit",   "fit-margin", "texture", "texture-mm"};
 
@@ -95,7 +96,7 @@ error in_words_of_the_tool(const error& e, const std::string& argument)
 class remote_player {
 public:
     remote_player(const settings& s, const option_list& options, const play_options& o)
-        : options_(o), server_(o.socket), asked_(options_of(s, options))
+        : options_(o), server_(o.socket, stop_), asked_(options_of(s, options))
     {
         const net::json hello = server_.call("hello");
         const net::json& d = hello["stream"];
@@ -129,6 +130,7 @@ public:
         net::json begin{{"options", asked_}, {"timeout_s", live_timeout_s}};
         if (options_.smooth_s)
             begin["smooth_s"] = *options_.smooth_s;
+        server_.let_finish(to_finish);
         const net::json n = server_.call("begin", begin)["stroke"];
         try {
             while (!ended(n, out)) {
@@ -164,6 +166,7 @@ private:
         if (options_.arm)
             params["start"] = "armed";
         net::json r;
+        server_.let_finish(to_finish);
         try {
             r = server_.call("play", params);
         } catch (const error& e) {
@@ -228,13 +231,12 @@ private:
         return true;
     }
 
+    // What has come with a signal is cancelled first.
     void wait(int also)
     {
-        pollfd fds[] = {
-            {stop_.descriptor(), POLLIN, 0}, {server_.descriptor(), POLLIN, 0}, {also, POLLIN, 0}};
-        ::poll(fds, 3, -1);
-        if (const int s = stop_.poll())
-            signal_ = s;
+        if (server_.signal() == 0 || cancelled_)
+            server_.wait(also);
+        signal_ = server_.signal();
     }
 
     void tell(const stroke_outcome& out) const
@@ -300,14 +302,14 @@ private:
 int play_remote(const settings& s, const option_list& options, const play_options& o)
 {
     refuse_owners(options);
-    if (o.live) {
+    const auto pieces = o.live ? decltype(stroke_params(s)){} : stroke_params(s);
+    try {
         remote_player player(s, options, o);
         live_lines lines(STDIN_FILENO);
-        return player.live(lines);
+        return o.live ? player.live(lines) : player.play(pieces);
+    } catch (const interrupted& i) {
+        return interrupt::status(i.signal);
     }
-    const auto pieces = stroke_params(s);
-    remote_player player(s, options, o);
-    return player.play(pieces);
 }
 
 } // namespace tactor::cli

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "cli/serve/rpc_client.hpp"
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <utility>
 #include <vector>
@@ -60,7 +62,7 @@ error error_of(const net::json& e)
 
 } // namespace
 
-rpc_client::rpc_client(const std::optional<std::string>& socket)
+rpc_client::rpc_client(const std::optional<std::string>& socket, interrupt& stop) : stop_(stop)
 {
     const auto places = candidates(socket);
     int code = ENOENT;
@@ -82,8 +84,11 @@ void rpc_client::send(const net::json& message)
 {
     const std::string text = message.dump(-1, ' ', false, net::json::error_handler_t::replace) + "\n";
     for (std::size_t sent = 0; sent < text.size();) {
-        const ssize_t n = ::send(fd_.get(), text.data() + sent, text.size() - sent, MSG_NOSIGNAL);
-        if (n < 0 && errno == EINTR)
+        while (!poll(POLLOUT, -1)) {
+        }
+        const ssize_t n =
+            ::send(fd_.get(), text.data() + sent, text.size() - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
+        if (n < 0 && (errno == EINTR || errno == EAGAIN))
             continue;
         if (n < 0)
             throw error(error_kind::runtime, "server", "it is gone", "see what it says");
@@ -91,11 +96,37 @@ void rpc_client::send(const net::json& message)
     }
 }
 
+bool rpc_client::poll(short what, int also)
+{
+    using std::chrono::steady_clock;
+    pollfd fds[] = {{stop_.descriptor(), POLLIN, 0}, {fd_.get(), what, 0}, {also, POLLIN, 0}};
+    int most_ms = -1;
+    if (signal_ != 0)
+        most_ms = static_cast<int>(std::max<std::int64_t>(
+            0, std::chrono::ceil<std::chrono::milliseconds>(deadline_ - steady_clock::now()).count()));
+    const int ready = ::poll(fds, 3, most_ms);
+    if (const int s = stop_.poll()) {
+        if (std::exchange(signal_, s) != 0 || grace_.count() == 0)
+            throw interrupted{s};
+        deadline_ = steady_clock::now() + grace_;
+    } else if (ready == 0) {
+        throw interrupted{signal_};
+    }
+    return fds[1].revents != 0;
+}
+
+void rpc_client::wait(int also)
+{
+    static_cast<void>(poll(POLLIN, also));
+}
+
 void rpc_client::receive()
 {
+    while (!poll(POLLIN, -1)) {
+    }
     char bytes[65536];
-    const ssize_t n = ::recv(fd_.get(), bytes, sizeof bytes, 0);
-    if (n < 0 && errno == EINTR)
+    const ssize_t n = ::recv(fd_.get(), bytes, sizeof bytes, MSG_DONTWAIT);
+    if (n < 0 && (errno == EINTR || errno == EAGAIN))
         return;
     if (n <= 0)
         throw error(error_kind::runtime, "server", "it is gone", "see what it says");

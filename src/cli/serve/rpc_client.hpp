@@ -11,39 +11,57 @@
 
 #include <tactor/error.hpp>
 
+#include "cli/interrupt.hpp"
 #include "net/listen.hpp"
 #include "net/rpc.hpp"
 
 namespace tactor::cli {
 
+/// A signal has come. The exit status: interrupt::status().
+struct interrupted {
+    int signal;
+};
+
 /// Of a server: the one that was named, else XDG_RUNTIME_DIR's, else the system's.
 /// \throws error (not_available) where none listens.
 class rpc_client {
 public:
-    explicit rpc_client(const std::optional<std::string>& socket);
+    /// A signal at `stop` ends what waits for a reply.
+    rpc_client(const std::optional<std::string>& socket, interrupt& stop);
 
-    /// The result. \throws error with the server's words; runtime where it went away.
+    /// The result. \throws error with the server's words, runtime where it went away; interrupted.
     net::json call(const std::string& method, const net::json& params = net::json::object());
     /// Without a reply.
     void tell(const std::string& method, const net::json& params);
 
     /// The next notification that has come. Does not wait.
     std::optional<net::json> notification();
-    /// Readable when something has come.
-    int descriptor() const noexcept { return fd_.get(); }
+    /// Waits until something has come from the server or at `also`, or a signal. \throws interrupted.
+    void wait(int also = -1);
+    /// From now on a first signal is only told by signal(), and the server has so long for what is asked of
+    /// it then.
+    void let_finish(std::chrono::milliseconds grace) { grace_ = grace; }
+    /// That has come, or 0.
+    int signal() const noexcept { return signal_; }
     const std::string& socket() const noexcept { return path_; }
 
 private:
     void send(const net::json& message);
+    /// Whether the socket can be read or written (POLLIN, POLLOUT); waits for that, `also`, or a signal.
+    bool poll(short what, int also);
     /// Takes in what is there; waits for something where there is nothing.
     void receive();
     std::optional<net::json> message();
 
+    interrupt& stop_;
     net::owned_fd fd_;
     std::string path_;
     std::string buffer_;
     std::deque<net::json> told_;
     int last_ = 0;
+    int signal_ = 0;
+    std::chrono::milliseconds grace_{0};
+    std::chrono::steady_clock::time_point deadline_ = {};
 };
 
 } // namespace tactor::cli
