@@ -313,8 +313,10 @@ void option_list::add_device_options()
 
 bool option_list::given(const std::string& name) const
 {
-    const auto o = by_name_.find(name);
-    return o != by_name_.end() && o->second.first->count() != 0;
+    const auto own = by_name_.find(name);
+    const CLI::Option* o =
+        own != by_name_.end() ? own->second.first : command_.get_option_no_throw("--" + name);
+    return o != nullptr && o->count() != 0;
 }
 
 bool option_list::has(const std::string& name) const

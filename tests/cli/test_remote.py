@@ -59,8 +59,11 @@ class Remote(ToolTest):
         for option, value in (("--soa", "3"), ("--level-dbfs", "-1")):
             self.refused(2, "play", "park2016-1", option, value, "--socket", s.where["socket"], says=(f"tactor: {option}: ",))
         self.refused(2, "play", "--path", "M 0 0 L 400 0", "--socket", s.where["socket"], says=("--path", "--outside"))
-        for option in (("--array", "palm-3x3"), ("-D", "null"), ("--fit",), ("--rate", "48000")):
-            self.refused(2, "play", "park2016-1", *option, "--socket", s.where["socket"], says=("--socket",))
+        for option in (("--array", "palm-3x3"), ("-D", "null"), ("--fit",), ("--rate", "48000"),
+                       ("--compensate", "low-speed"), ("--power-dbfs", "3"), ("--max-drive-s", "3"), ("--drive-window-s", "9"),
+                       ("--require-realtime",), ("--no-gpio",), ("--latency-ms", "5"), ("--period-frames", "96"), ("--periods", "3"),
+                       ("--reopen-s", "1"), ("--sync-delay-ms", "3"), ("--log", "x.log"), ("--verbose",)):
+            self.refused(2, "play", "park2016-1", *option, "--socket", s.where["socket"], says=("--socket", {"-D": "--device"}.get(option[0], option[0])))
         self.refused(2, "play", "nonsense", "--socket", s.where["socket"], says=("nonsense",))
         plan = self.ok("plan", "park2016-1", "--format", "json").stdout
         self.write("plan.json", plan)

@@ -29,8 +29,12 @@ namespace {
 
 // What a server's owner decides, or the server does not do.
 constexpr std::chrono::seconds to_finish{10}; // for a server to fade out, after a signal
-constexpr std::array owners{"array", "config",     "device",  "rate",      "sample-format",
-                            "fit",   "fit-margin", "texture", "texture-mm"};
+constexpr std::array owners{"array",         "config",        "device",      "rate",
+                            "sample-format", "fit",           "fit-margin",  "texture",
+                            "texture-mm",    "compensate",    "sigma-mm",    "sigma-v-mm-s",
+                            "latency-ms",    "period-frames", "periods",     "require-realtime",
+                            "no-gpio",       "power-dbfs",    "max-drive-s", "drive-window-s",
+                            "reopen-s",      "sync-delay-ms", "log",         "verbose"};
 
 void refuse_owners(const option_list& options)
 {
