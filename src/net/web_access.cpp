@@ -17,22 +17,29 @@ bool same_name(std::string_view a, std::string_view b)
                       [&](char x, char y) { return lower(x) == lower(y); });
 }
 
-// "[::1]:4003" as "::1" and "4003"; the port is empty where none is said.
+bool is_port(std::string_view text)
+{
+    constexpr std::size_t most_digits = 5;
+    return !text.empty() && text.size() <= most_digits &&
+           std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+// "[::1]:4003" as "::1" and "4003"; the port is empty where none is said, both are where it is nonsense.
 std::pair<std::string_view, std::string_view> split(std::string_view host)
 {
-    if (host.starts_with('[')) {
-        const std::size_t end = host.find(']');
-        if (end == std::string_view::npos)
-            return {};
-        const std::string_view rest = host.substr(end + 1);
-        if (!rest.empty() && rest.front() != ':')
-            return {};
-        return {host.substr(1, end - 1), rest.empty() ? rest : rest.substr(1)};
-    }
-    const std::size_t colon = host.find(':');
-    if (colon == std::string_view::npos)
-        return {host, {}};
-    return {host.substr(0, colon), host.substr(colon + 1)};
+    const bool bracketed = host.starts_with('[');
+    const std::size_t end = bracketed ? host.find(']') : std::min(host.find(':'), host.size());
+    if (end == std::string_view::npos)
+        return {};
+    const std::string_view name = bracketed ? host.substr(1, end - 1) : host.substr(0, end);
+    const std::string_view rest = host.substr(bracketed ? end + 1 : end);
+    if (bracketed && name.find(':') == std::string_view::npos)
+        return {}; // only an address of IPv6 is written so
+    if (rest.empty())
+        return {name, {}};
+    if (rest.front() != ':' || !is_port(rest.substr(1)))
+        return {};
+    return {name, rest.substr(1)};
 }
 
 bool same_address(std::string_view a, std::string_view b)

@@ -19,7 +19,7 @@ TEST_CASE("names by which a browser may call this server")
     for (const char* not_ours :
          {"evil.example:4003", "127.0.0.2:4003", "127.1:4003", "0x7f000001:4003", "localhost:4004",
           "localhost", "127.0.0.1", "localhost.:4003", "localhost:4003:4003", "[::1]:4003", "", ":", ":4003",
-          "[", "[]", "[127.0.0.1]:4003x", "localhost:04003", "localhost: 4003"}) {
+          "[", "[]", "[127.0.0.1]:4003", "[127.0.0.1]:4003x", "localhost:04003", "localhost: 4003"}) {
         CAPTURE(not_ours);
         CHECK_FALSE(host_is_ours(not_ours, local, {}));
     }
@@ -40,6 +40,12 @@ TEST_CASE("names that the owner allows")
     CHECK_FALSE(host_is_ours("desk.lan:4003", "10.0.0.2:4003", allowed));
     CHECK_FALSE(host_is_ours("pi.lan.evil.example", "10.0.0.2:4003", allowed));
     CHECK_FALSE(host_is_ours("xpi.lan", "10.0.0.2:4003", allowed));
+    // What goes into the page's policy is a name and a port, and nothing else.
+    for (const char* nonsense : {"pi.lan:evil", "pi.lan:80;x", "pi.lan:", "pi.lan:4003 x", "pi.lan:123456",
+                                 "[pi.lan]:4003", "[pi.lan"}) {
+        CAPTURE(nonsense);
+        CHECK_FALSE(host_is_ours(nonsense, "10.0.0.2:4003", allowed));
+    }
     CHECK_FALSE(host_is_ours("", "10.0.0.2:4003", {""}));
 }
 
