@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: MIT
 // [serve].
+#include <charconv>
+#include <cstdint>
 #include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -25,12 +32,32 @@ std::vector<std::string> texts(const toml_table& t, std::string_view key)
     return all;
 }
 
+// [HOST:]PORT; whether this machine has such a host is seen when it is listened at.
+bool is_address(std::string_view text)
+{
+    const auto colon = text.rfind(':');
+    if (colon != std::string_view::npos) {
+        const std::string_view host = text.substr(0, colon);
+        const bool bracketed = host.size() > 2 && host.front() == '[' && host.back() == ']';
+        if (host.empty() || (!bracketed && host.find(':') != std::string_view::npos))
+            return false;
+        text.remove_prefix(colon + 1);
+    }
+    std::uint16_t port = 0;
+    const auto r = std::from_chars(text.data(), text.data() + text.size(), port);
+    return r.ec == std::errc() && r.ptr == text.data() + text.size();
+}
+
 // "127.0.0.1:4001", or a bare 4001.
 std::optional<std::string> address(const toml_table& t, std::string_view key)
 {
     if (const toml::node* n = t.node(key); n != nullptr && n->is_integer())
         return std::to_string(*t.whole(key, 0, 65535));
-    return t.text(key);
+    const auto text = t.text(key);
+    if (text && !is_address(*text))
+        t.fail(key, fmt::format("\"{}\" is no address", *text),
+               "[HOST:]PORT, such as 4001, \"0.0.0.0:4001\" or \"[::1]:4001\"; port 0 takes a free one");
+    return text;
 }
 
 void read_serve_limits(const toml_table& t, serve_settings& s)

@@ -70,7 +70,8 @@ TEST_CASE("[serve]: what cannot be, with its place")
     };
     CHECK(says("tpc = 1").find("t:2:") == 0);
     CHECK(says("tpc = 1").find("tcp") != std::string::npos);
-    for (const char* line : {"tcp = 70000", "tcp = 1.5", "socket = ''", "allow_hosts = 'x'",
+    for (const char* line : {"tcp = 70000", "tcp = 1.5", "tcp = 'x'", "http = '::1'", "http = 'a:'",
+                             "osc = ':1'", "osc = '[::1]:65536'", "socket = ''", "allow_hosts = 'x'",
                              "osc_peers = [1]", "max_level_dbfs = 1", "idle_stop_s = 0", "max_clients = 0",
                              "max_strokes = -1", "max_message_bytes = 1.5", "kept_clients = 128"})
         CHECK_MESSAGE(says(line).find("t:2:") == 0, line);
