@@ -82,7 +82,8 @@ rpc_refusal over(std::string what, std::string why, std::string hint)
 rpc_message parse_rpc(std::string_view text, const rpc_limits& l)
 {
     if (nests_deeper(text, l.nesting))
-        return alone(over("message", fmt::format("it nests deeper than {} levels", l.nesting), ""));
+        return alone(
+            over("max_nesting", fmt::format("a message nests deeper than {} levels", l.nesting), ""));
     json j;
     try {
         j = json::parse(text);

@@ -58,6 +58,7 @@ TEST_CASE("nesting is counted outside of texts, and refused before anything is b
     const auto nested = [](int n) { return std::string(static_cast<std::size_t>(n), '['); };
     CHECK(code_of(nested(65)) == code_limit);
     CHECK(code_of(nested(1'000'000)) == code_limit);
+    CHECK(std::get<rpc_refusal>(parse_rpc(nested(65), {}).parts.front()).why.what == "max_nesting");
     CHECK(code_of(nested(64)) == code_parse_error);
     CHECK(code_of("\"" + nested(100) + "\\\"" + nested(100) + "\"") == code_invalid_request);
     std::string flat = "[";
