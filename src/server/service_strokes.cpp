@@ -158,9 +158,10 @@ void service::fire(const json& params, const answer& to)
 {
     only(params, {});
     player* p = stream_.current();
-    if (p == nullptr)
+    if (p == nullptr && stream_.is_out())
         no_stream(stream_.reason());
-    const std::size_t n = p->fire(options_.now_ns());
+    // What is armed keeps a stream going: of one that stopped for want of strokes there is nothing to start.
+    const std::size_t n = p == nullptr ? 0 : p->fire(options_.now_ns());
     for (const auto& [number, r] : strokes_)
         if (r->state == "armed" && r->player == stream_.number() && !r->music)
             r->state = "waiting";

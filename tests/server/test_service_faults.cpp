@@ -100,6 +100,16 @@ TEST_CASE("an idle stream is closed, and opened by the next stroke")
           "finished");
 }
 
+TEST_CASE("of an idle stream there is nothing to fire, which is no error")
+{
+    service_rig rig([](server::service_options&, server::stream_options& s) { s.idle_stop_s = 0.001; });
+    rig.plug();
+    rig.start();
+    const auto c = rig.client();
+    rig.sleep_and_plug();
+    CHECK(rig.ok(c, "fire") == json{{"count", 0}});
+}
+
 TEST_CASE("stop reaches what waits for an idle stream to start")
 {
     std::promise<void> gate;
