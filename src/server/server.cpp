@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <exception>
 #include <map>
 #include <memory>
 #include <optional>
@@ -252,6 +253,11 @@ void serve(const endpoints& at, service_options o, stream_options s, network_opt
     asio::io_context io(1);
     // Also while nobody is connected and the stream fades out: it ends by stop().
     const auto until_stopped = asio::make_work_guard(io);
+    std::exception_ptr refused;
+    s.refused = [&](std::exception_ptr e) {
+        refused = std::move(e);
+        io.stop();
+    };
     server all(io, at, std::move(o), std::move(s), std::move(w));
     asio::posix::stream_descriptor told(io, ::dup(signals));
     told.async_wait(asio::posix::descriptor_base::wait_read, [&](const boost::system::error_code& e) {
@@ -264,6 +270,8 @@ void serve(const endpoints& at, service_options o, stream_options s, network_opt
         net::notify_manager("READY=1");
     });
     io.run();
+    if (refused != nullptr)
+        std::rethrow_exception(refused);
 }
 
 } // namespace tactor::server

@@ -142,7 +142,7 @@ void stream::open()
     boost::asio::post(worker_, [this, w = watch_, number = number_ + 1, driven = driven_] {
         std::unique_ptr<player> p;
         std::string failure;
-        bool final = false;
+        std::exception_ptr bad;
         try {
             player_options o = options_.player;
             o.driven = driven;
@@ -172,20 +172,23 @@ void stream::open()
             });
         } catch (const error& e) {
             failure = e.what();
-            final = e.kind() == error_kind::bad_input;
+            if (e.kind() == error_kind::bad_input)
+                bad = std::current_exception();
         } catch (const std::exception& e) {
             failure = e.what();
         }
         const auto made = std::make_shared<std::unique_ptr<player>>(std::move(p));
-        boost::asio::post(io_, [this, made, failure = std::move(failure), final] {
-            opened(std::move(*made), failure, final);
-        });
+        boost::asio::post(
+            io_, [this, made, failure = std::move(failure), bad] { opened(std::move(*made), failure, bad); });
     });
 }
 
-void stream::opened(std::unique_ptr<player> p, std::string failure, bool final)
+void stream::opened(std::unique_ptr<player> p, std::string failure, const std::exception_ptr& bad)
 {
     opening_ = false;
+    const bool first = !std::exchange(tried_, true);
+    if (bad != nullptr && first && !closing_ && options_.refused)
+        return options_.refused(bad);
     if (p != nullptr) {
         player_ = std::move(p);
         ++number_;
@@ -206,8 +209,7 @@ void stream::opened(std::unique_ptr<player> p, std::string failure, bool final)
     }
     set(stream_state::lost, failure);
     tell_waiting();
-    if (!final)
-        retry();
+    retry();
 }
 
 void stream::tell_waiting()

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -38,6 +39,9 @@ struct stream_options {
     player_options player = {}; ///< but `driven` and `log`
     log_function log = {};
     std::function<void(stream_state, const std::string& reason)> changed = {}; ///< for the owner
+    /// In place of all that follows: what was asked for can be opened on no day. Only of the first attempt;
+    /// later the device may be another one, and is tried again.
+    std::function<void(std::exception_ptr)> refused = {};
     /// What the array was given lately, by whomever: asked for before each opening. None: by this stream.
     std::function<drive_history()> driven = {};
     /// Twice a second while strokes go on, that so many channels may be driven.
@@ -99,7 +103,7 @@ private:
     struct watch;
 
     void open();
-    void opened(std::unique_ptr<player> p, std::string failure, bool final);
+    void opened(std::unique_ptr<player> p, std::string failure, const std::exception_ptr& bad);
     void look();
     void retire(std::function<void()> then);
     void set(stream_state s, std::string reason);
@@ -122,6 +126,7 @@ private:
     std::vector<std::function<void()>> waiting_;
     std::function<void()> closed_;
     bool opening_ = false;
+    bool tried_ = false;
     bool retiring_ = false;
     bool closing_ = false;
     bool busy_ = false;

@@ -109,6 +109,9 @@ class Serve(ServeTest):
         self.refuses_to_start(2, "--tcp", "0.0.0.0:0", says="token_file")
         self.refuses_to_start(2, "--socket", "x" * 200, says="name")
         self.refuses_to_start(2, config="[serve]\nhttpp = 4\n", says="httpp")
+        self.refuses_to_start(2, config='[serve]\ntcp = "x"\n', says="serve.toml:2:")
+        self.refuses_to_start(2, "--period-frames", "1", says="period")
+        self.assertFalse((self.dir / "s.sock").exists())
         r = self.run_tool("serve", "-D", "null", env={"XDG_RUNTIME_DIR": "", "RUNTIME_DIRECTORY": ""})
         self.assertEqual(r.returncode, 2)
 

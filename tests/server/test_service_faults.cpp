@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Cards that come and go, and the end.
 #include <atomic>
+#include <exception>
 #include <future>
 
 #include <doctest/doctest.h>
@@ -16,6 +17,24 @@ namespace {
 
 const json brief{{"path", "M 0 0 L 40 40"}, {"options", {{"algorithm", "continuous"}, {"duration", 0.1}}}};
 const json armed{{"path", "M 0 0 L 40 40"}, {"start", "armed"}};
+
+/// A card that cannot do what is asked of it, where `bad`.
+struct misfit {
+    void replace(server::stream_options& s)
+    {
+        s.open = [this, open = s.open] {
+            ++tries;
+            if (bad)
+                throw error(error_kind::bad_input, "PCM", "it has two channels", "choose another");
+            return open();
+        };
+        s.refused = [this](const std::exception_ptr&) { ++refused; };
+    }
+
+    std::atomic<bool> bad = false;
+    std::atomic<int> tries = 0;
+    int refused = 0; ///< the context's thread
+};
 
 } // namespace
 
@@ -108,6 +127,34 @@ TEST_CASE("of an idle stream there is nothing to fire, which is no error")
     const auto c = rig.client();
     rig.sleep_and_plug();
     CHECK(rig.ok(c, "fire") == json{{"count", 0}});
+}
+
+TEST_CASE("what does not fit at the start is refused, once")
+{
+    misfit card;
+    card.bad = true;
+    service_rig rig([&](server::service_options&, server::stream_options& s) { card.replace(s); });
+    rig.start();
+    rig.until([&] { return card.refused == 1; });
+    CHECK(card.tries == 1);
+}
+
+TEST_CASE("a card that does not fit in the place of one that did is tried again")
+{
+    misfit card;
+    service_rig rig([&](server::service_options&, server::stream_options& s) { card.replace(s); });
+    rig.plug();
+    rig.start();
+    rig.until([&] { return rig.all->output().state() == server::stream_state::running; });
+    card.bad = true;
+    rig.unplug();
+    const int before = card.tries;
+    rig.until([&] { return card.tries > before + 2; });
+    CHECK(rig.all->output().state() == server::stream_state::lost);
+    rig.plug();
+    card.bad = false;
+    rig.until([&] { return rig.all->output().state() == server::stream_state::running; });
+    CHECK(card.refused == 0);
 }
 
 TEST_CASE("stop reaches what waits for an idle stream to start")
