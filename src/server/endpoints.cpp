@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <tactor/error.hpp>
@@ -31,6 +32,18 @@ constexpr std::array known{
     inheritable{"osc", &endpoints::osc, net::is_bound_udp, "it is no UDP socket with a port"},
 };
 
+// As of one that is bound here: who may write to it may draw.
+void check_private(const std::string& path)
+{
+    struct stat is {};
+    const bool named = !path.empty() && ::stat(path.c_str(), &is) == 0;
+    if (!named || (is.st_mode & S_IWOTH) != 0)
+        throw error(error_kind::bad_input, "inherited socket \"socket\"" + (named ? " " + path : ""),
+                    named ? "every user of this machine may write to it"
+                          : "it is no file, whose mode would say who may draw",
+                    "SocketMode=0660 and SocketGroup= in the .socket unit");
+}
+
 [[noreturn]] void no_osc(const char* what)
 {
     throw error(error_kind::bad_input, what, "this build has no OSC", "build it with liblo (-Dosc=enabled)");
@@ -52,11 +65,16 @@ endpoints open_endpoints(const endpoint_options& o)
                         "see the .socket unit");
         if (name == "osc" && !net::osc_is_built())
             no_osc("inherited socket \"osc\"");
+        if (e.*k->place)
+            throw error(error_kind::bad_input, "inherited socket \"" + name + "\"",
+                        "there are two of that name",
+                        "one ListenStream= or ListenDatagram= for each FileDescriptorName=");
         e.*k->place = std::move(fd);
     }
-    if (e.socket)
+    if (e.socket) {
         e.socket_path = net::bound_path(e.socket.get());
-    if (!e.socket) {
+        check_private(e.socket_path);
+    } else {
         e.socket_path = o.socket();
         e.socket = net::listen_unix(e.socket_path, o.mode, o.group);
         e.own_socket = true;

@@ -90,6 +90,27 @@ class Serve(ServeTest):
             self.assertEqual(p.wait(PATIENCE_S), 0)
             self.assertTrue(os.path.exists(path))
 
+    def test_inherited_sockets_are_looked_at_as_if_bound_here(self):
+        open_to_all = str(self.dir / "open.sock")
+        with socket.socket(socket.AF_UNIX) as given, socket.socket(socket.AF_UNIX) as nameless:
+            given.bind(open_to_all)
+            nameless.bind("\0" + open_to_all)
+            for s in (given, nameless):
+                s.listen()
+            for mode, sockets, why in ((0o666, [given], "every user of this machine may write to it"),
+                                       (0o660, [given, given], "there are two of that name"),
+                                       (0o660, [nameless], "it is no file")):
+                os.chmod(open_to_all, mode)
+                passed = "".join(f"exec {3 + i}<&{s.fileno()}; " for i, s in enumerate(sockets))
+                r = subprocess.run(["sh", "-c", f'{passed}export LISTEN_PID=$$; exec "$@"', "sh", TOOL, "serve", "-D", "null"],
+                                   capture_output=True, text=True, cwd=self.dir, pass_fds=[s.fileno() for s in set(sockets)],
+                                   env=self.env | {"LISTEN_FDS": str(len(sockets)),
+                                                   "LISTEN_FDNAMES": ":".join(["socket"] * len(sockets))},
+                                   timeout=PATIENCE_S, check=False)
+                self.assertEqual((r.returncode, r.stdout), (2, ""), r.stderr)
+                self.assertIn('inherited socket "socket"', r.stderr)
+                self.assertIn(why, r.stderr)
+
     def test_it_tells_its_manager(self):
         path = str(self.dir / "notify")
         with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as manager:
