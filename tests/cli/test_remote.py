@@ -154,6 +154,37 @@ class Remote(ToolTest):
         self.assertIn("standard input:2:", p.stderr.read())
         self.assertIn(watcher.end_of(n)["state"], ("cancelled", "finished"))
 
+    def test_points_that_a_limit_refuses_come_later_and_none_is_left_out(self):
+        taken = []
+        path = str(self.dir / "strict.sock")
+        with socket.socket(socket.AF_UNIX) as door:
+            door.bind(path)
+            door.listen()
+            p = self.begun("play", "--live", "-", "--socket", path)
+            p.stdin.write("".join(f"{i} {i}\n" for i in range(40)))
+            p.stdin.close()
+            p.stdin = None
+            with door.accept()[0] as peer, peer.makefile("rw", encoding="utf-8") as lines:
+                refused = set()
+                for line in lines:
+                    m = json.loads(line)
+                    reply = {"result": {"stream": {"format": None, "state": "running"}, "stroke": 1}}
+                    if m["method"] == "to":
+                        x = m["params"]["x_mm"]
+                        if x % 10 == 9 and x not in refused:  # the last one is among them
+                            refused.add(x)
+                            reply = {"error": {"code": -32001, "message": "too many"}}
+                        else:
+                            taken.append(x)
+                    if m["method"] == "end":
+                        reply = {"method": "stroke", "params": {"stroke": 1, "state": "finished"} |
+                                 {"reason": "", "frames": 1, "started_s": None, "late_s": 0}}
+                    lines.write(json.dumps({"jsonrpc": "2.0"} | ({"id": m["id"]} if "id" in m else {}) | reply) + "\n")
+                    lines.flush()
+        out, err = p.communicate(timeout=PATIENCE_S)
+        self.assertEqual((p.returncode, err), (0, ""), out)
+        self.assertEqual(taken, list(range(40)))
+
     def test_a_stroke_that_the_server_interrupts_is_a_failure(self):
         s = self.serve(config="[serve]\nmax_stroke_s = 0.1\n")
         p = self.begun("play", "--live", "-", "--socket", s.where["socket"])

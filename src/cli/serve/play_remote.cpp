@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <set>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -27,8 +28,9 @@
 namespace tactor::cli {
 namespace {
 
+constexpr std::chrono::seconds to_finish{10};       // for a server to fade out, after a signal
+constexpr std::chrono::milliseconds limit_pause{5}; // some ten points of 2,000 a second
 // What a server's owner decides, or the server does not do.
-constexpr std::chrono::seconds to_finish{10}; // for a server to fade out, after a signal
 constexpr std::array owners{"array",         "config",        "device",      "rate",
                             "sample-format", "fit",           "fit-margin",  "texture",
                             "texture-mm",    "compensate",    "sigma-mm",    "sigma-v-mm-s",
@@ -42,43 +44,6 @@ void refuse_owners(const option_list& options)
         if (options.given(name))
             throw error(error_kind::bad_input, fmt::format("--{}", name),
                         "it is not for strokes that a server plays", "leave it out with --socket");
-}
-
-/// Those that the command line gives; the server's owner has said the others.
-net::json options_of(const settings& s, const option_list& options)
-{
-    net::json o = net::json::object();
-    const auto put = [&](const char* name, const char* param, const net::json& value) {
-        if (options.given(name))
-            o[param] = value;
-    };
-    put("algorithm", "algorithm", to_string(s.plan.algorithm));
-    put("phantom", "phantom", to_string(s.plan.phantom));
-    put("duration", "duration", s.duration_s.value_or(0.0));
-    put("speed", "speed", s.speed_mm_s.value_or(0.0));
-    put("soa", "soa", s.plan.soa_s);
-    put("burst", "burst", s.plan.burst_s.value_or(0.0));
-    put("slope", "slope", s.slope.value_or(0.0));
-    put("intercept", "intercept", s.intercept_s.value_or(0.0));
-    put("timing", "timing", to_string(s.plan.timing));
-    put("outside", "outside", to_string(s.plan.outside));
-    put("snap", "snap", s.plan.snap);
-    put("drop-points", "drop_points", s.plan.drop_points);
-    put("overlap", "overlap", to_string(s.plan.overlap));
-    put("carrier", "carrier", s.plan.carrier_hz);
-    put("waveform", "waveform", waveform_text(s.plan.wave));
-    put("am", "am", fmt::format("{}:{}", s.plan.am.hz, s.plan.am.depth));
-    put("noise-seed", "noise_seed", s.plan.wave.seed);
-    put("envelope", "envelope", envelope_text(s.render.envelope));
-    put("attack", "attack", s.render.envelope.attack_s.value_or(0.0));
-    put("release", "release", s.render.envelope.release_s.value_or(0.0));
-    put("intensity-scale", "intensity_scale", to_string(s.plan.scale.kind));
-    put("stevens-exponent", "stevens_exponent", s.plan.scale.exponent);
-    put("phase", "phase", to_string(s.render.phase));
-    put("ramp", "ramp", s.render.ramp_s.value_or(0.0));
-    put("level-dbfs", "level_dbfs", s.render.level_dbfs);
-    put("sl", "sl", s.render.sl_db.value_or(0.0));
-    return o;
 }
 
 /// The server's words about a parameter, as the command line has it.
@@ -143,11 +108,8 @@ public:
                     cancelled_ = true;
                     server_.tell("cancel", {{"stroke", n}});
                 }
-                while (const auto p = cancelled_ ? std::nullopt : lines.next())
-                    server_.tell("to", {{"stroke", n},
-                                        {"x_mm", p->position.x_mm},
-                                        {"y_mm", p->position.y_mm},
-                                        {"intensity", p->intensity}});
+                if (!cancelled_)
+                    draw(n, lines);
                 if (lines.over() && !std::exchange(ended_, true) && !cancelled_)
                     server_.tell("end", {{"stroke", n}});
             }
@@ -164,6 +126,35 @@ public:
     }
 
 private:
+    // Until nothing more is there, a signal has come, or the stroke is no more, which its end tells.
+    void draw(const net::json& n, live_lines& lines)
+    {
+        while (server_.signal() == 0) {
+            const auto p = lines.next();
+            if (!p || !move(n, *p))
+                return;
+        }
+    }
+
+    // What comes faster than the server takes points waits here, and in the pipe: none is left out.
+    bool move(const net::json& n, const timed_point& p)
+    {
+        const net::json to{
+            {"stroke", n}, {"x_mm", p.position.x_mm}, {"y_mm", p.position.y_mm}, {"intensity", p.intensity}};
+        try {
+            while (!server_.try_call("to", to)) {
+                if (server_.signal() != 0)
+                    return false;
+                std::this_thread::sleep_for(limit_pause);
+            }
+            return true;
+        } catch (const error& e) {
+            if (e.subject() != "stroke")
+                throw;
+            return false;
+        }
+    }
+
     void play_one(stroke_outcome& out, net::json params, bool last)
     {
         params["options"] = asked_;

@@ -145,7 +145,7 @@ std::optional<net::json> rpc_client::message()
     return m;
 }
 
-net::json rpc_client::call(const std::string& method, const net::json& params)
+net::json rpc_client::answer(const std::string& method, const net::json& params)
 {
     const int id = ++last_;
     send({{"jsonrpc", "2.0"}, {"id", id}, {"method", method}, {"params", params}});
@@ -155,13 +155,29 @@ net::json rpc_client::call(const std::string& method, const net::json& params)
                 told_.push_back(std::move(*m));
                 continue;
             }
-            if (m->contains("error"))
-                throw error_of((*m)["error"]);
-            if (m->contains("id") && (*m)["id"] == id)
-                return m->value("result", net::json::object());
+            if (m->contains("error") || (m->contains("id") && (*m)["id"] == id))
+                return std::move(*m);
         }
         receive();
     }
+}
+
+net::json rpc_client::call(const std::string& method, const net::json& params)
+{
+    const net::json m = answer(method, params);
+    if (m.contains("error"))
+        throw error_of(m["error"]);
+    return m.value("result", net::json::object());
+}
+
+bool rpc_client::try_call(const std::string& method, const net::json& params)
+{
+    const net::json m = answer(method, params);
+    if (!m.contains("error"))
+        return true;
+    if (m["error"].value("code", 0) != net::code_limit)
+        throw error_of(m["error"]);
+    return false;
 }
 
 void rpc_client::tell(const std::string& method, const net::json& params)

@@ -31,6 +31,8 @@ public:
 
     /// The result. \throws error with the server's words, runtime where it went away; interrupted.
     net::json call(const std::string& method, const net::json& params = net::json::object());
+    /// As call(), but false where a limit of the server's is reached: to be tried again.
+    bool try_call(const std::string& method, const net::json& params);
     /// Without a reply.
     void tell(const std::string& method, const net::json& params);
 
@@ -47,6 +49,8 @@ public:
 
 private:
     void send(const net::json& message);
+    /// The reply to it, or an error that answers nothing.
+    net::json answer(const std::string& method, const net::json& params);
     /// Whether the socket can be read or written (POLLIN, POLLOUT); waits for that, `also`, or a signal.
     bool poll(short what, int also);
     /// Takes in what is there; waits for something where there is nothing.

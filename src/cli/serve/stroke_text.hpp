@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// STROKE arguments as parameters of `play`.
+/// STROKE arguments and options as parameters of `play`.
 #pragma once
 
 #include <string>
@@ -15,5 +15,8 @@ namespace tactor::cli {
 /// Of each STROKE its name and the parameter that says it: a preset, path data, or the text of a file.
 /// \throws error (bad_input), also for plans, which a server does not take.
 std::vector<std::pair<std::string, net::json>> stroke_params(const settings& s);
+
+/// The options that the command line gives, as parameter; the server's owner has said the others.
+net::json options_of(const settings& s, const option_list& options);
 
 } // namespace tactor::cli
