@@ -105,11 +105,13 @@ rpc_fault fault_of(const error& e, const std::string& source)
                                     [&](const translation& t) { return subject.starts_with(t.field); });
     if (known != subjects.end())
         f.what = known->param;
-    // "toml:3:5" says where in the text; "stroke" and the like say no more than the parameter does.
+    // "toml:3:5" says where in the text; "stroke" and the like, and a field, no more than the parameter does.
+    const bool field = known != subjects.end() && subject == known->field;
     if (subject.starts_with(source + ":"))
         f.why = fmt::format("{}: {}", subject.substr(source.size() + 1), f.why);
-    else if (subject != source && subject != "stroke" && subject != fmt::format("stroke \"{}\"", source) &&
-             subject != "path data" && !subject.starts_with("soa_s"))
+    else if (!field && subject != source && subject != "stroke" &&
+             subject != fmt::format("stroke \"{}\"", source) && subject != "path data" &&
+             !subject.starts_with("soa_s"))
         f.why = fmt::format("{}: {}", in_params(std::string(subject)), f.why);
     return f;
 }

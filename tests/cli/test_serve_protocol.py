@@ -92,6 +92,9 @@ class Protocol(ServeTest):
                              ("dance", {"path": path, "dance": 1})):
             for method in ("play", "plan"):
                 self.check_error(c.error(method, **params), -32602, what)
+        said = c.error("play", path=path, options={"carrier": 30000})
+        self.check_error(said, -32602, "options.carrier")
+        self.assertEqual(said["message"].count("options.carrier"), 1, said)
 
     def test_the_owners_level_is_the_ceiling(self):
         c = self.serve(config='[serve]\nmax_level_dbfs = -30\n[defaults]\nlevel-dbfs = -20\n').client()
