@@ -370,6 +370,11 @@ void web_connection::finish()
     session_->finish(websocket::close_code::going_away);
 }
 
+void web_connection::turn_out(const char* why)
+{
+    session_->finish({websocket::close_code::policy_error, why});
+}
+
 std::size_t web_connection::waiting() const noexcept
 {
     return session_->share.waiting();

@@ -57,6 +57,8 @@ public:
     void send(std::string text);
     /// Reads nothing more, closes when all is written, or after a second.
     void finish();
+    /// The same, with 1008 and a reason of at most 123 bytes.
+    void turn_out(const char* why);
     /// Bytes that the peer has not taken.
     std::size_t waiting() const noexcept;
 

@@ -46,6 +46,8 @@ public:
     virtual std::size_t waiting() const = 0;
     /// Closes when all is written. Not from within: the service may be in the middle of something.
     virtual void finish() = 0;
+    /// The same, for something that it did; `why` is for those who can be told so.
+    virtual void turn_out(const char* /*why*/) { finish(); }
 };
 
 struct service_options {

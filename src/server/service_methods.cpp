@@ -66,7 +66,7 @@ void service::hello(client& c, const json& params, const answer& to)
             to.fault({net::code_no_token, "token", "token", token == nullptr ? "it is owed" : "it is wrong",
                       "give what the server's token_file holds"});
             if (++c.wrong_tokens >= most_wrong_tokens)
-                c.link->finish();
+                c.link->turn_out("three wrong tokens");
             return;
         }
         c.admitted = true;

@@ -22,6 +22,13 @@ public:
     void send(std::string message) override { connection_->send(std::move(message)); }
     std::size_t waiting() const override { return connection_->waiting(); }
     void finish() override { connection_->finish(); }
+    void turn_out(const char* why) override
+    {
+        if constexpr (requires { connection_->turn_out(why); })
+            connection_->turn_out(why);
+        else
+            connection_->finish(); // the last reply has said it
+    }
 
 private:
     std::shared_ptr<Connection> connection_;

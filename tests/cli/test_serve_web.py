@@ -151,7 +151,7 @@ class Web(ToolTest):
         p = self.websocket(s)
         for _ in range(3):
             self.assertEqual(p.call("hello", token="guess")["error"]["code"], -32003)
-        self.assertEqual(p.end(), 1001)
+        self.assertEqual((p.end(), p.reason), (1008, "three wrong tokens"))
 
     def test_beyond_loopback_takes_a_token(self):
         s = Server(self, "--http", "0.0.0.0:0")
