@@ -134,6 +134,8 @@ private:
 
     double top_row_of(const burst& b) const
     {
+        if (frame_.rows.rows.empty()) // nothing sounds
+            return frame_.top;
         std::size_t row = frame_.rows.rows.size() - 1;
         for (const drive& d : b.drives)
             row = std::min(row, static_cast<std::size_t>(frame_.rows.row_of[d.tactor]));

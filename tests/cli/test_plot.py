@@ -199,6 +199,12 @@ class TimingView(PlotTest):
         self.assertIn(f"first SOA {brush[1]['onset_s'] - brush[0]['onset_s']:.4g} s", svg.texts())
         self.assertIn(f"first duration {brush[0]['duration_s']:.4g} s", svg.texts())
 
+    def test_what_is_silent_throughout_is_drawn_too(self):
+        self.write("s.toml", '[stroke]\npath = "M 0 20 H 40"\nintensity = 0\n')
+        for view in ("both", "timing", "array", "wave"):
+            svg = self.svg("s.toml", "--view", view)
+            self.assertEqual(svg.all("bar", "sound") if view in ("both", "timing") else [], [])
+
     def test_continuous_is_drawn_as_curves(self):
         options = ["park2016-3", "--algorithm", "continuous", "--phantom", "barycentric"]
         svg, plan = self.svg(*options), self.plan(*options)
