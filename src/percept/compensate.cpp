@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <tactor/fit.hpp>
 #include <tactor/observer.hpp>
 
 #include "core/access.hpp"
@@ -16,6 +17,7 @@
 #include "plan/faces/layout_impl.hpp"
 #include "plan/faces/sides.hpp"
 #include "plan/job.hpp"
+#include "plan/options.hpp"
 
 namespace tactor {
 inline namespace v0 {
@@ -87,6 +89,8 @@ void fit(const layout& l, std::span<const double> give, std::span<const point> t
 // What every command that plans says of it.
 std::string notice(const compensated_plan& p)
 {
+    if (p.taps.empty())
+        return fmt::format("no burst sounds that could be moved for {}", describe(p.observer));
     const tap_summary felt = summarise(p.taps);
     std::string text = fmt::format("bursts are moved for {}; it is predicted to feel them {:.3f} mm RMS and "
                                    "at most {:.3f} mm from the target",
@@ -124,7 +128,10 @@ compensated_places compensate(const layout& l, const low_speed_observer& o, std:
 compensated_plan make_compensated_plan(const array& a, const layout& l, const stroke& s,
                                        const plan_options& o, const low_speed_observer& m)
 {
-    if (s.choices.algorithm.value_or(o.algorithm) == algorithm_kind::continuous)
+    if (s.fit_margin_mm)
+        return make_compensated_plan(a, l, fit_as_asked({s}, l).front(), o, m);
+    const plan_options chosen = detail::chosen(o, s.choices);
+    if (chosen.algorithm == algorithm_kind::continuous)
         throw detail::bad_field("algorithm",
                                 "continuous has no bursts that could be moved for the low-speed observer",
                                 "algorithm = park2016, or no compensation");
@@ -141,12 +148,11 @@ compensated_plan make_compensated_plan(const array& a, const layout& l, const st
             targets.push_back(s.motion.position(b.onset_s));
         }
     const compensated_places places = compensate(l, m, onsets_s, targets);
-    const std::shared_ptr<const phantom_model> model =
-        o.custom_phantom ? o.custom_phantom : make_phantom(o.phantom, l);
+    const std::shared_ptr<const phantom_model> model = detail::model_of(l, chosen);
     for (std::size_t i = 0; i < felt.size(); ++i) {
         burst& b = *felt[i];
         b.position = places.played[i];
-        detail::drives_at(*model, l, b.position, b.intensity, b.drives);
+        detail::drives_at(*model, l, b.position, o.scale.amplitude(b.intensity), b.drives);
     }
     r.schedule.conflicts = detail::find_conflicts(r.schedule.bursts);
     r.taps = predict_taps(a, s, r.schedule, m);

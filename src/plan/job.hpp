@@ -64,6 +64,12 @@ inline constexpr double most_bursts = 10e6;
 /// \throws error (bad_input) when there are too many.
 void check_burst_count(const job& j, double bursts);
 
+/// The user's own model, or the one that is named.
+std::shared_ptr<const phantom_model> model_of(const layout& l, const plan_options& o);
+
+/// \throws error (bad_input) for what is no amplitude of a phantom.
+void check_intensity(double a_v);
+
 /// Drives from a model. \throws error (bad_input) when a model of the user's own breaks its contract.
 void drives_at(const phantom_model& m, const layout& l, point p, double a_v, std::vector<drive>& out);
 

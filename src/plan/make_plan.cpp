@@ -92,28 +92,6 @@ void warn_of_own_duration(const plan_options& o, const detail::burst_count& c, p
                         seconds_text(law.slope * d + law.intercept_s, 4)));
 }
 
-std::shared_ptr<const phantom_model> model_of(const layout& l, const plan_options& o)
-{
-    return o.custom_phantom ? o.custom_phantom : make_phantom(o.phantom, l);
-}
-
-} // namespace
-
-namespace {
-
-/// The common options, but for what the stroke chooses.
-plan_options chosen(plan_options o, const stroke_choices& c)
-{
-    o.algorithm = c.algorithm.value_or(o.algorithm);
-    o.soa_s = c.soa_s.value_or(o.soa_s);
-    o.burst_s = c.burst_s ? c.burst_s : o.burst_s;
-    if (c.phantom) {
-        o.phantom = *c.phantom;
-        o.custom_phantom.reset();
-    }
-    return o;
-}
-
 /// Whether an SOA or burst that cannot be is the stroke's own doing.
 bool is_own(const error& e, const stroke_choices& c)
 {
@@ -137,7 +115,7 @@ plan planned(const array& a, const layout& l, const stroke& s, const plan_option
 {
     if (s.fit_margin_mm)
         return planned(a, l, fit_as_asked({s}, l).front(), common, take);
-    const plan_options o = chosen(common, s.choices);
+    const plan_options o = detail::chosen(common, s.choices);
     check_chosen(o, s);
     if (l.places().size() != a.tactors.size())
         throw error(
@@ -145,7 +123,7 @@ plan planned(const array& a, const layout& l, const stroke& s, const plan_option
             fmt::format("has {} and the array {}", counted(l.places().size(), "tactor"), a.tactors.size()),
             "build the layout from the same array");
     detail::burst_count bursts;
-    const detail::job j{a, l, s, o, model_of(l, o), bursts, take};
+    const detail::job j{a, l, s, o, detail::model_of(l, o), bursts, take};
     plan p;
     p.warnings = s.warnings;
     p.algorithm = to_string(o.algorithm);
@@ -212,6 +190,11 @@ void pass_on(const job& j, plan& p)
     }
 }
 
+std::shared_ptr<const phantom_model> model_of(const layout& l, const plan_options& o)
+{
+    return o.custom_phantom ? o.custom_phantom : make_phantom(o.phantom, l);
+}
+
 std::string job::name() const
 {
     return motion.name.empty() ? "stroke" : fmt::format("stroke \"{}\"", motion.name);
@@ -224,11 +207,16 @@ void check_burst_count(const job& j, double bursts)
                     fmt::format("at most {:.0f}; make it shorter or the SOA longer", most_bursts));
 }
 
+void check_intensity(double a_v)
+{
+    if (!(a_v >= 0.0 && std::isfinite(a_v)))
+        throw detail::bad_field("intensity", fmt::format("{} is not a number from 0 up", a_v));
+}
+
 void drives_at(const phantom_model& m, const layout& l, point p, double a_v, std::vector<drive>& out)
 {
     out.clear();
-    if (!(a_v >= 0.0 && std::isfinite(a_v)))
-        throw detail::bad_field("intensity", fmt::format("{} is not a number from 0 up", a_v));
+    check_intensity(a_v);
     if (a_v == 0.0)
         return;
     m.weights(p, a_v, out);

@@ -118,3 +118,19 @@ double burst_duration_s(const plan_options& o)
 
 } // namespace v0
 } // namespace tactor
+
+namespace tactor::detail {
+
+plan_options chosen(plan_options common, const stroke_choices& c)
+{
+    common.algorithm = c.algorithm.value_or(common.algorithm);
+    common.soa_s = c.soa_s.value_or(common.soa_s);
+    common.burst_s = c.burst_s ? c.burst_s : common.burst_s;
+    if (c.phantom) {
+        common.phantom = *c.phantom;
+        common.custom_phantom.reset();
+    }
+    return common;
+}
+
+} // namespace tactor::detail

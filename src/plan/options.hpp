@@ -16,6 +16,9 @@ void check_profile(const timing_profile& p);
 /// \throws error (bad_input) for what the chosen algorithm cannot use.
 void check_options(const plan_options& o);
 
+/// The common options, but for what the stroke chooses.
+plan_options chosen(plan_options common, const stroke_choices& c);
+
 /// The frequency, if it is one. \throws error (bad_input)
 double check_carrier(double hz);
 

@@ -71,6 +71,16 @@ class Compensate(ToolTest):
         self.assertEqual((self.dir / "c.wav").read_bytes(), (self.dir / "d.wav").read_bytes())
         self.assertEqual(self.ok("plan", "p.json", "--format", "json").stdout, (self.dir / "p.json").read_text())
 
+    def test_what_is_silent_throughout_is_said_so_and_read_back(self):
+        self.write("s.toml", '[stroke]\npath = "M 0 20 H 40"\nintensity = 0\n')
+        text = self.ok("plan", "s.toml", *MOVE, "--format", "json").stdout
+        self.write("p.json", text)
+        self.assertIsNone(json.loads(text)["compensation"]["predicted_rms_mm"])
+        self.assertEqual(self.ok("plan", "p.json", "--format", "json").stdout, text)
+        said = self.both("plan", "s.toml", *MOVE)
+        self.assertIn("no burst sounds that could be moved for the low-speed observer", said)
+        self.assertNotIn("0.000 mm", said)
+
     def test_the_picture_shows_target_played_and_predicted(self):
         (self.dir / "p.json").write_text(self.ok("plan", "park2016-3", *MOVE, "--format", "json").stdout)
         plan = json.loads((self.dir / "p.json").read_text())

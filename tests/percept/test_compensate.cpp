@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include <tactor/error.hpp>
+#include <tactor/fit.hpp>
 #include <tactor/observer.hpp>
 
 #include "../plan/arrays.hpp"
@@ -217,6 +218,34 @@ TEST_CASE("a plan is moved whole: places, drives and what it says")
     CHECK(brushed.schedule.warnings.back().find("Tactile Brush") != std::string::npos);
     CHECK_THROWS_WITH_AS(of_motion("park2016-1", phantom_kind::log, {}, algorithm_kind::continuous),
                          doctest::Contains("no bursts"), error);
+}
+
+TEST_CASE("what is moved has the phantom and the scale of its plan")
+{
+    stroke s = preset_stroke("park2016-3");
+    s.motion = trajectory::timed({{0.0, {5.0, 20.0}, 0.5}, {1.0, {35.0, 20.0}, 0.5}});
+    s.choices.phantom = phantom_kind::barycentric;
+    for (const scale_kind k : values_of<scale_kind>()) {
+        plan_options o;
+        o.scale = {.kind = k, .sl_db = 30.0};
+        const compensated_plan p = make_compensated_plan(palm, layout(palm), s, o, {});
+        const double asked = std::pow(o.scale.amplitude(0.5), 2.0);
+        CHECK(p.schedule.phantom == "barycentric");
+        for (const burst& b : p.schedule.bursts) {
+            CHECK(energy(b.drives) == doctest::Approx(asked).epsilon(1e-12));
+            CHECK(distance_mm(energy_centroid(layout(palm), b.drives), b.position) < 1e-9);
+        }
+    }
+}
+
+TEST_CASE("what is fitted to the array is moved where it was fitted")
+{
+    stroke s = preset_stroke("park2016-1");
+    s.fit_margin_mm = 12.0;
+    const compensated_plan p = make_compensated_plan(palm, layout(palm), s, {}, {});
+    const stroke fitted = fit_as_asked({s}, layout(palm)).front();
+    for (const tap& t : p.taps)
+        CHECK(distance_mm(t.target, fitted.motion.position(t.onset_s)) < 1e-9);
 }
 
 } // namespace compensate_test

@@ -294,11 +294,12 @@ stroke stroke_of(const fields& f, const plan& p, const std::optional<compensated
             way.push_back({t_s, b.position, b.intensity});
     };
     burst last;
-    for (const tap& t : moved ? moved->taps : std::vector<tap>{}) { // bursts are elsewhere
+    const bool elsewhere = moved && !moved->taps.empty(); // silent bursts are where they were asked for
+    for (const tap& t : elsewhere ? moved->taps : std::vector<tap>{}) {
         last.position = t.target;
         add(t.onset_s, last);
     }
-    for (const burst& b : moved ? std::vector<burst>{} : p.bursts) {
+    for (const burst& b : elsewhere ? std::vector<burst>{} : p.bursts) {
         add(b.tau_s.value_or(b.onset_s), b);
         last = b;
     }
