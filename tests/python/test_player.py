@@ -192,6 +192,23 @@ def test_a_model_of_python_shapes_a_live_stroke(player):
     assert finger.report.state == "finished"
 
 
+def test_a_live_stroke_is_as_its_arrays_file_says(tmp_path):
+    file = tmp_path / "quiet.toml"
+    file.write_text('[array]\npreset = "palm-3x3"\n[defaults]\nlevel-dbfs = -30\nalgorithm = "tactile-brush"\nenvelope = "tukey:0.3"\n'
+                    'phantom = "barycentric"\n')
+
+    def peak_dbfs(**options):
+        raw = tmp_path / "played.raw"
+        with tactor.Player(f"file:'{raw}',raw", tactor.Array.from_file(file), sample_format="float", config=os.devnull) as p:
+            with p.live(timeout=3600.0, **options) as finger:
+                finger.to(20, 20)
+                while p.position()["stroke_frame"] < 4800:
+                    time.sleep(0.001)
+        return 20 * np.log10(np.abs(np.fromfile(raw, dtype="float32")).max())
+    assert peak_dbfs() == pytest.approx(-30.0, abs=0.1)
+    assert peak_dbfs(level_dbfs=-20) == pytest.approx(-20.0, abs=0.1)
+
+
 def test_awaiting_gives_the_report(player, short, endless):
     async def main():
         ticked = 0

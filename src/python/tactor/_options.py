@@ -26,6 +26,9 @@ _PLANNING = frozenset(("algorithm", "phantom", "soa", "burst", "slope", "interce
                        "waveform", "am", "noise_seed", "texture", "texture_mm", "intensity_scale", "stevens_exponent"))
 _SOUNDING = frozenset(("phase", "ramp", "envelope", "attack", "release", "tukey_part", "level_dbfs", "sl", "rate"))
 _PLANNING_AND_SOUNDING = _PLANNING | _SOUNDING
+# A live stroke's; which algorithm, and what is done outside, no file says of it, as in the tool.
+_LIVE = frozenset(("phantom", "soa", "burst", "slope", "intercept", "carrier", "waveform", "am", "noise_seed", "texture", "texture_mm",
+                   "intensity_scale", "stevens_exponent", "phase", "ramp", "envelope", "attack", "release", "tukey_part", "level_dbfs", "sl"))
 
 
 def settled(array: Array, given: dict[str, _t.Any], known: frozenset[str]) -> dict[str, _t.Any]:

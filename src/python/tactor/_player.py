@@ -14,6 +14,7 @@ from tactor import _tactor
 from tactor._array import Array
 from tactor._checks import _need
 from tactor._errors import InputError
+from tactor._options import _LIVE, settled
 from tactor._parts import PhantomModel
 from tactor._score import Score
 from tactor._ticket import LiveStroke, Report, Ticket, _call, _Shared
@@ -209,6 +210,8 @@ class Player:
         smooth : float
             For points that come in bursts, s, 0 (off) to 1: it moves evenly, and is at each point so long after that came.
 
+        What nobody says is as the array's file says.
+
         Returns
         -------
         LiveStroke
@@ -221,10 +224,10 @@ class Player:
             When the stream has ended.
         """
         shared = self._get()
-        options = {name: value for name, value in dict(
+        options = settled(self._array, dict(
             algorithm=algorithm, phantom=phantom, soa=soa, slope=slope, intercept=intercept, outside=outside, carrier=carrier,
             waveform=waveform, am=am, noise_seed=noise_seed, phase=phase, ramp=ramp, envelope=envelope, attack=attack, release=release,
-            level_dbfs=level_dbfs, sl=sl).items() if value is not None}
+            level_dbfs=level_dbfs, sl=sl), _LIVE)
         with shared.lock:
             core = shared.core.live(self._array._core, options, float(timeout), None if longest is None else float(longest), float(smooth))
             stroke = LiveStroke(shared, core)
