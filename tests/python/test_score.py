@@ -167,6 +167,25 @@ def test_scores_are_values(palm, stroke):
     assert repr(score) == f"<tactor.Score: 1 plan, 9 channels, 48000 Hz, {score.duration:.6g} s>" and len(score) == score.frames
 
 
+def test_a_score_sounds_as_its_plan_was_to_wherever_that_comes_from(tmp_path, stroke):
+    file = tmp_path / "q.toml"
+    file.write_text('[array]\npreset = "palm-3x3"\n[defaults]\nlevel-dbfs = -30\n')
+    quiet = tactor.Array.from_file(file)
+    plan = tactor.plan(quiet, stroke, level_dbfs=-50)
+    expected = tactor.Score(quiet, plan).render()
+    assert np.abs(expected).max() < 10 ** (-49.9 / 20)
+    recorded = tactor.Plan.from_dict(plan.to_dict())
+    again = pickle.loads(pickle.dumps(plan))
+    for one in (recorded, again, pickle.loads(pickle.dumps(recorded))):
+        assert np.array_equal(tactor.Score(quiet, one).render(), expected)
+        assert np.array_equal(tactor.Score(tactor.Array.from_file(file), one).render(), expected)
+    score = tactor.Score(quiet, plan)
+    assert np.array_equal(pickle.loads(pickle.dumps(score)).render(), expected)
+    plain = tactor.plan(tactor.Array.preset("palm-3x3"), stroke)  # of which no file has said anything
+    for one in (plain, pickle.loads(pickle.dumps(plain))):
+        assert 10 ** (-35 / 20) < np.abs(tactor.Score(quiet, one).render()).max() < 10 ** (-29.9 / 20)
+
+
 def test_rendering_leaves_the_interpreter_to_others(palm, stroke):
     # The main thread counts while another renders: a lock that was held would keep it from that.
     score = tactor.Score(palm, [tactor.plan(palm, stroke, algorithm="continuous")] * 200)

@@ -23,20 +23,22 @@ class Plan:
     it has are made when they are first asked for.
     """
 
-    __slots__ = ("_core", "_array", "_kept")
+    __slots__ = ("_core", "_array", "_recorded", "_kept")
 
     _core: _t.Any
     _array: Array
+    _recorded: bool
     _kept: dict[str, _t.Any]
 
     def __init__(self) -> None:
         raise TypeError("use tactor.plan() or Plan.from_dict()")
 
     @classmethod
-    def _of(cls, core: _t.Any, array: Array | None = None) -> Plan:
+    def _of(cls, core: _t.Any, array: Array | None = None, recorded: bool = False) -> Plan:
         made = cls.__new__(cls)
         made._core = core
         made._array = array if array is not None else Array._of(core.array)
+        made._recorded = recorded
         made._kept = {}
         return made
 
@@ -54,7 +56,7 @@ class Plan:
             text = json.dumps(d, allow_nan=False)
         except (TypeError, ValueError) as e:
             raise InputError("plan", f"it is no JSON: {e}", "see tactor-json(5)") from None
-        return cls._of(_tactor.Plan.from_json(text))
+        return cls._of(_tactor.Plan.from_json(text), recorded=True)
 
     def to_dict(self) -> dict[str, _t.Any]:
         """The tactor-plan/1 object, as `tactor plan --format json` prints it: a record of every sample.
@@ -207,6 +209,11 @@ class Plan:
         columns |= {f"tactor_{i}": amplitudes[:, i] for i in range(amplitudes.shape[1])}
         return pandas.DataFrame(columns)
 
+    def _is_settled_on(self, array: Array) -> bool:
+        """Whether it says how it is to sound on that array: it has taken over what its array's file says, and a record says all."""
+        own = self._array
+        return self._recorded or own is array or (own == array and own._file == array._file)
+
     def _keep(self, name: str, make: _t.Callable[[], _t.Any]) -> _t.Any:
         if name not in self._kept:
             self._kept[name] = make()
@@ -229,8 +236,8 @@ class Plan:
         return svg_of_plans([self])
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
-        return _plan_again, (self._core.json(), self._core.stroke.state(), self._array)
+        return _plan_again, (self._core.json(), self._core.stroke.state(), self._array, self._recorded)
 
 
-def _plan_again(text: str, stroke: bytes, array: Array) -> Plan:
-    return Plan._of(_tactor.Plan.from_parts(text, _tactor.Stroke.from_state(stroke), array._core), array)
+def _plan_again(text: str, stroke: bytes, array: Array, recorded: bool = False) -> Plan:
+    return Plan._of(_tactor.Plan.from_parts(text, _tactor.Stroke.from_state(stroke), array._core), array, recorded)

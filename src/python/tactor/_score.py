@@ -99,8 +99,7 @@ class Score:
         _need(array, Array, "array")
         self._array = array
         self._plans = tuple(placed(plans))
-        # A plan has taken over what its array's file says.
-        own = bool(self._plans) and self._plans[0][1].array is array
+        own = bool(self._plans) and self._plans[0][1]._is_settled_on(array)
         self._options = given if own else settled(array, given, _SOUNDING)
         self._core = _tactor.Score(array._core, [(start, p._core) for start, p in self._plans], self._options)
 
