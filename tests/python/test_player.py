@@ -209,6 +209,19 @@ def test_a_live_stroke_is_as_its_arrays_file_says(tmp_path):
     assert peak_dbfs(level_dbfs=-20) == pytest.approx(-20.0, abs=0.1)
 
 
+def test_sys_exit_in_a_callback_ends_nothing(player, short, capsys):
+    ticket = player.submit(short)
+    told = threading.Event()
+
+    def leave(_):
+        told.set()
+        sys.exit(3)
+    ticket.add_done_callback(leave)
+    ticket.wait(LONG)
+    assert told.wait(LONG) and player.submit(short).wait(LONG).state == "finished"
+    assert "SystemExit" in capsys.readouterr().err
+
+
 def test_awaiting_gives_the_report(player, short, endless):
     async def main():
         ticked = 0
@@ -367,12 +380,17 @@ def test_ctrl_c_fades_out():
 @pytest.mark.unsanitized  # a child gives nothing back of what is its parent's
 def test_a_fork_leaves_the_player_to_its_parent():
     code, out, err = run(PLAYING + """
+    import asyncio
+
+    async def waited(t):
+        return await t
     finger = player.live(timeout=10)
     finger.to(20, 20)
     child = os.fork()
     if child == 0:
         calls = [player.stats, player.stop, player.close, player.fire, player.position, player.live, ticket.cancel, ticket.wait,
-                 lambda: player.submit(score), lambda: player.ended, lambda: finger.to(1, 1), finger.end, finger.wait]
+                 lambda: player.submit(score), lambda: player.ended, lambda: finger.to(1, 1), finger.end, finger.wait,
+                 lambda: asyncio.run(waited(ticket)), lambda: ticket.add_done_callback(print)]
         refused = 0
         for call in calls:
             try:

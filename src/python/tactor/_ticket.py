@@ -146,6 +146,8 @@ class Ticket:
 
     def add_done_callback(self, callback: _t.Callable[[_t.Any], object]) -> None:
         """Calls `callback(ticket)` once it has ended: in the player's thread of Python, or at once and here when it has already."""
+        if self._report is None:
+            self._player.core.refuse_child()
         with self._lock:
             if self._report is None:
                 self._callbacks.append(callback)
@@ -273,5 +275,5 @@ def _call(function: _t.Callable[..., object], *arguments: _t.Any) -> None:
     """A callback's exception is shown, as other threads' are; the player goes on."""
     try:
         function(*arguments)
-    except Exception:
+    except BaseException:  # sys.exit(), too, which would end the player's thread and leave all who wait
         sys.excepthook(*sys.exc_info())
