@@ -53,6 +53,12 @@ def test_file_names_may_be_any_bytes(tmp_path):
     assert e.value.file == name
 
 
+def test_the_file_name_of_a_device_error_is_no_hint():
+    assert tactor.DeviceError("what", "why", "hint").filename is None
+    e = pickle.loads(pickle.dumps(tactor.DeviceError("what", "why", "hint", file="f")))
+    assert (e.filename, e.hint, str(e)) == ("f", "hint", "what: why (hint)")
+
+
 @pytest.mark.parametrize("kind", [tactor.Error, tactor.InputError, tactor.DeviceError, tactor.StreamError])
 def test_they_are_pickled(kind):
     e = kind("what", "why", "hint", file="f", line=1, column=2, field="x_mm", errno=5)

@@ -70,6 +70,10 @@ class InputError(Error, ValueError):
 class DeviceError(Error, OSError):
     """A device or a line that is missing, busy, or cannot do what is asked."""
 
+    def __init__(self, what: str = "", why: str = "", hint: str = "", **place: _t.Any) -> None:
+        super().__init__(what, why, hint, **place)
+        self.filename = self.file  # OSError takes its third argument for one
+
 
 class StreamError(Error, RuntimeError):
     """What failed while it ran: the stream, a disk that is full."""
