@@ -33,6 +33,11 @@ def test_the_version_is_that_of_the_library(tool):
     assert "alsa-lib" in tactor.build_facts()
 
 
+def test_the_markers_are_there_without_an_import_of_their_own():
+    code = "import sys, tactor; assert 'tactor.lsl' not in sys.modules; print(tactor.lsl.Markers.__name__)"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "Markers\n"
+
+
 def test_everything_public_is_documented():
     without = [name for name, thing in public_things() if not inspect.getdoc(thing)]
     assert without == []

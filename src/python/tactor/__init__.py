@@ -21,6 +21,7 @@ from tactor._score import Score
 from tactor._stroke import Fitting, Stroke, fit_strokes, load, parse, stroke_presets
 
 if _t.TYPE_CHECKING:
+    from tactor import lsl as lsl
     from tactor._player import Player
     from tactor._ticket import Delay, LiveStroke, Report, Ticket
     from tactor._tool import Comparison, compare, devices, plot
@@ -47,9 +48,11 @@ _LATER = {
 
 
 def __getattr__(name: str) -> _t.Any:
+    import importlib
+    if name == "lsl":
+        return importlib.import_module("tactor.lsl")
     if name not in _LATER:
         raise AttributeError(f"module 'tactor' has no attribute {name!r}")
-    import importlib
     value = getattr(importlib.import_module("tactor." + _LATER[name]), name)
     globals()[name] = value
     return value
