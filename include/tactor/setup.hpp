@@ -123,11 +123,29 @@ struct default_settings {
     friend bool operator==(const default_settings&, const default_settings&) = default;
 };
 
-/// [calibration] of an array file: whose thresholds it has, and at which carrier.
+/// [[calibration.tactor]]: how a threshold was found.
+struct calibrated_tactor {
+    unsigned tactor = 0;
+    std::optional<double> threshold_dbfs = {}; ///< nothing: not felt
+    std::optional<double> sd_db = {};
+    unsigned trials = 0;
+
+    friend bool operator==(const calibrated_tactor&, const calibrated_tactor&) = default;
+};
+
+/// [calibration] of an array file: whose thresholds it has, and how they were measured.
 struct calibration_origin {
     std::string participant = {};
     double carrier_hz = 0.0;
     bool simulated = false;
+    std::string method = {};                ///< "staircase" or "adjustment"
+    std::optional<std::string> rule = {};   ///< "1up3down" or "1up2down", of a staircase
+    double interval_s = 0.0;                ///< how long each sounded
+    std::optional<bool> feedback = {};      ///< whether the participant was told what was right
+    std::optional<std::string> masker = {}; ///< the masking noise in words
+    std::optional<std::string> date = {};   ///< on which it began, UTC
+    std::optional<unsigned> seed = {};
+    std::vector<calibrated_tactor> tactors = {};
 
     friend bool operator==(const calibration_origin&, const calibration_origin&) = default;
 };

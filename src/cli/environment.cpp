@@ -181,6 +181,7 @@ array find_array(const settings& s, option_list& options, environment& e)
     }
     if (is_preset(array_presets(), *s.array_name)) {
         config.output.channels.reset();
+        config.calibration.reset();
         return preset_array(*s.array_name);
     }
     std::error_code unknown; // such as for a name that no file can have

@@ -16,7 +16,7 @@ constexpr bounds any_carrier_hz{0.0, 384000.0, true};
 constexpr bounds interval_lengths{0.0, 3600.0, true};
 constexpr unsigned any_number = std::numeric_limits<unsigned>::max();
 
-void check_tactor(const toml_table& t, std::vector<const toml_table*>& said)
+calibrated_tactor read_tactor(const toml_table& t, std::vector<const toml_table*>& said)
 {
     t.only({"tactor", "threshold_dbfs", "sd_db", "trials", "reversals_dbfs", "check_right"});
     const unsigned i = t.need(t.whole("tactor", 0, static_cast<unsigned>(said.size()) - 1), "tactor");
@@ -24,13 +24,13 @@ void check_tactor(const toml_table& t, std::vector<const toml_table*>& said)
         t.fail("tactor", fmt::format("tactor {} has an entry already ({})", i, said[i]->where().text()),
                "it is measured once in a calibration");
     said[i] = &t;
-    t.number("threshold_dbfs", any_level_db);
-    t.number("sd_db", spread_db);
-    t.need(t.whole("trials", 0, any_number), "trials");
+    calibrated_tactor r{i, t.number("threshold_dbfs", any_level_db), t.number("sd_db", spread_db),
+                        t.need(t.whole("trials", 0, any_number), "trials")};
     t.whole("check_right", 0, any_number);
     if (const toml::array* all = t.list("reversals_dbfs", "levels"))
         for (const toml::node& n : *all)
             t.number_of(n, "reversals_dbfs", any_level_db);
+    return r;
 }
 
 } // namespace
@@ -47,20 +47,20 @@ void read_calibration(const toml_table& root, located_setup& said)
              "seed", "simulated", "tactor"});
     calibration_origin r;
     r.participant = t->need(t->text("participant"), "participant");
-    t->need(t->choice("method", {"staircase", "adjustment"}), "method");
-    t->choice("rule", {"1up3down", "1up2down"});
+    r.method = t->need(t->choice("method", {"staircase", "adjustment"}), "method");
+    r.rule = t->choice("rule", {"1up3down", "1up2down"});
     r.carrier_hz = t->need(t->number("carrier_hz", any_carrier_hz), "carrier_hz");
-    t->need(t->number("interval_s", interval_lengths), "interval_s");
-    t->boolean("feedback");
-    t->text("masker");
-    t->text("date");
-    t->whole("seed", 0, any_number);
+    r.interval_s = t->need(t->number("interval_s", interval_lengths), "interval_s");
+    r.feedback = t->boolean("feedback");
+    r.masker = t->text("masker");
+    r.date = t->text("date");
+    r.seed = t->whole("seed", 0, any_number);
     r.simulated = t->boolean("simulated").value_or(false);
-    said.said.calibration = std::move(r);
     const std::vector<toml_table> entries = t->tables("tactor");
     std::vector<const toml_table*> seen(said.said.array->tactors.size());
     for (const toml_table& e : entries)
-        check_tactor(e, seen);
+        r.tactors.push_back(read_tactor(e, seen));
+    said.said.calibration = std::move(r);
 }
 
 } // namespace tactor::detail

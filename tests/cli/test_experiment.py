@@ -90,6 +90,17 @@ class Definition(ExperimentTest):
         self.assertFalse((self.dir / "study").exists())
 
 
+    def test_real_sessions_refuse_thresholds_that_were_simulated(self):
+        self.ok("calibrate", "--participant", "01", "-o", "felt.toml", "--simulate", "threshold=-45")
+        self.refused(2, "experiment", "park2016", "--participant", "01", "-o", "study", "-D", "null", "--array", "felt.toml",
+                     says=("thresholds were simulated", "tactor calibrate"))
+        self.assertFalse((self.dir / "study").exists())
+        self.assertIn("thresholds were simulated",
+                      self.ok("experiment", "park2016", "--dry-run", "--array", "felt.toml").stderr)
+        # A preset beside a configuration has none of its thresholds.
+        self.assertNotIn("simulated", self.ok("experiment", "park2016", "--dry-run", "--config", "felt.toml").stderr)
+
+
 class DryRun(ExperimentTest):
     def dry(self, *more):
         result = self.ok("experiment", *more, "--dry-run", "--format", "json")

@@ -284,6 +284,34 @@ class Differences(ReportTest):
         self.assertIn("Thresholds: from the array file, none assumed.", text)
 
 
+    def test_how_thresholds_were_measured(self):
+        self.ok("calibrate", "--participant", "P1", "-o", "P1.toml", "--simulate", "threshold=-45,spread=2")
+        made = (self.dir / "P1.toml").read_text()
+        date = re.search(r'^date = "(.*)"$', made, re.M)[1]
+        said = self.simulate("P1", "--array", "P1.toml", folder="own")
+        self.assertIn("the thresholds were simulated", said.stderr)
+        told = self.session("P1", "own")["calibration"]
+        self.assertEqual({k: told[k] for k in ("participant", "method", "rule", "carrier_hz", "interval_s", "feedback", "masker",
+                                               "date", "simulated")},
+                         {"participant": "P1", "method": "staircase", "rule": "1up3down", "carrier_hz": 250, "interval_s": 0.5,
+                          "feedback": True, "masker": "none", "date": date, "simulated": True})
+        self.assertEqual([t["tactor"] for t in told["tactors"]], list(range(9)))
+        self.assertIn(f"Calibration: of participant P1, staircase 1up3down, carrier 250 Hz, intervals of 0.5 s, with feedback, "
+                      f"masker: none, on {date}, **SIMULATED: nobody was asked**; the thresholds were simulated",
+                      self.report("own"))
+        self.simulate("02", folder="own")
+        self.assertIn("(sub-P1); none (sub-02)", self.report("own"))
+
+    def test_thresholds_of_somebody_else_or_another_carrier_are_told(self):
+        self.ok("calibrate", "--participant", "P1", "-o", "P1.toml", "--carrier", 100, "--simulate", "threshold=-45,spread=2")
+        self.write("P1.toml", (self.dir / "P1.toml").read_text().replace("simulated = true", "simulated = false"))
+        said = self.simulate("P2", "--array", "P1.toml", folder="others")
+        for told in ("of participant P1, not P2", "measured at 100 Hz, and a carrier is 250 Hz"):
+            self.assertIn(f"tactor: warning: the thresholds {'were ' if told[0] == 'm' else 'are '}{told}", said.stderr)
+            self.assertIn(told, self.report("others"))
+        self.assertNotIn("SIMULATED", self.report("others").partition("Calibration:")[2].partition("\n")[0])
+
+
 class OtherStudies(ReportTest):
     def test_what_other_programs_wrote_has_what_is_there_and_no_more(self):
         for name, make in studies.STUDIES.items():

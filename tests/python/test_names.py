@@ -41,6 +41,7 @@ live_delay: Delay
 live_options: Player.live
 live_stroke: LiveStroke
 load_setup: Array.from_file
+calibrated_tactor: Array.from_file
 calibration_origin: Array.from_file
 load_strokes: load
 log_function: Player

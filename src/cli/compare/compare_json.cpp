@@ -70,7 +70,7 @@ void add_taps(json& j, const comparison_row& r, bool by_taps)
         j["taps"].push_back(tap_json(t));
 }
 
-json row_json(const comparison_row& r, bool by_taps)
+json compared_row_json(const comparison_row& r, bool by_taps)
 {
     json j;
     j["algorithm"] = to_string(r.algorithm);
@@ -116,7 +116,7 @@ json comparison_json(const comparison& c, const array& a)
     j["array"] = {{"name", a.name}, {"tactors", tactors}};
     j["results"] = json::array();
     for (const comparison_row& r : c.rows)
-        j["results"].push_back(row_json(r, c.observer.kind == observer_kind::low_speed));
+        j["results"].push_back(compared_row_json(r, c.observer.kind == observer_kind::low_speed));
     return j;
 }
 

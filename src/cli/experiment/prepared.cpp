@@ -12,6 +12,7 @@
 
 #include "cli/experiment/array_walk.hpp"
 #include "cli/experiment/limit_check.hpp"
+#include "cli/experiment/calibration_facts.hpp"
 #include "cli/plan/plan_output.hpp"
 #include "cli/plan/plan_sound.hpp"
 #include "cli/play/play_options.hpp"
@@ -200,7 +201,11 @@ prepared_experiment prepare(const experiment_options& o, settings& s, option_lis
     if (real || o.dry_run)
         check_walk(d, e.tactors, render);
     check_limits(d, runs, stimuli, limits_of({}, e));
+    std::vector<std::string> doubts;
+    if (!d.level_dbfs)
+        doubts = calibration_doubts(o, e, stimuli);
     std::vector<std::string> warnings = stimuli.warnings();
+    warnings.insert(warnings.end(), doubts.begin(), doubts.end());
     if (assumed)
         warnings.push_back(
             fmt::format("tactors without a threshold: {} dBFS is taken for it", assumed_threshold_dbfs));
@@ -214,7 +219,8 @@ prepared_experiment prepare(const experiment_options& o, settings& s, option_lis
             assumed,
             std::move(runs),
             std::move(stimuli),
-            std::move(warnings)};
+            std::move(warnings),
+            std::move(doubts)};
 }
 
 json session_facts(const prepared_experiment& p, const experiment_options& o)
@@ -231,6 +237,7 @@ json session_facts(const prepared_experiment& p, const experiment_options& o)
     j["array"] = array_facts(p.where.tactors);
     j["thresholds_dbfs"] = thresholds;
     j["thresholds_assumed"] = p.assumed;
+    j["calibration"] = calibration_facts(p);
     j["rate"] = p.render.rate;
     j["channels"] = p.render.channels;
     j["masking"] = masking_facts(p.definition.masking);

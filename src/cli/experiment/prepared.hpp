@@ -35,6 +35,7 @@ struct prepared_experiment {
     std::vector<study::run_sequence> runs;
     study::stimulus_set stimuli;
     std::vector<std::string> warnings;
+    std::vector<std::string> calibration_doubts; ///< of the warnings, those about the thresholds' origin
 };
 
 /// The threshold that is taken where nobody measured one, and nobody feels anything.

@@ -155,6 +155,33 @@ std::string thresholds_table(const study_facts& f)
     return text + table_row(summary);
 }
 
+// How the thresholds were measured; what another program wrote, as it stands.
+std::string origin_text(const session_facts& s)
+{
+    if (!s.document.contains("calibration"))
+        return "";
+    const json_fact c = s.facts()["calibration"];
+    if (!c.there())
+        return "none";
+    if (s.facts()["schema"].text() != own_schema)
+        return plain(c.words());
+    std::string text = fmt::format("of participant {}, {}", plain(c["participant"].need_text()),
+                                   plain(c["method"].need_text()));
+    if (const auto rule = c["rule"].text())
+        text += " " + plain(*rule);
+    text += fmt::format(", carrier {} Hz, intervals of {} s", digits(c["carrier_hz"].need_number()),
+                        digits(c["interval_s"].need_number()));
+    if (const auto feedback = c["feedback"].truth())
+        text += *feedback ? ", with feedback" : ", without feedback";
+    text += fmt::format(", masker: {}, on {}", plain(c["masker"].text().value_or(not_recorded)),
+                        plain(c["date"].text().value_or(not_recorded)));
+    if (c["simulated"].truth().value_or(false))
+        text += ", **SIMULATED: nobody was asked**";
+    for (const json_fact& w : c["warnings"].list())
+        text += "; " + plain(w.need_text());
+    return text;
+}
+
 std::string words_of(const study_facts& f, const char* key)
 {
     return told(f, [&](const session_facts& s) {
@@ -183,7 +210,7 @@ std::string apparatus_section(const study_facts& f)
     text += "\n### Levels and thresholds\n\n";
     text += fmt::format("Level: {}. Thresholds: {}.\n\n", told(f, level_text), told(f, assumed_text));
     text += thresholds_table(f);
-    if (const std::string how = words_of(f, "calibration"); how != not_recorded)
+    if (const std::string how = told(f, origin_text); how != not_recorded)
         text += fmt::format("\nCalibration: {}.\n", how);
     return text;
 }

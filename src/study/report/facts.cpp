@@ -16,8 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Sessions that tactor experiment held say so.
-constexpr std::string_view own_schema = "tactor-session/1";
 constexpr int most_channel = 16383;
 
 [[noreturn]] void refuse_changed(const std::string& what, const std::string& said, const std::string& is)

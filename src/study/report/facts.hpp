@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -37,6 +38,9 @@ struct void_count {
 
     friend bool operator==(const void_count&, const void_count&) = default;
 };
+
+/// Sessions that tactor experiment held say so.
+inline constexpr std::string_view own_schema = "tactor-session/1";
 
 struct session_facts {
     std::string code;

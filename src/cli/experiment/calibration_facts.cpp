@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "cli/experiment/calibration_facts.hpp"
+
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "cli/threshold_carrier.hpp"
+
+namespace tactor::cli {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+template <typename T>
+json said(const std::optional<T>& v)
+{
+    return v ? json(*v) : json(nullptr);
+}
+
+json tactor_facts(const calibrated_tactor& t)
+{
+    return {{"tactor", t.tactor},
+            {"threshold_dbfs", said(t.threshold_dbfs)},
+            {"sd_db", said(t.sd_db)},
+            {"trials", t.trials}};
+}
+
+} // namespace
+
+std::vector<std::string> calibration_doubts(const experiment_options& o, const environment& e,
+                                            const study::stimulus_set& stimuli)
+{
+    if (!e.config.calibration)
+        return {};
+    const calibration_origin& c = *e.config.calibration;
+    std::vector<std::string> doubts;
+    if (c.simulated && !o.simulate && !o.dry_run)
+        throw error(error_kind::bad_input, "--array", "its thresholds were simulated: nobody was asked",
+                    "--array FILE that tactor calibrate made with the participant");
+    if (c.simulated)
+        doubts.emplace_back("the thresholds were simulated: nobody was asked");
+    if (!o.participant.empty() && c.participant != o.participant)
+        doubts.push_back(
+            fmt::format("the thresholds are of participant {}, not {}", c.participant, o.participant));
+    std::vector<const plan*> plans;
+    for (const study::stimulus* s : stimuli.all())
+        plans.push_back(&s->schedule);
+    if (std::string other = other_carrier(e, plans); !other.empty())
+        doubts.push_back(std::move(other));
+    return doubts;
+}
+
+json calibration_facts(const prepared_experiment& p)
+{
+    if (!p.where.config.calibration)
+        return nullptr;
+    const calibration_origin& c = *p.where.config.calibration;
+    json tactors = json::array();
+    for (const calibrated_tactor& t : c.tactors)
+        tactors.push_back(tactor_facts(t));
+    return {{"participant", c.participant}, {"method", c.method},         {"rule", said(c.rule)},
+            {"carrier_hz", c.carrier_hz},   {"interval_s", c.interval_s}, {"feedback", said(c.feedback)},
+            {"masker", said(c.masker)},     {"date", said(c.date)},       {"seed", said(c.seed)},
+            {"simulated", c.simulated},     {"tactors", tactors},         {"warnings", p.calibration_doubts}};
+}
+
+} // namespace tactor::cli

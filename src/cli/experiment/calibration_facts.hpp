@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// How the thresholds of a session were measured: the array file's [calibration].
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/experiment/prepared.hpp"
+
+namespace tactor::cli {
+
+/// What is wrong with a calibration for a session whose level is above the thresholds; nothing where there is
+/// none. \throws error (bad_input) for a simulated one where somebody is to feel it.
+std::vector<std::string> calibration_doubts(const experiment_options& o, const environment& e,
+                                            const study::stimulus_set& stimuli);
+
+/// What session.json says of it; null: none.
+nlohmann::ordered_json calibration_facts(const prepared_experiment& p);
+
+} // namespace tactor::cli

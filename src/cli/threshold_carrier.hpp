@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Whether thresholds hold at the carriers that are played.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include <tactor/plan.hpp>
+
+#include "cli/environment.hpp"
+
+namespace tactor::cli {
+
+/// Of an array whose [calibration] says at which carrier a threshold holds that stands alone: what is to be
+/// said where a plan has another. Empty: nothing.
+std::string other_carrier(const environment& e, std::span<const plan* const> plans);
+
+} // namespace tactor::cli
