@@ -59,6 +59,17 @@ class Simulated(CalibrateTest):
             self.assertEqual(second["threshold_dbfs"], [[100, first["threshold_dbfs"]], [250, found["threshold_dbfs"]]])
         self.ok("check", "--array", "both.toml")
 
+    def test_thresholds_of_others_do_not_stay(self):
+        self.simulated("P07.toml", *SHORT)
+        said = self.ok("calibrate", "--participant", "P08", "-o", "P08.toml", "--simulate", OBSERVER, "--array", "P07.toml",
+                       "--tactors", "0-6", *SHORT)
+        self.assertIn("thresholds are P07's, simulated: those of tactors 7, 8 are left out", said.stderr)
+        self.assertEqual(["threshold_dbfs" in t for t in self.toml("P08.toml")["tactor"]], [True] * 7 + [False] * 2)
+        # One's own stay.
+        said = self.simulated("again.toml", "--array", "P07.toml", "--tactors", 0, *SHORT)
+        self.assertNotIn("left out", said.stderr)
+        self.assertTrue(all("threshold_dbfs" in t for t in self.toml("again.toml")["tactor"]))
+
     def test_log_and_result_tell_the_same(self):
         self.simulated("me.toml", "--tactors", "3,1", "--practice", 2)
         rows, told = self.rows("me.tsv"), self.toml("me.toml")["calibration"]["tactor"]

@@ -374,6 +374,8 @@ TEST_CASE("one participant's calibrations at several carriers come to lists by f
         CHECK(fresh.tactors[0].threshold_dbfs == -41.0);
         CHECK(fresh.tactors[0].thresholds.empty());
         CHECK(fresh.tactors[2].thresholds.empty());
+        CHECK_FALSE(fresh.tactors[1].threshold_dbfs); // whom nobody asked now, neither
+        CHECK(with_thresholds(a, other, s, {}).tactors[2].thresholds.empty());
     }
 }
 

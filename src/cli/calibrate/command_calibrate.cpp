@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "cli/calibrate/calibrate_options.hpp"
 #include "cli/calibrate/person.hpp"
@@ -98,6 +101,25 @@ int ask_person(study::calibration& c, study::calibration_log& log, const setting
     });
 }
 
+// Of tactors that are not measured now; they would pass for this session's.
+void tell_of_others(const environment& e, const study::calibration_settings& s)
+{
+    const auto& earlier = e.config.calibration;
+    if (!earlier || !study::of_others(*earlier, s))
+        return;
+    const std::vector<tactor_spec>& all = e.tactors.tactors;
+    std::vector<std::size_t> left;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if ((all[i].threshold_dbfs || !all[i].thresholds.empty()) &&
+            std::find(s.tactors.begin(), s.tactors.end(), i) == s.tactors.end())
+            left.push_back(i);
+    if (!left.empty())
+        say(stderr, "tactor: warning: the array file's thresholds are {}{}: those of {} {} left out\n",
+            earlier->participant, earlier->simulated ? "'s, simulated" : "'s",
+            fmt::format("{} {}", left.size() == 1 ? "tactor" : "tactors", fmt::join(left, ", ")),
+            left.size() == 1 ? "is" : "are");
+}
+
 int write_result(const calibrate_options& o, const environment& e, const setup& besides,
                  const study::calibration& c)
 {
@@ -128,6 +150,7 @@ int calibrate(settings& s, option_list& options, calibrate_options& o)
         simulated = study::parse_observer(*o.simulate, begun.tactors, e.tactors.tactors.size());
     else if (!names_device(s, e))
         throw error(error_kind::bad_input, "-D", "no device is configured", "-D PCM, or --simulate SPEC");
+    tell_of_others(e, begun);
     const setup besides = said_besides(e);
     begun.array = study::sha256_text(study::array_text(e.tactors, besides));
 

@@ -189,16 +189,26 @@ void write_new_output(const std::filesystem::path& file, const std::string& text
     out.commit();
 }
 
+bool of_others(const calibration_origin& earlier, const calibration_settings& s)
+{
+    return earlier.participant != s.participant || earlier.simulated == s.simulate.empty();
+}
+
 array with_thresholds(array a, const std::optional<calibration_origin>& earlier,
                       const calibration_settings& s, const std::vector<tactor_threshold>& thresholds)
 {
-    const bool goes_on =
-        earlier && earlier->participant == s.participant && earlier->simulated == !s.simulate.empty();
+    const bool foreign = earlier && of_others(*earlier, s);
+    const bool goes_on = earlier && !foreign;
     const bool elsewhere = goes_on && earlier->carrier_hz != s.carrier_hz;
-    // One threshold alone is at the carrier that [calibration] says, which is this one's now.
-    for (tactor_spec& t : a.tactors)
-        if (elsewhere && t.threshold_dbfs)
+    // [calibration] is this one's now: whose thresholds these are, and at which carrier one alone is.
+    for (tactor_spec& t : a.tactors) {
+        if (foreign) {
+            t.threshold_dbfs.reset();
+            t.thresholds.clear();
+        } else if (elsewhere && t.threshold_dbfs) {
             t.thresholds = {{earlier->carrier_hz, *std::exchange(t.threshold_dbfs, {})}};
+        }
+    }
     for (const tactor_threshold& measured : thresholds) {
         tactor_spec& t = a.tactors[measured.tactor];
         t.threshold_dbfs.reset();

@@ -30,9 +30,12 @@ void check_new_output(const std::filesystem::path& file);
 /// Writes it whole or not at all. Throws as above.
 void write_new_output(const std::filesystem::path& file, const std::string& text);
 
+/// Whether an earlier calibration is somebody else's, or only one of them was simulated.
+bool of_others(const calibration_origin& earlier, const calibration_settings& s);
+
 /// The array with the thresholds measured. What the same participant's earlier calibration found at other
-/// carriers stays, in lists by frequency; what else a tactor had that is measured here gives way. Of a tactor
-/// that was not felt there is none at this carrier.
+/// carriers stays, in lists by frequency; what others' found goes, of all tactors; what else a tactor had that
+/// is measured here gives way. Of a tactor that was not felt there is none at this carrier.
 array with_thresholds(array a, const std::optional<calibration_origin>& earlier,
                       const calibration_settings& s, const std::vector<tactor_threshold>& thresholds);
 
