@@ -35,7 +35,7 @@ std::vector<std::string> calibration_doubts(const experiment_options& o, const e
         return {};
     const calibration_origin& c = *e.config.calibration;
     std::vector<std::string> doubts;
-    if (c.simulated && !o.simulate && !o.dry_run)
+    if (c.simulated && !o.simulate && !o.dry_run && !o.check_noise)
         throw error(error_kind::bad_input, "--array", "its thresholds were simulated: nobody was asked",
                     "--array FILE that tactor calibrate made with the participant");
     if (c.simulated)
