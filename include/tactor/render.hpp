@@ -49,7 +49,8 @@ struct render_options {
     /// burst's begin and at its end (both within 1 % of a half cycle), else 2 ms; burst by burst.
     std::optional<double> ramp_s = {};
     double level_dbfs = -12.0;        ///< peak for amplitude 1, <= 0; a tactor's gain_db is added
-    std::optional<double> sl_db = {}; ///< instead of level_dbfs: dB above each tactor's threshold_dbfs
+    std::optional<double> sl_db = {}; ///< instead of level_dbfs: dB above each tactor's threshold_dbfs, which
+                                      ///< must be there where it is driven
     unsigned channels = 0;            ///< 0: as many as the array needs
     /// Applied by the renderer; the player has its own. None: the piece as it was designed.
     std::optional<drive_limits> limits = {};

@@ -158,6 +158,48 @@ TEST_CASE("a sensation level that is too high says threshold and what is missing
                 "above its limit of -3 dBFS (max_dbfs): with its threshold of -6 dBFS 4.07 dB are missing"));
 }
 
+TEST_CASE("a sensation level that is too high says the threshold at the stroke's carrier")
+{
+    array a = row(2);
+    a.tactors[0].thresholds = {{60.0, -9.6}, {100.0, -1.6}, {250.0, -40.0}};
+    a.tactors[1].threshold_dbfs = -50.0;
+    render_options o;
+    o.sl_db = 7.0;
+    plan slow = make_plan({make_burst(0.0, 0.07, {{0, 1.0}, {1, 1.0}})});
+    slow.carrier_hz = 100.0;
+    CHECK(holds(message([&] {
+                    score(a, {{one, {}}, {slow, {}}}, o);
+                }),
+                "driven at 5.4 dBFS, above full scale (0 dBFS): with its threshold of -1.6 dBFS 5.40 dB"));
+}
+
+TEST_CASE("only tactors that are driven need a threshold")
+{
+    array a = row(3);
+    a.tactors[1].threshold_dbfs = -40.0;
+    a.tactors[0].max_dbfs = -20.0;
+    render_options o;
+    o.sl_db = 7.0;
+    const plan middle = make_plan({make_burst(0.0, 0.07, {{1, 1.0}})});
+    const score s(a, {{middle, {}}}, o);
+    CHECK(peak(s, 1) == doctest::Approx(std::pow(10.0, -33.0 / 20.0)));
+    CHECK(peak(s, 0) == 0.0);
+    CHECK(holds(message([&] { score(a, {{middle, {}}, {one, {}}}, o); }), "tactor 0: has no threshold_dbfs"));
+    // Of a continuous stroke those that its movement comes to.
+    plan_options smooth;
+    smooth.algorithm = algorithm_kind::continuous;
+    smooth.outside = outside_kind::clamp;
+    a.tactors[2].threshold_dbfs = -40.0;
+    const auto along = [&](double x_mm) {
+        return make_plan(
+            a,
+            stroke{"k", trajectory::along(path::polyline(std::vector<point>{{20.0, 0.0}, {x_mm, 0.0}}), 0.5)},
+            smooth);
+    };
+    CHECK(message([&] { score(a, {{along(40.0), {}}}, o); }) == "no error");
+    CHECK(holds(message([&] { score(a, {{along(10.0), {}}}, o); }), "tactor 0: has no threshold_dbfs"));
+}
+
 TEST_CASE("strokes that add up beyond full scale are refused, one at full scale is not")
 {
     const plan full = make_plan({make_burst(0.0, 0.07, {{0, 1.0}}), make_burst(0.07, 0.07, {{0, 1.0}})});

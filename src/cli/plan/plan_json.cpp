@@ -35,10 +35,13 @@ struct record {
     const render_options& options;
 };
 
-// The peak of a tactor's channel at amplitude 1.
-double peak_dbfs(const tactor_spec& t, double carrier_hz, const render_options& o)
+// The peak of a tactor's channel at amplitude 1; null where a threshold is missing, and nothing drives it.
+json peak_dbfs(const tactor_spec& t, double carrier_hz, const render_options& o)
 {
-    return o.sl_db ? threshold_at(t, carrier_hz).value() + *o.sl_db : o.level_dbfs + t.gain_db;
+    if (!o.sl_db)
+        return o.level_dbfs + t.gain_db;
+    const auto threshold = threshold_at(t, carrier_hz);
+    return threshold ? json(*threshold + *o.sl_db) : json(nullptr);
 }
 
 // What turns the plan into samples.

@@ -100,6 +100,15 @@ engine::live_setup live_setup(const stream_setup& s, const live_options& o)
     return l;
 }
 
+/// Points may come anywhere: all must have a level.
+std::vector<synth::tactor_level> live_levels(const array& a, const render_options& o)
+{
+    const std::vector<std::size_t> unmeasured = synth::unmeasured_tactors(a, o);
+    if (!unmeasured.empty())
+        synth::refuse_unmeasured(a, unmeasured.front(), o);
+    return synth::tactor_levels(a, o);
+}
+
 } // namespace
 
 live_stroke::impl::impl(stroke_id number, const array& a, const layout& l, const stream_setup& s,
@@ -109,7 +118,7 @@ live_stroke::impl::impl(stroke_id number, const array& a, const layout& l, const
       model(o.plan.custom_phantom ? o.plan.custom_phantom : make_phantom(o.plan.phantom, l)),
       outside(o.plan.outside),
       scale(o.plan.scale),
-      levels(synth::tactor_levels(a, o.render)),
+      levels(live_levels(a, o.render)),
       limits(synth::channel_limits(a, s.channels)),
       voice(live_setup(s, o)),
       window(voice.setup().window),

@@ -36,9 +36,11 @@ std::vector<bool> overlapping(const item_list& list)
     return overlaps;
 }
 
-/// The intensity that no tactor's limit minds.
+/// The intensity that no tactor's limit minds. Who has no threshold minds any.
 double harmless_intensity(const score::impl& s, const array& a)
 {
+    if (!s.unmeasured.empty())
+        return 0.0;
     double least = HUGE_VAL;
     for (std::size_t i = 0; i < s.tactors.size(); ++i)
         least = std::min(least, tactor_limit(a, i) / std::abs(s.tactors[i].gain));

@@ -15,18 +15,13 @@ namespace tactor::synth {
 
 namespace {
 
+// Full scale where there is no threshold, so that what drives such a tactor is seen.
 double level_db(const array& a, std::size_t i, const render_options& o)
 {
     const tactor_spec& t = a.tactors[i];
     if (o.sl_db) {
         const auto threshold = threshold_at(t, reference_hz);
-        if (!threshold) {
-            refuse_tactor(
-                a, i,
-                fmt::format("has no threshold_dbfs, but a sensation level of {} dB is asked for", *o.sl_db),
-                "measure its detection threshold, or use level_dbfs");
-        }
-        return *threshold + *o.sl_db;
+        return threshold ? *threshold + *o.sl_db : 0.0;
     }
     const double level = o.level_dbfs + t.gain_db;
     if (!(level <= 1e-9)) {
@@ -49,6 +44,23 @@ void refuse_tactor(const array& a, std::size_t i, std::string_view why, std::str
     if (at.text().empty())
         throw error(error_kind::bad_input, name, why, hint);
     throw error(error_kind::bad_input, at, fmt::format("{} {}", name, why), hint);
+}
+
+void refuse_unmeasured(const array& a, std::size_t i, const render_options& o)
+{
+    refuse_tactor(a, i,
+                  fmt::format("has no threshold_dbfs, but a sensation level of {} dB is asked for",
+                              o.sl_db.value_or(0.0)),
+                  "measure its detection threshold, or use level_dbfs");
+}
+
+std::vector<std::size_t> unmeasured_tactors(const array& a, const render_options& o)
+{
+    std::vector<std::size_t> all;
+    for (std::size_t i = 0; o.sl_db && i < a.tactors.size(); ++i)
+        if (!threshold_at(a.tactors[i], reference_hz))
+            all.push_back(i);
+    return all;
 }
 
 double tactor_limit(const array& a, std::size_t i)

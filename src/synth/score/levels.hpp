@@ -17,8 +17,15 @@ inline constexpr double reference_hz = 250.0;
 /// An amplitude in dBFS.
 double in_db(double amplitude);
 
-/// Gain of each tactor. \throws error (bad_input) for levels over full scale and missing thresholds.
+/// Gain of each tactor; of unmeasured_tactors() that of full scale, which must not sound.
+/// \throws error (bad_input) for levels over full scale.
 std::vector<tactor_level> tactor_levels(const array& a, const render_options& o);
+
+/// Those without a threshold where the level is above it.
+std::vector<std::size_t> unmeasured_tactors(const array& a, const render_options& o);
+
+/// \throws error (bad_input): the tactor has no threshold.
+[[noreturn]] void refuse_unmeasured(const array& a, std::size_t i, const render_options& o);
 
 /// Factor on the gain of a tactor with a sensation level, at a carrier other than reference_hz.
 double threshold_factor(const tactor_spec& t, double hz);
@@ -31,8 +38,9 @@ double tactor_limit(const array& a, std::size_t i);
 
 /// Compares the levels that the items ask of each tactor, added up where they sound together, with its limit
 /// and with full scale. For continuous strokes, too, these are bounds, not samples. Returns the greatest
-/// level of each tactor, linear, and stores in the score what its continuous plans may not exceed.
-/// \throws error (bad_input) with the tactor's line.
+/// level of each tactor, linear, and stores in the score what its continuous plans may not exceed. Tactors
+/// that nobody measured must not be driven, and have no gain afterwards. \throws error (bad_input) with the
+/// tactor's line.
 std::vector<double> check_peaks(score::impl& s, const array& a, const render_options& o);
 
 } // namespace tactor::synth

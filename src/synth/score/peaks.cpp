@@ -33,12 +33,19 @@ struct change {
 /// only the changes of those that sound are kept.
 class sweep {
 public:
-    explicit sweep(std::size_t tactors) : sums_(tactors), peaks_(tactors) {}
+    explicit sweep(std::size_t tactors)
+        : sums_(tactors), peaks_(tactors), loudest_(tactors), factors_(tactors, 1.0)
+    {
+    }
 
-    /// `from`: as item_list::heard_from().
-    void note(std::size_t tactor, const item& it, std::uint64_t from, double peak)
+    /// `from`: as item_list::heard_from(). `factor` is in the peak, for the threshold at the carrier.
+    void note(std::size_t tactor, const item& it, std::uint64_t from, double peak, double factor)
     {
         if (peak > 0.0 && from < it.end()) {
+            if (peak > loudest_[tactor]) {
+                loudest_[tactor] = peak;
+                factors_[tactor] = factor;
+            }
             pass(it.start);
             add({from, peak, tactor});
             add({it.end(), -peak, tactor});
@@ -50,6 +57,9 @@ public:
         pass(UINT64_MAX);
         return peaks_;
     }
+
+    /// That of each tactor's loudest item.
+    const std::vector<double>& factors() const noexcept { return factors_; }
 
 private:
     void add(const change& c)
@@ -73,6 +83,8 @@ private:
     std::vector<change> heap_;
     std::vector<double> sums_;  // by tactor
     std::vector<double> peaks_; // by tactor
+    std::vector<double> loudest_;
+    std::vector<double> factors_;
 };
 
 /// What a continuous item asks of each tactor.
@@ -89,7 +101,7 @@ double joined_peak(const score::impl& s, std::size_t number)
     return peak;
 }
 
-std::vector<double> peaks_of(const score::impl& s, const continuous_peaks_of& continuous)
+sweep swept(const score::impl& s, const continuous_peaks_of& continuous)
 {
     sweep all(s.tactors.size());
     const item_list& list = s.list;
@@ -98,12 +110,12 @@ std::vector<double> peaks_of(const score::impl& s, const continuous_peaks_of& co
         const std::uint64_t from = list.heard_from(it);
         switch (it.kind) {
         case item_kind::joined:
-            all.note(it.tactor, it, from, joined_peak(s, i));
+            all.note(it.tactor, it, from, joined_peak(s, i), s.equalised(it.tactor, it.plan, it.start));
             break;
         case item_kind::continuous: {
             const std::vector<double> peaks = continuous(i);
             for (std::size_t k = 0; k < peaks.size(); ++k)
-                all.note(k, it, from, peaks[k]);
+                all.note(k, it, from, peaks[k], s.most_equalised(k, it.plan));
             break;
         }
         case item_kind::marker:
@@ -111,16 +123,18 @@ std::vector<double> peaks_of(const score::impl& s, const continuous_peaks_of& co
         case item_kind::burst:
             for (std::size_t k = it.first; k < it.first + it.count; ++k) {
                 const std::size_t tactor = list.drive_tactors[k];
-                const double gain = s.tactors[tactor].gain * s.equalised(tactor, it.plan, it.start);
-                all.note(tactor, it, from, std::abs(list.drive_amplitudes[k] * gain));
+                const double factor = s.equalised(tactor, it.plan, it.start);
+                const double gain = s.tactors[tactor].gain * factor;
+                all.note(tactor, it, from, std::abs(list.drive_amplitudes[k] * gain), factor);
             }
             break;
         }
     }
-    return all.peaks();
+    return all;
 }
 
-void check(const array& a, std::size_t i, double peak, const render_options& o)
+/// `factor`: as sweep::factors().
+void check(const array& a, std::size_t i, double peak, double factor, const render_options& o)
 {
     const double limit_db = std::min(0.0, a.tactors[i].max_dbfs);
     if (peak <= tactor_limit(a, i))
@@ -134,11 +148,19 @@ void check(const array& a, std::size_t i, double peak, const render_options& o)
     if (o.sl_db)
         refuse_tactor(a, i,
                       fmt::format("{}: with its threshold of {:.4g} dBFS {:.2f} dB are missing", driven,
-                                  threshold_at(a.tactors[i], reference_hz).value_or(0.0), excess_db),
+                                  threshold_at(a.tactors[i], reference_hz).value_or(0.0) + in_db(factor),
+                                  excess_db),
                       fmt::format("lower sl_db by {:.2f} dB or more{}", excess_db, raise));
     refuse_tactor(
         a, i, driven,
         fmt::format("lower level_dbfs or the tactor's gain_db by {:.2f} dB or more{}", excess_db, raise));
+}
+
+/// Whatever drove them after all, nobody would feel it at full scale.
+void silence_unmeasured(score::impl& s)
+{
+    for (const std::size_t i : s.unmeasured)
+        s.tactors[i].gain = 0.0;
 }
 
 } // namespace
@@ -155,20 +177,27 @@ std::vector<double> check_peaks(score::impl& s, const array& a, const render_opt
         for (std::size_t i = 0; i < peaks.size(); ++i)
             if (!(peaks[i] <= tactor_limit(a, i)))
                 return false;
-        return true;
+        return std::none_of(s.unmeasured.begin(), s.unmeasured.end(),
+                            [&](std::size_t i) { return peaks[i] > 0.0; });
     };
     // Nearly always the intensities say that all is well, and hours need not be looked through.
     if (continuous.have_bounds()) {
-        std::vector<double> bounds = peaks_of(s, [&](std::size_t i) { return continuous.bounds(i); });
+        std::vector<double> bounds = swept(s, [&](std::size_t i) { return continuous.bounds(i); }).peaks();
         if (within(bounds)) {
             s.promised = continuous.promised();
+            silence_unmeasured(s);
             return bounds;
         }
     }
-    std::vector<double> peaks = peaks_of(s, [&](std::size_t i) { return continuous.peaks(i); });
+    sweep all = swept(s, [&](std::size_t i) { return continuous.peaks(i); });
+    std::vector<double> peaks = all.peaks();
+    for (const std::size_t i : s.unmeasured)
+        if (peaks[i] > 0.0)
+            refuse_unmeasured(a, i, o);
     for (std::size_t i = 0; i < peaks.size(); ++i)
-        check(a, i, peaks[i], o);
+        check(a, i, peaks[i], all.factors()[i], o);
     s.promised = continuous.promised();
+    silence_unmeasured(s);
     return peaks;
 }
 

@@ -215,6 +215,7 @@ struct score_builder::impl {
             synth::check_limits(*o.limits);
         s->guards = o.limits;
         s->tactors = synth::tactor_levels(a, o);
+        s->unmeasured = synth::unmeasured_tactors(a, o);
         const auto curved = [](const tactor_spec& t) { return !t.thresholds.empty(); };
         if (o.sl_db && std::any_of(a.tactors.begin(), a.tactors.end(), curved))
             s->measured = a.tactors;

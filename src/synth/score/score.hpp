@@ -83,6 +83,7 @@ struct score::impl {
     std::vector<std::uint64_t> starts;
     std::vector<std::uint64_t> ends;          ///< of each plan
     std::vector<synth::tactor_level> tactors; ///< by index
+    std::vector<std::size_t> unmeasured;      ///< see synth::unmeasured_tactors()
     std::vector<tactor_spec> measured;        ///< thresholds by frequency; empty where they do not count
     std::vector<double> limits;               ///< by channel
     /// By plan and tactor, for continuous plans: greatest amplitude that levels were checked with.
