@@ -18,6 +18,7 @@
 #include "cli/interrupt.hpp"
 #include "cli/pipes.hpp"
 #include "cli/say.hpp"
+#include "cli/threshold_carrier.hpp"
 #include "core/words.hpp"
 
 namespace tactor::cli {
@@ -107,11 +108,13 @@ int render(settings& s, option_list& options, const std::string& name)
     const environment e = read_environment(s, options);
     const layout faces(e.tactors);
     piece p = open_one_piece(s, e, faces);
-    const score sc = plan_and_score(p, s, e, faces, settle_render(s, e));
+    const render_options how = settle_render(s, e);
+    const score sc = plan_and_score(p, s, e, faces, how);
     const format_kind format = s.format.value_or(format_kind::float32);
     for (const placed_plan& q : sc.plans())
         for (const std::string& w : q.schedule.warnings)
             say(stderr, "tactor: warning: {}\n", w);
+    tell_of_other_carrier(e, how, std::span(&sc, 1));
     tell_of_pipe_to_write(file.string());
     interrupt stop;
     int signal = 0;

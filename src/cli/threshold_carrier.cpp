@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <fmt/format.h>
+
+#include "cli/say.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -37,6 +40,18 @@ std::string other_carrier(const environment& e, std::span<const plan* const> pla
                 "others (tactor calibrate --carrier {} adds to them)",
                 measured_hz, hz, hz);
     return {};
+}
+
+void tell_of_other_carrier(const environment& e, const render_options& r, std::span<const score> scores)
+{
+    if (!r.sl_db)
+        return;
+    std::vector<const plan*> plans;
+    for (const score& s : scores)
+        for (const placed_plan& p : s.plans())
+            plans.push_back(&p.schedule);
+    if (const std::string other = other_carrier(e, plans); !other.empty())
+        say(stderr, "tactor: warning: {}\n", other);
 }
 
 } // namespace tactor::cli

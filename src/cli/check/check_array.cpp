@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "cli/check/walk.hpp"
+#include "cli/threshold_carrier.hpp"
 #include "core/words.hpp"
 
 namespace tactor::cli {
@@ -151,7 +152,7 @@ finding check_levels(const render_options& r, const array& a, const plan_options
                                   [](const tactor_spec& t) { return threshold_at(t, usual_hz).has_value(); });
     if (some && !unmeasured.empty())
         return warning("levels", fmt::format("{}; no threshold of tactors {}", found, unmeasured),
-                       "measure threshold_dbfs of all, or --sl cannot be used");
+                       "measure threshold_dbfs of all, or --sl refuses strokes that drive these");
     const std::string unfelt = indices(
         a,
         [](const tactor_spec& t, const render_options& o) {
@@ -162,6 +163,19 @@ finding check_levels(const render_options& r, const array& a, const plan_options
         return warning("levels", fmt::format("{}; not above the threshold of tactors {}", found, unfelt),
                        "raise --level-dbfs or gain_db, or use --sl");
     return fine("levels", found);
+}
+
+// Where the levels are right, thresholds may still be those of another carrier.
+finding check_carrier_of_thresholds(finding levels, const environment& e, const render_options& r,
+                                    const plan_options& p)
+{
+    plan usual;
+    usual.carrier_hz = p.carrier_hz;
+    const plan* const played[] = {&usual};
+    const std::string other = r.sl_db && levels.how == level::ok ? other_carrier(e, played) : std::string();
+    return other.empty() ? levels
+                         : warning("levels", fmt::format("{}; {}", levels.found, other),
+                                   "--array FILE with thresholds at this carrier, or another --carrier");
 }
 
 // The defaults of what a file or an option has made weaker.
@@ -205,7 +219,7 @@ std::vector<finding> check_array(const settings& s, const environment& e, const 
 {
     const render_options r = settle_render(s, e);
     std::vector<finding> all{check_places(e.tactors), check_channels(r, e.tactors),
-                             check_levels(r, e.tactors, s.plan)};
+                             check_carrier_of_thresholds(check_levels(r, e.tactors, s.plan), e, r, s.plan)};
     for (finding& f : check_bursts(s.plan, e.tactors, r.rate))
         all.push_back(std::move(f));
     all.push_back(check_limits(l, e.tactors.tactors.size()));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <memory>
+#include <span>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 #include "cli/input.hpp"
 #include "cli/plan/plan_output.hpp"
 #include "cli/say.hpp"
+#include "cli/threshold_carrier.hpp"
 
 namespace tactor::cli {
 
@@ -26,6 +28,7 @@ command add_plan(CLI::App& app)
         const piece p = plan_one_piece(*s, e);
         const render_options sound = settle_render(*s, e);
         const score samples = make_score(p, e, sound); // levels and carrier are checked when planned
+        tell_of_other_carrier(e, sound, std::span(&samples, 1));
         if (*format == "json")
             print_json(stdout, p, e, samples, sound);
         else if (*format == "csv") {

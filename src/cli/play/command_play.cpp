@@ -13,6 +13,7 @@
 #include "cli/play/sound_server.hpp"
 #include "cli/say.hpp"
 #include "cli/serve/play_remote.hpp"
+#include "cli/threshold_carrier.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -27,6 +28,7 @@ std::vector<score> make_scores(std::vector<piece>& pieces, const settings& s, co
             for (const std::string& w : q.schedule.warnings)
                 say(stderr, "tactor: warning: {}\n", w);
     }
+    tell_of_other_carrier(e, render, scores);
     return scores;
 }
 
