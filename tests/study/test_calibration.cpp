@@ -422,7 +422,7 @@ TEST_CASE("simulate says what is wrong with it")
           std::vector<double>{-3, -1});
     CHECK(has(said(""), "has no ="));
     CHECK(has(said("spread=2"), "threshold is missing"));
-    CHECK(has(said("threshold=-45,spread=0"), "spread is 0"));
+    CHECK(has(said("threshold=-45,spread=-1"), "spread is -1"));
     CHECK(has(said("threshold=-45,lapse=0.6"), "lapse is 0.6"));
     CHECK(has(said("threshold=low"), "\"low\" is not a number"));
     CHECK(has(said("threshold=-45,threshold=-46"), "said twice"));

@@ -42,7 +42,7 @@ void take(observer_settings& o, std::string_view key, std::string_view value)
     if (key == "threshold")
         o.thresholds_dbfs.push_back(number(key, value, -200.0, 1000.0));
     else if (key == "spread")
-        o.spread_db = number(key, value, 0.01, 100.0);
+        o.spread_db = number(key, value, 0.0, 100.0);
     else if (key == "lapse")
         o.lapse = number(key, value, 0.0, 0.5);
     else
@@ -90,6 +90,8 @@ observer_settings parse_observer(std::string_view text, const std::vector<unsign
 
 double right_at(const observer_settings& o, double threshold_dbfs, double level_dbfs)
 {
+    if (o.spread_db == 0.0) // a step
+        return level_dbfs < threshold_dbfs ? 0.5 : 1.0 - o.lapse;
     const double z = (level_dbfs - threshold_dbfs) / o.spread_db;
     return 0.5 + (0.5 - o.lapse) * 0.5 * std::erfc(-z / std::numbers::sqrt2);
 }

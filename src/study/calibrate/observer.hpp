@@ -15,8 +15,8 @@ namespace tactor::study {
 
 struct observer_settings {
     std::vector<double> thresholds_dbfs = {}; ///< one for all, or one for each tactor that is measured
-    double spread_db = 2.0;
-    double lapse = 0.0; ///< 0 to 0.5
+    double spread_db = 2.0;                   ///< 0: a step at the threshold
+    double lapse = 0.0;                       ///< 0 to 0.5
 };
 
 /// "threshold=-45,spread=2,lapse=0.02"; threshold=-45,-50,... is a list. `measured` are the tactors that are
