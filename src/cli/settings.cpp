@@ -304,10 +304,11 @@ void option_list::add_rate_options()
           [&s](const std::string& t) { s.format = from_string<format_kind>(t); });
 }
 
-void option_list::add_device_options()
+void option_list::add_device_options(const char* otherwise)
 {
     settings& s = settings_;
-    value("-D,--device", "PCM", "ALSA device, e.g. hw:CARD=Tactor (default: the configuration's, else null)",
+    value("-D,--device", "PCM",
+          fmt::format("ALSA device, e.g. hw:CARD=Tactor (default: the configuration's, {})", otherwise),
           [&s](const std::string& t) { s.pcm = t; });
 }
 

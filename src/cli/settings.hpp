@@ -67,7 +67,7 @@ public:
     /// --rate and --sample-format alone.
     void add_rate_options();
     /// -D.
-    void add_device_options();
+    void add_device_options(const char* otherwise = "else null");
 
     /// Fills options that the command line does not give from the configuration; `where` names it.
     /// \throws error (bad_input).

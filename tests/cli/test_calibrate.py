@@ -70,6 +70,15 @@ class Simulated(CalibrateTest):
         self.assertNotIn("left out", said.stderr)
         self.assertTrue(all("threshold_dbfs" in t for t in self.toml("again.toml")["tactor"]))
 
+    def test_what_is_measured_can_be_played_where_the_rest_is_not(self):
+        self.simulated("me.toml", "--tactors", 4, *SHORT)
+        at_4 = ("--path", "M 20 20 L 20.001 20", "--array", "me.toml", "--sl", 7)
+        plan = self.plan(*at_4)
+        self.assertEqual({d["tactor"] for b in plan["bursts"] for d in b["drives"] if d["amplitude"] != 0}, {4})
+        self.assertEqual([p is None for p in plan["render"]["peak_dbfs"]], [i != 4 for i in range(9)])
+        self.ok("render", *at_4, "-o", "x.wav")
+        self.refused(2, "render", "park2016-1", "--array", "me.toml", "--sl", 7, "-o", "y.wav", says=["has no threshold_dbfs"])
+
     def test_log_and_result_tell_the_same(self):
         self.simulated("me.toml", "--tactors", "3,1", "--practice", 2)
         rows, told = self.rows("me.tsv"), self.toml("me.toml")["calibration"]["tactor"]
@@ -159,6 +168,32 @@ class Simulated(CalibrateTest):
         self.assertEqual(made["calibration"]["carrier_hz"], 180)
         self.ok("check", "--array", "me.toml")
 
+    def test_no_level_is_above_what_the_array_may_have(self):
+        self.write("low.toml", '[array]\npreset = "palm-3x3"\n[[tactor]]\ntactor = 4\nmax_dbfs = -25\n[limits]\npower_dbfs = -18\n')
+        said = self.simulated("me.toml", "--array", "low.toml", "--practice", 1, *SHORT, spec="threshold=0,spread=0.001")
+        self.assertIn("no level is above -18 dBFS, which power_dbfs in [limits] allows, and max_dbfs does not, of tactors "
+                      "0, 1, 2, 3, 5, 6, 7, 8\n", said.stderr)
+        rows = self.rows("me.tsv")
+        self.assertEqual(max(float(r["level_dbfs"]) for r in rows), -18.001)
+        of_4 = [float(r["level_dbfs"]) for r in rows if r["tactor"] == "4"]
+        self.assertEqual((of_4[0], max(of_4)), (-25, -25))
+
+    def test_an_observer_may_be_a_step(self):
+        self.simulated("me.toml", *SHORT, "--tactors", 0, spec="threshold=-45,spread=0")
+        for r in self.rows("me.tsv"):
+            if float(r["level_dbfs"]) >= -45:
+                self.assertEqual(r["correct"], "true")
+
+    def test_levels_above_thresholds_of_another_carrier_are_warned_of(self):
+        self.simulated("me.toml", "--carrier", 100, *SHORT)
+        told = "thresholds were measured at 100 Hz, and a carrier is 250 Hz"
+        at = ("--array", "me.toml", "--sl", 7)
+        for command in (("plan", "park2016-1"), ("render", "park2016-1", "-o", "x.wav"),
+                        ("play", "park2016-1", "park2016-1", "-D", "null")):
+            self.assertEqual(self.ok(*command, *at).stderr.count(told), 1)
+            self.assertNotIn(told, self.ok(*command, *at, "--carrier", 100).stderr)
+        self.assertNotIn(told, self.ok("plan", "park2016-1", "--array", "me.toml").stderr)
+
     def test_adjustment(self):
         self.simulated("me.toml", "--method", "adjustment", "--tactors", 4)
         rows, told = self.rows("me.tsv"), self.toml("me.toml")["calibration"]
@@ -213,8 +248,9 @@ class Person(CalibrateTest):
         self.assertIn(len(self.pieces(power)), (1, 2, 3))
         self.assertEqual(power[0], 0)
         self.assertEqual(json.loads((self.dir / "me.json").read_text())["masker"],
-                         "white noise, -20 dBFS, raw:noise.raw")
+                         "white noise, -20 dBFS")
         self.refused(2, *self.ARGS, "--resume", says=["masker", "white noise", '"none"'])
+        self.refused(1, *args[:-3], "null", *args[-2:], "--resume", says=["trial 3: no answer"])  # another device is none
         for args, status, says in ((("--masker", "hw:CARD=Nowhere"), 3, "hw:CARD=Nowhere"),
                                    (("--masker", ""), 2, "--masker")):
             self.refused(status, "calibrate", "--participant", "P2", "-o", f"n{status}.toml", "-D", "null", *args, says=[says])
@@ -229,6 +265,26 @@ class Person(CalibrateTest):
                              "max_dbfs = -15\nthreshold_dbfs = [[100, -8], [250, -6]]\n")
         self.refused(1, *self.ARGS, "--array", "a.toml", stdin="1\n", says=["trial 2: no answer"])
         self.assertEqual([float(r["level_dbfs"]) for r in self.rows("me.tsv")], [-20])
+
+    def test_a_trial_waits_where_its_tactor_would_be_driven_too_long(self):
+        self.write("a.toml", '[array]\nname = "a"\ngrid = { rows = 1, columns = 2, pitch_mm = 20.0 }\n[limits]\n'
+                             "max_drive_s = 0.14\nwindow_s = 2\n")
+        args = [TOOL, *map(str, self.ARGS), "--array", "a.toml"]
+        result = self.refused(1, *args[1:], stdin="1\n2\n1\n", says=["trial 4: no answer"])
+        self.assertNotIn("a limit changed it", result.stdout)
+        self.write("a.toml", (self.dir / "a.toml").read_text().replace("0.14\nwindow_s = 2", "2.5\nwindow_s = 300"))
+        args[args.index("me.toml")] = "you.toml"
+        args[args.index("0.05")] = "1"
+        with subprocess.Popen(args, cwd=self.dir, env=self.env, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True) as tool:
+            tool.stdin.write("1\n2\n")
+            tool.stdin.flush()
+            while not (line := tool.stdout.readline()).startswith("a pause of 2"):
+                self.assertTrue(line)
+            tool.send_signal(signal.SIGINT)
+            tool.stdin.close()
+            self.assertEqual(tool.wait(PATIENCE_S), 130)
+        self.assertEqual(len(self.rows("you.tsv")), 2)
 
     def test_feedback(self):
         result = self.run_tool(*self.ARGS, stdin="1\n" * 4)
@@ -345,13 +401,21 @@ class BadInput(CalibrateTest):
 
     def test_each_is_said_before_a_trial(self):
         self.write("limited.toml", '[array]\npreset = "palm-3x3"\n[[tactor]]\ntactor = 4\nmax_dbfs = -30\n')
+        self.write("quiet.toml", '[array]\npreset = "palm-3x3"\n[limits]\npower_dbfs = -25\n')
+        self.write("short.toml", '[array]\npreset = "palm-3x3"\n[limits]\nmax_drive_s = 0.3\n')
+        (self.dir / "folder.tsv").mkdir()
+        (self.dir / "link.tsv").symlink_to("elsewhere.tsv")
         for args, says in [
                 (("--tactors", "9"), ["no tactor 9", "0 to 8"]),
                 (("--tactors", "1,0-2"), ["tactor 1 is named twice"]),
                 (("--tactors", "5-3"), ["5-3", "3-5"]),
                 (("--tactors", "a"), ['"a"', "0,3-5"]),
                 (("--tactors", "99999999999"), ["99999999999"]),
-                (("--array", "limited.toml"), ["tactor 4", "-30 dBFS at most", "-20"]),
+                (("--array", "limited.toml", "--start-dbfs", "-20"), ["tactor 4", "-30 dBFS at most (max_dbfs)", "-20"]),
+                (("--array", "quiet.toml", "--start-dbfs", "-20"), ["tactor 0", "-25 dBFS at most (power_dbfs in [limits])"]),
+                (("--array", "short.toml"), ["--interval", "0.5 s in 10 s", "0.3 s (max_drive_s)"]),
+                (("--method", "adjustment", "--interval", "1"), ["steady pulses of 1 s", "7 s in 10 s", "allow 5 s"]),
+                (("--carrier", "24000"), ["--carrier", "24000 Hz", "rate of 48000 Hz"]),
                 (("--start-dbfs", "3"), ["3 is out of range"]),
                 (("--steps", "4,,1"), ["--steps"]),
                 (("--steps", "-1"), ["--steps"]),
@@ -369,14 +433,19 @@ class BadInput(CalibrateTest):
                 (("--masker", "null", "--masker-noise", "brown"), ["white, pink"]),
                 (("--log", "x.txt"), [".tsv"]),
                 (("--log", "nowhere/x.tsv"), ["nowhere/x.tsv"]),
+                (("--log", "folder.tsv"), ["folder.tsv"]),
+                (("--log", "link.tsv"), ["link.tsv: it is a link"]),
+                (("--log", "x" * 300 + ".tsv"), ["name"]),
                 (("--seed", "-1"), ["--seed"]),
                 (("--carrier", "nan"), ["--carrier"])]:
-            self.bad(*args, says=says, status=1 if "nowhere/x.tsv" in args else 2)
+            self.bad(*args, says=says)
         self.refused(2, "calibrate", "-o", "me.toml", says=["--participant"])
         self.refused(2, "calibrate", "--participant", "P07", says=["--output"])
         self.refused(2, "calibrate", "--participant", "P-7", "-o", "me.toml", says=["letters and digits"])
         self.refused(2, "calibrate", "--participant", "P7", "-o", "me.txt", says=[".toml"])
         self.refused(2, "calibrate", "--participant", "P7", "-o", "me.toml", says=["no device is configured"])
+        self.refused(2, "calibrate", "--participant", "P7", "-o", "me.toml", "-D", "null", "--carrier", 24000, says=["--carrier"])
+        self.assertFalse((self.dir / "me.tsv").exists())
         self.refused(2, "calibrate", "--participant", "P7", "-o", "none/me.toml", "-D", "null", says=["none"])
         self.refused(1, "calibrate", "--participant", "P7", "-o", "/proc/me.toml", "-D", "null", says=["/proc/me.toml"])
         self.refused(2, "calibrate", "--participant", "P7", "-o", "me.toml", "--simulate", "level=3", says=["--simulate"])
@@ -391,9 +460,38 @@ class BadInput(CalibrateTest):
         self.bad("--resume", says=["me.tsv: it is no log of a calibration"])
         self.assertEqual((self.dir / "me.tsv").read_text(), "my\ttable\n")
 
+    def test_somebody_else_s_json_is_not_replaced(self):
+        for text in ('{"date":"2020-01-01","mydata":[1,2,3]}', "[]", "mine"):
+            self.write("me.json", text)
+            self.bad(says=["me.json: it does not say how a calibration was begun"])
+            self.bad("--resume", says=["me.json: it does not say how a calibration was begun"])
+            self.assertEqual((self.dir / "me.json").read_text(), text)
+
+    def test_only_its_own_output_makes_a_session_finished(self):
+        self.simulated("me.toml", *SHORT, "--tactors", 0)
+        same = (*SHORT, "--tactors", 0, "--resume")
+        self.assertIn("finished", self.simulated("me.toml", *same).stdout)
+        self.bad(*same, "--carrier", 100, says=["me.json", "carrier_hz"])
+        self.refused(2, "calibrate", "--participant", "P08", "-o", "me.toml", "--simulate", OBSERVER, *same, says=["participant"])
+        made = (self.dir / "me.toml").read_text()
+        for text in (made.replace("simulated = true", "simulated = false"), made.replace('date = "20', 'date = "19'),
+                     made.partition("[calibration]")[0]):
+            self.write("me.toml", text)
+            self.bad(*same, says=["me.toml: it is not what this session came to"])
+        self.write("me.toml", "some text")
+        self.bad(*same, says=["me.toml"])
+        (self.dir / "me.toml").unlink()
+        (self.dir / "me.toml").mkdir()
+        self.bad(*same, says=["me.toml"])
+        (self.dir / "me.toml").rmdir()
+        self.write("me.toml", made)
+        (self.dir / "me.json").unlink()
+        self.bad(*same, says=["me.json: it is missing"])
+
     def test_a_session_goes_on_only_as_it_was_begun(self):
         self.simulated("me.toml", "--tactors", 0)
         (self.dir / "me.toml").unlink()
+        self.bad("--resume", "--tactors", 4, "--array", "palm-2x4", says=["me.json", "begun with tactors [0], and [4]"])
         for args, says in [(("--tactors", 1), "tactors"), (("--carrier", 100), "carrier_hz 250.0, and 100.0"),
                            (("--seed", 1), "seed"), (("--tactors", 0, "--array", "palm-2x4"), "array_sha256")]:
             self.bad("--resume", *(args if "--tactors" in args else ("--tactors", 0, *args)), says=["me.json", says])

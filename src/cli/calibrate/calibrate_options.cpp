@@ -3,13 +3,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
-#include <ctime>
 #include <filesystem>
 #include <functional>
 #include <limits>
-#include <numeric>
 #include <string_view>
 
 #include <CLI/CLI.hpp>
@@ -17,7 +14,6 @@
 
 #include "cli/session/key_input.hpp"
 #include "core/split.hpp"
-#include "study/random/sha256.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -72,62 +68,6 @@ std::vector<double> steps(const std::string& text)
     return all;
 }
 
-unsigned tactor_in(std::string_view text, const std::string& all, std::size_t n)
-{
-    unsigned i = 0;
-    const auto [stop, failed] = std::from_chars(text.data(), text.data() + text.size(), i);
-    if (failed == std::errc::invalid_argument || stop != text.data() + text.size())
-        refuse("--tactors", fmt::format("\"{}\" is no list of tactors", all), "as 0,3-5");
-    if (failed != std::errc() || i >= n)
-        refuse("--tactors", fmt::format("there is no tactor {}", text),
-               n == 1 ? std::string("the array has tactor 0 only")
-                      : fmt::format("the array has 0 to {}", n - 1));
-    return i;
-}
-
-std::vector<unsigned> tactors_in(const std::string& text, std::size_t n)
-{
-    std::vector<unsigned> all;
-    for (const std::string_view part : detail::split(text, ',')) {
-        const std::size_t dash = part.find('-');
-        const unsigned first = tactor_in(part.substr(0, dash), text, n);
-        const unsigned last = dash == part.npos ? first : tactor_in(part.substr(dash + 1), text, n);
-        if (last < first)
-            refuse("--tactors", fmt::format("\"{}\" runs backwards", part),
-                   fmt::format("as {}-{}", last, first));
-        for (unsigned i = first; i <= last; ++i) {
-            if (std::find(all.begin(), all.end(), i) != all.end())
-                refuse("--tactors", fmt::format("tactor {} is named twice", i), "each is measured once");
-            all.push_back(i);
-        }
-    }
-    return all;
-}
-
-std::string today()
-{
-    const std::time_t now = std::time(nullptr);
-    std::tm utc{};
-    gmtime_r(&now, &utc);
-    return fmt::format("{:04}-{:02}-{:02}", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday);
-}
-
-// The same for the same participant, whoever asks.
-std::uint32_t seed_of(const std::string& participant)
-{
-    const study::sha256_digest d = study::sha256(participant);
-    return std::accumulate(d.begin(), d.begin() + 4, std::uint32_t{0},
-                           [](std::uint32_t s, std::uint8_t b) { return s << 8 | b; });
-}
-
-void check_staircase(const study::calibration_settings& c)
-{
-    if (c.staircase.reversals < c.staircase.discard + 2)
-        refuse("--discard",
-               fmt::format("of {} reversals {} are discarded", c.staircase.reversals, c.staircase.discard),
-               "two at least must be left");
-}
-
 void add_staircase_options(CLI::App& c, calibrate_options& o)
 {
     study::staircase_options& s = o.settings.staircase;
@@ -179,28 +119,6 @@ void add_masker_options(CLI::App& c, calibrate_options& o)
         });
 }
 
-// As the files say it.
-std::string masker_text(const calibrate_options& o)
-{
-    if (o.masker.empty())
-        return {};
-    return fmt::format("{} noise, {} dBFS, {}",
-                       o.masking.color == study::noise_color::white ? "white" : "pink", o.masking.level_dbfs,
-                       o.masker);
-}
-
-void check_masker(const calibrate_options& o)
-{
-    if (o.masker.empty() && !o.of_masker.empty())
-        refuse(o.of_masker.front(), "there is no device for the noise", "--masker PCM, or leave it out");
-    const double most = study::greatest_noise_dbfs(o.masking.color);
-    if (o.masking.level_dbfs > most)
-        refuse("--masker-dbfs",
-               fmt::format("{} dBFS, and the peaks of this noise are at full scale from {} dBFS on",
-                           o.masking.level_dbfs, most),
-               "less here, and more at the amplifier of the headphones");
-}
-
 } // namespace
 
 void add_calibrate_options(CLI::App& c, calibrate_options& o)
@@ -224,8 +142,9 @@ void add_calibrate_options(CLI::App& c, calibrate_options& o)
         [&o](const std::string& t) { o.tactors = t; });
     add(c, "--interval", "S", "how long each interval or pulse is (default 0.5)",
         [&s](const std::string& t) { s.interval_s = parse_number("--interval", t, 0.05, 4, "s"); });
-    add(c, "--start-dbfs", "DB", "level of the first trial (default -20)", [&s](const std::string& t) {
+    add(c, "--start-dbfs", "DB", "level of the first trial (default -20)", [&o, &s](const std::string& t) {
         s.staircase.start_dbfs = parse_number("--start-dbfs", t, study::floor_dbfs, 0, "dBFS");
+        o.start_asked = true;
     });
     add_staircase_options(c, o);
     add_masker_options(c, o);
@@ -251,43 +170,6 @@ void settle_names(calibrate_options& o)
         o.log = fs::path(o.output).replace_extension(".tsv").string();
     else if (fs::path(o.log).extension() != ".tsv")
         refuse("--log", fmt::format("\"{}\" does not end in .tsv", o.log), "as me.tsv");
-}
-
-study::calibration_settings settle_calibration(const calibrate_options& o, const settings& s, const array& a)
-{
-    study::calibration_settings c = o.settings;
-    if (c.method == study::calibration_method::adjustment && !o.of_staircase.empty())
-        refuse(o.of_staircase.front(), "an adjustment does not have that",
-               "leave it out, or use --method staircase");
-    check_staircase(c);
-    check_masker(o);
-    check_page_options(o.page, o.simulate.has_value());
-    if (o.simulate && o.stream.verbose)
-        refuse("--verbose", "nothing is played", "leave it out, or --simulate");
-    if (o.simulate && !o.keypads.empty())
-        refuse("--keypad", "nobody is asked", "leave it out, or --simulate");
-    c.masker = masker_text(o);
-    c.carrier_hz = s.plan.carrier_hz;
-    if (o.tactors) {
-        c.tactors = tactors_in(*o.tactors, a.tactors.size());
-    } else {
-        c.tactors.resize(a.tactors.size());
-        std::iota(c.tactors.begin(), c.tactors.end(), 0U);
-    }
-    for (const unsigned t : c.tactors) {
-        const double ceiling = std::min(0.0, a.tactors[t].max_dbfs);
-        if (c.start_dbfs() > ceiling)
-            refuse(
-                "--start-dbfs",
-                fmt::format("tactor {} may have {:.4g} dBFS at most (max_dbfs), and {:.4g} dBFS is the start",
-                            t, ceiling, c.start_dbfs()),
-                "start lower");
-        c.ceilings_dbfs.push_back(ceiling);
-    }
-    c.simulate = o.simulate.value_or("");
-    c.seed = o.seed.value_or(seed_of(c.participant));
-    c.date = today();
-    return c;
 }
 
 } // namespace tactor::cli

@@ -33,6 +33,7 @@ struct calibrate_options {
     study::masking_options masking;
     std::vector<std::string> of_masker;    ///< options given that only a masker has
     std::vector<std::string> of_staircase; ///< options given that an adjustment does not have
+    bool start_asked = false;              ///< a start level above a ceiling is no slip of the defaults then
     bool resume = false;
 };
 
@@ -41,7 +42,8 @@ void add_calibrate_options(CLI::App& command, calibrate_options& into);
 /// Output and log have names that go with each other. \throws error (bad_input).
 void settle_names(calibrate_options& o);
 
-/// What is measured, on this array. \throws error (bad_input).
-study::calibration_settings settle_calibration(const calibrate_options& o, const settings& s, const array& a);
+/// What is measured, on this array, within its limits. \throws error (bad_input).
+study::calibration_settings settle_calibration(const calibrate_options& o, const settings& s,
+                                               const environment& e);
 
 } // namespace tactor::cli

@@ -138,21 +138,25 @@ int calibrate(settings& s, option_list& options, calibrate_options& o)
 {
     settle_names(o);
     std::error_code ignored;
-    if (o.resume && std::filesystem::exists(o.output, ignored)) {
-        say(stdout, "{} is there: the session is finished\n", o.output);
-        return status_ok;
-    }
-    study::check_new_output(o.output);
+    const bool there = o.resume && std::filesystem::exists(o.output, ignored);
+    if (!there)
+        study::check_new_output(o.output);
     const environment e = read_environment(s, options);
-    study::calibration_settings begun = settle_calibration(o, s, e.tactors);
+    study::calibration_settings begun = settle_calibration(o, s, e);
     std::optional<study::observer_settings> simulated;
     if (o.simulate)
         simulated = study::parse_observer(*o.simulate, begun.tactors, e.tactors.tactors.size());
-    else if (!names_device(s, e))
+    else if (!there && !names_device(s, e))
         throw error(error_kind::bad_input, "-D", "no device is configured", "-D PCM, or --simulate SPEC");
-    tell_of_others(e, begun);
     const setup besides = said_besides(e);
     begun.array = study::sha256_text(study::array_text(e.tactors, besides));
+    if (there) {
+        study::check_beginning(o.log, begun);
+        study::check_finished(o.output, begun);
+        say(stdout, "{} is there: the session is finished\n", o.output);
+        return status_ok;
+    }
+    tell_of_others(e, begun);
 
     study::calibration_log log(o.log, o.resume, begun);
     study::calibration c(begun);
@@ -187,7 +191,7 @@ command add_calibrate(CLI::App& app)
     add_calibrate_options(*c, *o);
     options->add_carrier_option();
     options->add_array_options();
-    options->add_device_options();
+    options->add_device_options("needed with a person");
     c->footer("Example: tactor calibrate --participant P07 -o P07.toml -D hw:CARD=Tactor");
     return [s, o, options] { return calibrate(*s, *options, *o); };
 }

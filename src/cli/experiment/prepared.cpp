@@ -11,8 +11,8 @@
 #include <fmt/format.h>
 
 #include "cli/experiment/array_walk.hpp"
-#include "cli/experiment/limit_check.hpp"
 #include "cli/experiment/calibration_facts.hpp"
+#include "cli/experiment/limit_check.hpp"
 #include "cli/plan/plan_output.hpp"
 #include "cli/plan/plan_sound.hpp"
 #include "cli/play/play_options.hpp"

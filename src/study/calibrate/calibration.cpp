@@ -20,6 +20,7 @@ staircase_options stairs_of(const calibration_settings& s, std::size_t place)
 {
     staircase_options o = s.staircase;
     o.ceiling_dbfs = s.ceilings_dbfs[place];
+    o.start_dbfs = std::min(o.start_dbfs, o.ceiling_dbfs);
     return o;
 }
 
@@ -61,7 +62,8 @@ void calibration::make_trial()
         return;
     }
     trial_.practice = practised_ < settings_.practice;
-    trial_.level_dbfs = trial_.practice ? settings_.start_dbfs() : stairs_.level_dbfs();
+    trial_.level_dbfs =
+        trial_.practice ? std::min(settings_.start_dbfs(), trial_.ceiling_dbfs) : stairs_.level_dbfs();
     trial_.interval = 1 + intervals_.below(2);
 }
 

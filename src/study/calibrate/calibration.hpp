@@ -32,14 +32,15 @@ struct calibration_settings {
     double carrier_hz = 250.0;
     double interval_s = 0.5;
     bool feedback = true;
-    std::string masker = {}; ///< the masking noise, as the array file will say it; empty: none
-    unsigned practice = 0;   ///< trials at the start level on the first tactor, which do not count
+    std::string masker = {};     ///< the masking noise in words; empty: none
+    std::string masker_pcm = {}; ///< the device that it comes from
+    unsigned practice = 0;       ///< trials at the start level on the first tactor, which do not count
     std::uint32_t seed = 0;
     std::string simulate = {}; ///< the simulated observer as it was asked for; empty: a person
     std::string date = {};     ///< on which it began, UTC
     std::string array = {};    ///< SHA-256 of what the array file will say besides the thresholds
 
-    double start_dbfs() const noexcept { return staircase.start_dbfs; }
+    double start_dbfs() const noexcept { return staircase.start_dbfs; } ///< at most each tactor's ceiling
 };
 
 /// "1up3down" or "1up2down".

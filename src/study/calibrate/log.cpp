@@ -22,29 +22,46 @@ namespace tactor::study {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
+using nlohmann::ordered_json; // differences are told in the order of the options
 
-json parse_settings(const fs::path& file)
+// What somebody else wrote is no beginning: it is neither taken nor replaced.
+ordered_json parse_settings(const fs::path& file, const calibration_settings& s)
 {
-    json j = json::parse(read_file(file), nullptr, false);
-    if (!j.is_object() || !j.contains("date") || !j["date"].is_string())
+    ordered_json j = ordered_json::parse(read_file(file), nullptr, false);
+    const ordered_json all = ordered_json::parse(settings_text(s));
+    bool ours = j.is_object();
+    for (const auto& [key, value] : all.items())
+        ours = ours && j.contains(key);
+    if (!ours || !j["date"].is_string())
         throw error(error_kind::bad_input, file.string(), "it does not say how a calibration was begun",
                     "begin another, with another log");
     return j;
 }
 
-// The date is that of the beginning; all else must be alike.
+// The date is that of the beginning, and a device may be another; all else must be alike.
 void take_beginning(const fs::path& file, calibration_settings& s)
 {
-    const json began = parse_settings(file);
+    const ordered_json began = parse_settings(file, s);
     s.date = began["date"].get<std::string>();
-    const json now = json::parse(settings_text(s));
+    const ordered_json now = ordered_json::parse(settings_text(s));
     for (const auto& [key, value] : now.items())
-        if (!began.contains(key) || began[key] != value)
+        if (key != "masker_pcm" && began[key] != value)
             throw error(error_kind::bad_input, file.string(),
                         fmt::format("the session was begun with {} {}, and {} is asked for", key,
-                                    began.contains(key) ? began[key].dump() : "unknown", value.dump()),
+                                    began[key].dump(), value.dump()),
                         "a session goes on as it was begun");
+}
+
+bool file_is_there(const fs::path& file)
+{
+    std::error_code ignored;
+    return fs::exists(fs::symlink_status(file, ignored));
+}
+
+// What a user can name wrongly; all else the system refuses.
+bool bad_name(int code)
+{
+    return code == ENOENT || code == ENOTDIR || code == EISDIR || code == ELOOP || code == ENAMETOOLONG;
 }
 
 } // namespace
@@ -54,9 +71,26 @@ fs::path settings_file(const fs::path& log)
     return fs::path(log).replace_extension(".json");
 }
 
+void check_beginning(const fs::path& log, calibration_settings& s)
+{
+    const fs::path beginning = settings_file(log);
+    if (!file_is_there(beginning))
+        throw error(error_kind::bad_input, beginning.string(),
+                    "it is missing, which says how the session was begun", "begin another, with other names");
+    take_beginning(beginning, s);
+}
+
 calibration_log::calibration_log(fs::path file, bool resume, calibration_settings& s)
     : file_(std::move(file)), synced_(s.simulate.empty())
 {
+    if (const fs::path beginning = settings_file(file_);
+        file_is_there(beginning)) { // before anything is written
+        calibration_settings tried = s;
+        if (resume)
+            take_beginning(beginning, tried);
+        else
+            parse_settings(beginning, tried);
+    }
     open();
     settle(resume, s);
 }
@@ -73,8 +107,8 @@ void calibration_log::open()
         detail::owned_fd(::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW, 0666));
     struct stat is {};
     if (!fd_)
-        throw error(error_kind::runtime, file_.string(), std::strerror(errno),
-                    "name a log that can be written");
+        throw error(bad_name(errno) ? error_kind::bad_input : error_kind::runtime, file_.string(),
+                    errno == ELOOP ? "it is a link" : std::strerror(errno), "name a log that can be written");
     if (::fstat(fd_.get(), &is) != 0 || !S_ISREG(is.st_mode))
         throw error(error_kind::bad_input, file_.string(), "it is no regular file", "name another log");
     if (::flock(fd_.get(), LOCK_EX | LOCK_NB) != 0)
@@ -85,8 +119,7 @@ void calibration_log::open()
 void calibration_log::settle(bool resume, calibration_settings& s)
 {
     const fs::path beginning = settings_file(file_);
-    std::error_code ignored;
-    const bool begun = fs::exists(fs::symlink_status(beginning, ignored));
+    const bool begun = file_is_there(beginning);
     const std::string text = take_whole_lines();
     // One in which nothing was answered, as where the device was not there, is begun anew.
     if (!resume && !lines_.empty())
@@ -98,8 +131,6 @@ void calibration_log::settle(bool resume, calibration_settings& s)
         throw error(error_kind::bad_input, beginning.string(),
                     "it is missing, which says how the log was begun", "begin another, with another log");
     } else {
-        if (begun)
-            parse_settings(beginning); // another's is not overwritten
         const std::string said = settings_text(s);
         detail::output_file out(beginning);
         out.write(said.data(), static_cast<std::int64_t>(said.size()));

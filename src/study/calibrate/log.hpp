@@ -25,6 +25,10 @@ std::string settings_text(const calibration_settings& s);
 /// The file that says it: that of the log with the extension .json.
 std::filesystem::path settings_file(const std::filesystem::path& log);
 
+/// Holds a session against how one was begun, and takes its date. \throws error (bad_input): that is not
+/// known, or was otherwise.
+void check_beginning(const std::filesystem::path& log, calibration_settings& s);
+
 class calibration_log {
 public:
     /// Opens and locks the log, and settles how the session began: a new one writes `s` beside it, one that

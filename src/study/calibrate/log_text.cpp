@@ -84,6 +84,7 @@ std::string settings_text(const calibration_settings& s)
                                    {"feedback", of_stairs(s.feedback)},
                                    {"practice", of_stairs(s.practice)},
                                    {"masker", s.masker.empty() ? "none" : s.masker},
+                                   {"masker_pcm", s.masker.empty() ? "none" : s.masker_pcm},
                                    {"seed", s.seed},
                                    {"simulate", observer},
                                    {"array_sha256", s.array},

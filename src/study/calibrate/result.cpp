@@ -16,6 +16,7 @@
 #include "files/output_file.hpp"
 #include "files/setup_defaults.hpp"
 #include "study/data/kept.hpp"
+#include "study/data/text_table.hpp"
 
 namespace tactor::study {
 namespace {
@@ -163,8 +164,8 @@ std::string calibration_text(const calibration_settings& s, const std::vector<ta
     if (stairs)
         t += fmt::format("feedback = {}\n", s.feedback);
     t += fmt::format("masker = {}\ndate = {}\nseed = {}\nsimulated = {}\n",
-                     toml_string(s.masker.empty() ? "none" : s.masker), toml_string(s.date), s.seed,
-                     !s.simulate.empty());
+                     toml_string(s.masker.empty() ? "none" : fmt::format("{}, {}", s.masker, s.masker_pcm)),
+                     toml_string(s.date), s.seed, !s.simulate.empty());
     for (const tactor_threshold& one : thresholds)
         t += threshold_text(one, stairs);
     return t;
@@ -187,6 +188,22 @@ void write_new_output(const std::filesystem::path& file, const std::string& text
     if (const int code = out.failure())
         throw error(error_kind::runtime, file.string(), std::strerror(code), what_is_kept(code));
     out.commit();
+}
+
+void check_finished(const std::filesystem::path& file, const calibration_settings& s)
+{
+    read_file(file); // an error of its own for what is no file
+    const auto said = load_setup(file).calibration;
+    const bool staircase = s.method == calibration_method::staircase;
+    std::vector<unsigned> tactors;
+    if (said)
+        for (const calibrated_tactor& t : said->tactors)
+            tactors.push_back(t.tactor);
+    if (!said || of_others(*said, s) || said->method != (staircase ? "staircase" : "adjustment") ||
+        said->carrier_hz != s.carrier_hz || said->interval_s != s.interval_s || said->seed != s.seed ||
+        said->date != s.date || tactors != s.tactors)
+        throw error(error_kind::bad_input, file.string(), "it is not what this session came to",
+                    "choose another name: it is not overwritten");
 }
 
 bool of_others(const calibration_origin& earlier, const calibration_settings& s)

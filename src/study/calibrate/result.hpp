@@ -27,6 +27,9 @@ std::string calibration_text(const calibration_settings& s, const std::vector<ta
 ///         refuses.
 void check_new_output(const std::filesystem::path& file);
 
+/// Whether an array file is what a session came to. \throws error (bad_input) with the file's name.
+void check_finished(const std::filesystem::path& file, const calibration_settings& s);
+
 /// Writes it whole or not at all. Throws as above.
 void write_new_output(const std::filesystem::path& file, const std::string& text);
 
@@ -34,8 +37,8 @@ void write_new_output(const std::filesystem::path& file, const std::string& text
 bool of_others(const calibration_origin& earlier, const calibration_settings& s);
 
 /// The array with the thresholds measured. What the same participant's earlier calibration found at other
-/// carriers stays, in lists by frequency; what others' found goes, of all tactors; what else a tactor had that
-/// is measured here gives way. Of a tactor that was not felt there is none at this carrier.
+/// carriers stays, in lists by frequency; what others' found goes, of all tactors; what else a tactor had
+/// that is measured here gives way. Of a tactor that was not felt there is none at this carrier.
 array with_thresholds(array a, const std::optional<calibration_origin>& earlier,
                       const calibration_settings& s, const std::vector<tactor_threshold>& thresholds);
 

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+// What `calibrate` measures on an array, and whether that can be.
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <ctime>
+#include <numeric>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "cli/calibrate/calibrate_options.hpp"
+#include "cli/say.hpp"
+#include "core/split.hpp"
+#include "study/random/sha256.hpp"
+
+namespace tactor::cli {
+namespace {
+
+// Levels stay so far below a limit of the power: one that is met to the last digit may act.
+constexpr double power_margin_db = 1e-3;
+
+[[noreturn]] void refuse_setting(std::string_view option, const std::string& why, std::string_view hint)
+{
+    throw error(error_kind::bad_input, option, why, hint);
+}
+
+unsigned tactor_in(std::string_view text, const std::string& all, std::size_t n)
+{
+    unsigned i = 0;
+    const auto [stop, failed] = std::from_chars(text.data(), text.data() + text.size(), i);
+    if (failed == std::errc::invalid_argument || stop != text.data() + text.size())
+        refuse_setting("--tactors", fmt::format("\"{}\" is no list of tactors", all), "as 0,3-5");
+    if (failed != std::errc() || i >= n)
+        refuse_setting("--tactors", fmt::format("there is no tactor {}", text),
+                       n == 1 ? std::string("the array has tactor 0 only")
+                              : fmt::format("the array has 0 to {}", n - 1));
+    return i;
+}
+
+std::vector<unsigned> tactors_in(const std::string& text, std::size_t n)
+{
+    std::vector<unsigned> all;
+    for (const std::string_view part : detail::split(text, ',')) {
+        const std::size_t dash = part.find('-');
+        const unsigned first = tactor_in(part.substr(0, dash), text, n);
+        const unsigned last = dash == part.npos ? first : tactor_in(part.substr(dash + 1), text, n);
+        if (last < first)
+            refuse_setting("--tactors", fmt::format("\"{}\" runs backwards", part),
+                           fmt::format("as {}-{}", last, first));
+        for (unsigned i = first; i <= last; ++i) {
+            if (std::find(all.begin(), all.end(), i) != all.end())
+                refuse_setting("--tactors", fmt::format("tactor {} is named twice", i),
+                               "each is measured once");
+            all.push_back(i);
+        }
+    }
+    return all;
+}
+
+std::string today()
+{
+    const std::time_t now = std::time(nullptr);
+    std::tm utc{};
+    gmtime_r(&now, &utc);
+    return fmt::format("{:04}-{:02}-{:02}", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday);
+}
+
+// The same for the same participant, whoever asks.
+std::uint32_t seed_of(const std::string& participant)
+{
+    const study::sha256_digest d = study::sha256(participant);
+    return std::accumulate(d.begin(), d.begin() + 4, std::uint32_t{0},
+                           [](std::uint32_t s, std::uint8_t b) { return s << 8 | b; });
+}
+
+void check_staircase(const study::calibration_settings& c)
+{
+    if (c.staircase.reversals < c.staircase.discard + 2)
+        refuse_setting(
+            "--discard",
+            fmt::format("of {} reversals {} are discarded", c.staircase.reversals, c.staircase.discard),
+            "two at least must be left");
+}
+
+// As the files say it.
+std::string masker_text(const calibrate_options& o)
+{
+    if (o.masker.empty())
+        return {};
+    return fmt::format("{} noise, {} dBFS", o.masking.color == study::noise_color::white ? "white" : "pink",
+                       o.masking.level_dbfs);
+}
+
+void check_masker(const calibrate_options& o)
+{
+    if (o.masker.empty() && !o.of_masker.empty())
+        refuse_setting(o.of_masker.front(), "there is no device for the noise",
+                       "--masker PCM, or leave it out");
+    const double most = study::greatest_noise_dbfs(o.masking.color);
+    if (o.masking.level_dbfs > most)
+        refuse_setting("--masker-dbfs",
+                       fmt::format("{} dBFS, and the peaks of this noise are at full scale from {} dBFS on",
+                                   o.masking.level_dbfs, most),
+                       "less here, and more at the amplifier of the headphones");
+}
+
+// The levels that a tactor may have.
+double ceiling_of(const array& a, std::size_t tactor, const drive_limits& l)
+{
+    return std::min({0.0, a.tactors[tactor].max_dbfs, l.power_dbfs - power_margin_db});
+}
+
+void tell_of_power(const study::calibration_settings& c, const array& a, const drive_limits& l)
+{
+    std::vector<unsigned> lower;
+    for (std::size_t i = 0; i < c.tactors.size(); ++i)
+        if (c.ceilings_dbfs[i] < std::min(0.0, a.tactors[c.tactors[i]].max_dbfs))
+            lower.push_back(c.tactors[i]);
+    if (!lower.empty())
+        say(stderr,
+            "tactor: warning: no level is above {:.4g} dBFS, which power_dbfs in [limits] allows, and "
+            "max_dbfs "
+            "does not, of {} {}\n",
+            l.power_dbfs, lower.size() == 1 ? "tactor" : "tactors", fmt::join(lower, ", "));
+}
+
+// How long a tactor is driven in any window at most: of a staircase in one trial, before which there may be a
+// pause, of an adjustment in its steady pulses.
+double longest_drive_s(const study::calibration_settings& c, const drive_limits& l)
+{
+    if (c.method == study::calibration_method::staircase)
+        return std::min(c.interval_s, l.window_s);
+    const double period_s = c.interval_s + study::interval_gap_s;
+    const double whole = std::floor(l.window_s / period_s);
+    return whole * c.interval_s + std::min(c.interval_s, l.window_s - whole * period_s);
+}
+
+void check_drive_time(const study::calibration_settings& c, const drive_limits& l)
+{
+    constexpr double rounding_s = 1e-9;
+    const double longest_s = longest_drive_s(c, l);
+    if (l.max_drive_s < l.window_s && longest_s > l.max_drive_s + rounding_s)
+        refuse_setting(
+            "--interval",
+            fmt::format("{} of {} s would drive a tactor {:.4g} s in {:.4g} s, and [limits] allow {:.4g} s "
+                        "(max_drive_s)",
+                        c.method == study::calibration_method::staircase ? "intervals" : "steady pulses",
+                        c.interval_s, longest_s, l.window_s, l.max_drive_s),
+            "shorter ones, or another max_drive_s");
+}
+
+void check_carrier(double carrier_hz, unsigned rate)
+{
+    if (carrier_hz >= 0.5 * rate)
+        refuse_setting("--carrier",
+                       fmt::format("{} Hz cannot be played at a rate of {} Hz", carrier_hz, rate),
+                       fmt::format("below {} Hz, half the rate", 0.5 * rate));
+}
+
+} // namespace
+
+study::calibration_settings settle_calibration(const calibrate_options& o, const settings& s,
+                                               const environment& e)
+{
+    study::calibration_settings c = o.settings;
+    const array& a = e.tactors;
+    const drive_limits limits = settle_limits(e);
+    if (c.method == study::calibration_method::adjustment && !o.of_staircase.empty())
+        refuse_setting(o.of_staircase.front(), "an adjustment does not have that",
+                       "leave it out, or use --method staircase");
+    check_staircase(c);
+    check_masker(o);
+    check_page_options(o.page, o.simulate.has_value());
+    if (o.simulate && o.stream.verbose)
+        refuse_setting("--verbose", "nothing is played", "leave it out, or --simulate");
+    if (o.simulate && !o.keypads.empty())
+        refuse_setting("--keypad", "nobody is asked", "leave it out, or --simulate");
+    c.masker = masker_text(o);
+    c.masker_pcm = o.masker;
+    c.carrier_hz = s.plan.carrier_hz;
+    check_carrier(c.carrier_hz, settle_render(s, e).rate);
+    check_drive_time(c, limits);
+    if (o.tactors) {
+        c.tactors = tactors_in(*o.tactors, a.tactors.size());
+    } else {
+        c.tactors.resize(a.tactors.size());
+        std::iota(c.tactors.begin(), c.tactors.end(), 0U);
+    }
+    for (const unsigned t : c.tactors) {
+        const double ceiling = ceiling_of(a, t, limits);
+        if (o.start_asked && c.start_dbfs() > ceiling)
+            refuse_setting(
+                "--start-dbfs",
+                fmt::format("tactor {} may have {:.4g} dBFS at most ({}), and {:.4g} dBFS is the start", t,
+                            ceiling, ceiling < a.tactors[t].max_dbfs ? "power_dbfs in [limits]" : "max_dbfs",
+                            c.start_dbfs()),
+                "start lower");
+        c.ceilings_dbfs.push_back(ceiling);
+    }
+    tell_of_power(c, a, limits);
+    c.simulate = o.simulate.value_or("");
+    c.seed = o.seed.value_or(seed_of(c.participant));
+    c.date = today();
+    return c;
+}
+
+} // namespace tactor::cli
