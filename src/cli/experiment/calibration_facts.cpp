@@ -28,21 +28,18 @@ json tactor_facts(const calibrated_tactor& t)
 
 } // namespace
 
-std::vector<std::string> calibration_doubts(const experiment_options& o, const environment& e,
+std::vector<std::string> calibration_doubts(const std::string& participant, const environment& e,
                                             const study::stimulus_set& stimuli)
 {
     if (!e.config.calibration)
         return {};
     const calibration_origin& c = *e.config.calibration;
     std::vector<std::string> doubts;
-    if (c.simulated && !o.simulate && !o.dry_run && !o.check_noise)
-        throw error(error_kind::bad_input, "--array", "its thresholds were simulated: nobody was asked",
-                    "--array FILE that tactor calibrate made with the participant");
     if (c.simulated)
         doubts.emplace_back("the thresholds were simulated: nobody was asked");
-    if (!o.participant.empty() && c.participant != o.participant)
+    if (!participant.empty() && c.participant != participant)
         doubts.push_back(
-            fmt::format("the thresholds are of participant {}, not {}", c.participant, o.participant));
+            fmt::format("the thresholds are of participant {}, not {}", c.participant, participant));
     std::vector<const plan*> plans;
     for (const study::stimulus* s : stimuli.all())
         plans.push_back(&s->schedule);

@@ -13,8 +13,8 @@
 namespace tactor::cli {
 
 /// What is wrong with a calibration for a session whose level is above the thresholds; nothing where there is
-/// none. \throws error (bad_input) for a simulated one where somebody is to feel it.
-std::vector<std::string> calibration_doubts(const experiment_options& o, const environment& e,
+/// none.
+std::vector<std::string> calibration_doubts(const std::string& participant, const environment& e,
                                             const study::stimulus_set& stimuli);
 
 /// What session.json says of it; null: none.

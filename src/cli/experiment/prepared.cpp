@@ -203,7 +203,7 @@ prepared_experiment prepare(const experiment_options& o, settings& s, option_lis
     check_limits(d, runs, stimuli, limits_of({}, e));
     std::vector<std::string> doubts;
     if (!d.level_dbfs)
-        doubts = calibration_doubts(o, e, stimuli);
+        doubts = calibration_doubts(o.participant, e, stimuli);
     std::vector<std::string> warnings = stimuli.warnings();
     warnings.insert(warnings.end(), doubts.begin(), doubts.end());
     if (assumed)
