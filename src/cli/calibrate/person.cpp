@@ -17,7 +17,6 @@ using study::interval_gap_s;
 
 constexpr double lead_s = 0.5; // from the answer before to interval 1, so that nobody is surprised
 constexpr int most_attempts = 5;
-constexpr double counted_from_dbfs = -40.0; // below it nothing counts as driven, see drive_limits
 constexpr const char* go_on = "what was answered is kept; --resume goes on";
 
 // What each of them stands for is in the order of the keys.
@@ -78,39 +77,14 @@ score person::trial_score(unsigned tactor, double level_dbfs, double onset_s, do
     return score(a, std::move(p), render_);
 }
 
-// Steady pulses were held against the limits before the session.
-bool person::counts(const study::calibration_trial& t) const
+// One that is cut off would tell which interval it was.
+void person::make_room(const score& s)
 {
-    return t.interval != 0 && t.level_dbfs >= counted_from_dbfs;
-}
-
-void person::note_drive(const study::calibration_trial& t, const given_stimulus& g)
-{
-    if (counts(t) && g.frames > 0)
-        drives_.push_back({t.tactor, g.ended_ns});
-}
-
-// A tactor may be driven for so long within a window ([limits]), and one that is cut off tells which interval
-// it was. All that a window from now on still has counts in full, and the trial in full.
-void person::make_room(const study::calibration_trial& t)
-{
-    const drive_limits l = settle_limits(environment_);
-    if (l.max_drive_s >= l.window_s || !counts(t))
+    const double wait_s = stage_.room_s(s, 0.0);
+    if (wait_s == 0.0)
         return;
-    for (;;) {
-        const std::int64_t from_ns = rt::monotonic_ns() - std::llround(l.window_s * 1e9);
-        std::erase_if(drives_, [&](const drive_end& d) { return d.at_ns <= from_ns; });
-        const auto same = [&](const drive_end& d) { return d.tactor == t.tactor; };
-        const auto n = std::count_if(drives_.begin(), drives_.end(), same);
-        const auto first = std::find_if(drives_.begin(), drives_.end(), same);
-        if (first == drives_.end() || static_cast<double>(n + 1) * settings_.interval_s <= l.max_drive_s)
-            return;
-        const double wait_s = static_cast<double>(first->at_ns - from_ns) * 1e-9;
-        show(fmt::format("a pause of {:.1f} s, so that tactors are not driven for too long\n", wait_s));
-        stage_.pass(wait_s, [](double) { return true; });
-        if (stage_.lost())
-            return;
-    }
+    show(fmt::format("a pause of {:.1f} s, so that tactors are not driven for too long\n", wait_s));
+    stage_.pass(wait_s, [](double) { return true; });
 }
 
 given_stimulus person::play(const study::calibration_trial& t, const score& s,
@@ -120,15 +94,13 @@ given_stimulus person::play(const study::calibration_trial& t, const score& s,
     for (int attempt = 1;; ++attempt) {
         given_stimulus g = stage_.give(
             name, s, 0.0, [&](std::uint64_t frame) { watch(static_cast<double>(frame) / s.rate()); });
-        if (g.flaw.empty() && g.limited)
-            g.flaw = "a limit changed it ([limits] in the array file or configuration)";
-        note_drive(t, g);
+        g.flaw = g.fault();
         if (g.flaw.empty())
             return g;
         if (stage_.lost() || attempt == most_attempts)
             throw error(error_kind::runtime, name, g.flaw, go_on);
         show(fmt::format("interrupted ({}): once more\n", g.flaw));
-        make_room(t);
+        make_room(s);
     }
 }
 
@@ -199,7 +171,7 @@ study::calibration_answer person::choose(const study::calibration_trial& t)
     const double second_s = lead_s + settings_.interval_s + interval_gap_s;
     const double total_s = second_s + settings_.interval_s;
     const score s = trial_score(t.tactor, t.level_dbfs, t.interval == 1 ? lead_s : second_s, total_s);
-    make_room(t);
+    make_room(s);
     show(fmt::format("trial {}{}:", t.number, t.practice ? " (practice)" : ""));
     unsigned shown = 0;
     const auto show_until = [&](unsigned now) {

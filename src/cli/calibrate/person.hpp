@@ -3,7 +3,6 @@
 /// A participant at a terminal or before a page: trials on the device, answers from keys, lines or the page.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -45,12 +44,9 @@ private:
     score trial_score(unsigned tactor, double level_dbfs, double onset_s, double total_s) const;
     given_stimulus play(const study::calibration_trial& t, const score& s,
                         const std::function<void(double)>& watch);
-    /// Lets time pass until a trial on this tactor is within the time that it may be driven. \throws
+    /// Lets time pass until a trial leaves its tactor within the time that it may be driven. \throws
     /// stage::left.
-    void make_room(const study::calibration_trial& t);
-    void note_drive(const study::calibration_trial& t, const given_stimulus& g);
-    /// Whether it counts as a time that its tactor is driven.
-    bool counts(const study::calibration_trial& t) const;
+    void make_room(const score& s);
     std::string wait_for_answer(const study::calibration_trial& t);
     bool change_level(const std::string& keys, const study::calibration_trial& t, double& level_dbfs,
                       std::optional<study::calibration_answer>& out) const;
@@ -68,12 +64,6 @@ private:
         page_; ///< null: none; its thread has the signals blocked that the stage takes
     key_input keys_;
     bool begun_ = false;
-
-    struct drive_end {
-        unsigned tactor;
-        std::int64_t at_ns; ///< CLOCK_MONOTONIC
-    };
-    std::vector<drive_end> drives_ = {}; ///< trials that were played, one interval each
 };
 
 } // namespace tactor::cli

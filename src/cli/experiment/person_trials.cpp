@@ -95,8 +95,8 @@ given_stimulus person_session::give(const study::session_step& s, const study::p
         throw stage::left{SIGINT};
     if (std::exchange(repeat_, false))
         g.flaw = "the experimenter repeats it";
-    else if (g.flaw.empty() && g.limited)
-        g.flaw = "a limit changed it ([limits] in the array file or configuration)";
+    else
+        g.flaw = g.fault();
     return g;
 }
 

@@ -36,12 +36,25 @@ stage::stage(const alsa_options& device, const play_options& o, const environmen
 {
 }
 
-bool stage::make_room(const score& s, double lead_s, const std::function<bool(double)>& watch)
+std::string given_stimulus::fault() const
+{
+    if (flaw.empty() && limited)
+        return "a limit changed it ([limits] in the array file or configuration)";
+    return flaw;
+}
+
+double stage::room_s(const score& s, double lead_s) const
 {
     const std::uint64_t at =
         before_ + session_.position().played + static_cast<std::uint64_t>(std::llround(lead_s * s.rate()));
     const std::uint64_t wait = room_.wait(s, at).value_or(0); // it never has room: it will be told as changed
-    return wait == 0 || pass(static_cast<double>(wait) / s.rate(), watch);
+    return static_cast<double>(wait) / s.rate();
+}
+
+bool stage::make_room(const score& s, double lead_s, const std::function<bool(double)>& watch)
+{
+    const double wait_s = room_s(s, lead_s);
+    return wait_s == 0.0 || pass(wait_s, watch);
 }
 
 void stage::mask(sink_opener open, const study::masking_options& o)

@@ -25,6 +25,9 @@ struct given_stimulus {
     std::int64_t ended_ns = 0;                     ///< and of its last
     unsigned xruns = 0;                            ///< since it was asked for
     bool limited = false;                          ///< limits of the array changed it
+
+    /// Why it does not count: its flaw, or that it was limited; empty: it does.
+    std::string fault() const;
 };
 
 /// One thread.
@@ -44,8 +47,10 @@ public:
     /// On the PCM of this name, in stereo.
     void mask(const std::string& pcm, const study::masking_options& o);
 
-    /// Lets the stream's time pass until a score has room that begins so long after that: until no tactor
-    /// would be driven for longer than the limits allow, with what was given here before. As pass().
+    /// How long a score that is to begin so long from now has to wait, so that no tactor is driven for longer
+    /// than the limits allow, with what was given here before.
+    double room_s(const score& s, double lead_s) const;
+    /// Lets so much of the stream's time pass. As pass().
     bool make_room(const score& s, double lead_s, const std::function<bool(double passed_s)>& watch);
 
     /// Told some 25 times a second at which of its frames the stimulus is.
