@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -61,9 +59,7 @@ private:
 
 bool ends_in_wav(const fs::path& file)
 {
-    std::string e = file.extension().string();
-    std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return std::tolower(c); });
-    return e == ".wav";
+    return in_small_letters(file.extension().string()) == ".wav";
 }
 
 // Whether a file begins as one that may be replaced does: with nothing, or as a WAV file.

@@ -1,13 +1,28 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A tap in JSON, of plan and compare alike.
+/// Values in JSON, of several commands alike.
 #pragma once
+
+#include <optional>
+#include <string>
 
 #include <nlohmann/json.hpp>
 
 #include <tactor/observer.hpp>
 
 namespace tactor::cli {
+
+template <class T>
+nlohmann::ordered_json or_null(const std::optional<T>& v)
+{
+    return v ? nlohmann::ordered_json(*v) : nlohmann::ordered_json(nullptr);
+}
+
+/// Null where a text is empty.
+inline nlohmann::ordered_json or_null(const std::string& s)
+{
+    return s.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(s);
+}
 
 inline nlohmann::ordered_json tap_json(const tap& t)
 {

@@ -21,4 +21,7 @@ namespace tactor {
 /// less than half a nanosecond, which is what rounding leaves.
 [[nodiscard]] std::string seconds_text(double s, int digits = 6);
 
+/// Without the capitals of A to Z: of names that not everybody tells apart by them.
+[[nodiscard]] std::string in_small_letters(std::string text);
+
 } // namespace tactor

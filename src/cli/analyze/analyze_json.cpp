@@ -5,16 +5,12 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/analyze/analyze_output.hpp"
+#include "cli/json_values.hpp"
 
 namespace tactor::cli {
 namespace {
 
 using json = nlohmann::ordered_json;
-
-json value(std::optional<double> v)
-{
-    return v ? json(*v) : json(nullptr);
-}
 
 json ends(const std::optional<study::interval>& i)
 {
@@ -23,14 +19,14 @@ json ends(const std::optional<study::interval>& i)
 
 json test_json(const study::t_test& t)
 {
-    return {{"mean", value(t.mean)},
-            {"se", value(t.se)},
+    return {{"mean", or_null(t.mean)},
+            {"se", or_null(t.se)},
             {"ci", ends(t.ci)},
-            {"t", value(t.t)},
-            {"df", value(t.df)},
-            {"p", value(t.p)},
-            {"p_signflip", value(t.p_signflip)},
-            {"d", value(t.d)},
+            {"t", or_null(t.t)},
+            {"df", or_null(t.df)},
+            {"p", or_null(t.p)},
+            {"p_signflip", or_null(t.p_signflip)},
+            {"d", or_null(t.d)},
             {"d_ci", ends(t.d_ci)}};
 }
 
@@ -39,7 +35,7 @@ json tests_json(const study::by_motion& b, const std::vector<std::string>& motio
     json j{{"all", test_json(b.all)}, {"motion", json::object()}};
     for (std::size_t m = 0; m < motions.size(); ++m) {
         json one = test_json(b.motion[m]);
-        one["p_holm"] = value(b.p_holm[m]);
+        one["p_holm"] = or_null(b.p_holm[m]);
         j["motion"][motions[m]] = std::move(one);
     }
     return j;
@@ -47,7 +43,7 @@ json tests_json(const study::by_motion& b, const std::vector<std::string>& motio
 
 json mean_json(const study::t_test& t)
 {
-    return {{"mean", value(t.mean)}, {"se", value(t.se)}, {"ci", ends(t.ci)}};
+    return {{"mean", or_null(t.mean)}, {"se", or_null(t.se)}, {"ci", ends(t.ci)}};
 }
 
 json means_json(const study::by_motion& b, const std::vector<std::string>& motions)
@@ -64,16 +60,16 @@ json effect_json(const study::effect& e, std::size_t levels)
     if (levels < 2)
         return nullptr;
     const auto df = [&](double v) { return v > 0.0 ? json(v) : json(nullptr); };
-    return {{"F", value(e.f)},
+    return {{"F", or_null(e.f)},
             {"df1", df(e.df1)},
             {"df2", df(e.df2)},
-            {"p", value(e.p)},
-            {"epsilon_gg", value(e.epsilon_gg)},
-            {"p_gg", value(e.p_gg)},
-            {"mauchly_w", value(e.mauchly_w)},
-            {"mauchly_p", value(e.mauchly_p)},
-            {"eta2_partial", value(e.eta2_partial)},
-            {"eta2_generalised", value(e.eta2_generalised)}};
+            {"p", or_null(e.p)},
+            {"epsilon_gg", or_null(e.epsilon_gg)},
+            {"p_gg", or_null(e.p_gg)},
+            {"mauchly_w", or_null(e.mauchly_w)},
+            {"mauchly_p", or_null(e.mauchly_p)},
+            {"eta2_partial", or_null(e.eta2_partial)},
+            {"eta2_generalised", or_null(e.eta2_generalised)}};
 }
 
 json pairs_json(const std::vector<study::comparison>& pairs, const std::vector<std::string>& motions)
@@ -83,8 +79,8 @@ json pairs_json(const std::vector<study::comparison>& pairs, const std::vector<s
         j.push_back({{"a", motions[c.a]},
                      {"b", motions[c.b]},
                      {"difference", c.difference},
-                     {"q", value(c.q)},
-                     {"p", value(c.p)}});
+                     {"q", or_null(c.q)},
+                     {"p", or_null(c.p)}});
     return j;
 }
 
@@ -93,9 +89,9 @@ void add_choose(json& j, const study::run_analysis& r)
     const std::vector<std::string>& motions = r.run.motions;
     j["method"] = r.run.methods.back();
     j["preference"] = tests_json(r.cells[0], motions);
-    j["first_interval"] = {{"mean", value(r.first_interval.mean)},
-                           {"t", value(r.first_interval.t)},
-                           {"p", value(r.first_interval.p)}};
+    j["first_interval"] = {{"mean", or_null(r.first_interval.mean)},
+                           {"t", or_null(r.first_interval.t)},
+                           {"p", or_null(r.first_interval.p)}};
     j["anova"] = {{"motion", effect_json(r.effects.second, motions.size())}};
     j["tukey"] = pairs_json(r.pairs[0], motions);
 }
@@ -108,13 +104,14 @@ void add_rate(json& j, const study::run_analysis& r)
     for (std::size_t m = 0; m < methods.size(); ++m)
         j["means"][methods[m]] = means_json(r.cells[m], motions);
     const study::t_test& t = r.paired;
-    j["paired"] =
-        methods.size() < 2
-            ? json(nullptr)
-            : json{
-                  {"difference", value(t.mean)}, {"ci", ends(t.ci)},      {"t", value(t.t)},
-                  {"df", value(t.df)},           {"p", value(t.p)},       {"p_signflip", value(t.p_signflip)},
-                  {"d_z", value(t.d)},           {"d_z_ci", ends(t.d_ci)}};
+    j["paired"] = methods.size() < 2 ? json(nullptr) : json{{"difference", or_null(t.mean)},
+                                                            {"ci", ends(t.ci)},
+                                                            {"t", or_null(t.t)},
+                                                            {"df", or_null(t.df)},
+                                                            {"p", or_null(t.p)},
+                                                            {"p_signflip", or_null(t.p_signflip)},
+                                                            {"d_z", or_null(t.d)},
+                                                            {"d_z_ci", ends(t.d_ci)}};
     j["anova"] = {
         {"method", effect_json(r.effects.first, methods.size())},
         {"motion", effect_json(r.effects.second, motions.size())},

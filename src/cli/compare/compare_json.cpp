@@ -3,18 +3,12 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/compare/compare_rows.hpp"
-#include "cli/tap_json.hpp"
+#include "cli/json_values.hpp"
 
 namespace tactor::cli {
 namespace {
 
 using json = nlohmann::ordered_json;
-
-template <class T>
-json or_null(const std::optional<T>& v)
-{
-    return v ? json(*v) : json(nullptr);
-}
 
 json observer_json(const observer_choice& o)
 {

@@ -2,16 +2,12 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/devices/devices_output.hpp"
+#include "cli/json_values.hpp"
 
 namespace tactor::cli {
 namespace {
 
 using json = nlohmann::ordered_json;
-
-json or_null(const std::string& s)
-{
-    return s.empty() ? json(nullptr) : json(s);
-}
 
 json to_json(const count_range& r)
 {

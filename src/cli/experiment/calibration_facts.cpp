@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "cli/experiment/calibration_facts.hpp"
 
-#include <optional>
-
 #include <fmt/format.h>
 
+#include "cli/json_values.hpp"
 #include "cli/threshold_carrier.hpp"
 
 namespace tactor::cli {
@@ -12,17 +11,11 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-template <typename T>
-json said(const std::optional<T>& v)
-{
-    return v ? json(*v) : json(nullptr);
-}
-
 json tactor_facts(const calibrated_tactor& t)
 {
     return {{"tactor", t.tactor},
-            {"threshold_dbfs", said(t.threshold_dbfs)},
-            {"sd_db", said(t.sd_db)},
+            {"threshold_dbfs", or_null(t.threshold_dbfs)},
+            {"sd_db", or_null(t.sd_db)},
             {"trials", t.trials}};
 }
 
@@ -56,9 +49,9 @@ json calibration_facts(const prepared_experiment& p)
     json tactors = json::array();
     for (const calibrated_tactor& t : c.tactors)
         tactors.push_back(tactor_facts(t));
-    return {{"participant", c.participant}, {"method", c.method},         {"rule", said(c.rule)},
-            {"carrier_hz", c.carrier_hz},   {"interval_s", c.interval_s}, {"feedback", said(c.feedback)},
-            {"masker", said(c.masker)},     {"date", said(c.date)},       {"seed", said(c.seed)},
+    return {{"participant", c.participant}, {"method", c.method},         {"rule", or_null(c.rule)},
+            {"carrier_hz", c.carrier_hz},   {"interval_s", c.interval_s}, {"feedback", or_null(c.feedback)},
+            {"masker", or_null(c.masker)},  {"date", or_null(c.date)},    {"seed", or_null(c.seed)},
             {"simulated", c.simulated},     {"tactors", tactors},         {"warnings", p.calibration_doubts}};
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/experiment/limit_check.hpp"
 
-#include <algorithm>
 #include <cstddef>
 #include <set>
 #include <string>

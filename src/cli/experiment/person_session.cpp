@@ -10,6 +10,7 @@
 #include "cli/experiment/array_walk.hpp"
 #include "cli/experiment/participant_screen.hpp"
 #include "cli/experiment/trials.hpp"
+#include "cli/json_values.hpp"
 #include "cli/say.hpp"
 #include "core/words.hpp"
 #include "study/bids/acq_time.hpp"
@@ -21,11 +22,6 @@ using json = nlohmann::ordered_json;
 using study::step_kind;
 
 constexpr const char* go_on = "what was answered is kept; --resume goes on";
-
-json name_or_null(const std::string& name)
-{
-    return name.empty() ? json(nullptr) : json(name);
-}
 
 // Where the session is, for the flow.
 study::session_flow flow_of(const prepared_experiment& p, const study::session_store& store)
@@ -173,8 +169,8 @@ void person_session::begin_store()
     if (agreed_)
         store_.note("consent", now);
     store_.note("walk", walked_);
-    store_.note("sound_server", name_or_null(devices_.between.array));
-    store_.note("masker_sound_server", name_or_null(devices_.between.masker));
+    store_.note("sound_server", or_null(devices_.between.array));
+    store_.note("masker_sound_server", or_null(devices_.between.masker));
     note_stream();
 }
 
@@ -189,7 +185,7 @@ void person_session::note_stream()
     all.push_back({{"stream", stream_},
                    {"opened", study::acq_time_text(study::utc_now_ns())},
                    {"device", devices_.pcm},
-                   {"masker", name_or_null(devices_.masker)},
+                   {"masker", or_null(devices_.masker)},
                    {"display", page_ != nullptr ? "page" : "terminal"},
                    {"format", std::string(to_string(d.format))},
                    {"period_frames", d.period_frames},

@@ -13,6 +13,7 @@
 #include "cli/experiment/array_walk.hpp"
 #include "cli/experiment/calibration_facts.hpp"
 #include "cli/experiment/limit_check.hpp"
+#include "cli/json_values.hpp"
 #include "cli/plan/plan_output.hpp"
 #include "cli/plan/plan_sound.hpp"
 #include "cli/play/play_options.hpp"
@@ -65,8 +66,7 @@ bool assume_thresholds(array& a, bool nobody_feels)
 
 json level_json(const study::experiment_definition& d)
 {
-    return {{"sl_db", d.level_dbfs ? json(nullptr) : json(d.sl_db)},
-            {"dbfs", d.level_dbfs ? json(*d.level_dbfs) : json(nullptr)}};
+    return {{"sl_db", d.level_dbfs ? json(nullptr) : json(d.sl_db)}, {"dbfs", or_null(d.level_dbfs)}};
 }
 
 json array_facts(const array& a)
@@ -154,7 +154,7 @@ json run_json(const prepared_experiment& p, const study::run_sequence& s)
     json j{{"name", r.outline.name},
            {"file_name", r.outline.file_name},
            {"task", std::string(to_string(r.outline.task))}};
-    j["attribute"] = r.attribute.empty() ? json(nullptr) : json(r.attribute);
+    j["attribute"] = or_null(r.attribute);
     j["question"] = r.question;
     j["animation"] = r.animation;
     j["scale"] = r.outline.task == study::task_kind::rate ? json(r.outline.scale) : json(nullptr);

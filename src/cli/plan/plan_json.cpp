@@ -10,11 +10,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "cli/json_values.hpp"
 #include "cli/plan/plan_output.hpp"
 #include "cli/plan/plan_rows.hpp"
 #include "cli/plan/plan_sound.hpp"
 #include "cli/plan/row_json.hpp"
-#include "cli/tap_json.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -53,7 +53,7 @@ json render_json(const record& r)
     j["channels"] = r.samples.channels();
     j["frames"] = r.samples.frames();
     j["phase"] = to_string(o.phase);
-    j["ramp_s"] = o.ramp_s ? json(*o.ramp_s) : json(nullptr);
+    j["ramp_s"] = or_null(o.ramp_s);
     if (o.sl_db)
         j["sl_db"] = *o.sl_db;
     else
@@ -104,7 +104,7 @@ json head_json(const record& r)
     if (r.fit)
         j["stroke"]["fit"] = fit_json(*r.fit);
     j["array"] = array_json(r.tactors);
-    j["soa_s"] = p.soa_s ? json(*p.soa_s) : json(nullptr);
+    j["soa_s"] = or_null(p.soa_s);
     j["total_s"] = p.total_s;
     j["render"] = render_json(r);
     return j;
@@ -120,8 +120,8 @@ json compensation_json(const compensated_plan& c)
               {"bursts_at_edge", c.at_edge},
               {"residual_rms_mm", c.residual_rms_mm},
               {"residual_largest_mm", c.residual_largest_mm},
-              {"predicted_rms_mm", felt.rms_error_mm ? json(*felt.rms_error_mm) : json(nullptr)},
-              {"predicted_largest_mm", felt.largest_error_mm ? json(*felt.largest_error_mm) : json(nullptr)}};
+              {"predicted_rms_mm", or_null(felt.rms_error_mm)},
+              {"predicted_largest_mm", or_null(felt.largest_error_mm)}};
     j["taps"] = json::array();
     for (const tap& t : c.taps)
         j["taps"].push_back(tap_json(t));

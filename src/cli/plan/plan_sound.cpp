@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "cli/json_values.hpp"
+
 namespace tactor::cli {
 namespace {
 
@@ -53,15 +55,15 @@ void put_sound(nlohmann::ordered_json& stroke, const plan& p)
 nlohmann::ordered_json envelope_json(const burst_envelope& e)
 {
     json j = {{"kind", to_string(e.kind)}, {"tukey_part", e.tukey_part}};
-    j["attack_s"] = e.attack_s ? json(*e.attack_s) : json(nullptr);
-    j["release_s"] = e.release_s ? json(*e.release_s) : json(nullptr);
+    j["attack_s"] = or_null(e.attack_s);
+    j["release_s"] = or_null(e.release_s);
     return j;
 }
 
 nlohmann::ordered_json threshold_json(const tactor_spec& t)
 {
     if (t.thresholds.empty())
-        return t.threshold_dbfs ? json(*t.threshold_dbfs) : json(nullptr);
+        return or_null(t.threshold_dbfs);
     json all = json::array();
     for (const threshold_point& p : t.thresholds)
         all.push_back({p.hz, p.dbfs});

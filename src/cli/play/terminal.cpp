@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/play/terminal.hpp"
 
-#include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstdlib>
 #include <string_view>
@@ -13,6 +11,7 @@
 #include <unistd.h>
 
 #include "cli/variable.hpp"
+#include "core/words.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -33,11 +32,9 @@ bool can_draw()
 bool speaks_utf8()
 {
     for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
-        std::string value = variable(name);
+        const std::string value = in_small_letters(variable(name));
         if (value.empty())
             continue;
-        std::transform(value.begin(), value.end(), value.begin(),
-                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
         return value.find("utf-8") != std::string::npos || value.find("utf8") != std::string::npos;
     }
     return false;

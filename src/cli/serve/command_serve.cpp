@@ -16,6 +16,7 @@
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/json_values.hpp"
 #include "cli/plan/plan_output.hpp"
 #include "cli/play/own_memory.hpp"
 #include "cli/play/play_lines.hpp"
@@ -114,7 +115,6 @@ void say_who_may(const server::endpoints& at, const std::string& token, bool has
 void tell_listening(const server::endpoints& at, const std::string& format)
 {
     using json = nlohmann::ordered_json;
-    const auto or_null = [](const std::string& s) { return s.empty() ? json(nullptr) : json(s); };
     const std::string http = at.http_address.empty() ? "" : "http://" + at.http_address + "/";
     if (format == "json") {
         const json all{{"event", "listening"},

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/path/number.hpp"
+#include "core/words.hpp"
 #include "files/stroke/sound.hpp"
 #include "files/stroke/text.hpp"
 #include "files/text_file.hpp"
@@ -89,9 +90,7 @@ std::vector<stroke> load_strokes(const std::filesystem::path& file)
 {
     const detail::whole_text text = detail::read_text_file(file, detail::max_stroke_bytes);
     const std::string name = file.string();
-    std::string extension = file.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    const std::string extension = in_small_letters(file.extension().string());
     if (extension == ".csv")
         return parse_strokes_csv(text, name);
     if (extension == ".svg")

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
 #include <cstdint>
 #include <string>
 
@@ -7,6 +6,7 @@
 
 #include <tactor/error.hpp>
 
+#include "core/words.hpp"
 #include "files/output_file.hpp"
 #include "plot/paint/output.hpp"
 
@@ -16,9 +16,7 @@ namespace fs = std::filesystem;
 
 file_format format_of(const fs::path& file)
 {
-    std::string e = file.extension().string();
-    std::transform(e.begin(), e.end(), e.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    const std::string e = in_small_letters(file.extension().string());
     if (e == ".svg")
         return file_format::svg;
     if (e == ".png")

@@ -9,6 +9,7 @@
 
 #include <tactor/error.hpp>
 
+#include "core/words.hpp"
 #include "files/text_file.hpp"
 #include "study/experiment/definition_parts.hpp"
 #include "study/experiment/noise_options.hpp"
@@ -196,19 +197,12 @@ run_definition run_in(const toml_table& t)
     return r;
 }
 
-std::string without_capitals(std::string text)
-{
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return text;
-}
-
 // Not every disk tells capitals from small letters.
 void check_file_names(const std::vector<run_definition>& runs)
 {
     for (std::size_t i = 0; i < runs.size(); ++i)
         for (std::size_t k = 0; k < i; ++k)
-            if (without_capitals(runs[i].outline.file_name) == without_capitals(runs[k].outline.file_name))
+            if (in_small_letters(runs[i].outline.file_name) == in_small_letters(runs[k].outline.file_name))
                 throw error(error_kind::bad_input, runs[i].where,
                             fmt::format("the runs \"{}\" and \"{}\" differ in capitals only",
                                         runs[k].outline.name, runs[i].outline.name),
