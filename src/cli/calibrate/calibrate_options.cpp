@@ -23,11 +23,6 @@ using take = std::function<void(const std::string&)>;
 constexpr double most_seed = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t most_steps = 20;
 
-[[noreturn]] void refuse(std::string_view option, const std::string& why, std::string_view hint)
-{
-    throw error(error_kind::bad_input, option, why, hint);
-}
-
 void add(CLI::App& c, const std::string& names, const std::string& type, const std::string& help,
          const take& t)
 {
@@ -38,14 +33,15 @@ std::uint32_t whole(const char* option, const std::string& text, double low, dou
 {
     const double v = parse_number(option, text, low, high, "");
     if (v != std::floor(v))
-        refuse(option, fmt::format("{} is not a whole number", text), "");
+        refuse_setting(option, fmt::format("{} is not a whole number", text), "");
     return static_cast<std::uint32_t>(v);
 }
 
 bool one_of(const char* option, const std::string& text, const char* yes, const char* no)
 {
     if (text != yes && text != no)
-        refuse(option, fmt::format("\"{}\" is not known", text), fmt::format("one of {}, {}", yes, no));
+        refuse_setting(option, fmt::format("\"{}\" is not known", text),
+                       fmt::format("one of {}, {}", yes, no));
     return text == yes;
 }
 
@@ -54,7 +50,8 @@ std::string code(const std::string& text)
     if (text.empty() || !std::all_of(text.begin(), text.end(), [](unsigned char ch) {
             return (ch >= '0' && ch <= '9') || (ch >= 'a' && ch <= 'z') || (ch >= 'A' && ch <= 'Z');
         }))
-        refuse("--participant", fmt::format("\"{}\" is no code", text), "letters and digits only, as P07");
+        refuse_setting("--participant", fmt::format("\"{}\" is no code", text),
+                       "letters and digits only, as P07");
     return text;
 }
 
@@ -64,7 +61,7 @@ std::vector<double> steps(const std::string& text)
     for (const std::string_view part : detail::split(text, ','))
         all.push_back(parse_number("--steps", std::string(part), 0.01, 60.0, "dB"));
     if (all.size() > most_steps)
-        refuse("--steps", fmt::format("{} steps", all.size()), fmt::format("at most {}", most_steps));
+        refuse_setting("--steps", fmt::format("{} steps", all.size()), fmt::format("at most {}", most_steps));
     return all;
 }
 
@@ -104,7 +101,7 @@ void add_masker_options(CLI::App& c, calibrate_options& o)
     add(c, "--masker", "PCM", "masking noise on a second device, in stereo, through both intervals",
         [&o](const std::string& t) {
             if (t.empty())
-                refuse("--masker", "no device is named", "as hw:CARD=Phones");
+                refuse_setting("--masker", "no device is named", "as hw:CARD=Phones");
             o.masker = t;
         });
     add(c, "--masker-noise", "white|pink", "which noise (default white)", [&o](const std::string& t) {
@@ -120,6 +117,11 @@ void add_masker_options(CLI::App& c, calibrate_options& o)
 }
 
 } // namespace
+
+void refuse_setting(std::string_view option, const std::string& why, std::string_view hint)
+{
+    throw error(error_kind::bad_input, option, why, hint);
+}
 
 void add_calibrate_options(CLI::App& c, calibrate_options& o)
 {
@@ -164,12 +166,12 @@ void settle_names(calibrate_options& o)
 {
     namespace fs = std::filesystem;
     if (fs::path(o.output).extension() != ".toml")
-        refuse("-o", fmt::format("\"{}\" does not end in .toml", o.output),
-               "it will be an array file, as me.toml");
+        refuse_setting("-o", fmt::format("\"{}\" does not end in .toml", o.output),
+                       "it will be an array file, as me.toml");
     if (o.log.empty())
         o.log = fs::path(o.output).replace_extension(".tsv").string();
     else if (fs::path(o.log).extension() != ".tsv")
-        refuse("--log", fmt::format("\"{}\" does not end in .tsv", o.log), "as me.tsv");
+        refuse_setting("--log", fmt::format("\"{}\" does not end in .tsv", o.log), "as me.tsv");
 }
 
 } // namespace tactor::cli

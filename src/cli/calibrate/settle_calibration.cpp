@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <ctime>
 #include <numeric>
 #include <string_view>
 
@@ -13,18 +12,14 @@
 #include "cli/calibrate/calibrate_options.hpp"
 #include "cli/say.hpp"
 #include "core/split.hpp"
-#include "study/random/sha256.hpp"
+#include "study/bids/acq_time.hpp"
+#include "study/experiment/sequence.hpp"
 
 namespace tactor::cli {
 namespace {
 
 // Levels stay so far below a limit of the power: one that is met to the last digit may act.
 constexpr double power_margin_db = 1e-3;
-
-[[noreturn]] void refuse_setting(std::string_view option, const std::string& why, std::string_view hint)
-{
-    throw error(error_kind::bad_input, option, why, hint);
-}
 
 unsigned tactor_in(std::string_view text, const std::string& all, std::size_t n)
 {
@@ -61,18 +56,8 @@ std::vector<unsigned> tactors_in(const std::string& text, std::size_t n)
 
 std::string today()
 {
-    const std::time_t now = std::time(nullptr);
-    std::tm utc{};
-    gmtime_r(&now, &utc);
-    return fmt::format("{:04}-{:02}-{:02}", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday);
-}
-
-// The same for the same participant, whoever asks.
-std::uint32_t seed_of(const std::string& participant)
-{
-    const study::sha256_digest d = study::sha256(participant);
-    return std::accumulate(d.begin(), d.begin() + 4, std::uint32_t{0},
-                           [](std::uint32_t s, std::uint8_t b) { return s << 8 | b; });
+    constexpr std::size_t day = 10; // 2026-11-21
+    return study::acq_time_text(study::utc_now_ns()).substr(0, day);
 }
 
 void check_staircase(const study::calibration_settings& c)
@@ -201,7 +186,7 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
     }
     tell_of_power(c, a, limits);
     c.simulate = o.simulate.value_or("");
-    c.seed = o.seed.value_or(seed_of(c.participant));
+    c.seed = o.seed.value_or(static_cast<std::uint32_t>(study::seed_of(c.participant)));
     c.date = today();
     return c;
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "study/statistics/t_test.hpp"
+
 namespace tactor::study {
 namespace {
 
@@ -49,7 +51,7 @@ std::optional<cell_values> values_of(const run_outline& run, const std::vector<t
 
 double rounding_in(const run_outline& run) noexcept
 {
-    return 1e-12 * (run.task == task_kind::rate ? static_cast<double>(run.scale) : 100.0);
+    return few_digits * (run.task == task_kind::rate ? static_cast<double>(run.scale) : 100.0);
 }
 
 double average_of(const std::vector<double>& row)

@@ -15,6 +15,7 @@
 #include <tactor/error.hpp>
 
 #include "files/output_file.hpp"
+#include "study/bids/disk.hpp"
 #include "study/data/kept.hpp"
 #include "study/data/text_table.hpp"
 
@@ -52,12 +53,6 @@ void take_beginning(const fs::path& file, calibration_settings& s)
                         "a session goes on as it was begun");
 }
 
-bool file_is_there(const fs::path& file)
-{
-    std::error_code ignored;
-    return fs::exists(fs::symlink_status(file, ignored));
-}
-
 // What a user can name wrongly; all else the system refuses.
 bool bad_name(int code)
 {
@@ -74,7 +69,7 @@ fs::path settings_file(const fs::path& log)
 void check_beginning(const fs::path& log, calibration_settings& s)
 {
     const fs::path beginning = settings_file(log);
-    if (!file_is_there(beginning))
+    if (!there(beginning))
         throw error(error_kind::bad_input, beginning.string(),
                     "it is missing, which says how the session was begun", "begin another, with other names");
     take_beginning(beginning, s);
@@ -83,8 +78,7 @@ void check_beginning(const fs::path& log, calibration_settings& s)
 calibration_log::calibration_log(fs::path file, bool resume, calibration_settings& s)
     : file_(std::move(file)), synced_(s.simulate.empty())
 {
-    if (const fs::path beginning = settings_file(file_);
-        file_is_there(beginning)) { // before anything is written
+    if (const fs::path beginning = settings_file(file_); there(beginning)) { // before anything is written
         calibration_settings tried = s;
         if (resume)
             take_beginning(beginning, tried);
@@ -119,7 +113,7 @@ void calibration_log::open()
 void calibration_log::settle(bool resume, calibration_settings& s)
 {
     const fs::path beginning = settings_file(file_);
-    const bool begun = file_is_there(beginning);
+    const bool begun = there(beginning);
     const std::string text = take_whole_lines();
     // One in which nothing was answered, as where the device was not there, is begun anew.
     if (!resume && !lines_.empty())

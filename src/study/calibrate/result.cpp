@@ -15,6 +15,7 @@
 
 #include "files/output_file.hpp"
 #include "files/setup_defaults.hpp"
+#include "study/bids/disk.hpp"
 #include "study/data/kept.hpp"
 #include "study/data/text_table.hpp"
 
@@ -173,8 +174,7 @@ std::string calibration_text(const calibration_settings& s, const std::vector<ta
 
 void check_new_output(const std::filesystem::path& file)
 {
-    std::error_code ignored;
-    if (std::filesystem::exists(std::filesystem::symlink_status(file, ignored)))
+    if (there(file))
         throw error(error_kind::bad_input, file.string(), "there is such a file already",
                     "choose another name: it is not overwritten");
     const detail::output_file tried(file);

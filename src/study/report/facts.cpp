@@ -90,13 +90,12 @@ void check_plan(const text_table& t, std::size_t row, const session_facts& s, co
                  "it was changed");
 }
 
-void_count voids_of(const fs::path& file, const session_facts& s)
+void_count voids_of(const fs::path& folder, const fs::path& table, const session_facts& s)
 {
     void_count c;
-    std::error_code ignored;
-    if (!fs::exists(file, ignored))
+    if (!is_there(folder, table))
         return c;
-    const text_table t(file);
+    const text_table t(folder / table);
     for (std::size_t i = 0; i < t.rows(); ++i) {
         if (!s.stimuli.empty()) {
             check_plan(t, i, s, "method_1", "plan_1");
@@ -133,7 +132,7 @@ session_facts session_of(const fs::path& folder, const std::string& code, const 
     s.stimuli = stimuli_of(s, source / "plans");
     for (const run_outline& r : outline.runs)
         s.voids.push_back(
-            voids_of(folder / sub / "beh" / fmt::format("{}_task-{}_beh.tsv", sub, r.file_name), s));
+            voids_of(folder, fs::path(sub) / "beh" / fmt::format("{}_task-{}_beh.tsv", sub, r.file_name), s));
     return s;
 }
 
@@ -159,11 +158,9 @@ study_facts read_facts(const fs::path& folder, const dataset& d)
 {
     study_facts f;
     f.people = people_of(folder, d.participants);
-    for (const std::string& code : d.participants) {
-        std::error_code ignored;
-        if (fs::exists(folder / "sourcedata" / ("sub-" + code) / "session.json", ignored))
+    for (const std::string& code : d.participants)
+        if (is_there(folder, fs::path("sourcedata") / ("sub-" + code) / "session.json"))
             f.sessions.push_back(session_of(folder, code, d.experiment));
-    }
     return f;
 }
 

@@ -7,6 +7,7 @@
 #include <boost/math/distributions/fisher_f.hpp>
 
 #include "study/statistics/sphericity.hpp"
+#include "study/statistics/t_test.hpp"
 
 namespace tactor::study {
 namespace {
@@ -93,7 +94,7 @@ double nothing(const cell_table& t)
             largest = std::max(largest, std::abs(v));
             ++count;
         }
-    return static_cast<double>(count) * std::pow(1e-12 * largest, 2.0);
+    return static_cast<double>(count) * std::pow(few_digits * largest, 2.0);
 }
 
 effect judge(const parts& s, const cell_table& t, double all_error)

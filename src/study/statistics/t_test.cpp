@@ -15,8 +15,6 @@
 namespace tactor::study {
 namespace {
 
-constexpr double few_digits = 1e-12;
-
 double mean_of(std::span<const double> v)
 {
     return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());

@@ -27,6 +27,9 @@ struct t_test {
     std::optional<interval> d_ci = {};     ///< from the noncentral t distribution
 };
 
+/// Parts of the numbers that rounding may leave of nothing, where they were added up.
+inline constexpr double few_digits = 1e-12;
+
 /// Whether the values differ by more than what rounding makes of equal ones: some digits of the values, and
 /// `rounding` where they are differences of larger ones.
 bool varies(std::span<const double> values, double rounding = 0.0);
