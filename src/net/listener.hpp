@@ -11,6 +11,8 @@
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/steady_timer.hpp>
 
+#include "core/owned.hpp"
+
 namespace tactor::net {
 
 /// A listening socket. Accepts one after the other. Whoever comes when no descriptors are left is told so,

@@ -34,7 +34,11 @@ public:
     ~fake_dac();
 
     /// The PCM, for tactor::pcm::adopt() to own.
-    snd_pcm_t* pcm() noexcept { return io_.pcm; }
+    snd_pcm_t* pcm() noexcept
+    {
+        taken_ = true;
+        return io_.pcm;
+    }
 
     /// Plays frames; where there are none left the stream has an xrun.
     void advance(std::uint64_t frames);
@@ -108,6 +112,7 @@ private:
     bool disconnected_ = false;
     bool cry_ready_ = false;
     bool closed_ = false;
+    bool taken_ = false;
     bool running_ = false;
     int resume_code_ = -EAGAIN;
     int fail_prepare_ = 0;
