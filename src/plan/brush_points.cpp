@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "core/access.hpp"
+#include "core/trajectory/impl.hpp"
 #include "plan/rounded.hpp"
 
 namespace tactor::detail {
@@ -78,6 +80,39 @@ private:
     const job& job_;
 };
 
+const double* line_at(const std::vector<double>& lines, double v)
+{
+    const auto near = std::lower_bound(lines.begin(), lines.end(), v - same_place_mm);
+    return near != lines.end() && *near <= v + same_place_mm ? &*near : nullptr;
+}
+
+/// A stretch along a line meets the others only: where the path turns from one onto another neither tells of
+/// the corner, which is on both.
+void add_corners(const job& j, const grid_lines& g, const in_array& path,
+                 std::vector<virtual_tactor>& crossed)
+{
+    const trajectory& motion = j.motion.motion;
+    std::vector<virtual_tactor> corners;
+    for (const double t : access::of(motion).vertices()) {
+        const point p = motion.position(t);
+        const double* const x = line_at(g.x_mm, p.x_mm);
+        const double* const y = line_at(g.y_mm, p.y_mm);
+        if (x == nullptr || y == nullptr || !std::isfinite(t))
+            continue;
+        const virtual_tactor corner{t, {*x, *y}, true, true, 0.0};
+        const auto next = std::lower_bound(crossed.begin(), crossed.end(), t,
+                                           [](const virtual_tactor& v, double time) { return v.t_s < time; });
+        const bool known = (next != crossed.end() && path.same(corner, *next)) ||
+                           (next != crossed.begin() && path.same(*(next - 1), corner));
+        if (!known)
+            corners.push_back(corner);
+    }
+    const auto middle = crossed.insert(crossed.end(), corners.begin(), corners.end());
+    std::inplace_merge(crossed.begin(), middle, crossed.end(),
+                       [](const virtual_tactor& a, const virtual_tactor& b) { return a.t_s < b.t_s; });
+    check_burst_count(j, static_cast<double>(crossed.size()));
+}
+
 /// Start or end of the stroke. \throws error when it is off the grid's lines and may not be moved.
 virtual_tactor path_end(const job& j, const grid_lines& g, const in_array& path, bool start)
 {
@@ -116,11 +151,12 @@ void check_inside(const job& j, const std::vector<virtual_tactor>& crossed)
 
 std::vector<meeting> virtual_tactors(const job& j, const grid_lines& grid)
 {
+    const in_array path(j);
     std::vector<virtual_tactor> crossed = crossings(j, grid);
+    add_corners(j, grid, path, crossed);
     if (j.options.outside == outside_kind::error)
         check_inside(j, crossed);
 
-    const in_array path(j);
     std::vector<virtual_tactor> all{path_end(j, grid, path, true)};
     const virtual_tactor last = path_end(j, grid, path, false);
     for (virtual_tactor& v : crossed) {

@@ -111,6 +111,34 @@ TEST_CASE("along a grid line only the other lines are met")
     CHECK(p.bursts[0].drives.size() == 2);
 }
 
+TEST_CASE("where the path turns from one line onto another it crosses both")
+{
+    const auto tactors = [](const stroke& s) {
+        std::vector<unsigned> all;
+        for (const burst& b : make_plan(palm, s, brush()).bursts) {
+            REQUIRE(b.drives.size() == 1);
+            all.push_back(b.drives[0].tactor);
+        }
+        return all;
+    };
+    using list = std::vector<unsigned>;
+    CHECK(tactors(along("M 0 20 H 20 V 0", 2.0)) == list{3, 4, 1});
+    CHECK(tactors(along("M 0 0 H 40 V 40", 2.0)) == list{0, 1, 2, 5, 8});
+    CHECK(tactors(along("M 0 0 H 20 V 40", 2.0)) == list{0, 1, 4, 7});
+    CHECK(tactors(along("M 0 0 H 40 V 40 H 0 Z", 4.0)) == list{0, 1, 2, 5, 8, 7, 6, 3, 0});
+    CHECK(tactors(timed({{0.0, {0, 0}}, {1.0, {40, 0}}, {2.0, {40, 40}}})) == list{0, 1, 2, 5, 8});
+    // Through the same tactor again, after a rest, and with a corner that no line meets.
+    CHECK(tactors(along("M 0 20 H 20 V 0 H 40 V 20 H 20 V 40", 4.0)) == list{3, 4, 1, 2, 5, 4, 7});
+    CHECK(tactors(timed({{0.0, {0, 20}}, {1.0, {20, 20}}, {1.5, {20, 20}}, {3.0, {20, 0}}})) ==
+          list{3, 4, 1});
+    CHECK(make_plan(palm, along("M 0 10 H 20 V 30 H 40", 4.0), brush()).bursts.size() == 3);
+    const plan p = make_plan(palm, along("M 0 20 H 20 V 0", 2.0), brush());
+    CHECK(*p.bursts[1].tau_s == 1.0);
+    CHECK(p.bursts[1].position == point{20.0, 20.0});
+    CHECK(std::abs(p.bursts[1].onset_s - 0.278258) < 1e-6);
+    CHECK(std::abs(p.bursts[1].duration_s - 1.815291) < 1e-6);
+}
+
 TEST_CASE("a closed path starts and ends at one place, and both play")
 {
     const plan p = make_plan(palm, circle(4.0), brush());

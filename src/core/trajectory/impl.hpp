@@ -77,6 +77,8 @@ struct trajectory::impl {
 
     bracket find(const detail::timed_points& l, double t_s) const noexcept;
     std::vector<double> meets(detail::axis a, double line) const;
+    /// When the target is at the ends of its path's segments, or at its timed points, ascending.
+    std::vector<double> vertices() const;
 };
 
 } // namespace v0

@@ -10,6 +10,8 @@
 
 #include <tactor/error.hpp>
 
+#include "core/access.hpp"
+#include "core/path/impl.hpp"
 #include "core/path/meets.hpp"
 #include "core/path/outline.hpp"
 #include "core/trajectory/impl.hpp"
@@ -134,6 +136,20 @@ std::vector<double> trajectory::impl::meets(axis a, double line) const
         return times;
     for (double& t : times)
         t = t / l.duration_s() * duration_s;
+    return times;
+}
+
+std::vector<double> trajectory::impl::vertices() const
+{
+    std::vector<double> times;
+    if (const auto* c = std::get_if<drawn_path>(&law)) {
+        for (const double s : detail::access::of(c->way).s)
+            times.push_back(arrival_s(*c, s));
+        return times;
+    }
+    const auto& l = std::get<timed_points>(law);
+    for (const timed_point& p : *l.points)
+        times.push_back(l.duration_s() == duration_s ? p.t_s : p.t_s / l.duration_s() * duration_s);
     return times;
 }
 
