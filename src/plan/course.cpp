@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -29,22 +30,33 @@ std::vector<carrier_point> texture_course(const trajectory& motion, double textu
     return course;
 }
 
-/// The times at which the target passes the parts of a profile. Where it rests, its carrier stays.
+/// Below it, as a part of the frequency, a bend is the last digits.
+constexpr double last_digits = 1e-12;
+
+/// Where the target rests, its carrier stays. Between two points of its way at which it is faster or slower
+/// there is a third, with the frequency that makes the cycles until the next what they are: so nothing adds
+/// up, however long the stroke.
 std::vector<carrier_point> profile_course(const trajectory& motion, const std::vector<carrier_part>& profile)
 {
-    const std::vector<way_point> way = way_over_time(motion);
+    std::vector<double> parts;
+    for (const carrier_part& p : profile)
+        parts.push_back(p.part);
+    const std::vector<way_point> way = way_over_time(motion, parts);
+    const auto [lowest, highest] =
+        std::minmax_element(profile.begin(), profile.end(),
+                            [](const carrier_part& a, const carrier_part& b) { return a.hz < b.hz; });
     std::vector<carrier_point> course{{0.0, hz_at(profile, way.front().part)}};
-    auto next = profile.begin();
     for (std::size_t i = 0; i + 1 < way.size(); ++i) {
         const way_point& from = way[i];
         const way_point& to = way[i + 1];
-        while (next != profile.end() && next->part <= from.part)
-            ++next;
-        for (; next != profile.end() && next->part < to.part; ++next) {
-            const double along = (next->part - from.part) / (to.part - from.part);
-            course.push_back({std::lerp(from.t_s, to.t_s, along), next->hz});
-        }
-        course.push_back({to.t_s, hz_at(profile, to.part)});
+        const double from_hz = course.back().hz;
+        const double to_hz = hz_at(profile, to.part);
+        const double straight_hz = std::midpoint(from_hz, to_hz);
+        const double mean_hz = hz_at(profile, to.mean);
+        if (std::abs(mean_hz - straight_hz) > last_digits * straight_hz)
+            course.push_back({std::midpoint(from.t_s, to.t_s),
+                              std::clamp(2.0 * mean_hz - straight_hz, lowest->hz, highest->hz)});
+        course.push_back({to.t_s, to_hz});
     }
     return course;
 }

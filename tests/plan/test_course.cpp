@@ -121,6 +121,38 @@ TEST_CASE("the carrier is that of the part of the path that the target has gone"
     }
 }
 
+TEST_CASE("the carrier's cycles are the integral of its frequency, over an hour too")
+{
+    for (const double duration_s : {2.0, 3600.0})
+        for (stroke s : strokes()) {
+            s.motion = s.motion.with_duration(duration_s);
+            s.carrier_profile = {{0.2, 60.0}, {0.7, 300.0}};
+            const auto course = course_of(s);
+            // At its points, by Gauss and Legendre, each time from point to point in many pieces.
+            constexpr int pieces = 50;
+            long double wanted = 0.0;
+            long double given = 0.0;
+            long double worst = 0.0;
+            for (std::size_t i = 0; i + 1 < course.size(); ++i) {
+                const carrier_point& a = course[i];
+                const carrier_point& b = course[i + 1];
+                given += 0.5L * (static_cast<long double>(a.hz) + b.hz) *
+                         (static_cast<long double>(b.t_s) - a.t_s);
+                const double step_s = (b.t_s - a.t_s) / pieces;
+                for (int k = 0; k < pieces; ++k)
+                    for (const double place : {-0.7745966692414834, 0.0, 0.7745966692414834}) {
+                        const double t_s = a.t_s + step_s * (k + 0.5 + 0.5 * place);
+                        const long double hz = 60.0L + 480.0L * (std::clamp(part(s, t_s), 0.2, 0.7) - 0.2L);
+                        wanted += hz * step_s * (place == 0.0 ? 8.0L : 5.0L) / 18.0L;
+                    }
+                worst = std::max(worst, std::abs(wanted - given));
+            }
+            CHECK(static_cast<double>(std::abs(wanted - given)) < 1e-9);
+            // Where the frequency is a little off in between, nothing adds up.
+            CHECK(static_cast<double>(worst) < 1e-4 * duration_s);
+        }
+}
+
 TEST_CASE("a recording along the path is where the target is, at every time")
 {
     for (const stroke& s : strokes()) {

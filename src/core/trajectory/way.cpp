@@ -2,8 +2,10 @@
 #include "core/trajectory/way.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <variant>
 
 #include "core/access.hpp"
@@ -20,6 +22,23 @@ constexpr double last_digits = 1e-12;
 
 /// Pieces of a smooth piece are no shorter than this part of its time.
 constexpr unsigned finest = 4096;
+
+/// Mean of a smooth pace by Gauss and Legendre, with five points: of so short a piece to the last digits.
+double mean_part(const pace& p, double from_s, double to_s)
+{
+    struct node {
+        double place;
+        double weight;
+    };
+    constexpr std::array nodes{node{-0.9061798459386640, 0.2369268850561891},
+                               node{-0.5384693101056831, 0.4786286704993665}, node{0.0, 0.5688888888888889},
+                               node{0.5384693101056831, 0.4786286704993665},
+                               node{0.9061798459386640, 0.2369268850561891}};
+    double sum = 0.0;
+    for (const node& n : nodes)
+        sum += n.weight * p.part(std::lerp(from_s, to_s, 0.5 + 0.5 * n.place));
+    return 0.5 * sum;
+}
 
 /// Points as near to each other as two numbers can be are one: a frequency is a difference by a time.
 void add(std::vector<way_point>& way, way_point p)
@@ -48,20 +67,43 @@ void add_smooth(std::vector<way_point>& way, const pace& p, double from_s, doubl
     for (unsigned i = 0; i < finest;) {
         while (step > 1 && !is_straight(when(i), when(i + step)))
             step /= 2;
+        const double begin_s = when(i);
         i += step;
-        add(way, {when(i), p.part(when(i))});
+        add(way, {when(i), p.part(when(i)), mean_part(p, begin_s, when(i))});
         step = std::min(2 * step, finest - i);
     }
 }
 
-std::vector<way_point> way_of(const pace& p)
+std::vector<way_point> way_of(const pace& p, std::span<const double> at)
 {
-    const std::vector<double> bends = p.bends();
+    std::vector<double> bends = p.bends();
+    for (const double part : at)
+        bends.push_back(p.arrival_s(part));
+    std::sort(bends.begin(), bends.end());
+    bends.erase(std::unique(bends.begin(), bends.end()), bends.end());
     std::vector<way_point> way{{0.0, 0.0}};
     for (std::size_t i = 0; i + 1 < bends.size(); ++i)
         add_smooth(way, p, bends[i], bends[i + 1]);
     way.back().part = 1.0;
     return way;
+}
+
+/// With a point at each part of `at` that lies between two, at constant speed.
+std::vector<way_point> with_points(const std::vector<way_point>& way, std::span<const double> at)
+{
+    std::vector<way_point> out;
+    auto next = at.begin();
+    for (const way_point& to : way) {
+        for (; next != at.end() && !out.empty() && *next < to.part; ++next) {
+            const way_point from = out.back();
+            if (*next > from.part)
+                add(out, {std::lerp(from.t_s, to.t_s, (*next - from.part) / (to.part - from.part)), *next});
+        }
+        add(out, to);
+    }
+    for (std::size_t i = 1; i < out.size(); ++i)
+        out[i].mean = std::midpoint(out[i - 1].part, out[i].part);
+    return out;
 }
 
 std::vector<way_point> way_of(const std::vector<timed_point>& points)
@@ -81,20 +123,21 @@ std::vector<way_point> way_of(const std::vector<timed_point>& points)
 
 } // namespace
 
-std::vector<way_point> way_over_time(const trajectory& t)
+std::vector<way_point> way_over_time(const trajectory& t, std::span<const double> at)
 {
     const trajectory::impl& d = access::of(t);
     const auto* drawn = std::get_if<drawn_path>(&d.law);
     if (drawn != nullptr && !drawn->moves)
-        return {{0.0, 0.0}, {d.duration_s, 1.0}};
-    const std::vector<way_point> own =
-        drawn != nullptr ? way_of(*drawn->moves) : way_of(*std::get<timed_points>(d.law).points);
+        return with_points({{0.0, 0.0}, {d.duration_s, 1.0}}, at);
+    const std::vector<way_point> own = drawn != nullptr
+                                           ? way_of(*drawn->moves, at)
+                                           : with_points(way_of(*std::get<timed_points>(d.law).points), at);
     // Made for another duration, it is as much faster or slower everywhere.
     const double own_s = own.back().t_s;
     std::vector<way_point> way;
     way.reserve(own.size());
     for (const way_point& w : own)
-        add(way, {own_s == d.duration_s ? w.t_s : w.t_s / own_s * d.duration_s, w.part});
+        add(way, {own_s == d.duration_s ? w.t_s : w.t_s / own_s * d.duration_s, w.part, w.mean});
     return way;
 }
 
