@@ -106,6 +106,7 @@ struct stroke_choices {
     std::optional<phantom_kind> phantom = {};
     std::optional<double> soa_s = {};
     std::optional<double> burst_s = {};
+    double level_db = 0.0; ///< of its amplitudes, whatever plan_options::scale makes of its intensity
 
     friend bool operator==(const stroke_choices&, const stroke_choices&) = default;
 };

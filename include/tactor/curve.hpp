@@ -23,7 +23,7 @@ inline constexpr double continuous_step_s = 0.001;
 /// Samples by column, in order of time. A plain value.
 struct curve_samples {
     std::vector<point> positions = {};
-    std::vector<double> intensities = {}; ///< A_v
+    std::vector<double> intensities = {}; ///< A_v, as plan_options::scale gives it
     std::vector<std::size_t> ends = {};   ///< by sample: how many of `drives` it and earlier ones have
     std::vector<drive> drives = {};       ///< each sample's in order of tactor
 

@@ -37,6 +37,8 @@ struct intensity_scale {
     /// the finger 0.95 at 60 Hz and 0.6 at 250 Hz (Stevens, Perception & Psychophysics 3, 1968).
     double exponent = 0.6;
     double sl_db = 0.0; ///< sl: the sensation level of intensity 1, dB, above 0
+    /// Added to the amplitudes; then 1 does not stay. A stroke's own level (stroke_choices) comes on top.
+    double level_db = 0.0;
 
     /// \throws error (bad_input) for what is out of range.
     [[nodiscard]] TACTOR_API double amplitude(double intensity) const;
@@ -71,7 +73,7 @@ struct burst {
     double onset_s = 0.0;
     double duration_s = 0.0;
     point position = {};
-    double intensity = 1.0;           ///< A_v
+    double intensity = 1.0;           ///< A_v, as plan_options::scale gives it
     std::optional<double> tau_s = {}; ///< Tactile Brush: when the target is at `position`
     std::vector<drive> drives = {};   ///< in order of tactor
 

@@ -152,7 +152,7 @@ compensated_plan make_compensated_plan(const array& a, const layout& l, const st
     for (std::size_t i = 0; i < felt.size(); ++i) {
         burst& b = *felt[i];
         b.position = places.played[i];
-        detail::drives_at(*model, l, b.position, o.scale.amplitude(b.intensity), b.drives);
+        detail::drives_at(*model, l, b.position, b.intensity, b.drives);
     }
     r.schedule.conflicts = detail::find_conflicts(r.schedule.bursts);
     r.taps = predict_taps(a, s, r.schedule, m);

@@ -27,13 +27,18 @@ public:
           three_(dynamic_cast<const model_of_three*>(model_.get())),
           scale_(j.options.scale)
     {
+        if (scale_.kind != scale_kind::linear || scale_.level_db == 0.0)
+            return;
+        // So that it is bounded.
+        motion_ = motion_.with_intensity(scale_.amplitude(1.0));
+        scale_.level_db = 0.0;
     }
 
     void at(double t_s, burst& out, same_tactors& seen) const
     {
         const point p = motion_.position(t_s);
-        out.intensity = motion_.intensity(t_s);
-        const double a_v = scale_.amplitude(out.intensity);
+        const double a_v = scale_.amplitude(motion_.intensity(t_s));
+        out.intensity = a_v;
         if (seen.holds(p) && a_v > 0.0 && std::isfinite(a_v)) {
             out.position = p;
             drives_of_same(*three_, faces_, seen, p, a_v, out.drives);

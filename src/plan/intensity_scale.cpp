@@ -14,7 +14,14 @@ inline namespace v0 {
 double intensity_scale::amplitude(double intensity) const
 {
     // Nothing, and what is no intensity, is left to those who take it.
-    if (kind == scale_kind::linear || !(intensity > 0.0))
+    if (!(intensity > 0.0))
+        return intensity;
+    if (level_db != 0.0) {
+        if (!std::isfinite(level_db))
+            throw detail::bad_field("level_db", fmt::format("{} is no level", level_db), "give decibels");
+        return intensity_scale{kind, exponent, sl_db}.amplitude(intensity) * std::pow(10.0, level_db / 20.0);
+    }
+    if (kind == scale_kind::linear)
         return intensity;
     if (kind == scale_kind::stevens) {
         if (!(exponent >= 0.1 && exponent <= 3.0))

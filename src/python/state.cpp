@@ -283,6 +283,7 @@ std::string state_of(const stroke& s)
     w.text(s.choices.phantom ? to_string(*s.choices.phantom) : "");
     w.maybe(s.choices.soa_s);
     w.maybe(s.choices.burst_s);
+    w.put(s.choices.level_db);
     w.maybe(s.fit_margin_mm);
     w.put(s.fit_group);
     w.put(s.wave.has_value());
@@ -324,6 +325,7 @@ stroke stroke_from(std::string_view state)
         s.choices.phantom = from_string<phantom_kind>(name);
     s.choices.soa_s = r.maybe();
     s.choices.burst_s = r.maybe();
+    s.choices.level_db = r.get<double>();
     s.fit_margin_mm = r.maybe();
     s.fit_group = r.get<unsigned>();
     if (r.get<char>() != 0)

@@ -115,7 +115,7 @@ void place_strokes(const planning& with, const stroke_settings& s, std::vector<s
 }
 
 // As the plan samples it.
-double loudest(const stroke& k, const plan& p)
+double loudest(const stroke& k, const plan& p, intensity_scale scale)
 {
     double most = 0.0;
     for (const burst& b : p.bursts)
@@ -124,7 +124,8 @@ double loudest(const stroke& k, const plan& p)
         return most;
     for (std::uint64_t i = 0; i < p.curve->size(); ++i)
         most = std::max(most, k.motion.intensity(p.curve->time_s(i)));
-    return most;
+    scale.level_db += k.choices.level_db;
+    return scale.amplitude(most);
 }
 
 } // namespace
@@ -213,7 +214,7 @@ planned make_planned(const planning& with, const layout& faces, const json& para
             between();
             p.plans.push_back({make_plan(with.tactors, faces, k, s.plan), k.start_s, k.anchor});
             const plan& made = p.plans.back().schedule;
-            check_level(with, s, s.plan.scale.amplitude(loudest(k, made)), made.carrier_hz);
+            check_level(with, s, loudest(k, made, s.plan.scale), made.carrier_hz);
         }
         in_time(with, p.total_s());
         between();

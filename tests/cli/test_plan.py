@@ -280,6 +280,19 @@ class StrokeFiles(ToolTest):
         strongest = [max(d["amplitude"] for b in p["bursts"] for d in b["drives"]) for p in plans[:2]]
         self.assertAlmostEqual(20 * math.log10(strongest[1] / strongest[0]), -9.0, 6)
 
+    def test_a_stroke_s_level_is_in_decibels_whatever_the_intensity_scale(self):
+        sound = 'path = "M 10 20 L 30 20"\nduration_s = 0.3\nintensity = [[0, 0.4], [1, 0.8]]\n'
+        self.write("s.toml", f"[[stroke]]\n{sound}[[stroke]]\n{sound}level_db = -9\n")
+        self.write("measured.toml", '[array]\npreset = "palm-3x3"\n' +
+                   "".join(f"[[tactor]]\ntactor = {i}\nthreshold_dbfs = -40\n" for i in range(9)))
+        for scale in ((), ("--intensity-scale", "stevens"), ("--intensity-scale", "sl", "--sl", "12", "--array", "measured.toml")):
+            for algorithm in ("park2016", "continuous"):
+                plain, weak = self.plan("s.toml", "--algorithm", algorithm, *scale)["plans"]
+                for a, b in zip(plain["bursts"] or plain["continuous"]["points"], weak["bursts"] or weak["continuous"]["points"]):
+                    self.assertAlmostEqual(20 * math.log10(b["intensity"] / a["intensity"]), -9.0, 6)
+                    for x, y in zip(a["drives"], b["drives"]):
+                        self.assertAlmostEqual(20 * math.log10(y["amplitude"] / x["amplitude"]), -9.0, 6)
+
     def test_speed_leaves_pauses_and_duration_takes_them_along(self):
         self.write("s.toml", '[stroke]\npath = "M 0 0 L 40 0"\npauses = [[0.5, 0.5]]\nspeed_mm_s = 40\n')
         self.assertAlmostEqual(self.plan("s.toml")["stroke"]["duration_s"], 1.5, 9)

@@ -134,8 +134,9 @@ TEST_CASE("what a group says holds for all in it")
     CHECK(s[1].name == "weak");
     CHECK(s[0].motion.position(1.0) == point{22.0, 2.0});
     CHECK(s[1].motion.position(1.0) == point{21.0, 2.0});
-    CHECK(s[0].motion.intensity(0.5) == doctest::Approx(0.1));
-    CHECK(s[1].motion.intensity(0.5) == doctest::Approx(0.01));
+    CHECK(s[0].choices.level_db == -20.0);
+    CHECK(s[1].choices.level_db == -40.0);
+    CHECK(s[1].motion.intensity(0.5) == 1.0);
 }
 
 TEST_CASE("reversed, a stroke goes from its end to its start, with its profile")

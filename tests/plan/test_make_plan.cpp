@@ -86,6 +86,15 @@ TEST_CASE("a scale says what half an intensity means, and is held to its bounds"
         CHECK(s.amplitude(1.0) == 1.0);
         CHECK(s.amplitude(0.5) == doctest::Approx(std::pow(10.0, -0.5 * db / 20.0)));
     }
+    for (intensity_scale s : {linear, intensity_scale{scale_kind::stevens, 0.6},
+                              intensity_scale{.kind = scale_kind::sl, .sl_db = 7.0}}) {
+        const double plain = s.amplitude(0.5);
+        s.level_db = -9.0;
+        CHECK(s.amplitude(0.5) == doctest::Approx(plain * std::pow(10.0, -9.0 / 20.0)).epsilon(1e-14));
+        CHECK(s.amplitude(0.0) == 0.0);
+        s.level_db = not_a_number;
+        CHECK_THROWS_AS(static_cast<void>(s.amplitude(0.5)), error);
+    }
     for (const double exponent : {0.09, 3.01, not_a_number})
         CHECK_THROWS_AS(static_cast<void>(intensity_scale{scale_kind::stevens, exponent}.amplitude(0.5)),
                         error);

@@ -2,6 +2,7 @@
 #include <string>
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include "server/faults.hpp"
 #include "server/stroke_options.hpp"
@@ -213,6 +214,17 @@ TEST_CASE("the ceiling holds for level, intensity and dB SL")
     CHECK_FALSE(plays(points(1.1, -12)));
     CHECK(plays(points(1.9, -18)));
     CHECK_FALSE(plays(points(2.1, -18)));
+    const auto of_file = [](const char* algorithm, double own_db, const char* scale) {
+        return json{{"toml", fmt::format("[stroke]\npath = 'M 0 0 L 40 40'\nintensity = 0.5\nlevel_db = {}\n",
+                                         own_db)},
+                    {"options", {{"algorithm", algorithm}, {"level_dbfs", -12}, {"intensity_scale", scale}}}};
+    };
+    for (const char* algorithm : {"park2016", "continuous"}) {
+        CHECK(plays(of_file(algorithm, 6.02, "linear")));
+        CHECK_FALSE(plays(of_file(algorithm, 6.03, "linear")));
+        CHECK(plays(of_file(algorithm, 10.03, "stevens"))); // half is -10.034 dB
+        CHECK_FALSE(plays(of_file(algorithm, 10.04, "stevens")));
+    }
     // Half of the amplitude is 6 dB less than -6 dBFS, half of 34 dB SL is 17 dB less.
     const auto half = [](const char* scale) {
         return json{{"points", {{0, 0, 0, 0.5}, {1, 40, 40, 0.5}}},

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "files/stroke/choices.hpp"
 
-#include <cmath>
-
 #include <fmt/format.h>
 
 namespace tactor::detail {
@@ -44,9 +42,7 @@ std::optional<double> read_fit(const toml_table& t)
 
 stroke levelled(const toml_table& t, stroke s)
 {
-    const auto level = t.number("level_db", levels_db);
-    if (level)
-        s.motion = s.motion.with_intensity(std::pow(10.0, *level / 20.0));
+    s.choices.level_db += t.number("level_db", levels_db).value_or(0.0);
     return s;
 }
 

@@ -117,8 +117,8 @@ motion_definition read_motion(const toml_table& t, const std::filesystem::path& 
         drawn.motion = at_key(t, duration_key, [&] { return drawn.motion.with_duration(*duration); });
     else if (speed && drawn.motion.length_mm() > 0.0)
         drawn.motion = at_key(t, speed_key, [&] { return drawn.motion.with_speed(*speed); });
-    drawn.start_s.reset(); // it is played alone
-    drawn.choices = {};    // methods choose
+    drawn.start_s.reset();                                // it is played alone
+    drawn.choices = {.level_db = drawn.choices.level_db}; // methods choose the rest
     return {name_in(t, "name"), std::move(drawn), t.where()};
 }
 
