@@ -66,8 +66,9 @@ public:
     /// False when the stroke has ended; its report says why. If the phantom model gives a tactor more than
     /// the intensity (as the intensity scale gives it), the stroke ends interrupted.
     /// \throws error (bad_input): a number that is not finite, an intensity or a time stamp below
-    ///         0, or (with outside_kind::error) a point outside the array. The stroke then stays where it
-    ///         was.
+    ///         0, (with outside_kind::error) a point outside the array, or one that a phantom model of
+    ///         your own refuses so. The stroke then stays where it was. What else such a model throws comes
+    ///         out, too, and the stroke ends interrupted, with what() as its reason; but for std::bad_alloc.
     bool to(double x_mm, double y_mm, double intensity = 1.0, std::optional<std::int64_t> at_ns = {});
     /// A time stamp is no intensity, and seconds are no time stamp.
     template <std::same_as<std::int64_t> T>

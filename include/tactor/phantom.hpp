@@ -68,7 +68,8 @@ public:
     /// Name for plans and logs.
     [[nodiscard]] virtual std::string_view name() const noexcept = 0;
     /// Replaces `out` by the drives for a phantom of intensity `a_v` at p, in order of tactor, each amplitude
-    /// finite and > 0. If an amplitude is above a_v, a live stroke does not play the point but ends. p is
+    /// finite and > 0. If an amplitude is above a_v, a live stroke does not play the point but ends; so it
+    /// does where this throws, but for an error of bad_input, which refuses the point, and bad_alloc. p is
     /// inside the hull. Called where plans are made, for a continuous stroke once a sample (at most ten
     /// million of them), and for each point of a live stroke.
     virtual void weights(point p, double a_v, std::vector<drive>& out) const = 0;

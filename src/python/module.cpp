@@ -35,27 +35,33 @@ py::str text(std::string_view t)
         PyUnicode_DecodeUTF8(t.data(), static_cast<Py_ssize_t>(t.size()), "surrogateescape"));
 }
 
-// The classes are Python's, and so is what makes one of them.
 void translate(std::exception_ptr p)
 {
     try {
         if (p)
             std::rethrow_exception(p);
     } catch (const error& e) {
-        try {
-            const py::object x =
-                py::module_::import("tactor._errors")
-                    .attr("made")(std::string(to_string(e.kind())), text(e.subject()), text(e.why()),
-                                  text(e.hint()), text(e.field()), text(e.place().file), e.place().line,
-                                  e.place().column, e.os_code());
-            PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(x.ptr())), x.ptr());
-        } catch (py::error_already_set& raised) {
-            raised.restore();
-        }
+        set_error(e);
     }
 }
 
 } // namespace
+
+// The classes are Python's, and so is what makes one of them.
+void set_error(const error& e)
+{
+    try {
+        const py::object x =
+            py::module_::import("tactor._errors")
+                .attr("made")(std::string(to_string(e.kind())), text(e.subject()), text(e.why()),
+                              text(e.hint()), text(e.field()), text(e.place().file), e.place().line,
+                              e.place().column, e.os_code());
+        PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(x.ptr())), x.ptr());
+    } catch (py::error_already_set& raised) {
+        raised.restore();
+    }
+}
+
 } // namespace tactor::python
 
 PYBIND11_MODULE(_tactor, m)

@@ -59,8 +59,10 @@ private:
 
     [[noreturn]] void refuse(const std::string& why) const
     {
-        throw error(error_kind::bad_input, fmt::format("phantom {}", name_), why,
-                    "weights() returns a dict of tactor and amplitude, which is finite and not below 0");
+        // As what Python raises: the model has failed, whatever it was asked for.
+        set_error(error(error_kind::bad_input, fmt::format("phantom {}", name_), why,
+                        "weights() returns a dict of tactor and amplitude, which is finite and not below 0"));
+        throw py::error_already_set();
     }
 
     py::object model_;

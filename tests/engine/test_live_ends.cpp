@@ -2,10 +2,14 @@
 // How live strokes end: by themselves, by request, by silence, with the device.
 #include <cmath>
 #include <memory>
+#include <new>
+#include <stdexcept>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include "count_allocations.hpp"
 #include "live_rig.hpp"
@@ -288,6 +292,62 @@ COUNTING_TEST_CASE("an hour of a live stroke: no heap in the audio thread, nothi
     r.play_out();
     CHECK(r.report({1})->state == state_kind::finished);
     CHECK(r.report({1})->frames > static_cast<std::uint64_t>(rounds(3600)) * rate);
+}
+
+namespace {
+
+class failing final : public phantom_model {
+public:
+    std::string_view name() const noexcept override { return "failing"; }
+    void weights(point p, double a_v, std::vector<drive>& out) const override
+    {
+        out = {{4, a_v}};
+        if (p.x_mm > 30.0)
+            throw std::runtime_error("its file is gone\nin line 3");
+        if (p.x_mm > 20.0)
+            throw error(error_kind::runtime, "failing", "it is lost");
+        if (p.x_mm > 10.0)
+            throw error(error_kind::bad_input, "failing", "not there");
+        if (p.y_mm > 10.0)
+            throw std::bad_alloc();
+        if (p.y_mm > 5.0)
+            throw 5;
+    }
+};
+
+} // namespace
+
+TEST_CASE("a model that fails ends the stroke, with what it said; one that refuses a point does not")
+{
+    for (const double smooth_s : {0.0, 0.05})
+        for (const auto& [at, why] :
+             {std::pair{point{35.0, 0.0}, "its file is gone"},
+              std::pair{point{25.0, 0.0}, "failing: it is lost"}, std::pair{point{0.0, 7.0}, "it threw"}}) {
+            live_options o;
+            o.plan.custom_phantom = std::make_shared<failing>();
+            o.smooth_s = smooth_s;
+            live_rig r(o);
+            CHECK(r.live->to({0.0, 0.0}, 1.0));
+            r.play(4800);
+            CHECK_THROWS_AS(r.live->to({15.0, 0.0}, 1.0), error);
+            CHECK_THROWS_AS(r.live->to({0.0, 15.0}, 1.0), std::bad_alloc);
+            CHECK(r.live->to({0.0, 0.0}, 1.0));
+            r.play(4800);
+            CHECK_FALSE(r.report(r.live->id));
+            bool threw = false;
+            try {
+                r.live->to(at, 1.0);
+            } catch (...) {
+                threw = true;
+            }
+            CHECK(threw);
+            CHECK_FALSE(r.live->to({0.0, 0.0}, 1.0));
+            r.play(4800);
+            REQUIRE(r.report(r.live->id));
+            CHECK(r.report(r.live->id)->state == state_kind::interrupted);
+            CHECK(r.report(r.live->id)->reason == reason_kind::plan);
+            CHECK(r.report(r.live->id)->why == fmt::format("phantom model \"failing\" failed: {}", why));
+        }
 }
 
 } // namespace live_ends_test

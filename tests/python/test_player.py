@@ -59,7 +59,7 @@ def test_a_score_is_played_to_its_end(player, short):
 
 
 def test_what_the_device_agreed_to(palm):
-    with tactor.Player("null", palm, rate=44100, period_frames=441, periods=4, config=os.devnull) as p:
+    with tactor.Player("null", palm, rate=44100.0, period_frames=441, periods=4.0, config=os.devnull) as p:
         assert (p.rate, p.channels, p.setup["period_frames"], p.setup["buffer_frames"], p.setup["has_clock"]) == (44100, 9, 441, 1764, False)
         assert repr(p).startswith("<tactor.Player 'null': 9 channels, 44100 Hz")
         with pytest.raises(tactor.InputError):
@@ -178,18 +178,27 @@ def test_a_live_stroke_ends_with_its_block_or_its_producer(player):
     assert even.report.state == "finished" and even.counts["points"] == 2
 
 
+class All:
+    def weights(self, x_mm, y_mm, intensity):
+        if x_mm > 30:
+            raise ZeroDivisionError("mine")
+        return {4: intensity} if x_mm > 10 else {40: intensity}
+
+
 def test_a_model_of_python_shapes_a_live_stroke(player):
-    class All:
-        def weights(self, x_mm, y_mm, intensity):
-            if x_mm > 30:
-                raise ZeroDivisionError("mine")
-            return {4: intensity}
+    with player.live(phantom=All()) as finger:
+        assert finger.to(20, 20) and finger.to(21, 20)
+    assert finger.report.state == "finished"
+
+
+@pytest.mark.parametrize("x_mm,raised,why", [(35, ZeroDivisionError, "ZeroDivisionError: mine"), (5, tactor.InputError, "it drives tactor 40 of 9")])
+def test_a_model_that_raises_or_returns_rubbish_ends_a_live_stroke(player, x_mm, raised, why):
     with player.live(phantom=All()) as finger:
         assert finger.to(20, 20)
-        with pytest.raises(ZeroDivisionError):
-            finger.to(35, 20)
-        assert finger.to(20, 20)
-    assert finger.report.state == "finished"
+        with pytest.raises(raised):
+            finger.to(x_mm, 20)
+        assert not finger.to(20, 20)
+    assert finger.report.state == "interrupted" and why in finger.report.reason and "\n" not in finger.report.reason
 
 
 def test_a_live_stroke_is_as_its_arrays_file_says(tmp_path):

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <new>
 #include <string_view>
 #include <utility>
 
@@ -146,7 +148,7 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
     if (!inside && outside == outside_kind::error)
         throw refused("outside", fmt::format("({:.6g}, {:.6g}) is outside the array", p.x_mm, p.y_mm),
                       "outside_kind::clamp plays the nearest point of the array");
-    const bool limited = course_to({inside ? p : faces.nearest(p), intensity}, voice.draft());
+    const bool limited = course_of(inside ? p : faces.nearest(p), intensity);
     if (!excess.empty()) {
         voice.fail(std::move(excess));
         return false;
@@ -157,6 +159,30 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
     outside_points.fetch_add(inside ? 0 : 1, std::memory_order_relaxed);
     limited_points.fetch_add(limited ? 1 : 0, std::memory_order_relaxed);
     return true;
+}
+
+// A point may be refused; a model that fails says nothing any more of what is to be felt.
+bool live_stroke::impl::course_of(point p, double intensity)
+{
+    const auto failed = [this](std::string_view what) {
+        voice.fail(
+            fmt::format("phantom model \"{}\" failed: {}", model->name(), what.substr(0, what.find('\n'))));
+    };
+    try {
+        return course_to({p, intensity}, voice.draft());
+    } catch (const error& e) {
+        if (e.kind() != error_kind::bad_input)
+            failed(e.what());
+        throw;
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& e) {
+        failed(e.what());
+        throw;
+    } catch (...) {
+        failed("it threw");
+        throw;
+    }
 }
 
 bool live_stroke::impl::course_to(const engine::smoothing::place& p, engine::live_course& course)

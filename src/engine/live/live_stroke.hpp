@@ -32,6 +32,8 @@ struct live_stroke::impl {
     /// Writes the amplitudes of a place, by channel; returns whether a limit held one. Where the model gives
     /// more than it was asked for, `excess` says so.
     bool amplitudes_at(point p, double intensity, std::span<double> by_channel);
+    /// The same for the course from where it is to a place; the stroke ends where the model fails.
+    bool course_of(point p, double intensity);
     /// The same for the course on the way to a place.
     bool course_to(const engine::smoothing::place& p, engine::live_course& course);
 

@@ -89,9 +89,13 @@ class Player:
         for what, number, least in (("rate", rate, 8000), ("period_frames", period_frames, 1), ("periods", periods, 2), ("channels", channels, 1)):
             if number is not None and (not least <= number < 1 << 31 or number != int(number)):
                 raise InputError(what, f"{number!r} is out of range", f"a whole number from {least} on")
+        def whole(number: int | None) -> int | None:
+            return None if number is None else int(number)  # 48000.0 is one, too
+
         given = {
             "config": None if config is None else os.fsencode(config), "array_file": None if array._file is None else os.fsencode(array._file),
-            "rate": rate, "channels": channels, "sample_format": sample_format, "period_frames": period_frames, "periods": periods,
+            "rate": whole(rate), "channels": whole(channels), "sample_format": sample_format, "period_frames": whole(period_frames),
+            "periods": whole(periods),
             "power_dbfs": power_dbfs, "max_drive_s": max_drive_s, "drive_window_s": drive_window_s, "latency": None if latency is None else float(latency),
             "require_realtime": bool(require_realtime), "no_gpio": bool(no_gpio), "sync_delay": float(sync_delay), "log": log is not None,
         }
