@@ -82,6 +82,8 @@ struct link {
     rt::event_fd to_control;
     /// Set by the feeder when the command ring is full; the audio thread then says when it no longer is.
     std::atomic<bool> feeder_waits{false};
+    /// Set by the feeder while it has strokes: it looks at the stream now and then. Without any it sleeps.
+    std::atomic<bool> feeding{false};
     /// For the control side, which reads under the player's mutex. No two readers share a buffer, so
     /// that none ever waits for the audio thread, whatever their priorities are.
     rt::triple_buffer<stream_status> status;

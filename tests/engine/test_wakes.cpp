@@ -2,6 +2,7 @@
 // When the audio thread wakes the control side: often enough to be fed, at once where the stream changes.
 #include <doctest/doctest.h>
 
+#include "live_rig.hpp"
 #include "rig.hpp"
 
 namespace wakes_test {
@@ -17,6 +18,14 @@ bool wakes(rig& r)
     r.dac.advance_queued(r.options.period);
     r.step();
     return r.link.to_control.consume() > 0;
+}
+
+// The stream has begun, and its clock is known.
+void settle(rig& r)
+{
+    for (int i = 0; i < 100; ++i)
+        if (wakes(r))
+            r.control();
 }
 
 } // namespace
@@ -58,12 +67,49 @@ TEST_CASE("a stroke for a time that is named before the stream's clock is known 
     CHECK(r.report(id)->late_s == 0.0);
 }
 
+TEST_CASE("the control side sleeps as long as there is no stroke, and what comes then is fed at once")
+{
+    rig r;
+    REQUIRE(r.start().status == io_kind::ok);
+    const score s = random_score(1, 100);
+    REQUIRE(s.frames() > 10 * r.options.loop.horizon_frames);
+    for (int strokes = 0; strokes < 3; ++strokes) {
+        settle(r);
+        for (int i = 0; i < 10'000; ++i) // half a minute and more
+            REQUIRE_FALSE(wakes(r));
+        const stroke_id id = r.submit(s);
+        for (int i = 0; i < 10'000 && !r.report(id); ++i)
+            if (wakes(r))
+                r.control();
+        REQUIRE(r.report(id));
+        CHECK(r.report(id)->state == state_kind::finished);
+        CHECK(r.report(id)->frames == s.frames());
+    }
+}
+
+TEST_CASE("a live stroke after a long silence, in which nobody looked, has all its time for a first point")
+{
+    live_options o;
+    o.timeout_s = 0.2;
+    live_rig r(o);
+    r.play(2 * 9600);
+    REQUIRE(r.report(r.live->id)); // which had none
+    settle(r);
+    for (int i = 0; i < 1000; ++i)
+        REQUIRE_FALSE(wakes(r));
+    const auto next = r.add(o);
+    r.play(9600 - 192);
+    CHECK_FALSE(r.report(next->id));
+    r.play(480);
+    REQUIRE(r.report(next->id));
+    CHECK(r.report(next->id)->reason == reason_kind::starved);
+}
+
 TEST_CASE("an xrun of a silent stream, its sleep and its waking up are told at once")
 {
     rig r;
     REQUIRE(r.start().status == io_kind::ok);
-    while (!wakes(r)) {
-    }
+    settle(r);
     CHECK_FALSE(wakes(r));
     r.dac.advance(1000); // runs dry
     CHECK(wakes(r));

@@ -292,7 +292,8 @@ void audio_loop::publish() noexcept
     if (options_.amplifier && (news || !link_.amplifier.ready.load(std::memory_order_relaxed)))
         link_.amplifier.wake.signal();
 
-    const bool hungry = s.written - told_ >= options_.horizon_frames / 8;
+    const bool hungry =
+        link_.feeding.load(std::memory_order_relaxed) && s.written - told_ >= options_.horizon_frames / 8;
     if (hungry)
         told_ = s.written;
     if (hungry || news || link_.reports.available() != link_.reports.capacity())

@@ -26,7 +26,19 @@ void amplifier_driver::update() noexcept
     beat(now);
     amplifier_.handle(amplifier_event::tick, now);
     apply();
+    tell();
     updated_ns_ = now;
+}
+
+// For the log, which the control side writes.
+void amplifier_driver::tell() noexcept
+{
+    const bool ready = link_.amplifier.ready.load(std::memory_order_relaxed);
+    const std::uint64_t events = link_.amplifier.mutes.load(std::memory_order_relaxed) +
+                                 link_.count.stalls.load(std::memory_order_relaxed) +
+                                 link_.count.off_failures.load(std::memory_order_relaxed);
+    if (std::exchange(told_ready_, ready) != ready || std::exchange(told_events_, events) != events)
+        link_.to_control.signal();
 }
 
 void amplifier_driver::hear(const stream_status& s, std::int64_t now) noexcept

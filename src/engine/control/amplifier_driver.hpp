@@ -43,6 +43,7 @@ private:
     void watch(const stream_status& s, std::int64_t now) noexcept;
     void beat(std::int64_t now) noexcept;
     void apply() noexcept;
+    void tell() noexcept;
     void switch_on() noexcept;
     void switch_off() noexcept;
     void try_off() noexcept;
@@ -66,6 +67,8 @@ private:
     std::int64_t updated_ns_ = 0;
     std::int64_t beaten_ns_ = 0;
     bool stalled_ = false;
+    bool told_ready_ = false;
+    std::uint64_t told_events_ = 0;
 };
 
 } // namespace tactor::engine

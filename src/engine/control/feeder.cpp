@@ -48,6 +48,13 @@ void feeder::pump(std::uint64_t written, const clock_line& clock)
     admit_live();
     // While a score waits for space, the others may not use up the space that becomes free.
     feed(written, admit(written) ? horizon_ : horizon_ / 2);
+    link_.feeding.store(has_strokes(), std::memory_order_relaxed);
+}
+
+// Those that wait for a trigger need nothing of the stream until it comes.
+bool feeder::has_strokes() const noexcept
+{
+    return !waiting_.empty() || !timed_.empty() || !waiting_live_.empty() || !in_use_.empty();
 }
 
 // Begins what is due within the horizon, the earliest first; false when the ring had too little space.

@@ -126,6 +126,7 @@ private:
 
     void find_due(std::uint64_t written);
     bool admit(std::uint64_t written);
+    bool has_strokes() const noexcept;
     void look_at_waiting_live(std::uint64_t written);
     void admit_live();
     std::uint32_t take_slot(active a);
@@ -151,7 +152,7 @@ private:
     live_map waiting_live_;
     live_map playing_live_;
     live_map gone_live_;
-    std::uint64_t seen_written_ = 0; ///< at the last look at waiting_live_
+    std::optional<std::uint64_t> seen_written_ = {}; ///< at the last look at waiting_live_
     clock_line clock_;
     std::array<slot, voices> slots_;
     std::vector<std::uint32_t> in_use_; ///< places, in order of their beginning

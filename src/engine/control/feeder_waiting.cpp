@@ -25,6 +25,9 @@ bool erase_task(Tasks& tasks, stroke_id id)
     return true;
 }
 
+// What a line through the DAC's times may be off by, from one look to another.
+constexpr double clock_right_s = 0.001;
+
 // Seconds; within a frame is as good as it gets. The time that was asked for can be any number.
 double late(std::int64_t started_ns, std::int64_t due_ns, double ns_per_frame)
 {
@@ -54,6 +57,8 @@ void feeder::submit(stroke_id id, const score& s, start_at start)
 
 void feeder::submit(stroke_id id, std::shared_ptr<live_voice> voice)
 {
+    if (waiting_live_.empty())
+        seen_written_.reset(); // nobody has looked for long
     waiting_live_.emplace(id, std::move(voice));
 }
 
@@ -84,7 +89,7 @@ void feeder::find_due(std::uint64_t written)
 // As the audio thread does for those that it has.
 void feeder::look_at_waiting_live(std::uint64_t written)
 {
-    const std::uint64_t frames = written - std::exchange(seen_written_, written);
+    const std::uint64_t frames = written - std::exchange(seen_written_, written).value_or(written);
     for (auto next = waiting_live_.begin(); next != waiting_live_.end();) {
         live_voice& v = *next->second;
         v.wait(frames);
@@ -175,8 +180,11 @@ void feeder::over(const active& a, const report& r)
         told.started_ns = r.started_ns;
     if (r.delay.points != 0)
         told.delay = r.delay;
-    if (r.started && a.due_ns && !a.late_s) // the clock was not known when it began
-        told.late_s = late(r.started_ns, *a.due_ns, 1e9 / a.music->rate());
+    // The clock was not known when it began, or the stream stood still between then and its first sample.
+    if (r.started && a.due_ns)
+        if (const double was = late(r.started_ns, *a.due_ns, 1e9 / a.music->rate());
+            !a.late_s || was > *a.late_s + clock_right_s)
+            told.late_s = was;
     tell(std::move(told));
 }
 
