@@ -2,7 +2,9 @@
 #include "net/web_connection.hpp"
 
 #include <chrono>
+#include <cstdint>
 #include <deque>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -46,7 +48,7 @@ struct web_connection::session : std::enable_shared_from_this<session> {
           lingering(socket.get_executor())
     {
         parser.header_limit(most_header_bytes);
-        parser.body_limit(0);
+        parser.body_limit(std::numeric_limits<std::uint64_t>::max()); // none is read
     }
     ~session() = default;
     session(const session&) = delete;
@@ -93,22 +95,22 @@ struct web_connection::session : std::enable_shared_from_this<session> {
 void web_connection::session::read_request()
 {
     arm(limits.message_s);
-    http::async_read(socket, buffer, parser,
-                     [self = shared_from_this()](const beast::error_code& e, std::size_t) {
-                         if (self->closed)
-                             return;
-                         self->armed = false;
-                         self->deadline.cancel();
-                         if (e == http::error::body_limit || e == http::error::header_limit)
-                             self->respond({413, "text/plain", "too much\n", ""});
-                         else if (e && e.category() == make_error_code(http::error::bad_target).category() &&
-                                  e != http::error::end_of_stream && e != http::error::partial_message)
-                             self->respond({400, "text/plain", "no request of HTTP\n", ""});
-                         else if (e)
-                             self->close();
-                         else
-                             self->answer_request();
-                     });
+    http::async_read_header(
+        socket, buffer, parser, [self = shared_from_this()](const beast::error_code& e, std::size_t) {
+            if (self->closed)
+                return;
+            self->armed = false;
+            self->deadline.cancel();
+            if (e == http::error::header_limit)
+                self->respond({413, "text/plain", "too much\n", ""});
+            else if (e && e.category() == make_error_code(http::error::bad_target).category() &&
+                     e != http::error::end_of_stream && e != http::error::partial_message)
+                self->respond({400, "text/plain", "no request of HTTP\n", ""});
+            else if (e)
+                self->close();
+            else
+                self->answer_request();
+        });
 }
 
 void web_connection::session::answer_request()
@@ -124,6 +126,8 @@ void web_connection::session::answer_request()
         return respond({403, "text/plain", "another name or another page than this server's\n", ""});
     if (request.method() != http::verb::get)
         return respond({405, "text/plain", "GET only\n", ""});
+    if (parser.chunked() || parser.content_length().value_or(0) > 0)
+        return respond({413, "text/plain", "too much\n", ""});
     if (view(request.target()) == "/rpc" && websocket::is_upgrade(request))
         return upgrade();
     if (view(request.target()) == "/rpc")

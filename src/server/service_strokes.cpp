@@ -57,6 +57,7 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
             continue;
         if (wish.armed && i != first) {
             r.music = scores[i];
+            r.state = "armed";
             continue;
         }
         const std::int64_t at = base_ns + std::llround(starts[i] * 1e9);
@@ -161,10 +162,17 @@ void service::fire(const json& params, const answer& to)
     if (p == nullptr && stream_.is_out())
         no_stream(stream_.reason());
     // What is armed keeps a stream going: of one that stopped for want of strokes there is nothing to start.
-    const std::size_t n = p == nullptr ? 0 : p->fire(options_.now_ns());
-    for (const auto& [number, r] : strokes_)
-        if (r->state == "armed" && r->player == stream_.number() && !r->music)
-            r->state = "waiting";
+    const std::int64_t now = options_.now_ns();
+    std::size_t n = p == nullptr ? 0 : p->fire(now);
+    for (const auto& [number, r] : strokes_) {
+        if (r->state != "armed" || r->player != stream_.number())
+            continue;
+        r->state = "waiting";
+        if (r->music)
+            ++n; // one that follows another of its file
+        else
+            r->asked_ns = now;
+    }
     to.result({{"count", n}});
 }
 

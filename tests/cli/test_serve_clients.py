@@ -106,7 +106,7 @@ class Others(ToolTest):
         code = ("--output", "nothing", "--write-out", "%{http_code}")
         self.assertEqual(curl(*code, "--header", "Origin: http://evil.example", http + "status"), "403")
         self.assertEqual(curl(*code, "--header", "Host: evil.example", http + "status"), "403")
-        self.assertEqual(curl(*code, "--data", '{"jsonrpc":"2.0","id":1,"method":"stop"}', http + "rpc"), "413")
+        self.assertEqual(curl(*code, "--data", '{"jsonrpc":"2.0","id":1,"method":"stop"}', http + "rpc"), "405")
 
 
 if __name__ == "__main__":

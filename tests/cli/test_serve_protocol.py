@@ -131,7 +131,10 @@ class Protocol(ServeTest):
         c = self.serve().client()
         toml = "".join(f"[[stroke]]\npath = 'M 0 0 L 40 {y}'\nduration_s = 0.1\n" for y in (0, 10, 20))
         numbers = c.ok("play", toml=toml, start="armed", options={"algorithm": "continuous"})["strokes"]
-        c.ok("fire")
+        self.assertEqual({x["stroke"]: x["state"] for x in c.ok("status")["strokes"]}, {n: "armed" for n in numbers})
+        self.assertEqual(c.ok("fire"), {"count": 3})
+        self.assertNotIn("armed", [x["state"] for x in c.ok("status")["strokes"]])
+        self.assertEqual(c.ok("fire"), {"count": 0})
         starts = [c.stroke(n, "started")["started_s"] for n in numbers]
         # As far as two readings of the clock agree; that it is no more, timed/test_times.py says.
         self.assertGreaterEqual(starts[2] - starts[0], 0.199)

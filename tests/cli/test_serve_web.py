@@ -97,6 +97,11 @@ class Web(ToolTest):
             self.assertEqual(s.peer().request(target, method)[0], status, (target, method))
         p = s.peer()
         self.assertEqual(p.request("/", Content_Length="5")[0], 413)
+        # Whoever asks is looked at before what is asked for: a body makes no difference.
+        for body in ({"Content_Length": "40"}, {"Transfer_Encoding": "chunked"}):
+            self.assertEqual(s.peer().request("/rpc", "POST", **body)[0], 405)
+            self.assertEqual(s.peer().request("/rpc", "POST", Origin="http://evil.example", **body)[0], 403)
+            self.assertEqual(s.peer().request("/status", host="evil.example", **body)[0], 403)
         p = s.peer()
         p.send(b"\x16\x03\x01 nonsense\r\n\r\n")
         self.assertEqual(p.head()[0], 400)

@@ -109,6 +109,8 @@ public:
     }
 
     std::int64_t passed_ns = 0;
+    std::int64_t jitter_ns = 0; ///< each reading of the clock is up to six times this early
+    std::int64_t reads = 0;
     std::deque<std::pair<endpoint, std::string>> sent;    ///< in words; next() takes one out
     std::deque<std::pair<endpoint, std::string>> packets; ///< the same as they are, all
     server::osc_clients osc{io,
@@ -117,8 +119,8 @@ public:
                                  packets.emplace_back(to, packet);
                                  sent.emplace_back(to, words(packet));
                              },
-                             [this] { return own_clock() + passed_ns; }, [this] { return unix_ns(); },
-                             65536}};
+                             [this] { return own_clock() + passed_ns - jitter_ns * (++reads % 7); },
+                             [this] { return unix_ns(); }, 65536}};
 
 private:
     // Stands still but for pass(), at the time when the test began.

@@ -194,6 +194,31 @@ TEST_CASE("to, end and cancel act at their time, stop at once")
     CHECK_FALSE(rig.osc.next_ns().has_value());
 }
 
+TEST_CASE("what has one time acts in the order in which it was sent, in one bundle and in several")
+{
+    osc_rig rig;
+    ready(rig);
+    rig.jitter_ns = 1000;
+    for (std::int32_t n = 1; n <= 20; ++n) {
+        rig.say(me, "/tactor/begin", {std::int64_t{n}, "timeout_s=86400"s});
+        rig.say(me, "/tactor/to", {std::int64_t{n}, 20.0, 20.0});
+        CHECK(has(rig.next(me), " started"));
+        const std::int64_t then = rig.unix_ns() + 1'000'000'000;
+        const std::string to = rig.message("/tactor/to", {std::int64_t{n}, 1.0, 1.0});
+        const std::string end = rig.message("/tactor/end", {std::int64_t{n}});
+        if (n % 2 == 0) {
+            rig.osc.receive(osc_rig::bundle(then, {to, to, to, end}), me);
+        } else {
+            rig.osc.receive(osc_rig::bundle(then, {to, to}), me);
+            rig.osc.receive(osc_rig::bundle(then, {to}), me);
+            rig.osc.receive(osc_rig::bundle(then, {end}), me);
+        }
+        rig.pass(1.001);
+        CHECK(has(rig.next(me), " finished")); // a place that came after it would be an error
+        CHECK(rig.silent(me));
+    }
+}
+
 TEST_CASE("a live stroke with a time begins then, with the point that has the same time")
 {
     osc_rig rig;

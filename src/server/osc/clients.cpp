@@ -3,6 +3,7 @@
 #include "server/osc/clients.hpp"
 
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,6 +17,13 @@
 namespace tactor::server {
 
 using net::osc_message;
+
+namespace {
+
+// Less is what lies between two readings.
+constexpr std::int64_t clocks_differ_ns = 50'000;
+
+} // namespace
 
 osc_clients::osc_clients(boost::asio::io_context& io, service& s, outside o)
     : io_(io), service_(s), outside_(std::move(o))
@@ -32,6 +40,7 @@ osc_clients::~osc_clients()
 
 void osc_clients::receive(std::string_view packet, const endpoint& from)
 {
+    look_at_clocks();
     try {
         if (packet.size() > outside_.most_bytes)
             throw error(error_kind::bad_input, "packet", fmt::format("it has {} bytes", packet.size()),
@@ -61,18 +70,28 @@ void osc_clients::take(const osc_message& m, const endpoint& from)
     }
 }
 
+// Once a packet, and anew only where the clocks have moved: what has one time, in one bundle or in several,
+// has one place in the order then, and acts as it was sent.
+void osc_clients::look_at_clocks()
+{
+    unix_ns_ = outside_.unix_ns();
+    const std::int64_t offset_ns = outside_.now_ns() - unix_ns_;
+    if (std::abs(offset_ns - offset_ns_) > clocks_differ_ns)
+        offset_ns_ = offset_ns;
+}
+
 // By the clock that the service goes by; none: at once, which the past is too.
 std::optional<std::int64_t> osc_clients::time_of(const osc_message& m) const
 {
     if (!m.unix_ns)
         return {};
-    const std::int64_t ahead_ns = *m.unix_ns - outside_.unix_ns();
+    const std::int64_t ahead_ns = *m.unix_ns - unix_ns_;
     if (ahead_ns > std::llround(farthest_s * 1e9))
         bad_param("time tag", fmt::format("it is {:.1f} s ahead", seconds(ahead_ns)),
                   fmt::format("at most {:.0f}; do the clocks agree?", farthest_s));
     if (ahead_ns <= 0)
         return {};
-    return outside_.now_ns() + ahead_ns;
+    return *m.unix_ns + offset_ns_;
 }
 
 // How long before its first sample is at the DAC a live stroke must be fed.

@@ -81,6 +81,7 @@ private:
     void hold(sender& s, std::int64_t due_ns, held h);
     void drop_held(const std::function<bool(const held&)>& which);
     void do_held(const held& h);
+    void look_at_clocks();
     std::optional<std::int64_t> time_of(const net::osc_message& m) const;
     std::int64_t lead_ns();
 
@@ -108,6 +109,8 @@ private:
     held_messages held_;
     std::set<endpoint> looked_at_; ///< that may be idle
     error_allowance errors_;
+    std::int64_t unix_ns_ = 0;   ///< when the packet came
+    std::int64_t offset_ns_ = 0; ///< CLOCK_MONOTONIC minus the system's clock
     std::shared_ptr<const int> alive_ = std::make_shared<const int>();
 };
 
