@@ -40,6 +40,18 @@ stroke stroke_of_path(const settings& s, const std::string& data)
     return k;
 }
 
+// The margin is the file's, not an option.
+std::vector<stroke> fitted_as_asked(std::vector<stroke> strokes, const layout& faces, const std::string& file)
+{
+    try {
+        return fit_as_asked(std::move(strokes), faces);
+    } catch (const error& e) {
+        if (e.field() != "margin_mm")
+            throw;
+        throw e.reworded(file, fmt::format("fit_margin_mm: {}", e.why()), e.hint());
+    }
+}
+
 // Times count where the stroke ends up: fitted first.
 piece read_piece(const settings& s, const environment& e, const layout& faces, const std::string& argument)
 {
@@ -48,7 +60,7 @@ piece read_piece(const settings& s, const environment& e, const layout& faces, c
         p.strokes.push_back(stroke_of_path(s, *s.path_data));
     else
         p.strokes = read_one(e, argument);
-    p.strokes = fit_as_asked(std::move(p.strokes), faces);
+    p.strokes = fitted_as_asked(std::move(p.strokes), faces, argument);
     if (s.fit) {
         fitted_strokes fitted = fit_strokes(p.strokes, faces, s.fit_margin_mm);
         p.strokes = std::move(fitted.strokes);
@@ -145,9 +157,10 @@ void for_each_stroke(const piece& p, F f)
 error of_stroke(const error& x, const piece& p, std::size_t i)
 {
     const stroke& s = p.strokes[i];
-    const error about = has_own_carrier(s) && x.subject() == "carrier_hz"
-                            ? x.reworded("stroke", fmt::format("carrier_hz: {}", x.why()), x.hint())
-                            : x;
+    const std::string_view what = x.subject();
+    const bool own = (has_own_carrier(s) && (what == "carrier_hz" || what == "carrier_profile")) ||
+                     (s.wave && what == "waveform");
+    const error about = own ? x.reworded("stroke", fmt::format("{}: {}", what, x.why()), x.hint()) : x;
     return p.strokes.size() == 1 ? in_file(about, p.name)
                                  : in_piece(in_options(about), p.name, i + 1, s.name);
 }

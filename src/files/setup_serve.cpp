@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // [serve].
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <limits>
@@ -9,7 +10,9 @@
 #include <system_error>
 #include <vector>
 
+#include <arpa/inet.h>
 #include <fmt/format.h>
+#include <netinet/in.h>
 
 #include "files/setup_parts.hpp"
 
@@ -48,12 +51,40 @@ bool is_address(std::string_view text)
     return r.ec == std::errc() && r.ptr == text.data() + text.size();
 }
 
+// 192.168.1.7, 192.168.1.0/24, fd00::/8 or fe80::1%eth0; which of them are near is seen when they send.
+bool is_prefix(std::string_view text)
+{
+    const auto slash = text.find('/');
+    const std::string address(text.substr(0, std::min(slash, text.find('%'))));
+    in6_addr bytes{}; // large enough for either
+    const bool v6 = ::inet_pton(AF_INET6, address.c_str(), &bytes) == 1;
+    if (!v6 && ::inet_pton(AF_INET, address.c_str(), &bytes) != 1)
+        return false;
+    if (slash == std::string_view::npos)
+        return true;
+    text.remove_prefix(slash + 1);
+    unsigned bits = 0;
+    const auto r = std::from_chars(text.data(), text.data() + text.size(), bits);
+    return r.ec == std::errc() && r.ptr == text.data() + text.size() && bits <= (v6 ? 128U : 32U);
+}
+
+std::vector<std::string> prefixes(const toml_table& t, std::string_view key)
+{
+    std::vector<std::string> all = texts(t, key);
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (!is_prefix(all[i]))
+            fail_at(t.where((*t.list(key, "texts"))[i]),
+                    fmt::format("\"{}\" is neither an address nor a prefix", all[i]),
+                    "such as 192.168.1.7, 192.168.1.0/24 or fd00::/8");
+    return all;
+}
+
 // "127.0.0.1:4001", or a bare 4001.
 std::optional<std::string> address(const toml_table& t, std::string_view key)
 {
     if (const toml::node* n = t.node(key); n != nullptr && n->is_integer())
         return std::to_string(*t.whole(key, 0, 65535));
-    const auto text = t.text(key);
+    auto text = t.text(key);
     if (text && !is_address(*text))
         t.fail(key, fmt::format("\"{}\" is no address", *text),
                "[HOST:]PORT, such as 4001, \"0.0.0.0:4001\" or \"[::1]:4001\"; port 0 takes a free one");
@@ -113,7 +144,7 @@ void read_serve(const toml_table& root, located_setup& out)
     s.http = address(*t, "http");
     s.token_file = t->text("token_file");
     s.allow_hosts = texts(*t, "allow_hosts");
-    s.osc_peers = texts(*t, "osc_peers");
+    s.osc_peers = prefixes(*t, "osc_peers");
     s.max_level_dbfs = t->number("max_level_dbfs", {min_db, 0.0});
     s.idle_stop_s = t->number("idle_stop_s", {0.001, 86400.0});
     read_serve_limits(*t, s);

@@ -160,6 +160,17 @@ class Sound(ToolTest):
                 self.refused(2, "render", *LINE, *args, "-o", "bad.wav", says=says)
                 self.assertFalse((self.dir / "bad.wav").exists())
 
+    def test_what_a_file_asks_for_is_not_said_by_an_option(self):
+        for keys, says in (('carrier_profile = [[0, 30000]]', "bad.toml: carrier_profile: 30000 Hz cannot be rendered"),
+                           ('carrier_profile = [[0, 100], [1, 24000]]', "bad.toml: carrier_profile: 24000 Hz cannot be rendered"),
+                           ('carrier_profile = [[0, 100], [1, 23990]]\nam_hz = 20', "carrier_profile: with its modulation 24010 Hz"),
+                           ('carrier_hz = 30000', "bad.toml: carrier_hz: 30000 Hz"),
+                           ('waveform = "noise:10-90000"', "bad.toml: waveform: 90000 Hz cannot be rendered"),
+                           ('fit = true\nfit_margin_mm = 30', "bad.toml: fit_margin_mm: 30 mm on each side leave no space")):
+            with self.subTest(keys=keys):
+                self.write("bad.toml", STROKE + keys + "\n")
+                self.refused(2, "render", "bad.toml", "-o", "bad.wav", says=[says])
+
     def test_bad_keys_have_their_line(self):
         for key in ('waveform = "sqare"', 'waveform = ""', "waveform = 3", 'waveform = "noise:1-"', 'waveform = "gone.wav"',
                     'am_hz = "x"', "am_hz = -1", "am_depth = 0.5", "am_hz = 3\nam_depth = 2", "noise_seed = 3",

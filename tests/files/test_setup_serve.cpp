@@ -2,6 +2,7 @@
 #include <string>
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <tactor/error.hpp>
 #include <tactor/setup.hpp>
@@ -75,6 +76,15 @@ TEST_CASE("[serve]: what cannot be, with its place")
                              "osc_peers = [1]", "max_level_dbfs = 1", "idle_stop_s = 0", "max_clients = 0",
                              "max_strokes = -1", "max_message_bytes = 1.5", "kept_clients = 128"})
         CHECK_MESSAGE(says(line).find("t:2:") == 0, line);
+    for (const char* bad : {"/", "10.0.0.0/33", "::/129", "10.0.0.0/", "10.0.0.0/-1", "10.0.0.0/8x", "10.0.0",
+                            "example.org", "10.0.0.0/8/8", "10.0.0.0/ 8", "[::1]"})
+        CHECK(says(fmt::format("osc_peers = ['::1', '{}']", bad)) ==
+              fmt::format("t:2:21: \"{}\" is neither an address nor a prefix (such as 192.168.1.7, "
+                          "192.168.1.0/24 or fd00::/8)",
+                          bad));
+    const auto s =
+        parse_setup("[serve]\nosc_peers = ['1.2.3.4', '::/0', '0.0.0.0/0', 'fe80::1%eth0']\n", "t");
+    CHECK(s.serve->osc_peers.size() == 4);
 }
 
 } // namespace setup_serve_test

@@ -151,6 +151,10 @@ TEST_CASE("values out of range, at the value")
     CHECK(complaint(path + "carrier_hz = 0").starts_with("w.toml:3:14: carrier_hz is 0"));
     CHECK(complaint(path + "texture = \"weave\"") ==
           "w.toml:3:11: texture is 'weave' (known values: cycle, time, length)");
+    CHECK(
+        complaint(path + "texture_mm = 20") ==
+        "w.toml:3:14: [stroke] has texture_mm, which nothing uses (add waveform = \"FILE.wav\" and texture = "
+        "\"length\")");
     for (const texture_kind k : values_of<texture_kind>())
         CHECK(complaint(path + fmt::format("texture = \"{}\"", to_string(k))) ==
               "w.toml:3:11: [stroke] has texture, which nothing uses (add waveform = \"FILE.wav\")");

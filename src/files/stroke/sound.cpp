@@ -44,6 +44,7 @@ std::optional<waveform> read_waveform(const toml_table& t, const std::filesystem
     const bool recorded = w.kind == waveform_kind::recording;
     need_with(t, "noise_seed", w.kind == waveform_kind::noise, "add waveform = \"noise:LO-HI\"");
     need_with(t, "texture", recorded, "add waveform = \"FILE.wav\"");
+    need_with(t, "texture_mm", recorded, "add waveform = \"FILE.wav\" and texture = \"length\"");
     if (!text)
         return {};
     if (seed && *seed != static_cast<double>(static_cast<std::uint64_t>(*seed)))

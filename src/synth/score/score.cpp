@@ -116,11 +116,12 @@ void place_markers(score::impl& s, std::uint64_t length, unsigned channel)
     }
 }
 
-void check_carrier(double carrier_hz, unsigned rate)
+void check_carrier(const plan& p, unsigned rate)
 {
-    if (!(carrier_hz > 0.0 && carrier_hz < 0.5 * rate)) {
+    if (!(p.carrier_hz > 0.0 && p.carrier_hz < 0.5 * rate)) {
         throw detail::bad_field(
-            "carrier_hz", fmt::format("{} Hz cannot be rendered at a rate of {} Hz", carrier_hz, rate),
+            synth::carrier_field(p),
+            fmt::format("{} Hz cannot be rendered at a rate of {} Hz", p.carrier_hz, rate),
             fmt::format("use a carrier above 0 and below {} Hz, half the rate", 0.5 * rate));
     }
 }
@@ -269,7 +270,7 @@ score_builder::~score_builder() = default;
 
 void score_builder::add(plan p, std::optional<double> start_s, const start_anchor& anchor)
 {
-    check_carrier(p.carrier_hz, impl_->o.rate);
+    check_carrier(p, impl_->o.rate);
     const std::uint64_t start = impl_->start(start_s, anchor);
     const std::uint64_t end = impl_->place(p.bursts, 0, p, start);
     impl_->close(std::move(p), start_s, anchor, start, end);
@@ -281,7 +282,7 @@ void score_builder::add(const layout& l, const stroke& s, const plan_options& o)
     std::uint64_t end = start;
     std::size_t placed = 0;
     plan p = detail::plan_in_pieces(impl_->a, l, s, o, [&](const plan& so_far, std::span<const burst> next) {
-        check_carrier(so_far.carrier_hz, impl_->o.rate);
+        check_carrier(so_far, impl_->o.rate);
         end = std::max(end, impl_->place(next, placed, so_far, start));
         placed += next.size();
     });

@@ -59,13 +59,12 @@ void check_length(const recording& r, unsigned rate)
     }
 }
 
-void check_free_place(const char* what, double hz, unsigned rate)
+void check_free_place(const char* what, double hz, double am_hz, unsigned rate)
 {
-    if (!(hz < 0.5 * rate)) {
+    if (!(hz + am_hz < 0.5 * rate)) {
         throw error(error_kind::bad_input, what,
-                    fmt::format("with its modulation it reaches {} Hz, which cannot be rendered at a rate of "
-                                "{} Hz",
-                                hz, rate),
+                    fmt::format("{}{} Hz cannot be rendered at a rate of {} Hz",
+                                am_hz > 0.0 ? "with its modulation " : "", hz + am_hz, rate),
                     fmt::format("stay below {} Hz, half the rate", 0.5 * rate));
     }
 }
@@ -84,7 +83,7 @@ void fill_in(timbre& t, const plan& p, unsigned rate)
     const double am_hz = p.am.depth > 0.0 ? p.am.hz : 0.0;
     const bool timed = w.kind == waveform_kind::recording && w.texture == texture_kind::time;
     if (w.kind == waveform_kind::noise) {
-        check_free_place("waveform", w.high_hz + am_hz, rate);
+        check_free_place("waveform", w.high_hz, am_hz, rate);
         t.form = timbre::form_kind::loop;
         t.samples = std::make_shared<const wave_samples>(noise_loop(w.low_hz, w.high_hz, w.seed, rate));
     } else if (timed) {
@@ -92,7 +91,7 @@ void fill_in(timbre& t, const plan& p, unsigned rate)
         t.form = timbre::form_kind::loop;
         t.samples = std::make_shared<const wave_samples>(recorded_loop(*w.recorded, rate));
     } else {
-        check_free_place("carrier_hz", highest_hz(p) + am_hz, rate);
+        check_free_place(carrier_field(p), highest_hz(p), am_hz, rate);
         if (w.kind == waveform_kind::sine)
             return;
         const std::size_t harmonics = harmonics_below(highest_hz(p), am_hz, rate);
@@ -127,6 +126,11 @@ std::shared_ptr<const timbre> make_timbre(const plan& p, unsigned rate)
     }
     fill_in(*t, p, rate);
     return t;
+}
+
+const char* carrier_field(const plan& p) noexcept
+{
+    return p.course.empty() || p.wave.kind == waveform_kind::recording ? "carrier_hz" : "carrier_profile";
 }
 
 bool crosses_zero(const plan& p) noexcept

@@ -16,6 +16,9 @@ namespace tactor::synth {
 /// \throws error (bad_input) for a timbre that cannot be made at that rate.
 std::shared_ptr<const timbre> make_timbre(const plan& p, unsigned rate);
 
+/// What says the frequency of a plan's carrier, for messages.
+const char* carrier_field(const plan& p) noexcept;
+
 /// Whether the carrier crosses zero where its phase says so: bursts between two such places need no ramp.
 bool crosses_zero(const plan& p) noexcept;
 
