@@ -68,7 +68,7 @@ class Sessions(PageTest):
         self.assertEqual([x["display"] for x in self.session()["streams"]], ["page"])
         self.assertGreaterEqual(min(float(r["response_time"]) for r in self.rows("01", "pairs")), 0)
         # The experimenter reads what was answered; neither reads the method, the participant not even the title.
-        self.assertIn("trial 2 of 2: Which one? 1 or 2: 2", s.shown)
+        self.assertIn("Trial 2/2: Which one? 1 or 2: 2", s.shown)
         self.assertNotIn("cannot be drawn", s.said)
         for text in (json.dumps(p.seen), s.shown, re.sub(r'tactor: warning: motion ".*', "", s.said)):
             self.assertNotRegex(text, "(?i)alder|birch|tactile-brush|park")

@@ -111,7 +111,7 @@ class Terminal:
         """Up to the first run's first trial."""
         self.answer("Do you agree", "y")
         for i in (0, 1):
-            self.answer(f"tactor {i}: was it felt", "y")
+            self.answer(f"{i}: Did you feel it", "y")
         self.answer("Any key begins", " ")
 
     def end(self):
@@ -136,15 +136,15 @@ class AtTheTerminal(PersonTest):
     def test_a_whole_session_by_keys(self):
         t = self.start()
         t.begin()
-        t.answer("practice 1 of 1", "12")  # too early: no answers
+        t.answer("Practice 1/1", "12")  # too early: no answers
         t.answer("Which one\\? 1 or 2: ", "x3" "1")  # nor are these
         for i in (1, 2):
-            t.until(f"trial {i} of 2")
+            t.until(f"Trial {i}/2")
             t.answer("Which one\\? 1 or 2: ", str(i))
-        t.until("A break of 0 s|A break of")
+        t.until("A break: 0 s")
         t.answer("Any key begins", " ")
         for i in (1, 2):
-            t.until(f"trial {i} of 2")
+            t.until(f"Trial {i}/2")
             t.answer("How even\\? 1 \\(not\\), 2 \\(half\\), 3 \\(all\\): ", "3")
         t.answer("Any key ends", " ")
         self.assertEqual(t.end(), 0, t.said())
@@ -162,6 +162,38 @@ class AtTheTerminal(PersonTest):
         # Half a second, the animation's 0.2 s, and the stimuli are between two trials at least.
         self.assertGreater(float(rows[1]["onset"]), float(rows[0]["duration"]) + 0.7)
         self.assertEqual(len(read_table(self.dir / "study/sourcedata/sub-01/practice.tsv")), 1)
+
+    def test_the_terminal_has_the_words_of_the_definition(self):
+        keys = ("agree yes no walk felt again back begin practice part target rest pause over or to any_key_begins any_key_ends trial "
+                "repeated later no_answer").split()
+        words = "[page]\n" + "".join(f'{k} = "<{k}>"\n' for k in keys)
+        text = SHORT.replace("labels = [\"not\", \"half\", \"all\"]", "labels = [\"nada\", \"todo\"]").replace("How even?", "?2").replace("Which one?", "?1")
+        self.write("short.toml", text.replace("[[motion]]", words + "[[motion]]", 1))
+        t = self.start()
+        t.answer("Be at ease.\\s+<agree> y <yes>, n <no>: ", "y")
+        t.answer("<walk>[^<]*0: <felt> y <yes>, n <no>, r <again>: ", "y")
+        t.answer("1: <felt> y <yes>, n <no>, r <again>, b <back>: ", "y")
+        t.answer("<part> 1/2\\s+\\?1\\s+1 <or> 2\\s+<any_key_begins>", " ")
+        t.answer("<practice> 1/1: [^?]*\\?1 1 <or> 2: ", "1")
+        t.answer("<trial> 1/2: ", "r")
+        t.until("<later>")
+        t.answer("<trial> 2/2: [^?]*\\?1 1 <or> 2: ", "p1")
+        t.answer("<pause>", "g")
+        t.answer("<trial> 1/2 \\(<repeated>\\): [^?]*\\?1 1 <or> 2: ", "1")
+        t.until("<rest>: 0 s")
+        t.answer("<part> 2/2\\s+\\?2\\s+1 \\(nada\\) <to> 3 \\(todo\\)\\s+<any_key_begins>", " ")
+        t.answer("\\?2 1 \\(nada\\) <to> 3 \\(todo\\): ", "1")
+        t.answer("\\?2 1 \\(nada\\) <to> 3 \\(todo\\): ", "1")
+        t.answer("<over>\\s+<any_key_ends>", " ")
+        self.assertEqual(t.end(), 0, t.said())
+        # And what is read where there is no terminal.
+        lines = self.ok(*self.args(code="02"), stdin="y\ny\ny\n" + "x\n1\n" + "1\n1\n" + "1\n1\n").stdout
+        for shown in (t.all, lines):
+            # Nothing else is in letters, but what the picture says of time and place, and the tool at its end.
+            rest = re.sub(r"\033\[[0-9;?]*[A-Za-z]|<\w+>|Be at ease\.|nada|todo|\b[ynrb] (?=<)|\bs\b|at [\d.-]+, [\d.-]+ mm|sub-0\d: 4 trials.*", "", shown)
+            self.assertNotRegex(rest, "[A-Za-z]{2}")
+        self.assertIn("<target>\n", lines)
+        self.assertIn("<no_answer>: 1 ", lines)
 
     def test_nothing_tells_the_method(self):
         t = self.start()
@@ -183,22 +215,22 @@ class AtTheTerminal(PersonTest):
         t = self.start()
         t.begin()
         t.answer("Which one\\? ", "1")  # practice
-        t.answer("trial 1 of 2", "r")  # while it plays
-        t.until("once more, later")
-        t.answer("trial 2 of 2: [^?]*Which one\\? ", "r")  # while it is asked
-        t.until("once more, later")
-        t.answer("trial 1 of 2 \\(again\\): [^?]*Which one\\? ", "p2")
+        t.answer("Trial 1/2", "r")  # while it plays
+        t.until("Once more, later")
+        t.answer("Trial 2/2: [^?]*Which one\\? ", "r")  # while it is asked
+        t.until("Once more, later")
+        t.answer("Trial 1/2 \\(again\\): [^?]*Which one\\? ", "p2")
         t.answer("A pause", "1g")
-        t.answer("trial 2 of 2 \\(again\\): [^?]*Which one\\? ", "v")
+        t.answer("Trial 2/2 \\(again\\): [^?]*Which one\\? ", "v")
         t.key("2")
-        t.answer("trial 1 of 2 \\(again\\): [^?]*Which one\\? ", "1")
+        t.answer("Trial 1/2 \\(again\\): [^?]*Which one\\? ", "1")
         t.answer("Any key begins", "v")  # in the next run's introduction: back to this one
-        t.answer("trial 1 of 2 \\(again\\): [^?]*Which one\\? ", "2")
+        t.answer("Trial 1/2 \\(again\\): [^?]*Which one\\? ", "2")
         t.answer("Any key begins", " ")
         t.answer("How even\\? ", "1")
         t.answer("How even\\? ", "2")
         t.answer("Any key ends", "v")
-        t.answer("trial 2 of 2 \\(again\\): How even\\? ", "3")
+        t.answer("Trial 2/2 \\(again\\): How even\\? ", "3")
         t.answer("Any key ends", " ")
         self.assertEqual(t.end(), 0, t.said())
         told = [(r["trial"], r["attempt"], r["void"], r["response"]) for r in self.rows("01", "pairs")]
@@ -219,16 +251,16 @@ class AtTheTerminal(PersonTest):
         self.assertFalse((self.dir / "study/sourcedata").exists())
         t = self.start()
         t.answer("Do you agree", "y")
-        t.answer("tactor 0: was it felt", "q")  # as good
+        t.answer("0: Did you feel it", "q")  # as good
         self.assertEqual(t.end(), 130)
         self.assertFalse((self.dir / "study/sourcedata").exists())
-        for n, place in enumerate(("Any key begins", "practice 1 of 1", "trial 1 of 2: ", "A break")):
+        for n, place in enumerate(("Any key begins", "Practice 1/1", "Trial 1/2: ", "A break")):
             more = ("--resume",) if n else ()
             t = self.start(*more)
             if not n:
                 t.answer("Do you agree", "y")
             for i in (0, 1):
-                t.answer(f"tactor {i}: was it felt", "y")
+                t.answer(f"{i}: Did you feel it", "y")
             if n:
                 t.answer("Any key begins", " ")
             if n == 2:
@@ -318,7 +350,7 @@ class ByLines(PersonTest):
 
     def test_a_tactor_that_is_not_felt_ends_it_and_may_be_driven_again(self):
         result = self.refused(1, *self.args(), stdin="y\nr\nx\ny\nb\ny\nn\n", says=("tactor 1: it was not felt", "--walk"))
-        self.assertEqual(re.findall(r"tactor (\d): was it felt", result.stdout), list("00101"))
+        self.assertEqual(re.findall(r"(\d): Did you feel it", result.stdout), list("00101"))
         self.assertFalse((self.dir / "study/sourcedata").exists())
 
     def test_identify_names_the_motions(self):
@@ -326,7 +358,7 @@ class ByLines(PersonTest):
         self.write("what.toml", text + '[[run]]\nname = "what"\ntask = "identify"\ntrials = 2\nmethods = ["Birch"]\n')
         result = self.ok(*self.args(definition="what.toml"), stdin="y\ny\n3\n1\n2\n")
         self.assertIn("Which movement was it? 1 east, 2 west: ", result.stdout)
-        self.assertIn("that is no answer: 1 east, 2 west", result.stdout)
+        self.assertIn("That is no answer: 1 east, 2 west", result.stdout)
         self.assertNotIn("agree", result.stdout)  # there is nothing to agree to
         self.assertEqual([r["response"] for r in self.rows("01", "what")], ["east", "west"])
 
@@ -335,7 +367,7 @@ class ByLines(PersonTest):
         self.assertEqual(len(self.rows("01", "pairs")), 1)
         result = self.ok(*self.args("--resume"), stdin="y\ny\n" + "2\n1\n2\n")
         self.assertNotIn("Do you agree", result.stdout)
-        self.assertNotIn("practice 1", result.stdout)
+        self.assertNotIn("Practice 1", result.stdout)
         rows = self.rows("01", "pairs")
         self.assertEqual([(r["trial"], r["response"], r["stream"]) for r in rows], [("1", "1", "1"), ("2", "2", "2")])
         # Over the gap between two streams the clock of the day counts.
@@ -381,7 +413,7 @@ class ByLines(PersonTest):
             tool.stdin.write(AGREED + "1\n2\n")
             tool.stdin.flush()
             for line in tool.stdout:
-                if line.startswith("trial 2"):
+                if line.startswith("Trial 2"):
                     break
             tool.send_signal(signal.SIGKILL)
         self.assertEqual([r["response"] for r in self.rows("01", "pairs")], ["2"])

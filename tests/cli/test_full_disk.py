@@ -157,7 +157,7 @@ class FullDisk(ExperimentTest):
         """A session that goes on, with these answers to the question that each is for."""
         t = self.person("--resume")
         for i in (0, 1):
-            t.answer(f"tactor {i}: was it felt", "y")
+            t.answer(f"{i}: Did you feel it", "y")
         for question, answer in answers:
             t.answer(question, answer)
         self.assertEqual(t.end(), 0, t.said())
@@ -177,7 +177,7 @@ class FullDisk(ExperimentTest):
         self.assertRegex(t.said(), rf"{NO_SPACE} \(the last answer is kept; free some space, and --resume goes on\)")
         self.assertEqual((self.answers("pairs"), self.answers("marks")), (["1", "2"], ["3"]))
         disk.make_room()
-        self.resumed(("Any key begins", " "), ("trial 2 of 2: How even\\? ", "1"), ("Any key ends", " "))
+        self.resumed(("Any key begins", " "), ("Trial 2/2: How even\\? ", "1"), ("Any key ends", " "))
         self.assertEqual((self.answers("pairs"), self.answers("marks")), (["1", "2"], ["3", "1"]))
 
     def test_a_disk_without_names_while_somebody_answers(self):
@@ -208,7 +208,7 @@ class FullDisk(ExperimentTest):
         self.assertIn("Read-only file system", t.said())
         disk.read_only(False)
         self.assertEqual(self.answers("pairs"), ["1"])
-        self.resumed(("Any key begins", " "), ("trial 2 of 2: [^?]*Which one\\? ", "2"), ("Any key begins", " "),
+        self.resumed(("Any key begins", " "), ("Trial 2/2: [^?]*Which one\\? ", "2"), ("Any key begins", " "),
                      ("How even\\? ", "3"), ("How even\\? ", "1"), ("Any key ends", " "))
         self.assertEqual((self.answers("pairs"), self.answers("marks")), (["1", "2"], ["3", "1"]))
 

@@ -96,7 +96,7 @@ command add_experiment(CLI::App& app)
     add_experiment_options(*c, *o);
     add_power_options(*c, *power);
     options->add_array_options();
-    options->add_device_options();
+    options->add_device_options("needed with a person");
     c->footer("Example: tactor experiment park2016 --participant 01 -o trial --simulate seed=1,sigma=1");
     return [s, o, power, options] { return run(*o, *power, *s, *options); };
 }

@@ -9,7 +9,7 @@ namespace tactor::cli {
 namespace {
 
 // A text for each step of the scale, or for its ends.
-std::string scale_text(const study::run_definition& r)
+std::string scale_text(const study::page_words& w, const study::run_definition& r)
 {
     const unsigned last = r.outline.scale;
     const bool each = r.labels.size() == last;
@@ -17,7 +17,9 @@ std::string scale_text(const study::run_definition& r)
     for (unsigned i = 1; i <= last; ++i) {
         if (!each && i != 1 && i != last)
             continue;
-        text += i == 1 ? "1" : fmt::format("{}{}", each ? ", " : " to ", i);
+        if (i != 1)
+            text += each ? ", " : fmt::format(" {} ", w["to"]);
+        text += fmt::format("{}", i);
         if (each)
             text += fmt::format(" ({})", r.labels[i - 1]);
         else if (r.labels.size() == 2)
@@ -45,9 +47,9 @@ std::string choices_text(const study::experiment_definition& d, const study::run
 {
     switch (r.outline.task) {
     case study::task_kind::choose:
-        return "1 or 2";
+        return fmt::format("1 {} 2", d.page["or"]);
     case study::task_kind::rate:
-        return scale_text(r);
+        return scale_text(d.page, r);
     case study::task_kind::identify:
         break;
     }
@@ -57,11 +59,11 @@ std::string choices_text(const study::experiment_definition& d, const study::run
     return text;
 }
 
-target_picture::target_picture(const array& a, const stroke& target)
+target_picture::target_picture(const array& a, const stroke& target, const study::page_words& words)
     : motion_(target.motion), faces_(a), picture_(a), now_{std::vector<double>(a.tactors.size(), 0.0), {}}
 {
     if (!picture_.active())
-        show("the target moves\n");
+        show(words["target"] + "\n");
 }
 
 void target_picture::draw(double t_s)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What the participant reads on a terminal. Nothing in it says by which method a motion is rendered.
+/// What the participant reads on a terminal, in the definition's words. Nothing in it says by which method a
+/// motion is rendered.
 #pragma once
 
 #include <string>
@@ -19,7 +20,7 @@ unsigned choices_in(const study::run_definition& r);
 /// The moving target on a terminal, as long as this lives; elsewhere one line, without motion.
 class target_picture {
 public:
-    target_picture(const array& a, const stroke& target);
+    target_picture(const array& a, const stroke& target, const study::page_words& words);
 
     void draw(double t_s);
 

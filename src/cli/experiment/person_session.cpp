@@ -12,7 +12,6 @@
 #include "cli/experiment/trials.hpp"
 #include "cli/json_values.hpp"
 #include "cli/say.hpp"
-#include "core/words.hpp"
 #include "study/bids/acq_time.hpp"
 
 namespace tactor::cli {
@@ -108,15 +107,16 @@ const study::run_definition& person_session::run_of(const study::session_step& s
 
 void person_session::ask_consent()
 {
+    const study::page_words& w = p_.definition.page;
     on_page(consent_screen(p_));
-    show(fmt::format("{}\n\nDo you agree? y yes, n no: ", p_.definition.consent));
+    show(fmt::format("{}\n\n{} y {}, n {}: ", p_.definition.consent, w["agree"], w["yes"], w["no"]));
     for (;;) {
         const session_key k = keys_.wait();
         if (k.asked == operator_key::quit)
             obey(*k.asked);
         if (k.character != 'y' && k.character != 'n')
             continue;
-        show(k.character == 'y' ? "yes\n\n" : "no\n");
+        show(k.character == 'y' ? w["yes"] + "\n\n" : w["no"] + "\n");
         agreed_ = k.character == 'y';
         return flow_.agree(agreed_);
     }
@@ -125,8 +125,9 @@ void person_session::ask_consent()
 void person_session::walk(unsigned tactor)
 {
     const array& a = p_.where.tactors;
+    const study::page_words& w = p_.definition.page;
     if (tactor == 0)
-        show(fmt::format("Each tactor vibrates once, in turn.\n\n{}\n", numbered_map(a)));
+        show(fmt::format("{}\n\n{}\n", w["walk"], numbered_map(a)));
     on_page(walk_screen(p_, tactor, false));
     const score s = walk_score(p_.definition, a, p_.render, tactor);
     const given_stimulus g = [&] {
@@ -138,8 +139,8 @@ void person_session::walk(unsigned tactor)
         find_device();
     }
     on_page(walk_screen(p_, tactor, true));
-    show(fmt::format("tactor {}: was it felt? y yes, n no, r again{}: ", tactor,
-                     tactor > 0 ? ", b back" : ""));
+    show(fmt::format("{}: {} y {}, n {}, r {}{}: ", tactor, w["felt"], w["yes"], w["no"], w["again"],
+                     tactor > 0 ? ", b " + w["back"] : ""));
     for (;;) {
         const session_key k = keys_.wait();
         if (k.asked == operator_key::quit)
@@ -211,12 +212,12 @@ void person_session::introduce(const study::session_step& s)
     const study::run_definition& r = run_of(s);
     practice_.emplace(store_, r, true);
     table_.emplace(store_, r, false);
-    const std::size_t n = p_.runs[s.run].trials.size();
-    show(fmt::format("\n{} of {}: {}\n{}\n{}\n", s.run + 1, p_.runs.size(), counted(n, "trial"), r.question,
+    const study::page_words& w = p_.definition.page;
+    show(fmt::format("\n{} {}/{}\n{}\n{}\n", w["part"], s.run + 1, p_.runs.size(), r.question,
                      choices_text(p_.definition, r)));
     on_page(introduce_screen(p_, s));
     if (keys_.come_early()) {
-        show(page_ != nullptr ? "The participant begins, or g.\n" : "Any key begins.\n");
+        show(page_ != nullptr ? "The participant begins, or g.\n" : w["any_key_begins"] + "\n");
         wait_for_any_key();
     }
     // Asked for meanwhile: the last trial of the run before.
@@ -275,7 +276,7 @@ void person_session::obey(operator_key k)
 void person_session::rest(const study::session_step& s)
 {
     const double break_s = run_of(s).break_s;
-    show(fmt::format("\nA break of {:.0f} s.\n", break_s));
+    show(fmt::format("\n{}: {:.0f} s\n", p_.definition.page["rest"], break_s));
     on_page(rest_screen(p_, s));
     bool ended = false;
     const bool there = stage_.pass(break_s, [&](double) {
@@ -295,7 +296,7 @@ void person_session::rest(const study::session_step& s)
 void person_session::pause()
 {
     on_page(idle_screen(p_, "pause"));
-    show("\nA pause.\n");
+    show(fmt::format("\n{}\n", p_.definition.page["pause"]));
     say(stderr, "tactor: paused; g goes on\n");
     const study::session_step now = flow_.next();
     while (flow_.next() == now) {
@@ -310,10 +311,11 @@ void person_session::pause()
 bool person_session::end()
 {
     on_page(idle_screen(p_, "over"));
-    show("\nThat was all. Thank you.\n");
+    const study::page_words& w = p_.definition.page;
+    show(fmt::format("\n{}\n", w["over"]));
     if (!keys_.is_terminal())
         return true;
-    show(page_ != nullptr ? "g ends.\n" : "Any key ends.\n");
+    show(page_ != nullptr ? "g ends.\n" : w["any_key_ends"] + "\n");
     wait_for_any_key();
     return flow_.next().what == step_kind::over;
 }

@@ -42,7 +42,7 @@ std::string person_session::animate(const study::session_step& s, const study::p
             return gone;
         return (began && page_->is_watched()) || repeat_ || quit_ ? "" : "the target moved on no page";
     }
-    target_picture picture(p_.where.tactors, target);
+    target_picture picture(p_.where.tactors, target, p_.definition.page);
     picture.draw(0.0);
     const bool passed = stage_.pass(duration_s, [&](double at_s) {
         heed();
@@ -104,9 +104,10 @@ void person_session::trial(const study::session_step& s)
 {
     const study::run_definition& r = run_of(s);
     const study::planned_trial& t = trial_of(s);
-    show(fmt::format("\n{} {} of {}{}: ", s.practice ? "practice" : "trial", s.which.trial,
+    const study::page_words& w = p_.definition.page;
+    show(fmt::format("\n{} {}/{}{}: ", w[s.practice ? "practice" : "trial"], s.which.trial,
                      s.practice ? p_.runs[s.run].practice.size() : p_.runs[s.run].trials.size(),
-                     s.which.attempt > 1 ? " (again)" : ""));
+                     s.which.attempt > 1 ? fmt::format(" ({})", w["repeated"]) : ""));
     const given_stimulus g = give(s, t);
     study::trial_row row = planned_row(p_, t, s.which);
     row.stream = stream_;
@@ -127,7 +128,7 @@ void person_session::trial(const study::session_step& s)
     }
     row.is_void = !flaw.empty();
     if (row.is_void) {
-        show(s.practice ? "\n" : "once more, later\n");
+        show((s.practice ? "" : w["later"]) + "\n");
         say(stderr, "tactor: {}: trial {} is void: {}\n", r.outline.name, s.which.trial, flaw);
     }
     const std::int64_t started_ns =
@@ -160,7 +161,7 @@ person_session::asked_answer person_session::ask(const study::session_step& s, c
             show(fmt::format("{}\n", k.answer));
             return {k.answer, time_s};
         } else if (!keys_.come_early())
-            show(fmt::format("that is no answer: {} ", choices));
+            show(fmt::format("{}: {} ", p_.definition.page["no_answer"], choices));
     }
 }
 

@@ -29,6 +29,15 @@ constexpr std::array all{
     page_word{"elsewhere", "This session goes on in another window."},
     page_word{"offline", "There is no connection. Please tell the experimenter."},
     page_word{"full_screen", "Full screen"},
+    // Of a terminal only.
+    page_word{"or", "or"},
+    page_word{"to", "to"},
+    page_word{"any_key_begins", "Any key begins."},
+    page_word{"any_key_ends", "Any key ends."},
+    page_word{"trial", "Trial"},
+    page_word{"repeated", "again"},
+    page_word{"later", "Once more, later."},
+    page_word{"no_answer", "That is no answer"},
 };
 
 std::size_t place_of(std::string_view key)

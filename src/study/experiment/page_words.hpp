@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What the participant's page says besides the definition's questions.
+/// What the participant's page, or terminal, says besides the definition's questions.
 #pragma once
 
 #include <span>

@@ -73,7 +73,7 @@ class Experiment(RigTest):
         p = self.start("experiment", "pairs.toml", "--participant", "01", "-o", "study", stdin=subprocess.PIPE)
         p.stdin.write("y\n" * 10 + "1\n" * 10)
         p.stdin.flush()
-        until(p, "trial 1 of 2")
+        until(p, "Trial 1/2")
         pull = Card.pull_out()
         pull.wait(60)
         Card.plug_in()
