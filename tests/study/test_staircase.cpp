@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "study/calibrate/staircase.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -125,6 +127,18 @@ TEST_CASE(
     CHECK(s.reversals_dbfs().size() == most_reversals);
     CHECK(s.threshold()->halves_db > 2.0);
     CHECK(s.threshold()->mean_dbfs == mean_of(s.reversals_dbfs(), 8).mean_dbfs);
+
+    // Whatever was asked for.
+    for (const auto& [reversals, discard] : {std::pair{9U, 2U}, std::pair{20U, 4U}, std::pair{6U, 4U}}) {
+        staircase other({.reversals = reversals, .discard = discard});
+        turn(other, 24, -1.2);
+        REQUIRE(checking(other));
+        REQUIRE(other.reversals_dbfs().size() > reversals);
+        CHECK(other.threshold()->mean_dbfs ==
+              mean_of(other.reversals_dbfs(),
+                      std::min<std::size_t>(8, (other.reversals_dbfs().size() - discard) / 2 * 2))
+                  .mean_dbfs);
+    }
 
     staircase steady({});
     turn(steady, 24, 0.0);

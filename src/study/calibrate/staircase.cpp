@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t tries = 10; // at the ceiling, at the floor, and to check
 constexpr std::size_t enough = 8;
+constexpr std::size_t counted_after = 8; // reversals where there were more than asked for
 constexpr double check_above_db = 6.0;
 constexpr double halves_may_differ_db = 2.0;
 
@@ -105,7 +106,8 @@ void staircase::note_at_floor(bool right)
 
 void staircase::settle()
 {
-    const std::size_t counted = (o_.reversals - o_.discard) / 2 * 2;
+    const std::size_t kept = (reversals_.size() - o_.discard) / 2 * 2;
+    const std::size_t counted = reversals_.size() == o_.reversals ? kept : std::min(kept, counted_after);
     // Two more at a time, so that the number asked for and this one are both even or both odd.
     if ((reversals_.size() - o_.reversals) % 2 != 0)
         return;
