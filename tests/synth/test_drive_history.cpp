@@ -132,6 +132,21 @@ TEST_CASE("a channel that another guard had cut is closed where it is driven too
     CHECK(later.drive(0, 100, 150));
 }
 
+TEST_CASE("a channel that was cut for a lower limit is open where a higher one allows it")
+{
+    drive_guard low(1, 100, 1000, 1000);
+    CHECK(low.drive(0, 0, 100));
+    CHECK_FALSE(low.drive(0, 100, 150));
+    drive_guard high(1, 500, 1000, 1000);
+    high.resume(low.history(200));
+    CHECK_FALSE(high.acts(0, 0, 10));
+    CHECK(high.drive(0, 0, 380)); // and 100, and a fade of 20, were given
+    CHECK_FALSE(high.drive(0, 380, 400));
+    drive_guard same(1, 100, 1000, 1000);
+    same.resume(low.history(200));
+    CHECK_FALSE(same.drive(0, 0, 10));
+}
+
 TEST_CASE("a channel of which nothing is known but that it was driven is not faded in")
 {
     drive_guard g(1, 500, 1000, 1000);

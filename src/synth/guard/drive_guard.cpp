@@ -179,8 +179,12 @@ void drive_guard::resume(const drive_history& h) noexcept
         cell& c = cells_[i];
         for (const drive_history::stretch& s : h.channels[i].stretches)
             add(c, {up(s.begin_s), up(s.end_s), up(s.driven_s)});
+        std::int64_t opens = up(h.channels[i].opens_s);
+        // One that was closed for a lower limit than this guard's opens as soon as this one lets it.
+        if (const std::int64_t half = half_gone(c); opens > half + fade_)
+            opens = half;
         // What is open by now sounds from silence: it needs no fade.
-        c.opens_at = h.channels[i].opens_s > 0.0 ? up(h.channels[i].opens_s) : -fade_;
+        c.opens_at = opens > 0 ? opens : -fade_;
         c.closed_at = std::min(c.opens_at, -fade_);
     }
 }
