@@ -57,17 +57,23 @@ class DrawingPage(BrowserTest, ToolTest):
         p.mouse("mouseReleased", *self.place(p, 0.9, 0.9))
         self.assertEqual(self.next_stroke(watcher, "finished")["stroke"], first)
         p.until("!document.querySelector('#again').disabled")
-        self.assertGreater(p.value("drawn.length"), 5)
+        self.assertEqual(p.value("drawn.length"), 1)
+        self.assertGreater(p.value("drawn[0].points.length"), 5)
         p.click("#again")
         self.assertGreater(self.next_stroke(watcher, "started")["stroke"], first)
         self.next_stroke(watcher, "finished")
         self.assertEqual(p.value("document.querySelector('#says').className"), "")
-        saved = p.value("""(() => { let text; const make = URL.createObjectURL;
-            URL.createObjectURL = b => { text = b.text(); return make(b); };
-            HTMLAnchorElement.prototype.click = () => {};
-            document.querySelector('#save').click(); return text; })()""")
-        self.write("drawn.csv", saved)
+        self.assertEqual(self.saved(p), "drawn.csv")
         self.assertEqual(self.run_tool("plan", "drawn.csv").returncode, 0)
+
+    def saved(self, p):
+        """The name of the file that the page gives to be kept, which is there then."""
+        name, text = p.value("""(async () => { let blob, name; const make = URL.createObjectURL;
+            URL.createObjectURL = b => { blob = b; return make(b); };
+            HTMLAnchorElement.prototype.click = function () { name = this.download; };
+            document.querySelector('#save').click(); return [name, await blob.text()]; })()""")
+        self.write(name, text)
+        return name
 
     def test_fingers_are_strokes_of_their_own(self):
         p, watcher = self.ready(self.serve(), size=(390, 844))
@@ -77,6 +83,34 @@ class DrawingPage(BrowserTest, ToolTest):
         p.touch("touchMove", (1, *self.place(p, 0.1, 0.9)), (2, *self.place(p, 0.9, 0.9)))
         p.touch("touchEnd")
         self.assertEqual({self.next_stroke(watcher, "finished")["stroke"] for _ in range(2)}, both)
+        # And one recording, that plays and is kept as it was drawn.
+        p.until("!document.querySelector('#again').disabled")
+        self.assertEqual(p.value("drawn.length"), 2)
+        p.click("#again")
+        again = {self.next_stroke(watcher, "started")["stroke"] for _ in range(2)}
+        self.assertEqual({self.next_stroke(watcher, "finished")["stroke"] for _ in range(2)}, again)
+        self.assertFalse(again & both)
+        self.assertEqual(self.saved(p), "drawn.toml")
+        result = self.run_tool("plan", "drawn.toml", "--algorithm", "continuous", "--format", "json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual([s["stroke"]["name"] for s in json.loads(result.stdout)["plans"]], ["finger 1", "finger 2"])
+
+    def test_fingers_that_touch_one_after_the_other_are_one_recording_while_one_touches(self):
+        p, watcher = self.ready(self.serve(), size=(390, 844))
+        p.touch("touchStart", (1, *self.place(p, 0.1, 0.1)))
+        self.next_stroke(watcher, "started")
+        p.touch("touchStart", (1, *self.place(p, 0.1, 0.1)), (2, *self.place(p, 0.9, 0.1)))
+        self.next_stroke(watcher, "started")
+        p.touch("touchMove", (1, *self.place(p, 0.1, 0.9)), (2, *self.place(p, 0.9, 0.9)))
+        p.touch("touchEnd")
+        p.until("!document.querySelector('#again').disabled")
+        self.assertEqual(p.value("drawn[0].start_s"), 0)
+        self.assertGreater(p.value("drawn[1].start_s"), 0)
+        # What is drawn next takes its place.
+        p.mouse("mousePressed", *self.place(p, 0.5, 0.5))
+        p.mouse("mouseMoved", *self.place(p, 0.6, 0.5))
+        p.mouse("mouseReleased", *self.place(p, 0.6, 0.5))
+        p.until("drawn.length === 1")
 
     def test_a_finger_that_rests_plays_on(self):
         s = self.serve()
