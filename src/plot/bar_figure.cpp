@@ -17,12 +17,14 @@ constexpr double panel_height = 150.0;
 constexpr double labels_height = 24.0; // names of the groups, and the legend
 constexpr double between = 14.0;
 
-// Of methods, in order: they differ in lightness too.
+// Of methods, in order: a few differ in lightness too; more of them are told apart as strokes are.
 constexpr std::array<colour, 4> fills{light_grey, blue, orange, dark_grey};
 
 colour fill_of(std::size_t i, std::size_t of)
 {
-    return of == 1 ? blue : fills[i % fills.size()];
+    if (of == 1)
+        return blue;
+    return of <= fills.size() ? fills[i] : of_stroke(i);
 }
 
 void draw_error(canvas& c, const bar& b, const scale& y, double x, double cap)

@@ -101,6 +101,12 @@ class Compensate(ToolTest):
             for word in ("target", "played", "predicted", "low-speed", "taps", "sigma 5 mm", "100 mm/s"):
                 self.assertIn(word, text)
 
+    def test_the_picture_of_a_comparison_says_that_bursts_were_moved(self):
+        for more, moved in (((), False), (MOVE, True)):
+            self.ok("compare", "park2016-1", *more, "-o", "c.svg")
+            text = " ".join(t.text for t in ElementTree.parse(self.dir / "c.svg").getroot().iter(SVG + "text"))
+            self.assertEqual(["Bursts are moved" in text, *(word in text for word in TAPS)], [moved] * (1 + len(TAPS)))
+
     def test_compare_predicts_what_was_moved(self):
         def row(*more):
             told = json.loads(self.ok("compare", "park2016-1", "--observer", "low-speed", *EXACT, "--algorithms",

@@ -3,7 +3,7 @@
 
 Usage: answers.py TOOL... > FILE      asks: plans of all presets with each algorithm and phantom, samples in each format
        answers.py --compare A B      counts where two such files differ
-Samples must be the same to the byte. Numbers in plans may differ by TOLERANCE: the C library's sine, hypot and so on
+Samples must be the same to the byte, and so must simulated sessions: their trials in order, and what was answered. Numbers in plans may differ by TOLERANCE: the C library's sine, hypot and so on
 round the last bit as the processor's instructions make it easy, and JSON shows all bits.
 """
 import hashlib
@@ -33,6 +33,9 @@ def questions():
     for phase in ("stroke", "burst"):
         yield ["render", *CURVE, "--phase", phase, "--carrier", "173.3", "--ramp", "0.003"]
         yield ["render", *CURVE, "--phase", phase, "--rate", "22050"]
+    for code in ("01", "02"):
+        yield ["experiment", "park2016", "--participant", code, "--seed", "7", "--simulate", "seed=1,sigma=1"]
+    yield ["experiment", "park2016", "--participant", "P3", "--dry-run", "--format", "json"]
 
 
 def said(*command):
@@ -43,9 +46,12 @@ def said(*command):
 
 
 def answer(tool, question):
-    if question[0] == "plan":
+    if question[0] == "plan" or "--dry-run" in question:
         return json.loads(said(*tool, *question))
     with tempfile.TemporaryDirectory() as folder:
+        if question[0] == "experiment":
+            said(*tool, *question, "-o", folder)
+            return {f.name: f.read_text(encoding="utf-8") for f in sorted(pathlib.Path(folder).glob("sub-*/beh/*.tsv"))}
         file = pathlib.Path(folder) / "a.wav"
         said(*tool, *question, "-o", str(file))
         return hashlib.sha256(file.read_bytes()).hexdigest()

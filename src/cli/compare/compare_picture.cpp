@@ -37,7 +37,8 @@ plot::canvas picture_of(const comparison& c, const array& a, double width_mm)
             (c.spread.people == 0 ? std::string()
                                   : "; light lines and bands: " +
                                         spread_note(c.spread, c.observer.kind == observer_kind::low_speed)) +
-            ". This is " + prediction_note(c.observer) + ".",
+            ". This is " + prediction_note(c.observer) + "." +
+            (c.compensated ? " Bursts are moved for " + describe(c.observer.low_speed) + "." : std::string()),
         width_mm);
 }
 
