@@ -5,6 +5,8 @@
 #include <tuple>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "python/plan_handle.hpp"
 
 namespace tactor::python {
@@ -16,7 +18,7 @@ plan_handle planned(const std::shared_ptr<array_handle>& on, const stroke& given
     wishes w;
     take_options(w, options, on->value().tactors.size());
     const layout& faces = on->faces();
-    plan_handle p{on, fit_as_asked({given_stroke}, faces).front(), {}};
+    plan_handle p{on, fitted_alone(given_stroke, faces), {}};
     // As the tool does it: times count where the stroke ends up.
     if (w.fit) {
         fitted_strokes f = fit_strokes({p.drawn}, faces, w.fit_margin_mm);
@@ -159,6 +161,15 @@ py::dict summary(const plan_handle& p)
 
 } // namespace
 
+stroke fitted_alone(const stroke& s, const layout& faces)
+{
+    if (s.fit_margin_mm && s.fit_group != 0)
+        throw error(error_kind::bad_input, fmt::format("stroke \"{}\"", s.name),
+                    "it is fitted together with others of its group",
+                    "give fit_as_asked() all strokes of the file, and what it returns here");
+    return fit_as_asked({s}, faces).front();
+}
+
 void bind_plan(py::module_& m)
 {
     m.def("option_names", &option_names);
@@ -182,11 +193,18 @@ void bind_plan(py::module_& m)
                 plan_handle p = plan_from_json(text);
                 check_same_array(p, on->value());
                 p.drawn = drawn;
+                if (drawn.anchor != start_anchor{}) { // which a record does not know
+                    p.placed.start_s = drawn.start_s;
+                    p.placed.anchor = drawn.anchor;
+                }
                 p.on = on;
                 return p;
             })
         .def("json", &json_of)
-        .def("same", [](const plan_handle& a, const plan_handle& b) { return a.schedule() == b.schedule(); })
+        .def("same",
+             [](const plan_handle& a, const plan_handle& b) {
+                 return a.schedule() == b.schedule() && a.placed.anchor == b.placed.anchor;
+             })
         .def_property_readonly("array", [](const plan_handle& p) { return p.on; })
         .def_property_readonly("stroke", [](const plan_handle& p) { return p.drawn; })
         .def_property_readonly("algorithm", [](const plan_handle& p) { return p.schedule().algorithm; })

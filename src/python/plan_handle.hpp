@@ -32,6 +32,10 @@ struct plan_handle {
 std::string json_of(const plan_handle& p);
 plan_handle plan_from_json(const std::string& text);
 
+/// The stroke as its file asks for it to be fitted, alone. \throws error (bad_input) where it is one of a
+/// group that is fitted as one picture.
+stroke fitted_alone(const stroke& s, const layout& faces);
+
 /// As many channels as the array and the marker need, where nobody says how many.
 render_options settled(const array& a, render_options o);
 

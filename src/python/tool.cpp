@@ -38,14 +38,14 @@ compared compare(const std::shared_ptr<array_handle>& on, const stroke& s, const
 {
     wishes w;
     take_options(w, options, on->value().tactors.size());
-    stroke target = s;
     const layout& faces = on->faces();
+    stroke target = fitted_alone(s, faces);
     if (w.fit)
-        target = fit_strokes({s}, faces, w.fit_margin_mm).strokes.front();
+        target = fit_strokes({target}, faces, w.fit_margin_mm).strokes.front();
     if (w.duration_s)
         target.motion = target.motion.with_duration(*w.duration_s);
-    else if (w.speed_mm_s && target.motion.length_mm() > 0.0)
-        target.motion = target.motion.with_duration(target.motion.length_mm() / *w.speed_mm_s);
+    else if (w.speed_mm_s)
+        target.motion = target.motion.with_speed(*w.speed_mm_s);
     const py::gil_scoped_release free;
     static_cast<void>(burst_duration_s(w.plan)); // what nobody may ask for is no row
     const cli::comparison_choice choice{kinds_of(algorithms, w.plan.algorithm),

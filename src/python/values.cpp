@@ -2,6 +2,8 @@
 #include <cmath>
 #include <optional>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "core/profile.hpp"
 #include "files/setup_defaults.hpp"
@@ -11,25 +13,34 @@
 namespace tactor::python {
 namespace {
 
-using tactor_row =
-    std::tuple<double, double, unsigned, double, double, std::optional<double>, int, std::string>;
+using tactor_row = std::tuple<double, double, unsigned, double, double, std::optional<double>, int,
+                              std::string, std::vector<std::pair<double, double>>, std::optional<double>>;
 
 array_handle make_array(const std::string& name, const std::vector<tactor_row>& rows)
 {
     array a;
     a.name = name;
-    for (const auto& [x, y, channel, gain, most, threshold, polarity, actuator] : rows)
+    for (const auto& [x, y, channel, gain, most, threshold, polarity, actuator, thresholds, rise_s] : rows) {
         a.tactors.push_back(
             {{x, y}, channel, gain, most, threshold, polarity, from_string<actuator_kind>(actuator)});
+        for (const auto& [hz, dbfs] : thresholds)
+            a.tactors.back().thresholds.push_back({hz, dbfs});
+        a.tactors.back().rise_s = rise_s;
+    }
     return array_handle(std::move(a));
 }
 
 std::vector<tactor_row> rows_of(const array_handle& h)
 {
     std::vector<tactor_row> rows;
-    for (const tactor_spec& t : h.value().tactors)
+    for (const tactor_spec& t : h.value().tactors) {
+        std::vector<std::pair<double, double>> thresholds;
+        for (const threshold_point& p : t.thresholds)
+            thresholds.emplace_back(p.hz, p.dbfs);
         rows.emplace_back(t.position.x_mm, t.position.y_mm, t.channel, t.gain_db, t.max_dbfs,
-                          t.threshold_dbfs, t.polarity, to_string(t.actuator));
+                          t.threshold_dbfs, t.polarity, to_string(t.actuator), std::move(thresholds),
+                          t.rise_s);
+    }
     return rows;
 }
 
@@ -258,6 +269,7 @@ void bind_stroke(py::module_& m)
         .def_property_readonly("start_back", [](const stroke& s) { return s.anchor.back; })
         .def_property_readonly("choices", &choices_of)
         .def_readonly("carrier_hz", &stroke::carrier_hz)
+        .def_property_readonly("level_db", [](const stroke& s) { return s.choices.level_db; })
         .def_readonly("speed_mm_s", &stroke::speed_mm_s)
         .def_readonly("warnings", &stroke::warnings)
         .def_property_readonly("note", [](const stroke& s) { return std::string(to_string(s.note)); })
@@ -271,6 +283,9 @@ void bind_stroke(py::module_& m)
     m.def("fit_strokes", [](const std::vector<stroke>& strokes, const array_handle& on, double margin_mm) {
         const fitted_strokes f = fit_strokes(strokes, on.faces(), margin_mm);
         return py::make_tuple(f.strokes, pair(f.placed.from), pair(f.placed.to), f.placed.scale);
+    });
+    m.def("fit_as_asked", [](const std::vector<stroke>& strokes, const array_handle& on) {
+        return fit_as_asked(strokes, on.faces());
     });
 }
 

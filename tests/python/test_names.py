@@ -24,7 +24,7 @@ easing_kind: Stroke.along
 error: Error
 error_kind: InputError
 find_grid: Array.grid_lines
-fit_as_asked: fit_strokes
+fit_as_asked: fit_as_asked
 fit_strokes: fit_strokes
 fitted_strokes: fit_strokes
 fitting: Fitting
@@ -153,7 +153,7 @@ HAS_NOT = {
     "parse_waveform waveform_names_file waveform_text parse_modulation recording load_recording": "plan(waveform=..., am=...) read texts and files",
     "least_noise_hz most_cycle_samples most_recording_samples max_pcm_channels": "bounds, which messages say",
     "carrier_part carrier_point": "of stroke files: Stroke.load(), and the record of a plan: Plan.to_dict()",
-    "threshold_point threshold_at": "Array.from_file reads thresholds at several frequencies, a Score uses them",
+    "threshold_point threshold_at": "Tactor.thresholds; a Score uses them",
     "score_builder": "a Score is made from plans that are there; the tool plans strokes while it places them",
     "serve_settings": "the service's configuration, which the tool reads",
     "sink paced_sink io_kind io_result stream_position": "what the audio thread calls cannot be Python",

@@ -98,6 +98,9 @@ def test_what_is_not_an_option_is_a_type_error(palm, stroke):
     (dict(carrier=-1), "carrier"), (dict(carrier=True), "carrier"), (dict(duration=1, speed=1), "duration"), (dict(level_dbfs=1), "level_dbfs"),
     (dict(level_dbfs=-3, sl=3), "level_dbfs"), (dict(rate=48000.5), "rate"), (dict(slope=1.0), "slope"), (dict(burst=0.08), "burst"),
     (dict(sigma_mm=3), "sigma_mm"), (dict(sigma_v_mm_s=80, compensate="none"), "sigma_v_mm_s"),
+    (dict(noise_seed=3), "noise_seed"), (dict(noise_seed=3, waveform="square"), "noise_seed"), (dict(texture="time"), "texture"),
+    (dict(texture_mm=3), "texture_mm"), (dict(stevens_exponent=0.6), "stevens_exponent"), (dict(tukey_part=0.3), "tukey_part"),
+    (dict(envelope="tukey", attack=0.01), "attack"), (dict(envelope="tukey", ramp=0.01), "ramp"),
 ])
 def test_options_that_cannot_be_are_refused_by_their_name(palm, stroke, options, what):
     with pytest.raises(tactor.InputError) as e:

@@ -28,6 +28,14 @@ def test_comparisons_are_those_of_the_tool(tool, palm, arguments, options):
     assert pickle.loads(pickle.dumps(compared)) == compared == copy.copy(compared)
 
 
+@pytest.mark.parametrize("keys,speed", [("fit = true", None), ("", 45.0), ("rest", 45.0), ("fit = true\nfit_margin_mm = 5", 60.0)])
+def test_a_strokes_own_fit_and_a_speed_are_the_tools(tool, tmp_path, palm, keys, speed):
+    file = tmp_path / "s.toml"
+    file.write_text(f'[stroke]\npath = "M 5 10 L 30 20"\n{keys}\n'.replace("rest", "pauses = [[0.5, 0.3]]"))
+    printed = json.loads(tool("compare", file, *([] if speed is None else ["--speed", speed]), "--format", "json"))
+    assert tactor.compare(palm, tactor.load(file)[0], speed=speed) == printed["results"]
+
+
 def test_an_algorithm_that_cannot_says_why(palm):
     line = tactor.Array.from_points([(0, 0), (13, 2), (29, 1), (11, 20)])
     rows = tactor.compare(line, tactor.Stroke.along(tactor.Path.svg("M 1 1 L 20 1.5"), duration=1.0))

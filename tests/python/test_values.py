@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Arrays, paths and strokes are values."""
+import json
 import pickle
 
 import numpy as np
@@ -47,9 +48,24 @@ def test_an_array_knows_its_faces(palm):
 
 def test_what_a_tactor_has_is_kept():
     one = tactor.Tactor(tactor.Point(1.0, 2.0), 3, -1.0, -2.0, -40.0, -1, "piezo")
-    array = tactor.Array("one", [one])
-    assert array[0] == one and array.channels == 4
-    assert pickle.loads(pickle.dumps(array)) == array
+    more = one._replace(position=tactor.Point(9.0, 2.0), channel=0, threshold_dbfs=None, thresholds=((100.0, -20.0), (250.0, -41.0)), rise_s=0.02)
+    array = tactor.Array("two", [one, more])
+    assert array[0] == one and array[1] == more and array.channels == 4
+    again = pickle.loads(pickle.dumps(array))
+    assert again == array and hash(again) == hash(array) and again[1] == more
+    with pytest.raises(tactor.InputError):
+        tactor.Array("falls", [more._replace(thresholds=((250.0, -41.0), (100.0, -20.0)))])
+
+
+def test_a_pickled_array_is_as_loud_as_that_of_its_file(tmp_path, stroke):
+    file = tmp_path / "measured.toml"
+    file.write_text('[array]\nname = "measured"\npreset = "palm-3x3"\n' + "".join(
+        f"[[tactor]]\ntactor = {i}\nrise_ms = 20\nthreshold_dbfs = [[100, -20], [250, -41]]\n" for i in range(9)))
+    array = tactor.Array.from_file(file)
+    assert array[0].thresholds == ((100.0, -20.0), (250.0, -41.0)) and array[0].rise_s == 0.02
+    again = pickle.loads(pickle.dumps(array))
+    samples = [tactor.Score(a, [tactor.plan(a, stroke, carrier=150)], sl=7).to_numpy() for a in (array, again)]
+    assert np.abs(samples[0]).max() > 0.01 and (samples[0] == samples[1]).all()
 
 
 @pytest.mark.parametrize("make", [
@@ -199,6 +215,22 @@ def test_strokes_are_fitted(palm, stroke):
     (fitted,), placed = tactor.fit_strokes([far], palm, 2.0)
     assert fitted == far.fitted(palm, 2.0) and palm.contains(fitted.position(0)) and placed.scale < 1
     assert tactor.plan(palm, far, fit=True, fit_margin=2.0).stroke == fitted
+
+
+def test_a_group_is_fitted_as_one_picture(tmp_path, palm, tool):
+    file = tmp_path / "group.toml"
+    file.write_text('[[stroke]]\nfit = true\nfit_margin_mm = 5\n[[stroke.stroke]]\npath = "M 0 0 L 10 0"\n[[stroke.stroke]]\npath = "M 0 10 L 5 10"\n'
+                    '[[stroke]]\npath = "M 1 2 L 30 40"\n')
+    strokes = tactor.load(file)
+    for take in (tactor.plan, tactor.compare):
+        with pytest.raises(tactor.InputError, match="fit_as_asked"):
+            take(palm, strokes[0])
+    fitted = tactor.fit_as_asked(strokes, palm)
+    assert fitted[2] == strokes[2] and fitted[0].position(0) == pytest.approx((5.0, 5.0)) and fitted[1].position(10) == pytest.approx((20.0, 35.0))
+    assert tactor.fit_as_asked(fitted, palm) == fitted
+    printed = json.loads(tool("plan", file, "--format", "json"))["plans"]
+    for plan, other in zip([tactor.plan(palm, s) for s in fitted], printed):
+        assert [(b["x_mm"], b["y_mm"]) for b in other["bursts"]] == [tuple(b.position) for b in plan.bursts]
 
 
 def test_values_say_what_they_are(palm, stroke):

@@ -18,7 +18,7 @@ from tactor._path import Path
 from tactor._plan import Plan
 from tactor._planning import burst_duration, plan
 from tactor._score import Score
-from tactor._stroke import Fitting, Stroke, fit_strokes, load, parse, stroke_presets
+from tactor._stroke import Fitting, Stroke, fit_as_asked, fit_strokes, load, parse, stroke_presets
 
 if _t.TYPE_CHECKING:
     from tactor import lsl as lsl
@@ -31,7 +31,8 @@ __version__: str = _tactor.version()
 __all__ = [
     "Array", "Burst", "Comparison", "Conflict", "Curve", "Delay", "DeviceError", "Drive", "Error", "Fitting", "InputError", "LiveStroke",
     "Meeting", "Path", "PerceptSample", "PhantomModel", "Plan", "Player", "Point", "Report", "Score", "StreamError", "Stroke", "Tactor", "Ticket",
-    "array_presets", "build_facts", "burst_duration", "compare", "devices", "fit_strokes", "load", "parse", "plan", "plot", "stroke_presets",
+    "array_presets", "build_facts", "burst_duration", "compare", "devices", "fit_as_asked", "fit_strokes", "load", "parse", "plan", "plot",
+    "stroke_presets",
 ]
 
 

@@ -42,6 +42,10 @@ class Tactor(_t.NamedTuple):
         1, or -1 where it is wired the other way round.
     actuator : str
         How it works.
+    thresholds : tuple of (float, float)
+        Measured at several frequencies, Hz and dBFS, ascending; in place of threshold_dbfs.
+    rise_s : float or None
+        Time until it moves with 1 - 1/e of its strength.
     """
 
     position: Point
@@ -51,6 +55,8 @@ class Tactor(_t.NamedTuple):
     threshold_dbfs: float | None = None
     polarity: int = 1
     actuator: _Actuator = "unknown"
+    thresholds: tuple[tuple[float, float], ...] = ()
+    rise_s: float | None = None
 
 
 class Array:
@@ -77,15 +83,16 @@ class Array:
             _need(t, Tactor, "tactors")
             if not 0 <= t.channel < 16384:
                 raise InputError("channel", f"{t.channel!r} is out of range", "0 to 16383")
-        rows = [(float(t.position[0]), float(t.position[1]), t.channel, t.gain_db, t.max_dbfs, t.threshold_dbfs, t.polarity, t.actuator)
-                for t in tactors]
+        rows = [(float(t.position[0]), float(t.position[1]), t.channel, t.gain_db, t.max_dbfs, t.threshold_dbfs, t.polarity, t.actuator,
+                 [(float(hz), float(dbfs)) for hz, dbfs in t.thresholds], t.rise_s) for t in tactors]
         self._take(_tactor.Array(name, rows))
 
     def _take(self, core: _t.Any, file: str | None = None, setup: _t.Any = None) -> None:
         self._core = core
         self._file = file
         self._setup = setup
-        self._tactors = tuple(Tactor(Point(x, y), *rest) for x, y, *rest in core.rows)
+        self._tactors = tuple(Tactor._make((Point(x, y), *rest, tuple(thresholds), rise_s))
+                              for x, y, *rest, thresholds, rise_s in core.rows)
 
     @classmethod
     def _of(cls, core: _t.Any, file: str | None = None, setup: _t.Any = None) -> Array:

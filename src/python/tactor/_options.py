@@ -34,14 +34,31 @@ _LIVE = frozenset(("phantom", "soa", "burst", "slope", "intercept", "carrier", "
 def settled(array: Array, given: dict[str, _t.Any], known: frozenset[str]) -> dict[str, _t.Any]:
     """Options, and for what they do not say the [defaults] and [output] of the array's file, as the tool has it.
 
-    None says nothing. An observer's numbers that nothing would use are refused; in a file they may stand for other strokes.
+    None says nothing. What nothing would use is refused; in a file it may stand for other strokes.
     """
     setup = array._settings()
     options = given if setup is None else _completed(setup, given, known)
-    for name in ("sigma_mm", "sigma_v_mm_s"):
-        if given.get(name) is not None and options.get("compensate") != "low-speed" and options.get("observer") != "low-speed":
-            raise InputError(name, "nothing here uses it", 'say compensate="low-speed", too; of a comparison also observer="low-speed"')
+    _check_used(given, options)
     return options
+
+
+def _check_used(given: dict[str, _t.Any], options: dict[str, _t.Any]) -> None:
+    wave, envelope = str(options.get("waveform") or "sine"), options.get("envelope")
+    noise = wave.startswith("noise:")
+    recorded = not noise and wave not in ("sine", "square", "triangle", "sawtooth")
+    low_speed = "low-speed" in (options.get("compensate"), options.get("observer"))
+    observer = 'say compensate="low-speed", too; of a comparison also observer="low-speed"'
+    for name, used, hint in (("sigma_mm", low_speed, observer), ("sigma_v_mm_s", low_speed, observer),
+                             ("noise_seed", noise, 'say waveform="noise:LO-HI", too'),
+                             ("texture", recorded, 'say waveform="FILE.wav", too'),
+                             ("texture_mm", recorded and options.get("texture") == "length", 'say waveform="FILE.wav" and texture="length", too'),
+                             ("stevens_exponent", options.get("intensity_scale") == "stevens", 'say intensity_scale="stevens", too'),
+                             ("tukey_part", envelope == "tukey", 'say envelope="tukey", too')):
+        if given.get(name) is not None and not used:
+            raise InputError(name, "nothing here uses it", hint)
+    for name in ("attack", "release", "ramp"):
+        if given.get(name) is not None and envelope == "tukey":
+            raise InputError(name, 'envelope="tukey" has its own ramps', "leave one of them out")
 
 
 def _completed(setup: _t.Any, given: dict[str, _t.Any], known: frozenset[str]) -> dict[str, _t.Any]:

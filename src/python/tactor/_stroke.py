@@ -162,6 +162,11 @@ class Stroke:
         return self._core.choices  # type: ignore[no-any-return]
 
     @property
+    def level_db(self) -> float:
+        """How much stronger a file says it is than the others."""
+        return self._core.level_db  # type: ignore[no-any-return]
+
+    @property
     def carrier(self) -> float | None:
         """Its own carrier, Hz; None is the plan's."""
         return self._core.carrier_hz  # type: ignore[no-any-return]
@@ -271,6 +276,29 @@ def fit_strokes(strokes: _t.Sequence[Stroke], array: Array, margin_mm: float = 0
     _need(array, Array, "array")
     fitted, origin, to, scale = _tactor.fit_strokes([s._core for s in strokes], array._core, margin_mm)
     return [Stroke._of(s) for s in fitted], Fitting(Point(*origin), Point(*to), scale)
+
+
+def fit_as_asked(strokes: _t.Sequence[Stroke], array: Array) -> list[Stroke]:
+    """Strokes as their file asks for them to be fitted (`fit`), those of a group as one picture. `plan` does it for a stroke alone.
+
+    Parameters
+    ----------
+    strokes : sequence of Stroke
+        As `load` gives them; what asks for nothing stays.
+    array : Array
+
+    Returns
+    -------
+    list of Stroke
+        In the same order; they ask for nothing more.
+
+    Raises
+    ------
+    InputError
+        For a margin that leaves no space.
+    """
+    _need(array, Array, "array")
+    return [Stroke._of(s) for s in _tactor.fit_as_asked([s._core for s in strokes], array._core)]
 
 
 def load(file: str | os.PathLike[str]) -> list[Stroke]:
