@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // [serve].
-#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <limits>
@@ -10,10 +9,9 @@
 #include <system_error>
 #include <vector>
 
-#include <arpa/inet.h>
 #include <fmt/format.h>
-#include <netinet/in.h>
 
+#include "core/prefix_bits.hpp"
 #include "files/setup_parts.hpp"
 
 namespace tactor::detail {
@@ -51,28 +49,12 @@ bool is_address(std::string_view text)
     return r.ec == std::errc() && r.ptr == text.data() + text.size();
 }
 
-// 192.168.1.7, 192.168.1.0/24, fd00::/8 or fe80::1%eth0; which of them are near is seen when they send.
-bool is_prefix(std::string_view text)
-{
-    const auto slash = text.find('/');
-    const std::string address(text.substr(0, std::min(slash, text.find('%'))));
-    in6_addr bytes{}; // large enough for either
-    const bool v6 = ::inet_pton(AF_INET6, address.c_str(), &bytes) == 1;
-    if (!v6 && ::inet_pton(AF_INET, address.c_str(), &bytes) != 1)
-        return false;
-    if (slash == std::string_view::npos)
-        return true;
-    text.remove_prefix(slash + 1);
-    unsigned bits = 0;
-    const auto r = std::from_chars(text.data(), text.data() + text.size(), bits);
-    return r.ec == std::errc() && r.ptr == text.data() + text.size() && bits <= (v6 ? 128U : 32U);
-}
-
+// Which of them are near is seen when they send.
 std::vector<std::string> prefixes(const toml_table& t, std::string_view key)
 {
     std::vector<std::string> all = texts(t, key);
     for (std::size_t i = 0; i < all.size(); ++i)
-        if (!is_prefix(all[i]))
+        if (!prefix_bits(all[i]))
             fail_at(t.where((*t.list(key, "texts"))[i]),
                     fmt::format("\"{}\" is neither an address nor a prefix", all[i]),
                     "such as 192.168.1.7, 192.168.1.0/24 or fd00::/8");

@@ -2,11 +2,12 @@
 #include "net/peers.hpp"
 
 #include <algorithm>
-#include <charconv>
 
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
+
+#include "core/prefix_bits.hpp"
 
 namespace tactor::net {
 namespace {
@@ -18,11 +19,6 @@ ip::address plain(const ip::address& a)
     if (a.is_v6() && a.to_v6().is_v4_mapped())
         return ip::make_address_v4(ip::v4_mapped, a.to_v6());
     return a;
-}
-
-unsigned bits_of(const ip::address& a)
-{
-    return a.is_v4() ? 32 : 128;
 }
 
 template <typename Bytes>
@@ -48,23 +44,14 @@ bool within(const ip::address& a, const address_prefix& p)
 
 address_prefix parse_prefix(const std::string& text, const std::string& what)
 {
-    const auto slash = text.find('/');
-    boost::system::error_code none;
-    address_prefix p{ip::make_address(text.substr(0, slash), none), 0};
-    bool good = !none;
-    if (good)
-        p.bits = bits_of(p.address);
-    if (good && slash != std::string::npos) {
-        const unsigned most = p.bits;
-        const char* const end = text.data() + text.size();
-        const auto r = std::from_chars(text.data() + slash + 1, end, p.bits);
-        good = r.ec == std::errc() && r.ptr == end && p.bits <= most;
-    }
-    if (!good)
+    const auto bits = detail::prefix_bits(text);
+    boost::system::error_code failed;
+    const ip::address address = ip::make_address(text.substr(0, text.find('/')), failed);
+    if (!bits || failed)
         throw error(error_kind::bad_input, what,
                     fmt::format("\"{}\" is neither an address nor a prefix", text),
                     "such as 192.168.1.7, 192.168.1.0/24 or fd00::/8");
-    return p;
+    return {address, *bits};
 }
 
 bool is_heard(const ip::address& from, const std::vector<address_prefix>& peers)

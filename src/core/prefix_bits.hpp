@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// Prefixes of addresses, as files write them.
+#pragma once
+
+#include <charconv>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+
+namespace tactor::detail {
+
+/// Of "192.168.1.0/24", "fd00::/8", or an address alone, such as fe80::1%eth0: how many of its bits count.
+/// None for what is neither.
+inline std::optional<unsigned> prefix_bits(std::string_view text)
+{
+    const auto slash = text.find('/');
+    const std::string address(text.substr(0, slash));
+    in6_addr bytes{}; // large enough for either
+    const bool v4 = ::inet_pton(AF_INET, address.c_str(), &bytes) == 1;
+    if (!v4 && ::inet_pton(AF_INET6, address.substr(0, address.find('%')).c_str(), &bytes) != 1)
+        return {};
+    const unsigned most = v4 ? 32 : 128;
+    if (slash == std::string_view::npos)
+        return most;
+    text.remove_prefix(slash + 1);
+    unsigned bits = 0;
+    const auto r = std::from_chars(text.data(), text.data() + text.size(), bits);
+    const bool good = r.ec == std::errc() && r.ptr == text.data() + text.size() && bits <= most;
+    return good ? std::optional(bits) : std::nullopt;
+}
+
+} // namespace tactor::detail
