@@ -22,6 +22,11 @@ struct virtual_tactor {
     double moved_mm = 0.0; // by --snap
 };
 
+bool earlier(const virtual_tactor& a, const virtual_tactor& b)
+{
+    return a.t_s < b.t_s;
+}
+
 double nearest_line(const std::vector<double>& lines, double v)
 {
     return *std::min_element(lines.begin(), lines.end(),
@@ -47,8 +52,7 @@ std::vector<virtual_tactor> crossings(const job& j, const grid_lines& g)
         for (const double t : motion.meets_y(y))
             found.push_back({t, {motion.position(t).x_mm, y}, false, true, 0.0});
     check_burst_count(j, static_cast<double>(found.size()));
-    std::stable_sort(found.begin(), found.end(),
-                     [](const virtual_tactor& a, const virtual_tactor& b) { return a.t_s < b.t_s; });
+    std::stable_sort(found.begin(), found.end(), earlier);
     return found;
 }
 
@@ -100,16 +104,14 @@ void add_corners(const job& j, const grid_lines& g, const in_array& path,
         if (x == nullptr || y == nullptr || !std::isfinite(t))
             continue;
         const virtual_tactor corner{t, {*x, *y}, true, true, 0.0};
-        const auto next = std::lower_bound(crossed.begin(), crossed.end(), t,
-                                           [](const virtual_tactor& v, double time) { return v.t_s < time; });
+        const auto next = std::lower_bound(crossed.begin(), crossed.end(), corner, earlier);
         const bool known = (next != crossed.end() && path.same(corner, *next)) ||
                            (next != crossed.begin() && path.same(*(next - 1), corner));
         if (!known)
             corners.push_back(corner);
     }
     const auto middle = crossed.insert(crossed.end(), corners.begin(), corners.end());
-    std::inplace_merge(crossed.begin(), middle, crossed.end(),
-                       [](const virtual_tactor& a, const virtual_tactor& b) { return a.t_s < b.t_s; });
+    std::inplace_merge(crossed.begin(), middle, crossed.end(), earlier);
     check_burst_count(j, static_cast<double>(crossed.size()));
 }
 

@@ -43,11 +43,17 @@ struct trajectory::impl {
     double duration_s = 0.0;
     double gain = 1.0;
 
-    /// Time of a timed law at time t of this trajectory.
+    /// Time of a timed law at time t of this trajectory, and the way back.
     double own_time(const detail::timed_points& l, double t_s) const noexcept
     {
         const double own = l.duration_s();
         return own == duration_s ? t_s : t_s / duration_s * own;
+    }
+
+    double time_of_own(const detail::timed_points& l, double own_s) const noexcept
+    {
+        const double own = l.duration_s();
+        return own == duration_s ? own_s : own_s / own * duration_s;
     }
 
     /// Time of a pace at time t of this trajectory, and the way back.

@@ -132,10 +132,8 @@ std::vector<double> trajectory::impl::meets(axis a, double line) const
     const auto& l = std::get<timed_points>(law);
     const timed_nodes nodes(*l.points, a, line);
     times = detail::line_meetings(nodes).find();
-    if (l.duration_s() == duration_s)
-        return times;
     for (double& t : times)
-        t = t / l.duration_s() * duration_s;
+        t = time_of_own(l, t);
     return times;
 }
 
@@ -149,7 +147,7 @@ std::vector<double> trajectory::impl::vertices() const
     }
     const auto& l = std::get<timed_points>(law);
     for (const timed_point& p : *l.points)
-        times.push_back(l.duration_s() == duration_s ? p.t_s : p.t_s / l.duration_s() * duration_s);
+        times.push_back(time_of_own(l, p.t_s));
     return times;
 }
 

@@ -2,11 +2,12 @@
 #include "core/trajectory/way.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <variant>
+
+#include <boost/math/quadrature/gauss.hpp>
 
 #include "core/access.hpp"
 #include "core/trajectory/impl.hpp"
@@ -23,21 +24,11 @@ constexpr double last_digits = 1e-12;
 /// Pieces of a smooth piece are no shorter than this part of its time.
 constexpr unsigned finest = 4096;
 
-/// Mean of a smooth pace by Gauss and Legendre, with five points: of so short a piece to the last digits.
+/// Mean of a smooth pace: of so short a piece to the last digits.
 double mean_part(const pace& p, double from_s, double to_s)
 {
-    struct node {
-        double place;
-        double weight;
-    };
-    constexpr std::array nodes{node{-0.9061798459386640, 0.2369268850561891},
-                               node{-0.5384693101056831, 0.4786286704993665}, node{0.0, 0.5688888888888889},
-                               node{0.5384693101056831, 0.4786286704993665},
-                               node{0.9061798459386640, 0.2369268850561891}};
-    double sum = 0.0;
-    for (const node& n : nodes)
-        sum += n.weight * p.part(std::lerp(from_s, to_s, 0.5 + 0.5 * n.place));
-    return 0.5 * sum;
+    return boost::math::quadrature::gauss<double, 7>::integrate(
+        [&](double u) { return p.part(std::lerp(from_s, to_s, u)); }, 0.0, 1.0);
 }
 
 /// Points as near to each other as two numbers can be are one: a frequency is a difference by a time.
