@@ -18,17 +18,8 @@ plan_handle planned(const std::shared_ptr<array_handle>& on, const stroke& given
     wishes w;
     take_options(w, options, on->value().tactors.size());
     const layout& faces = on->faces();
-    plan_handle p{on, fitted_alone(given_stroke, faces), {}};
-    // As the tool does it: times count where the stroke ends up.
-    if (w.fit) {
-        fitted_strokes f = fit_strokes({p.drawn}, faces, w.fit_margin_mm);
-        p.drawn = std::move(f.strokes.front());
-        p.fit = f.placed;
-    }
-    if (w.duration_s)
-        p.drawn.motion = p.drawn.motion.with_duration(*w.duration_s);
-    else if (w.speed_mm_s)
-        p.drawn.motion = p.drawn.motion.with_speed(*w.speed_mm_s);
+    asked_stroke asked = stroke_as_asked(given_stroke, faces, w);
+    plan_handle p{on, std::move(asked.drawn), {}, asked.fit};
     p.sound = w.sound;
     p.placed.start_s = p.drawn.start_s;
     p.placed.anchor = p.drawn.anchor;
@@ -161,13 +152,24 @@ py::dict summary(const plan_handle& p)
 
 } // namespace
 
-stroke fitted_alone(const stroke& s, const layout& faces)
+asked_stroke stroke_as_asked(const stroke& s, const layout& faces, const wishes& w)
 {
     if (s.fit_margin_mm && s.fit_group != 0)
         throw error(error_kind::bad_input, fmt::format("stroke \"{}\"", s.name),
                     "it is fitted together with others of its group",
                     "give fit_as_asked() all strokes of the file, and what it returns here");
-    return fit_as_asked({s}, faces).front();
+    asked_stroke a{fit_as_asked({s}, faces).front()};
+    // As the tool does it: times count where the stroke ends up.
+    if (w.fit) {
+        fitted_strokes f = fit_strokes({a.drawn}, faces, w.fit_margin_mm);
+        a.drawn = std::move(f.strokes.front());
+        a.fit = f.placed;
+    }
+    if (w.duration_s)
+        a.drawn.motion = a.drawn.motion.with_duration(*w.duration_s);
+    else if (w.speed_mm_s)
+        a.drawn.motion = a.drawn.motion.with_speed(*w.speed_mm_s);
+    return a;
 }
 
 void bind_plan(py::module_& m)

@@ -32,9 +32,15 @@ struct plan_handle {
 std::string json_of(const plan_handle& p);
 plan_handle plan_from_json(const std::string& text);
 
-/// The stroke as its file asks for it to be fitted, alone. \throws error (bad_input) where it is one of a
-/// group that is fitted as one picture.
-stroke fitted_alone(const stroke& s, const layout& faces);
+/// A stroke as it was asked for.
+struct asked_stroke {
+    stroke drawn;
+    std::optional<fitting> fit = {}; ///< of the options
+};
+
+/// Fitted as its file and the options ask for it, and as long or fast. \throws error (bad_input) where it is
+/// one of a group that is fitted as one picture.
+asked_stroke stroke_as_asked(const stroke& s, const layout& faces, const wishes& w);
 
 /// As many channels as the array and the marker need, where nobody says how many.
 render_options settled(const array& a, render_options o);

@@ -39,13 +39,7 @@ compared compare(const std::shared_ptr<array_handle>& on, const stroke& s, const
     wishes w;
     take_options(w, options, on->value().tactors.size());
     const layout& faces = on->faces();
-    stroke target = fitted_alone(s, faces);
-    if (w.fit)
-        target = fit_strokes({target}, faces, w.fit_margin_mm).strokes.front();
-    if (w.duration_s)
-        target.motion = target.motion.with_duration(*w.duration_s);
-    else if (w.speed_mm_s)
-        target.motion = target.motion.with_speed(*w.speed_mm_s);
+    const stroke target = stroke_as_asked(s, faces, w).drawn;
     const py::gil_scoped_release free;
     static_cast<void>(burst_duration_s(w.plan)); // what nobody may ask for is no row
     const cli::comparison_choice choice{kinds_of(algorithms, w.plan.algorithm),
