@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
 """--compensate: bursts that are moved for the low-speed observer, in every command that plans."""
+import csv
+import io
 import json
 import math
 import xml.etree.ElementTree as ElementTree
@@ -70,6 +72,14 @@ class Compensate(ToolTest):
         self.ok("render", "park2016-1", "--compensate", "none", "-o", "d.wav")
         self.assertEqual((self.dir / "c.wav").read_bytes(), (self.dir / "d.wav").read_bytes())
         self.assertEqual(self.ok("plan", "p.json", "--format", "json").stdout, (self.dir / "p.json").read_text())
+
+    def test_each_line_of_a_table_names_it(self):
+        for observer in ("centroid", "low-speed"):
+            args = ("compare", "park2016-1", "--observer", observer, "--format", "csv")
+            for line in csv.DictReader(io.StringIO(self.ok(*args, *MOVE, "--sigma-mm", "4").stdout)):
+                self.assertEqual(list(line.items())[-3:], [("compensated_for", "low-speed"), ("compensated_sigma_mm", "4"),
+                                                           ("compensated_sigma_v_mm_s", "100")])
+            self.assertNotIn("compensated", self.ok(*args).stdout)
 
     def test_what_is_silent_throughout_is_said_so_and_read_back(self):
         self.write("s.toml", '[stroke]\npath = "M 0 20 H 40"\nintensity = 0\n')

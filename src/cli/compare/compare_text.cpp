@@ -149,13 +149,14 @@ void print_text(std::FILE* out, const std::vector<comparison>& all, const array&
 
 namespace {
 
-// Columns after all others, of a table with people drawn.
-std::string heading_of_spread(const spread_choice& c, std::initializer_list<const char*> figures)
+// Columns after all others, of a table with people drawn, and of one of bursts that are moved.
+std::string heading_of_choices(const comparison& of, std::initializer_list<const char*> figures)
 {
+    const spread_choice& c = of.spread;
     std::string text = c.people == 0 ? "" : ",people,seed,sigma_factor,threshold_db,place_mm";
     for (const char* f : figures)
         text += c.people == 0 ? "" : fmt::format(",{0}_05,{0}_95", f);
-    return text;
+    return text + (of.compensated ? ",compensated_for,compensated_sigma_mm,compensated_sigma_v_mm_s" : "");
 }
 
 std::string fields_of_spread(const spread_choice& c, const comparison_row& r,
@@ -172,14 +173,22 @@ std::string fields_of_spread(const spread_choice& c, const comparison_row& r,
     return text;
 }
 
+std::string fields_of_choices(const comparison& of, const comparison_row& r,
+                              std::initializer_list<std::optional<interval> row_spread::*> figures)
+{
+    const low_speed_observer& o = of.observer.low_speed;
+    return fields_of_spread(of.spread, r, figures) +
+           (of.compensated ? fmt::format(",low-speed,{},{}", o.sigma_mm, o.sigma_v_mm_s) : "");
+}
+
 // The low-speed observer's table: each line says whose it is.
 void print_csv_of_taps(std::FILE* out, const std::vector<comparison>& all)
 {
     fmt::print(out,
                "stroke,name,algorithm,phantom,observer,sigma_mm,sigma_v_mm_s,built_for,bursts,rms_error_mm,"
                "largest_error_mm,felt_length_mm,target_length_mm,length_ratio,unpredicted,refused{}\n",
-               heading_of_spread(all.front().spread,
-                                 {"rms_error_mm", "largest_error_mm", "felt_length_mm", "length_ratio"}));
+               heading_of_choices(all.front(),
+                                  {"rms_error_mm", "largest_error_mm", "felt_length_mm", "length_ratio"}));
     for (std::size_t i = 0; i < all.size(); ++i)
         for (const comparison_row& r : all[i].rows) {
             const low_speed_observer& o = all[i].observer.low_speed;
@@ -192,19 +201,19 @@ void print_csv_of_taps(std::FILE* out, const std::vector<comparison>& all)
                        field(if_predicted(r.tapped.felt_length_mm)),
                        field(if_predicted(r.tapped.target_length_mm)), field(r.tapped.length_ratio),
                        field(r.unpredicted), r.refused ? field(std::string(r.refused->what())) : "",
-                       fields_of_spread(all[i].spread, r,
-                                        {&row_spread::rms_error_mm, &row_spread::largest_error_mm,
-                                         &row_spread::felt_length_mm, &row_spread::length_ratio}));
+                       fields_of_choices(all[i], r,
+                                         {&row_spread::rms_error_mm, &row_spread::largest_error_mm,
+                                          &row_spread::felt_length_mm, &row_spread::length_ratio}));
         }
 }
 
 void print_csv_of_samples(std::FILE* out, const std::vector<comparison>& all)
 {
-    fmt::print(out,
-               "stroke,name,algorithm,phantom,bursts,rms_error_mm,largest_error_mm,speed_cv,intensity_cv,"
-               "silent_share,shared_share,refused{}\n",
-               heading_of_spread(all.front().spread,
-                                 {"rms_error_mm", "largest_error_mm", "speed_cv", "intensity_cv"}));
+    fmt::print(
+        out,
+        "stroke,name,algorithm,phantom,bursts,rms_error_mm,largest_error_mm,speed_cv,intensity_cv,"
+        "silent_share,shared_share,refused{}\n",
+        heading_of_choices(all.front(), {"rms_error_mm", "largest_error_mm", "speed_cv", "intensity_cv"}));
     for (std::size_t i = 0; i < all.size(); ++i)
         for (const comparison_row& r : all[i].rows) {
             fmt::print(out, "{},{},{},{},", i, field(all[i].target.name), to_string(r.algorithm),
@@ -217,9 +226,9 @@ void print_csv_of_samples(std::FILE* out, const std::vector<comparison>& all)
                            field(r.felt.rms_error_mm), field(r.felt.largest_error_mm), field(r.felt.speed_cv),
                            field(r.felt.intensity_cv), r.felt.silent_share, r.felt.shared_share);
             fmt::print(out, "{}\n",
-                       fields_of_spread(all[i].spread, r,
-                                        {&row_spread::rms_error_mm, &row_spread::largest_error_mm,
-                                         &row_spread::speed_cv, &row_spread::intensity_cv}));
+                       fields_of_choices(all[i], r,
+                                         {&row_spread::rms_error_mm, &row_spread::largest_error_mm,
+                                          &row_spread::speed_cv, &row_spread::intensity_cv}));
         }
 }
 
