@@ -75,6 +75,14 @@ class Check(ToolTest):
         self.assertIn("tactor 1", found["levels"]["found"])
         self.check("-D", "null", "--carrier", "30000", status=2)
 
+    def test_levels_say_how_far_slow_tactors_are_driven(self):
+        self.assertNotIn("rise_ms", self.check("--array", "palm-3x3")[1]["levels"]["found"])
+        tactor = "[[tactor]]\nx_mm = {}\ny_mm = 0\nchannel = {}\nmax_dbfs = {}\n"
+        self.write("a.toml", '[array]\nname = "row"\n' + tactor.format(0, 0, -6) + "rise_ms = 3\n" + tactor.format(20, 1, -3) +
+                   "rise_ms = 2\n" + tactor.format(40, 2, -1))
+        self.assertEqual(self.check("--array", "a.toml")[1]["levels"]["found"],
+                         "peaks of -12 dBFS, at beginnings of bursts up to -6 to -3 dBFS for rise_ms")
+
     def test_actuators_against_bursts(self):
         self.write("a.toml", GRID.replace("piezo", "erm"))
         _, found = self.check("--array", "a.toml")

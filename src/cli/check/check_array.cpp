@@ -125,6 +125,17 @@ spread peaks(const render_options& r, const array& a)
     return s;
 }
 
+// Where the beginnings of bursts are made stronger, up to what a tactor may have.
+std::string raised(const array& a)
+{
+    spread s;
+    for (const tactor_spec& t : a.tactors)
+        if (t.rise_s)
+            s.add(t.max_dbfs);
+    return s.most < s.least ? ""
+                            : fmt::format(", at beginnings of bursts up to {} for rise_ms", s.text("dBFS"));
+}
+
 std::string indices(const array& a, bool (*take)(const tactor_spec&, const render_options&),
                     const render_options& r)
 {
@@ -144,8 +155,8 @@ finding check_levels(const render_options& r, const array& a, const plan_options
     } catch (const error& e) {
         return failure("levels", e);
     }
-    const std::string found = fmt::format("peaks of {}{}", peaks(r, a).text("dBFS"),
-                                          r.sl_db ? fmt::format(", {} dB SL", *r.sl_db) : "");
+    const std::string found = fmt::format("peaks of {}{}{}", peaks(r, a).text("dBFS"),
+                                          r.sl_db ? fmt::format(", {} dB SL", *r.sl_db) : "", raised(a));
     const std::string unmeasured = indices(
         a, [](const tactor_spec& t, const render_options&) { return !threshold_at(t, usual_hz); }, r);
     const bool some = std::any_of(a.tactors.begin(), a.tactors.end(),
