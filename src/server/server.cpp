@@ -124,9 +124,7 @@ private:
         if (!service_.has_place(kind)) {
             c->start(
                 {[](std::string_view) { return false; }, [] {}, [](line_fault) {}, [this] { closed(0); }});
-            c->send(refusal("max_clients",
-                            fmt::format("there is no place: {} clients are the most", limits_.max_clients),
-                            "try again later"));
+            c->send(refusal("max_clients", no_place(kind), "try again later"));
             return c->finish();
         }
         const auto link = std::make_shared<link_over<line_connection>>(c);
@@ -150,6 +148,13 @@ private:
                           self->send(why);
                   },
                   [this, n] { closed(n); }, [this, n] { return service_.is_admitted(n); }});
+    }
+
+    std::string no_place(client_kind kind) const
+    {
+        const std::size_t kept = limits_.max_clients - service_.places(kind);
+        return fmt::format("there is no place: {} clients are the most{}", limits_.max_clients,
+                           kept == 0 ? "" : fmt::format(", {} of them on this machine's socket", kept));
     }
 
     void finish(client_number n)

@@ -73,12 +73,15 @@ service::~service()
     planner_.join();
 }
 
+std::size_t service::places(client_kind k) const noexcept
+{
+    const service_limits& l = options_.limits;
+    return k == client_kind::local ? l.max_clients : l.max_clients - l.kept_clients;
+}
+
 bool service::has_place(client_kind k) const
 {
-    const std::size_t places = k == client_kind::local
-                                   ? options_.limits.max_clients
-                                   : options_.limits.max_clients - options_.limits.kept_clients;
-    return clients_.size() < places;
+    return clients_.size() < places(k);
 }
 
 client_number service::connect(std::shared_ptr<client_link> link, client_kind k)

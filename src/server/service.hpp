@@ -74,6 +74,8 @@ public:
     service& operator=(const service&) = delete;
 
     void start() { stream_.start(); }
+    /// How many clients there may be in all when one of this kind comes.
+    std::size_t places(client_kind k) const noexcept;
     /// Whether there is a place for one more.
     bool has_place(client_kind k) const;
     /// Whether it is there, and no token of it is owed.

@@ -121,7 +121,9 @@ class Limits(ServeTest):
             for c in network:
                 c.ok("hello")
             third = s.client(tcp=True)
-            self.check_error(third.next()["error"], -32001, "max_clients")
+            refused = third.next()["error"]
+            self.check_error(refused, -32001, "max_clients")
+            self.assertIn("4 clients are the most, 2 of them on this machine's socket", refused["message"])
             self.assertIsNone(third.next())
             local = [s.client() for _ in range(2)]
             for c in local:
