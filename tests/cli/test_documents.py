@@ -230,7 +230,7 @@ class OneName(ToolTest):
 
     def texts(self):
         files = [ROOT / "README.md", *(ROOT / "man").glob("*.[1-8]"), *(ROOT / "udev").iterdir(),
-                 *(f for f in (ROOT / "examples").rglob("*") if f.is_file() and f.suffix != ".svg")]
+                 *(f for f in (ROOT / "examples").rglob("*") if f.is_file() and f.suffix not in (".svg", ".wav"))]
         return {f.relative_to(ROOT).as_posix(): f.read_text(encoding="utf-8") for f in files}
 
     def test_the_card_of_the_array(self):

@@ -194,6 +194,9 @@ class Goldens(PlotTest):
     def test_the_picture_of_the_waves(self):
         self.check_golden(ROOT / "examples/textures.svg", str(ROOT / "examples/strokes/textures.toml"), "--view", "wave")
 
+    def test_the_picture_of_a_recording_along_the_path(self):
+        self.check_golden(ROOT / "examples/comb.svg", str(ROOT / "examples/strokes/comb.toml"), "--view", "wave")
+
     def test_tactile_brush(self):
         self.check_golden(ROOT / "tests/plot/golden/tactile-brush.svg", "park2016-1", *BRUSH)
 

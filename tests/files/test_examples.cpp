@@ -58,6 +58,8 @@ TEST_CASE("every example stroke is read")
     CHECK(files.size() >= 4);
     for (const fs::path& f : files) {
         CAPTURE(f.string());
+        if (f.extension() == ".wav") // what vibrates in one of them
+            continue;
         CHECK(message_of([&] { CHECK_FALSE(load_strokes(f).empty()); }) == "");
     }
 }
