@@ -50,6 +50,7 @@ void line_connection::read()
                                 } else if (e == boost::asio::error::eof) {
                                     self->reading_ = false;
                                     self->deadline_.cancel();
+                                    self->watch();
                                     // What has no line end was not finished: nobody knows what it would have
                                     // been.
                                     self->handlers_.input_ended();
@@ -57,6 +58,16 @@ void line_connection::read()
                                     self->give_up(line_fault::gone);
                                 }
                             });
+}
+
+// A Unix socket says when its other end is closed as a whole; one of TCP when it is written to.
+void line_connection::watch()
+{
+    socket_.async_wait(socket_type::wait_error,
+                       [self = shared_from_this()](const boost::system::error_code& e) {
+                           if (!e && !self->closed_)
+                               self->give_up(line_fault::gone);
+                       });
 }
 
 void line_connection::received(std::size_t n)
@@ -74,12 +85,12 @@ bool line_connection::take_lines()
     std::size_t from = 0;
     for (std::size_t end = partial_.find('\n'); end != std::string::npos; end = partial_.find('\n', from)) {
         std::string_view line(partial_.data() + from, end - from);
+        if (!line.empty() && line.back() == '\r')
+            line.remove_suffix(1);
         if (line.size() > limits_.message_bytes) {
             give_up(line_fault::too_long);
             return false;
         }
-        if (!line.empty() && line.back() == '\r')
-            line.remove_suffix(1);
         from = end + 1;
         if (!line.empty() && !handlers_.line(line)) {
             reading_ = false;
@@ -94,7 +105,8 @@ bool line_connection::take_lines()
         }
     }
     partial_.erase(0, from);
-    if (partial_.size() > limits_.message_bytes) {
+    const bool may_end = !partial_.empty() && partial_.back() == '\r';
+    if (partial_.size() > limits_.message_bytes + (may_end ? 1 : 0)) {
         give_up(line_fault::too_long);
         return false;
     }

@@ -74,6 +74,7 @@ public:
 
 private:
     void read();
+    void watch();
     void received(std::size_t n);
     bool take_lines();
     void arm(double seconds);

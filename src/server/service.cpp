@@ -81,7 +81,15 @@ std::size_t service::places(client_kind k) const noexcept
 
 bool service::has_place(client_kind k) const
 {
-    return clients_.size() < places(k);
+    return clients_.size() - gone() < places(k);
+}
+
+// Over TCP nobody knows whether who sends no more still reads; they wait for what they are owed, and take no
+// place.
+std::size_t service::gone() const
+{
+    return static_cast<std::size_t>(
+        std::count_if(clients_.begin(), clients_.end(), [](const auto& c) { return c.second->input_over; }));
 }
 
 client_number service::connect(std::shared_ptr<client_link> link, client_kind k)
@@ -199,6 +207,10 @@ bool service::input_ended(client_number number)
     for (const std::uint32_t n : c->strokes)
         if (const auto& r = strokes_.at(n); r->live)
             r->live->end();
+    if (told_all_ && gone() > options_.limits.max_clients)
+        told_all_(std::find_if(clients_.begin(), clients_.end(), [](const auto& one) {
+                      return one.second->input_over;
+                  })->first);
     return c->unanswered == 0 && c->strokes.empty();
 }
 

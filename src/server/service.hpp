@@ -130,6 +130,7 @@ private:
     void handle(client& c, net::rpc_request& r, const answer& to, std::size_t bytes);
     bool admitted(client& c, const net::rpc_message& m);
     client* find(client_number c);
+    std::size_t gone() const; ///< clients that send no more and are owed something
     void send(client& c, const reply_json& message);
     void tell_stream(stream_state s, const std::string& reason);
     void check_told_all(client_number number);

@@ -96,12 +96,34 @@ TEST_CASE("lines come whole, however they were cut")
           "still heard\n");
 }
 
+TEST_CASE("who sends no more may still read, and who is gone is gone")
+{
+    for (const bool at_once : {false, true}) {
+        CAPTURE(at_once);
+        pair p;
+        p.write("one\n");
+        if (!at_once) {
+            ::shutdown(p.peer, SHUT_WR);
+            p.until([&] { return p.input_over; });
+            p.io.poll();
+            CHECK_FALSE(p.closed);
+        }
+        ::close(std::exchange(p.peer, -1));
+        p.until([&] { return p.closed; });
+        CHECK(p.lines == std::vector<std::string>{"one"});
+    }
+}
+
 TEST_CASE("a line that is too long is refused when that is known, not when it ends")
 {
     pair p({.message_bytes = 10});
-    p.write("0123456789\n0123456789a");
+    p.write("0123456789\n0123456789\r"); // the end is no part of it
+    p.until([&] { return p.lines.size() == 1; });
+    p.io.poll();
+    CHECK_FALSE(p.closed);
+    p.write("\n0123456789a");
     p.until([&] { return p.closed; });
-    CHECK(p.lines == std::vector<std::string>{"0123456789"});
+    CHECK(p.lines == std::vector<std::string>{"0123456789", "0123456789"});
     CHECK(p.faults == std::vector<line_fault>{line_fault::too_long});
 }
 

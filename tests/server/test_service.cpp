@@ -279,4 +279,27 @@ TEST_CASE("places: some are for the socket of this machine alone")
     CHECK(rig.all->has_place(client_kind::network));
 }
 
+TEST_CASE("who sends no more and waits for the end of a stroke takes no place, and there are so many of them")
+{
+    service_rig rig([](server::service_options& o, server::stream_options&) {
+        o.limits.max_clients = 2;
+        o.limits.kept_clients = 0;
+    });
+    std::vector<server::client_number> let_go;
+    rig.all->on_told_all([&](server::client_number n) { let_go.push_back(n); });
+    rig.plug();
+    rig.start();
+    std::vector<service_rig::connected> gone;
+    for (int i = 0; i < 3; ++i) {
+        REQUIRE(rig.all->has_place(server::client_kind::network));
+        gone.push_back(rig.client());
+        rig.ok(gone.back(), "play", {{"stroke", "park2016-1"}, {"start", "armed"}});
+        CHECK_FALSE(rig.all->input_ended(gone.back().number));
+    }
+    CHECK(let_go == std::vector{gone.front().number});
+    const auto last = rig.client();
+    rig.ok(last, "stop");
+    CHECK(rig.end_of(gone.back(), 3)["state"] == "cancelled");
+}
+
 } // namespace service_test
