@@ -26,7 +26,8 @@ interrupt::interrupt()
 interrupt::~interrupt()
 {
     close(fd_);
-    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+    if (!last_)
+        pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }
 
 int interrupt::poll() noexcept

@@ -20,11 +20,14 @@ public:
     int descriptor() const noexcept { return fd_; }
     /// The signal that has come, or 0. Does not wait.
     int poll() noexcept;
+    /// Whatever else comes is nothing more to this process, which has heard that it is to end and ends.
+    void was_the_last() noexcept { last_ = true; }
     /// Exit status for a signal: 128 + its number.
     static int status(int signal) noexcept { return 128 + signal; }
 
 private:
     int fd_;
+    bool last_ = false;
     sigset_t before_{};
 };
 

@@ -49,6 +49,14 @@ void check_private(const std::string& path)
     throw error(error_kind::bad_input, what, "this build has no OSC", "build it with liblo (-Dosc=enabled)");
 }
 
+std::optional<std::pair<dev_t, ino_t>> file_at(const std::string& path) noexcept
+{
+    struct stat is {};
+    if (::lstat(path.c_str(), &is) != 0)
+        return {};
+    return std::pair(is.st_dev, is.st_ino);
+}
+
 } // namespace
 
 endpoints open_endpoints(const endpoint_options& o)
@@ -77,7 +85,7 @@ endpoints open_endpoints(const endpoint_options& o)
     } else {
         e.socket_path = o.socket();
         e.socket = net::listen_unix(e.socket_path, o.mode, o.group);
-        e.own_socket = true;
+        e.own_socket = file_at(e.socket_path);
     }
     try {
         if (!e.tcp && o.tcp)
@@ -90,8 +98,7 @@ endpoints open_endpoints(const endpoint_options& o)
             e.osc = net::bind_udp(*o.osc, "osc");
         }
     } catch (...) {
-        if (e.own_socket)
-            ::unlink(e.socket_path.c_str());
+        remove_socket(e);
         throw;
     }
     for (const auto& [fd, address] : {std::pair(&e.tcp, &e.tcp_address), std::pair(&e.http, &e.http_address),
@@ -103,7 +110,7 @@ endpoints open_endpoints(const endpoint_options& o)
 
 void remove_socket(const endpoints& at) noexcept
 {
-    if (at.own_socket)
+    if (at.own_socket && file_at(at.socket_path) == at.own_socket)
         ::unlink(at.socket_path.c_str());
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <sys/types.h>
@@ -29,7 +30,8 @@ struct endpoint_options {
 struct endpoints {
     net::owned_fd socket;
     std::string socket_path;
-    bool own_socket = false; ///< bound here, and removed at the end
+    /// Device and number of the file that was bound here, and is removed at the end, if it is that one still.
+    std::optional<std::pair<dev_t, ino_t>> own_socket = {};
     net::owned_fd tcp;
     std::string tcp_address; ///< empty: off
     net::owned_fd http;

@@ -29,6 +29,25 @@ class Serve(ServeTest):
     def test_sigint_ends_it_too(self):
         self.assertEqual(self.serve().terminate(signal.SIGINT)[0], 0)
 
+    def test_whatever_signals_come_with_it_it_ends_well(self):
+        for other in (signal.SIGINT, signal.SIGHUP, signal.SIGTERM):
+            s = self.serve()
+            s.process.send_signal(signal.SIGTERM)
+            try:
+                s.process.send_signal(other)
+            finally:
+                self.assertEqual(s.process.wait(PATIENCE_S), 0)
+            self.assertFalse(os.path.exists(s.where["socket"]))
+
+    def test_the_socket_of_another_server_stays(self):
+        path = self.dir / "s"
+        first = self.serve("--socket", path)
+        path.unlink()
+        second = self.serve("--socket", path)
+        first.process.send_signal(signal.SIGTERM)
+        self.assertEqual(first.process.wait(PATIENCE_S), 0)
+        self.assertEqual(second.client().ok("hello")["protocol"], "tactor/1")
+
     def test_the_mode_of_the_socket_under_any_umask(self):
         before = os.umask(0)
         self.addCleanup(os.umask, before)

@@ -217,7 +217,7 @@ int serve(settings& s, owners_defaults& defaults, const play_options& play, cons
     stream.idle_stop_s = serve.idle_stop_s.value_or(0.0);
     server::serve(at, std::move(service), std::move(stream), std::move(network), stop.descriptor(),
                   [&] { tell_listening(at, o.format); });
-    stop.poll(); // it is dealt with: it must not come again once signals do what they always do
+    stop.was_the_last();
     return status_ok;
 }
 
