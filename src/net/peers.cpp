@@ -10,7 +10,6 @@
 #include "core/prefix_bits.hpp"
 
 namespace tactor::net {
-namespace {
 
 namespace ip = boost::asio::ip;
 
@@ -20,6 +19,8 @@ ip::address plain(const ip::address& a)
         return ip::make_address_v4(ip::v4_mapped, a.to_v6());
     return a;
 }
+
+namespace {
 
 template <typename Bytes>
 bool same_beginning(const Bytes& a, const Bytes& b, unsigned bits)

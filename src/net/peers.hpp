@@ -10,6 +10,9 @@
 
 namespace tactor::net {
 
+/// An IPv4 address within IPv6 as what it is; any other as it is.
+boost::asio::ip::address plain(const boost::asio::ip::address& a);
+
 /// The addresses that begin with the same bits.
 struct address_prefix {
     boost::asio::ip::address address;

@@ -7,6 +7,8 @@
 
 #include <boost/asio/ip/address.hpp>
 
+#include "net/peers.hpp"
+
 namespace tactor::net {
 namespace {
 
@@ -52,7 +54,7 @@ bool same_address(std::string_view a, std::string_view b)
     if (none)
         return false;
     const auto y = boost::asio::ip::make_address(std::string(b), none);
-    return !none && x == y;
+    return !none && plain(x) == plain(y);
 }
 
 // Browsers leave out the port of their scheme.

@@ -85,6 +85,7 @@ struct web_connection::session : std::enable_shared_from_this<session> {
     bool armed = false;
     bool met = false; ///< the first message has come
     bool accepted = false;
+    bool answered = false; ///< with a page, or why there is none
     bool writing = false;
     bool reading = true;
     bool finishing = false;
@@ -97,7 +98,7 @@ void web_connection::session::read_request()
     arm(limits.message_s);
     http::async_read_header(
         socket, buffer, parser, [self = shared_from_this()](const beast::error_code& e, std::size_t) {
-            if (self->closed)
+            if (self->closed || self->answered)
                 return;
             self->armed = false;
             self->deadline.cancel();
@@ -138,6 +139,7 @@ void web_connection::session::answer_request()
 // One request a connection: a page asks for little.
 void web_connection::session::respond(web_reply r)
 {
+    answered = true;
     response.result(r.status);
     response.version(11);
     response.set(http::field::server, "tactor");
@@ -157,6 +159,8 @@ void web_connection::session::respond(web_reply r)
     if (r.status != 426)
         response.keep_alive(false);
     response.prepare_payload();
+    if (parser.get().method() == http::verb::head)
+        response.body().clear(); // how long it would be is said
     arm(limits.message_s);
     http::async_write(socket, response,
                       [self = shared_from_this()](const beast::error_code&, std::size_t) { self->close(); });
@@ -311,6 +315,8 @@ void web_connection::session::arm(double seconds)
         if (self->accepted && self->ws->is_open())
             self->finish({websocket::close_code::policy_error,
                           self->met ? "a message took too long" : "the first message did not come"});
+        else if (!self->accepted && !self->answered && self->parser.got_some())
+            self->respond({408, "text/plain", "the request took too long\n", ""});
         else
             self->close();
     });

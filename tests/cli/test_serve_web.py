@@ -96,6 +96,10 @@ class Web(ToolTest):
                                        ("/", "PUT", 405), ("/rpc", "POST", 405), ("/../etc/passwd", "GET", 404)):
             self.assertEqual(s.peer().request(target, method)[0], status, (target, method))
         p = s.peer()
+        status, headers = p.request("/", "HEAD")
+        self.assertEqual((status, headers["content-length"]), (405, "9"))
+        self.assertRaises(EOFError, p.take, 1)
+        p = s.peer()
         self.assertEqual(p.request("/", Content_Length="5")[0], 413)
         # Whoever asks is looked at before what is asked for: a body makes no difference.
         for body in ({"Content_Length": "40"}, {"Transfer_Encoding": "chunked"}):
@@ -113,7 +117,8 @@ class Web(ToolTest):
         s = self.serve(config="[serve]\nmax_message_s = 1\n")
         p = s.peer()
         p.send(b"GET / HTTP/1.1\r\n")
-        self.assertRaises(EOFError, p.head)
+        self.assertEqual(p.head()[0], 408)
+        self.assertRaises(EOFError, s.peer().head)  # nobody asked anything
         s = self.serve("--socket", self.dir / "other.sock")
         p = s.peer()
         for b in b"GET / HTTP/1.1\r\nHost: %s\r\n\r\n" % s.address.encode():

@@ -27,6 +27,10 @@ TEST_CASE("names by which a browser may call this server")
     CHECK(host_is_ours("[::1]:4003", "[::1]:4003", {}));
     CHECK(host_is_ours("[0:0::1]:4003", "[::1]:4003", {}));
     CHECK_FALSE(host_is_ours("[::1]", "[::1]:4003", {}));
+    // What listens on [::] hears IPv4, too.
+    CHECK(host_is_ours("192.168.1.7:4003", "[::ffff:192.168.1.7]:4003", {}));
+    CHECK(host_is_ours("[::ffff:192.168.1.7]:4003", "[::ffff:192.168.1.7]:4003", {}));
+    CHECK_FALSE(host_is_ours("192.168.1.8:4003", "[::ffff:192.168.1.7]:4003", {}));
     CHECK(host_is_ours("localhost", "127.0.0.1:80", {}));
     CHECK(host_is_ours("192.168.1.7:4003", "192.168.1.7:4003", {}));
 }
