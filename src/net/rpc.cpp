@@ -2,6 +2,8 @@
 #include "net/rpc.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <utility>
 
 #include <fmt/format.h>
@@ -31,6 +33,43 @@ bool nests_deeper(std::string_view text, std::size_t most)
         }
     }
     return false;
+}
+
+// Numbers that no double holds become null, which is no number either: so the message can be answered by its
+// id.
+std::string without_overflows(std::string_view text)
+{
+    std::string out;
+    out.reserve(text.size());
+    bool quoted = false;
+    for (std::size_t i = 0; i < text.size();) {
+        const std::size_t end =
+            quoted ? i : std::min(text.find_first_not_of("+-.0123456789eE", i), text.size());
+        if (end != i && (text[i] == '-' || (text[i] >= '0' && text[i] <= '9'))) {
+            const std::string number(text.substr(i, end - i));
+            out += std::isfinite(std::strtod(number.c_str(), nullptr)) ? number : "null";
+            i = end;
+            continue;
+        }
+        if (quoted && text[i] == '\\' && i + 1 < text.size())
+            out += text[i++];
+        else if (text[i] == '"')
+            quoted = !quoted;
+        out += text[i++];
+    }
+    return out;
+}
+
+json parsed(std::string_view text)
+{
+    constexpr int number_overflow = 406;
+    try {
+        return json::parse(text);
+    } catch (const json::out_of_range& e) {
+        if (e.id != number_overflow)
+            throw;
+        return json::parse(without_overflows(text));
+    }
 }
 
 rpc_refusal invalid(json id, std::string why)
@@ -86,7 +125,7 @@ rpc_message parse_rpc(std::string_view text, const rpc_limits& l)
             over("max_nesting", fmt::format("a message nests deeper than {} levels", l.nesting), ""));
     json j;
     try {
-        j = json::parse(text);
+        j = parsed(text);
     } catch (const json::exception& e) {
         // Without the library's own name and number, which help nobody.
         std::string_view why = e.what();

@@ -53,6 +53,22 @@ TEST_CASE("what is no request has the standard's code")
     CHECK(code_of(R"({"jsonrpc":"2.0","method":"m","params":[1],"id":null})") == 0);
 }
 
+TEST_CASE("a number that no double holds is no number, and its message is answered")
+{
+    const rpc_message m = parse_rpc(
+        R"({"jsonrpc":"2.0","id":6,"method":"a\"1e400","params":{"x":1e400,"y":[-1E+400,1e-400],"z":"1e400","d":2}})",
+        {});
+    const auto& r = std::get<rpc_request>(m.parts.front());
+    CHECK(r.id == 6);
+    CHECK(r.method == "a\"1e400");
+    CHECK(r.params["x"].is_null());
+    CHECK(r.params["y"][0].is_null());
+    CHECK(r.params["y"][1] == 0.0);
+    CHECK(r.params["z"] == "1e400");
+    CHECK(r.params["d"] == 2);
+    CHECK(code_of("[1e400,") == code_parse_error);
+}
+
 TEST_CASE("nesting is counted outside of texts, and refused before anything is built")
 {
     const auto nested = [](int n) { return std::string(static_cast<std::size_t>(n), '['); };
