@@ -38,7 +38,7 @@ constexpr std::array<translation, 13> in_advice{{{"fit_strokes() scales it to th
                                                  {"array = FILE", "another array of the server"}}};
 
 // What it is about, by how it begins.
-constexpr std::array<translation, 19> subjects{{{"soa_s", "options.soa"},
+constexpr std::array<translation, 21> subjects{{{"soa_s", "options.soa"},
                                                 {"burst_s", "options.burst"},
                                                 {"duration of a burst", "options.burst"},
                                                 {"carrier_hz", "options.carrier"},
@@ -56,6 +56,8 @@ constexpr std::array<translation, 19> subjects{{{"soa_s", "options.soa"},
                                                 {"release_s", "options.release"},
                                                 {"intensity_scale", "options.intensity_scale"},
                                                 {"stevens_exponent", "options.stevens_exponent"},
+                                                {"algorithm", "options.algorithm"},
+                                                {"texture", "options.texture"},
                                                 {"live_options", "options"}}};
 
 std::string in_params(std::string text)
@@ -94,9 +96,15 @@ void no_stream(const std::string& why)
 
 rpc_fault fault_of(const error& e, const std::string& source)
 {
-    const std::string_view subject = e.subject();
-    rpc_fault f{net::code_bad_params, std::string(to_string(e.kind())), source,
-                in_params(std::string(e.why())), in_params(std::string(e.hint()))};
+    const bool of_call = e.subject() == "live stroke" && !e.field().empty();
+    const std::string_view subject = of_call ? e.field() : e.subject();
+    // Keys of a file are called as they are there.
+    const bool of_file = subject.starts_with(source + ":");
+    const auto told = [&](std::string_view t) {
+        return of_file ? std::string(t) : in_params(std::string(t));
+    };
+    rpc_fault f{net::code_bad_params, std::string(to_string(e.kind())), source, told(e.why()),
+                told(e.hint())};
     if (e.kind() == error_kind::runtime)
         f.code = net::code_internal;
     if (e.kind() == error_kind::not_available)
@@ -107,7 +115,7 @@ rpc_fault fault_of(const error& e, const std::string& source)
         f.what = known->param;
     // "toml:3:5" says where in the text; "stroke" and the like, and a field, no more than the parameter does.
     const bool field = known != subjects.end() && subject == known->field;
-    if (subject.starts_with(source + ":"))
+    if (of_file)
         f.why = fmt::format("{}: {}", subject.substr(source.size() + 1), f.why);
     else if (!field && subject != source && subject != "stroke" &&
              subject != fmt::format("stroke \"{}\"", source) && subject != "path data" &&

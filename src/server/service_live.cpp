@@ -28,7 +28,7 @@ void service::begin(client& c, const json& params, const answer& to)
     s.plan.outside = usual.plan.outside;
     if (const json* o = member(params, "options"))
         s = with_options(s, *o, options_for::live);
-    check_level(options_.plans, s, 1.0, s.plan.carrier_hz);
+    check_level(options_.plans, s, 1.0, s.plan.carrier_hz, "options");
     live_options o;
     o.plan = s.plan;
     o.render = s.render;
@@ -56,7 +56,10 @@ void service::begin(client& c, const json& params, const answer& to)
         try {
             begin_now(*then, o, to, stops != stops_);
         } catch (...) {
-            to.fault(current_fault("options"));
+            net::rpc_fault f = current_fault("options");
+            if (o.render.sl_db && f.what == "options.level_dbfs")
+                f.what = "options.sl"; // a tactor's level is either
+            to.fault(f);
         }
         note_busy();
     });

@@ -145,7 +145,8 @@ const char* source_of(const json& params)
     return found;
 }
 
-void check_level(const planning& with, const stroke_settings& s, double intensity, double carrier_hz)
+void check_level(const planning& with, const stroke_settings& s, double intensity, double carrier_hz,
+                 const std::string& source)
 {
     if (intensity <= 0.0)
         return;
@@ -158,7 +159,8 @@ void check_level(const planning& with, const stroke_settings& s, double intensit
     }
     if (level + over_db <= with.max_level_dbfs + rounding_db)
         return;
-    bad_param(s.render.sl_db ? "options.sl" : "options.level_dbfs",
+    const char* const option = s.render.sl_db ? "options.sl" : "options.level_dbfs";
+    bad_param(over_db > 0.0 && level <= with.max_level_dbfs + rounding_db ? source : option,
               fmt::format("{} dBFS{} is more than {} dBFS, which the owner allows", plain_number(level, 4),
                           over_db == 0.0 ? "" : fmt::format(" and intensity {}", plain_number(intensity, 4)),
                           plain_number(with.max_level_dbfs, 4)),
@@ -214,7 +216,7 @@ planned make_planned(const planning& with, const layout& faces, const json& para
             between();
             p.plans.push_back({make_plan(with.tactors, faces, k, s.plan), k.start_s, k.anchor});
             const plan& made = p.plans.back().schedule;
-            check_level(with, s, loudest(k, made, s.plan.scale), made.carrier_hz);
+            check_level(with, s, loudest(k, made, s.plan.scale), made.carrier_hz, source);
         }
         in_time(with, p.total_s());
         between();
@@ -243,7 +245,7 @@ planned make_drive(const planning& with, const json& params)
     constexpr double usual_s = 0.5;
     const double seconds = given == nullptr ? usual_s : number(*given, "duration_s", 0.001, 86400);
     in_time(with, seconds);
-    check_level(with, with.owner, intensity, with.owner.plan.carrier_hz);
+    check_level(with, with.owner, intensity, with.owner.plan.carrier_hz, "intensity");
     planned p{"drive", {}, {}, with.owner.render};
     const point where = with.tactors.tactors[static_cast<std::size_t>(tactor)].position;
     plan schedule{.algorithm = "drive", .phantom = "none"};

@@ -55,7 +55,9 @@ planned make_planned(const planning& with, const layout& faces, const net::json&
 /// One tactor for a while. \throws fault_error.
 planned make_drive(const planning& with, const net::json& params);
 
-/// \throws fault_error where the settings are louder at this intensity and carrier than the owner allows.
-void check_level(const planning& with, const stroke_settings& s, double intensity, double carrier_hz);
+/// \throws fault_error where the settings are louder at this intensity and carrier than the owner allows; of
+///         the level, or of `source` where only its intensity is too much.
+void check_level(const planning& with, const stroke_settings& s, double intensity, double carrier_hz,
+                 const std::string& source);
 
 } // namespace tactor::server

@@ -70,6 +70,13 @@ class Remote(ToolTest):
         for argument, name in (("plan.json", "plan.json"), ("-", "standard input")):
             self.refused(2, "play", argument, "--socket", s.where["socket"], stdin=plan, says=(f"{name}: it is a plan", "a server"))
 
+    def test_what_is_wrong_in_a_file_has_its_line(self):
+        s = self.serve()
+        self.write("bad.toml", '[stroke]\npath = "M 0 0 L 40 40"\nsoas = 1\n')
+        here = self.refused(2, "play", "bad.toml", "-D", "null", says=["bad.toml:3:1: ", "'soa_s'"])
+        there = self.refused(2, "play", "bad.toml", "--socket", s.where["socket"], says=["bad.toml:3:1: ", "'soa_s'"])
+        self.assertEqual(there.stderr, here.stderr)
+
     def test_stop_and_ctrl_c_end_it_with_their_status(self):
         s = self.serve()
         watcher = s.client()

@@ -79,7 +79,8 @@ class Protocol(ServeTest):
                              ("options.nonsense", {"path": path, "options": {"nonsense": 1}}),
                              ("options.power_dbfs", {"path": path, "options": {"power_dbfs": 1}}),
                              ("options.level_dbfs", {"path": path, "options": {"level_dbfs": -11.9}}),
-                             ("options.level_dbfs", {"points": [[0, 0, 0], [1, 20, 20, 1.1]]}),
+                             ("points", {"points": [[0, 0, 0], [1, 20, 20, 1.1]]}),
+                             ("options.level_dbfs", {"points": [[0, 0, 0], [1, 20, 20, 1.1]], "options": {"level_dbfs": -3}}),
                              ("options.sl", {"path": path, "options": {"sl": 10}}),
                              ("options.algorithm", {"path": path, "options": {"algorithm": "x"}}),
                              ("options.snap", {"path": path, "options": {"snap": "true"}}),
@@ -95,6 +96,26 @@ class Protocol(ServeTest):
         said = c.error("play", path=path, options={"carrier": 30000})
         self.check_error(said, -32602, "options.carrier")
         self.assertEqual(said["message"].count("options.carrier"), 1, said)
+        for what, options in (("options.sl", {"sl": 1}), ("options.carrier", {"carrier": 24001}),
+                              ("options.algorithm", {"algorithm": "tactile-brush"})):
+            self.check_error(c.error("begin", options=options), -32602, what)
+
+    def test_keys_of_a_file_are_called_as_they_are_there(self):
+        c = self.serve().client()
+        for line, word in (("soas = 1", "did you mean 'soa_s'?"), ("level_dbfs = 1", "unknown key 'level_dbfs'"), ("nonsense = 1", "carrier_hz")):
+            said = c.error("play", toml=f'[stroke]\npath = "M 0 0 L 40 40"\n{line}\n')
+            self.check_error(said, -32602, "toml")
+            self.assertIn(word, said["message"])
+            self.assertNotIn("options.", said["message"])
+            self.assertTrue(said["data"]["why"].startswith("3:1: "), said)
+
+    def test_a_number_that_no_double_holds_is_answered(self):
+        c = self.serve().client()
+        n = c.ok("begin", timeout_s=3600)["stroke"]
+        c.raw(b'{"jsonrpc":"2.0","id":77,"method":"to","params":{"stroke":%d,"x_mm":1e400,"y_mm":0}}\n' % n)
+        said = c.reply()
+        self.assertEqual(said["id"], 77)
+        self.check_error(said["error"], -32602, "x_mm")
 
     def test_the_owners_level_is_the_ceiling(self):
         c = self.serve(config='[serve]\nmax_level_dbfs = -30\n[defaults]\nlevel-dbfs = -20\n').client()

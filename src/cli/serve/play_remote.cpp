@@ -23,6 +23,7 @@
 #include "cli/play/play_report.hpp"
 #include "cli/say.hpp"
 #include "cli/serve/rpc_client.hpp"
+#include "cli/serve/server_words.hpp"
 #include "cli/serve/stroke_text.hpp"
 
 namespace tactor::cli {
@@ -44,22 +45,6 @@ void refuse_owners(const option_list& options)
         if (options.given(name))
             throw error(error_kind::bad_input, fmt::format("--{}", name),
                         "it is not for strokes that a server plays", "leave it out with --socket");
-}
-
-/// The server's words about a parameter, as the command line has it.
-error in_words_of_the_tool(const error& e, const std::string& argument)
-{
-    std::string what(e.subject());
-    if (what.starts_with("options.")) {
-        what = "--" + what.substr(std::string_view("options.").size());
-        std::replace(what.begin(), what.end(), '_', '-');
-    } else if (what == "stroke" || what == "path" || what == "toml" || what == "csv" || what == "svg") {
-        what = argument;
-    }
-    std::string hint(e.hint());
-    for (std::size_t at = hint.find("options."); at != std::string::npos; at = hint.find("options."))
-        hint.replace(at, std::string_view("options.").size(), "--");
-    return e.reworded(what, e.why(), hint);
 }
 
 class remote_player {
