@@ -136,6 +136,11 @@ TEST_CASE("what is wrong is said with its line")
     says(head + motion + methods + run + "scale = 7\n", "e.toml:17:", "scale is of runs that rate");
     says(head + motion + methods + "[[run]]\nname = \"r\"\ntask = \"rate\"\nattribute = \"similarity\"\n",
          "e.toml:12:", "no trials");
+    const std::string rate =
+        "[[run]]\nname = \"r\"\ntask = \"rate\"\nattribute = \"similarity\"\ntrials = 4\n";
+    for (const char* none : {"[\"a\"]", "[\"a\", \"b\", \"c\"]"})
+        says(head + motion + methods + rate + "labels = " + none + "\n",
+             "e.toml:17:", "for a scale of 5 (one for each end, or one for each step)");
     says(head + motion + methods + run + "methods = [\"a\", \"c\"]\n", "e.toml:17:", "not defined");
     says(head + motion + methods + run + run, "e.toml:18:", "one name");
 }

@@ -191,6 +191,11 @@ run_definition run_in(const toml_table& t)
     r.practice = t.whole("practice", 0, most_trials).value_or(0);
     r.outline.scale = t.whole("scale", 2, 9).value_or(5);
     r.labels = texts(t, "labels", r.outline.scale);
+    if (!r.labels.empty() && r.labels.size() != 2 && r.labels.size() != r.outline.scale)
+        t.fail(
+            "labels",
+            fmt::format("labels has {} for a scale of {}", counted(r.labels.size(), "text"), r.outline.scale),
+            "one for each end, or one for each step");
     r.break_s = t.number("break_s", {0.0, 86400.0}).value_or(0.0);
     t.list("motions", "names");
     t.list("methods", "names");
