@@ -2,8 +2,10 @@
 #include "synth/mix/mixer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include <doctest/doctest.h>
 
@@ -34,6 +36,22 @@ drive_event make_event(std::uint64_t start, std::uint32_t length, std::uint32_t 
 drive_event make_event(std::uint64_t start, std::uint32_t length, double a = 0.5)
 {
     return make_event(start, length, 0, a, a);
+}
+
+/// Bends at its quarters.
+drive_event make_line(std::uint64_t start, std::uint32_t length, std::uint32_t channel,
+                      const std::array<double, 5>& amplitudes)
+{
+    drive_event e = make_event(start, length, channel, 0.0, 0.0);
+    e.drives = 0;
+    e.points = 5;
+    e.line = {};
+    e.line.channel = channel;
+    for (unsigned i = 0; i < 5; ++i) {
+        e.line.amplitude[i] = amplitudes[i];
+        e.line.frame[i] = static_cast<std::uint16_t>(length / 4 * i);
+    }
+    return e;
 }
 
 mixer make_mixer(std::size_t capacity = 64)
@@ -183,6 +201,41 @@ TEST_CASE("each channel is held to its limit and what was cut is counted")
     }
     CHECK(cut > 400);
     CHECK(m.limited() >= cut + 400);
+}
+
+TEST_CASE("a limit holds whatever is silent at first between those that together are above it")
+{
+    mixer m(std::vector<double>{0.25, 0.25}, format_kind::float32, 8);
+    m.add(make_event(0, 100, 0, 0.2, 0.2));
+    m.add(make_line(10, 384, 0, {0.0, 0.0, 0.01, 0.01, 0.01}));
+    drive_event e = make_event(50, 400, 0, 0.2, 0.2);
+    e.phase_frame = 50;
+    m.add(e);
+    const auto x = take(m, 480, 480);
+    for (const float v : x)
+        CHECK(std::abs(v) <= 0.25F);
+    CHECK(m.limited() > 10);
+}
+
+TEST_CASE("no sample is above the limit, whatever begins and ends within a block")
+{
+    std::mt19937 random(1);
+    const auto below = [&](unsigned n) { return static_cast<std::uint32_t>(random() % n); };
+    for (int round = 0; round < 400; ++round) {
+        mixer m(std::vector<double>{0.25, 0.25}, format_kind::float32, 16);
+        for (unsigned i = 0; i < 3 + below(8); ++i) {
+            const std::uint32_t start = below(900);
+            const auto amplitude = [&] { return below(2) == 0 ? 0.0 : 0.02 * below(12); };
+            drive_event e = below(2) == 0
+                                ? make_line(start, 32 * (1 + below(8)), below(2),
+                                            {amplitude(), amplitude(), amplitude(), amplitude(), amplitude()})
+                                : make_event(start, 1 + below(300), below(2), amplitude(), amplitude());
+            e.phase_frame = start;
+            m.add(e);
+        }
+        const auto x = take(m, 1200, 96 + below(400));
+        CHECK(std::all_of(x.begin(), x.end(), [](float v) { return std::abs(v) <= 0.25F; }));
+    }
 }
 
 TEST_CASE("one stroke at full scale passes the limiter untouched")

@@ -84,8 +84,8 @@ void mixer::impl::begin_strip(std::uint32_t channel, const voice& v, unsigned fr
     sounding.push_back(channel);
 }
 
-// What of it lies in the block counts as one with its greatest amplitude: voices come in order of their
-// start.
+// What of it lies in the block counts as one with its greatest amplitude, from the voice's own start on,
+// though it be silent at first: voices come in order of their start.
 void mixer::impl::mix_line(const voice& v, const double* s, unsigned n) noexcept
 {
     strip& t = strips[v.line.channel];
@@ -119,7 +119,7 @@ void mixer::impl::mix_line(const voice& v, const double* s, unsigned n) noexcept
     } else {
         t.join(v);
     }
-    t.reach(first, end, peak);
+    t.reach(static_cast<unsigned>(std::max(v.start, position) - position), end, peak);
 }
 
 void mixer::impl::limit(unsigned n) noexcept
