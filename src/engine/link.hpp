@@ -48,6 +48,7 @@ struct counters {
     std::atomic<std::uint64_t> periods{0};
     std::atomic<std::uint64_t> frames{0};
     std::atomic<std::uint64_t> xruns{0};
+    std::atomic<std::uint64_t> suspends{0};
     std::atomic<std::uint64_t> limited{0};
     std::atomic<std::uint64_t> low_water{UINT64_MAX};
     std::atomic<std::uint64_t> late_frames{0};

@@ -171,6 +171,25 @@ TEST_CASE("a system that sleeps: off; when it wakes up, the order of a start")
     CHECK(r.link.amplifier.ready);
 }
 
+TEST_CASE("a sleep that passes between two looks of the amplifier's thread is none that it misses")
+{
+    for (const bool can_resume : {true, false}) {
+        playing r;
+        r.dac.suspend();
+        r.step();
+        r.dac.wake(can_resume);
+        r.step();
+        REQUIRE(r.status().running);
+        r.control();
+        const event_log seen = r.news();
+        CHECK(std::count(seen.begin(), seen.end(), "off") == 1);
+        CHECK_FALSE(r.line.is_on);
+        for (int i = 0; i < 40; ++i)
+            r.play(96);
+        CHECK(r.news() == event_log{"on"});
+    }
+}
+
 TEST_CASE("EINTR, no space and wake-ups in vain do not touch the line")
 {
     playing r;

@@ -114,6 +114,25 @@ TEST_CASE("bursts: each SOA one, at the newest position, as long as the law says
     CHECK(r.report({1})->frames % 2880 == duration);
 }
 
+TEST_CASE("bursts: points that come in time keep a stroke alive, however seldom a burst takes one")
+{
+    live_options o = bursts();
+    o.plan.soa_s = 0.6;
+    o.plan.burst_s = 0.05;
+    o.timeout_s = 0.5;
+    live_rig r(o);
+    for (int i = 0; i < 150; ++i) { // 3 s
+        r.live->to({20.0, 20.0}, 1.0);
+        r.play(960);
+        REQUIRE_FALSE(r.report({1}));
+    }
+    // Silence counts from the burst that took the last one.
+    r.play(48000);
+    r.play(9600);
+    REQUIRE(r.report({1}));
+    CHECK(r.report({1})->reason == reason_kind::starved);
+}
+
 TEST_CASE(
     "bursts: those in a row on one tactor are one sine of the stroke; or each begins anew, if asked for")
 {

@@ -86,6 +86,7 @@ void audio_loop::broken(io_kind s, int code, std::int64_t now) noexcept
         silence_all(reason_kind::xrun, code, mixer_.position() - pending_);
         return too_often(now) ? finish(reason_kind::lost, -EPIPE) : restart(now);
     case io_kind::suspended:
+        link_.count.suspends.fetch_add(1, std::memory_order_release);
         silence_all(reason_kind::suspended, code, played_);
         phase_ = phase::suspended;
         suspended_ns_ = now;
@@ -125,10 +126,13 @@ void audio_loop::restart(std::int64_t now) noexcept
         return finish(stop_why_, 0);
     io_result r = begin_epoch();
     while (r.status == io_kind::xrun) {
+        silence_all(reason_kind::xrun, r.code, 0);
         if (too_often(now))
             return finish(reason_kind::lost, -EPIPE);
         r = begin_epoch();
     }
+    if (r.status == io_kind::suspended)
+        silence_all(reason_kind::suspended, r.code, 0); // what began in a buffer that was never played
     if (r.status == io_kind::ok) {
         run_from(now);
     } else if (r.status == io_kind::suspended) {

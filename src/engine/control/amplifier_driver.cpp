@@ -46,11 +46,10 @@ void amplifier_driver::hear(const stream_status& s, std::int64_t now) noexcept
     const std::uint64_t xruns = link_.count.xruns.load(std::memory_order_acquire);
     for (; xruns_ < xruns; ++xruns_)
         amplifier_.handle(amplifier_event::xrun, now);
-    // Also when it slept and woke up between two looks: then the epoch has changed without an xrun, and the
-    // line had been off in the sleep.
-    if (s.stage == stream_stage::suspended && stage_ != stream_stage::suspended)
+    // Also when it slept and woke up between two looks; and while it sleeps, whatever was heard before.
+    const std::uint64_t suspends = link_.count.suspends.load(std::memory_order_acquire);
+    if (std::exchange(suspends_, suspends) != suspends || s.stage == stream_stage::suspended)
         amplifier_.handle(amplifier_event::suspended, now);
-    stage_ = s.stage;
     if (s.epoch != epoch_) {
         epoch_ = s.epoch;
         amplifier_.handle(amplifier_event::started, now);

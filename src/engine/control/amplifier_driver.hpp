@@ -59,9 +59,9 @@ private:
     bool stuck_ = false;          ///< refused for persist_ns
     std::int64_t refused_ns_ = 0; ///< the first time
     std::int64_t tried_ns_ = 0;   ///< the last time
-    stream_stage stage_ = stream_stage::idle;
     std::uint64_t epoch_ = 0;
     std::uint64_t xruns_ = 0;
+    std::uint64_t suspends_ = 0;
     std::uint64_t periods_ = 0;
     std::int64_t idle_ns_ = 0; ///< time in which no period was written
     std::int64_t updated_ns_ = 0;

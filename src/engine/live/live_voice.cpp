@@ -94,7 +94,8 @@ bool live_voice::render(synth::mixer& m, std::uint64_t frames, std::uint64_t off
     } else {
         fits = follow(m, frames, t);
     }
-    idle_ += frames;
+    // A burst takes the newest point; until then it waits.
+    idle_ = setup_.bursts && points_.has_news() ? 0 : idle_ + frames;
     rendered_.store(m.position() + frames - base_, std::memory_order_relaxed);
     return fits;
 }
