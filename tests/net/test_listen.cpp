@@ -7,6 +7,8 @@
 #include <string>
 
 #include <doctest/doctest.h>
+#include <fcntl.h>
+#include <sys/file.h>
 
 #include <tactor/error.hpp>
 
@@ -30,6 +32,14 @@ int os_code(const std::function<void()>& call)
 }
 
 } // namespace
+
+TEST_CASE("a folder that somebody holds locked is not waited for without end")
+{
+    const folder here;
+    const owned_fd other(::open((here / ".").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    REQUIRE(::flock(other.get(), LOCK_EX) == 0);
+    CHECK(listen_unix((here / "s").string(), 0600, {}));
+}
 
 TEST_CASE("what the system refuses a listener has its errno")
 {
