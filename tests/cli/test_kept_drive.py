@@ -101,6 +101,19 @@ class KeptDrive(ToolTest):
                 self.assertEqual(self.kept("going"), [])
                 self.kept()[0].unlink()
 
+    def test_a_run_of_the_same_number_was_killed_too(self):
+        p = self.running(*STILL, "--duration", "300")
+        self.until(lambda: self.kept("going"), p)
+        began = time.monotonic()
+        p.kill()
+        p.wait()
+        self.until(lambda: time.monotonic() > began + 0.6)
+        left = self.kept("going")[0]
+        again = subprocess.run(["sh", "-c", 'mv "$1" "${1%-*}-$$"; shift; exec "$@"', "sh", left, TOOL, "play", *STILL, "--duration", "0.1",
+                                *LIMITS, "--format", "json", "-D", "null"], cwd=self.dir, env=self.env, capture_output=True, text=True, check=True)
+        self.assertEqual(json.loads(again.stdout)["counters"]["drives_cut"], 1)
+        self.assertEqual(self.kept("going"), [])
+
     def test_without_a_limit_it_is_kept_when_the_array_was_driven(self):
         self.assertEqual(self.cuts("-D", "null", seconds=1.0, limits=("--max-drive-s", "3600", "--drive-window-s", "10")), 0)
         self.assertEqual(self.cuts("-D", "null", seconds=0.1), 1)

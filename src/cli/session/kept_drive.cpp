@@ -134,7 +134,10 @@ void kept_drive::take_up_killed()
     for (const auto& entry : std::filesystem::directory_iterator(folder_, ignored)) {
         const std::string file = entry.path().filename().string();
         const std::string pid = file.starts_with(going_) ? file.substr(going_.size()) : "";
-        if (pid.empty() || pid.find_first_not_of("0123456789") != std::string::npos || runs(pid))
+        // Where each run is process 1 of its container, the one before had this one's number.
+        const bool own = pid == std::to_string(::getpid());
+        if (pid.empty() || pid.find_first_not_of("0123456789") != std::string::npos ||
+            (own ? wrote_ : runs(pid)))
             continue;
         others_ = others_.with(history_in(read(entry.path())));
         left.push_back(entry.path());
@@ -162,6 +165,7 @@ void kept_drive::going(unsigned channels)
         return;
     next_ns_ = now_ns + renewed_ns;
     ahead_ = ahead_.with_ahead(channels, ahead_s);
+    wrote_ = true;
     write(going_ + std::to_string(::getpid()), ahead_);
 }
 
