@@ -14,7 +14,9 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <tactor/error.hpp>
 #include <tactor/version.hpp>
@@ -151,6 +153,15 @@ int flushed(int status)
     return unprinted(errno);
 }
 
+// Where one was closed, the next file that is opened would get its number, and what is printed go there.
+// Written to or read from, these fail as a closed one does.
+void hold_standard_files() noexcept
+{
+    for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (::fcntl(fd, F_GETFD) == -1 && errno == EBADF)
+            ::open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+}
+
 } // namespace
 } // namespace tactor::cli
 
@@ -161,6 +172,7 @@ int main(int argc, char** argv)
     // and leave nothing half done, not ends of the program.
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
+    hold_standard_files();
     try {
         return flushed(run(arguments(argc, argv)));
     } catch (const tactor::error& e) {

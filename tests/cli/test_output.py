@@ -185,6 +185,15 @@ class People(Output):
                                        timeout=PATIENCE_S, **more)
                     self.assertEqual(r.returncode, status, f"{args} {more}")
 
+    def test_standard_output_that_is_closed_is_said(self):
+        for args in (("render", "park2016-1", "-o", "-"), ("plan", "park2016-1"), ("render", "park2016-1", "-o", "x.wav")):
+            r = subprocess.run([TOOL, *args], cwd=self.dir, env=self.env, stderr=subprocess.PIPE, text=True, check=False,
+                               timeout=PATIENCE_S, preexec_fn=lambda: os.close(1))
+            self.assertEqual(r.returncode, 1, args)
+            self.assertIn("Bad file descriptor", r.stderr)
+        self.assertEqual(self.ok("render", "park2016-1", "-o", "y.wav").returncode, 0)
+        self.assertEqual((self.dir / "x.wav").read_bytes(), (self.dir / "y.wav").read_bytes())
+
     def test_names_cannot_steer_the_terminal(self):
         self.write("s.toml", '[stroke]\nname = "a\\u001b[31mred\\u009b2J\\u007f"\npath = "M 0 0 L 40 0"\n')
         self.write(f"b{ESCAPE}.toml", '[array]\nname = "x"\n')
