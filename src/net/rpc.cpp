@@ -43,9 +43,8 @@ std::string without_overflows(std::string_view text)
     out.reserve(text.size());
     bool quoted = false;
     for (std::size_t i = 0; i < text.size();) {
-        const std::size_t end =
-            quoted ? i : std::min(text.find_first_not_of("+-.0123456789eE", i), text.size());
-        if (end != i && (text[i] == '-' || (text[i] >= '0' && text[i] <= '9'))) {
+        if (!quoted && (text[i] == '-' || (text[i] >= '0' && text[i] <= '9'))) {
+            const std::size_t end = std::min(text.find_first_not_of("+-.0123456789eE", i), text.size());
             const std::string number(text.substr(i, end - i));
             out += std::isfinite(std::strtod(number.c_str(), nullptr)) ? number : "null";
             i = end;

@@ -67,6 +67,8 @@ TEST_CASE("a number that no double holds is no number, and its message is answer
     CHECK(r.params["z"] == "1e400");
     CHECK(r.params["d"] == 2);
     CHECK(code_of("[1e400,") == code_parse_error);
+    // Read once, whatever follows: twice as long takes twice as long.
+    CHECK(code_of("[1e400," + std::string(1U << 20, 'e')) == code_parse_error);
 }
 
 TEST_CASE("nesting is counted outside of texts, and refused before anything is built")
