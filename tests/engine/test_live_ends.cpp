@@ -20,49 +20,6 @@ namespace live_ends_test {
 using namespace tactor;
 using namespace tactor::test;
 
-namespace {
-
-/// Does not start the second time, after its buffer was filled.
-class slow_starter final : public forwarding_sink {
-public:
-    slow_starter(std::unique_ptr<sink> s, io_kind says) : forwarding_sink(std::move(s)), says_(says) {}
-
-    io_kind start() noexcept override { return ++starts_ == 2 ? says_ : forwarding_sink::start(); }
-
-private:
-    io_kind says_;
-    int starts_ = 0;
-};
-
-} // namespace
-
-TEST_CASE("what begins in a buffer that is filled and not started ends there, once")
-{
-    for (const io_kind says : {io_kind::xrun, io_kind::suspended}) {
-        CAPTURE(static_cast<int>(says));
-        rig_options o;
-        o.wrap = [&](std::unique_ptr<sink> s) { return std::make_unique<slow_starter>(std::move(s), says); };
-        live_options l;
-        l.longest_s = 2.0;
-        live_rig r(l, o);
-        r.play(960);
-        r.dac.suspend();
-        r.step();
-        r.live->to({20.0, 20.0}, 1.0);
-        const std::uint64_t written = r.status().written;
-        r.dac.wake(true);
-        for (int i = 0; i < 40; ++i)
-            r.play(96);
-        CHECK(r.status().running);
-        CHECK(r.status().written > written);
-        REQUIRE(r.report({1}));
-        CHECK(r.report({1})->state == state_kind::interrupted);
-        CHECK(r.report({1})->reason == (says == io_kind::xrun ? reason_kind::xrun : reason_kind::suspended));
-        CHECK(r.report({1})->frames == 0);
-        CHECK(r.ended.size() == 1);
-    }
-}
-
 TEST_CASE("end fades out, plays the last point given, and is reported once as finished")
 {
     live_rig r;

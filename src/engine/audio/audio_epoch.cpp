@@ -86,11 +86,7 @@ void audio_loop::broken(io_kind s, int code, std::int64_t now) noexcept
         silence_all(reason_kind::xrun, code, mixer_.position() - pending_);
         return too_often(now) ? finish(reason_kind::lost, -EPIPE) : restart(now);
     case io_kind::suspended:
-        link_.count.suspends.fetch_add(1, std::memory_order_release);
-        silence_all(reason_kind::suspended, code, played_);
-        phase_ = phase::suspended;
-        suspended_ns_ = now;
-        return;
+        return fall_asleep(code, now);
     case io_kind::lost:
     case io_kind::failed:
         return finish(to_reason(s), code);
@@ -107,6 +103,14 @@ void audio_loop::silence_all(reason_kind why, int code, std::uint64_t played) no
     mixer_.reset();
     pending_ = 0;
     played_ = 0;
+}
+
+void audio_loop::fall_asleep(int code, std::int64_t now) noexcept
+{
+    link_.count.suspends.fetch_add(1, std::memory_order_release);
+    silence_all(reason_kind::suspended, code, played_);
+    phase_ = phase::suspended;
+    suspended_ns_ = now;
 }
 
 void audio_loop::try_resume(std::int64_t now) noexcept
@@ -131,16 +135,12 @@ void audio_loop::restart(std::int64_t now) noexcept
             return finish(reason_kind::lost, -EPIPE);
         r = begin_epoch();
     }
-    if (r.status == io_kind::suspended)
-        silence_all(reason_kind::suspended, r.code, 0); // what began in a buffer that was never played
-    if (r.status == io_kind::ok) {
+    if (r.status == io_kind::ok)
         run_from(now);
-    } else if (r.status == io_kind::suspended) {
-        phase_ = phase::suspended; // not awake yet: once more in the next period
-        suspended_ns_ = now;
-    } else {
+    else if (r.status == io_kind::suspended)
+        fall_asleep(r.code, now); // not awake yet: once more in the next period
+    else
         finish(to_reason(r.status), r.code);
-    }
 }
 
 bool audio_loop::too_often(std::int64_t now) noexcept

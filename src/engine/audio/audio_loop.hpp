@@ -75,6 +75,7 @@ private:
 
     void broken(io_kind s, int code, std::int64_t now) noexcept;
     void silence_all(reason_kind why, int code, std::uint64_t played) noexcept;
+    void fall_asleep(int code, std::int64_t now) noexcept;
     void try_resume(std::int64_t now) noexcept;
     void restart(std::int64_t now) noexcept;
     bool too_often(std::int64_t now) noexcept;
