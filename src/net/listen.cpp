@@ -135,14 +135,6 @@ owned_fd bind_internet(const host_and_port& at, const std::string& what, int typ
     return fd;
 }
 
-// Whoever holds it for long is at fault, and is not waited for.
-void hold(int folder) noexcept
-{
-    constexpr int tries = 200;
-    for (int i = 0; ::flock(folder, LOCK_EX | LOCK_NB) != 0 && i < tries; ++i)
-        ::poll(nullptr, 0, 5);
-}
-
 } // namespace
 
 host_and_port parse_host(std::string_view text, const std::string& what)
@@ -166,6 +158,12 @@ host_and_port parse_host(std::string_view text, const std::string& what)
     return at;
 }
 
+void lock_within(const owned_fd& folder, int tries) noexcept
+{
+    for (int i = 0; ::flock(folder.get(), LOCK_EX | LOCK_NB) != 0 && i < tries; ++i)
+        ::poll(nullptr, 0, 5);
+}
+
 owned_fd listen_unix(const std::string& path, mode_t mode, std::optional<gid_t> group)
 {
     const std::string what = "socket " + path;
@@ -179,7 +177,8 @@ owned_fd listen_unix(const std::string& path, mode_t mode, std::optional<gid_t> 
         detail::throw_caused(
             error(error_kind::bad_input, what, std::strerror(code), "its folder must be there"), code);
     }
-    hold(lock.get());
+    constexpr int tries = 200;
+    lock_within(lock, tries);
     make_free(path);
     owned_fd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     // The name gets the socket's own mode, less what the umask takes: never more than this, not for a moment.

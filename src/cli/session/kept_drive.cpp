@@ -14,8 +14,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -70,14 +68,13 @@ std::string own_folder()
     return {};
 }
 
-/// Keeps others from writing as long as it is held. Whoever holds it for long is at fault, and is not waited
-/// for.
+/// Keeps others from writing as long as it is held.
 net::owned_fd lock(const std::string& folder)
 {
     constexpr int tries = 20;
     net::owned_fd fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    for (int i = 0; fd && ::flock(fd.get(), LOCK_EX | LOCK_NB) != 0 && i < tries; ++i)
-        ::poll(nullptr, 0, 5);
+    if (fd)
+        net::lock_within(fd, tries);
     return fd;
 }
 
@@ -137,7 +134,7 @@ void kept_drive::take_up_killed()
         // Where each run is process 1 of its container, the one before had this one's number.
         const bool own = pid == std::to_string(::getpid());
         if (pid.empty() || pid.find_first_not_of("0123456789") != std::string::npos ||
-            (own ? wrote_ : runs(pid)))
+            (own ? !ahead_.empty() : runs(pid)))
             continue;
         others_ = others_.with(history_in(read(entry.path())));
         left.push_back(entry.path());
@@ -165,7 +162,6 @@ void kept_drive::going(unsigned channels)
         return;
     next_ns_ = now_ns + renewed_ns;
     ahead_ = ahead_.with_ahead(channels, ahead_s);
-    wrote_ = true;
     write(going_ + std::to_string(::getpid()), ahead_);
 }
 

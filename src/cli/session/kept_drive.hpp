@@ -43,10 +43,9 @@ private:
     std::string going_;  ///< what such names begin with
     std::string text_;   ///< of driven-NAME, as it was last seen
     bool counted_;
-    bool wrote_ = false;   ///< going-NAME-PID, if it is there, is this run's
     drive_history own_;    ///< of this run, and what its streams went on from
     drive_history others_; ///< what the files said that this run had not written
-    drive_history ahead_;  ///< what this stream may have driven
+    drive_history ahead_;  ///< what this stream may have driven; none: a going-NAME-PID is not this run's
     std::int64_t next_ns_ = 0;
 };
 
