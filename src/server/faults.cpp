@@ -139,6 +139,14 @@ rpc_fault current_fault(const std::string& source)
     }
 }
 
+rpc_fault current_fault(const std::string& source, const render_options& asked)
+{
+    rpc_fault f = current_fault(source);
+    if (asked.sl_db && f.what == "options.level_dbfs")
+        f.what = "options.sl";
+    return f;
+}
+
 void only(const json& params, std::initializer_list<std::string_view> known)
 {
     if (!params.is_object())

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <tactor/error.hpp>
+#include <tactor/render.hpp>
 
 #include "net/rpc.hpp"
 
@@ -36,6 +37,8 @@ private:
 net::rpc_fault fault_of(const error& e, const std::string& source);
 /// The fault of whatever is being handled: for catch (...).
 net::rpc_fault current_fault(const std::string& source);
+/// The same of what was asked for with these levels: a tactor's level is in dBFS or in dB SL.
+net::rpc_fault current_fault(const std::string& source, const render_options& asked);
 
 /// Refuses parameters that are not among these, and lists (params are an array).
 void only(const net::json& params, std::initializer_list<std::string_view> known);

@@ -207,6 +207,7 @@ bool service::input_ended(client_number number)
     for (const std::uint32_t n : c->strokes)
         if (const auto& r = strokes_.at(n); r->live)
             r->live->end();
+    // More of them than places: the first is let go, whose strokes play on.
     if (told_all_ && gone() > options_.limits.max_clients)
         told_all_(std::find_if(clients_.begin(), clients_.end(), [](const auto& one) {
                       return one.second->input_over;

@@ -56,10 +56,7 @@ void service::begin(client& c, const json& params, const answer& to)
         try {
             begin_now(*then, o, to, stops != stops_);
         } catch (...) {
-            net::rpc_fault f = current_fault("options");
-            if (o.render.sl_db && f.what == "options.level_dbfs")
-                f.what = "options.sl"; // a tactor's level is either
-            to.fault(f);
+            to.fault(current_fault("options", o.render));
         }
         note_busy();
     });

@@ -225,10 +225,7 @@ planned make_planned(const planning& with, const layout& faces, const json& para
     } catch (const fault_error&) {
         throw;
     } catch (...) {
-        net::rpc_fault f = current_fault(source);
-        if (s.render.sl_db && f.what == "options.level_dbfs")
-            f.what = "options.sl"; // a tactor's level is either
-        throw fault_error(f);
+        throw fault_error(current_fault(source, s.render));
     }
 }
 
