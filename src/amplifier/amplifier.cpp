@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include "amplifier/amplifier.hpp"
 
+#include <algorithm>
+
 namespace tactor::engine {
 
-void amplifier::handle(amplifier_event e, std::int64_t now, std::uint64_t frames) noexcept
+void amplifier::handle(amplifier_event e, std::int64_t now, amplifier_frames at) noexcept
 {
     if (state_ == state::ended)
         return;
     switch (e) {
     case amplifier_event::started:
-        played_ = 0;
+        at_ = {};
         proof_from_ = 0;
         if (state_ == state::stopped)
             state_ = state::proving;
         break;
     case amplifier_event::moved:
-        played_ = frames;
+        at_ = at;
         break;
     case amplifier_event::switched:
         if (state_ == state::switching) {
@@ -56,7 +58,7 @@ void amplifier::prove() noexcept
 {
     if (state_ != state::stopped)
         state_ = state::proving;
-    proof_from_ = played_;
+    proof_from_ = at_.played;
 }
 
 // Muting pops too: a single xrun, which is over in a few periods, is better left alone.
@@ -76,8 +78,9 @@ void amplifier::count_xrun(std::int64_t now) noexcept
 
 void amplifier::look(std::int64_t now) noexcept
 {
-    if (state_ == state::proving && !stalled_ && now >= muted_until_ &&
-        played_ >= proof_from_ + options_.proof_frames)
+    const std::uint64_t from = std::max(proof_from_, at_.sounds_until);
+    if (state_ == state::proving && !stalled_ && now >= muted_until_ && at_.played >= from &&
+        at_.played - from >= options_.proof_frames)
         state_ = state::switching;
     if (state_ == state::settling && now >= settled_at_)
         state_ = state::ready;

@@ -17,7 +17,7 @@ struct amplifier_options {
 
 enum class amplifier_event {
     started,   ///< the DAC was started, with silence
-    moved,     ///< `frames` of this epoch have been played
+    moved,     ///< the DAC has played on, to `at`
     switched,  ///< the line has followed line() to on
     xrun,      ///< the DAC ran dry and stopped
     suspended, ///< the system sleeps
@@ -30,15 +30,22 @@ enum class amplifier_event {
     tick,      ///< time has passed
 };
 
+/// Frames of an epoch of the stream.
+struct amplifier_frames {
+    std::uint64_t played = 0;       ///< so many
+    std::uint64_t sounds_until = 0; ///< what is written is silent from this one on, unless a stroke begins
+};
+
 /// The order in which nothing pops: the DAC runs with zeros, plays two periods, the line goes on, settle_ns
-/// of zeros, strokes; and at the end silence, off, and only then the stop of the DAC. A class-D amplifier
-/// that is enabled without a running bit clock pops, and so does one that is enabled when the DAC stops.
+/// of zeros, strokes; after a mute the same again, when what was written before it is over; and at the end
+/// silence, off, and only then the stop of the DAC. A class-D amplifier that is enabled without a running bit
+/// clock pops, and so does one that is enabled when the DAC stops.
 class amplifier {
 public:
     explicit amplifier(const amplifier_options& o) noexcept : options_(o) {}
 
     /// `now`: CLOCK_MONOTONIC, ns, never less than before.
-    void handle(amplifier_event e, std::int64_t now, std::uint64_t frames = 0) noexcept;
+    void handle(amplifier_event e, std::int64_t now, amplifier_frames at = {}) noexcept;
 
     /// What the line is to be.
     bool line() const noexcept { return state_ == state::switching || state_ >= state::settling; }
@@ -60,7 +67,7 @@ private:
     amplifier_options options_;
     state state_ = state::stopped;
     bool stalled_ = false;
-    std::uint64_t played_ = 0;     ///< of this epoch
+    amplifier_frames at_ = {};
     std::uint64_t proof_from_ = 0; ///< proof_frames are counted from here
     std::int64_t settled_at_ = 0;
     std::int64_t muted_until_ = INT64_MIN;

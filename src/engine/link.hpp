@@ -29,6 +29,8 @@ struct stream_status {
     stream_stage stage = stream_stage::idle;
     std::uint64_t epoch = 0;        ///< number of the start of the DAC, from 1
     std::uint64_t epoch_played = 0; ///< frames played since that
+    std::uint32_t mutes = 0;        ///< amplifier_link's: those that the next one takes account of
+    std::uint64_t sounds_until = 0; ///< frame of the epoch where the last stroke that has begun is over
 };
 
 /// Shared by the audio thread and the one that drives the amplifier's line. As initialised: no amplifier.

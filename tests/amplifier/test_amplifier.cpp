@@ -23,6 +23,7 @@ struct row {
     std::uint64_t frames;
     bool line;
     bool ready;
+    std::uint64_t sounds_until = 0;
 };
 
 amplifier_options options()
@@ -37,7 +38,7 @@ void run(const std::vector<row>& table)
     for (std::size_t i = 0; i < table.size(); ++i) {
         const row& r = table[i];
         const bool before = a.line();
-        a.handle(r.what, r.at_ms * ms, r.frames);
+        a.handle(r.what, r.at_ms * ms, {r.frames, r.sounds_until});
         if (a.line() && !before)
             a.handle(event::switched, r.at_ms * ms);
         CAPTURE(i);
@@ -53,6 +54,9 @@ const std::vector<row> to_ready{
     {14, event::tick, 0, true, true},
 };
 
+/// As long as nobody knows when it is silent.
+constexpr std::uint64_t unknown = UINT64_MAX;
+
 std::vector<row> after_ready(std::vector<row> more)
 {
     std::vector<row> all = to_ready;
@@ -61,6 +65,20 @@ std::vector<row> after_ready(std::vector<row> more)
 }
 
 } // namespace
+
+TEST_CASE("it does not go on again into what was written before the mute")
+{
+    run(after_ready({
+        {100, event::moved, 4800, true, true, 96'000},
+        {101, event::lapsed, 0, false, false},
+        {102, event::moved, 4896, false, false, unknown},
+        {106, event::moved, 5088, false, false, unknown},
+        {108, event::moved, 5184, false, false, 6000},
+        {126, event::moved, 6191, false, false, 6000},
+        {127, event::moved, 6192, true, false, 6000},
+        {137, event::tick, 0, true, true},
+    }));
+}
 
 TEST_CASE("amplifier: the DAC runs, two periods are played, on, settled, ready")
 {
@@ -141,7 +159,7 @@ TEST_CASE("amplifier: deadlines are those at which a tick changes something")
     amplifier a(options());
     a.handle(event::started, 0);
     CHECK_FALSE(a.deadline());
-    a.handle(event::moved, 5 * ms, 192);
+    a.handle(event::moved, 5 * ms, {.played = 192});
     CHECK_FALSE(a.deadline());
     a.handle(event::switched, 7 * ms);
     CHECK(a.deadline() == 17 * ms);
@@ -168,7 +186,7 @@ TEST_CASE("amplifier: whatever happens, ready is on, on is after two periods, an
             if (e > event::tick) {
                 if (!stopped)
                     played += 96;
-                a.handle(event::moved, now, played);
+                a.handle(event::moved, now, {.played = played});
             } else {
                 if ((e == event::silent || e == event::lost || e == event::failed) && random() % 8 != 0)
                     continue;
@@ -180,7 +198,7 @@ TEST_CASE("amplifier: whatever happens, ready is on, on is after two periods, an
                 stalled = (stalled || e == event::stalled) && e != event::recovered;
                 ended = ended || e == event::silent || e == event::lost || e == event::failed;
                 const bool before = a.line();
-                a.handle(e, now, played);
+                a.handle(e, now, {.played = played});
                 // Nothing but the DAC that runs switches it on.
                 if (a.line() && !before)
                     CHECK(played >= 192);

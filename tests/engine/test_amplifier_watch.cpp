@@ -63,6 +63,35 @@ TEST_CASE("the holder hears a beat every 50 ms, and a line that went off by itse
     CHECK(reason_of(r, r.id) == "the amplifier was off");
 }
 
+TEST_CASE(
+    "what was written before a mute is over when the amplifier goes on again, however long the buffer is")
+{
+    for (const unsigned periods : {3U, 50U, 250U})
+        for (const bool stalls : {false, true}) {
+            CAPTURE(periods);
+            CAPTURE(stalls);
+            playing r({.periods = periods});
+            if (stalls)
+                r.wait(200 * ms);
+            else
+                r.line.is_on = false;
+            for (int i = 0; i < 1000 && r.link.amplifier.ready; ++i)
+                r.play(96);
+            const stroke_id next = r.submit(tone(0.1));
+            for (int i = 0; i < 1000 && !r.line.is_on; ++i)
+                r.play(96);
+            CHECK(r.line.is_on);
+            const std::uint64_t on = r.dac.captured_frames() - r.dac.queued();
+            r.play_out();
+            CHECK(reason_of(r, r.id) == "the amplifier was off");
+            CHECK(r.report(next)->state == state_kind::finished);
+            // Nothing but the next stroke, behind 10 ms of silence and the buffer.
+            const auto sound = r.first_sound(on);
+            REQUIRE(sound);
+            CHECK(*sound >= on + 480 + std::uint64_t{periods - 1} * 96);
+        }
+}
+
 TEST_CASE("the amplifier's thread, which has real-time priority, sleeps while it waits for the DAC after a "
           "mute that is long over")
 {

@@ -277,7 +277,9 @@ void audio_loop::publish() noexcept
                     .running = phase_ == phase::running,
                     .stage = static_cast<stream_stage>(phase_),
                     .epoch = clock_.line().epoch,
-                    .epoch_played = played_};
+                    .epoch_played = played_,
+                    .mutes = mutes_,
+                    .sounds_until = scores_.sounds_until()};
     scores_.describe(played_, s);
     link_.status.store(s);
     link_.amplifier.status.store(s);

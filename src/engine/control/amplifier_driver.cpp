@@ -54,8 +54,12 @@ void amplifier_driver::hear(const stream_status& s, std::int64_t now) noexcept
         epoch_ = s.epoch;
         amplifier_.handle(amplifier_event::started, now);
     }
-    if (s.stage == stream_stage::running)
-        amplifier_.handle(amplifier_event::moved, now, s.epoch_played);
+    if (s.stage == stream_stage::running) {
+        // What was written before the audio thread heard of the mute still sounds.
+        const bool heard = s.mutes == link_.amplifier.mutes.load(std::memory_order_relaxed);
+        amplifier_.handle(amplifier_event::moved, now,
+                          {.played = s.epoch_played, .sounds_until = heard ? s.sounds_until : UINT64_MAX});
+    }
     if (link_.amplifier.ending.load(std::memory_order_seq_cst))
         amplifier_.handle(amplifier_event::silent, now);
 }
