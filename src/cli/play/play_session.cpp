@@ -80,7 +80,11 @@ void play_session::start(std::unique_ptr<sink> s)
     o.driven = kept_.until_now();
     o.log = device_.log;
     player_ = std::make_unique<player>(std::move(s), environment_.tactors, o, lines_.lend());
-    player_->on_report([this](const stroke_report&) { ended_.signal(); });
+    player_->on_begin([this](stroke_id, std::optional<std::int64_t>) {
+        begun_ = true;
+        news_.signal();
+    });
+    player_->on_report([this](const stroke_report&) { news_.signal(); });
     setup_ = player_->setup();
     streams_ = true;
 }
@@ -122,6 +126,7 @@ stroke_report play_session::play(const piece& p, const score& s, const watcher& 
         follower.emplace(p, s, environment_.tactors);
     const double total = static_cast<double>(s.frames()) / s.rate();
     stroke_id id = {};
+    begun_ = false;
     try {
         id = player_->submit(s, options_.arm ? start_at::trigger() : start);
         playing_ = id;
@@ -151,10 +156,10 @@ stroke_report play_session::play(const piece& p, const score& s, const watcher& 
         }
         if (follower)
             picture.draw(follower->at(t), t, total);
-        if (!options_.arm || where.stroke == id)
+        if (!options_.arm || begun_)
             kept_.going(setup_.channels);
-        const bool go_on = sleep(ended_.fd(), picture.active() || watch ? frame_ms : kept_ms);
-        ended_.consume();
+        const bool go_on = sleep(news_.fd(), picture.active() || watch ? frame_ms : kept_ms);
+        news_.consume();
         if (!go_on) {
             player_->stop();
             return end_of(id);
@@ -184,8 +189,8 @@ stroke_report play_session::live(const live_options& o, live_lines& lines)
             stroke.end();
         if (begun)
             kept_.going(setup_.channels);
-        const bool go_on = sleep(ended_.fd(), kept_ms, lines.over() ? -1 : lines.descriptor());
-        ended_.consume();
+        const bool go_on = sleep(news_.fd(), kept_ms, lines.over() ? -1 : lines.descriptor());
+        news_.consume();
         if (!go_on) {
             player_->stop();
             return end_of(stroke.id());

@@ -3,6 +3,7 @@
 /// A run of `play`: players one after the other on one device, as often as that is lost and comes back.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -86,7 +87,8 @@ private:
     const environment& environment_;
     stream_source source_;
     interrupt stop_;
-    rt::event_fd ended_; ///< a stroke has
+    rt::event_fd news_;               ///< a stroke has begun or ended
+    std::atomic<bool> begun_ = false; ///< the latest stroke
     play_lines lines_;
     play_log log_;
     alsa_options device_;

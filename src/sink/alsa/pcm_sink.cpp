@@ -198,8 +198,8 @@ stream_position pcm_sink::position() noexcept
     snd_htimestamp_t stamp{};
     snd_pcm_status_get_htstamp(status_.get(), &stamp);
     const std::int64_t at = rt::to_ns(stamp);
-    // Plugins may leave the stamp empty or in another clock.
-    const bool sane = at <= now && now - at < rt::ns_per_s;
+    // Plugins may leave the stamp empty or in another clock. A card's is mostly that of the call itself.
+    const bool sane = at <= rt::monotonic_ns() && now - at < rt::ns_per_s;
     seen_ns_ = sane ? at : now;
     dry_ns_ = seen_ns_ + ns_of(queued);
     return {written_, played_, seen_ns_, true};
