@@ -102,7 +102,10 @@ void service::finish(stroke_record& r, const stroke_report& how)
             --c->live;
     }
     r.state = "ended";
-    tell_stroke(r, to_string(how.state), how);
+    stroke_report told = how;
+    if (closing_ && told.state == state_kind::cancelled && told.why.empty())
+        told.why = "the server ends";
+    tell_stroke(r, to_string(told.state), told);
     if (r.released)
         strokes_.erase(r.number);
     check_told_all(owner);

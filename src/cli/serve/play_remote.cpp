@@ -233,9 +233,11 @@ private:
             return;
         const bool cancelled = out.report->state == state_kind::cancelled;
         const bool gone = server_.call("status")["stream"].value("state", "") == "lost";
-        const std::string why = fate(out, report_.device.rate);
+        std::string why = fate(out, report_.device.rate);
+        if (cancelled && out.report->why.empty())
+            why += " by somebody else";
         if (cancelled || gone || options_.void_on_xrun)
-            broken_.emplace(error_kind::runtime, out.name, cancelled ? why + " by somebody else" : why,
+            broken_.emplace(error_kind::runtime, out.name, why,
                             options_.void_on_xrun && !cancelled ? "the run is void: --void-on-xrun" : "");
         else if (!last)
             say(stderr, "tactor: warning: {}\n", describe(out, report_.device.rate));
