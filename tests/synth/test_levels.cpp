@@ -236,7 +236,11 @@ TEST_CASE("a burst of one frame counts, and so does one frame in which two sound
     CHECK(message([&] {
               score(a, {{one_at(0.0, 4 * frame_s), 0.0}, {one_at(0.0, frame_s), 4 * frame_s}}, o);
           }) == "no error");
-    for (const double start_s : {0.0, 2 * frame_s, 3 * frame_s}) {
+    // The first sample of a stroke is 0: rounding may put it into the end of the one before.
+    CHECK(message([&] {
+              score(a, {{one_at(0.0, 4 * frame_s), 0.0}, {one_at(0.0, 2 * frame_s), 3 * frame_s}}, o);
+          }) == "no error");
+    for (const double start_s : {frame_s, 2 * frame_s, 3 * frame_s}) {
         CAPTURE(start_s);
         CHECK(holds(message([&] {
                         score(a, {{one_at(0.0, 4 * frame_s), 0.0}, {one_at(0.0, frame_s), start_s}}, o);

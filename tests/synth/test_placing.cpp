@@ -11,6 +11,7 @@
 #include "pieces.hpp"
 #include "rounds.hpp"
 #include "synth/score/event_source.hpp"
+#include "synth/score/frames.hpp"
 
 namespace placing_test {
 
@@ -29,6 +30,24 @@ TEST_CASE("plans follow each other unless they are placed")
     CHECK(s.plans().size() == 4);
     CHECK(s.rate() == 44100);
     CHECK(s.channels() == 2);
+}
+
+TEST_CASE("strokes one after the other begin at their times, however many there are, at full scale")
+{
+    render_options o;
+    o.level_dbfs = 0.0;
+    for (const double frames : {9600.0, 9600.49, 9600.51, 9600.99}) {
+        CAPTURE(frames);
+        const double seconds = frames / 48000.0;
+        const plan p = make_plan({make_burst(0.0, seconds, {{0, 1.0}})});
+        std::vector<placed_plan> plans(1000, placed_plan{p, {}});
+        plans.push_back({p, 0.0, {start_from_kind::end, 1}});
+        const score s(row(1), plans, o);
+        const std::vector<double> starts_s = starts_of(plans);
+        for (std::size_t i = 0; i < plans.size(); ++i)
+            REQUIRE(s.starts()[i] == synth::frame_at(starts_s[i], 48000));
+        CHECK(std::abs(static_cast<double>(s.starts().back()) - 1000.0 * frames) <= 0.51);
+    }
 }
 
 TEST_CASE("starts count from the start or the end of plans before")

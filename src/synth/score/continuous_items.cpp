@@ -14,9 +14,9 @@ namespace tactor::synth {
 namespace {
 
 /// For each item whether another one may sound together with it; markers do not count. Items go by start.
-std::vector<bool> overlapping(const item_list& list)
+std::vector<bool> overlapping(const score::impl& s)
 {
-    const std::deque<item>& items = list.items;
+    const std::deque<item>& items = s.list.items;
     std::vector<bool> overlaps(items.size(), false);
     std::uint64_t end = 0; // of those before
     std::size_t longest = 0;
@@ -24,7 +24,7 @@ std::vector<bool> overlapping(const item_list& list)
         const item& it = items[i];
         if (it.kind == item_kind::marker)
             continue;
-        if (list.heard_from(it) < end) {
+        if (s.heard_from(it) < end) {
             overlaps[i] = true;
             overlaps[longest] = true;
         }
@@ -50,7 +50,7 @@ double harmless_intensity(const score::impl& s, const array& a)
 } // namespace
 
 continuous_items::continuous_items(const score::impl& s, const array& a)
-    : score_(s), harmless_(harmless_intensity(s, a)), overlaps_(overlapping(s.list))
+    : score_(s), harmless_(harmless_intensity(s, a)), overlaps_(overlapping(s))
 {
 }
 

@@ -38,7 +38,7 @@ public:
     {
     }
 
-    /// `from`: as item_list::heard_from(). `factor` is in the peak, for the threshold at the carrier.
+    /// `from`: as score::impl::heard_from(). `factor` is in the peak, for the threshold at the carrier.
     void note(std::size_t tactor, const item& it, std::uint64_t from, double peak, double factor)
     {
         if (peak > 0.0 && from < it.end()) {
@@ -107,7 +107,7 @@ sweep swept(const score::impl& s, const continuous_peaks_of& continuous)
     const item_list& list = s.list;
     for (std::size_t i = 0; i < list.items.size(); ++i) {
         const item& it = list.items[i];
-        const std::uint64_t from = list.heard_from(it);
+        const std::uint64_t from = s.heard_from(it);
         switch (it.kind) {
         case item_kind::joined:
             all.note(it.tactor, it, from, joined_peak(s, i), s.equalised(it.tactor, it.plan, it.start));
@@ -202,3 +202,19 @@ std::vector<double> check_peaks(score::impl& s, const array& a, const render_opt
 }
 
 } // namespace tactor::synth
+
+namespace tactor {
+inline namespace v0 {
+
+std::uint64_t score::impl::heard_from(const synth::item& it) const noexcept
+{
+    const bool joined = it.kind == synth::item_kind::joined;
+    const std::uint32_t ramp = joined ? list.members[it.first].ramp : it.ramp;
+    const waveform_kind wave = plans[it.plan].schedule.wave.kind;
+    const bool at_zero = (phase == phase_kind::burst || it.start == starts[it.plan]) &&
+                         wave != waveform_kind::noise && wave != waveform_kind::recording;
+    return it.start + (it.length > 1 && (ramp > 0 || at_zero) ? 1 : 0);
+}
+
+} // namespace v0
+} // namespace tactor

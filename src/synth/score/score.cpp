@@ -126,17 +126,14 @@ void check_carrier(const plan& p, unsigned rate)
     }
 }
 
-std::uint64_t start_frame(std::optional<double> start_s, unsigned rate, std::uint64_t end_before)
+void check_start(double start_s)
 {
-    if (!start_s)
-        return end_before;
-    if (!(*start_s >= 0.0 && *start_s <= latest_start_s)) {
+    if (!(start_s >= 0.0 && start_s <= latest_start_s)) {
         throw error(error_kind::bad_input, "start of the stroke",
-                    fmt::format("{} s cannot be rendered", *start_s),
+                    fmt::format("{} s cannot be rendered", start_s),
                     fmt::format("use 0 to {} s", latest_start_s))
             .with_field("start_s");
     }
-    return synth::frame_at(*start_s, rate);
 }
 
 /// Greatest sum of `weight` over the items that are open at once; they arrive by start.
@@ -225,12 +222,14 @@ struct score_builder::impl {
 
     std::uint32_t number() const noexcept { return static_cast<std::uint32_t>(s->plans.size()); }
 
-    /// Frame at which the next plan starts.
+    /// Frame at which the next plan starts. That of its time also where it follows another: what rounding
+    /// took from the end of each would add up.
     std::uint64_t start(std::optional<double> start_s, const start_anchor& anchor) const
     {
+        const double at_s = resolve_start_s(start_s, anchor, starts_s, ends_s);
         if (start_s)
-            start_s = resolve_start_s(start_s, anchor, starts_s, ends_s);
-        return start_frame(start_s, o.rate, end);
+            check_start(at_s);
+        return synth::frame_at(at_s, o.rate);
     }
 
     std::uint64_t place(std::span<const burst> bursts, std::size_t first, const plan& p, std::uint64_t start)
@@ -245,7 +244,7 @@ struct score_builder::impl {
         starts_s.push_back(resolve_start_s(start_s, anchor, starts_s, ends_s));
         ends_s.push_back(starts_s.back() + p.total_s);
         s->sounds.push_back(shelf.get(p, o.rate));
-        end = synth::place_end(p, number(), start, bursts_end, o, s->list);
+        const std::uint64_t end = synth::place_end(p, number(), start, bursts_end, o, s->list);
         p.bursts = {};
         s->plans.push_back({std::move(p), start_s, anchor});
         s->starts.push_back(start);
@@ -256,7 +255,6 @@ struct score_builder::impl {
     array a;
     render_options o;
     std::shared_ptr<score::impl> s = std::make_shared<score::impl>();
-    std::uint64_t end = 0;        ///< of the latest plan
     std::vector<double> starts_s; ///< of the plans
     std::vector<double> ends_s;
     synth::timbre_shelf shelf;

@@ -62,14 +62,6 @@ struct item_list {
     std::deque<std::uint16_t> drive_tactors;
     std::deque<double> drive_amplitudes;
     std::vector<item_member> members;
-
-    /// The first frame in which an item may be heard: a ramp begins with a zero. Of two bursts that touch,
-    /// rounding may put that frame into the end of the other.
-    std::uint64_t heard_from(const item& it) const noexcept
-    {
-        const std::uint32_t ramp = it.kind == item_kind::joined ? members[it.first].ramp : it.ramp;
-        return it.start + (ramp > 0 ? 1 : 0);
-    }
 };
 
 } // namespace tactor::synth
@@ -103,6 +95,9 @@ struct score::impl {
     std::size_t open_continuous = 0; ///< of these, continuous ones
     std::size_t open_events = 0;     ///< most events that sound in one frame
 
+    /// The first frame in which an item may be heard: a ramp begins with a zero, and so do most carriers. Of
+    /// two bursts or strokes that touch, rounding may put that frame into the end of the other.
+    std::uint64_t heard_from(const synth::item& it) const noexcept;
     /// Factor on a tactor's gain in a frame of the score, for its threshold at the carrier there.
     double equalised(std::size_t tactor, std::uint32_t plan, std::uint64_t frame) const;
     /// The greatest such factor in a plan.
