@@ -316,6 +316,30 @@ TEST_CASE("a cut is at once, and fades are refused beyond 256")
     CHECK(silent(take(m, 100)));
 }
 
+TEST_CASE("hundreds of scores leave in one look at the voices")
+{
+    // CPU time in which so many of 500 scores with 16 drives each begin to fade, and have faded.
+    const auto seconds_of = [](std::uint32_t leaving) {
+        double least = 1e9;
+        for (int run = 0; run < 5; ++run) {
+            mixer m = make_mixer(8192);
+            for (std::uint32_t i = 0; i < 8000; ++i) {
+                drive_event e = make_event(100'000 + i, 100, 0.001);
+                e.score = i % 500;
+                m.add(e);
+            }
+            const std::clock_t start = std::clock();
+            for (std::uint32_t i = 0; i < leaving; ++i)
+                m.fade_out(i, i % 2 == 0 ? 0 : 8);
+            take(m, 9);
+            least = std::min(least, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+            CHECK(m.size() == 16 * (500 - leaving));
+        }
+        return least;
+    };
+    CHECK(seconds_of(500) < 30.0 * (seconds_of(1) + 1e-5));
+}
+
 TEST_CASE("reset drops everything and counts from 0")
 {
     mixer m = make_mixer();

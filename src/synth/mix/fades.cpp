@@ -21,14 +21,24 @@ std::int32_t fades::find(std::uint32_t score) const noexcept
     return any() ? first(fades_, [score](const fade& f) { return f.used && f.score == score; }) : none;
 }
 
-std::int32_t fades::ended(std::uint64_t by) const noexcept
+bool fades::any_ended(std::uint64_t by) const noexcept
 {
-    return any() ? first(fades_, [by](const fade& f) { return f.used && f.end() <= by; }) : none;
+    return any() && first(fades_, [by](const fade& f) { return f.used && f.end() <= by; }) != none;
+}
+
+void fades::end_all(std::uint64_t by) noexcept
+{
+    for (fade& f : fades_)
+        if (f.used && f.end() <= by) {
+            f.used = false;
+            --used_;
+        }
 }
 
 std::int32_t fades::begin(std::uint32_t score, std::uint64_t start, std::uint64_t length) noexcept
 {
-    const std::int32_t i = first(fades_, [](const fade& f) { return !f.used; });
+    const std::int32_t i =
+        used_ == fades_.size() ? none : first(fades_, [](const fade& f) { return !f.used; });
     if (i != none) {
         fades_[static_cast<std::size_t>(i)] = {true, score, start, length};
         ++used_;

@@ -31,8 +31,9 @@ public:
     void end(std::int32_t i) noexcept;
     void clear() noexcept;
     const fade& operator[](std::int32_t i) const noexcept { return fades_[static_cast<std::size_t>(i)]; }
-    /// One that has ended by a frame, or none.
-    std::int32_t ended(std::uint64_t by) const noexcept;
+    bool any_ended(std::uint64_t by) const noexcept;
+    /// Those that have ended by a frame are free again.
+    void end_all(std::uint64_t by) noexcept;
 
 private:
     std::array<fade, 256> fades_{};

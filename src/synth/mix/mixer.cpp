@@ -23,11 +23,13 @@ std::size_t mixer::channels() const noexcept
 
 std::size_t mixer::available() const noexcept
 {
+    impl_->let_go();
     return impl_->voices.available();
 }
 
 std::size_t mixer::size() const noexcept
 {
+    impl_->let_go();
     return impl_->voices.size();
 }
 
@@ -63,6 +65,7 @@ bool mixer::impl::plays(const voice& v) const noexcept
 bool mixer::add(const drive_event& e) noexcept
 {
     impl& m = *impl_;
+    m.let_go();
     const voice v = make_voice(e, m.strips.size());
     if ((v.drives == 0 && v.points == 0) || v.end <= m.position || m.fading.find(e.score) != fades::none ||
         !m.plays(v))
@@ -76,25 +79,42 @@ bool mixer::add(const drive_event& e) noexcept
 bool mixer::fade_out(std::uint32_t score, std::uint32_t fade) noexcept
 {
     impl& m = *impl_;
-    std::int32_t i = m.fading.find(score);
+    if (m.leaving.size() == m.leaving.capacity())
+        m.let_go();
     if (fade == 0) {
-        if (i != fades::none)
-            m.fading.end(i);
-        m.voices.forget_if([score](const voice& v) { return v.score == score; });
+        m.leaving.push_back({score, fades::none});
         return true;
     }
-    if (i != fades::none)
+    if (m.fading.find(score) != fades::none)
         return true;
-    i = m.fading.begin(score, m.position, fade);
+    std::int32_t i = m.fading.begin(score, m.position, fade);
+    if (i == fades::none && !m.leaving.empty()) {
+        m.let_go(); // a cut may end a fade
+        i = m.fading.begin(score, m.position, fade);
+    }
     if (i == fades::none)
         return false;
-    m.voices.forget_if([&m, score, i](voice& v) {
-        if (v.score != score)
-            return false;
-        v.fade = i;
-        return v.start >= m.fading[i].end();
-    });
+    m.leaving.push_back({score, i});
     return true;
+}
+
+// One look at the voices for all scores that leave, however many: a stop may be that of hundreds.
+void mixer::impl::let_go() noexcept
+{
+    if (leaving.empty())
+        return;
+    std::sort(leaving.begin(), leaving.end()); // a cut before a fade of the same score
+    voices.forget_if([this](voice& v) {
+        const auto l = std::lower_bound(leaving.begin(), leaving.end(), leaver{v.score, fades::none});
+        if (l == leaving.end() || l->score != v.score)
+            return false;
+        v.fade = l->fade;
+        return l->fade == fades::none || v.start >= fading[l->fade].end();
+    });
+    for (const leaver& l : leaving)
+        if (const std::int32_t i = fading.find(l.score); l.fade == fades::none && i != fades::none)
+            fading.end(i);
+    leaving.clear();
 }
 
 drive_history mixer::history() const
@@ -112,6 +132,7 @@ void mixer::reset() noexcept
     impl_->power.silence(0);
     impl_->voices.clear();
     impl_->fading.clear();
+    impl_->leaving.clear();
     impl_->carrier.forget();
     impl_->position = 0;
 }
@@ -119,6 +140,7 @@ void mixer::reset() noexcept
 void mixer::process(std::size_t frames, std::byte* out) noexcept
 {
     impl& m = *impl_;
+    m.let_go();
     while (frames > 0) {
         const std::uint64_t until_next = m.voices.next_start() - std::min(m.position, m.voices.next_start());
         if (m.voices.active().empty() && until_next > 0) {
@@ -145,10 +167,11 @@ void mixer::process(std::size_t frames, std::byte* out) noexcept
 
 void mixer::impl::end_fades() noexcept
 {
-    for (std::int32_t i = fading.ended(position); i != fades::none; i = fading.ended(position)) {
-        voices.forget_if([i](const voice& v) { return v.fade == i; });
-        fading.end(i);
-    }
+    if (!fading.any_ended(position))
+        return;
+    voices.forget_if(
+        [this](const voice& v) { return v.fade != fades::none && fading[v.fade].end() <= position; });
+    fading.end_all(position);
 }
 
 } // namespace tactor::synth

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -91,6 +92,13 @@ struct crest {
     bool touched = false;
 };
 
+/// A score that is to fade or, without a number of a fade, to be cut.
+struct leaver {
+    std::uint32_t score = 0;
+    std::int32_t fade = fades::none;
+    auto operator<=>(const leaver&) const = default;
+};
+
 struct mixer::impl {
     impl(std::span<const double> limits, format_kind f, std::size_t capacity, const guard_settings& g)
         : format(f),
@@ -110,6 +118,7 @@ struct mixer::impl {
         sounding.reserve(strips.size());
         powered.reserve(strips.size());
         samples.reserve(strips.size());
+        leaving.reserve(most_leaving);
         carriers.reserve(power.on() ? capacity : 0);
         frame_bytes = strips.size() * bytes_of(format);
     }
@@ -138,7 +147,10 @@ struct mixer::impl {
     void guard_power(bool together, unsigned n) noexcept;
     void write(unsigned n, std::byte* out) noexcept;
     bool plays(const voice& v) const noexcept;
+    void let_go() noexcept;
     void end_fades() noexcept;
+
+    static constexpr std::size_t most_leaving = 1024; ///< that are waited for
 
     format_kind format;
     std::size_t frame_bytes = 0;
@@ -146,6 +158,7 @@ struct mixer::impl {
     std::vector<std::uint32_t> sounding;
     schedule voices;
     fades fading;
+    std::vector<leaver> leaving; ///< since the last look at the voices
     carrier_block carrier;
     power_guard power;
     drive_guard duty;
