@@ -143,6 +143,64 @@ TEST_CASE("blocks make no difference to any wave")
     }
 }
 
+TEST_CASE("a phase that begins with each burst leaves the stroke's course, modulation and texture alone")
+{
+    // Three bursts on one tactor, and two that are joined, of a stroke that begins late.
+    plan p = pieces::make_plan({make_burst(0.0, 0.07, {{0, 1.0}}), make_burst(0.101, 0.07, {{0, 1.0}}),
+                                make_burst(0.203, 0.07, {{0, 1.0}}), make_burst(0.31, 0.07, {{0, 1.0}}),
+                                make_burst(0.35, 0.07, {{0, 1.0}})});
+    p.overlap = overlap_kind::max;
+    const auto frames = [](double s) { return static_cast<std::size_t>(std::lround(s * rate)); };
+    const std::vector<std::pair<std::size_t, std::size_t>> pieces_at{{0, frames(0.07)},
+                                                                     {frames(0.101), frames(0.171)},
+                                                                     {frames(0.203), frames(0.273)},
+                                                                     {frames(0.31), frames(0.42)}};
+    render_options o;
+    o.level_dbfs = 0.0;
+    o.ramp_s = 0.0;
+    const auto played_with = [&](phase_kind k) {
+        o.phase = k;
+        std::vector<double> x = channel(score(row(1), std::vector<placed_plan>{{p, 0.5}}, o), 0);
+        x.erase(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(frames(0.5)));
+        return x;
+    };
+    SUBCASE("a sine with a course and a modulation")
+    {
+        p.course = {{0.0, 80.0}, {0.2, 300.0}, {0.42, 200.0}};
+        p.am = {5.0, 0.7};
+        const auto cycles = [](double t) {
+            return t < 0.2 ? 80.0 * t + 0.5 * 1100.0 * t * t
+                           : 38.0 + 300.0 * (t - 0.2) - 0.5 * (100.0 / 0.22) * (t - 0.2) * (t - 0.2);
+        };
+        const auto x = played_with(phase_kind::burst);
+        double worst = 0.0;
+        for (const auto& [from, to] : pieces_at) {
+            for (std::size_t n = from; n < to; ++n) {
+                const double t = static_cast<double>(n) / rate;
+                const double turned = cycles(t) - cycles(static_cast<double>(from) / rate);
+                const double am = (1.0 + 0.7 * std::sin(2.0 * pi * 5.0 * t)) / 1.7;
+                worst = std::max(worst, std::abs(x[n] - am * std::sin(2.0 * pi * turned)));
+            }
+        }
+        CHECK(worst < 1e-6);
+    }
+    SUBCASE("noise, and a recording by time, which have no phase")
+    {
+        p.wave = noise(50, 500);
+        CHECK(played_with(phase_kind::burst) == played_with(phase_kind::stroke));
+        p.wave = recorded({0.0F, 1.0F, -1.0F, 0.5F}, texture_kind::time);
+        CHECK(played_with(phase_kind::burst) == played_with(phase_kind::stroke));
+    }
+    SUBCASE("a shape begins with each burst")
+    {
+        p.wave = shape(waveform_kind::square);
+        const auto x = played_with(phase_kind::burst);
+        for (const auto& [from, to] : pieces_at)
+            for (std::size_t n = 0; n < frames(0.07); ++n)
+                CHECK(std::abs(x[from + n] - x[n]) < 1e-6);
+    }
+}
+
 TEST_CASE("the limit on the power counts what a wave really has")
 {
     constexpr double three = 2.9999999999;
@@ -204,8 +262,8 @@ TEST_CASE("the phase of a carrier that changes is its integral, to 1e-9 cycles a
     for (std::int64_t k = 0; k < std::int64_t{3600} * rate; k += 7919 * 61) {
         double x = 0.0;
         double y = 0.0;
-        t.fill(k, 1, &x, synth::wave::sine);
-        t.fill(k, 1, &y, synth::wave::cosine);
+        t.fill(k, 0, 1, &x, synth::wave::sine);
+        t.fill(k, 0, 1, &y, synth::wave::cosine);
         const long double at = static_cast<long double>(k) / rate;
         const long double cycles = at <= 1200.0L ? 100.0L * at + at * at * (200.0L / 2400.0L)
                                                  : 240000.0L + 300.0L * (at - 1200.0L) -

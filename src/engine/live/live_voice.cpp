@@ -172,6 +172,7 @@ bool live_voice::burst(synth::mixer& m, std::uint64_t at, const dac_times& t) no
     synth::drive_event e;
     e.start = at;
     e.phase_frame = setup_.restart ? 0 : at - base_;
+    e.phase_origin = at - base_ - e.phase_frame;
     e.window = setup_.duration;
     const double half_cycles = 2.0 * setup_.cycles_per_frame;
     e.ramp = synth::between_zeros(half_cycles * static_cast<double>(e.phase_frame),

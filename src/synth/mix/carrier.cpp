@@ -20,13 +20,14 @@ void carrier_block::forget() noexcept
 const double* carrier_block::get(const voice& v, const fade* f, std::uint64_t at, unsigned n, wave w) noexcept
 {
     kept& k = kept_[static_cast<std::size_t>(w)];
-    const place here{at, n, v.cycles_per_frame, v.phase, v.sound};
+    const place here{at, n, v.cycles_per_frame, v.phase, v.stroke_place, v.sound};
     const auto phase = static_cast<std::int64_t>(v.phase + at);
+    const auto stroke_frame = static_cast<std::int64_t>(v.stroke_place + at);
     if (!(here == k.plain_place)) {
         if (v.sound == nullptr)
             sine_block(tables_.get(v.cycles_per_frame), v.cycles_per_frame, phase, n, k.plain.data(), w);
         else
-            v.sound->fill(phase, n, k.plain.data(), w);
+            v.sound->fill(stroke_frame, stroke_frame - phase, n, k.plain.data(), w);
         k.plain_place = here;
     }
     const auto first = static_cast<std::int64_t>(v.window_place + at);
@@ -42,7 +43,8 @@ const double* carrier_block::get(const voice& v, const fade* f, std::uint64_t at
         return k.shaped.data();
     std::copy(k.plain.begin(), k.plain.begin() + n, k.shaped.begin());
     if (modulated)
-        modulate_block(tables_, v.sound->am_cycles_per_frame, v.sound->am_depth, phase, n, k.shaped.data());
+        modulate_block(tables_, v.sound->am_cycles_per_frame, v.sound->am_depth, stroke_frame, n,
+                       k.shaped.data());
     window_block(tables_, first, v.window, 0, n, k.shaped.data());
     if (f != nullptr)
         fade_block(tables_, wanted.fade_place, f->length, 0, n, k.shaped.data());

@@ -29,6 +29,7 @@ private:
         unsigned n = 0;
         double cycles_per_frame = 0.0;
         std::uint64_t phase = 0;
+        std::uint64_t stroke_place = 0;
         const timbre* sound = nullptr;
         bool operator==(const place&) const = default;
     };

@@ -28,14 +28,6 @@ TACTOR_CLONES void add_length(unsigned n, double* x, double* y, double* reach, d
     }
 }
 
-/// Whether what the next voice plays is one carrier with this one's.
-bool adds_up(const voice& v, const voice& next) noexcept
-{
-    const bool sine = v.sound == nullptr || v.sound->is_sine();
-    return v.cycles_per_frame == next.cycles_per_frame && v.sound == next.sound &&
-           (sine || v.phase == next.phase);
-}
-
 } // namespace
 
 void mixer::impl::find_beats(unsigned from, unsigned n) noexcept

@@ -73,9 +73,7 @@ void mixer::impl::begin_strip(std::uint32_t channel, const voice& v, unsigned fr
     strip& t = strips[channel];
     t.sounding = true;
     t.since = from;
-    t.cycles_per_frame = v.cycles_per_frame;
-    t.sound = v.sound;
-    t.phase = v.phase;
+    t.first = &v;
     t.power = v.sound == nullptr ? 1.0 : v.sound->power;
     t.steady = false;
     t.beats = false;

@@ -35,16 +35,14 @@ struct strip {
     double peak = 0.0;     ///< what the voices could reach together
     double together = 0.0; ///< what those that last until `until`, a frame of the block, could reach
     unsigned until = 0;
-    unsigned since = 0;            ///< frame of the block at which the first voice begins
-    unsigned look = block_frames;  ///< the envelope is needed from this frame of the block on
-    double cycles_per_frame = 0.0; ///< of the first voice, as the next two
-    const timbre* sound = nullptr;
-    std::uint64_t phase = 0;
-    double power = 1.0;       ///< greatest of the voices' timbres
-    bool steady = false;      ///< one voice alone, with a constant envelope
-    bool beats = false;       ///< voices of several carriers
-    bool only_crests = false; ///< what the beat does between them is not needed
-    bool spare = false;       ///< no tactor: for markers
+    unsigned since = 0;           ///< frame of the block at which the first voice begins
+    unsigned look = block_frames; ///< the envelope is needed from this frame of the block on
+    const voice* first = nullptr; ///< only in the block
+    double power = 1.0;           ///< greatest of the voices' timbres
+    bool steady = false;          ///< one voice alone, with a constant envelope
+    bool beats = false;           ///< voices of several carriers
+    bool only_crests = false;     ///< what the beat does between them is not needed
+    bool spare = false;           ///< no tactor: for markers
     bool sounding = false;
 
     /// A voice of that amplitude from one frame of the block to another. They come in order of their start.
@@ -60,11 +58,8 @@ struct strip {
     /// are the same wave.
     void join(const voice& v) noexcept
     {
-        const bool sines =
-            (sound == nullptr || sound->is_sine()) && (v.sound == nullptr || v.sound->is_sine());
-        const bool another = sound != v.sound || (!sines && phase != v.phase);
         steady = false;
-        beats = beats || cycles_per_frame != v.cycles_per_frame || another;
+        beats = beats || !adds_up(*first, v);
         power = v.sound != nullptr ? std::max(power, v.sound->power) : power;
     }
     /// Whether the channel counts as not driven in this block, whatever the voices do.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "synth/tone/timbre.hpp"
+
 namespace tactor::synth {
 
 voice make_voice(const drive_event& e, std::size_t channels) noexcept
@@ -12,6 +14,7 @@ voice make_voice(const drive_event& e, std::size_t channels) noexcept
     v.start = e.start;
     v.end = e.start + e.length;
     v.phase = e.phase_frame - e.start;
+    v.stroke_place = e.sound != nullptr ? v.phase + e.phase_origin : 0;
     v.cycles_per_frame = e.cycles_per_frame;
     v.window_place = e.ramp_position - e.start;
     v.window = {e.window, e.ramp, e.release == as_ramp ? e.ramp : e.release, e.shape};
@@ -36,6 +39,15 @@ voice make_voice(const drive_event& e, std::size_t channels) noexcept
             v.drive[v.drives++] = {d.from, slope, d.channel};
     }
     return v;
+}
+
+bool adds_up(const voice& a, const voice& b) noexcept
+{
+    if (a.cycles_per_frame != b.cycles_per_frame || a.sound != b.sound)
+        return false;
+    if (a.sound == nullptr || (a.sound->is_sine() && a.sound->course.empty()))
+        return true;
+    return a.stroke_place == b.stroke_place && (a.sound->is_sine() || a.phase == b.phase);
 }
 
 schedule::schedule(std::size_t capacity) : voices_(capacity)

@@ -30,13 +30,14 @@ struct voice_drive {
     }
 };
 
-/// Frames are the stream's; `phase` and `window_place` are those of frame 0 of the stream, modulo 2^64, so
-/// voices of one carrier have equal ones wherever they start.
+/// Frames are the stream's; `phase`, `stroke_place` and `window_place` are those of frame 0 of the stream,
+/// modulo 2^64, so voices of one carrier have equal ones wherever they start.
 struct voice {
     std::uint64_t start = 0;
     std::uint64_t end = 0;
     std::uint64_t order = 0;
     std::uint64_t phase = 0;
+    std::uint64_t stroke_place = 0; ///< of a timbre
     double cycles_per_frame = 0.0;
     std::uint64_t window_place = 0;
     burst_window window = {};
@@ -50,6 +51,9 @@ struct voice {
         channel_line line;
     };
 };
+
+/// Whether two voices play one frequency at each moment, so that they add up with their phases.
+bool adds_up(const voice& a, const voice& b) noexcept;
 
 /// Calls `visit` for each of the voice's channels.
 template <class Visit>

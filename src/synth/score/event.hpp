@@ -40,10 +40,12 @@ struct channel_line {
 ///     amplitude(j) * w(ramp_position + j) * sin(2 pi cycles_per_frame (phase_frame + j))
 /// (1 in place of the sine where cycles_per_frame is 0: a marker, which only a channel without a tactor
 /// takes) with w the window of `window` frames that rises in `ramp` and falls in `release`. A timbre stands
-/// in for the sine.
+/// in for the sine; what of it goes on through the stroke, whatever the carrier's phase does, is at frame
+/// phase_origin + phase_frame + j.
 struct drive_event {
     std::uint64_t start = 0;         ///< frames since the start of the score (source) or of the epoch (mixer)
     std::uint64_t phase_frame = 0;   ///< carrier frame at `start`
+    std::uint64_t phase_origin = 0;  ///< of a timbre: the stroke's frame at which its phase begins
     double cycles_per_frame = 0.0;   ///< carrier / rate
     std::uint64_t ramp_position = 0; ///< place of `start` in the window
     std::uint64_t window = 0;        ///< frames of the whole burst (or of the continuous stroke)

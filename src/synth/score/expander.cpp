@@ -57,8 +57,10 @@ void expander::stretch(std::uint64_t start, std::uint64_t length) noexcept
     const plan& p = score_->plans[item_->plan].schedule;
     event_.start = start;
     event_.length = static_cast<std::uint32_t>(length);
-    const bool restart = score_->phase == phase_kind::burst;
-    event_.phase_frame = start - (restart ? item_->start : score_->starts[item_->plan]);
+    const std::uint64_t stroke = score_->starts[item_->plan];
+    const std::uint64_t origin = score_->phase == phase_kind::burst ? item_->start : stroke;
+    event_.phase_frame = start - origin;
+    event_.phase_origin = origin - stroke;
     event_.cycles_per_frame = p.carrier_hz / score_->rate;
     event_.sound = score_->sounds[item_->plan].get();
     event_.ramp_position = start - item_->start;

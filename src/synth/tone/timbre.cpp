@@ -80,22 +80,42 @@ void play(const timbre& t, const double* turns, unsigned n, wave w, double* out)
         read_cycle(*t.samples, turns, n, out);
 }
 
+using course_parts = std::vector<course_part>;
+
+/// The first part that begins after a frame.
+course_parts::const_iterator part_after(const course_parts& course, double frame) noexcept
+{
+    return std::upper_bound(course.begin(), course.end(), frame,
+                            [](double at, const course_part& p) { return at < p.start; });
+}
+
+/// Turns of the carrier at a frame, but for whole ones.
+double turns_at(const course_parts& course, double frame) noexcept
+{
+    const auto next = part_after(course, frame);
+    const course_part& p = next == course.begin() ? *next : *(next - 1);
+    const double k = frame - p.start;
+    return p.cycles + k * (p.cycles_per_frame + k * p.half_slope);
+}
+
 /// Each frame by its own place on the carrier alone, so that blocks make no difference.
-void follow(const timbre& t, std::int64_t first, unsigned n, wave w, double* out) noexcept
+void follow(const timbre& t, std::int64_t first, std::int64_t origin, unsigned n, wave w,
+            double* out) noexcept
 {
     alignas(64) block turns;
     if (t.course.empty()) {
-        linear_turns(static_cast<double>(first), t.cycles_per_frame, n, turns.data());
+        linear_turns(static_cast<double>(first - origin), t.cycles_per_frame, n, turns.data());
         play(t, turns.data(), n, w, out);
         return;
     }
-    const auto after = [](double frame, const course_part& p) { return frame < p.start; };
-    auto next = std::upper_bound(t.course.begin(), t.course.end(), static_cast<double>(first), after);
+    const double turned = origin == 0 ? 0.0 : turns_at(t.course, static_cast<double>(origin));
+    auto next = part_after(t.course, static_cast<double>(first));
     for (unsigned done = 0; done < n;) {
         const auto at = static_cast<double>(first + done);
         while (next != t.course.end() && next->start <= at)
             ++next;
-        const course_part& p = next == t.course.begin() ? *next : *(next - 1);
+        course_part p = next == t.course.begin() ? *next : *(next - 1);
+        p.cycles -= turned;
         unsigned length = n - done;
         if (next != t.course.end())
             length = static_cast<unsigned>(std::min<double>(length, std::ceil(next->start - at)));
@@ -133,12 +153,12 @@ TACTOR_CLONES void read_cycle(const wave_samples& cycle, const double* turns, un
     }
 }
 
-void timbre::fill(std::int64_t first, unsigned n, double* out, wave w) const noexcept
+void timbre::fill(std::int64_t first, std::int64_t origin, unsigned n, double* out, wave w) const noexcept
 {
     if (form == form_kind::loop)
         read_loop(*samples, first, n, out);
     else
-        follow(*this, first, n, w, out);
+        follow(*this, first, origin, n, w, out);
     if (w == wave::cosine && !is_sine())
         rest_of(power, n, out);
 }

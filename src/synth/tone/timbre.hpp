@@ -13,7 +13,7 @@
 
 namespace tactor::synth {
 
-/// A stretch of a carrier whose frequency is linear, in frames of the carrier.
+/// A stretch of a carrier whose frequency is linear, in frames of the stroke.
 struct course_part {
     double start = 0.0;
     double cycles = 0.0;           ///< at `start`, less whole ones
@@ -43,10 +43,10 @@ struct timbre {
     double am_depth = 0.0;
 
     bool is_sine() const noexcept { return form == form_kind::sine; }
-    /// out[j] is the sample of frame first + j for j < n, at most block_frames; -1 to 1, without the
-    /// modulation. With wave::cosine it is the sample that makes an envelope of the other: sin^2 + cos^2 =
-    /// power.
-    void fill(std::int64_t first, unsigned n, double* out, wave w) const noexcept;
+    /// out[j] is the sample of the stroke's frame first + j for j < n, at most block_frames; -1 to 1, without
+    /// the modulation. The carrier's phase is 0 at frame `origin`; a loop has none. With wave::cosine it is
+    /// the sample that makes an envelope of the other: sin^2 + cos^2 = power.
+    void fill(std::int64_t first, std::int64_t origin, unsigned n, double* out, wave w) const noexcept;
 };
 
 /// Points that interpolation needs besides a cycle's own: one before, and two and a last after.
