@@ -2,6 +2,7 @@
 // Switches the amplifier off where no player and no holder is left to do it.
 #include <chrono>
 #include <memory>
+#include <string>
 #include <thread>
 
 #include <CLI/CLI.hpp>
@@ -30,15 +31,21 @@ gpio_line_place wait_until_free(const gpio_line_name& line)
     return p;
 }
 
+// The files that could have said it.
+std::string searched(const environment& e)
+{
+    const bool own_file = !e.array_file.empty() && e.array_file != e.config_name;
+    if (e.config_name.empty())
+        return fmt::format("{}, and there is no configuration", own_file ? e.array_file : "the array");
+    return own_file ? fmt::format("{} or {}", e.array_file, e.config_name) : e.config_name;
+}
+
 int switch_off(settings& s, option_list& options)
 {
     const environment e = read_environment(s, options);
     if (!e.config.amplifier)
-        throw error(error_kind::bad_input, "amplifier",
-                    fmt::format("no [amplifier] in {}", e.config_name.empty()
-                                                            ? "the array, and there is no configuration"
-                                                            : e.config_name),
-                    "say its line there, see tactor.toml(5), or name the array with --array");
+        throw error(error_kind::bad_input, "amplifier", fmt::format("no [amplifier] in {}", searched(e)),
+                    "say its line there, see tactor.toml(5), or name the file that does with --array");
     const amplifier_settings& a = *e.config.amplifier;
     const gpio_line_place p = wait_until_free(a.line);
     // Requested as off, so it goes there at once; asked once more for what the driver says.
@@ -58,7 +65,7 @@ command add_off(CLI::App& app)
     auto s = std::make_shared<settings>();
     auto options = std::make_shared<option_list>(*c, *s);
     options->add_array_options();
-    c->footer("Example: tactor off --array palm.toml");
+    c->footer("Example: tactor off --config tactor.toml");
     return [s, options] { return switch_off(*s, *options); };
 }
 

@@ -43,7 +43,7 @@ NOT_RUN = {
     "cp -r examples/debian": "the lane tests/lanes/deb does it",
     "dpkg-buildpackage": "the lane tests/lanes/deb does it",
     "grep . /sys/module/pinctrl": "needs the kernel of a Raspberry Pi",
-    "tactor off --array palm.toml": "needs the GPIO line of an amplifier",
+    "tactor off --config tactor.toml": "needs the GPIO line of an amplifier: the suite cli-off runs it as far as that",
     "tactor stop": "needs a server: the suite cli-remote runs it",
     "tactor status": "needs a server: the suite cli-remote runs it",
     "tactor play park2016-3 --socket": "needs a server: the suite cli-remote runs it",
@@ -172,6 +172,11 @@ class Documents(ToolTest):
             self.configured = False
             self.follow(f"man/{page.name}", code_of_man(page.read_text(encoding="utf-8")))
         self.assertGreater(self.ran, 16)
+
+    def test_the_first_reply_of_the_protocol(self):
+        page = (ROOT / "man/tactor-protocol.7").read_text(encoding="utf-8")
+        stroke, total_s = re.search(r'"method":"play","params":\{"stroke":"([\w-]+)".*?"total_s":([\d.]+)', page, re.S).groups()
+        self.assertEqual(float(total_s), self.plan(stroke)["total_s"])
 
     def test_comments_of_examples(self):
         for folder in ("arrays", "strokes"):

@@ -60,6 +60,20 @@ class Manual(ToolTest):
             self.assertEqual((named | (common if takes_strokes else set())) - helped - {"--version"}, set(),
                              f"the manual says of {command} what --help does not")
 
+    def test_commands_with_a_page_of_their_own_have_their_options_there(self):
+        for command in ("calibrate", "experiment", "analyze", "report"):
+            page = (ROOT / f"man/tactor-{command}.1").read_text(encoding="utf-8")
+            described = {"-" + name for head in re.findall(r"^\.It (.*)", page, re.M)
+                         for name in re.findall(r"(?:Fl|,) (-[\w-]+|[a-zA-Z](?= ))", head)}
+            self.assertEqual(self.help_of(command)[1] - {"-h", "--help"}, described, command)
+
+    def test_a_plan_is_a_stroke_of_the_commands_that_take_one(self):
+        self.write("plan.json", self.ok("plan", "park2016-1", "--format", "json").stdout)
+        for command, more in (("plan", ()), ("render", ("-o", "x.wav")), ("play", ("-D", "null")), ("plot", ("-o", "x.svg")),
+                              ("compare", ())):
+            taken = self.run_tool(command, "plan.json", *more).returncode == 0
+            self.assertEqual(".json: a plan" in " ".join(self.help_of(command)[0].split()), taken, command)
+
     def test_the_options_of_all_commands(self):
         _, helped = self.help_of()
         self.assertEqual(helped, {"-h", "--help", "--version"})

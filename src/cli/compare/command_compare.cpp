@@ -215,6 +215,9 @@ command add_compare(CLI::App& app)
     auto options = std::make_shared<option_list>(*c, *s);
     auto asked = std::make_shared<compare_options>();
     options->add_stroke_options();
+    c->get_option("STROKE")->description(
+        "preset (park2016-1 ... park2016-4; wave-2x4 and round-2x4 on palm-2x4), "
+        "file (.toml, .csv, .svg), or - for such a file on standard input; no plan: it is planned here");
     options->add_sound_options();
     options->add_observer_options();
     add_lists(*c, asked);
