@@ -135,7 +135,9 @@ int unprinted(int code)
         return status_unread;
     const bool full = code == ENOSPC || code == EDQUOT;
     say_error("tactor: standard output: {}{}\n", std::strerror(code == 0 ? EIO : code),
-              full ? " (free some space, or write to another disk; what was written is cut short)" : "");
+              full            ? " (free some space, or write to another disk; what was written is cut short)"
+              : code == EBADF ? " (it is closed: send it to a file or a pipe)"
+                              : "");
     return status_failed;
 }
 

@@ -214,6 +214,8 @@ void output_file::fail(int code) const
                          : "free some space, or name a file on another disk; nothing was left behind";
     } else if (code == EPIPE) {
         hint = "the program that reads it ended before all was written";
+    } else if (code == EBADF) {
+        hint = "it is closed: send it to a file or a pipe, or name a file";
     } else if (code == EFBIG) {
         hint = "the file system or a limit (ulimit -f) does not allow a file of this size";
     } else if (code == EACCES || code == EPERM || code == EROFS) {
