@@ -3,6 +3,7 @@
 /// What an array file or a configuration file says: see tactor.toml(5).
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -92,7 +93,7 @@ struct default_settings {
     std::optional<double> slope = {};         ///< of timing_profile
     std::optional<double> intercept_s = {};   ///< of timing_profile
     std::optional<std::string> waveform = {}; ///< for parse_waveform(); no file was opened
-    std::optional<unsigned> noise_seed = {};
+    std::optional<std::uint64_t> noise_seed = {};
     std::optional<texture_kind> texture = {};
     std::optional<double> texture_mm = {};
     std::optional<modulation> am = {};

@@ -16,6 +16,8 @@
 namespace tactor::cli {
 namespace {
 
+namespace of = detail::option_bounds;
+
 constexpr int max_strokes = 10000; // on one command line
 // The planner holds it to the timing law and says so in its words: no number is refused before.
 constexpr const char* soa_range = "above 0.0473 to 0.07 s by the usual timing law; see --burst for others";
@@ -139,6 +141,12 @@ double parse_number(const std::string& what, const std::string& text, double lo,
     return v;
 }
 
+double parse_number(const std::string& what, const std::string& text, detail::bounds b,
+                    const std::string& unit)
+{
+    return parse_number(what, text, b.low, b.high, unit);
+}
+
 void add_format_option(CLI::App& command, std::string& into, const std::vector<std::string>& names,
                        const std::string& help)
 {
@@ -193,9 +201,9 @@ void option_list::add_stroke_options()
     auto* duration = value(
         "--duration", "S", "time of each stroke; default: the file's or preset's",
         [&s](const std::string& t) { s.duration_s = parse_number("--duration", t, 0.001, 86400, "s"); });
-    auto* speed = value(
-        "--speed", "MM_PER_S", "speed instead of a time (default 60 where nothing says one)",
-        [&s](const std::string& t) { s.speed_mm_s = parse_number("--speed", t, 0.001, 100000, "mm/s"); });
+    auto* speed =
+        value("--speed", "MM_PER_S", "speed instead of a time (default 60 where nothing says one)",
+              [&s](const std::string& t) { s.speed_mm_s = parse_number("--speed", t, of::speed, "mm/s"); });
     duration->excludes(speed);
     value("--timing", timings.names("|"), "SOA as given, or fitted to end with the path (default fixed)",
           [&s](const std::string& t) { s.plan.timing = timings.parse("--timing", t); });
@@ -232,11 +240,11 @@ void option_list::add_timing_options()
     value("--soa", "S", "onset to onset of two bursts (default 0.07)",
           [&s](const std::string& t) { s.plan.soa_s = parse_number("--soa", t, -1e9, 1e9, "s", soa_range); });
     value("--burst", "S", "duration of each burst (default: what the timing law gives for the SOA)",
-          [&s](const std::string& t) { s.plan.burst_s = parse_number("--burst", t, 0.0001, 10, "s"); });
+          [&s](const std::string& t) { s.plan.burst_s = parse_number("--burst", t, of::burst, "s"); });
     value("--slope", "A", "slope of the timing law SOA = A duration + S (default 0.32)",
-          [&s](const std::string& t) { s.slope = parse_number("--slope", t, 0.01, 0.99, ""); });
+          [&s](const std::string& t) { s.slope = parse_number("--slope", t, of::slope, ""); });
     value("--intercept", "S", "intercept of the timing law (default 0.0473)",
-          [&s](const std::string& t) { s.intercept_s = parse_number("--intercept", t, 0.001, 10, "s"); });
+          [&s](const std::string& t) { s.intercept_s = parse_number("--intercept", t, of::intercept, "s"); });
 }
 
 void option_list::add_observer_options()
@@ -264,8 +272,9 @@ void option_list::add_compensation_options()
 void option_list::add_carrier_option()
 {
     settings& s = settings_;
-    value("--carrier", "HZ", "frequency of the vibration (default 250)",
-          [&s](const std::string& t) { s.plan.carrier_hz = parse_number("--carrier", t, 1, 384000, "Hz"); });
+    value("--carrier", "HZ", "frequency of the vibration (default 250)", [&s](const std::string& t) {
+        s.plan.carrier_hz = parse_number("--carrier", t, of::carrier, "Hz");
+    });
 }
 
 void option_list::add_sound_options()
@@ -277,14 +286,14 @@ void option_list::add_sound_options()
           [&s](const std::string& t) { s.render.phase = phases.parse("--phase", t); });
     value("--ramp", "S",
           "raised-cosine ramp inside each burst (default: 0 between zero crossings, else 0.002)",
-          [&s](const std::string& t) { s.render.ramp_s = parse_number("--ramp", t, 0, 10, "s"); });
+          [&s](const std::string& t) { s.render.ramp_s = parse_number("--ramp", t, of::ramp, "s"); });
     add_envelope_options();
     auto* level = value("--level-dbfs", "DB", "peak of the carrier for intensity 1 (default -12)",
                         [&s](const std::string& t) {
-                            s.render.level_dbfs = parse_number("--level-dbfs", t, -200, 0, "dBFS");
+                            s.render.level_dbfs = parse_number("--level-dbfs", t, of::level_dbfs, "dBFS");
                         });
     auto* sl = value("--sl", "DB", "instead: dB above each tactor's threshold", [&s](const std::string& t) {
-        s.render.sl_db = parse_number("--sl", t, -60, 100, "dB SL");
+        s.render.sl_db = parse_number("--sl", t, of::sl, "dB SL");
     });
     level->excludes(sl);
     add_scale_options();
@@ -295,7 +304,7 @@ void option_list::add_rate_options()
 {
     settings& s = settings_;
     value("--rate", "HZ", "sample rate (default 48000)", [&s](const std::string& t) {
-        const double hz = parse_number("--rate", t, 8000, 768000, "Hz");
+        const double hz = parse_number("--rate", t, of::rate, "Hz");
         if (hz != std::floor(hz))
             throw error(error_kind::bad_input, "--rate", fmt::format("{} is not a whole number", t));
         s.rate = static_cast<unsigned>(hz);

@@ -12,6 +12,8 @@
 
 #include <tactor/tactor.hpp>
 
+#include "core/option_bounds.hpp"
+
 namespace CLI {
 class App;
 class Option;
@@ -106,5 +108,7 @@ void add_format_option(CLI::App& command, std::string& into, const std::vector<s
 /// taken).
 double parse_number(const std::string& what, const std::string& text, double lo, double hi,
                     const std::string& unit, const std::string& range_text = {});
+double parse_number(const std::string& what, const std::string& text, detail::bounds b,
+                    const std::string& unit);
 
 } // namespace tactor::cli

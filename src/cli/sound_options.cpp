@@ -10,6 +10,8 @@
 namespace tactor::cli {
 namespace {
 
+namespace of = detail::option_bounds;
+
 // The library's words about a field, as the option's.
 template <class F>
 auto said_of(const char* option, F make)
@@ -74,7 +76,7 @@ void option_list::add_waveform_options()
     value("--texture-mm", "MM",
           "--texture length: so much of the path has the whole file (default: all of it)",
           [&s](const std::string& t) {
-              s.plan.wave.texture_mm = parse_number("--texture-mm", t, 0, 1e6, "mm");
+              s.plan.wave.texture_mm = parse_number("--texture-mm", t, of::texture_mm, "mm");
           });
 }
 
@@ -84,12 +86,13 @@ void option_list::add_envelope_options()
     value("--envelope", "raised-cosine|linear|exponential|tukey[:PART]",
           "how a burst rises and falls (default raised-cosine; tukey: by a part of it, default 0.5)",
           [&s](const std::string& t) { take_envelope(s.render.envelope, t); });
-    value(
-        "--attack", "S", "time in which each burst rises (default: what --ramp says)",
-        [&s](const std::string& t) { s.render.envelope.attack_s = parse_number("--attack", t, 0, 10, "s"); });
+    value("--attack", "S", "time in which each burst rises (default: what --ramp says)",
+          [&s](const std::string& t) {
+              s.render.envelope.attack_s = parse_number("--attack", t, of::attack, "s");
+          });
     value("--release", "S", "time in which it falls (default: that in which it rises)",
           [&s](const std::string& t) {
-              s.render.envelope.release_s = parse_number("--release", t, 0, 10, "s");
+              s.render.envelope.release_s = parse_number("--release", t, of::release, "s");
           });
 }
 
@@ -104,7 +107,7 @@ void option_list::add_scale_options()
     value("--stevens-exponent", "E",
           "felt = amplitude^E (default 0.6, at 250 Hz; 0.95 at 60 Hz: Stevens 1968)",
           [&s](const std::string& t) {
-              s.plan.scale.exponent = parse_number("--stevens-exponent", t, 0.1, 3, "");
+              s.plan.scale.exponent = parse_number("--stevens-exponent", t, of::stevens_exponent, "");
           });
 }
 

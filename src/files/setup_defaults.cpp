@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
+#include <cstdint>
 #include <type_traits>
 #include <variant>
 
@@ -13,6 +15,7 @@
 #include <tactor/envelope.hpp>
 
 #include "core/kind_names.hpp"
+#include "core/option_bounds.hpp"
 #include "core/suggest.hpp"
 #include "files/setup_parts.hpp"
 
@@ -35,11 +38,11 @@ struct waveform_name {   // a waveform's name or file
     member<std::string> text;
 };
 
-using field =
-    std::variant<member<double>, member<unsigned>, member<bool>, member<algorithm_kind>, member<phantom_kind>,
-                 member<timing_kind>, member<outside_kind>, member<overlap_kind>, member<texture_kind>,
-                 member<scale_kind>, member<phase_kind>, member<format_kind>, member<observer_kind>,
-                 member<modulation>, milliseconds, yes_or_none, envelope_name, waveform_name>;
+using field = std::variant<member<double>, member<unsigned>, member<std::uint64_t>, member<bool>,
+                           member<algorithm_kind>, member<phantom_kind>, member<timing_kind>,
+                           member<outside_kind>, member<overlap_kind>, member<texture_kind>,
+                           member<scale_kind>, member<phase_kind>, member<format_kind>, member<observer_kind>,
+                           member<modulation>, milliseconds, yes_or_none, envelope_name, waveform_name>;
 
 struct key {
     std::string_view name;
@@ -47,41 +50,40 @@ struct key {
     bounds allowed{};
 };
 
-constexpr double max_hz = 384000.0; // half of the highest rate
-
-// What is possible at all; the planner knows the closer bounds.
+// The SOA's bounds are what is possible at all: the planner knows the closer ones.
+namespace of = option_bounds;
 using d = default_settings;
 constexpr std::array keys{
     key{"algorithm", &d::algorithm},
     key{"phantom", &d::phantom},
-    key{"speed", &d::speed_mm_s, {0.0, max_mm, true}},
+    key{"speed", &d::speed_mm_s, of::speed},
     key{"soa", &d::soa_s, {0.0, 10.0, true}},
-    key{"burst", &d::burst_s, {0.0001, 10.0}},
+    key{"burst", &d::burst_s, of::burst},
     key{"timing", &d::timing},
     key{"outside", &d::outside},
     key{"snap", &d::snap},
     key{"drop-points", &d::drop_points},
     key{"overlap", &d::overlap},
-    key{"carrier", &d::carrier_hz, {1.0, max_hz}},
+    key{"carrier", &d::carrier_hz, of::carrier},
     key{"waveform", waveform_name{&d::waveform}},
     key{"am", &d::am},
-    key{"noise-seed", &d::noise_seed, {0.0, 4294967295.0}},
+    key{"noise-seed", &d::noise_seed, of::noise_seed},
     key{"texture", &d::texture},
-    key{"texture-mm", &d::texture_mm, {0.0, max_mm}},
+    key{"texture-mm", &d::texture_mm, of::texture_mm},
     key{"envelope", envelope_name{}},
-    key{"attack", &d::attack_s, {0.0, 10.0}},
-    key{"release", &d::release_s, {0.0, 10.0}},
+    key{"attack", &d::attack_s, of::attack},
+    key{"release", &d::release_s, of::release},
     key{"phase", &d::phase},
-    key{"ramp", &d::ramp_s, {0.0, 10.0}},
-    key{"level-dbfs", &d::level_dbfs, {min_db, 0.0}},
-    key{"sl", &d::sl_db, {min_db, -min_db}},
+    key{"ramp", &d::ramp_s, of::ramp},
+    key{"level-dbfs", &d::level_dbfs, of::level_dbfs},
+    key{"sl", &d::sl_db, of::sl},
     key{"intensity-scale", &d::intensity_scale},
-    key{"stevens-exponent", &d::stevens_exponent, {0.1, 3.0}},
-    key{"rate", &d::rate, {8000.0, 768000.0}},
+    key{"stevens-exponent", &d::stevens_exponent, of::stevens_exponent},
+    key{"rate", &d::rate, of::rate},
     key{"sample-format", &d::sample_format},
-    key{"latency-ms", milliseconds{&d::latency_s}, {0.0, 10000.0}},
-    key{"slope", &d::slope, {0.0, 0.99}},
-    key{"intercept", &d::intercept_s, {0.0, 10.0, true}},
+    key{"latency-ms", milliseconds{&d::latency_s}, of::latency_ms},
+    key{"slope", &d::slope, of::slope},
+    key{"intercept", &d::intercept_s, of::intercept},
     key{"compensate", yes_or_none{&d::compensate, "low-speed"}},
     key{"observer", &d::observer},
     key{"sigma-mm", &d::sigma_mm, {0.001, 1000.0}},
@@ -97,12 +99,14 @@ public:
     }
 
     void operator()(member<double> m) const { out_.*m = number(); }
-    void operator()(member<unsigned> m) const
+    template <class Whole>
+    requires std::is_unsigned_v<Whole>
+    void operator()(member<Whole> m) const
     {
         const double v = number();
-        if (v != static_cast<double>(static_cast<unsigned>(v)))
-            fail_at(table_.where(node_), fmt::format("{} is {}", key_.name, v), "give a whole number");
-        out_.*m = static_cast<unsigned>(v);
+        if (v != std::floor(v))
+            fail("give a whole number");
+        out_.*m = static_cast<Whole>(v);
     }
     void operator()(member<bool> m) const
     {

@@ -19,15 +19,9 @@
 
 #include "core/kind_names.hpp"
 #include "core/limits.hpp"
+#include "core/option_bounds.hpp"
 
 namespace tactor::detail {
-
-/// What a number may be.
-struct bounds {
-    double low = 0.0;
-    double high = 0.0;
-    bool above_low = false; ///< low itself is not allowed
-};
 
 /// Parses a document. `name` stands for the file in messages.
 /// \throws error (bad_input) with file, line and column.

@@ -11,12 +11,14 @@
 #include <fmt/ranges.h>
 
 #include "core/kind_names.hpp"
+#include "core/option_bounds.hpp"
 #include "server/faults.hpp"
 
 namespace tactor::server {
 namespace {
 
 using net::json;
+namespace of = detail::option_bounds;
 
 template <typename Kind>
 Kind word(const json& v, const std::string& what)
@@ -88,19 +90,19 @@ constexpr std::array options{
            }},
     option{"speed", false,
            [](set& s, const json& v, const std::string& w) {
-               s.speed_mm_s = number(v, w, 0.001, 100000);
+               s.speed_mm_s = number(v, w, of::speed);
                s.duration_s.reset();
            }},
     option{"soa", true,
            [](set& s, const json& v, const std::string& w) { s.plan.soa_s = number(v, w, -1e9, 1e9); }},
     option{"burst", true,
-           [](set& s, const json& v, const std::string& w) { s.plan.burst_s = number(v, w, 0.0001, 10); }},
+           [](set& s, const json& v, const std::string& w) { s.plan.burst_s = number(v, w, of::burst); }},
     option{
         "slope", true,
-        [](set& s, const json& v, const std::string& w) { s.plan.profile.slope = number(v, w, 0.01, 0.99); }},
+        [](set& s, const json& v, const std::string& w) { s.plan.profile.slope = number(v, w, of::slope); }},
     option{"intercept", true,
            [](set& s, const json& v, const std::string& w) {
-               s.plan.profile.intercept_s = number(v, w, 0.001, 10);
+               s.plan.profile.intercept_s = number(v, w, of::intercept);
            }},
     option{"timing", false,
            [](set& s, const json& v, const std::string& w) { s.plan.timing = word<timing_kind>(v, w); }},
@@ -111,15 +113,16 @@ constexpr std::array options{
            [](set& s, const json& v, const std::string& w) { s.plan.drop_points = flag(v, w); }},
     option{"overlap", false,
            [](set& s, const json& v, const std::string& w) { s.plan.overlap = word<overlap_kind>(v, w); }},
-    option{"carrier", true,
-           [](set& s, const json& v, const std::string& w) { s.plan.carrier_hz = number(v, w, 1, 384000); }},
+    option{
+        "carrier", true,
+        [](set& s, const json& v, const std::string& w) { s.plan.carrier_hz = number(v, w, of::carrier); }},
     option{"waveform", true,
            [](set& s, const json& v, const std::string& w) { s.plan.wave = named_wave(v, w, s.plan.wave); }},
     option{"am", true,
            [](set& s, const json& v, const std::string& w) { s.plan.am = parsed(parse_modulation, v, w); }},
     option{"noise_seed", true,
            [](set& s, const json& v, const std::string& w) {
-               const double seed = number(v, w, 0, 0x1p53);
+               const double seed = number(v, w, of::noise_seed);
                if (seed != std::floor(seed))
                    bad_param(w, "it is no whole number");
                s.plan.wave.seed = static_cast<std::uint64_t>(seed);
@@ -132,27 +135,29 @@ constexpr std::array options{
            }},
     option{"attack", true,
            [](set& s, const json& v, const std::string& w) {
-               s.render.envelope.attack_s = number(v, w, 0, 10);
+               s.render.envelope.attack_s = number(v, w, of::attack);
            }},
     option{"release", true,
            [](set& s, const json& v, const std::string& w) {
-               s.render.envelope.release_s = number(v, w, 0, 10);
+               s.render.envelope.release_s = number(v, w, of::release);
            }},
     option{"phase", true,
            [](set& s, const json& v, const std::string& w) { s.render.phase = word<phase_kind>(v, w); }},
     option{"ramp", true,
-           [](set& s, const json& v, const std::string& w) { s.render.ramp_s = number(v, w, 0, 10); }},
+           [](set& s, const json& v, const std::string& w) { s.render.ramp_s = number(v, w, of::ramp); }},
     option{"level_dbfs", true,
            [](set& s, const json& v, const std::string& w) {
-               s.render.level_dbfs = number(v, w, -200, 0);
+               s.render.level_dbfs = number(v, w, of::level_dbfs);
                s.render.sl_db.reset();
            }},
     option{"sl", true,
-           [](set& s, const json& v, const std::string& w) { s.render.sl_db = number(v, w, -60, 100); }},
+           [](set& s, const json& v, const std::string& w) { s.render.sl_db = number(v, w, of::sl); }},
     option{"intensity_scale", true,
            [](set& s, const json& v, const std::string& w) { s.plan.scale.kind = word<scale_kind>(v, w); }},
     option{"stevens_exponent", true,
-           [](set& s, const json& v, const std::string& w) { s.plan.scale.exponent = number(v, w, 0.1, 3); }},
+           [](set& s, const json& v, const std::string& w) {
+               s.plan.scale.exponent = number(v, w, of::stevens_exponent);
+           }},
 };
 
 void check_pair(const json& given, const char* a, const char* b)

@@ -100,5 +100,30 @@ class Manual(ToolTest):
                 self.assertEqual(re.findall(r"^.*[\w”] +[,;:)](?:\s.*)?$", text, re.M), [])
 
 
+def number_of(text):
+    base, _, power = text.partition("^")
+    return float(base) ** float(power or 1)
+
+
+class Ranges(ToolTest):
+    RANGE = r"(-?[\d.e+]+) to ([\d.e+^]+)"
+
+    def range_in(self, text):
+        return tuple(number_of(n) for n in re.search(self.RANGE, text).groups())
+
+    def test_an_option_its_key_and_the_manual_agree(self):
+        page = (ROOT / "man/tactor.toml.5").read_text(encoding="utf-8")
+        table = re.search(r"^\[defaults\]\tunit\tvalues\n(.*?)^\.TE", page, re.M | re.S)[1]
+        keys = [(key, said) for key, said in re.findall(r"^([\w-]+)\t.*\tT\{\n(.*)\nT\}$", table, re.M) if re.match(self.RANGE, said)]
+        self.assertGreaterEqual(len(keys), 17)
+        for key, said in keys:
+            manual = self.range_in(said)
+            file = self.refused(2, "plan", "park2016-1", "--config", self.write("d.toml", f"[defaults]\n{key} = nan\n"),
+                                says=["d.toml:2:"]).stderr
+            self.assertEqual(self.range_in(file.partition("allowed: ")[2]), manual, key)
+            option = self.refused(2, "play", "park2016-1", "-D", "null", f"--{key}", "nan", says=[f"--{key}: "]).stderr
+            self.assertEqual(self.range_in(option.partition("(")[2]), manual, key)
+
+
 if __name__ == "__main__":
     main()

@@ -23,7 +23,9 @@ void add_latency(CLI::App& c, play_options& o)
 {
     auto* latency = c.add_option_function<std::string>(
         "--latency-ms",
-        [&o](const std::string& t) { o.latency_ms = parse_number("--latency-ms", t, 0.1, 10000, "ms"); },
+        [&o](const std::string& t) {
+            o.latency_ms = parse_number("--latency-ms", t, detail::option_bounds::latency_ms, "ms");
+        },
         "length of the device's buffer: periods x period");
     latency->type_name("MS");
     auto* period = c.add_option_function<std::string>(
