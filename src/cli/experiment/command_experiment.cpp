@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include <filesystem>
 #include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -38,7 +41,13 @@ int hold_session(const prepared_experiment& p, const experiment_options& o, cons
     study::session_store store(folder, p.participant, session_facts(p, o), o.resume);
     const std::string who =
         fmt::format("sub-{}{}", p.participant, o.simulate ? ": SIMULATED, nobody was asked" : "");
+    std::vector<const study::run_definition*> runs;
+    for (const study::run_sequence& r : p.runs)
+        runs.push_back(&p.definition.runs[r.run]);
+    store.check_tables(runs);
     if (store.resumed() && finished(p, store)) {
+        for (const std::filesystem::path& lost : store.missing(p.stimuli.all()))
+            say(stderr, "tactor: warning: {}: it is missing (put it back from a copy)\n", lost.string());
         say(stdout, "{}: the session is finished\n", who);
         return status_ok;
     }

@@ -77,6 +77,12 @@ void session_store::settle(bool resume)
             throw error(error_kind::bad_input, file.string(),
                         fmt::format("it is missing, and sub-{} has data", code_),
                         "put it back, or choose another code");
+        if (const std::string other = folder_.alike(code_); !other.empty())
+            throw error(error_kind::bad_input, "--participant",
+                        fmt::format("{} is here already, and sub-{} is the same name where a disk does not "
+                                    "know capitals",
+                                    other, code_),
+                        "choose another code");
         return;
     }
     if (!resume)
@@ -118,6 +124,28 @@ void session_store::begin(const std::vector<const stimulus*>& stimuli)
     if (!resumed_)
         write_whole(source_ / "session.json", session_text(facts_));
     folder_.describe();
+}
+
+std::vector<fs::path> session_store::missing(const std::vector<const stimulus*>& stimuli) const
+{
+    std::vector<fs::path> all = folder_.files_of(code_);
+    for (const stimulus* s : stimuli)
+        all.push_back(source_ / "plans" / (s->hash + ".json"));
+    std::erase_if(all, [](const fs::path& p) { return there(p); });
+    return all;
+}
+
+void session_store::check_tables(const std::vector<const run_definition*>& runs) const
+{
+    const run_definition* lost = nullptr;
+    for (const run_definition* r : runs) {
+        if (!there(table_of(*r)))
+            lost = lost == nullptr ? r : lost;
+        else if (lost != nullptr)
+            throw error(error_kind::bad_input, table_of(*lost).string(),
+                        fmt::format("it is missing, and the run {} came after it", r->outline.name),
+                        "put it back: its trials would be asked once more");
+    }
 }
 
 fs::path session_store::table_of(const run_definition& r) const

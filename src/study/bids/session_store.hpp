@@ -38,6 +38,11 @@ public:
     /// Writes session.json, where it is not there, and each plan under its hash, and what is of the study.
     void begin(const std::vector<const stimulus*>& stimuli);
 
+    /// What there should be of a session that has ended, and is not. Its tables apart.
+    std::vector<std::filesystem::path> missing(const std::vector<const stimulus*>& stimuli) const;
+    /// \throws error (bad_input) where a run, of these in their order, has no table and a later one has.
+    void check_tables(const std::vector<const run_definition*>& runs) const;
+
     /// Whether this session goes on with one that was begun.
     bool resumed() const noexcept { return resumed_; }
 

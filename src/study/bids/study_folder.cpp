@@ -9,6 +9,7 @@
 
 #include <tactor/error.hpp>
 
+#include "core/words.hpp"
 #include "study/bids/describe.hpp"
 #include "study/data/session.hpp"
 #include "study/data/text_table.hpp"
@@ -163,6 +164,29 @@ void study_folder::try_to_write(const std::string& code) const
             study::try_to_write(file);
     study::try_to_write(folder_ / "participants.tsv");
     study::try_to_write(scans_of(code));
+}
+
+std::string study_folder::alike(const std::string& code) const
+{
+    const std::string own = "sub-" + code;
+    std::error_code failed;
+    for (const fs::path& place : {folder_, folder_ / "sourcedata"})
+        for (const fs::directory_entry& e : fs::directory_iterator(place, failed))
+            if (const std::string name = e.path().filename().string();
+                name != own && in_small_letters(name) == in_small_letters(own))
+                return name;
+    return {};
+}
+
+std::vector<fs::path> study_folder::files_of(const std::string& code) const
+{
+    std::vector<fs::path> all;
+    for (const char* name : {"dataset_description.json", "README", "participants.json", "participants.tsv"})
+        all.push_back(folder_ / name);
+    for (const run_definition& r : definition_.runs)
+        all.push_back(description_of(r));
+    all.push_back(scans_of(code));
+    return all;
 }
 
 void study_folder::describe() const

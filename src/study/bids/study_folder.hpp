@@ -44,6 +44,13 @@ public:
     /// says what the folder is of. \throws error (runtime).
     void describe() const;
 
+    /// Somebody who is here already and whose code differs from this one in capitals only; empty for nobody.
+    std::string alike(const std::string& code) const;
+
+    /// What is there of the study when a session of this participant has ended, plans and tables but for
+    /// those of the whole study apart.
+    std::vector<std::filesystem::path> files_of(const std::string& code) const;
+
     /// Adds a line to participants.tsv, with n/a in what it asks besides; nothing where there is one.
     void add_participant(const std::string& code);
 
