@@ -5,6 +5,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -161,6 +163,7 @@ struct setup {
     std::optional<serve_settings> serve = {};
     std::optional<calibration_origin> calibration = {};
     default_settings defaults = {};
+    std::map<std::string, source_place, std::less<>> defaults_at = {}; ///< where, by the keys of [defaults]
 };
 
 /// Reads an array or configuration file. May block on the file system.

@@ -150,6 +150,10 @@ struct stroke {
     /// The carrier along the path, linear between parts, which ascend; instead of carrier_hz. Its phase goes
     /// on through every change.
     std::vector<carrier_part> carrier_profile = {};
+    // The same places as choices_at, of start_s where it is below 0, of the carrier, and of the waveform.
+    source_place start_at = {};
+    source_place carrier_at = {}; ///< of carrier_hz, or of carrier_profile
+    source_place wave_at = {};
 };
 
 /// Names of the built-in strokes: "park2016-1" ... "park2016-4" for palm-3x3, "wave-2x4" and "round-2x4" for

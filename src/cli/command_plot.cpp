@@ -66,7 +66,7 @@ std::string name_of(const piece& p)
 {
     if (p.strokes.size() == 1 && !p.strokes[0].name.empty())
         return p.strokes[0].name;
-    return p.name == "-" ? "standard input" : std::filesystem::path(p.name).filename().string();
+    return std::filesystem::path(shown_name(p.name)).filename().string();
 }
 
 int draw(settings& s, option_list& options, const plot_settings& p)
@@ -102,7 +102,7 @@ command add_plot(CLI::App& app)
     options->add_sound_options();
     add_picture_options(*c, *p);
     c->footer("Example: tactor plot park2016-3 -o park2016-3.pdf");
-    return [s, options, p] { return draw(*s, *options, *p); };
+    return [s, options, p] { return options->run([&] { return draw(*s, *options, *p); }); };
 }
 
 } // namespace tactor::cli

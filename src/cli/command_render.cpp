@@ -144,7 +144,7 @@ command add_render(CLI::App& app)
         ->type_name("FILE.wav")
         ->required();
     c->footer("Example: tactor render --path \"M 0 10 L 40 30\" --speed 80 -o stroke.wav");
-    return [s, options, file] { return render(*s, *options, *file); };
+    return [s, options, file] { return options->run([&] { return render(*s, *options, *file); }); };
 }
 
 } // namespace tactor::cli

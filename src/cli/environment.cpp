@@ -12,7 +12,6 @@
 
 #include "cli/pipes.hpp"
 #include "cli/variable.hpp"
-#include "files/setup_defaults.hpp"
 #include "files/stroke/text.hpp"
 #include "files/text_file.hpp"
 
@@ -191,7 +190,7 @@ array find_array(const settings& s, option_list& options, environment& e)
     const setup file = load_setup(*s.array_name);
     if (!file.array)
         throw error(error_kind::bad_input, *s.array_name, "says no [array]", "see tactor.toml(5)");
-    options.apply_defaults(detail::default_texts(file.defaults), *s.array_name);
+    options.apply_defaults(file);
     use_array_file(config, file);
     e.array_file = *s.array_name;
     return *file.array;
@@ -223,7 +222,7 @@ environment read_environment(settings& s, option_list& options)
     if (!e.config_name.empty()) {
         check_readable(e.config_name);
         e.config = load_setup(e.config_name);
-        options.apply_defaults(detail::default_texts(e.config.defaults), e.config_name);
+        options.apply_defaults(e.config);
     }
     read_given(s, options, e);
     e.tactors = find_array(s, options, e);

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 std::vector<stroke> read_one(const environment& e, const std::string& argument)
 {
     if (e.plans.contains(argument))
-        throw error(error_kind::bad_input, argument == "-" ? "standard input" : argument, "it is a plan",
+        throw error(error_kind::bad_input, shown_name(argument), "it is a plan",
                     "give the stroke, which is planned here");
     if (is_preset(stroke_presets(), argument))
         return {preset_stroke(argument)};
@@ -60,7 +60,7 @@ piece read_piece(const settings& s, const environment& e, const layout& faces, c
         p.strokes.push_back(stroke_of_path(s, *s.path_data));
     else
         p.strokes = read_one(e, argument);
-    p.strokes = fitted_as_asked(std::move(p.strokes), faces, argument);
+    p.strokes = fitted_as_asked(std::move(p.strokes), faces, shown_name(argument));
     if (s.fit) {
         fitted_strokes fitted = fit_strokes(p.strokes, faces, s.fit_margin_mm);
         p.strokes = std::move(fitted.strokes);
@@ -104,7 +104,7 @@ error in_piece(const error& x, const std::string& argument, std::size_t number, 
     const std::string which =
         name.empty() ? fmt::format("stroke {}", number) : fmt::format("stroke {} \"{}\"", number, name);
     const bool said = x.subject() == "stroke" || x.subject() == fmt::format("stroke \"{}\"", name);
-    const std::string from = fmt::format("{}: {}", argument, which);
+    const std::string from = fmt::format("{}: {}", shown_name(argument), which);
     return x.reworded(said ? from : fmt::format("{}: {}", from, x.subject()), x.why(), x.hint());
 }
 
@@ -116,7 +116,7 @@ error in_file(const error& x, const std::string& argument)
     const bool file = argument != "--path" && !is_preset(stroke_presets(), argument);
     if (!about_it || !file)
         return x;
-    const std::string from = argument == "-" ? "standard input" : argument;
+    const std::string from = shown_name(argument);
     // A stroke without a name of its own has the file's.
     const std::string given = argument == "-" ? from : std::filesystem::path(argument).stem().string();
     const bool said = x.subject() == "stroke" || x.subject() == fmt::format("stroke \"{}\"", given);
@@ -152,15 +152,44 @@ void for_each_stroke(const piece& p, F f)
     }
 }
 
+// Each begins in the piece, whether its samples are wanted or not.
+void check_starts(const piece& p)
+{
+    std::vector<double> starts;
+    std::vector<double> ends;
+    for (std::size_t i = 0; i < p.plans.size(); ++i) {
+        const placed_plan& q = p.plans[i];
+        try {
+            starts.push_back(resolve_start_s(q.start_s, q.anchor, starts, ends));
+        } catch (const error& x) {
+            throw i < p.strokes.size() ? of_stroke(x, p, i) : x;
+        }
+        ends.push_back(starts.back() + q.schedule.total_s);
+    }
+}
+
 } // namespace
+
+std::string shown_name(const std::string& argument)
+{
+    return argument == "-" ? "standard input" : argument;
+}
 
 error of_stroke(const error& x, const piece& p, std::size_t i)
 {
     const stroke& s = p.strokes[i];
     const std::string_view what = x.subject();
-    const bool own = (has_own_carrier(s) && (what == "carrier_hz" || what == "carrier_profile")) ||
-                     (s.wave && what == "waveform");
-    const error about = own ? x.reworded("stroke", fmt::format("{}: {}", what, x.why()), x.hint()) : x;
+    const bool carrier = has_own_carrier(s) && (what == "carrier_hz" || what == "carrier_profile");
+    const bool wave = s.wave && what == "waveform";
+    const bool start = x.field() == "start_s";
+    const source_place& at = carrier ? s.carrier_at : wave ? s.wave_at : s.start_at;
+    if ((carrier || wave || start) && at.line != 0)
+        return x.reworded(at.text(), fmt::format("{}: {}", start ? "start_s" : what, x.why()), x.hint())
+            .with_place(at);
+    // Its own: not what [defaults] says.
+    const error about =
+        carrier || wave ? x.reworded("stroke", fmt::format("{}: {}", what, x.why()), x.hint()).with_field("")
+                        : x;
     return p.strokes.size() == 1 ? in_file(about, p.name)
                                  : in_piece(in_options(about), p.name, i + 1, s.name);
 }
@@ -196,6 +225,7 @@ piece plan_one_piece(const settings& s, const environment& e)
             p.moved.push_back(make_compensated_plan(e.tactors, faces, k, s.plan, s.low_speed));
             p.plans.push_back({std::move(p.moved.back().schedule), k.start_s, k.anchor});
         });
+    check_starts(p);
     return p;
 }
 

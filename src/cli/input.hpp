@@ -23,6 +23,9 @@ struct piece {
     std::vector<compensated_plan> moved = {};
 };
 
+/// A STROKE argument as people read it: - is standard input.
+std::string shown_name(const std::string& argument);
+
 /// An error about the piece's stroke i, with the file that has it, and which of several it is.
 error of_stroke(const error& x, const piece& p, std::size_t i);
 

@@ -10,8 +10,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "cli/option_words.hpp"
 #include "core/kind_names.hpp"
 #include "core/words.hpp"
+#include "files/setup_defaults.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -113,9 +115,21 @@ std::string without_unit(const std::string& text, double v, std::string_view res
     return fmt::format("give {} without a unit, as {}", unit == "s" ? "seconds" : unit, plain_number(meant));
 }
 
-std::string bare(const std::string& names)
+// The long name of "-D,--device", without its dashes.
+std::string bare(std::string_view names)
 {
-    return names.substr(names.rfind("--") + 2);
+    const std::size_t dashes = names.rfind("--");
+    return std::string(dashes == std::string_view::npos ? names : names.substr(dashes + 2));
+}
+
+// What is wrong with the option's value, which stands in a file.
+error said_at(const source_place& at, const std::string& name, const error& e)
+{
+    const std::string option = "--" + name;
+    std::string why = fmt::format("{}: {}", e.subject(), e.why());
+    if (const std::size_t said = why.find(option + ": "); said != std::string::npos)
+        why.erase(said, option.size() + 2);
+    return e.reworded(at.text(), fmt::format("{}: {}", name, why), e.hint()).with_place(at);
 }
 
 } // namespace
@@ -145,6 +159,16 @@ double parse_number(const std::string& what, const std::string& text, detail::bo
                     const std::string& unit)
 {
     return parse_number(what, text, b.low, b.high, unit);
+}
+
+double parse_whole(const std::string& what, const std::string& text, detail::bounds b,
+                   const std::string& unit)
+{
+    const double v = parse_number(what, text, b, unit);
+    if (v != std::floor(v))
+        throw error(error_kind::bad_input, what, fmt::format("{} is not a whole number", text),
+                    fmt::format("give one, as {}", plain_number(std::max(b.low, std::floor(v)))));
+    return v;
 }
 
 void add_format_option(CLI::App& command, std::string& into, const std::vector<std::string>& names,
@@ -304,12 +328,10 @@ void option_list::add_rate_options()
 {
     settings& s = settings_;
     value("--rate", "HZ", "sample rate (default 48000)", [&s](const std::string& t) {
-        const double hz = parse_number("--rate", t, of::rate, "Hz");
-        if (hz != std::floor(hz))
-            throw error(error_kind::bad_input, "--rate", fmt::format("{} is not a whole number", t));
-        s.rate = static_cast<unsigned>(hz);
+        s.rate = static_cast<unsigned>(parse_whole("--rate", t, of::rate, "Hz"));
     });
-    value("--sample-format", "float|s16|s24|s32", "samples (render: float; play: what the device takes)",
+    value("--sample-format", "float|s16|s24|s24-4|s32",
+          "samples (render: float; play: what the device takes)",
           [&s](const std::string& t) { s.format = from_string<format_kind>(t); });
 }
 
@@ -334,19 +356,34 @@ bool option_list::has(const std::string& name) const
     return by_name_.contains(name);
 }
 
-void option_list::apply_defaults(const std::map<std::string, std::string>& defaults, const std::string& where)
+void option_list::apply_defaults(const setup& says)
 {
-    for (const auto& [name, text] : defaults) {
+    for (const auto& [name, text] : detail::default_texts(says.defaults)) {
         const auto o = by_name_.find(name);
         // Not an option of this command, or the command line says it, in one way or the other.
         if (o == by_name_.end() || given(name) || (name == "speed" && given("duration")) ||
             (name == "sl" && given("level-dbfs")) || (name == "level-dbfs" && given("sl")))
             continue;
+        const source_place& at = says.defaults_at.at(name);
         try {
             o->second.second(text);
         } catch (const error& e) {
-            throw error(error_kind::bad_input, where + ": [defaults]", e.what());
+            throw said_at(at, name, e);
         }
+        from_files_.insert_or_assign(name, at);
+    }
+}
+
+int option_list::run(const std::function<int()>& act) const
+{
+    try {
+        return act();
+    } catch (const error& e) {
+        const std::string field(e.field());
+        const auto said = from_files_.find(bare(in_options(e.reworded(field, "", "")).subject()));
+        if (e.place().line != 0 || said == from_files_.end())
+            throw;
+        throw said_at(said->second, said->first, in_options(e));
     }
 }
 

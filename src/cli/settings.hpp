@@ -71,9 +71,12 @@ public:
     /// -D.
     void add_device_options(const char* otherwise = "else null");
 
-    /// Fills options that the command line does not give from the configuration; `where` names it.
+    /// Fills options that the command line does not give from what [defaults] says.
     /// \throws error (bad_input).
-    void apply_defaults(const std::map<std::string, std::string>& defaults, const std::string& where);
+    void apply_defaults(const setup& says);
+
+    /// Runs the command: what it throws about a value of [defaults] is said of its place there.
+    int run(const std::function<int()>& act) const;
 
     /// Whether the command line gives an option of that name (without dashes).
     bool given(const std::string& name) const;
@@ -91,6 +94,7 @@ private:
     CLI::App& command_;
     settings& settings_;
     std::map<std::string, std::pair<CLI::Option*, setter>> by_name_;
+    std::map<std::string, source_place> from_files_; ///< options that [defaults] said
 };
 
 /// What the scale of intensities needs of the level. \throws error (bad_input).
@@ -110,5 +114,8 @@ double parse_number(const std::string& what, const std::string& text, double lo,
                     const std::string& unit, const std::string& range_text = {});
 double parse_number(const std::string& what, const std::string& text, detail::bounds b,
                     const std::string& unit);
+/// The same, and it is whole.
+double parse_whole(const std::string& what, const std::string& text, detail::bounds b,
+                   const std::string& unit);
 
 } // namespace tactor::cli

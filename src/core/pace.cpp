@@ -114,10 +114,10 @@ void check_movement(const movement& m)
     std::vector<profile_point> times;
     for (const rest& r : m.rests)
         times.push_back({r.part, r.time_s});
-    check_profile_points("rests", times, 0.0, longest_stroke_s, true);
+    check_profile_points("pauses", times, 0.0, longest_stroke_s, true);
     for (const rest& r : m.rests)
         if (!(r.intensity >= 0.0 && r.intensity <= 1.0))
-            throw detail::bad_field("rests", fmt::format("intensity {:g}", r.intensity),
+            throw detail::bad_field("pauses", fmt::format("intensity {:g}", r.intensity),
                                     "it is a factor from 0 to 1");
 }
 

@@ -246,8 +246,10 @@ void read_defaults(const toml_table& root, setup& out)
     const auto names = default_names();
     t->only({names.begin(), names.end()});
     for (const key& k : keys)
-        if (const toml::node* n = t->node(k.name))
+        if (const toml::node* n = t->node(k.name)) {
             std::visit(reader(*t, k, *n, out.defaults), k.to);
+            out.defaults_at.insert_or_assign(std::string(k.name), t->where(*n));
+        }
     if (t->has("sl") && t->has("level-dbfs"))
         t->one_of({"level-dbfs", "sl"});
     // What an included file says of the other.

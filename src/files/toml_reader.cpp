@@ -43,8 +43,11 @@ std::string shown(const toml::node& n)
         return detail::quoted(s->get());
     if (const auto* i = n.as_integer())
         return fmt::format("{}", i->get());
-    if (const auto* f = n.as_floating_point())
-        return fmt::format("{}", f->get());
+    if (const auto* f = n.as_floating_point()) {
+        std::string text = fmt::format("{}", f->get());
+        // Where a whole number is wanted, 2.0 is none.
+        return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
+    }
     if (const auto* b = n.as_boolean())
         return b->get() ? "true" : "false";
     return type_name(n);

@@ -94,6 +94,48 @@ class CommandLine(ToolTest):
         self.refused(2, "plan", "park2016-1", "--config", self.write("bad.toml", "[defaults]\nburst = 0\n"),
                      says=["bad.toml:2:9", "burst"])
 
+    def test_what_a_stroke_file_says_is_refused_at_its_place(self):
+        line = 'path = "M 0 0 L 40 0"\n'
+        self.write("carrier.toml", f"[stroke]\n{line}carrier_hz = 24000\n")
+        self.write("profile.toml", f"[[stroke]]\n{line}[[stroke]]\n{line}carrier_profile = [[0, 100], [1, 30000]]\n")
+        self.write("noise.toml", f'[[stroke]]\n{line}[[stroke]]\n{line}waveform = "noise:20-30000"\n')
+        self.write("start.toml", f'[[stroke]]\n{line}[[stroke]]\n{line}start_from = "end"\nstart_s = -5\n')
+        for file, where in (("carrier.toml", "3:14: carrier_hz: 24000 Hz"), ("profile.toml", "5:19: carrier_profile: 30000 Hz"),
+                            ("noise.toml", "5:12: waveform: 30000 Hz"), ("start.toml", "6:11: start_s: 5 s before the end")):
+            for command in (("plan",), ("render", "-o", "x.wav"), ("play", "-D", "null"), ("plot", "--view", "wave", "-o", "x.svg")):
+                self.refused(2, command[0], file, *command[1:], says=[f"tactor: {file}:{where}"])
+            self.refused(2, "plan", "-", stdin=(self.dir / file).read_text(encoding="utf-8"), says=[f"tactor: standard input:{where}"])
+        self.refused(2, "plot", "start.toml", "-o", "x.svg", says=["tactor: start.toml:6:11: start_s: "])
+
+    def test_what_defaults_say_is_refused_at_its_place(self):
+        for text, where in (("soa = 5", "3:7: soa: 5 s is out of bounds"), ("burst = 3", "3:9: burst: duration of a burst: 3 s is longer"),
+                            ("carrier = 30000", "3:11: carrier: 30000 Hz cannot be rendered"),
+                            ('waveform = "no.wav"', "3:12: waveform: no.wav: No such file")):
+            self.write("d.toml", f'array.preset = "palm-3x3"\n[defaults]\n{text}\n')
+            for option in ("--array", "--config"):
+                said = self.refused(2, "plan", "park2016-1", option, "d.toml", says=[f"tactor: d.toml:{where}"]).stderr
+                self.assertNotIn("--", said)
+        # What the command line or a stroke says itself stands there.
+        self.write("d.toml", "[defaults]\nsoa = 5\ncarrier = 30000\n")
+        self.refused(2, "plan", "park2016-1", "--config", "d.toml", "--soa", "6", says=["tactor: --soa: 6 s"])
+        self.write("c.svg", '<svg xmlns="http://www.w3.org/2000/svg"><path d="M 0 0 L 40 0" data-carrier-hz="9000"/></svg>')
+        self.refused(2, "plan", "c.svg", "--config", "d.toml", "--soa", "0.07", "--rate", "8000", says=["tactor: c.svg: ", "9000 Hz"])
+
+    def test_standard_input_is_called_so(self):
+        two = '[[stroke]]\npath = "M 0 0 L 40 0"\n[[stroke]]\npath = "M 0 0 L 400 0"\n'
+        self.refused(2, "plan", "-", stdin=two, says=['tactor: standard input: stroke 2 "standard input-2": leaves'])
+        self.assertIn("standard input: played", self.ok("play", "-", "-D", "null", stdin='[stroke]\npath = "M 0 0 L 20 0"\n').stdout)
+
+    def test_it_says_what_to_do(self):
+        self.refused(2, "plan", "park2016-1", "--rate", "48000.5", says=["--rate: 48000.5 is not a whole number (give one, as 48000)"])
+        self.refused(2, "play", "park2016-1", "--periods", "2.5", says=["--periods: 2.5 is not a whole number (give one, as 2)"])
+        self.refused(2, "plan", "--path", "", says=["is empty (it starts with M x y)"])
+        self.refused(2, "plan", "--path", "M 0 0,L 1 1", says=["'L' where a number is wanted (a number follows each comma)"])
+        self.write("a.toml", '[array]\nname = "a"\ngrid = { rows = 2.0, columns = 2, pitch_mm = 9.0 }\n')
+        self.refused(2, "plan", "park2016-1", "--array", "a.toml", says=["rows is 2.0 (give a whole number)"])
+        self.write("p.toml", '[stroke]\npath = "M 0 0 L 40 0"\npauses = [[0.5, 0.3, 2]]\n')
+        self.assertNotIn("rests", self.refused(2, "plan", "p.toml", says=["p.toml:3:"]).stderr)
+
     def test_soa_out_of_bounds_names_both(self):
         for soa in ("0.0473", "0.04", "0.0701", "1", "0", "-1"):
             self.refused(2, "plan", "park2016-1", "--soa", soa, says=["0.0473", "0.07"])

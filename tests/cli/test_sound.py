@@ -161,11 +161,11 @@ class Sound(ToolTest):
                 self.assertFalse((self.dir / "bad.wav").exists())
 
     def test_what_a_file_asks_for_is_not_said_by_an_option(self):
-        for keys, says in (('carrier_profile = [[0, 30000]]', "bad.toml: carrier_profile: 30000 Hz cannot be rendered"),
-                           ('carrier_profile = [[0, 100], [1, 24000]]', "bad.toml: carrier_profile: 24000 Hz cannot be rendered"),
+        for keys, says in (('carrier_profile = [[0, 30000]]', "bad.toml:4:19: carrier_profile: 30000 Hz cannot be rendered"),
+                           ('carrier_profile = [[0, 100], [1, 24000]]', "bad.toml:4:19: carrier_profile: 24000 Hz cannot be rendered"),
                            ('carrier_profile = [[0, 100], [1, 23990]]\nam_hz = 20', "carrier_profile: with its modulation 24010 Hz"),
-                           ('carrier_hz = 30000', "bad.toml: carrier_hz: 30000 Hz"),
-                           ('waveform = "noise:10-90000"', "bad.toml: waveform: 90000 Hz cannot be rendered"),
+                           ('carrier_hz = 30000', "bad.toml:4:14: carrier_hz: 30000 Hz"),
+                           ('waveform = "noise:10-90000"', "bad.toml:4:12: waveform: 90000 Hz cannot be rendered"),
                            ('fit = true\nfit_margin_mm = 30', "bad.toml: fit_margin_mm: 30 mm on each side leave no space")):
             with self.subTest(keys=keys):
                 self.write("bad.toml", STROKE + keys + "\n")

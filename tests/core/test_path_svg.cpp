@@ -58,14 +58,14 @@ TEST_CASE("what is not path data is refused at the first bad column")
         std::string message;
     };
     const sample samples[] = {
-        {"", "path data: column 1: is empty"},
+        {"", "path data: column 1: is empty (it starts with M x y)"},
         {" \t\n", "path data: column 4: is empty"},
         {"L 1 1", "path data: column 1: 'L' where a path starts (it starts with M x y)"},
         {"M 0 0 L 1 1 garbage", "path data: column 13: 'g' is not a path command"},
         {"M 0 0 L 1", "path data: column 10: the end where L wants a number (L takes 2 numbers)"},
         {"M 0 0 L 1 1 2", "path data: column 14: the end where L wants a number"},
         {"M 0 0 L 1 x", "path data: column 11: 'x' where L wants a number"},
-        {"M 0 0,L 1 1", "path data: column 7: 'L' where a number is wanted"},
+        {"M 0 0,L 1 1", "path data: column 7: 'L' where a number is wanted (a number follows each comma)"},
         {"M 0 0 L 1,,1", "path data: column 11: ',' where L wants a number"},
         {"M 0 0 L 1 1,", "path data: column 13: the end where a number is wanted"},
         {"M nan 0 L 1 1", "path data: column 3: 'n' where M wants a number"},

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <clocale>
+#include <cstdint>
 #include <random>
 #include <string>
 
@@ -134,7 +135,7 @@ TEST_CASE("[output] out of range")
     CHECK(complaint(with("rate = 48000", "rate = 7999")) ==
           "t.toml:7:8: rate is 7999 (allowed: 8000 to 768000)");
     CHECK(complaint(with("rate = 48000", "rate = 48000.0")) ==
-          "t.toml:7:8: rate is 48000 (give a whole number)");
+          "t.toml:7:8: rate is 48000.0 (give a whole number)");
     CHECK(complaint(with("period_frames = 96", "period_frames = 2")) ==
           "t.toml:9:17: period_frames is 2 (allowed: 3 to 1048576)");
     CHECK(complaint("[output]\nrate = 768000\nperiod_frames = 1\nperiods = 2\n") ==
@@ -218,6 +219,16 @@ TEST_CASE("[defaults] takes the options it lists, checked")
     CHECK(complaint("[defaults]\nsnap = 1\n") == "t.toml:2:8: snap is 1 (give true or false)");
     CHECK(complaint("[defaults]\nlevel-dbfs = -6\nsl = 7\n") ==
           "t.toml:3:6: [defaults] has both level-dbfs and sl (keep one of them)");
+}
+
+TEST_CASE("what [defaults] says has its place")
+{
+    const setup s = read("[defaults]\nsoa = 0.06\nnoise-seed = 9007199254740992\n");
+    CHECK(s.defaults.noise_seed == std::uint64_t{1} << 53U);
+    CHECK(s.defaults_at.size() == 2);
+    CHECK(s.defaults_at.at("soa").text() == "t.toml:2:7");
+    CHECK(s.defaults_at.at("noise-seed").text() == "t.toml:3:14");
+    CHECK(complaint("[defaults]\nslope = 0\n") == "t.toml:2:9: slope is 0 (allowed: 0.01 to 0.99)");
 }
 
 TEST_CASE("numbers in [defaults] come out as they went in, in any locale")

@@ -147,7 +147,7 @@ TEST_CASE("an unknown key names the nearest, or lists what is known")
 TEST_CASE("wrong types and ranges, at the value")
 {
     const std::string one = "[[tactor]]\nx_mm = 0\ny_mm = 0\n";
-    CHECK(complaint(one + "channel = 1.0\n") == "palm.toml:4:11: channel is 1 (give a whole number)");
+    CHECK(complaint(one + "channel = 1.0\n") == "palm.toml:4:11: channel is 1.0 (give a whole number)");
     CHECK(complaint(one + "channel = \"1\"\n") == "palm.toml:4:11: channel is '1' (give a whole number)");
     CHECK(complaint(one + "channel = -1\n") == "palm.toml:4:11: channel is -1 (allowed: 0 to 1023)");
     CHECK(complaint(one + "channel = 1024\n") == "palm.toml:4:11: channel is 1024 (allowed: 0 to 1023)");

@@ -92,6 +92,8 @@ TEST_CASE("a start before the piece is refused when it is known")
     CHECK(message_of([&] { static_cast<void>(resolve_start_s(s[1].start_s, s[1].anchor, from, to)); }) ==
           "start of the stroke: 1.5 s before the end of what comes before it is before the piece "
           "(1 s before is the start of the piece)");
+    CHECK(s[1].start_at.line != 0); // where the file says so
+    CHECK(s[0].start_at.line == 0);
 }
 
 TEST_CASE("a stroke is repeated with pauses between, and what follows comes behind all")

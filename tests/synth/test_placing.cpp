@@ -7,6 +7,7 @@
 
 #include <tactor/error.hpp>
 
+#include "message_of.hpp"
 #include "own_curve.hpp"
 #include "pieces.hpp"
 #include "rounds.hpp"
@@ -48,6 +49,20 @@ TEST_CASE("strokes one after the other begin at their times, however many there 
             REQUIRE(s.starts()[i] == synth::frame_at(starts_s[i], 48000));
         CHECK(std::abs(static_cast<double>(s.starts().back()) - 1000.0 * frames) <= 0.51);
     }
+}
+
+TEST_CASE("a burst that cannot be placed is refused, with what to do")
+{
+    const auto refusal = [](const burst& b) {
+        return message_of([&] {
+            static_cast<void>(score(row(2), {{make_plan({b}), {}}}, render_options()));
+        });
+    };
+    CHECK(refusal(make_burst(0.0, 0.05, {{7, 0.5}})) ==
+          "burst 1 of the plan: tactor 7 is not in the array, which has 2 (plan the stroke for this array)");
+    CHECK(refusal(make_burst(0.0, 0.05, {{1, HUGE_VAL}})) ==
+          "burst 1 of the plan: the amplitude of tactor 1 is inf (give a finite number)");
+    CHECK(refusal(make_burst(-1.0, 0.05, {{1, 0.5}})).ends_with("(between 0 and 1000000 s can be rendered)"));
 }
 
 TEST_CASE("starts count from the start or the end of plans before")

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -31,10 +30,7 @@ void add(CLI::App& c, const std::string& names, const std::string& type, const s
 
 std::uint32_t whole(const char* option, const std::string& text, double low, double high)
 {
-    const double v = parse_number(option, text, low, high, "");
-    if (v != std::floor(v))
-        refuse_setting(option, fmt::format("{} is not a whole number", text), "");
-    return static_cast<std::uint32_t>(v);
+    return static_cast<std::uint32_t>(parse_whole(option, text, {low, high}, ""));
 }
 
 bool one_of(const char* option, const std::string& text, const char* yes, const char* no)

@@ -193,7 +193,7 @@ command add_calibrate(CLI::App& app)
     options->add_array_options();
     options->add_device_options("needed with a person");
     c->footer("Example: tactor calibrate --participant P07 -o P07.toml -D hw:CARD=Tactor");
-    return [s, o, options] { return calibrate(*s, *options, *o); };
+    return [s, o, options] { return options->run([&] { return calibrate(*s, *options, *o); }); };
 }
 
 } // namespace tactor::cli

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <set>
@@ -24,10 +23,7 @@ namespace {
 
 double whole_number(const char* option, const std::string& text, double lo, double hi)
 {
-    const double v = parse_number(option, text, lo, hi, "");
-    if (v != std::floor(v))
-        throw error(error_kind::bad_input, option, fmt::format("{} is not a whole number", text));
-    return v;
+    return parse_whole(option, text, {lo, hi}, "");
 }
 
 template <class Enum>
@@ -225,7 +221,9 @@ command add_compare(CLI::App& app)
     add_picture_options(*c, asked);
     c->footer("Example: tactor compare park2016-3 --phantoms inverse-distance,barycentric");
     const CLI::Option* algorithm = c->get_option("--algorithm");
-    return [s, options, asked, algorithm] { return run(*s, *options, *asked, algorithm->count() != 0); };
+    return [s, options, asked, algorithm] {
+        return options->run([&] { return run(*s, *options, *asked, algorithm->count() != 0); });
+    };
 }
 
 } // namespace tactor::cli

@@ -13,6 +13,29 @@
 
 namespace tactor::cli {
 
+namespace {
+
+int print_plan(settings& s, option_list& options, const std::string& format)
+{
+    const environment e = read_environment(s, options);
+    const piece p = plan_one_piece(s, e);
+    const render_options sound = settle_render(s, e);
+    const score samples = make_score(p, e, sound); // levels and carrier are checked when planned
+    tell_of_other_carrier(e, sound, std::span(&samples, 1));
+    if (format == "json")
+        print_json(stdout, p, e, samples, sound);
+    else if (format == "csv") {
+        for (const placed_plan& q : p.plans)
+            for (const std::string& w : q.schedule.warnings)
+                say(stderr, "tactor: warning: {}\n", w); // there is no place for them in a table
+        print_csv(stdout, p, e);
+    } else
+        print_text(stdout, p, e);
+    return status_ok;
+}
+
+} // namespace
+
 command add_plan(CLI::App& app)
 {
     CLI::App* c = app.add_subcommand("plan", "Print the schedule: who plays when, how strongly");
@@ -23,23 +46,7 @@ command add_plan(CLI::App& app)
     options->add_sound_options();
     add_format_option(*c, *format, {"text", "json", "csv"}, "how to print it (default text)");
     c->footer("Example: tactor plan park2016-1 --format json");
-    return [s, options, format] {
-        const environment e = read_environment(*s, *options);
-        const piece p = plan_one_piece(*s, e);
-        const render_options sound = settle_render(*s, e);
-        const score samples = make_score(p, e, sound); // levels and carrier are checked when planned
-        tell_of_other_carrier(e, sound, std::span(&samples, 1));
-        if (*format == "json")
-            print_json(stdout, p, e, samples, sound);
-        else if (*format == "csv") {
-            for (const placed_plan& q : p.plans)
-                for (const std::string& w : q.schedule.warnings)
-                    say(stderr, "tactor: warning: {}\n", w); // there is no place for them in a table
-            print_csv(stdout, p, e);
-        } else
-            print_text(stdout, p, e);
-        return status_ok;
-    };
+    return [s, options, format] { return options->run([&] { return print_plan(*s, *options, *format); }); };
 }
 
 } // namespace tactor::cli

@@ -63,11 +63,11 @@ std::optional<broken_off> judge(const play_session& session, const play_options&
         return {};
     const std::string why = fate(out, session.setup().rate);
     if (o.void_on_xrun)
-        return broken_off{out.name, why, "the run is void: --void-on-xrun"};
+        return broken_off{shown_name(out.name), why, "the run is void: --void-on-xrun"};
     if (last)
         return {};
     if (session.lost() && !session.waits())
-        return broken_off{out.name, why, wait_hint};
+        return broken_off{shown_name(out.name), why, wait_hint};
     say(stderr, "tactor: warning: {}\n", describe(out, session.setup().rate));
     return {};
 }
@@ -79,7 +79,7 @@ std::optional<broken_off> play_all(play_session& session, const play_options& o,
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         const bool there = play_piece(session, pieces[i], scores[i], outcomes[i]);
         if (!there && session.signal() == 0)
-            return broken_off{pieces[i].name, "not played: the device is gone",
+            return broken_off{shown_name(pieces[i].name), "not played: the device is gone",
                               session.waits() ? "it did not come back in time" : wait_hint};
         if (!o.json() && outcomes[i].report) {
             say(stdout, "{}\n", describe(outcomes[i], session.setup().rate));
@@ -150,7 +150,7 @@ command add_play(CLI::App& app)
     options->add_device_options();
     add_play_options(*c, *o);
     c->footer("Example: tactor play park2016-3 -D hw:CARD=Tactor");
-    return [s, o, options] { return play(*s, *options, *o); };
+    return [s, o, options] { return options->run([&] { return play(*s, *options, *o); }); };
 }
 
 } // namespace tactor::cli

@@ -2,7 +2,6 @@
 #include "cli/play/play_options.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -10,13 +9,9 @@
 namespace tactor::cli {
 namespace {
 
-unsigned parse_whole(const std::string& option, const std::string& text, double lo, double hi,
-                     const std::string& unit)
+unsigned whole(const std::string& option, const std::string& text, detail::bounds b, const std::string& unit)
 {
-    const double v = parse_number(option, text, lo, hi, unit);
-    if (v != std::floor(v))
-        throw error(error_kind::bad_input, option, fmt::format("{} is not a whole number", text));
-    return static_cast<unsigned>(v);
+    return static_cast<unsigned>(parse_whole(option, text, b, unit));
 }
 
 void add_latency(CLI::App& c, play_options& o)
@@ -31,14 +26,16 @@ void add_latency(CLI::App& c, play_options& o)
     auto* period = c.add_option_function<std::string>(
         "--period-frames",
         [&o](const std::string& t) {
-            o.period_frames = parse_whole("--period-frames", t, 1, 1 << 20, "frames");
+            o.period_frames = whole("--period-frames", t, {1, 1 << 20}, "frames");
         },
         "instead: frames in a period (default: the configuration's, else 96)");
     period->type_name("N");
     latency->excludes(period);
     c.add_option_function<std::string>(
          "--periods",
-         [&o](const std::string& t) { o.periods = parse_whole("--periods", t, 2, 1024, "periods"); },
+         [&o](const std::string& t) {
+             o.periods = whole("--periods", t, {2, 1024}, "periods");
+         },
          "periods in the buffer (default: the configuration's, else 3)")
         ->type_name("N");
 }

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/input.hpp"
 #include "cli/play/play_options.hpp"
 #include "core/words.hpp"
 
@@ -133,7 +134,7 @@ std::string fate(const stroke_outcome& s, unsigned rate)
 
 std::string describe(const stroke_outcome& s, unsigned rate)
 {
-    std::string text = fmt::format("{}: {}", s.name, fate(s, rate));
+    std::string text = fmt::format("{}: {}", shown_name(s.name), fate(s, rate));
     if (s.report && s.report->delay) {
         const live_delay& d = *s.report->delay;
         text += fmt::format("; from {} to the DAC {:.1f} ms ({:.1f} to {:.1f})", counted(d.points, "point"),

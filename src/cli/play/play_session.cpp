@@ -12,6 +12,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include "cli/input.hpp"
 #include "cli/play/instant.hpp"
 #include "cli/play/own_memory.hpp"
 #include "cli/play/sound_server.hpp"
@@ -137,7 +138,7 @@ stroke_report play_session::play(const piece& p, const score& s, const watcher& 
         return {.state = state_kind::interrupted, .reason = end->reason, .why = end->why};
     }
     if (options_.arm && !options_.json()) {
-        say(stdout, "{}: armed\n", p.name);
+        say(stdout, "{}: armed\n", shown_name(p.name));
         std::fflush(stdout);
     }
     double t = 0.0; // stays where it was while the report of the stroke's end is on its way

@@ -16,6 +16,7 @@
 #include <tactor/stroke.hpp>
 
 #include "cli/commands.hpp"
+#include "cli/input.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/pipes.hpp"
 #include "cli/plan/plan_file.hpp"
@@ -150,14 +151,14 @@ private:
         try {
             r = server_.call("play", params);
         } catch (const error& e) {
-            throw in_words_of_the_tool(e, out.name);
+            throw in_words_of_the_tool(e, shown_name(out.name));
         }
         for (const net::json& w : r["warnings"])
             say(stderr, "tactor: warning: {}\n", w.get<std::string>());
         out.length_frames =
             static_cast<std::uint64_t>(std::llround(r.value("total_s", 0.0) * report_.device.rate));
         if (options_.arm && !options_.json())
-            say(stdout, "{}: armed\n", out.name);
+            say(stdout, "{}: armed\n", shown_name(out.name));
         std::fflush(stdout);
         for (const net::json& n : r["strokes"])
             while (!ended(n, out)) {
@@ -237,7 +238,7 @@ private:
         if (cancelled && out.report->why.empty())
             why += " by somebody else";
         if (cancelled || gone || options_.void_on_xrun)
-            broken_.emplace(error_kind::runtime, out.name, why,
+            broken_.emplace(error_kind::runtime, shown_name(out.name), why,
                             options_.void_on_xrun && !cancelled ? "the run is void: --void-on-xrun" : "");
         else if (!last)
             say(stderr, "tactor: warning: {}\n", describe(out, report_.device.rate));

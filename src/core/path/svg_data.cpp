@@ -22,6 +22,8 @@ namespace {
 using detail::subpaths;
 using detail::value_fault;
 
+constexpr const char* starts = "it starts with M x y";
+
 // What each command wants: n a number, f a flag.
 std::string_view arguments_of(char command) noexcept
 {
@@ -56,9 +58,9 @@ public:
     {
         detail::skip_blanks(data_, at_);
         if (at_ == data_.size())
-            fail("is empty");
+            fail("is empty", starts);
         if (detail::upper(data_[at_]) != 'M')
-            fail(fmt::format("{} where a path starts", found()), "it starts with M x y");
+            fail(fmt::format("{} where a path starts", found()), starts);
         while (at_ < data_.size()) {
             command();
             detail::skip_blanks(data_, at_);
@@ -94,7 +96,7 @@ private:
             const bool comma = separator();
             if (at_ == data_.size() || !begins_number(data_[at_])) {
                 if (comma)
-                    fail(fmt::format("{} where a number is wanted", found()));
+                    fail(fmt::format("{} where a number is wanted", found()), "a number follows each comma");
                 return;
             }
         }

@@ -98,6 +98,10 @@ void read_sound(const toml_table& t, const std::filesystem::path* folder, stroke
     s.wave = read_waveform(t, folder);
     s.am = read_modulation(t);
     s.carrier_profile = read_profile(t);
+    if (s.wave)
+        s.wave_at = t.where("waveform");
+    if (!s.carrier_profile.empty())
+        s.carrier_at = t.where("carrier_profile");
 }
 
 } // namespace tactor::detail

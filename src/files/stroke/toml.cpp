@@ -163,6 +163,8 @@ stroke read_drawn(const toml_table& t, std::string name)
     const auto described = [&](trajectory motion, note_kind note = note_kind::none) {
         stroke s{t.text("name").value_or(name), motion, {}, carrier, note};
         s.speed_mm_s = asked.speed_mm_s;
+        if (carrier)
+            s.carrier_at = t.where("carrier_hz");
         return s;
     };
     if (kind == "timed") {

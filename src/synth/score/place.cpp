@@ -22,25 +22,29 @@ namespace tactor::synth {
 namespace {
 
 constexpr double longest_plan_s = 1e6;
+constexpr const char* finite = "give a finite number";
 
-[[noreturn]] void refuse(std::size_t number, const std::string& why)
+[[noreturn]] void refuse(std::size_t number, const std::string& why, const std::string& hint)
 {
-    throw error(error_kind::bad_input, fmt::format("burst {} of the plan", number + 1), why);
+    throw error(error_kind::bad_input, fmt::format("burst {} of the plan", number + 1), why, hint);
 }
 
 void check(const burst& b, std::size_t number, std::size_t tactors)
 {
     if (!(b.onset_s >= 0.0 && b.duration_s >= 0.0 && b.onset_s + b.duration_s <= longest_plan_s)) {
-        refuse(number, fmt::format("it starts at {} and lasts {}", seconds_text(b.onset_s),
-                                   seconds_text(b.duration_s)));
+        refuse(
+            number,
+            fmt::format("it starts at {} and lasts {}", seconds_text(b.onset_s), seconds_text(b.duration_s)),
+            fmt::format("between 0 and {:.0f} s can be rendered", longest_plan_s));
     }
     if (!std::isfinite(b.intensity))
-        refuse(number, fmt::format("its intensity is {}", b.intensity));
+        refuse(number, fmt::format("its intensity is {}", b.intensity), finite);
     for (const drive& d : b.drives) {
         if (d.tactor >= tactors)
-            refuse(number, fmt::format("tactor {} is not in the array, which has {}", d.tactor, tactors));
+            refuse(number, fmt::format("tactor {} is not in the array, which has {}", d.tactor, tactors),
+                   "plan the stroke for this array");
         if (!std::isfinite(d.amplitude))
-            refuse(number, fmt::format("the amplitude of tactor {} is {}", d.tactor, d.amplitude));
+            refuse(number, fmt::format("the amplitude of tactor {} is {}", d.tactor, d.amplitude), finite);
     }
 }
 
@@ -275,7 +279,7 @@ std::uint64_t place_end(const plan& p, std::uint32_t plan, std::uint64_t start, 
     const auto check_length = [](const char* field, double s) {
         if (!(s >= 0.0 && s <= longest_plan_s))
             throw error(error_kind::bad_input, "plan", "it lasts " + seconds_text(s),
-                        fmt::format("between 0 and {} s can be rendered", longest_plan_s))
+                        fmt::format("between 0 and {:.0f} s can be rendered", longest_plan_s))
                 .with_field(field);
     };
     check_length("total_s", p.total_s);
