@@ -69,6 +69,8 @@ public:
     ///         0, (with outside_kind::error) a point outside the array, or one that a phantom model of
     ///         your own refuses so. The stroke then stays where it was. What else such a model throws comes
     ///         out, too, and the stroke ends interrupted, with what() as its reason; but for std::bad_alloc.
+    ///         error (runtime): such a model calls this for the stroke that asks it. It may end or cancel it,
+    ///         but may not wait for another thread that calls this.
     bool to(double x_mm, double y_mm, double intensity = 1.0, std::optional<std::int64_t> at_ns = {});
     /// A time stamp is no intensity, and seconds are no time stamp.
     template <std::same_as<std::int64_t> T>

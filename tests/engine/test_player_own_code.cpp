@@ -2,7 +2,10 @@
 // What is the program's own may call the player while it goes: handlers with what they hold, phantom models.
 #include <atomic>
 #include <cstddef>
+#include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -65,6 +68,21 @@ public:
 private:
     const player* player_;
     asking goes_;
+};
+
+/// Does something to the stroke that asks it.
+class meddling_model final : public phantom_model {
+public:
+    explicit meddling_model(std::function<void()> f) : does_(std::move(f)) {}
+    std::string_view name() const noexcept override { return "meddling"; }
+    void weights(point, double a_v, std::vector<drive>& out) const override
+    {
+        does_();
+        out = {{.tactor = 4, .amplitude = a_v}};
+    }
+
+private:
+    std::function<void()> does_;
 };
 
 void await(const std::atomic<int>& n, int wanted)
@@ -158,6 +176,37 @@ TEST_CASE("a phantom model may call the player when it is asked and when it goes
         playing.clear();
         await(gone, engine::live_places + 2);
     }
+}
+
+TEST_CASE("a phantom model that moves the stroke that asks it is refused, and the stroke ends; it may end it")
+{
+    fake_dac dac;
+    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    const running_clock clock(dac);
+    for (const double smooth_s : {0.0, 0.05}) {
+        std::optional<live_stroke> s;
+        std::function<void()> does = [&s] { s->to(20.0, 20.0); };
+        live_options o{.timeout_s = 86400.0, .smooth_s = smooth_s};
+        o.plan.custom_phantom = std::make_shared<meddling_model>([&does] { does(); });
+        s.emplace(p.begin(o));
+        const auto moved = [&s] { return s->to(10.0, 10.0); };
+        CHECK_THROWS_WITH_AS(moved(), doctest::Contains("its phantom model moves it"), error);
+        CHECK_FALSE(moved());
+        const auto report = p.wait(s->id());
+        CHECK(report->state == state_kind::interrupted);
+        CHECK(report->why.find("its phantom model moves it") != std::string::npos);
+
+        does = [&s] {
+            static_cast<void>(s->counts());
+            if (s->open())
+                s->end();
+        };
+        s.emplace(p.begin(o));
+        CHECK(moved());
+        CHECK_FALSE(moved());
+        CHECK(p.wait(s->id())->state == state_kind::finished);
+    }
+    p.stop();
 }
 
 } // namespace player_own_code_test

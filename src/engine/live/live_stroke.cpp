@@ -2,10 +2,12 @@
 #include "engine/live/live_stroke.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <exception>
 #include <new>
 #include <string_view>
+#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -102,6 +104,21 @@ engine::live_setup live_setup(const stream_setup& s, const live_options& o)
     return l;
 }
 
+/// Says which thread is in a model, for as long as it lives.
+class asked_now {
+public:
+    explicit asked_now(std::atomic<std::thread::id>& who) noexcept : who_(who)
+    {
+        who_.store(std::this_thread::get_id(), std::memory_order_relaxed);
+    }
+    ~asked_now() { who_.store({}, std::memory_order_relaxed); }
+    asked_now(const asked_now&) = delete;
+    asked_now& operator=(const asked_now&) = delete;
+
+private:
+    std::atomic<std::thread::id>& who_;
+};
+
 /// Points may come anywhere: all must have a level.
 std::vector<synth::tactor_level> live_levels(const array& a, const render_options& o)
 {
@@ -141,13 +158,17 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
     if (stamp < 0)
         throw refused("at_ns", fmt::format("a point at {} ns", stamp),
                       "CLOCK_MONOTONIC, ns, or none for now");
+    if (asking.load(std::memory_order_relaxed) == std::this_thread::get_id())
+        throw error(error_kind::runtime, "live stroke",
+                    "its phantom model moves it while it is asked about a point",
+                    "move it from outside weights()");
     const std::lock_guard lock(mutex);
     if (voice.closed() || voice.asked() != engine::live_voice::wish::go_on)
         return false;
     const bool inside = faces.contains(p);
     if (!inside && outside == outside_kind::error)
         throw refused("outside", fmt::format("({:.6g}, {:.6g}) is outside the array", p.x_mm, p.y_mm),
-                      "outside_kind::clamp plays the nearest point of the array");
+                      "outside = clamp plays the nearest point of the array");
     const bool limited = course_of(inside ? p : faces.nearest(p), intensity);
     if (!excess.empty()) {
         voice.fail(std::move(excess));
@@ -168,6 +189,7 @@ bool live_stroke::impl::course_of(point p, double intensity)
         voice.fail(
             fmt::format("phantom model \"{}\" failed: {}", model->name(), what.substr(0, what.find('\n'))));
     };
+    const asked_now now(asking);
     try {
         return course_to({p, intensity}, voice.draft());
     } catch (const error& e) {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <tactor/array.hpp>
@@ -49,6 +50,8 @@ struct live_stroke::impl {
     std::uint64_t window; ///< frames; 0: places are not smoothed
 
     std::mutex mutex; ///< between producers
+    /// Whose thread is in the model, which may be a program's own: there it would wait for itself.
+    std::atomic<std::thread::id> asking{};
     engine::smoothing smooth;
     std::size_t most_knots;
     std::vector<drive> drives;
