@@ -100,6 +100,9 @@ modulation modulation_of(const std::string& name, py::handle v)
                                                        : fmt::format("{}", number(name, v, 0, 20000)));
 }
 
+// Plans keep it as JSON's numbers.
+constexpr double most_seed = 0x1p53;
+
 using setter = std::function<void(wishes&, const std::string&, py::handle)>;
 
 setter numbers(double lo, double hi, void (*set)(wishes&, double))
@@ -145,7 +148,10 @@ std::map<std::string, setter> planning()
         {"carrier", numbers(1, 384000, [](W w, double d) { w.plan.carrier_hz = d; })},
         {"waveform", [](W w, auto& n, py::handle v) { take_waveform(w.plan.wave, text(n, v)); }},
         {"am", [](W w, auto& n, py::handle v) { w.plan.am = modulation_of(n, v); }},
-        {"noise_seed", [](W w, auto& n, py::handle v) { w.plan.wave.seed = whole(n, v, 0, 4294967295U); }},
+        {"noise_seed",
+         [](W w, auto& n, py::handle v) {
+             w.plan.wave.seed = static_cast<std::uint64_t>(whole(n, v, 0, most_seed));
+         }},
         {"texture", [](W w, auto& n, py::handle v) { w.plan.wave.texture = one_of<texture_kind>(n, v); }},
         {"intensity_scale", [](W w, auto& n, py::handle v) { w.plan.scale.kind = one_of<scale_kind>(n, v); }},
         {"stevens_exponent", numbers(0.1, 3, [](W w, double d) { w.plan.scale.exponent = d; })},

@@ -259,7 +259,7 @@ TEST_CASE("each key of [defaults] has a field, and comes out as it may be typed"
                                                  {"carrier", "230.5"},
                                                  {"waveform", "noise:100-300"},
                                                  {"am", "30:0.5"},
-                                                 {"noise-seed", "4294967295"},
+                                                 {"noise-seed", "9007199254740992"},
                                                  {"texture", "length"},
                                                  {"texture-mm", "12.5"},
                                                  {"envelope", "tukey:0.3"},
