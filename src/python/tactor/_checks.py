@@ -2,6 +2,8 @@
 """What is wrong with an argument."""
 from __future__ import annotations
 
+import math
+import operator
 import typing as _t
 
 from tactor._errors import InputError
@@ -10,9 +12,58 @@ from tactor._errors import InputError
 def _floats(what: str, values: _t.Any) -> _t.Any:
     import numpy as np
     try:
-        return np.ascontiguousarray(values, dtype=np.float64) if np.ndim(values) else np.float64(values)
-    except (TypeError, ValueError) as e:
-        raise InputError(what, f"it is no array of numbers: {e}") from None
+        numbers: _t.Any = np.ascontiguousarray(values, dtype=np.float64) if np.ndim(values) else np.float64(values)
+    except (TypeError, ValueError, OverflowError) as e:
+        raise InputError(what, f"it is no array of numbers: {e}", field=what) from None
+    if np.isnan(numbers).any():  # which None becomes, too
+        raise InputError(what, "there is what is no number in it", field=what)
+    return numbers
+
+
+def _number(what: str, value: _t.Any, least: float = -math.inf, most: float = math.inf, hint: str = "", finite: bool = True) -> float:
+    """A number between bounds; what it is called is said where it is none."""
+    if not hint and math.isfinite(least):
+        hint = f"{least:g} to {most:g}" if math.isfinite(most) else f"{least:g} or more"
+    try:
+        if isinstance(value, (str, bytes, bytearray, bool)):
+            raise TypeError
+        number = float(value)
+    except (TypeError, ValueError):
+        raise InputError(what, f"{_shown(value)} is not a number", hint, field=what) from None
+    except OverflowError:
+        number = math.inf
+    if not ((math.isfinite(number) or not finite) and least <= number <= most):
+        raise InputError(what, f"{_shown(value)} is out of range", hint, field=what)
+    return number
+
+
+def _whole(what: str, value: _t.Any, least: int, most: int, hint: str = "") -> int:
+    """A whole number between bounds; 48000.0 is one, too."""
+    hint = hint or f"a whole number from {least} to {most}"
+    number = _number(what, value, least, most, hint)
+    if number != int(number):
+        raise InputError(what, f"{_shown(value)} is not a whole number", hint, field=what)
+    try:
+        return operator.index(value)  # to its last digit
+    except TypeError:
+        return int(number)
+
+
+def _place(what: str, value: _t.Any) -> tuple[float, float]:
+    """(x_mm, y_mm)"""
+    try:
+        x, y = value
+    except (TypeError, ValueError):
+        raise InputError(what, f"{_shown(value)} is no place", "give (x_mm, y_mm)", field=what) from None
+    return _number(what, x), _number(what, y)
+
+
+def _shown(value: object) -> str:
+    try:
+        text = repr(value)
+    except ValueError:  # a number of more digits than Python writes
+        return "that"
+    return text if len(text) <= 80 else text[:80] + "..."
 
 
 def _need(value: object, kind: type, what: str) -> None:
@@ -23,3 +74,24 @@ def _need(value: object, kind: type, what: str) -> None:
 
 def _counted(n: int, noun: str) -> str:
     return f"{n} {noun}" if n == 1 else f"{n} {noun}s"
+
+
+class _Value:
+    """What cannot change: a copy of it is itself."""
+
+    __slots__ = ()
+
+    def __copy__(self) -> _t.Any:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, _t.Any]) -> _t.Any:
+        return self
+
+
+class _Unique:
+    """What is there once, as a device is: two of it would close each other."""
+
+    __slots__ = ()
+
+    def __reduce__(self) -> _t.NoReturn:
+        raise TypeError(f"a {type(self).__name__} cannot be copied or pickled")

@@ -55,10 +55,10 @@ def _check_used(given: dict[str, _t.Any], options: dict[str, _t.Any]) -> None:
                              ("stevens_exponent", options.get("intensity_scale") == "stevens", 'say intensity_scale="stevens", too'),
                              ("tukey_part", envelope == "tukey", 'say envelope="tukey", too')):
         if given.get(name) is not None and not used:
-            raise InputError(name, "nothing here uses it", hint)
+            raise InputError(name, "nothing here uses it", hint, field=name)
     for name in ("attack", "release", "ramp"):
         if given.get(name) is not None and envelope == "tukey":
-            raise InputError(name, 'envelope="tukey" has its own ramps', "leave one of them out")
+            raise InputError(name, 'envelope="tukey" has its own ramps', "leave one of them out", field=name)
 
 
 def _completed(setup: _t.Any, given: dict[str, _t.Any], known: frozenset[str]) -> dict[str, _t.Any]:

@@ -2,24 +2,29 @@
 """What the tool computes, draws and lists."""
 from __future__ import annotations
 
+import collections.abc as _abc
 import os
 import typing as _t
 
 from tactor import _tactor
 from tactor._array import Array
-from tactor._checks import _need
+from tactor._checks import _need, _number, _shown, _whole
 from tactor._errors import InputError
-from tactor._files import reading
+from tactor._files import encoded, reading
 from tactor._options import _PLANNING, settled
 from tactor._plan import Plan
 from tactor._score import Score, placed
 from tactor._stroke import Stroke
 
 if _t.TYPE_CHECKING:
-    from tactor._options import _Algorithm, _Compensate, _Outside, _Overlap, _Phantom, _Timing
+    from tactor._options import _Algorithm, _Compensate, _Outside, _Overlap, _Phantom, _Scale, _Timing
     from tactor._score import _Plans
     _Observer = _t.Literal["centroid", "low-speed"]
     _View = _t.Literal["array", "timing", "wave", "both"]
+
+
+def _size(width: float, dpi: int) -> tuple[float, int]:
+    return _number("width", width, hint="mm"), _whole("dpi", dpi, 30, 2400)
 
 
 class Comparison(list[dict[str, _t.Any]]):
@@ -42,9 +47,8 @@ class Comparison(list[dict[str, _t.Any]]):
 
     def plot(self, file: str | os.PathLike[str], *, width: float = 85.0, dpi: int = 300) -> None:
         """Draws it, as `tactor compare -o` does: .svg, .png or .pdf, `width` in mm."""
-        _check_dpi(dpi)
         with reading(file) as name:
-            self._core.save(name, width, dpi)
+            self._core.save(name, *_size(width, dpi))
 
     def _repr_svg_(self) -> str:
         return self._core.svg(85.0)  # type: ignore[no-any-return]
@@ -53,15 +57,23 @@ class Comparison(list[dict[str, _t.Any]]):
         return list, (list(self),)
 
 
-def _check_dpi(dpi: int) -> None:
-    if not 30 <= dpi <= 2400 or dpi != int(dpi):
-        raise InputError("dpi", f"{dpi!r} is out of range", "a whole number from 30 to 2400")
-
-
-def _names(value: str | _t.Iterable[str] | None) -> list[str]:
+def _names(what: str, value: str | _t.Iterable[str] | None, one: _t.Any) -> list[str]:
+    """A list of names; empty where the one that may be given in its place counts."""
     if value is None:
         return []
-    return value.split(",") if isinstance(value, str) else list(value)
+    if one is not None:
+        raise InputError(what, f"there is also {what[:-1]}", "give one of them", field=what)
+    if not isinstance(value, (str, _abc.Iterable)):
+        raise InputError(what, f"{_shown(value)} is no list of names", field=what)
+    names = value.split(",") if isinstance(value, str) else list(value)
+    if not names:
+        raise InputError(what, "there are none", "name at least one", field=what)
+    for name in names:
+        if not isinstance(name, str):
+            raise InputError(what, f"{_shown(name)} is no name", "only built-in ones are compared", field=what)
+        if names.count(name) > 1:
+            raise InputError(what, f"{name!r} is there twice", "name each once", field=what)
+    return names
 
 
 def compare(array: Array, stroke: Stroke, *, algorithms: _t.Union[str, _t.Iterable[_Algorithm], None] = None,
@@ -69,7 +81,8 @@ def compare(array: Array, stroke: Stroke, *, algorithms: _t.Union[str, _t.Iterab
             soa: float | None = None, burst: float | None = None, slope: float | None = None, intercept: float | None = None,
             duration: float | None = None, speed: float | None = None, timing: _Timing | None = None, outside: _Outside | None = None,
             fit: bool | None = None, fit_margin: float | None = None, snap: bool | None = None, drop_points: bool | None = None,
-            overlap: _Overlap | None = None, carrier: float | None = None, compensate: _Compensate | None = None,
+            overlap: _Overlap | None = None, carrier: float | None = None, intensity_scale: _Scale | None = None,
+            stevens_exponent: float | None = None, sl: float | None = None, compensate: _Compensate | None = None,
             observer: _Observer | None = None, sigma_mm: float | None = None, sigma_v_mm_s: float | None = None, spread: int | None = None,
             spread_seed: int | None = None, spread_sigma: float | None = None, spread_threshold_db: float | None = None,
             spread_place_mm: float | None = None) -> Comparison:
@@ -86,7 +99,9 @@ def compare(array: Array, stroke: Stroke, *, algorithms: _t.Union[str, _t.Iterab
     algorithm : str
         Only this one.
     phantom, soa, burst, slope, intercept, duration, speed, timing, outside, fit, fit_margin, snap, drop_points, overlap, carrier, compensate
-        As in `plan`.
+        As in `plan`; `phantom` is a built-in one.
+    intensity_scale, stevens_exponent, sl
+        As in `plan`; `sl` is for `intensity_scale="sl"`.
     observer : str
         Who is predicted to feel it: "centroid" (default) or "low-speed", who feels quick taps nearer together than they are.
     sigma_mm, sigma_v_mm_s : float
@@ -113,15 +128,20 @@ def compare(array: Array, stroke: Stroke, *, algorithms: _t.Union[str, _t.Iterab
     given = {name: value for name, value in dict(
         algorithm=algorithm, phantom=phantom, soa=soa, burst=burst, slope=slope, intercept=intercept, duration=duration, speed=speed,
         timing=timing, outside=outside, fit=fit, fit_margin=fit_margin, snap=snap, drop_points=drop_points, overlap=overlap,
-        carrier=carrier, compensate=compensate, observer=observer, sigma_mm=sigma_mm, sigma_v_mm_s=sigma_v_mm_s, spread=spread, spread_seed=spread_seed,
+        carrier=carrier, intensity_scale=intensity_scale, stevens_exponent=stevens_exponent, sl=sl, compensate=compensate, observer=observer, sigma_mm=sigma_mm, sigma_v_mm_s=sigma_v_mm_s, spread=spread, spread_seed=spread_seed,
         spread_sigma=spread_sigma, spread_threshold_db=spread_threshold_db, spread_place_mm=spread_place_mm).items() if value is not None}
     _need(array, Array, "array")
     _need(stroke, Stroke, "stroke")
-    all_of_them = _names(algorithms)
-    if not all_of_them:
-        all_of_them = ["park2016", "tactile-brush", "continuous"] if algorithm is None else [algorithm]
-    options = settled(array, given, _PLANNING | {"observer"})
-    return Comparison(_tactor.Compared(array._core, stroke._core, options, all_of_them, _names(phantoms)))
+    if hasattr(phantom, "weights"):
+        raise InputError("phantom", "a model of your own cannot be compared", "name a built-in one, or ask plan(phantom=...) for its percept()",
+                         field="phantom")
+    of = _names("algorithms", algorithms, algorithm), _names("phantoms", phantoms, phantom)
+    if not of[0] and algorithm is None:
+        of[0].extend(("park2016", "tactile-brush", "continuous"))
+    options = settled(array, given, _PLANNING | {"observer", "sl"})
+    if sl is not None and options.get("intensity_scale") != "sl":
+        raise InputError("sl", "nothing here uses it", 'say intensity_scale="sl", too', field="sl")
+    return Comparison(_tactor.Compared(array._core, stroke._core, options, *of))
 
 
 def _picture(plans: _Plans, view: str) -> tuple[_t.Any, list[tuple[float | None, _t.Any]], str, _t.Any]:
@@ -157,10 +177,12 @@ def plot(plans: _Plans, file: str | os.PathLike[str], *, view: _View = "both", w
     InputError
         For another extension or a width out of range.
     """
+    _need(view, str, "view")
     array, all_of_them, own_name, score = _picture(plans, view)
-    _check_dpi(dpi)
+    if name is not None:
+        _need(name, str, "name")
     with reading(file) as to:
-        _tactor.save_picture(array, all_of_them, own_name if name is None else name, score, view, width, to, dpi)
+        _tactor.save_picture(array, all_of_them, own_name if name is None else name, score, view, _size(width, dpi)[0], to, _size(width, dpi)[1])
 
 
 def svg_of_plans(plans: _t.Sequence[Plan]) -> str:
@@ -196,7 +218,13 @@ def devices(array: Array | None = None, *, device: str | None = None, rate: int 
     config : path-like, optional
         Configuration; default: the tool's. os.devnull: none.
     """
+    if array is not None:
+        _need(array, Array, "array")
+    if device is not None:
+        _need(device, str, "device")
+        encoded(device, "device")
+    hz = None if rate is None else _whole("rate", rate, 8000, 768000)
     core, file = (None, None) if array is None else (array._core, array._file)
     import json
-    text = _tactor.devices(core, None if file is None else os.fsencode(file), device, rate, None if config is None else os.fsencode(config))
+    text = _tactor.devices(core, None if file is None else encoded(file), device, hz, None if config is None else encoded(config, "config"))
     return json.loads(text)  # type: ignore[no-any-return]
