@@ -14,6 +14,8 @@
 
 #include <tactor/tactor.hpp>
 
+#include "python/interpreter.hpp"
+
 namespace tactor::python {
 
 namespace py = pybind11;

@@ -21,8 +21,8 @@ py::array_t<double> given(std::vector<double> values, std::size_t columns)
 
 void check_signals()
 {
-    const py::gil_scoped_acquire lock;
-    if (PyErr_CheckSignals() != 0)
+    const with_lock lock;
+    if (in_python([] { return PyErr_CheckSignals(); }) != 0)
         throw py::error_already_set();
 }
 
@@ -52,10 +52,10 @@ void set_error(const error& e)
 {
     try {
         const py::object x =
-            py::module_::import("tactor._errors")
-                .attr("made")(std::string(to_string(e.kind())), text(e.subject()), text(e.why()),
-                              text(e.hint()), text(e.field()), text(e.place().file), e.place().line,
-                              e.place().column, e.os_code());
+            called(py::module_::import("tactor._errors").attr("made"),
+                   py::make_tuple(std::string(to_string(e.kind())), text(e.subject()), text(e.why()),
+                                  text(e.hint()), text(e.field()), text(e.place().file), e.place().line,
+                                  e.place().column, e.os_code()));
         PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(x.ptr())), x.ptr());
     } catch (py::error_already_set& raised) {
         raised.restore();

@@ -35,7 +35,7 @@ plan_handle planned(const std::shared_ptr<array_handle>& on, const stroke& given
         work();
         return p;
     }
-    const py::gil_scoped_release free;
+    const without_lock free;
     work();
     return p;
 }
@@ -104,7 +104,7 @@ py::object samples(const plan_handle& p)
     const std::size_t tactors = p.on->value().tactors.size();
     std::vector<double> t, places, intensities, all;
     {
-        const py::gil_scoped_release free;
+        const without_lock free;
         all.resize(c.size() * tactors);
         burst b;
         for (std::uint64_t k = 0; k < c.size(); ++k) {
@@ -124,7 +124,7 @@ py::list felt(const plan_handle& p)
 {
     std::vector<percept_sample> all;
     {
-        const py::gil_scoped_release free;
+        const without_lock free;
         all = predict_percept(p.on->value(), p.drawn, p.schedule());
     }
     py::list rows;
@@ -141,7 +141,7 @@ py::dict summary(const plan_handle& p)
 {
     percept_summary s;
     {
-        const py::gil_scoped_release free;
+        const without_lock free;
         s = summarise(p.on->value(), p.drawn, p.schedule());
     }
     using namespace py::literals;

@@ -54,7 +54,7 @@ render_options settled(const array& a, render_options o)
 
 std::string json_of(const plan_handle& p)
 {
-    const py::gil_scoped_release free;
+    const without_lock free;
     cli::environment e;
     e.tactors = p.on->value();
     cli::piece piece{p.drawn.name, {p.drawn}, {p.placed}, p.fit};
@@ -67,7 +67,7 @@ std::string json_of(const plan_handle& p)
 
 plan_handle plan_from_json(const std::string& text)
 {
-    const py::gil_scoped_release free;
+    const without_lock free;
     cli::plan_file f = cli::read_plans(text, named);
     if (f.plans.size() != 1)
         throw error(error_kind::bad_input, named, "there are " + counted(f.plans.size(), "plan") + " in it",

@@ -13,7 +13,7 @@ namespace tactor::python {
 namespace {
 
 using namespace py::literals;
-using free_call = py::call_guard<py::gil_scoped_release>;
+using free_call = py::call_guard<without_lock>;
 
 // A number or nothing, of the keyword arguments that were given.
 template <class T>
@@ -47,7 +47,7 @@ std::shared_ptr<player_handle> open(const std::shared_ptr<array_handle>& on, con
     w.play.no_gpio = given["no_gpio"].cast<bool>();
     w.sync_delay_s = given["sync_delay"].cast<double>();
     w.wants_log = given["log"].cast<bool>();
-    const py::gil_scoped_release free;
+    const without_lock free;
     return std::make_shared<player_handle>(on->value(), w);
 }
 
@@ -68,7 +68,7 @@ py::object next_event(player_handle& h)
 {
     std::optional<event> e;
     {
-        const py::gil_scoped_release free;
+        const without_lock free;
         e = h.events().next();
     }
     if (!e)
@@ -103,7 +103,7 @@ py::dict stats_of(const player_handle& h)
 {
     player_stats s;
     {
-        const py::gil_scoped_release free;
+        const without_lock free;
         s = h.use([](player& p) { return p.stats(); });
     }
     return py::dict("periods"_a = s.periods, "frames"_a = s.frames, "xruns"_a = s.xruns,
@@ -156,7 +156,7 @@ live_handle begin(const std::shared_ptr<player_handle>& h, const array_handle& o
     wishes w;
     w.plan = live_options{}.plan;
     take_options(w, options, on.value().tactors.size());
-    const py::gil_scoped_release free;
+    const without_lock free;
     return {h, h->use([&](player& p) {
                 return p.begin({.plan = w.plan,
                                 .render = w.sound,

@@ -85,7 +85,7 @@ player_handle::~player_handle()
     }
     // Its threads may be waiting for the interpreter, to drop what is Python's.
     if (PyGILState_Check() != 0) {
-        const py::gil_scoped_release free;
+        const without_lock free;
         close();
     } else {
         close();

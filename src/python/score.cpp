@@ -25,7 +25,7 @@ score make_score(const array_handle& on, const std::vector<placed>& plans, const
     wishes w;
     w.sound = plans.front().second->sound;
     take_options(w, options, 0);
-    const py::gil_scoped_release free;
+    const without_lock free;
     std::vector<placed_plan> all;
     for (const auto& [start_s, p] : plans) {
         check_same_array(*p, on.value());
@@ -55,7 +55,7 @@ py::array render(const score& s, const std::string& format, const py::dtype& dty
     const std::size_t bytes = static_cast<std::size_t>(s.frames()) * s.channels() * bytes_of(f);
     auto out = std::make_unique_for_overwrite<std::byte[]>(bytes);
     {
-        const py::gil_scoped_release free;
+        const without_lock free;
         process(s, f, {out.get(), bytes});
     }
     std::byte* const first = out.get();
@@ -67,7 +67,7 @@ py::array render(const score& s, const std::string& format, const py::dtype& dty
 void write(const score& s, const std::string& file, const std::string& format)
 {
     const auto f = from_string<format_kind>(format);
-    const py::gil_scoped_release free;
+    const without_lock free;
     std::uint64_t next = frames_at_once;
     write_wav(s, f, std::filesystem::path(file), [&](std::uint64_t done, std::uint64_t) {
         if (done >= next) {

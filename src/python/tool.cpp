@@ -40,7 +40,7 @@ compared compare(const std::shared_ptr<array_handle>& on, const stroke& s, const
     take_options(w, options, on->value().tactors.size());
     const layout& faces = on->faces();
     const stroke target = stroke_as_asked(s, faces, w).drawn;
-    const py::gil_scoped_release free;
+    const without_lock free;
     static_cast<void>(burst_duration_s(w.plan)); // what nobody may ask for is no row
     const cli::comparison_choice choice{kinds_of(algorithms, w.plan.algorithm),
                                         kinds_of(phantoms, w.plan.phantom),
@@ -56,7 +56,7 @@ compared compare(const std::shared_ptr<array_handle>& on, const stroke& s, const
 
 std::string svg_of_comparison(const compared& c, double width_mm)
 {
-    const py::gil_scoped_release free;
+    const without_lock free;
     return plot::to_svg(cli::picture_of(c.result, c.on->value(), width_mm));
 }
 
@@ -103,7 +103,7 @@ std::string devices(const array_handle* on, const std::optional<std::string>& ar
                     const std::optional<std::string>& pcm, std::optional<unsigned> rate,
                     const std::optional<std::string>& config)
 {
-    const py::gil_scoped_release free;
+    const without_lock free;
     cli::settings s;
     s.pcm = pcm;
     s.rate = rate;
@@ -128,24 +128,24 @@ void bind_tool(py::module_& m)
         .def(py::init(&compare))
         .def("json",
              [](const compared& c) {
-                 const py::gil_scoped_release free;
+                 const without_lock free;
                  return written([&](std::FILE* out) { cli::print_json(out, {c.result}, c.on->value()); });
              })
         .def("svg", &svg_of_comparison)
         .def("save", [](const compared& c, const std::string& file, double width_mm, unsigned dpi) {
-            const py::gil_scoped_release free;
+            const without_lock free;
             check_dpi(dpi);
             plot::save(cli::picture_of(c.result, c.on->value(), width_mm), file, dpi);
         });
     m.def("svg", [](const array_handle& on, const plans& all, const std::string& name, const score* sound,
                     const std::string& view, double width_mm) {
-        const py::gil_scoped_release free;
+        const without_lock free;
         return plot::to_svg(draw(on, all, name, sound, view, width_mm));
     });
     m.def("save_picture",
           [](const array_handle& on, const plans& all, const std::string& name, const score* sound,
              const std::string& view, double width_mm, const std::string& file, unsigned dpi) {
-              const py::gil_scoped_release free;
+              const without_lock free;
               plot::format_of(file);
               check_dpi(dpi);
               plot::save(draw(on, all, name, sound, view, width_mm), file, dpi);

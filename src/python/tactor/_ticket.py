@@ -216,7 +216,8 @@ class LiveStroke(Ticket):
         InputError
             For what is not finite, a negative time, and with outside="error" for a place outside the array; it goes on where it was.
         Exception
-            What a phantom model of your own raises, and InputError where it returns rubbish; then the stroke ends with that as its reason.
+            What a phantom model of your own raises, InputError where it returns rubbish, and StreamError where it calls this for the
+            stroke that asks it; then the stroke ends with that as its reason.
         """
         return self._core.to(x_mm, y_mm, intensity, at_s)  # type: ignore[no-any-return]
 

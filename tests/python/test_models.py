@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: MIT
+"""Phantom models that are Python objects, and what they do wrong."""
+import collections.abc
+import os
+import subprocess
+import sys
+import textwrap
+
+import numpy as np
+import pytest
+
+import tactor
+
+LONG = 120.0  # s: an answer that takes longer never comes
+
+
+@pytest.fixture
+def player(palm):
+    with tactor.Player("null", palm, config=os.devnull) as p:
+        yield p
+
+
+class Meddling:
+    """Does something to the stroke that asks it."""
+
+    def __init__(self, does):
+        self.does = does
+        self.stroke = None
+
+    def weights(self, x_mm, y_mm, intensity):
+        self.does(self.stroke)
+        return {4: intensity}
+
+
+@pytest.mark.parametrize("smooth", [0.0, 0.05])
+def test_a_model_that_moves_its_own_stroke_is_refused_and_ends_it(player, smooth):
+    model = Meddling(lambda stroke: stroke.to(20, 20))
+    with player.live(phantom=model, timeout=LONG, smooth=smooth) as finger:
+        model.stroke = finger
+        with pytest.raises(tactor.StreamError, match="its phantom model moves it"):
+            finger.to(10, 10)
+        assert not finger.to(10, 10)
+    assert finger.report.state == "interrupted" and "its phantom model moves it" in finger.report.reason
+
+
+@pytest.mark.parametrize("does", [
+    lambda stroke: stroke.end(), lambda stroke: stroke.cancel(), lambda stroke: (stroke.open, stroke.counts, stroke.done(), repr(stroke)),
+    lambda stroke: stroke._player.core.stats(), lambda stroke: stroke._player.core.position(),
+])
+def test_a_model_may_do_anything_else_to_its_own_stroke(player, does):
+    model = Meddling(does)
+    with player.live(phantom=model, timeout=LONG) as finger:
+        model.stroke = finger
+        finger.to(10, 10)
+    assert finger.report.state in ("finished", "cancelled")
+
+
+AT_EXIT = """
+    import sys, threading, time
+    import tactor
+
+    class Busy:
+        def weights(self, x_mm, y_mm, intensity):
+            entered.set()
+            for _ in range(1000):
+                time.sleep(0)
+            return {4: intensity}
+
+    class Slow:  # while the interpreter ends, the thread asks for its lock
+        def __del__(self, sleep=time.sleep):
+            sleep(0.2)
+
+    def feed():
+        while True:
+            finger.to(20, 20)
+
+    def plan():
+        while True:
+            tactor.plan(palm, stroke, algorithm="continuous", phantom=Busy())
+
+    def count():
+        entered.set()
+        while True:
+            player.stats()
+            palm.faces
+            score.render()
+
+    entered = threading.Event()
+    palm = tactor.Array.preset("palm-3x3")
+    stroke = tactor.Stroke.preset("park2016-1")
+    score = tactor.Score(palm, tactor.plan(palm, stroke))
+    player = tactor.Player("null", palm)
+    finger = player.live(phantom=Busy(), timeout=3600.0)
+    slow = Slow()
+    threading.Thread(target={"feed": feed, "plan": plan, "count": count}[sys.argv[1]], daemon=True).start()
+    entered.wait()
+    if sys.argv[1] != "feed":
+        finger.cancel()
+"""
+
+
+@pytest.mark.parametrize("what", ["feed", "plan", "count"])
+@pytest.mark.unsanitized  # what the thread holds is given back by nobody
+def test_a_program_ends_while_a_daemon_thread_is_in_the_package(what):
+    env = {**os.environ, "TACTOR_CONFIG": os.devnull}
+    for _ in range(5):
+        r = subprocess.run([sys.executable, "-c", textwrap.dedent(AT_EXIT), what], env=env, capture_output=True, text=True, timeout=LONG, check=False)
+        assert r.returncode == 0 and "terminate" not in r.stderr and "Fatal" not in r.stderr, r.stderr
+
+
+class Pairs(collections.abc.Mapping):
+    """What it is made of, though no dict would hold it."""
+
+    def __init__(self, *pairs):
+        self.pairs = pairs
+
+    def items(self):
+        return self.pairs
+
+    def __iter__(self):
+        return iter(())
+
+    def __len__(self):
+        return len(self.pairs)
+
+    def __getitem__(self, key):
+        raise KeyError(key)
+
+
+RUBBISH = [
+    (None, "it returned None"), (3, "it returned 3"), ([(0, 1.0)], "it returned [(0, 1.0)]"), ({9: 1.0}, "tactor 9 of 9"), ({-1: 1.0}, "tactor -1 of 9"),
+    ({2**70: 1.0}, f"tactor {2**70} of 9"), ({-2**70: 1.0}, f"tactor {-2**70} of 9"), ({1.7: 1.0}, "tactor 1.7, which is no whole number"),
+    ({1.0: 1.0}, "tactor 1.0, which is no whole number"), ({"3": 1.0}, "tactor '3', which is no whole number"), ({None: 1.0}, "tactor None"),
+    (Pairs((1, 0.5), (0, 0.1), (1, 0.5)), "it drives tactor 1 twice"), (Pairs((1, 0.5, 3)), "its items() have (1, 0.5, 3)"), (Pairs(7), "its items() have 7"),
+    ({0: float("nan")}, "amplitude nan"), ({0: -1.0}, "amplitude -1.0"), ({0: "0.5"}, "amplitude '0.5'"), ({0: 10**400}, "tactor 0 has the amplitude 1000"),
+    ({0: None}, "amplitude None"),
+]
+
+
+@pytest.mark.parametrize("answer,why", RUBBISH)
+def test_rubbish_is_refused_and_ends_a_live_stroke_with_that_as_its_reason(palm, stroke, player, answer, why):
+    class Rubbish:
+        name = "rubbish"
+
+        def weights(self, x_mm, y_mm, intensity):
+            return answer
+    with pytest.raises(tactor.InputError) as e:
+        tactor.plan(palm, stroke, phantom=Rubbish())
+    assert why in str(e.value) and e.value.what == "phantom rubbish"
+    with player.live(phantom=Rubbish(), timeout=LONG) as finger:
+        with pytest.raises(tactor.InputError):
+            finger.to(20, 20)
+    assert finger.report.state == "interrupted" and why in finger.report.reason
+
+
+def test_whole_numbers_and_amplitudes_of_numpy_are_some(palm, stroke):
+    class Given:
+        def weights(self, x_mm, y_mm, intensity):
+            return {np.int64(4): np.float32(0.5), np.uint8(3): np.array(0.25)}
+    drives = tactor.plan(palm, stroke, phantom=Given()).bursts[0].drives
+    assert drives == ((3, 0.25), (4, 0.5))
