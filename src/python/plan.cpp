@@ -12,6 +12,8 @@
 namespace tactor::python {
 namespace {
 
+using namespace py::literals;
+
 plan_handle planned(const std::shared_ptr<array_handle>& on, const stroke& given_stroke,
                     const py::dict& options)
 {
@@ -237,6 +239,12 @@ void bind_plan(py::module_& m)
                                    return all;
                                })
         .def_property_readonly("size", [](const plan_handle& p) { return p.schedule().bursts.size(); })
+        .def_property_readonly("sound",
+                               [](const plan_handle& p) {
+                                   return py::dict("envelope"_a =
+                                                       std::string(to_string(p.sound.envelope.kind)),
+                                                   "marker_channel"_a = p.sound.marker_channel);
+                               })
         .def_property_readonly("continuous",
                                [](const plan_handle& p) { return p.schedule().curve.has_value(); })
         .def("onsets",

@@ -17,6 +17,11 @@ constexpr std::uint64_t frames_at_once = 1 << 18;
 
 using placed = std::pair<std::optional<double>, const plan_handle*>;
 
+bool says(const py::dict& options, const char* name)
+{
+    return options.contains(name) && !options[name].is_none();
+}
+
 // A score sounds as its first plan was meant to, but for what is said here.
 score make_score(const array_handle& on, const std::vector<placed>& plans, const py::dict& options)
 {
@@ -25,6 +30,9 @@ score make_score(const array_handle& on, const std::vector<placed>& plans, const
     wishes w;
     w.sound = plans.front().second->sound;
     take_options(w, options, 0);
+    // A plan that was recorded says how many channels it had without a marker.
+    if (w.sound.marker_channel && w.sound.channels != 0 && !says(options, "channels"))
+        w.sound.channels = std::max(w.sound.channels, *w.sound.marker_channel + 1);
     const without_lock free;
     std::vector<placed_plan> all;
     for (const auto& [start_s, p] : plans) {

@@ -136,8 +136,37 @@ def test_markers_and_limits(palm, stroke):
     plan = tactor.plan(palm, stroke)
     marked = tactor.Score(palm, plan, marker_channel=9, marker_s=0.01)
     assert marked.channels == 10 and (marked.render()[:480, 9] == 1.0).all() and not marked.render()[480:, 9].any()
+    for recorded in (tactor.Plan.from_dict(plan.to_dict()), pickle.loads(pickle.dumps(plan))):
+        assert np.array_equal(tactor.Score(palm, recorded, marker_channel=9, marker_s=0.01).render(), marked.render())
+    assert pickle.loads(pickle.dumps(marked)) == marked
+    with pytest.raises(tactor.InputError):
+        tactor.Score(palm, plan, marker_channel=9, channels=9)
     limited = tactor.Score(palm, plan, level_dbfs=0, power_dbfs=-20)
     assert np.abs(limited.render()).max() < np.abs(tactor.Score(palm, plan, level_dbfs=0).render()).max()
+
+
+@pytest.mark.parametrize("planned,said,what", [
+    ({}, dict(tukey_part=0.3), "tukey_part"), (dict(envelope="linear"), dict(tukey_part=0.3), "tukey_part"), ({}, dict(marker_s=0.01), "marker_s"),
+    (dict(envelope="tukey"), dict(ramp=0.01), "ramp"), (dict(envelope="tukey"), dict(attack=0.01), "attack"), ({}, dict(envelope="tukey", ramp=0.01), "ramp"),
+])
+def test_what_nothing_in_a_score_uses_is_refused(palm, stroke, planned, said, what):
+    plan = tactor.plan(palm, stroke, **planned)
+    for one in (plan, tactor.Plan.from_dict(plan.to_dict()), pickle.loads(pickle.dumps(plan))):
+        with pytest.raises(tactor.InputError) as e:
+            tactor.Score(palm, one, **said)
+        assert e.value.what == what
+
+
+def test_a_score_may_say_more_of_what_its_plan_says(tmp_path, palm, stroke):
+    plan = tactor.plan(palm, stroke, envelope="tukey")
+    expected = tactor.Score(palm, plan, envelope="tukey", tukey_part=0.3).render()
+    assert np.array_equal(tactor.Score(palm, plan, tukey_part=0.3).render(), expected)
+    assert not np.array_equal(tactor.Score(palm, plan).render(), expected)
+    (tmp_path / "a.toml").write_text('[array]\npreset = "palm-3x3"\n[defaults]\nramp = 0.003\n[sync]\nchannel = 9\n')
+    array = tactor.Array.from_file(tmp_path / "a.toml")
+    for p in (plan, tactor.plan(array, stroke)):
+        score = tactor.Score(array, p, envelope="tukey", marker_s=0.01)
+        assert (score.render()[:480, 9] == 1.0).all() and pickle.loads(pickle.dumps(score)) == score
 
 
 @pytest.mark.parametrize("make", [

@@ -31,19 +31,23 @@ _LIVE = frozenset(("phantom", "soa", "burst", "slope", "intercept", "carrier", "
                    "intensity_scale", "stevens_exponent", "phase", "ramp", "envelope", "attack", "release", "tukey_part", "level_dbfs", "sl"))
 
 
-def settled(array: Array, given: dict[str, _t.Any], known: frozenset[str]) -> dict[str, _t.Any]:
+_NOTHING: _t.Mapping[str, _t.Any] = {}
+
+
+def settled(array: Array, given: dict[str, _t.Any], known: frozenset[str], before: _t.Mapping[str, _t.Any] = _NOTHING) -> dict[str, _t.Any]:
     """Options, and for what they do not say the [defaults] and [output] of the array's file, as the tool has it.
 
-    None says nothing. What nothing would use is refused; in a file it may stand for other strokes.
+    None says nothing. What nothing would use is refused; in a file it may stand for other strokes. `before`: what a plan says already.
     """
     setup = array._settings()
     options = given if setup is None else _completed(setup, given, known)
-    _check_used(given, options)
+    check_used(given, {**before, **{name: value for name, value in options.items() if value is not None}})
     return options
 
 
-def _check_used(given: dict[str, _t.Any], options: dict[str, _t.Any]) -> None:
-    wave, envelope = str(options.get("waveform") or "sine"), options.get("envelope")
+def check_used(given: dict[str, _t.Any], options: dict[str, _t.Any]) -> None:
+    """Refuses what is given although nothing of all that is said uses it."""
+    wave, envelope = str(options.get("waveform") or "sine"), str(options.get("envelope")).partition(":")[0]
     noise = wave.startswith("noise:")
     recorded = not noise and wave not in ("sine", "square", "triangle", "sawtooth")
     low_speed = "low-speed" in (options.get("compensate"), options.get("observer"))
@@ -53,6 +57,7 @@ def _check_used(given: dict[str, _t.Any], options: dict[str, _t.Any]) -> None:
                              ("texture", recorded, 'say waveform="FILE.wav", too'),
                              ("texture_mm", recorded and options.get("texture") == "length", 'say waveform="FILE.wav" and texture="length", too'),
                              ("stevens_exponent", options.get("intensity_scale") == "stevens", 'say intensity_scale="stevens", too'),
+                             ("marker_s", options.get("marker_channel") is not None, "say marker_channel=N, too"),
                              ("tukey_part", envelope == "tukey", 'say envelope="tukey", too')):
         if given.get(name) is not None and not used:
             raise InputError(name, "nothing here uses it", hint, field=name)
@@ -83,7 +88,8 @@ def _completed(setup: _t.Any, given: dict[str, _t.Any], known: frozenset[str]) -
         if setup.channels is not None and not says("channels"):
             options["channels"] = setup.channels
         if setup.marker is not None and not says("marker_channel"):
-            options["marker_channel"], options["marker_s"] = setup.marker
+            options["marker_channel"], pulse_s = setup.marker
+            options["marker_s"] = given["marker_s"] if given.get("marker_s") is not None else pulse_s
     return options
 
 

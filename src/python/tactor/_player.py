@@ -187,8 +187,7 @@ class Player:
 
     def _fitting(self, score: Score) -> _t.Any:
         if score.channels < self.channels and score.rate == self.rate:
-            options: dict[str, _t.Any] = {**score._options, "channels": self.channels}
-            return Score(score._array, score._plans, **options)._core
+            return Score._of(score._array, score._plans, {**score._options, "channels": self.channels})._core
         return score._core
 
     def live(self, *, algorithm: _Algorithm | None = None, phantom: _t.Union[_Phantom, PhantomModel, None] = None, soa: float | None = None,

@@ -8,17 +8,18 @@ import typing as _t
 
 from tactor import _tactor
 from tactor._array import Array
-from tactor._checks import _counted, _need
+from tactor._checks import _counted, _need, _number, _Value
 from tactor._errors import InputError
 from tactor._files import reading
-from tactor._options import _SOUNDING, settled
+from tactor._options import _SOUNDING, check_used, settled
 from tactor._plan import Plan
 
 if _t.TYPE_CHECKING:
     import numpy as _np
     from numpy.typing import DTypeLike as _DTypeLike, NDArray as _NDArray
     from tactor._options import _Envelope, _Phase
-    _SampleFormat = _t.Literal["float", "s16", "s24", "s32"]
+    _WavFormat = _t.Literal["float", "s16", "s24", "s32"]
+    _SampleFormat = _t.Union[_WavFormat, _t.Literal["s24-4"]]
     _Plans = _t.Union[Plan, _t.Iterable[_t.Union[Plan, "tuple[float | None, Plan]"]]]
 
 
@@ -37,11 +38,11 @@ def placed(plans: _Plans) -> list[tuple[float | None, Plan]]:
         pair = (p.start, p) if isinstance(p, Plan) else p
         if not (isinstance(pair, tuple) and len(pair) == 2 and isinstance(pair[1], Plan)):
             raise TypeError(f"a plan or (start_s, plan) is wanted, not {p!r}")
-        all_of_them.append((None if pair[0] is None else float(pair[0]), pair[1]))
+        all_of_them.append((None if pair[0] is None else _number("start", pair[0]), pair[1]))
     return all_of_them
 
 
-class Score:
+class Score(_Value):
     """Plans at a sample rate and at levels: what can be rendered, written and played. Immutable.
 
     Parameters
@@ -97,11 +98,26 @@ class Score:
             "marker_s": marker_s, "power_dbfs": power_dbfs, "max_drive_s": max_drive_s, "drive_window_s": drive_window_s,
         }
         _need(array, Array, "array")
+        all_of_them = placed(plans)
+        sound = all_of_them[0][1]._core.sound if all_of_them else {}
+        if all_of_them and all_of_them[0][1]._is_settled_on(array):
+            check_used(given, {**sound, **{name: value for name, value in given.items() if value is not None}})
+        else:
+            given = settled(array, given, _SOUNDING, sound)
+        self._take(array, tuple(all_of_them), given)
+
+    def _take(self, array: Array, plans: tuple[tuple[float | None, Plan], ...], options: dict[str, _t.Any]) -> None:
         self._array = array
-        self._plans = tuple(placed(plans))
-        own = bool(self._plans) and self._plans[0][1]._is_settled_on(array)
-        self._options = given if own else settled(array, given, _SOUNDING)
-        self._core = _tactor.Score(array._core, [(start, p._core) for start, p in self._plans], self._options)
+        self._plans = plans
+        self._options = options
+        self._core = _tactor.Score(array._core, [(start, p._core) for start, p in plans], options)
+
+    @classmethod
+    def _of(cls, array: Array, plans: tuple[tuple[float | None, Plan], ...], options: dict[str, _t.Any]) -> Score:
+        """Of options that are settled."""
+        made = cls.__new__(cls)
+        made._take(array, plans, options)
+        return made
 
     @property
     def array(self) -> Array:
@@ -172,7 +188,7 @@ class Score:
         """The same as `render()`."""
         return self.render()
 
-    def write(self, file: str | os.PathLike[str], sample_format: _SampleFormat = "float") -> None:
+    def write(self, file: str | os.PathLike[str], sample_format: _WavFormat = "float") -> None:
         """Writes a WAV file, one channel per tactor, the same bytes as `tactor render` does.
 
         Complete or not at all: an existing file is replaced at the end.
@@ -185,6 +201,7 @@ class Score:
             For what the file system refuses.
         """
         with reading(file) as name:
+            _need(sample_format, str, "sample_format")
             self._core.write(name, sample_format)
 
     def __len__(self) -> int:
@@ -207,4 +224,4 @@ class Score:
 
 
 def _score_again(array: Array, plans: tuple[tuple[float | None, Plan], ...], options: dict[str, _t.Any]) -> Score:
-    return Score(array, plans, **options)
+    return Score._of(array, plans, options)
