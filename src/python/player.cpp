@@ -209,10 +209,7 @@ void bind_player(py::module_& m)
         .def("submit", &submit, free_call())
         .def("live", &begin)
         .def(
-            "cancel",
-            [](const player_handle& h, std::uint32_t id) {
-                return h.use([id](player& p) { return p.cancel(stroke_id{id}); });
-            },
+            "cancel", [](const player_handle& h, std::uint32_t id) { return h.cancel(stroke_id{id}); },
             free_call())
         .def(
             "fire",

@@ -112,6 +112,13 @@ bool player_handle::closed() const
     return open_->stream == nullptr;
 }
 
+bool player_handle::cancel(stroke_id id) const
+{
+    refuse_child();
+    const std::shared_lock lock(open_->mutex);
+    return open_->stream != nullptr && open_->stream->cancel(id);
+}
+
 void player_handle::close()
 {
     refuse_child();

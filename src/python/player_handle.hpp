@@ -60,6 +60,8 @@ public:
         return std::forward<F>(f)(*open_->stream);
     }
 
+    /// False where the stroke has ended, as all have once it is closed. \throws error in a forked process.
+    bool cancel(stroke_id id) const;
     /// Fades out, stops and closes; all strokes have been reported then. Once more: nothing.
     void close();
     bool closed() const;

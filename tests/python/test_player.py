@@ -259,6 +259,45 @@ def test_awaiting_gives_the_report(player, short, endless):
     asyncio.run(main())
 
 
+def test_who_cancels_waiting_for_what_has_ended_cancels_nothing(palm, endless):
+    async def main():
+        p = tactor.Player("null", palm, config=os.devnull)
+        ticket = p.submit(endless)
+        waiting = asyncio.create_task(_await(ticket))
+        await asyncio.sleep(0)
+        p.close()
+        waiting.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await waiting
+        assert ticket.report.state == "cancelled" and not ticket.cancel()
+
+    async def _await(ticket):
+        return await ticket
+    asyncio.run(main())
+
+
+def test_several_threads_may_close_a_player_at_once(palm, endless):
+    for _ in range(10):
+        p = tactor.Player("null", palm, config=os.devnull)
+        tickets = [p.submit(endless) for _ in range(3)]
+        tickets[0].add_done_callback(lambda _, p=p: p.close())
+        failed, together = [], threading.Barrier(6)
+
+        def close(p=p, tickets=tickets, failed=failed, together=together):
+            together.wait()
+            try:
+                p.close()
+                assert p.closed and all(t.done() for t in tickets)
+            except BaseException as e:
+                failed.append(e)
+        threads = [threading.Thread(target=close) for _ in range(6)]
+        for t in threads:
+            t.start()
+        for t in threads:
+            t.join(LONG)
+        assert failed == [] and [t.report.state for t in tickets] == ["cancelled"] * 3
+
+
 def test_waiting_leaves_the_interpreter_to_others(player, endless):
     ticket = player.submit(endless)
     waiter = threading.Thread(target=ticket.wait)
@@ -289,7 +328,8 @@ def test_a_closed_player_says_so(palm, short, endless):
     p.close()
     assert ticket.report.state == "cancelled" and p.closed
     p.close()
-    for call in (lambda: p.submit(short), lambda: p.play(short), p.live, p.fire, p.stop, p.stats, p.position, lambda: p.ended, ticket.cancel):
+    assert ticket.cancel() is False
+    for call in (lambda: p.submit(short), lambda: p.play(short), p.live, p.fire, p.stop, p.stats, p.position, lambda: p.ended):
         with pytest.raises(tactor.StreamError):
             call()
     with tactor.Player("null", palm, config=os.devnull, after=p) as next_one:

@@ -261,11 +261,11 @@ class Player:
     def close(self) -> None:
         """Stops, closes the device and leaves the amplifier off. All strokes have been reported then, and their callbacks called."""
         shared = self._get()
-        shared.core.refuse_child()
-        if not shared.core.closed:
-            shared.core.stop()
-            self._driven = shared.core.history()
-        shared.core.close()
+        with shared.closing:  # who comes second finds it closed
+            if not shared.core.closed:
+                shared.core.stop()
+                self._driven = shared.core.history()
+            shared.core.close()
         _open.discard(self)
         if threading.current_thread() is not shared.thread:
             shared.thread.join()

@@ -142,7 +142,7 @@ class Ticket:
 
     def cancel(self) -> bool:
         """Fades it out. False when it has ended."""
-        return self._player.core.cancel(self._number)  # type: ignore[no-any-return]
+        return self._report is None and self._player.core.cancel(self._number)
 
     def add_done_callback(self, callback: _t.Callable[[_t.Any], object]) -> None:
         """Calls `callback(ticket)` once it has ended: in the player's thread of Python, or at once and here when it has already."""
@@ -257,6 +257,7 @@ class _Shared:
         self.log = log
         self.rate: int = core.setup()["rate"]
         self.lock = threading.Lock()
+        self.closing = threading.Lock()
         self.tickets: dict[int, Ticket] = {}
         self.thread = threading.Thread(target=self._run, name="tactor", daemon=True)
         self.thread.start()
