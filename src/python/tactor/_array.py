@@ -6,7 +6,7 @@ import os
 import typing as _t
 
 from tactor import _tactor
-from tactor._checks import _counted, _need
+from tactor._checks import _counted, _floats, _need, _number, _place, _shown, _Value, _whole
 from tactor._errors import InputError
 from tactor._files import reading
 
@@ -59,7 +59,7 @@ class Tactor(_t.NamedTuple):
     rise_s: float | None = None
 
 
-class Array:
+class Array(_Value):
     """Where the tactors are and how each is driven. Immutable.
 
     Made by `preset`, `from_file`, `grid`, `from_points` or of a name and a sequence of `Tactor`.

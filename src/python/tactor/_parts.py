@@ -5,6 +5,7 @@ from __future__ import annotations
 import typing as _t
 
 from tactor._array import Point
+from tactor._checks import _Value
 
 if _t.TYPE_CHECKING:
     import numpy as _np
@@ -69,8 +70,8 @@ class PerceptSample(_t.NamedTuple):
     speed: float | None
 
 
-class Curve:
-    """A continuous stroke, sampled each millisecond, the last at its end.
+class Curve(_Value):
+    """A continuous stroke, sampled each millisecond, the last at its end. Immutable.
 
     Attributes
     ----------
@@ -93,10 +94,19 @@ class Curve:
 
     def __init__(self, t: _NDArray[_np.float64], positions: _NDArray[_np.float64], intensities: _NDArray[_np.float64],
                  amplitudes: _NDArray[_np.float64]) -> None:
-        self.t = t
-        self.positions = positions
-        self.intensities = intensities
-        self.amplitudes = amplitudes
+        for name, values in zip(self.__slots__, (t, positions, intensities, amplitudes)):
+            values = values.view()
+            values.flags.writeable = False
+            object.__setattr__(self, name, values)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"a curve cannot be changed, nor its {name!r}")
+
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"a curve cannot be changed, nor its {name!r}")
+
+    def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
+        return Curve, tuple(getattr(self, name) for name in self.__slots__)
 
     def __len__(self) -> int:
         return len(self.t)

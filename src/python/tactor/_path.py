@@ -6,14 +6,14 @@ import typing as _t
 
 from tactor import _tactor
 from tactor._array import Point
-from tactor._checks import _floats
+from tactor._checks import _floats, _need, _number, _place, _Value
 
 if _t.TYPE_CHECKING:
     import numpy as _np
     from numpy.typing import ArrayLike as _ArrayLike, NDArray as _NDArray
 
 
-class Path:
+class Path(_Value):
     """A curve on the skin, by arc length. Immutable.
 
     Made by `svg`, `polyline` or `arc`.

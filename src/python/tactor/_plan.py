@@ -6,6 +6,7 @@ import typing as _t
 
 from tactor import _tactor
 from tactor._array import Array, Point
+from tactor._checks import _Value
 from tactor._errors import InputError
 from tactor._parts import Burst, Conflict, Curve, Drive, Meeting, PerceptSample
 from tactor._stroke import Stroke
@@ -16,7 +17,7 @@ if _t.TYPE_CHECKING:
     from tactor._options import _Overlap
 
 
-class Plan:
+class Plan(_Value):
     """Who plays, when, and how strongly: bursts or, of a continuous stroke, a curve. Immutable.
 
     Made by `tactor.plan` or `from_dict`. Arrays are looks at the plan's memory, which cannot be written; those of other shapes than

@@ -12,7 +12,7 @@ import weakref
 
 from tactor import _tactor
 from tactor._array import Array
-from tactor._checks import _need
+from tactor._checks import _need, _number, _Unique, _whole
 from tactor._errors import InputError
 from tactor._options import _LIVE, settled
 from tactor._parts import PhantomModel
@@ -27,7 +27,11 @@ if _t.TYPE_CHECKING:
     _At = _t.Literal["now", "armed"]
 
 
-class Player:
+_LATEST_S = 8e9  # of a clock that counts nanoseconds in 64 bits
+_CLOCK = "seconds as time.monotonic() gives them"
+
+
+class Player(_Unique):
     """Plays scores on a device in real time.
 
     Parameters

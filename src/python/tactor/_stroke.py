@@ -7,7 +7,7 @@ import typing as _t
 
 from tactor import _tactor
 from tactor._array import Array, Point
-from tactor._checks import _floats, _need
+from tactor._checks import _floats, _need, _number, _Value
 from tactor._errors import InputError
 from tactor._files import reading
 from tactor._path import Path
@@ -40,7 +40,18 @@ def _pauses(pauses: _t.Any) -> _t.Any:
     return _floats("pauses", rows).reshape(-1, 3)
 
 
-class Stroke:
+def _is_one(value: _t.Any) -> bool:
+    """Whether it is one number, not a list of them."""
+    return not hasattr(value, "__len__") or getattr(value, "ndim", 1) == 0
+
+
+def _placed(name: str, start: float | None, carrier: float | None) -> tuple[str, float | None, float | None]:
+    _need(name, str, "name")
+    return (name, None if start is None else _number("start", start, 0.0, 86400.0),
+            None if carrier is None else _number("carrier", carrier, 1.0, 384000.0))
+
+
+class Stroke(_Value):
     """A movement: where the target is at which time, and how strongly. Immutable.
 
     Made by `along`, `timed`, `preset` or `tactor.load`.

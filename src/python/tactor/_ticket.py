@@ -7,6 +7,8 @@ import threading
 import time
 import typing as _t
 
+from tactor._checks import _number, _Unique
+
 if _t.TYPE_CHECKING:
     import asyncio
     from types import TracebackType as _TracebackType
@@ -61,7 +63,7 @@ class Report(_t.NamedTuple):
     delay: Delay | None = None
 
 
-class Ticket:
+class Ticket(_Unique):
     """A stroke that a player was given. Can be awaited, which gives the report; who cancels the waiting cancels the stroke.
 
     Callbacks run in the player's own thread of Python.

@@ -15,6 +15,7 @@ import threading
 import time
 import typing as _t
 
+from tactor._checks import _Unique
 from tactor._errors import DeviceError, InputError
 from tactor._ticket import Report, Ticket
 
@@ -48,7 +49,7 @@ def _load(library: str | os.PathLike[str] | None) -> ctypes.CDLL:
                       "install it from the Lab Streaming Layer's releases, and name it in PYLSL_LIB where the system does not find it")
 
 
-class Markers:
+class Markers(_Unique):
     """A stream of markers: "start LABEL" and "end LABEL STATE" for each stroke that sounded.
 
     They are sent when the stroke has ended, for only then is known which frames were played; their times are those of the first sample at
