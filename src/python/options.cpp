@@ -21,20 +21,33 @@ namespace {
     throw error(error_kind::bad_input, name, why, hint).with_field(name);
 }
 
+// As Python writes it; the beginning, where that is long.
 std::string shown(py::handle v)
 {
-    return py::repr(v).cast<std::string>();
+    constexpr py::ssize_t longest = 80;
+    try {
+        const py::str whole = py::repr(v);
+        const py::str begin = whole[py::slice(0, longest, 1)];
+        return begin.cast<std::string>() + (py::len(whole) > std::size_t{longest} ? "..." : "");
+    } catch (py::error_already_set&) { // such as a number of more digits than Python writes
+        return "that";
+    }
 }
 
 double number(const std::string& name, py::handle v, double lo, double hi)
 {
     const std::string range = fmt::format("{} to {}", plain_number(lo), plain_number(hi));
-    if (py::isinstance<py::bool_>(v) || PyNumber_Check(v.ptr()) == 0)
+    double d = PyFloat_AsDouble(v.ptr());
+    bool is_one = !py::isinstance<py::bool_>(v);
+    if (PyErr_Occurred() != nullptr) {
+        is_one = PyErr_ExceptionMatches(PyExc_OverflowError) != 0; // a whole number that no double holds
+        PyErr_Clear();
+        d = HUGE_VAL;
+    }
+    if (!is_one)
         refuse(name, fmt::format("{} is not a number", shown(v)), range);
-    const double d = PyFloat_AsDouble(v.ptr());
-    if (PyErr_Occurred() != nullptr)
-        throw py::error_already_set();
-    if (!(d >= lo && d <= hi))
+    const bool is_rounded = PyLong_Check(v.ptr()) && !py::float_(d).equal(v);
+    if (!(d >= lo && d <= hi) || is_rounded)
         refuse(name, fmt::format("{} is out of range", shown(v)), range);
     return d;
 }
@@ -80,7 +93,10 @@ std::string text(const std::string& name, py::handle v)
 {
     if (!py::isinstance<py::str>(v))
         refuse(name, fmt::format("{} is no text", shown(v)), "");
-    return v.cast<std::string>();
+    auto said = v.cast<std::string>();
+    if (said.find('\0') != std::string::npos)
+        refuse(name, fmt::format("{} has a zero byte in it", shown(v)), "");
+    return said;
 }
 
 // Seed and texture are options of their own.

@@ -13,12 +13,13 @@ import typing as _t
 from tactor import _tactor
 from tactor._array import Array, Point, Tactor, array_presets
 from tactor._errors import DeviceError, Error, InputError, StreamError
+from tactor._fitting import Fitting, fit_as_asked, fit_strokes
 from tactor._parts import Burst, Conflict, Curve, Drive, Meeting, PerceptSample, PhantomModel
 from tactor._path import Path
 from tactor._plan import Plan
 from tactor._planning import burst_duration, plan
 from tactor._score import Score
-from tactor._stroke import Fitting, Stroke, fit_as_asked, fit_strokes, load, parse, stroke_presets
+from tactor._stroke import Stroke, load, parse, stroke_presets
 
 if _t.TYPE_CHECKING:
     from tactor import lsl as lsl

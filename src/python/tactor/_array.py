@@ -81,11 +81,8 @@ class Array(_Value):
         tactors = tuple(tactors)
         for t in tactors:
             _need(t, Tactor, "tactors")
-            if not 0 <= t.channel < 16384:
-                raise InputError("channel", f"{t.channel!r} is out of range", "0 to 16383")
-        rows = [(float(t.position[0]), float(t.position[1]), t.channel, t.gain_db, t.max_dbfs, t.threshold_dbfs, t.polarity, t.actuator,
-                 [(float(hz), float(dbfs)) for hz, dbfs in t.thresholds], t.rise_s) for t in tactors]
-        self._take(_tactor.Array(name, rows))
+        _need(name, str, "name")
+        self._take(_tactor.Array(name, [_row(t) for t in tactors]))
 
     def _take(self, core: _t.Any, file: str | None = None, setup: _t.Any = None) -> None:
         self._core = core
@@ -103,6 +100,7 @@ class Array(_Value):
     @classmethod
     def preset(cls, name: str) -> Array:
         """A built-in array: "palm-3x3" or "palm-2x4" (`array_presets`)."""
+        _need(name, str, "name")
         return cls._of(_tactor.Array.preset(name))
 
     @classmethod
@@ -134,19 +132,20 @@ class Array(_Value):
         pitch_mm : float or tuple of float
             Distance of neighbours, or that of columns (x) and that of rows (y).
         """
-        x, y = pitch_mm if isinstance(pitch_mm, (tuple, list)) else (pitch_mm, pitch_mm)
-        for what, n in (("rows", rows), ("columns", columns)):
-            if not 0 <= n < 1 << 32:
-                raise InputError(what, f"{n} is out of range", "1 to 16384 tactors")
-        return cls._of(_tactor.Array.grid(name, rows, columns, float(x), float(y)))
+        try:
+            x, y = pitch_mm  # type: ignore[misc]
+        except (TypeError, ValueError):
+            x = y = pitch_mm
+        _need(name, str, "name")
+        n, m = (_whole(what, count, 1, 16384, "1 to 16384 tactors") for what, count in (("rows", rows), ("columns", columns)))
+        return cls._of(_tactor.Array.grid(name, n, m, _number("pitch_mm", x), _number("pitch_mm", y)))
 
     @classmethod
     def from_points(cls, points: _ArrayLike, name: str = "points") -> Array:
         """An array of places [(x_mm, y_mm), ...]; channels are counted from 0 in this order."""
-        import numpy as np
-        places: _t.Any = np.asarray(points, dtype=np.float64)
+        places = _floats("points", points)
         if places.ndim != 2 or places.shape[1] != 2:
-            raise InputError("points", f"they have the shape {places.shape}", "give [(x_mm, y_mm), ...]")
+            raise InputError("points", f"they have the shape {places.shape}", "give [(x_mm, y_mm), ...]", field="points")
         return cls(name, [Tactor(Point(x, y), i) for i, (x, y) in enumerate(places.tolist())])
 
     @property
@@ -186,15 +185,16 @@ class Array(_Value):
 
     def contains(self, point: _t.Sequence[float]) -> bool:
         """Whether a place is in the hull of the tactors, its edge included."""
-        return self._core.contains(*point)  # type: ignore[no-any-return]
+        return self._core.contains(*_place("point", point))  # type: ignore[no-any-return]
 
     def nearest(self, point: _t.Sequence[float]) -> Point:
         """The place of the hull that is nearest to one."""
-        return Point(*self._core.nearest(*point))
+        return Point(*self._core.nearest(*_place("point", point)))
 
     def weights(self, point: _t.Sequence[float], phantom: str = "inverse-distance", intensity: float = 1.0) -> dict[int, float]:
         """Which tactors make a phantom at a place, and how strongly: amplitudes by number."""
-        return dict(_tactor.phantom_weights(phantom, self._core, point[0], point[1], intensity))
+        _need(phantom, str, "phantom")
+        return dict(_tactor.phantom_weights(phantom, self._core, *_place("point", point), _number("intensity", intensity)))
 
     def _settings(self) -> _t.Any:
         """What its file says beside the array; None without a file. A pickle knows the name only."""
@@ -229,6 +229,21 @@ class Array(_Value):
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
         return _array_again, (self.name, self._tactors, self._file)
+
+
+def _row(t: Tactor) -> tuple[_t.Any, ...]:
+    """A tactor as the extension takes it."""
+    def level(name: str) -> float | None:
+        value = getattr(t, name)
+        return None if value is None else _number(name, value)
+    try:
+        thresholds = [(_number("thresholds", hz), _number("thresholds", dbfs)) for hz, dbfs in t.thresholds]
+    except (TypeError, ValueError) as e:
+        if isinstance(e, InputError):
+            raise
+        raise InputError("thresholds", f"{_shown(t.thresholds)} are none", "give [(Hz, dBFS), ...]", field="thresholds") from None
+    return (*_place("position", t.position), _whole("channel", t.channel, 0, 16383), _number("gain_db", t.gain_db), _number("max_dbfs", t.max_dbfs),
+            level("threshold_dbfs"), _whole("polarity", t.polarity, -1, 1, "1 or -1"), t.actuator, thresholds, level("rise_s"))
 
 
 def _array_again(name: str, tactors: tuple[Tactor, ...], file: str | None) -> Array:

@@ -7,9 +7,11 @@ import typing as _t
 # The library speaks of its fields; here options have the names of the tool's.
 _NAMES = {
     "soa_s": "soa", "burst_s": "burst", "carrier_hz": "carrier", "ramp_s": "ramp", "sl_db": "sl", "margin_mm": "fit_margin",
-    "pitch_x_mm": "pitch_mm", "pitch_y_mm": "pitch_mm",
+    "pitch_x_mm": "pitch_mm", "pitch_y_mm": "pitch_mm", "window_s": "drive_window_s", "rests": "pauses", "start_s": "start",
+    "duration_s": "duration", "speed_mm_s": "speed", "timeout_s": "timeout", "longest_s": "longest", "smooth_s": "smooth", "at_ns": "at_s",
     "duration of a burst": "burst", "fit_strokes()": "fit=True", "snap = true": "snap=True", "drop_points = true": "drop_points=True",
 }
+_FIELDS = {"wave": "waveform"}  # words that stand elsewhere, too
 _CHOICE = r"(?<![\w.-])(timing|outside|algorithm) = ([\w-]+)"
 
 
@@ -99,4 +101,4 @@ def made(kind: str, what: str, why: str, hint: str, field: str = "", file: str =
     """Makes the exception of a library's error; called by the extension."""
     placed = bool(file or line)
     return _KINDS[kind](what if placed else _in_python(what), why, _in_python(hint), file=file or None, line=line or None,
-                        column=column or None, field=(field if placed else _in_python(field)) or None, errno=errno)
+                        column=column or None, field=(field if placed else _FIELDS.get(field, _in_python(field))) or None, errno=errno)

@@ -40,6 +40,7 @@ class Path(_Value):
     @classmethod
     def svg(cls, data: str) -> Path:
         """SVG path data in millimetres: "M 0 10 C 20 -5 20 45 40 30"."""
+        _need(data, str, "data")
         return cls._of(_tactor.Path.svg(data))
 
     @classmethod
@@ -50,7 +51,8 @@ class Path(_Value):
     @classmethod
     def arc(cls, centre: _t.Sequence[float], radius_mm: float, from_deg: float, sweep_deg: float) -> Path:
         """A circular arc; angles from the x axis towards the y axis (clockwise on a screen), a sweep of at most 360 degrees."""
-        return cls._of(_tactor.Path.arc(float(centre[0]), float(centre[1]), radius_mm, from_deg, sweep_deg))
+        angles = _number("from_deg", from_deg), _number("sweep_deg", sweep_deg)
+        return cls._of(_tactor.Path.arc(*_place("centre", centre), _number("radius_mm", radius_mm), *angles))
 
     @property
     def length_mm(self) -> float:
@@ -68,7 +70,7 @@ class Path(_Value):
     def at(self, s_mm: _t.Sequence[float] | _NDArray[_np.float64]) -> _NDArray[_np.float64]: ...
     def at(self, s_mm: _t.Any) -> _t.Any:
         """The point at an arc length, clamped to 0 ... length; of an array of lengths the points, shape (n, 2)."""
-        if isinstance(s_mm, (int, float)):
+        if isinstance(s_mm, (int, float)) and -1e300 < s_mm < 1e300:
             return Point(*self._core.at(s_mm))
         lengths = _floats("s_mm", s_mm)
         if lengths.ndim == 0:
@@ -77,11 +79,11 @@ class Path(_Value):
 
     def meets_x(self, x_mm: float) -> list[float]:
         """Arc lengths, ascending, at which the path meets the line x = x_mm, touching included."""
-        return self._core.meets_x(x_mm)  # type: ignore[no-any-return]
+        return self._core.meets_x(_number("x_mm", x_mm))  # type: ignore[no-any-return]
 
     def meets_y(self, y_mm: float) -> list[float]:
         """The same for the line y = y_mm."""
-        return self._core.meets_y(y_mm)  # type: ignore[no-any-return]
+        return self._core.meets_y(_number("y_mm", y_mm))  # type: ignore[no-any-return]
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Path):

@@ -2,6 +2,7 @@
 """Plans: who plays, when, and how strongly."""
 from __future__ import annotations
 
+import collections.abc as _abc
 import typing as _t
 
 from tactor import _tactor
@@ -54,8 +55,8 @@ class Plan(_Value):
         """
         import json
         try:
-            text = json.dumps(d, allow_nan=False)
-        except (TypeError, ValueError) as e:
+            text = json.dumps(d, allow_nan=False, default=_plain)
+        except (TypeError, ValueError, RecursionError) as e:
             raise InputError("plan", f"it is no JSON: {e}", "see tactor-json(5)") from None
         return cls._of(_tactor.Plan.from_json(text), recorded=True)
 
@@ -238,6 +239,15 @@ class Plan(_Value):
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
         return _plan_again, (self._core.json(), self._core.stroke.state(), self._array, self._recorded)
+
+
+def _plain(value: _t.Any) -> _t.Any:
+    """What JSON does not know: other mappings, and numbers and arrays of NumPy."""
+    if isinstance(value, _abc.Mapping):
+        return dict(value)
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"there is a {type(value).__name__} in it")
 
 
 def _plan_again(text: str, stroke: bytes, array: Array, recorded: bool = False) -> Plan:

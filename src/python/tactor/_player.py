@@ -14,6 +14,7 @@ from tactor import _tactor
 from tactor._array import Array
 from tactor._checks import _need, _number, _Unique, _whole
 from tactor._errors import InputError
+from tactor._files import encoded
 from tactor._options import _LIVE, settled
 from tactor._parts import PhantomModel
 from tactor._score import Score
@@ -85,24 +86,21 @@ class Player(_Unique):
         self._array = array
         _need(array, Array, "array")
         _need(device, str, "device")
-        for what, seconds in (("latency", latency), ("sync_delay", sync_delay)):
-            if seconds is not None and not 0.0 <= float(seconds) <= 10.0:
-                raise InputError(what, f"{seconds!r} is out of range", "0 to 10 s")
-        if latency is not None and latency < 0.0001:
-            raise InputError("latency", f"{latency!r} s is too short", "0.0001 s or more")
-        for what, number, least in (("rate", rate, 8000), ("period_frames", period_frames, 1), ("periods", periods, 2), ("channels", channels, 1)):
-            if number is not None and (not least <= number < 1 << 31 or number != int(number)):
-                raise InputError(what, f"{number!r} is out of range", f"a whole number from {least} on")
-        def whole(number: int | None) -> int | None:
-            return None if number is None else int(number)  # 48000.0 is one, too
-
-        given = {
-            "config": None if config is None else os.fsencode(config), "array_file": None if array._file is None else os.fsencode(array._file),
-            "rate": whole(rate), "channels": whole(channels), "sample_format": sample_format, "period_frames": whole(period_frames),
-            "periods": whole(periods),
-            "power_dbfs": power_dbfs, "max_drive_s": max_drive_s, "drive_window_s": drive_window_s, "latency": None if latency is None else float(latency),
-            "require_realtime": bool(require_realtime), "no_gpio": bool(no_gpio), "sync_delay": float(sync_delay), "log": log is not None,
+        encoded(device, "device")
+        if sample_format is not None:
+            _need(sample_format, str, "sample_format")
+        if after is not None:
+            _need(after, Player, "after")
+        given: dict[str, _t.Any] = {
+            "config": None if config is None else encoded(config, "config"), "array_file": None if array._file is None else encoded(array._file),
+            "sample_format": sample_format, "sync_delay": _number("sync_delay", sync_delay, 0.0, 10.0, "0 to 10 s"),
+            "require_realtime": bool(require_realtime), "no_gpio": bool(no_gpio), "log": log is not None,
         }
+        for what, number, least in (("rate", rate, 8000), ("period_frames", period_frames, 1), ("periods", periods, 2), ("channels", channels, 1)):
+            given[what] = None if number is None else _whole(what, number, least, (1 << 31) - 1, f"a whole number from {least} on")
+        for what, limit in (("power_dbfs", power_dbfs), ("max_drive_s", max_drive_s), ("drive_window_s", drive_window_s)):
+            given[what] = None if limit is None else _number(what, limit, finite=False)
+        given["latency"] = None if latency is None else _number("latency", latency, 0.0001, 10.0, "0.0001 to 10 s")
         driven = _tactor.DriveHistory() if after is None else after._history()
         core = _tactor.Player(array._core, device, given, driven)
         self._setup: dict[str, _t.Any] = core.setup()
@@ -170,19 +168,19 @@ class Player(_Unique):
         shared = self._get()
         if not isinstance(score, Score):
             raise TypeError(f"a Score is wanted, not {type(score).__name__}")
-        if at not in ("now", "armed"):
+        if not isinstance(at, str) or at not in ("now", "armed"):
             raise InputError("at", f"{at!r} is not known", 'one of "now", "armed", or at_s=, delay= or frame=')
-        if frame is not None and not 0 <= frame < 1 << 63:
-            raise InputError("frame", f"{frame!r} is out of range", "frames of the stream count from 0")
+        if frame is not None:
+            frame = _whole("frame", frame, 0, (1 << 63) - 1, "frames of the stream count from 0")
         times = [t for t in (at_s, delay, frame) if t is not None]
         if len(times) > 1 or (times and at != "now"):
             raise InputError("at", "there are several starts", "give one of at, at_s, delay and frame")
         what = at if not times else "frame" if frame is not None else "time"
         when = 0.0
         if at_s is not None:
-            when = float(at_s)
+            when = _number("at_s", at_s, -_LATEST_S, _LATEST_S, _CLOCK)
         elif delay is not None:
-            when = time.monotonic() + float(delay)
+            when = time.monotonic() + _number("delay", delay, -_LATEST_S, _LATEST_S, "seconds")
         core = self._fitting(score)
         with shared.lock:
             number = shared.core.submit(core, what, when, 0 if frame is None else frame)
@@ -231,19 +229,21 @@ class Player(_Unique):
             When the stream has ended.
         """
         shared = self._get()
+        times = (_number("timeout", timeout, 0.001, 86400.0), None if longest is None else _number("longest", longest, 0.001, 86400.0),
+                 _number("smooth", smooth, 0.0, 1.0))
         options = settled(self._array, dict(
             algorithm=algorithm, phantom=phantom, soa=soa, slope=slope, intercept=intercept, outside=outside, carrier=carrier,
             waveform=waveform, am=am, noise_seed=noise_seed, phase=phase, ramp=ramp, envelope=envelope, attack=attack, release=release,
             level_dbfs=level_dbfs, sl=sl), _LIVE)
         with shared.lock:
-            core = shared.core.live(self._array._core, options, float(timeout), None if longest is None else float(longest), float(smooth))
+            core = shared.core.live(self._array._core, options, *times)
             stroke = LiveStroke(shared, core)
             shared.tickets[stroke.id] = stroke
         return stroke
 
     def fire(self, at_s: float | None = None) -> int:
         """Starts all armed strokes, now or at a time of CLOCK_MONOTONIC; how many there were."""
-        return self._get().core.fire(time.monotonic() if at_s is None else float(at_s))  # type: ignore[no-any-return]
+        return self._get().core.fire(time.monotonic() if at_s is None else _number("at_s", at_s, -_LATEST_S, _LATEST_S, _CLOCK))  # type: ignore[no-any-return]
 
     def stop(self) -> None:
         """Fades everything out and stops the stream. What that ends counts as cancelled."""

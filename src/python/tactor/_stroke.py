@@ -34,8 +34,8 @@ def _pauses(pauses: _t.Any) -> _t.Any:
     """(part, seconds) or (part, seconds, intensity) as a table of three columns."""
     rows = []
     for row in pauses:
-        if len(row) not in (2, 3):
-            raise InputError("pauses", f"one has {len(row)} values", "(part, seconds) or (part, seconds, intensity)")
+        if not hasattr(row, "__len__") or len(row) not in (2, 3):
+            raise InputError("pauses", f"one is {row!r}", "(part, seconds) or (part, seconds, intensity)", field="pauses")
         rows.append((*row, 1.0)[:3])
     return _floats("pauses", rows).reshape(-1, 3)
 
@@ -47,7 +47,7 @@ def _is_one(value: _t.Any) -> bool:
 
 def _placed(name: str, start: float | None, carrier: float | None) -> tuple[str, float | None, float | None]:
     _need(name, str, "name")
-    return (name, None if start is None else _number("start", start, 0.0, 86400.0),
+    return (name, None if start is None else _number("start", start, 0.0, 1e6),
             None if carrier is None else _number("carrier", carrier, 1.0, 384000.0))
 
 
@@ -97,18 +97,24 @@ class Stroke(_Value):
         carrier : float, optional
             Hz, instead of the plan's.
         """
-        one_speed = not hasattr(speed, "__len__")
-        one_intensity = not hasattr(intensity, "__len__")
+        one_speed, one_intensity = _is_one(speed), _is_one(intensity)
         if duration is not None and speed is not None and one_speed:
             raise InputError("duration", "there is also speed", "give one of them")
         _need(path, Path, "path")
+        _need(easing, str, "easing")
+        placing = _placed(name, start, carrier)
+        duration = None if duration is None else _number("duration", duration)
+        if one_speed and speed is not None:
+            speed = _number("speed", speed)
+        if one_intensity:
+            intensity = _number("intensity", intensity)
         if one_speed and one_intensity and easing == "linear" and len(pauses) == 0:
             core = _tactor.Stroke.along(name, path._core, duration, speed, intensity)
         else:
             core = _tactor.Stroke.moving(
                 name, path._core, duration, speed if one_speed else None, intensity if one_intensity else 1.0, easing,
                 _profile("speed", () if one_speed else speed), _profile("intensity", () if one_intensity else intensity), _pauses(pauses))
-        return cls._of(core.same_as(name, start, carrier))
+        return cls._of(core.same_as(*placing))
 
     @classmethod
     def timed(cls, t: _ArrayLike, x: _ArrayLike, y: _ArrayLike, intensity: _ArrayLike | None = None, *, name: str = "timed",
@@ -127,6 +133,7 @@ class Stroke(_Value):
             See `along`.
         """
         import numpy as np
+        placing = _placed(name, start, carrier)
         columns = [np.atleast_1d(_floats(n, v)) for n, v in (("t", t), ("x", x), ("y", y), ("intensity", 1.0 if intensity is None else intensity))]
         count = columns[0].size
         for what, column in zip(("t", "x", "y"), columns):
@@ -135,11 +142,12 @@ class Stroke(_Value):
         if columns[3].size not in (1, count) or columns[3].ndim != 1:
             raise InputError("intensity", f"it has the shape {columns[3].shape}, not ({count},)", "one for each point, or one for all")
         columns[3] = np.broadcast_to(columns[3], (count,))
-        return cls._of(_tactor.Stroke.timed(name, np.column_stack(columns)).same_as(name, start, carrier))
+        return cls._of(_tactor.Stroke.timed(name, np.column_stack(columns)).same_as(*placing))
 
     @classmethod
     def preset(cls, name: str) -> Stroke:
         """A built-in stroke: "park2016-1" ... "park2016-4", "wave-2x4", "round-2x4" (`stroke_presets`)."""
+        _need(name, str, "name")
         return cls._of(_tactor.Stroke.preset(name))
 
     @property
@@ -199,27 +207,27 @@ class Stroke(_Value):
 
     def position(self, t: float) -> Point:
         """Where the target is at a time in seconds, clamped to 0 ... duration."""
-        return Point(*self._core.position(t))
+        return Point(*self._core.position(_number("t", t, finite=False)))
 
     def intensity(self, t: float) -> float:
         """How strong the target is at a time in seconds, clamped to 0 ... duration."""
-        return self._core.intensity(t)  # type: ignore[no-any-return]
+        return self._core.intensity(_number("t", t, finite=False))  # type: ignore[no-any-return]
 
     def meets_x(self, x_mm: float) -> list[float]:
         """Times, ascending, at which the target meets the line x = x_mm."""
-        return self._core.meets_x(x_mm)  # type: ignore[no-any-return]
+        return self._core.meets_x(_number("x_mm", x_mm))  # type: ignore[no-any-return]
 
     def meets_y(self, y_mm: float) -> list[float]:
         """The same for the line y = y_mm."""
-        return self._core.meets_y(y_mm)  # type: ignore[no-any-return]
+        return self._core.meets_y(_number("y_mm", y_mm))  # type: ignore[no-any-return]
 
     def with_duration(self, duration: float) -> Stroke:
         """The same movement in another time, s, pauses included."""
-        return self._of(self._core.with_duration(duration))
+        return self._of(self._core.with_duration(_number("duration", duration)))
 
     def with_speed(self, speed: float) -> Stroke:
         """The same movement at another mean speed, mm/s; pauses along a path stay as long as they are."""
-        return self._of(self._core.with_speed(speed))
+        return self._of(self._core.with_speed(_number("speed", speed)))
 
     def reversed(self) -> Stroke:
         """The same movement played backwards."""
@@ -227,10 +235,11 @@ class Stroke(_Value):
 
     def with_intensity(self, factor: float) -> Stroke:
         """The same movement with every intensity times a factor."""
-        return self._of(self._core.with_intensity(factor))
+        return self._of(self._core.with_intensity(_number("factor", factor)))
 
     def fitted(self, array: Array, margin_mm: float = 0.0) -> Stroke:
         """The same shape, as large as the array has space for and in its middle; see `fit_strokes`."""
+        from tactor._fitting import fit_strokes
         return fit_strokes([self], array, margin_mm)[0][0]
 
     def __eq__(self, other: object) -> bool:
@@ -256,62 +265,6 @@ def _stroke_again(state: bytes) -> Stroke:
     return Stroke._of(_tactor.Stroke.from_state(state))
 
 
-class Fitting(_t.NamedTuple):
-    """Where a picture was put: `origin` became `to`, and all distances are `scale` times what they were."""
-
-    origin: Point
-    to: Point
-    scale: float
-
-
-def fit_strokes(strokes: _t.Sequence[Stroke], array: Array, margin_mm: float = 0.0) -> tuple[list[Stroke], Fitting]:
-    """Moves and scales strokes, all alike as one picture, so that it is as large as the array has space for.
-
-    Parameters
-    ----------
-    strokes : sequence of Stroke
-    array : Array
-    margin_mm : float
-        Distance kept from the array's edge.
-
-    Returns
-    -------
-    tuple
-        The strokes, and where the picture was put.
-
-    Raises
-    ------
-    InputError
-        For a margin that leaves no space.
-    """
-    _need(array, Array, "array")
-    fitted, origin, to, scale = _tactor.fit_strokes([s._core for s in strokes], array._core, margin_mm)
-    return [Stroke._of(s) for s in fitted], Fitting(Point(*origin), Point(*to), scale)
-
-
-def fit_as_asked(strokes: _t.Sequence[Stroke], array: Array) -> list[Stroke]:
-    """Strokes as their file asks for them to be fitted (`fit`), those of a group as one picture. `plan` does it for a stroke alone.
-
-    Parameters
-    ----------
-    strokes : sequence of Stroke
-        As `load` gives them; what asks for nothing stays.
-    array : Array
-
-    Returns
-    -------
-    list of Stroke
-        In the same order; they ask for nothing more.
-
-    Raises
-    ------
-    InputError
-        For a margin that leaves no space.
-    """
-    _need(array, Array, "array")
-    return [Stroke._of(s) for s in _tactor.fit_as_asked([s._core for s in strokes], array._core)]
-
-
 def load(file: str | os.PathLike[str]) -> list[Stroke]:
     """Reads a stroke file by its extension: .toml, .csv or .svg, see tactor.toml(5).
 
@@ -331,6 +284,8 @@ def load(file: str | os.PathLike[str]) -> list[Stroke]:
 
 def parse(text: str, name: str = "text") -> list[Stroke]:
     """Strokes of what a stroke file would say: SVG, CSV or TOML, told apart by how it begins."""
+    _need(text, str, "text")
+    _need(name, str, "name")
     return [Stroke._of(s) for s in _tactor.Stroke.parse(text, name)]
 
 

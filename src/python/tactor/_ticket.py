@@ -112,11 +112,15 @@ class Ticket(_Unique):
         ------
         TimeoutError
             When it goes on after that.
+        InputError
+            For a timeout that is no number.
         StreamError
             In a process that was forked.
         RuntimeError
             In a callback, for a stroke that has not ended: its thread would have to bring the report.
         """
+        if timeout is not None:
+            timeout = _number("timeout", timeout, finite=False)
         if self._report is None:
             self._player.core.refuse_child()
             if threading.current_thread() is self._player.thread:
@@ -221,6 +225,10 @@ class LiveStroke(Ticket):
             What a phantom model of your own raises, InputError where it returns rubbish, and StreamError where it calls this for the
             stroke that asks it; then the stroke ends with that as its reason.
         """
+        if not (type(x_mm) is type(y_mm) is type(intensity) is float):
+            x_mm, y_mm, intensity = _number("x_mm", x_mm), _number("y_mm", y_mm), _number("intensity", intensity, 0.0)
+        if at_s is not None:
+            at_s = _number("at_s", at_s, 0.0, 8e9, "seconds as time.monotonic() gives them, or none for now")
         return self._core.to(x_mm, y_mm, intensity, at_s)  # type: ignore[no-any-return]
 
     def end(self) -> None:

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: MIT
+"""What cannot be is refused under the name that the caller gave it."""
+import json
+import os
+import types
+
+import numpy as np
+import pytest
+
+import tactor
+
+HUGE = 10**400  # no double holds it
+LINE = tactor.Path.svg("M 0 10 L 40 30")
+
+
+@pytest.mark.parametrize("call", [
+    lambda a, p: tactor.load("x\0.toml"), lambda a, p: tactor.Array.from_file("x\0.toml"), lambda a, p: tactor.Score(a, p).write("x\0.wav"),
+    lambda a, p: tactor.plot(p, "x\0.svg"), lambda a, p: tactor.compare(a, p.stroke).plot("x\0.svg"), lambda a, p: tactor.Player("null\0", a),
+    lambda a, p: tactor.Player("null", a, config="x\0.toml"), lambda a, p: tactor.devices(device="null\0"), lambda a, p: tactor.devices(config="x\0"),
+    lambda a, p: tactor.plan(a, p.stroke, waveform="x\0.wav"),
+])
+def test_names_end_at_no_zero_byte(tmp_path, monkeypatch, palm, stroke, call):
+    monkeypatch.chdir(tmp_path)
+    plan = tactor.plan(palm, stroke)
+    with pytest.raises(tactor.InputError, match="zero byte"):
+        call(palm, plan)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_noise_seeds_go_as_far_as_the_tools(tmp_path, tool, palm):
+    stroke = tactor.Stroke.preset("park2016-1")
+    for seed in (0, 2**32, 2**53):
+        printed = json.loads(tool("plan", "park2016-1", "--waveform", "noise:50-300", "--noise-seed", seed, "--format", "json"))
+        assert tactor.plan(palm, stroke, waveform="noise:50-300", noise_seed=seed).to_dict() == printed
+        (tmp_path / "a.toml").write_text(f'[array]\npreset = "palm-3x3"\n[defaults]\nwaveform = "noise:50-300"\nnoise-seed = {seed}\n')
+        assert tactor.plan(tactor.Array.from_file(tmp_path / "a.toml"), stroke).to_dict()["stroke"] == printed["stroke"]
+    for seed in (-1, 2**53 + 1, 2**64, HUGE):
+        with pytest.raises(tactor.InputError) as e:
+            tactor.plan(palm, stroke, waveform="noise:50-300", noise_seed=seed)
+        assert e.value.field == "noise_seed"
+
+
+def refusals(player, finger, ticket):
+    """What is called, and the name under which it is refused."""
+    palm, stroke = player.array, tactor.Stroke.along(LINE, duration=1.0)
+    plan = tactor.plan(palm, stroke)
+    score = tactor.Score(palm, plan)
+    nan = float("nan")
+    return [
+        (lambda: finger.to(1, 1, at_s=-1), "at_s"), (lambda: finger.to("1", 1), "x_mm"), (lambda: finger.to(HUGE, 1), "x_mm"), (lambda: finger.to(1, None), "y_mm"),
+        (lambda: finger.to(1, 1, "loud"), "intensity"),
+        (lambda: player.submit(score, delay=nan), "delay"), (lambda: player.submit(score, delay="soon"), "delay"), (lambda: player.submit(score, at_s=HUGE), "at_s"),
+        (lambda: player.submit(score, at_s=nan), "at_s"), (lambda: player.submit(score, frame=1.5), "frame"), (lambda: player.fire(nan), "at_s"),
+        (lambda: player.live(timeout=0), "timeout"), (lambda: player.live(timeout=None), "timeout"), (lambda: player.live(longest=nan), "longest"),
+        (lambda: player.live(smooth=2), "smooth"), (lambda: player.live(soa=0.001, algorithm="park2016"), "soa"), (lambda: ticket.wait(nan), "timeout"),
+        (lambda: finger.wait("long"), "timeout"),
+        (lambda: tactor.Player("null", palm, config=os.devnull, drive_window_s=nan), "drive_window_s"),
+        (lambda: tactor.Player("null", palm, config=os.devnull, drive_window_s=-1), "drive_window_s"),
+        (lambda: tactor.Player("null", palm, config=os.devnull, rate=HUGE), "rate"), (lambda: tactor.Player("null", palm, config=os.devnull, periods="3"), "periods"),
+        (lambda: tactor.Player("null", palm, config=os.devnull, max_drive_s="5"), "max_drive_s"),
+        (lambda: tactor.Stroke.along(LINE, duration=1.0, pauses=[(0.5, 2.0)]), "pauses"), (lambda: tactor.Stroke.along(LINE, pauses=[(0.5, 1.0, 3.0)]), "pauses"),
+        (lambda: tactor.Stroke.along(LINE, pauses=[3]), "pauses"), (lambda: tactor.Stroke.along(LINE, duration=0), "duration"),
+        (lambda: tactor.Stroke.along(LINE, duration="long"), "duration"), (lambda: tactor.Stroke.along(LINE, speed=HUGE), "speed"),
+        (lambda: tactor.Stroke.along(LINE, intensity=None), "intensity"), (lambda: tactor.Stroke.along(LINE, start=nan), "start"),
+        (lambda: tactor.Stroke.along(LINE, start=-1), "start"), (lambda: tactor.Stroke.along(LINE, carrier=-250), "carrier"),
+        (lambda: tactor.Stroke.timed([0, 1], [0, 1], [0, 1], carrier=HUGE), "carrier"), (lambda: tactor.Stroke.timed([0, 1], [0, None], [0, 1]), "x"),
+        (lambda: stroke.with_duration(None), "duration"), (lambda: stroke.with_speed("x"), "speed"), (lambda: stroke.position(nan), "t"),
+        (lambda: LINE.at(None), "s_mm"), (lambda: LINE.at([1, None]), "s_mm"), (lambda: LINE.at(nan), "s_mm"), (lambda: LINE.meets_x("3"), "x_mm"),
+        (lambda: tactor.Path.arc(3, 1, 0, 90), "centre"), (lambda: tactor.Path.arc((0, 0), "1", 0, 90), "radius_mm"),
+        (lambda: tactor.Path.polyline([(0, 0), (HUGE, 1)]), "points"),
+        (lambda: tactor.Array.from_points([(0, 0), (1,)]), "points"), (lambda: tactor.Array.from_points([("a", "b")]), "points"),
+        (lambda: tactor.Array.from_points(np.array(3.0)), "points"), (lambda: tactor.Array.grid("g", 2, 2, "10"), "pitch_mm"),
+        (lambda: tactor.Array.grid("g", 2.5, 2, 10), "rows"), (lambda: tactor.Array.grid("g", 2, None, 10), "columns"),
+        (lambda: tactor.Array("a", [tactor.Tactor(tactor.Point(0, 0), "3")]), "channel"), (lambda: tactor.Array("a", [tactor.Tactor(None, 3)]), "position"),
+        (lambda: tactor.Array("a", [tactor.Tactor(tactor.Point(0, 0), 0, thresholds=3)]), "thresholds"),
+        (lambda: tactor.Array("a", [tactor.Tactor(tactor.Point(0, 0), 0, gain_db=HUGE)]), "gain_db"),
+        (lambda: palm.contains(3), "point"), (lambda: palm.nearest((1, "2")), "point"), (lambda: palm.weights((1, 2), intensity="1"), "intensity"),
+        (lambda: tactor.plan(palm, stroke, soa=HUGE), "soa"), (lambda: tactor.plan(palm, stroke, soa=1j), "soa"),
+        (lambda: tactor.plan(palm, stroke, soa=np.zeros(2)), "soa"), (lambda: tactor.Score(palm, [(HUGE, plan)]), "start"),
+        (lambda: tactor.Score(palm, plan, level_dbfs=HUGE), "level_dbfs"), (lambda: tactor.plot(plan, "x.svg", dpi="300"), "dpi"),
+        (lambda: tactor.plot(plan, "x.svg", width=None), "width"), (lambda: stroke.fitted(palm, "1"), "margin_mm"),
+        (lambda: tactor.devices(rate=3), "rate"), (lambda: tactor.devices(rate=48000.5), "rate"), (lambda: tactor.devices(rate="48000"), "rate"),
+    ]
+
+
+WORDS = ("at_ns", "window_s (", "window_s:", "rests", "_kind", "::", "timeout_s", "longest_s", "smooth_s", "duration_s", "speed_mm_s")
+
+
+def test_what_cannot_be_is_refused_by_the_name_it_was_given(palm):
+    with tactor.Player("null", palm, config=os.devnull) as player:
+        score = tactor.Score(palm, tactor.plan(palm, tactor.Stroke.along(LINE, duration=0.05)))
+        ticket = player.submit(score, at="armed")
+        with player.live(timeout=3600.0, outside="error") as finger:
+            finger.to(20, 20)
+            for i, (call, field) in enumerate(refusals(player, finger, ticket)):
+                with pytest.raises(tactor.InputError) as e:
+                    call()
+                assert e.value.field == field, (i, str(e.value))
+                assert not any(word in str(e.value).replace("drive_window_s", "") for word in WORDS), str(e.value)
+            with pytest.raises(tactor.InputError, match='outside="clamp"'):
+                finger.to(1000, 20)
+        assert finger.report.state == "finished"
+        ticket.cancel()
+
+
+@pytest.mark.parametrize("call,what", [
+    (lambda: tactor.Path.svg(3), "data"), (lambda: tactor.Array.preset(3), "name"), (lambda: tactor.Stroke.preset(None), "name"), (lambda: tactor.parse(b""), "text"),
+    (lambda: tactor.Stroke.along(LINE, name=3), "name"), (lambda: tactor.Stroke.along(LINE, easing=3), "easing"), (lambda: tactor.Array(3, []), "name"),
+    (lambda: tactor.fit_strokes([3], tactor.Array.preset("palm-3x3")), "strokes"), (lambda: tactor.devices(3), "array"),
+    (lambda: tactor.devices(device=3), "device"), (lambda: tactor.Player("null", tactor.Array.preset("palm-3x3"), after=3), "after"),
+    (lambda: tactor.Player("null", tactor.Array.preset("palm-3x3"), sample_format=3), "sample_format"),
+])
+def test_another_type_is_said_with_the_arguments_name(call, what):
+    with pytest.raises(TypeError, match=f"^{what}: "):
+        call()
+
+
+def test_arrays_of_no_dimension_are_numbers(palm, stroke):
+    n = np.array
+    assert tactor.Stroke.along(LINE, speed=n(40.0), intensity=n(0.5)) == tactor.Stroke.along(LINE, speed=40.0, intensity=0.5)
+    assert LINE.at(n(3.0)) == LINE.at(3.0) and tactor.Array.grid("g", n(2), 2, n(10.0)) == tactor.Array.grid("g", 2, 2, 10.0)
+    assert tactor.plan(palm, stroke, soa=n(0.06)) == tactor.plan(palm, stroke, soa=0.06)
+    assert tactor.Array.grid("g", 2, 2, n([10.0, 20.0])) == tactor.Array.grid("g", 2, 2, (10.0, 20.0))
+
+
+def test_a_plan_is_read_of_any_mapping(palm, stroke):
+    plan = tactor.plan(palm, stroke)
+    record = {**plan.to_dict(), "bursts": [types.MappingProxyType(b) for b in plan.to_dict()["bursts"]]}
+    assert tactor.Plan.from_dict(types.MappingProxyType(record)) == plan
+    assert tactor.Plan.from_dict({**record, "total_s": np.float32(record["total_s"]).astype(np.float64)}).total == pytest.approx(plan.total)
