@@ -11,10 +11,13 @@
 #include <fmt/ranges.h>
 
 #include "core/kind_names.hpp"
+#include "core/option_bounds.hpp"
 #include "core/words.hpp"
 
 namespace tactor::python {
 namespace {
+
+namespace of = detail::option_bounds;
 
 [[noreturn]] void refuse(const std::string& name, const std::string& why, const std::string& hint = {})
 {
@@ -116,14 +119,16 @@ modulation modulation_of(const std::string& name, py::handle v)
                                                        : fmt::format("{}", number(name, v, 0, 20000)));
 }
 
-// Plans keep it as JSON's numbers.
-constexpr double most_seed = 0x1p53;
-
 using setter = std::function<void(wishes&, const std::string&, py::handle)>;
 
 setter numbers(double lo, double hi, void (*set)(wishes&, double))
 {
     return [=](wishes& w, const std::string& name, py::handle v) { set(w, number(name, v, lo, hi)); };
+}
+
+setter numbers(detail::bounds b, void (*set)(wishes&, double))
+{
+    return numbers(b.low, b.high, set);
 }
 
 setter counts(double lo, double hi, void (*set)(wishes&, double))
@@ -144,11 +149,11 @@ std::map<std::string, setter> planning()
     return {
         {"algorithm", [](W w, auto& n, py::handle v) { w.plan.algorithm = one_of<algorithm_kind>(n, v); }},
         {"soa", numbers(-1e9, 1e9, [](W w, double d) { w.plan.soa_s = d; })},
-        {"burst", numbers(0.0001, 10, [](W w, double d) { w.plan.burst_s = d; })},
-        {"slope", numbers(0.01, 0.99, [](W w, double d) { w.slope = d; })},
-        {"intercept", numbers(0.001, 10, [](W w, double d) { w.intercept_s = d; })},
+        {"burst", numbers(of::burst, [](W w, double d) { w.plan.burst_s = d; })},
+        {"slope", numbers(of::slope, [](W w, double d) { w.slope = d; })},
+        {"intercept", numbers(of::intercept, [](W w, double d) { w.intercept_s = d; })},
         {"duration", numbers(0.001, 86400, [](W w, double d) { w.duration_s = d; })},
-        {"speed", numbers(0.001, 100000, [](W w, double d) { w.speed_mm_s = d; })},
+        {"speed", numbers(of::speed, [](W w, double d) { w.speed_mm_s = d; })},
         {"timing", [](W w, auto& n, py::handle v) { w.plan.timing = one_of<timing_kind>(n, v); }},
         {"outside", [](W w, auto& n, py::handle v) { w.plan.outside = one_of<outside_kind>(n, v); }},
         {"fit", [](W w, auto& n, py::handle v) { w.fit = truth(n, v); }},
@@ -161,17 +166,18 @@ std::map<std::string, setter> planning()
         {"sigma_mm", numbers(least_sigma_mm, most_sigma_mm, [](W w, double d) { w.low_speed.sigma_mm = d; })},
         {"sigma_v_mm_s",
          numbers(least_sigma_v_mm_s, most_sigma_v_mm_s, [](W w, double d) { w.low_speed.sigma_v_mm_s = d; })},
-        {"carrier", numbers(1, 384000, [](W w, double d) { w.plan.carrier_hz = d; })},
+        {"carrier", numbers(of::carrier, [](W w, double d) { w.plan.carrier_hz = d; })},
         {"waveform", [](W w, auto& n, py::handle v) { take_waveform(w.plan.wave, text(n, v)); }},
         {"am", [](W w, auto& n, py::handle v) { w.plan.am = modulation_of(n, v); }},
         {"noise_seed",
          [](W w, auto& n, py::handle v) {
-             w.plan.wave.seed = static_cast<std::uint64_t>(whole(n, v, 0, most_seed));
+             w.plan.wave.seed =
+                 static_cast<std::uint64_t>(whole(n, v, of::noise_seed.low, of::noise_seed.high));
          }},
         {"texture", [](W w, auto& n, py::handle v) { w.plan.wave.texture = one_of<texture_kind>(n, v); }},
         {"intensity_scale", [](W w, auto& n, py::handle v) { w.plan.scale.kind = one_of<scale_kind>(n, v); }},
-        {"stevens_exponent", numbers(0.1, 3, [](W w, double d) { w.plan.scale.exponent = d; })},
-        {"texture_mm", numbers(0, 1e6, [](W w, double d) { w.plan.wave.texture_mm = d; })},
+        {"stevens_exponent", numbers(of::stevens_exponent, [](W w, double d) { w.plan.scale.exponent = d; })},
+        {"texture_mm", numbers(of::texture_mm, [](W w, double d) { w.plan.wave.texture_mm = d; })},
     };
 }
 
@@ -180,18 +186,19 @@ std::map<std::string, setter> sounding()
     using W = wishes&;
     return {
         {"phase", [](W w, auto& n, py::handle v) { w.sound.phase = one_of<phase_kind>(n, v); }},
-        {"ramp", numbers(0, 10, [](W w, double d) { w.sound.ramp_s = d; })},
+        {"ramp", numbers(of::ramp, [](W w, double d) { w.sound.ramp_s = d; })},
         {"envelope", [](W w, auto& n, py::handle v) { w.sound.envelope.kind = one_of<envelope_kind>(n, v); }},
-        {"attack", numbers(0, 10, [](W w, double d) { w.sound.envelope.attack_s = d; })},
-        {"release", numbers(0, 10, [](W w, double d) { w.sound.envelope.release_s = d; })},
+        {"attack", numbers(of::attack, [](W w, double d) { w.sound.envelope.attack_s = d; })},
+        {"release", numbers(of::release, [](W w, double d) { w.sound.envelope.release_s = d; })},
         {"tukey_part", numbers(0, 1, [](W w, double d) { w.sound.envelope.tukey_part = d; })},
-        {"level_dbfs", numbers(-200, 0,
+        {"level_dbfs", numbers(of::level_dbfs,
                                [](W w, double d) {
                                    w.sound.level_dbfs = d;
                                    w.sound.sl_db.reset();
                                })},
-        {"sl", numbers(-60, 100, [](W w, double d) { w.sound.sl_db = d; })},
-        {"rate", counts(8000, 768000, [](W w, double d) { w.sound.rate = static_cast<unsigned>(d); })},
+        {"sl", numbers(of::sl, [](W w, double d) { w.sound.sl_db = d; })},
+        {"rate",
+         counts(of::rate.low, of::rate.high, [](W w, double d) { w.sound.rate = static_cast<unsigned>(d); })},
         {"channels", counts(1, 16384, [](W w, double d) { w.sound.channels = static_cast<unsigned>(d); })},
         {"marker_channel",
          counts(0, 16383, [](W w, double d) { w.sound.marker_channel = static_cast<unsigned>(d); })},
