@@ -6,6 +6,7 @@
 #include <deque>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include <boost/asio/post.hpp>
@@ -17,7 +18,9 @@
 #include <unistd.h>
 
 #include "net/listen.hpp"
+#include "net/watched_socket.hpp"
 #include "net/web_access.hpp"
+#include "net/web_frames.hpp"
 
 namespace tactor::net {
 namespace {
@@ -65,7 +68,9 @@ struct web_connection::session : std::enable_shared_from_this<session> {
     void give_up();
     void finish(const websocket::close_reason& r);
     void hang_up_soon();
+    void watch();
     void arm(double seconds);
+    void disarm();
     void close();
 
     line_limits limits;
@@ -74,7 +79,9 @@ struct web_connection::session : std::enable_shared_from_this<session> {
     std::string local;
     handlers calls;
     socket_type socket;
-    std::optional<websocket::stream<socket_type&>> ws;
+    std::optional<websocket::stream<watched_socket>> ws;
+    web_frames frames;
+    std::uint64_t waited_for = 0; ///< while `armed` and `met`: the number of that message
     beast::flat_buffer buffer;
     http::request_parser<http::empty_body> parser;
     http::response<http::string_body> response;
@@ -100,8 +107,7 @@ void web_connection::session::read_request()
         socket, buffer, parser, [self = shared_from_this()](const beast::error_code& e, std::size_t) {
             if (self->closed || self->answered)
                 return;
-            self->armed = false;
-            self->deadline.cancel();
+            self->disarm();
             if (e == http::error::header_limit)
                 self->respond({413, "text/plain", "too much\n", ""});
             else if (e && e.category() == make_error_code(http::error::bad_target).category() &&
@@ -171,7 +177,10 @@ void web_connection::session::upgrade()
     if (!calls.upgrade())
         return respond({503, "text/plain", "there is no place, try again later\n", ""});
     accepted = true;
-    ws.emplace(socket);
+    ws.emplace(socket, [this](std::span<const std::byte> bytes) {
+        frames.take(bytes);
+        watch();
+    });
     websocket::stream_base::timeout t{};
     t.handshake_timeout = steady_seconds(limits.message_s);
     // A browser that is gone without a word is found by pings.
@@ -218,23 +227,39 @@ void web_connection::session::read()
 
 void web_connection::session::received()
 {
-    if (!ws->is_message_done()) {
-        if (!armed)
-            arm(limits.message_s);
+    if (!ws->is_message_done())
         return read();
-    }
     const std::string text(static_cast<const char*>(buffer.data().data()), buffer.size());
     buffer.consume(buffer.size());
     if (!ws->got_text())
         return finish({websocket::close_code::unknown_data, "text is taken"});
     if (!text.empty() && !calls.text(text))
         return finish({websocket::close_code::policy_error, "this is not taken"});
-    met = met || (!text.empty() && (!calls.met || calls.met()));
-    if (met) {
-        armed = false;
-        deadline.cancel();
+    if (!met && !text.empty() && (!calls.met || calls.met())) {
+        met = true;
+        disarm();
+        watch();
     }
     read();
+}
+
+// Beast tells of payload only: not of a head alone, nor of a fragment without any.
+void web_connection::session::watch()
+{
+    if (!met || closed || finishing)
+        return;
+    if (!frames.open())
+        return disarm();
+    if (armed && waited_for == frames.whole())
+        return;
+    waited_for = frames.whole();
+    arm(limits.message_s);
+}
+
+void web_connection::session::disarm()
+{
+    if (std::exchange(armed, false))
+        deadline.cancel();
 }
 
 void web_connection::session::send(std::string text)
@@ -310,7 +335,9 @@ void web_connection::session::arm(double seconds)
     armed = true;
     deadline.expires_after(steady_seconds(seconds));
     deadline.async_wait([self = shared_from_this()](const boost::system::error_code& e) {
-        if (e || !self->armed || self->closed)
+        // It may have been set anew while this was on its way.
+        if (e || !self->armed || self->closed ||
+            self->deadline.expiry() > asio::steady_timer::clock_type::now())
             return;
         if (self->accepted && self->ws->is_open())
             self->finish({websocket::close_code::policy_error,

@@ -8,7 +8,7 @@ import time
 
 from harness import PATIENCE_S, ToolTest, main
 from serving import MESSAGE, Server
-from websocket import BINARY, CLOSE, CONTINUATION, PING, PONG, TEXT, Peer
+from websocket import BINARY, CLOSE, CONTINUATION, PING, PONG, TEXT, Peer, framed
 
 
 class Caller(Peer):
@@ -230,6 +230,21 @@ class Web(ToolTest):
         slow = self.in_time(s, "hello")
         slow.frame(TEXT, b'{"jsonrpc"', last=False)
         self.assertEqual((slow.end(), slow.reason), (1008, "a message took too long"))
+        # Nothing of it is payload: a fragment without any, and a head of which the rest does not come.
+        for begun in (framed(TEXT, last=False), framed(TEXT, b"{}")[:6], framed(TEXT, b"a" * 200)[:3], framed(PING, b"x")[:1]):
+            slow = self.in_time(s, "hello")
+            slow.send(begun)
+            self.assertEqual((slow.end(), slow.reason), (1008, "a message took too long"))
+        # Each packet has a message's end and the next one's begin.
+        busy = self.in_time(s, "hello")
+        ask = framed(TEXT, b'{"jsonrpc":"2.0","method":"status"}')
+        busy.send(ask[:5])
+        until = time.monotonic() + 3
+        while time.monotonic() < until:
+            busy.send(ask[5:] + ask[:5])
+            time.sleep(0.05)
+        busy.send(ask[5:])
+        self.assertIn("result", busy.call("status"))
         patient = self.in_time(s, "hello")
         self.assertEqual(self.in_time(s).end(), 1008)  # so long, patient has said nothing
         self.assertIn("result", patient.call("status"))

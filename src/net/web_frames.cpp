@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#include "net/web_frames.hpp"
+
+#include <algorithm>
+
+namespace tactor::net {
+namespace {
+
+constexpr std::byte final_bit{0x80};
+constexpr std::byte control_bit{0x08};
+constexpr std::byte mask_bit{0x80};
+constexpr std::byte length_bits{0x7f};
+
+// Bytes of the length behind the two that each head has.
+std::size_t more_length(std::byte second) noexcept
+{
+    const auto said = std::to_integer<unsigned>(second & length_bits);
+    return said == 127 ? 8 : said == 126 ? 2 : 0;
+}
+
+} // namespace
+
+void web_frames::take(std::span<const std::byte> bytes) noexcept
+{
+    while (!bytes.empty()) {
+        if (in_payload_) {
+            const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(left_, bytes.size()));
+            left_ -= n;
+            bytes = bytes.subspan(n);
+        } else {
+            within_ = true;
+            head_[have_++] = bytes.front();
+            bytes = bytes.subspan(1);
+            if (have_ < head_length())
+                continue;
+            begin_payload();
+        }
+        if (left_ == 0)
+            end_frame();
+    }
+}
+
+std::size_t web_frames::head_length() const noexcept
+{
+    if (have_ < 2)
+        return 2;
+    return 2 + more_length(head_[1]) + ((head_[1] & mask_bit) != std::byte{} ? 4 : 0);
+}
+
+void web_frames::begin_payload() noexcept
+{
+    const std::size_t more = more_length(head_[1]);
+    left_ = more == 0 ? std::to_integer<std::uint64_t>(head_[1] & length_bits) : 0;
+    for (std::size_t i = 2; i < 2 + more; ++i)
+        left_ = left_ << 8 | std::to_integer<std::uint64_t>(head_[i]);
+    in_payload_ = true;
+}
+
+// Control frames come between those of a message, too.
+void web_frames::end_frame() noexcept
+{
+    if ((head_[0] & control_bit) == std::byte{}) {
+        continued_ = (head_[0] & final_bit) == std::byte{};
+        whole_ += continued_ ? 0 : 1;
+    }
+    within_ = in_payload_ = false;
+    have_ = 0;
+}
+
+} // namespace tactor::net
