@@ -131,7 +131,7 @@ piece open_argument(const settings& s, const environment& e, const layout& faces
         return read_piece(s, e, faces, argument);
     const plan_file& f = planned->second;
     check_same_array(argument, f.tactors, e.tactors);
-    return {argument, f.strokes, f.plans, {}, f.moved};
+    return {argument, f.strokes, f.plans, f.fit, f.moved};
 }
 
 bool has_own_carrier(const stroke& s)

@@ -61,6 +61,20 @@ class PlanFile(ToolTest):
         for name in ("reach", "knocks"):
             self.same(str(ROOT / f"examples/strokes/{name}.toml"))
 
+    def test_where_it_was_put_is_in_it(self):
+        self.same("park2016-1", "--array", "palm-2x4", "--fit", "--fit-margin", "1.3")
+        self.write("arm.toml", '[array]\nname = "arm"\ngrid = { rows = 1, columns = 6, pitch_mm = 35.0 }\n')
+        self.same("park2016-3", "--array", "arm.toml", "--fit")
+        # Of a line that lies across, the last digits may be others.
+        self.write("across.toml", '[array]\nname = "across"\n' + "".join(
+            f"[[tactor]]\nx_mm = {11.1 * i}\ny_mm = {-23.4 * i}\nchannel = {i}\n" for i in range(5)))
+        first = self.stored("park2016-3", "--array", "across.toml", "--fit")
+        matrix = json.loads((self.dir / first).read_text())["stroke"]["fit"]["matrix"]
+        again = json.loads(self.ok("plan", first, "--format", "json").stdout)["stroke"]["fit"]["matrix"]
+        self.assertLess(matrix[1], 0)
+        for x, y in zip(matrix, again):
+            self.assertAlmostEqual(x, y, delta=1e-12)
+
     def test_how_it_is_rendered_is_in_it(self):
         self.same("park2016-3", "--rate", "44100", "--level-dbfs", "-20.05", "--phase", "burst", "--ramp", "0.0013")
         self.same("park2016-2", "--algorithm", "tactile-brush", "--overlap", "max", "--carrier", "187.5")

@@ -162,6 +162,15 @@ std::vector<std::pair<double, double>> fields::pairs(const char* name) const
     return all;
 }
 
+std::vector<double> fields::numbers(const char* name) const
+{
+    const nlohmann::json& j = member(name);
+    const auto is_number = [](const nlohmann::json& n) { return n.is_number(); };
+    if (!j.is_array() || !std::all_of(j.begin(), j.end(), is_number))
+        refuse(name, "is no list of numbers");
+    return j.get<std::vector<double>>();
+}
+
 std::vector<std::string> fields::texts(const char* name) const
 {
     const nlohmann::json& j = member(name);

@@ -42,6 +42,7 @@ public:
     fields object(const char* name) const;
     std::vector<fields> list(const char* name) const;
     std::vector<std::string> texts(const char* name) const;
+    std::vector<double> numbers(const char* name) const;
     bool is_list(const char* name) const;
     /// A list of lists of two numbers.
     std::vector<std::pair<double, double>> pairs(const char* name) const;

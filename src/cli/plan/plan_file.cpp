@@ -13,6 +13,7 @@
 
 #include "cli/pipes.hpp"
 #include "cli/plan/plan_fields.hpp"
+#include "cli/plan/plan_fit.hpp"
 #include "core/words.hpp"
 
 namespace tactor::cli {
@@ -76,6 +77,7 @@ private:
         if (read_.plans.empty()) {
             read_.tactors = std::move(tactors);
             read_.render = render_of(all);
+            read_.fit = fitting_of(all);
         } else {
             check_same_array(file_, tactors, read_.tactors);
         }

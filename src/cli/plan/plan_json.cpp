@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/json_values.hpp"
+#include "cli/plan/plan_fit.hpp"
 #include "cli/plan/plan_output.hpp"
 #include "cli/plan/plan_rows.hpp"
 #include "cli/plan/plan_sound.hpp"
@@ -68,18 +69,6 @@ json render_json(const record& r)
     if (o.marker_channel)
         j["marker"] = {{"channel", *o.marker_channel}, {"duration_s", o.marker_s}};
     return j;
-}
-
-// x' = a x + c y + e, y' = b x + d y + f, as in SVG.
-json fit_json(const fitting& f)
-{
-    const point origin = f({0.0, 0.0});
-    const point x = f({f.from.x_mm + 1.0, f.from.y_mm});
-    const point y = f({f.from.x_mm, f.from.y_mm + 1.0});
-    return {{"margin_mm", f.margin_mm},
-            {"matrix",
-             {x.x_mm - f.to.x_mm, x.y_mm - f.to.y_mm, y.x_mm - f.to.x_mm, y.y_mm - f.to.y_mm, origin.x_mm,
-              origin.y_mm}}};
 }
 
 // One object without its rows: they are streamed between head and tail.

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#include "cli/plan/plan_fit.hpp"
+
+#include <cmath>
+#include <vector>
+
+namespace tactor::cli {
+
+nlohmann::ordered_json fit_json(const fitting& f)
+{
+    const point l = f.line.value_or(point{});
+    const double across = f.scale * l.x_mm * l.y_mm;
+    const double a = f.line ? f.scale * l.x_mm * l.x_mm : f.scale;
+    const double d = f.line ? f.scale * l.y_mm * l.y_mm : f.scale;
+    const point origin = f({0.0, 0.0});
+    return {{"margin_mm", f.margin_mm}, {"matrix", {a, across, across, d, origin.x_mm, origin.y_mm}}};
+}
+
+std::optional<fitting> fitting_of(const fields& plan)
+{
+    const fields stroke = plan.object("stroke");
+    if (!stroke.has("fit"))
+        return {};
+    const fields told = stroke.object("fit");
+    const std::vector<double> m = told.numbers("matrix");
+    if (m.size() != 6)
+        told.refuse("matrix", "has not six numbers");
+    fitting f{.to = {m[4], m[5]}, .scale = m[0], .margin_mm = told.number("margin_mm")};
+    if (m[0] != m[3] || m[1] != 0.0) {
+        f.scale = m[0] + m[3];
+        f.line = {std::sqrt(m[0] / f.scale), std::copysign(std::sqrt(m[3] / f.scale), m[1])};
+    }
+    return f;
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What --fit did to the places of a plan's stroke: to tactor-plan/1 and back.
+#pragma once
+
+#include <optional>
+
+#include <nlohmann/json.hpp>
+#include <tactor/fit.hpp>
+
+#include "cli/plan/plan_fields.hpp"
+
+namespace tactor::cli {
+
+/// x' = a x + c y + e, y' = b x + d y + f, as in SVG.
+nlohmann::ordered_json fit_json(const fitting& f);
+
+/// None where the plan's stroke was not fitted. \throws error (bad_input).
+std::optional<fitting> fitting_of(const fields& plan);
+
+} // namespace tactor::cli
