@@ -73,7 +73,7 @@ plan_handle plan_from_json(const std::string& text)
         throw error(error_kind::bad_input, named, "there are " + counted(f.plans.size(), "plan") + " in it",
                     "take one of its \"plans\"");
     plan_handle p{std::make_shared<array_handle>(std::move(f.tactors)), std::move(f.strokes.front()),
-                  std::move(f.plans.front())};
+                  std::move(f.plans.front()), f.fit};
     if (!f.moved.empty())
         p.moved = std::move(f.moved.front());
     p.sound = f.render;

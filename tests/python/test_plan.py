@@ -72,6 +72,7 @@ def test_the_record_is_the_tools(tool, palm, arguments, options):
     assert plan.to_dict() == printed
     again = tactor.Plan.from_dict(printed)
     assert again == plan and hash(again) == hash(plan)
+    assert again.to_dict() == printed
     assert np.array_equal(tactor.Score(palm, again).render(), tactor.Score(palm, plan).render())
     assert pickle.loads(pickle.dumps(plan)) == plan and pickle.loads(pickle.dumps(plan)).stroke == plan.stroke
 
