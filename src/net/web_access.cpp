@@ -95,6 +95,17 @@ bool origin_is_ours(std::string_view origin, std::string_view host, const std::v
     return listed(name, port.empty() ? (secure ? "443" : usual_port) : port, allowed);
 }
 
+web_target target_of(std::string_view target, std::string_view host)
+{
+    constexpr std::string_view http = "http://";
+    if (!same_name(target.substr(0, http.size()), http))
+        return {host, target};
+    target.remove_prefix(http.size());
+    const std::size_t end = std::min(target.find('/'), target.size());
+    const std::string_view path = target.substr(end);
+    return {target.substr(0, end), path.empty() ? "/" : path};
+}
+
 std::string_view bearer_of(std::string_view authorization)
 {
     constexpr std::string_view scheme = "Bearer ";

@@ -17,6 +17,16 @@ bool host_is_ours(std::string_view host, std::string_view local, const std::vect
 /// Whether an Origin header is ours: http://HOST, or http or https with one of `allowed`.
 bool origin_is_ours(std::string_view origin, std::string_view host, const std::vector<std::string>& allowed);
 
+/// What a request is for.
+struct web_target {
+    std::string_view host;
+    std::string_view path;
+};
+
+/// Of a request's target, which may be a whole address ("http://pi.lan/rpc", as to a proxy), and its Host
+/// header, which stands behind that. What is neither an address nor a path is a path that is not there.
+web_target target_of(std::string_view target, std::string_view host);
+
 /// What follows "Bearer " in an Authorization header; empty for others.
 std::string_view bearer_of(std::string_view authorization);
 

@@ -123,23 +123,24 @@ void web_connection::session::read_request()
 void web_connection::session::answer_request()
 {
     const auto& request = parser.get();
-    const std::string host(view(request[http::field::host]));
+    const std::string said(view(request[http::field::host]));
+    const web_target to = target_of(view(request.target()), said);
     const auto origins = request.equal_range(http::field::origin);
     const bool one_host = request.count(http::field::host) == 1;
-    bool ours = one_host && host_is_ours(host, local, allowed);
+    bool ours = one_host && host_is_ours(said, local, allowed) && host_is_ours(to.host, local, allowed);
     for (auto o = origins.first; o != origins.second; ++o)
-        ours = ours && origin_is_ours(view(o->value()), host, allowed);
+        ours = ours && origin_is_ours(view(o->value()), to.host, allowed);
     if (!ours)
         return respond({403, "text/plain", "another name or another page than this server's\n", ""});
     if (request.method() != http::verb::get)
         return respond({405, "text/plain", "GET only\n", ""});
     if (parser.chunked() || parser.content_length().value_or(0) > 0)
         return respond({413, "text/plain", "too much\n", ""});
-    if (view(request.target()) == "/rpc" && websocket::is_upgrade(request))
+    if (to.path == "/rpc" && websocket::is_upgrade(request))
         return upgrade();
-    if (view(request.target()) == "/rpc")
+    if (to.path == "/rpc")
         return respond({426, "text/plain", "a WebSocket\n", ""});
-    respond(calls.get(view(request.target()), host, bearer_of(view(request[http::field::authorization]))));
+    respond(calls.get(to.path, to.host, bearer_of(view(request[http::field::authorization]))));
 }
 
 // One request a connection: a page asks for little.

@@ -145,6 +145,17 @@ class Web(ToolTest):
             self.assertEqual(s.peer().request("/status", Origin=origin)[0], status, origin)
             self.assertEqual(s.peer().upgrade(Origin=origin), 101 if status == 200 else 403, origin)
 
+    def test_a_whole_address_as_target(self):
+        s = self.serve(config='[serve]\nallow_hosts = ["pi.lan"]\n')
+        for name, status in ((s.address, 200), ("pi.lan", 200), (f"localhost:{s.port}", 200), ("evil.example", 403), ("", 403)):
+            self.assertEqual(s.peer().request(f"http://{name}/status")[0], status, name)
+            self.assertEqual(s.peer().upgrade(f"http://{name}/rpc"), 101 if status == 200 else 403, name)
+        self.assertEqual(s.peer().request(f"http://{s.address}")[0], 200)
+        self.assertEqual(s.peer().request(f"http://{s.address}/x")[0], 404)
+        self.assertEqual(s.peer().request(f"http://{s.address}/status", host="evil.example")[0], 403)
+        # A page of the host that is called, and no other.
+        self.assertEqual(s.peer().request("http://pi.lan/status", Origin=f"http://{s.address}")[0], 403)
+
     def test_the_token(self):
         token = self.write("token", "secret\n")
         token.chmod(0o600)

@@ -70,6 +70,24 @@ TEST_CASE("pages that may connect")
     }
 }
 
+TEST_CASE("what a request is for, as a path or as a whole address")
+{
+    const auto is = [](std::string_view target, std::string_view host, std::string_view path) {
+        const web_target t = target_of(target, "said:4003");
+        return t.host == host && t.path == path;
+    };
+    CHECK(is("/rpc", "said:4003", "/rpc"));
+    CHECK(is("/", "said:4003", "/"));
+    CHECK(is("http://pi.lan:4003/rpc", "pi.lan:4003", "/rpc"));
+    CHECK(is("HTTP://[::1]:4003/a/b?c", "[::1]:4003", "/a/b?c"));
+    CHECK(is("http://pi.lan", "pi.lan", "/"));
+    CHECK(is("http:///rpc", "", "/rpc"));
+    for (const char* path : {"https://pi.lan/rpc", "http:/rpc", "*", "", "http"}) {
+        CAPTURE(path);
+        CHECK(is(path, "said:4003", path));
+    }
+}
+
 TEST_CASE("tokens")
 {
     CHECK(bearer_of("Bearer secret") == "secret");
