@@ -23,7 +23,7 @@ void check_sound(const std::shared_ptr<const recording>& r, texture_kind texture
     if (t == nullptr)
         return; // longer than a cycle may be, say
     synth::block samples{};
-    t->fill(-7, synth::block_frames, samples.data(), synth::wave::sine);
+    t->fill(-7, 0, synth::block_frames, samples.data(), synth::wave::sine);
     for (const double v : samples)
         HOLDS(std::abs(v) <= 1.0 + 1e-4);
 }
