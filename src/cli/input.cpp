@@ -9,6 +9,7 @@
 
 #include "cli/option_words.hpp"
 #include "cli/pipes.hpp"
+#include "core/start_times.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -155,16 +156,15 @@ void for_each_stroke(const piece& p, F f)
 // Each begins in the piece, whether its samples are wanted or not.
 void check_starts(const piece& p)
 {
-    std::vector<double> starts;
-    std::vector<double> ends;
+    detail::start_times times;
     for (std::size_t i = 0; i < p.plans.size(); ++i) {
         const placed_plan& q = p.plans[i];
         try {
-            starts.push_back(resolve_start_s(q.start_s, q.anchor, starts, ends));
+            times.start(q.start_s, q.anchor);
         } catch (const error& x) {
             throw i < p.strokes.size() ? of_stroke(x, p, i) : x;
         }
-        ends.push_back(starts.back() + q.schedule.total_s);
+        times.lasts(q.schedule.total_s);
     }
 }
 

@@ -10,6 +10,7 @@
 
 #include <tactor/fit.hpp>
 
+#include "core/start_times.hpp"
 #include "core/words.hpp"
 #include "server/faults.hpp"
 
@@ -94,17 +95,15 @@ void few_enough(const planning& with, std::size_t strokes)
 // When each begins, and that they do not last too long, alone and together: so long takes planning them.
 void place_strokes(const planning& with, const stroke_settings& s, std::vector<stroke>& strokes)
 {
-    std::vector<double> starts_s;
-    std::vector<double> ends_s;
+    detail::start_times times;
     double together_s = 0.0;
     for (stroke& k : strokes) {
         if (s.duration_s)
             k.motion = k.motion.with_duration(*s.duration_s);
         else if (s.speed_mm_s && k.motion.length_mm() > 0.0)
             k.motion = k.motion.with_speed(*s.speed_mm_s);
-        starts_s.push_back(resolve_start_s(k.start_s, k.anchor, starts_s, ends_s));
-        ends_s.push_back(starts_s.back() + k.motion.duration_s());
-        in_time(with, ends_s.back());
+        times.start(k.start_s, k.anchor);
+        in_time(with, times.lasts(k.motion.duration_s()));
         together_s += k.motion.duration_s();
     }
     if (together_s > with.max_stroke_s)

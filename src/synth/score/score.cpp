@@ -14,6 +14,7 @@
 
 #include "core/access.hpp"
 #include "core/refused.hpp"
+#include "core/start_times.hpp"
 #include "core/words.hpp"
 #include "plan/job.hpp"
 #include "synth/guard/guard.hpp"
@@ -224,9 +225,9 @@ struct score_builder::impl {
 
     /// Frame at which the next plan starts. That of its time also where it follows another: what rounding
     /// took from the end of each would add up.
-    std::uint64_t start(std::optional<double> start_s, const start_anchor& anchor) const
+    std::uint64_t start(std::optional<double> start_s, const start_anchor& anchor)
     {
-        const double at_s = resolve_start_s(start_s, anchor, starts_s, ends_s);
+        const double at_s = times.start(start_s, anchor);
         if (start_s)
             check_start(at_s);
         return synth::frame_at(at_s, o.rate);
@@ -241,8 +242,7 @@ struct score_builder::impl {
     void close(plan p, std::optional<double> start_s, const start_anchor& anchor, std::uint64_t start,
                std::uint64_t bursts_end)
     {
-        starts_s.push_back(resolve_start_s(start_s, anchor, starts_s, ends_s));
-        ends_s.push_back(starts_s.back() + p.total_s);
+        times.lasts(p.total_s);
         s->sounds.push_back(shelf.get(p, o.rate));
         const std::uint64_t end = synth::place_end(p, number(), start, bursts_end, o, s->list);
         p.bursts = {};
@@ -255,8 +255,7 @@ struct score_builder::impl {
     array a;
     render_options o;
     std::shared_ptr<score::impl> s = std::make_shared<score::impl>();
-    std::vector<double> starts_s; ///< of the plans
-    std::vector<double> ends_s;
+    detail::start_times times;
     synth::timbre_shelf shelf;
 };
 
@@ -314,13 +313,12 @@ score::score(const array& a, std::vector<placed_plan> plans, const render_option
 
 std::vector<double> starts_of(std::span<const placed_plan> plans)
 {
-    std::vector<double> starts;
-    std::vector<double> ends;
+    detail::start_times times;
     for (const placed_plan& p : plans) {
-        starts.push_back(resolve_start_s(p.start_s, p.anchor, starts, ends));
-        ends.push_back(starts.back() + p.schedule.total_s);
+        times.start(p.start_s, p.anchor);
+        times.lasts(p.schedule.total_s);
     }
-    return starts;
+    return std::move(times).all();
 }
 
 score::score(std::shared_ptr<const impl> made) noexcept : impl_(std::move(made))
