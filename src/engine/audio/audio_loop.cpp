@@ -278,8 +278,7 @@ void audio_loop::publish() noexcept
                     .stage = static_cast<stream_stage>(phase_),
                     .epoch = clock_.line().epoch,
                     .epoch_played = played_,
-                    .mutes = mutes_,
-                    .sounds_until = scores_.sounds_until()};
+                    .mutes = mutes_};
     scores_.describe(played_, s);
     link_.status.store(s);
     link_.amplifier.status.store(s);

@@ -298,23 +298,15 @@ void score_table::over(entry& e, state_kind s, reason_kind why, int code, std::u
     --used_;
 }
 
-std::uint64_t score_table::sounds_until() const noexcept
-{
-    std::uint64_t until = 0;
-    for (std::uint32_t i = 0; i < top_; ++i) {
-        const entry& e = entries_[i];
-        if (e.used && e.base < mixer_.position())
-            until = std::max(until, e.fade_wanted ? never : e.finish);
-    }
-    return until;
-}
-
 void score_table::describe(std::uint64_t played, stream_status& s) const noexcept
 {
     const entry* newest = nullptr;
     for (std::uint32_t i = 0; i < top_; ++i) {
         const entry& e = entries_[i];
-        if (!e.used || played < e.base || played >= e.base + e.length)
+        if (!e.used || e.base >= mixer_.position())
+            continue;
+        s.sounds_until = std::max(s.sounds_until, e.fade_wanted ? never : e.finish);
+        if (played < e.base || played >= e.base + e.length)
             continue;
         if (newest == nullptr || std::tie(e.base, e.id) > std::tie(newest->base, newest->id))
             newest = &e;

@@ -72,10 +72,8 @@ public:
     void interrupt(reason_kind why, int code, std::uint64_t played, bool give_back) noexcept;
 
     bool empty() const noexcept { return used_ == 0; }
-    /// Frame where the last of the scores that have begun to be mixed is over; one that cannot fade yet has
-    /// no end.
-    std::uint64_t sounds_until() const noexcept;
-    /// Fills in the newest score that sounds at `played`.
+    /// Fills in the newest score that sounds at `played`, and where the last of those that have begun to be
+    /// mixed is over; one that cannot fade yet has no end.
     void describe(std::uint64_t played, stream_status& s) const noexcept;
     /// Whether a score that sounds now still waits for drives.
     bool being_fed() const noexcept;
