@@ -24,22 +24,18 @@ namespace of = detail::option_bounds;
     throw error(error_kind::bad_input, name, why, hint).with_field(name);
 }
 
-// As Python writes it; the beginning, where that is long.
 std::string shown(py::handle v)
 {
-    constexpr py::ssize_t longest = 80;
     try {
-        const py::str whole = py::repr(v);
-        const py::str begin = whole[py::slice(0, longest, 1)];
-        return begin.cast<std::string>() + (py::len(whole) > std::size_t{longest} ? "..." : "");
-    } catch (py::error_already_set&) { // such as a number of more digits than Python writes
+        return py::module_::import("tactor._checks").attr("_shown")(v).cast<std::string>();
+    } catch (py::error_already_set&) { // its repr() failed
         return "that";
     }
 }
 
-double number(const std::string& name, py::handle v, double lo, double hi)
+double number(const std::string& name, py::handle v, detail::bounds b)
 {
-    const std::string range = fmt::format("{} to {}", plain_number(lo), plain_number(hi));
+    const std::string range = fmt::format("{} to {}", plain_number(b.low), plain_number(b.high));
     double d = PyFloat_AsDouble(v.ptr());
     bool is_one = !py::isinstance<py::bool_>(v);
     if (PyErr_Occurred() != nullptr) {
@@ -50,14 +46,14 @@ double number(const std::string& name, py::handle v, double lo, double hi)
     if (!is_one)
         refuse(name, fmt::format("{} is not a number", shown(v)), range);
     const bool is_rounded = PyLong_Check(v.ptr()) && !py::float_(d).equal(v);
-    if (!(d >= lo && d <= hi) || is_rounded)
+    if (!(d >= b.low && d <= b.high) || is_rounded)
         refuse(name, fmt::format("{} is out of range", shown(v)), range);
     return d;
 }
 
-double whole(const std::string& name, py::handle v, double lo, double hi)
+double whole(const std::string& name, py::handle v, detail::bounds b)
 {
-    const double d = number(name, v, lo, hi);
+    const double d = number(name, v, b);
     if (d != std::floor(d))
         refuse(name, fmt::format("{} is not a whole number", shown(v)));
     return d;
@@ -116,24 +112,19 @@ void take_waveform(waveform& into, const std::string& said)
 modulation modulation_of(const std::string& name, py::handle v)
 {
     return parse_modulation(py::isinstance<py::str>(v) ? v.cast<std::string>()
-                                                       : fmt::format("{}", number(name, v, 0, 20000)));
+                                                       : fmt::format("{}", number(name, v, {0, 20000})));
 }
 
 using setter = std::function<void(wishes&, const std::string&, py::handle)>;
 
-setter numbers(double lo, double hi, void (*set)(wishes&, double))
-{
-    return [=](wishes& w, const std::string& name, py::handle v) { set(w, number(name, v, lo, hi)); };
-}
-
 setter numbers(detail::bounds b, void (*set)(wishes&, double))
 {
-    return numbers(b.low, b.high, set);
+    return [=](wishes& w, const std::string& name, py::handle v) { set(w, number(name, v, b)); };
 }
 
-setter counts(double lo, double hi, void (*set)(wishes&, double))
+setter counts(detail::bounds b, void (*set)(wishes&, double))
 {
-    return [=](wishes& w, const std::string& name, py::handle v) { set(w, whole(name, v, lo, hi)); };
+    return [=](wishes& w, const std::string& name, py::handle v) { set(w, whole(name, v, b)); };
 }
 
 drive_limits& limits(wishes& w)
@@ -148,31 +139,31 @@ std::map<std::string, setter> planning()
     using W = wishes&;
     return {
         {"algorithm", [](W w, auto& n, py::handle v) { w.plan.algorithm = one_of<algorithm_kind>(n, v); }},
-        {"soa", numbers(-1e9, 1e9, [](W w, double d) { w.plan.soa_s = d; })},
+        {"soa", numbers({-1e9, 1e9}, [](W w, double d) { w.plan.soa_s = d; })},
         {"burst", numbers(of::burst, [](W w, double d) { w.plan.burst_s = d; })},
         {"slope", numbers(of::slope, [](W w, double d) { w.slope = d; })},
         {"intercept", numbers(of::intercept, [](W w, double d) { w.intercept_s = d; })},
-        {"duration", numbers(0.001, 86400, [](W w, double d) { w.duration_s = d; })},
+        {"duration", numbers({0.001, 86400}, [](W w, double d) { w.duration_s = d; })},
         {"speed", numbers(of::speed, [](W w, double d) { w.speed_mm_s = d; })},
         {"timing", [](W w, auto& n, py::handle v) { w.plan.timing = one_of<timing_kind>(n, v); }},
         {"outside", [](W w, auto& n, py::handle v) { w.plan.outside = one_of<outside_kind>(n, v); }},
         {"fit", [](W w, auto& n, py::handle v) { w.fit = truth(n, v); }},
-        {"fit_margin", numbers(0, 1e6, [](W w, double d) { w.fit_margin_mm = d; })},
+        {"fit_margin", numbers({0, 1e6}, [](W w, double d) { w.fit_margin_mm = d; })},
         {"snap", [](W w, auto& n, py::handle v) { w.plan.snap = truth(n, v); }},
         {"drop_points", [](W w, auto& n, py::handle v) { w.plan.drop_points = truth(n, v); }},
         {"overlap", [](W w, auto& n, py::handle v) { w.plan.overlap = one_of<overlap_kind>(n, v); }},
         {"compensate", [](W w, auto& n, py::handle v) { w.compensate = compensation(n, v); }},
         {"observer", [](W w, auto& n, py::handle v) { w.observer = one_of<observer_kind>(n, v); }},
-        {"sigma_mm", numbers(least_sigma_mm, most_sigma_mm, [](W w, double d) { w.low_speed.sigma_mm = d; })},
-        {"sigma_v_mm_s",
-         numbers(least_sigma_v_mm_s, most_sigma_v_mm_s, [](W w, double d) { w.low_speed.sigma_v_mm_s = d; })},
+        {"sigma_mm",
+         numbers({least_sigma_mm, most_sigma_mm}, [](W w, double d) { w.low_speed.sigma_mm = d; })},
+        {"sigma_v_mm_s", numbers({least_sigma_v_mm_s, most_sigma_v_mm_s},
+                                 [](W w, double d) { w.low_speed.sigma_v_mm_s = d; })},
         {"carrier", numbers(of::carrier, [](W w, double d) { w.plan.carrier_hz = d; })},
         {"waveform", [](W w, auto& n, py::handle v) { take_waveform(w.plan.wave, text(n, v)); }},
         {"am", [](W w, auto& n, py::handle v) { w.plan.am = modulation_of(n, v); }},
         {"noise_seed",
          [](W w, auto& n, py::handle v) {
-             w.plan.wave.seed =
-                 static_cast<std::uint64_t>(whole(n, v, of::noise_seed.low, of::noise_seed.high));
+             w.plan.wave.seed = static_cast<std::uint64_t>(whole(n, v, of::noise_seed));
          }},
         {"texture", [](W w, auto& n, py::handle v) { w.plan.wave.texture = one_of<texture_kind>(n, v); }},
         {"intensity_scale", [](W w, auto& n, py::handle v) { w.plan.scale.kind = one_of<scale_kind>(n, v); }},
@@ -190,22 +181,21 @@ std::map<std::string, setter> sounding()
         {"envelope", [](W w, auto& n, py::handle v) { w.sound.envelope.kind = one_of<envelope_kind>(n, v); }},
         {"attack", numbers(of::attack, [](W w, double d) { w.sound.envelope.attack_s = d; })},
         {"release", numbers(of::release, [](W w, double d) { w.sound.envelope.release_s = d; })},
-        {"tukey_part", numbers(0, 1, [](W w, double d) { w.sound.envelope.tukey_part = d; })},
+        {"tukey_part", numbers({0, 1}, [](W w, double d) { w.sound.envelope.tukey_part = d; })},
         {"level_dbfs", numbers(of::level_dbfs,
                                [](W w, double d) {
                                    w.sound.level_dbfs = d;
                                    w.sound.sl_db.reset();
                                })},
         {"sl", numbers(of::sl, [](W w, double d) { w.sound.sl_db = d; })},
-        {"rate",
-         counts(of::rate.low, of::rate.high, [](W w, double d) { w.sound.rate = static_cast<unsigned>(d); })},
-        {"channels", counts(1, 16384, [](W w, double d) { w.sound.channels = static_cast<unsigned>(d); })},
+        {"rate", counts(of::rate, [](W w, double d) { w.sound.rate = static_cast<unsigned>(d); })},
+        {"channels", counts({1, 16384}, [](W w, double d) { w.sound.channels = static_cast<unsigned>(d); })},
         {"marker_channel",
-         counts(0, 16383, [](W w, double d) { w.sound.marker_channel = static_cast<unsigned>(d); })},
-        {"marker_s", numbers(1e-6, 10, [](W w, double d) { w.sound.marker_s = d; })},
-        {"power_dbfs", numbers(-120, 60, [](W w, double d) { limits(w).power_dbfs = d; })},
-        {"max_drive_s", numbers(0.1, 3600, [](W w, double d) { limits(w).max_drive_s = d; })},
-        {"drive_window_s", numbers(0.1, 3600, [](W w, double d) { limits(w).window_s = d; })},
+         counts({0, 16383}, [](W w, double d) { w.sound.marker_channel = static_cast<unsigned>(d); })},
+        {"marker_s", numbers({1e-6, 10}, [](W w, double d) { w.sound.marker_s = d; })},
+        {"power_dbfs", numbers({-120, 60}, [](W w, double d) { limits(w).power_dbfs = d; })},
+        {"max_drive_s", numbers({0.1, 3600}, [](W w, double d) { limits(w).max_drive_s = d; })},
+        {"drive_window_s", numbers({0.1, 3600}, [](W w, double d) { limits(w).window_s = d; })},
     };
 }
 
@@ -214,12 +204,12 @@ std::map<std::string, setter> spreading()
 {
     using W = wishes&;
     return {
-        {"spread", counts(2, 100000, [](W w, double d) { w.spread.people = static_cast<unsigned>(d); })},
+        {"spread", counts({2, 100000}, [](W w, double d) { w.spread.people = static_cast<unsigned>(d); })},
         {"spread_seed",
-         counts(0, 4294967295.0, [](W w, double d) { w.spread.seed = static_cast<std::uint64_t>(d); })},
-        {"spread_sigma", numbers(1, 100, [](W w, double d) { w.spread.sigma_factor = d; })},
-        {"spread_threshold_db", numbers(0, 60, [](W w, double d) { w.spread.threshold_db = d; })},
-        {"spread_place_mm", numbers(0, 1000, [](W w, double d) { w.spread.place_mm = d; })},
+         counts({0, 4294967295.0}, [](W w, double d) { w.spread.seed = static_cast<std::uint64_t>(d); })},
+        {"spread_sigma", numbers({1, 100}, [](W w, double d) { w.spread.sigma_factor = d; })},
+        {"spread_threshold_db", numbers({0, 60}, [](W w, double d) { w.spread.threshold_db = d; })},
+        {"spread_place_mm", numbers({0, 1000}, [](W w, double d) { w.spread.place_mm = d; })},
     };
 }
 
