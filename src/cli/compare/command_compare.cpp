@@ -21,11 +21,6 @@
 namespace tactor::cli {
 namespace {
 
-double whole_number(const char* option, const std::string& text, double lo, double hi)
-{
-    return parse_whole(option, text, {lo, hi}, "");
-}
-
 template <class Enum>
 std::vector<Enum> all_of()
 {
@@ -123,7 +118,7 @@ void add_spread_options(CLI::App& c, const std::shared_ptr<compare_options>& o)
     auto* people = c.add_option_function<std::string>(
         "--spread",
         [&s](const std::string& t) {
-            s.people = static_cast<unsigned>(whole_number("--spread", t, 2, 100000));
+            s.people = static_cast<unsigned>(parse_whole("--spread", t, {2, 100000}, ""));
         },
         "intervals of what so many people would feel, drawn at random");
     people->type_name("N");
@@ -131,7 +126,7 @@ void add_spread_options(CLI::App& c, const std::shared_ptr<compare_options>& o)
         c.add_option_function<std::string>(name, set, help)->type_name(type)->needs(people);
     };
     option("--spread-seed", "N", "--spread: of the draw (default 1)", [&s](const std::string& t) {
-        s.seed = static_cast<std::uint64_t>(whole_number("--spread-seed", t, 0, 4294967295.0));
+        s.seed = static_cast<std::uint64_t>(parse_whole("--spread-seed", t, {0, 4294967295.0}, ""));
     });
     option("--spread-sigma", "FACTOR", "--spread: low-speed's sigma by up to this factor (default 2)",
            [&s](const std::string& t) { s.sigma_factor = parse_number("--spread-sigma", t, 1, 100, ""); });

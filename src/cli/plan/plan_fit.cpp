@@ -8,12 +8,15 @@ namespace tactor::cli {
 
 nlohmann::ordered_json fit_json(const fitting& f)
 {
-    const point l = f.line.value_or(point{});
-    const double across = f.scale * l.x_mm * l.y_mm;
-    const double a = f.line ? f.scale * l.x_mm * l.x_mm : f.scale;
-    const double d = f.line ? f.scale * l.y_mm * l.y_mm : f.scale;
-    const point origin = f({0.0, 0.0});
-    return {{"margin_mm", f.margin_mm}, {"matrix", {a, across, across, d, origin.x_mm, origin.y_mm}}};
+    const auto matrix = [&f](double a, double across, double d) {
+        const point origin = f({0.0, 0.0});
+        return nlohmann::ordered_json{{"margin_mm", f.margin_mm},
+                                      {"matrix", {a, across, across, d, origin.x_mm, origin.y_mm}}};
+    };
+    if (!f.line)
+        return matrix(f.scale, 0.0, f.scale);
+    const auto [x, y] = *f.line;
+    return matrix(f.scale * x * x, f.scale * x * y, f.scale * y * y);
 }
 
 std::optional<fitting> fitting_of(const fields& plan)

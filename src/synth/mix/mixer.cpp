@@ -111,9 +111,11 @@ void mixer::impl::let_go() noexcept
         v.fade = l->fade;
         return l->fade == fades::none || v.start >= fading[l->fade].end();
     });
-    for (const leaver& l : leaving)
-        if (const std::int32_t i = fading.find(l.score); l.fade == fades::none && i != fades::none)
-            fading.end(i);
+    for (const leaver& l : leaving) {
+        const std::int32_t cut = l.fade == fades::none ? fading.find(l.score) : fades::none;
+        if (cut != fades::none)
+            fading.end(cut);
+    }
     leaving.clear();
 }
 

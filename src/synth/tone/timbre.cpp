@@ -89,11 +89,16 @@ course_parts::const_iterator part_after(const course_parts& course, double frame
                             [](double at, const course_part& p) { return at < p.start; });
 }
 
+/// The part that plays up to the next one; before the first that is the first itself.
+const course_part& part_before(const course_parts& course, course_parts::const_iterator next) noexcept
+{
+    return next == course.begin() ? *next : *(next - 1);
+}
+
 /// Turns of the carrier at a frame, but for whole ones.
 double turns_at(const course_parts& course, double frame) noexcept
 {
-    const auto next = part_after(course, frame);
-    const course_part& p = next == course.begin() ? *next : *(next - 1);
+    const course_part& p = part_before(course, part_after(course, frame));
     const double k = frame - p.start;
     return p.cycles + k * (p.cycles_per_frame + k * p.half_slope);
 }
@@ -114,7 +119,7 @@ void follow(const timbre& t, std::int64_t first, std::int64_t origin, unsigned n
         const auto at = static_cast<double>(first + done);
         while (next != t.course.end() && next->start <= at)
             ++next;
-        course_part p = next == t.course.begin() ? *next : *(next - 1);
+        course_part p = part_before(t.course, next);
         p.cycles -= turned;
         unsigned length = n - done;
         if (next != t.course.end())
