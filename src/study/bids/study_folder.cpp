@@ -172,7 +172,7 @@ std::string study_folder::alike(const std::string& code) const
     std::error_code failed;
     for (const fs::path& place : {folder_, folder_ / "sourcedata"})
         for (const fs::directory_entry& e : fs::directory_iterator(place, failed))
-            if (const std::string name = e.path().filename().string();
+            if (std::string name = e.path().filename().string();
                 name != own && in_small_letters(name) == in_small_letters(own))
                 return name;
     return {};
