@@ -6,19 +6,12 @@
 #include <cmath>
 #include <ctime>
 #include <new>
-#include <system_error>
 #include <utility>
 
-#include <fmt/format.h>
 #include <poll.h>
 
 #include <tactor/error.hpp>
-#include <tactor/realtime.hpp>
 
-#include "core/log.hpp"
-#include "core/refused.hpp"
-#include "core/words.hpp"
-#include "rt/advice.hpp"
 #include "rt/clock.hpp"
 
 namespace tactor {
@@ -28,77 +21,6 @@ namespace {
 // Reports that nobody asked for are kept for so long; a program that only uses the handler must not grow.
 constexpr std::size_t most_unread_reports = 4096;
 
-// At most ten minutes of any rate; also for what is not a number.
-std::uint32_t frames_of(double seconds, unsigned rate, const char* name)
-{
-    if (!(seconds >= 0.0 && seconds <= 600.0))
-        throw detail::bad_field(name, fmt::format("{} s", seconds), "give 0 to 600 s");
-    return static_cast<std::uint32_t>(std::lround(seconds * rate));
-}
-
-// What is handed over later than this would be late.
-std::uint64_t horizon_frames(const player_options& o, const stream_setup& s)
-{
-    const std::uint64_t least = 2 * std::uint64_t{s.buffer_frames} + 4 * std::uint64_t{s.period_frames};
-    return std::max<std::uint64_t>(frames_of(o.horizon_s, s.rate, "horizon_s"), least);
-}
-
-engine::loop_options loop_options(const player_options& o, const drive_history::impl* before,
-                                  const stream_setup& s, bool amplifier)
-{
-    engine::loop_options l;
-    l.fade_frames = frames_of(o.fade_s, s.rate, "fade_s");
-    l.horizon_frames = horizon_frames(o, s);
-    // Long periods make long pauses.
-    const std::int64_t periods = 16LL * s.period_frames * 1'000'000'000 / s.rate;
-    const auto asked = std::int64_t{frames_of(o.stall_s, 1'000'000, "stall_s")} * 1000;
-    l.stall_ns = std::max(periods, asked);
-    l.amplifier = amplifier;
-    l.guards = synth::guards_of(o.limits, s.rate);
-    l.driven = before != nullptr ? before->until_now() : synth::drive_history{};
-    return l;
-}
-
-// Of SCHED_FIFO, as far as there are any.
-int priority(const player_options& o, int higher)
-{
-    return std::clamp(std::clamp(o.priority, 1, 99) + higher, 1, 99);
-}
-
-rt::thread_options thread_options(const player_options& o)
-{
-    return {.name = "tactor-audio",
-            .fifo = o.realtime || o.require_realtime,
-            .priority = priority(o, 0),
-            .audio = true};
-}
-
-engine::driver_options driver_options(const player_lines& l, const stream_setup& s)
-{
-    const std::int64_t four_periods = 4LL * s.period_frames * 1'000'000'000 / s.rate;
-    engine::driver_options d;
-    d.amplifier.settle_ns = std::int64_t{frames_of(l.settle_s, 1'000'000, "settle_s")} * 1000;
-    d.amplifier.proof_frames = 2ULL * s.period_frames;
-    d.watchdog_ns = std::max(d.watchdog_ns, four_periods);
-    return d;
-}
-
-// Below the audio thread, which it looks after, but not behind everything else: the line's holder waits for
-// 150 ms only.
-rt::thread_options amplifier_thread_options(const player_options& o)
-{
-    return {.name = "tactor-amp", .fifo = o.realtime || o.require_realtime, .priority = priority(o, -5)};
-}
-
-// Before there are threads that an error would have to stop.
-player_lines checked(player_lines l, unsigned rate)
-{
-    frames_of(l.trigger_delay_s, rate, "trigger_delay_s");
-    frames_of(l.settle_s, rate, "settle_s");
-    frames_of(l.pulse_s, rate, "pulse_s");
-    return l;
-}
-
 // A wait of a century is one without end: the clock must not run over.
 std::chrono::steady_clock::time_point deadline(double timeout_s)
 {
@@ -107,118 +29,7 @@ std::chrono::steady_clock::time_point deadline(double timeout_s)
     return std::chrono::steady_clock::now() + std::chrono::nanoseconds(std::llround(wait_s * 1e9));
 }
 
-std::unique_ptr<sink> not_null(std::unique_ptr<sink> s)
-{
-    if (s == nullptr)
-        throw error(error_kind::bad_input, "player", "no sink", "open one with open_alsa()");
-    return s;
-}
-
 } // namespace
-
-player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines l)
-    : out(not_null(std::move(s))),
-      stream(fmt::format("stream on \"{}\"", out->setup().name)),
-      lines(checked(std::move(l), out->setup().rate)),
-      feed(link, horizon_frames(o, out->setup())),
-      tactors(engine::fitting(a, out->setup())),
-      limits(synth::channel_limits(a, out->setup().channels)),
-      log(o.log, link, o.limits),
-      loop(*out, link, limits,
-           loop_options(o, o.driven.impl_.get(), out->setup(), lines.amplifier != nullptr)),
-      audio(loop, *out, link, thread_options(o))
-{
-}
-
-void player::impl::start(const player_options& o)
-{
-    try {
-        check_start(o);
-        log_start(o);
-        start_lines(o);
-        control = std::make_unique<engine::control_thread>(link.to_control, [weak = weak_from_this()] {
-            if (const auto alive = weak.lock())
-                alive->woken();
-        });
-        if (lines.trigger != nullptr)
-            listen();
-    } catch (...) {
-        link.requests.push({.what = engine::request::kind::stop, .closing = true});
-        link.to_audio.signal();
-        audio.join();
-        control.reset();
-        amplifier.reset();
-        throw;
-    }
-}
-
-void player::impl::listen()
-{
-    const int fd = lines.trigger->descriptor();
-    try {
-        control->watch(fd, [this] { return edges(); });
-    } catch (const std::system_error& e) {
-        if (e.code() != std::errc::bad_file_descriptor && e.code() != std::errc::operation_not_permitted)
-            throw;
-        detail::throw_caused(error(
-            error_kind::bad_input, "trigger", fmt::format("its descriptor {}: {}", fd, e.code().message()),
-            "edge_input::descriptor() is one that can be polled, and open as long as the input"));
-    }
-}
-
-void player::impl::start_lines(const player_options& o)
-{
-    if (lines.amplifier != nullptr)
-        amplifier = std::make_unique<engine::amplifier_thread>(
-            link, *lines.amplifier, driver_options(lines, out->setup()), amplifier_thread_options(o));
-    if (lines.sync_out == nullptr)
-        return;
-    // Above the audio thread: it sleeps nearly always, and what it does takes microseconds.
-    const rt::thread_options t{.name = "tactor-sync",
-                               .fifo = o.realtime || o.require_realtime,
-                               .priority = priority(o, 1),
-                               .audio = true};
-    pulses = std::make_unique<engine::trigger_thread>(
-        link, *lines.sync_out, std::int64_t{frames_of(lines.pulse_s, 1'000'000, "pulse_s")} * 1000, t);
-    feed.on_first_frames(
-        [this](stroke_id id, std::uint64_t frame) { pulses->add(id, frame, link.clock.load()); },
-        [this](stroke_id id, bool was_played) { pulses->forget(id, was_played); });
-}
-
-void player::impl::check_start(const player_options& o)
-{
-    const io_result& r = audio.started();
-    if (r.status == io_kind::lost)
-        detail::throw_caused(
-            error(error_kind::not_available, stream, "the device is gone", "plug it in again"), -r.code);
-    if (r.status != io_kind::ok)
-        detail::throw_caused(
-            error(error_kind::runtime, stream,
-                  fmt::format("it does not start ({})", engine::text(reason_kind::failed, r.code)),
-                  "try another PCM, or a longer period"),
-            -r.code);
-    if (o.require_realtime && audio.fifo_error() != 0)
-        detail::throw_caused(error(error_kind::not_available, "real-time priority",
-                                   std::error_code(audio.fifo_error(), std::generic_category()).message(),
-                                   rt::realtime_advice(probe_realtime_rights(), o.priority)),
-                             audio.fifo_error());
-}
-
-void player::impl::log_start(const player_options& o) const
-{
-    const stream_setup& s = out->setup();
-    detail::log(log.function(), log_kind::info, "{} runs: {} at {} Hz, {} of {} frames{}", stream,
-                counted(s.channels, "channel"), s.rate, s.buffer_frames / s.period_frames, s.period_frames,
-                s.has_clock ? "" : ", timed by us");
-    if (!o.realtime && !o.require_realtime)
-        return;
-    const int refused = audio.fifo_error();
-    if (refused == 0)
-        detail::log(log.function(), log_kind::info, "the audio thread has real-time priority");
-    else
-        detail::log(log.function(), log_kind::warning, "the audio thread has no real-time priority: {}",
-                    std::error_code(refused, std::generic_category()).message());
-}
 
 void player::impl::close()
 {
