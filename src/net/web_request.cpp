@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+// A browser's request, and the answer that it gets: a page, why there is none, or a WebSocket.
+#include <chrono>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include <boost/asio/steady_timer.hpp>
+
+#include "net/listen.hpp"
+#include "net/web_access.hpp"
+#include "net/web_session.hpp"
+
+namespace tactor::net {
+namespace {
+
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+
+constexpr std::size_t most_header_bytes = 8U << 10;
+
+std::string_view view(boost::string_view s)
+{
+    return {s.data(), s.size()};
+}
+
+} // namespace
+
+web_connection::session::session(socket_type s, const line_limits& l, write_budget& budget,
+                                 std::vector<std::string> hosts)
+    : limits(l),
+      share(budget, [this] { give_up(); }),
+      allowed(std::move(hosts)),
+      local(local_address(s.native_handle())),
+      socket(std::move(s)),
+      deadline(socket.get_executor()),
+      lingering(socket.get_executor())
+{
+    parser.header_limit(most_header_bytes);
+    parser.body_limit(std::numeric_limits<std::uint64_t>::max()); // none is read
+}
+
+void web_connection::session::read_request()
+{
+    arm(limits.message_s);
+    http::async_read_header(
+        socket, buffer, parser, [self = shared_from_this()](const beast::error_code& e, std::size_t) {
+            if (self->closed || self->answered)
+                return;
+            self->disarm();
+            if (e == http::error::header_limit)
+                self->respond({413, "text/plain", "too much\n", ""});
+            else if (e && e.category() == make_error_code(http::error::bad_target).category() &&
+                     e != http::error::end_of_stream && e != http::error::partial_message)
+                self->respond({400, "text/plain", "no request of HTTP\n", ""});
+            else if (e)
+                self->close();
+            else
+                self->answer_request();
+        });
+}
+
+void web_connection::session::answer_request()
+{
+    const auto& request = parser.get();
+    const std::string said(view(request[http::field::host]));
+    const web_target to = target_of(view(request.target()), said);
+    const auto origins = request.equal_range(http::field::origin);
+    const bool one_host = request.count(http::field::host) == 1;
+    bool ours = one_host && host_is_ours(said, local, allowed) && host_is_ours(to.host, local, allowed);
+    for (auto o = origins.first; o != origins.second; ++o)
+        ours = ours && origin_is_ours(view(o->value()), to.host, allowed);
+    if (!ours)
+        return respond({403, "text/plain", "another name or another page than this server's\n", ""});
+    if (request.method() != http::verb::get)
+        return respond({405, "text/plain", "GET only\n", ""});
+    if (parser.chunked() || parser.content_length().value_or(0) > 0)
+        return respond({413, "text/plain", "too much\n", ""});
+    if (to.path == "/rpc" && websocket::is_upgrade(request))
+        return upgrade();
+    if (to.path == "/rpc")
+        return respond({426, "text/plain", "a WebSocket\n", ""});
+    respond(calls.get(to.path, to.host, bearer_of(view(request[http::field::authorization]))));
+}
+
+// One request a connection: a page asks for little.
+void web_connection::session::respond(web_reply r)
+{
+    answered = true;
+    response.result(r.status);
+    response.version(11);
+    response.set(http::field::server, "tactor");
+    response.set(http::field::content_type, r.type);
+    response.set(http::field::cache_control, "no-store");
+    response.set("X-Content-Type-Options", "nosniff");
+    response.set("Referrer-Policy", "no-referrer");
+    response.set("Content-Security-Policy",
+                 r.policy.empty() ? "default-src 'none'; frame-ancestors 'none'" : r.policy);
+    if (r.status == 405)
+        response.set(http::field::allow, "GET");
+    if (r.status == 426) {
+        response.set(http::field::upgrade, "websocket");
+        response.set(http::field::connection, "upgrade, close");
+    }
+    response.body() = std::move(r.body);
+    if (r.status != 426)
+        response.keep_alive(false);
+    response.prepare_payload();
+    if (parser.get().method() == http::verb::head)
+        response.body().clear(); // how long it would be is said
+    arm(limits.message_s);
+    http::async_write(socket, response,
+                      [self = shared_from_this()](const beast::error_code&, std::size_t) { self->close(); });
+}
+
+void web_connection::session::upgrade()
+{
+    if (!calls.upgrade())
+        return respond({503, "text/plain", "there is no place, try again later\n", ""});
+    accepted = true;
+    ws.emplace(socket, [this](std::span<const std::byte> bytes) {
+        frames.take(bytes);
+        watch();
+    });
+    websocket::stream_base::timeout t{};
+    t.handshake_timeout = steady_seconds(limits.message_s);
+    // A browser that is gone without a word is found by pings.
+    t.idle_timeout = std::chrono::seconds(60);
+    t.keep_alive_pings = true;
+    ws->set_option(t);
+    ws->read_message_max(limits.message_bytes);
+    ws->auto_fragment(false);
+    ws->set_option(websocket::stream_base::decorator(
+        [](websocket::response_type& r) { r.set(http::field::server, "tactor"); }));
+    // Whoever says goodbye has a second to hang up.
+    ws->control_callback([this](websocket::frame_type kind, boost::string_view) {
+        if (kind == websocket::frame_type::close)
+            hang_up_soon();
+    });
+    ws->async_accept(parser.get(), [self = shared_from_this()](const beast::error_code& e) {
+        if (self->closed)
+            return;
+        if (e)
+            return self->close();
+        self->buffer.consume(self->buffer.size());
+        self->arm(self->limits.message_s);
+        self->read();
+        if (!self->queue.empty())
+            self->write();
+        else if (self->finishing)
+            self->finish(self->why);
+    });
+}
+} // namespace tactor::net
