@@ -8,6 +8,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
+#include "cli/parse_number.hpp"
 #include "cli/pipes.hpp"
 #include "cli/say.hpp"
 #include "plot/figure.hpp"

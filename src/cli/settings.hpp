@@ -12,8 +12,6 @@
 
 #include <tactor/tactor.hpp>
 
-#include "core/option_bounds.hpp"
-
 namespace CLI {
 class App;
 class Option;
@@ -106,16 +104,5 @@ void check_sound(const settings& s, const option_list& options);
 /// --format: one of `names`, of which the first is the default. `into` must live as long as the command.
 void add_format_option(CLI::App& command, std::string& into, const std::vector<std::string>& names,
                        const std::string& help);
-
-/// A finite number between lo and hi. \throws error (bad_input) naming `what`, the text, the number to give
-/// where the text has a unit, and the range (`range_text`, where what is sensible is less than what is
-/// taken).
-double parse_number(const std::string& what, const std::string& text, double lo, double hi,
-                    const std::string& unit, const std::string& range_text = {});
-double parse_number(const std::string& what, const std::string& text, detail::bounds b,
-                    const std::string& unit);
-/// The same, and it is whole.
-double parse_whole(const std::string& what, const std::string& text, detail::bounds b,
-                   const std::string& unit);
 
 } // namespace tactor::cli

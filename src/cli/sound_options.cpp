@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "cli/parse_number.hpp"
 #include "cli/settings.hpp"
 
 namespace tactor::cli {

@@ -11,6 +11,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "cli/parse_number.hpp"
 #include "cli/session/key_input.hpp"
 #include "core/split.hpp"
 

@@ -12,6 +12,7 @@
 #include "cli/compare/compare_picture.hpp"
 #include "cli/compare/compare_rows.hpp"
 #include "cli/input.hpp"
+#include "cli/parse_number.hpp"
 #include "cli/pipes.hpp"
 #include "cli/say.hpp"
 #include "core/split.hpp"

@@ -6,6 +6,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "cli/parse_number.hpp"
+
 namespace tactor::cli {
 namespace {
 

@@ -17,6 +17,7 @@
 #include "cli/input.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/json_values.hpp"
+#include "cli/parse_number.hpp"
 #include "cli/plan/plan_output.hpp"
 #include "cli/play/own_memory.hpp"
 #include "cli/play/play_lines.hpp"

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "cli/parse_number.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "core/words.hpp"
+
+namespace tactor::cli {
+namespace {
+
+// What one of a unit is in the option's own; 0 where it is none of its kind.
+double factor_of(std::string_view given, const std::string& unit)
+{
+    struct entry {
+        const char* unit;
+        std::string_view given;
+        double factor;
+    };
+    constexpr std::array<entry, 15> known{{{"s", "s", 1.0},
+                                           {"s", "sec", 1.0},
+                                           {"s", "ms", 1e-3},
+                                           {"s", "us", 1e-6},
+                                           {"s", "min", 60.0},
+                                           {"ms", "ms", 1.0},
+                                           {"ms", "s", 1e3},
+                                           {"Hz", "Hz", 1.0},
+                                           {"Hz", "kHz", 1e3},
+                                           {"mm", "mm", 1.0},
+                                           {"mm", "cm", 10.0},
+                                           {"mm/s", "mm/s", 1.0},
+                                           {"mm/s", "cm/s", 10.0},
+                                           {"dBFS", "dB", 1.0},
+                                           {"dB SL", "dB", 1.0}}};
+    for (const entry& e : known)
+        if (unit == e.unit && given == e.given)
+            return e.factor;
+    return given == unit ? 1.0 : 0.0;
+}
+
+// "70ms" for seconds: the number to give instead, where it can be told; "1,5": a decimal point.
+std::string without_unit(const std::string& text, double v, std::string_view rest, double lo, double hi,
+                         const std::string& unit)
+{
+    if (rest.front() == ',') {
+        std::string point = text;
+        point[point.find(',')] = '.';
+        double w = 0.0;
+        const auto r = std::from_chars(point.data(), point.data() + point.size(), w);
+        return r.ec == std::errc() && r.ptr == point.data() + point.size()
+                   ? fmt::format("write a decimal point, as {}", point)
+                   : "";
+    }
+    rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
+    const double meant = v * factor_of(rest, unit);
+    if (meant == 0.0 || meant < lo || meant > hi)
+        return {};
+    return fmt::format("give {} without a unit, as {}", unit == "s" ? "seconds" : unit, plain_number(meant));
+}
+} // namespace
+
+double parse_number(const std::string& what, const std::string& text, double lo, double hi,
+                    const std::string& unit, const std::string& range_text)
+{
+    double v = 0.0;
+    const char* end = text.data() + text.size();
+    const auto r = std::from_chars(text.data(), end, v);
+    const std::string range =
+        range_text.empty()
+            ? fmt::format("{} to {}{}", plain_number(lo), plain_number(hi), unit.empty() ? "" : " " + unit)
+            : range_text;
+    if (r.ec == std::errc::invalid_argument || r.ptr != end) {
+        const std::string meant =
+            r.ec == std::errc() ? without_unit(text, v, {r.ptr, end}, lo, hi, unit) : "";
+        throw error(error_kind::bad_input, what, fmt::format("\"{}\" is not a number", text),
+                    meant.empty() ? range : fmt::format("{}; {}", meant, range));
+    }
+    if (r.ec != std::errc() || !std::isfinite(v) || v < lo || v > hi)
+        throw error(error_kind::bad_input, what, fmt::format("{} is out of range", text), range);
+    return v;
+}
+
+double parse_number(const std::string& what, const std::string& text, detail::bounds b,
+                    const std::string& unit)
+{
+    return parse_number(what, text, b.low, b.high, unit);
+}
+
+double parse_whole(const std::string& what, const std::string& text, detail::bounds b,
+                   const std::string& unit)
+{
+    const double v = parse_number(what, text, b, unit);
+    if (v != std::floor(v))
+        throw error(error_kind::bad_input, what, fmt::format("{} is not a whole number", text),
+                    fmt::format("give one, as {}", plain_number(std::max(b.low, std::floor(v)))));
+    return v;
+}
+} // namespace tactor::cli
