@@ -48,11 +48,12 @@ void line_connection::read()
                                 if (!e) {
                                     self->received(n);
                                 } else if (e == boost::asio::error::eof) {
+                                    self->last_line();
+                                    if (self->closed_ || self->finishing_)
+                                        return;
                                     self->reading_ = false;
                                     self->deadline_.cancel();
                                     self->watch();
-                                    // What has no line end was not finished: nobody knows what it would have
-                                    // been.
                                     self->handlers_.input_ended();
                                 } else if (e != boost::asio::error::operation_aborted) {
                                     self->give_up(line_fault::gone);
@@ -77,6 +78,15 @@ void line_connection::received(std::size_t n)
     if (!take_lines() || closed_ || !reading_)
         return;
     read();
+}
+
+// The end of the input ends a line, too: what was cut off is no JSON, and is told so.
+void line_connection::last_line()
+{
+    if (!partial_.empty() && reading_) {
+        partial_ += '\n';
+        take_lines();
+    }
 }
 
 // False when the connection is at its end.

@@ -76,6 +76,7 @@ private:
     void read();
     void watch();
     void received(std::size_t n);
+    void last_line();
     bool take_lines();
     void arm(double seconds);
     void give_up(line_fault f);

@@ -199,6 +199,16 @@ class Protocol(ServeTest):
         self.assertEqual(c.end_of(n)["state"], "finished")
         self.assertIsNone(c.next())
 
+    def test_the_end_of_the_input_ends_the_last_line(self):
+        s = self.serve()
+        for sent, answered in ((b'{"jsonrpc":"2.0","id":1,"method":"stop"}', lambda r: r["result"] == {}),
+                               (b'\n{"jsonrpc":"2.0","id":1,"method":"sto', lambda r: r["error"]["code"] == -32700)):
+            c = s.client()
+            c.raw(sent)
+            c.socket.shutdown(socket.SHUT_WR)
+            self.assertTrue(answered(c.next()), sent)
+            self.assertIsNone(c.next())
+
     def test_drive(self):
         c = self.serve().client()
         n = c.ok("drive", tactor=3, intensity=0.5, duration_s=0.05)["stroke"]

@@ -87,7 +87,8 @@ TEST_CASE("lines come whole, however they were cut")
     CHECK(p.lines == std::vector<std::string>{"one", "two"});
     ::shutdown(p.peer, SHUT_WR);
     p.until([&] { return p.input_over; });
-    CHECK(p.lines.size() == 2); // what has no end was not finished
+    CHECK(p.lines == std::vector<std::string>{"one", "two", "three"}); // that ends the line, too
+    CHECK(p.faults.empty());
     p.end->send("still heard");
     p.end->finish();
     p.until([&] { return p.closed; });
