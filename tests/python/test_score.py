@@ -162,6 +162,9 @@ def test_a_score_may_say_more_of_what_its_plan_says(tmp_path, palm, stroke):
     expected = tactor.Score(palm, plan, envelope="tukey", tukey_part=0.3).render()
     assert np.array_equal(tactor.Score(palm, plan, tukey_part=0.3).render(), expected)
     assert not np.array_equal(tactor.Score(palm, plan).render(), expected)
+    for p in (plan, tactor.plan(palm, stroke)):
+        assert np.array_equal(tactor.Score(palm, p, envelope="tukey:0.3").render(), expected)
+    assert np.array_equal(tactor.Score(palm, tactor.plan(palm, stroke, envelope="tukey:0.3")).render(), expected)
     (tmp_path / "a.toml").write_text('[array]\npreset = "palm-3x3"\n[defaults]\nramp = 0.003\n[sync]\nchannel = 9\n')
     array = tactor.Array.from_file(tmp_path / "a.toml")
     for p in (plan, tactor.plan(array, stroke)):

@@ -39,10 +39,24 @@ def settled(array: Array, given: dict[str, _t.Any], known: frozenset[str], befor
 
     None says nothing. What nothing would use is refused; in a file it may stand for other strokes. `before`: what a plan says already.
     """
+    given = in_parts(given)
     setup = array._settings()
     options = given if setup is None else _completed(setup, given, known)
     check_used(given, {**before, **{name: value for name, value in options.items() if value is not None}})
     return options
+
+
+def in_parts(given: dict[str, _t.Any]) -> dict[str, _t.Any]:
+    """The tool's envelope "tukey:PART" as the two options that it is."""
+    envelope = given.get("envelope")
+    if not isinstance(envelope, str) or not envelope.startswith("tukey:"):
+        return given
+    if given.get("tukey_part") is not None:
+        raise InputError("envelope", f'there are "{envelope}" and tukey_part', "give the part once", field="envelope")
+    part = _value(envelope[len("tukey:"):])
+    if not isinstance(part, float):
+        raise InputError("envelope", f'"{envelope}" is not known', "tukey:PART, such as tukey:0.3", field="envelope")
+    return {**given, "envelope": "tukey", "tukey_part": part}
 
 
 def check_used(given: dict[str, _t.Any], options: dict[str, _t.Any]) -> None:

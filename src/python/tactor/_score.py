@@ -11,7 +11,7 @@ from tactor._array import Array
 from tactor._checks import _counted, _need, _number, _Value
 from tactor._errors import InputError
 from tactor._files import reading
-from tactor._options import _SOUNDING, check_used, settled
+from tactor._options import _SOUNDING, check_used, in_parts, settled
 from tactor._plan import Plan
 
 if _t.TYPE_CHECKING:
@@ -61,7 +61,8 @@ class Score(_Value):
     ramp : float
         Raised-cosine ramp inside each burst, s; default: 0 between zero crossings, else 0.002.
     envelope : str
-        How bursts rise and fall: "raised-cosine" (default), "linear", "exponential", or "tukey", whose ramps are a part of the burst.
+        How bursts rise and fall: "raised-cosine" (default), "linear", "exponential", or "tukey", whose ramps are a part of the burst
+        ("tukey:0.3" says the part, too).
     attack, release : float
         Times in which each burst rises (default: `ramp`) and falls (default: as it rises), s.
     tukey_part : float
@@ -97,6 +98,7 @@ class Score(_Value):
             "attack": attack, "release": release, "tukey_part": tukey_part, "channels": channels, "marker_channel": marker_channel,
             "marker_s": marker_s, "power_dbfs": power_dbfs, "max_drive_s": max_drive_s, "drive_window_s": drive_window_s,
         }
+        given = in_parts(given)
         _need(array, Array, "array")
         all_of_them = placed(plans)
         sound = all_of_them[0][1]._core.sound if all_of_them else {}
