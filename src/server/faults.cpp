@@ -23,7 +23,7 @@ struct translation {
 };
 
 // What the library calls its fields, in advice.
-constexpr std::array<translation, 13> in_advice{{{"fit_strokes() scales it to the array, ", ""},
+constexpr std::array<translation, 15> in_advice{{{"fit_strokes() scales it to the array, ", ""},
                                                  {"soa_s", "options.soa"},
                                                  {"burst_s", "options.burst"},
                                                  {"carrier_hz", "options.carrier"},
@@ -35,10 +35,12 @@ constexpr std::array<translation, 13> in_advice{{{"fit_strokes() scales it to th
                                                  {"algorithm = ", "options.algorithm "},
                                                  {"snap = true", "options.snap true"},
                                                  {"drop_points = true", "options.drop_points true"},
+                                                 {"sigma_mm", "options.sigma_mm"},
+                                                 {"sigma_v_mm_s", "options.sigma_v_mm_s"},
                                                  {"array = FILE", "another array of the server"}}};
 
 // What it is about, by how it begins.
-constexpr std::array<translation, 21> subjects{{{"soa_s", "options.soa"},
+constexpr std::array<translation, 24> subjects{{{"soa_s", "options.soa"},
                                                 {"burst_s", "options.burst"},
                                                 {"duration of a burst", "options.burst"},
                                                 {"carrier_hz", "options.carrier"},
@@ -56,6 +58,9 @@ constexpr std::array<translation, 21> subjects{{{"soa_s", "options.soa"},
                                                 {"release_s", "options.release"},
                                                 {"intensity_scale", "options.intensity_scale"},
                                                 {"stevens_exponent", "options.stevens_exponent"},
+                                                {"compensation", "options.compensate"},
+                                                {"sigma_mm", "options.sigma_mm"},
+                                                {"sigma_v_mm_s", "options.sigma_v_mm_s"},
                                                 {"algorithm", "options.algorithm"},
                                                 {"texture", "options.texture"},
                                                 {"live_options", "options"}}};

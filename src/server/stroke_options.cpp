@@ -68,6 +68,14 @@ waveform named_wave(const json& v, const std::string& what, waveform before)
     return w;
 }
 
+bool compensation(const json& v, const std::string& what)
+{
+    const std::string& name = text(v, what);
+    if (name != "none" && name != "low-speed")
+        bad_param(what, fmt::format("\"{}\" is not known", name), "one of none, low-speed");
+    return name != "none";
+}
+
 struct option {
     std::string_view name;
     bool live; ///< strokes that are fed point by point know it
@@ -158,6 +166,16 @@ constexpr std::array options{
            [](set& s, const json& v, const std::string& w) {
                s.plan.scale.exponent = number(v, w, of::stevens_exponent);
            }},
+    option{"compensate", false,
+           [](set& s, const json& v, const std::string& w) { s.compensate = compensation(v, w); }},
+    option{"sigma_mm", false,
+           [](set& s, const json& v, const std::string& w) {
+               s.low_speed.sigma_mm = number(v, w, least_sigma_mm, most_sigma_mm);
+           }},
+    option{"sigma_v_mm_s", false,
+           [](set& s, const json& v, const std::string& w) {
+               s.low_speed.sigma_v_mm_s = number(v, w, least_sigma_v_mm_s, most_sigma_v_mm_s);
+           }},
 };
 
 void check_pair(const json& given, const char* a, const char* b)
@@ -189,6 +207,10 @@ stroke_settings with_options(stroke_settings s, const json& given, options_for w
             bad_param(what, "a live stroke does not know it", "its points say when it is where");
         o->put(s, value, what);
     }
+    for (const char* name : {"sigma_mm", "sigma_v_mm_s"})
+        if (given.contains(name) && !s.compensate)
+            bad_param(fmt::format("options.{}", name), "nothing here uses it",
+                      "add options.compensate low-speed");
     if (given.contains("slope") || given.contains("intercept")) {
         timing_profile& p = s.plan.profile;
         p.max_soa_s = p.intercept_s / (1.0 - p.slope);

@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include <tactor/observer.hpp>
 #include <tactor/plan.hpp>
 #include <tactor/render.hpp>
 
@@ -18,6 +19,8 @@ struct stroke_settings {
     render_options render = {};
     std::optional<double> duration_s = {};
     std::optional<double> speed_mm_s = {};
+    bool compensate = false; ///< for low_speed
+    low_speed_observer low_speed = {};
 };
 
 /// What strokes that are not planned ahead know.

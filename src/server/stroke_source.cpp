@@ -213,7 +213,12 @@ planned make_planned(const planning& with, const layout& faces, const json& para
         };
         for (const stroke& k : p.strokes) {
             between();
-            p.plans.push_back({make_plan(with.tactors, faces, k, s.plan), k.start_s, k.anchor});
+            if (s.compensate) {
+                p.moved.push_back(make_compensated_plan(with.tactors, faces, k, s.plan, s.low_speed));
+                p.plans.push_back({std::move(p.moved.back().schedule), k.start_s, k.anchor});
+            } else {
+                p.plans.push_back({make_plan(with.tactors, faces, k, s.plan), k.start_s, k.anchor});
+            }
             const plan& made = p.plans.back().schedule;
             check_level(with, s, loudest(k, made, s.plan.scale), made.carrier_hz, source);
         }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <tactor/array.hpp>
+#include <tactor/observer.hpp>
 #include <tactor/phantom.hpp>
 #include <tactor/plan.hpp>
 #include <tactor/render.hpp>
@@ -35,6 +36,8 @@ struct planned {
     std::vector<stroke> strokes;
     std::vector<placed_plan> plans;
     render_options render;
+    /// What `compensate` did to each plan; empty without it. Their schedules are moved to `plans`.
+    std::vector<compensated_plan> moved = {};
 
     /// Start of each plan, s from the start of all.
     std::vector<double> starts_s() const;

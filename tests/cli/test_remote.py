@@ -42,6 +42,20 @@ class Remote(ToolTest):
         self.assertEqual(record["strokes"][1]["frames"], 9600)
         self.assertEqual((record["schema"], record["device"]["pcm"]), ("tactor-play/1", "null"))
 
+    def test_bursts_are_moved_through_a_server(self):
+        s = self.serve()
+        move = ("--compensate", "low-speed", "--sigma-mm", "8", "--phantom", "barycentric")
+        here = self.ok("play", "park2016-1", *move, "--duration", "0.4")
+        there = self.ok("play", "park2016-1", *move, "--duration", "0.4", "--socket", s.where["socket"])
+        moved = [line for line in here.stderr.splitlines() if "bursts are moved" in line]
+        self.assertEqual(len(moved), 1)
+        self.assertIn(moved[0], there.stderr.splitlines())
+        options = {"compensate": "low-speed", "sigma_mm": 8, "phantom": "barycentric", "duration": 0.4}
+        record = s.client().ok("plan", stroke="park2016-1", options=options)
+        self.assertEqual(record["compensation"], self.plan("park2016-1", *move, "--duration", "0.4")["compensation"])
+        self.refused(2, "play", "park2016-1", "--sigma-mm", "8", "--socket", s.where["socket"],
+                     says=("--sigma-mm", "--compensate low-speed"))
+
     def test_the_users_socket_is_found(self):
         env = {"XDG_RUNTIME_DIR": str(self.dir)}
         s = self.serve(env=env)
@@ -60,7 +74,7 @@ class Remote(ToolTest):
             self.refused(2, "play", "park2016-1", option, value, "--socket", s.where["socket"], says=(f"tactor: {option}: ",))
         self.refused(2, "play", "--path", "M 0 0 L 400 0", "--socket", s.where["socket"], says=("--path", "--outside"))
         for option in (("--array", "palm-3x3"), ("-D", "null"), ("--fit",), ("--rate", "48000"),
-                       ("--compensate", "low-speed"), ("--power-dbfs", "3"), ("--max-drive-s", "3"), ("--drive-window-s", "9"),
+                       ("--power-dbfs", "3"), ("--max-drive-s", "3"), ("--drive-window-s", "9"),
                        ("--require-realtime",), ("--no-gpio",), ("--latency-ms", "5"), ("--period-frames", "96"), ("--periods", "3"),
                        ("--reopen-s", "1"), ("--sync-delay-ms", "3"), ("--log", "x.log"), ("--verbose",)):
             self.refused(2, "play", "park2016-1", *option, "--socket", s.where["socket"], says=("--socket", {"-D": "--device"}.get(option[0], option[0])))
@@ -216,7 +230,8 @@ class Remote(ToolTest):
         self.ok("play", "--live", "-", "-D", "null", "--smooth", "0.1", stdin="10 10\n20 20\n")
         self.refused(2, "play", "--live", "-", "-D", "null", "--smooth", "2", says=("--smooth", "0 to 1 s"))
         self.refused(2, "play", "park2016-1", "-D", "null", "--smooth", "0.1", says=("--smooth", "--live"))
-        self.refused(2, "play", "--live", "-", "--duration", "1", says=("--duration",))
+        for option in (("--duration", "1"), ("--compensate", "low-speed"), ("--sigma-mm", "3")):
+            self.refused(2, "play", "--live", "-", *option, says=(option[0], "a live stroke does not know it"))
         self.refused(2, "play", "--live", "-", "--level-dbfs", "-1", "--array", "none.toml", says=("none.toml",))
 
     def test_ctrl_c_ends_a_live_stroke(self):

@@ -70,6 +70,9 @@ TEST_CASE("options are put over the owner's, each with its type")
                                             {"envelope", "tukey:0.25"},
                                             {"intensity_scale", "stevens"},
                                             {"stevens_exponent", 0.9},
+                                            {"compensate", "low-speed"},
+                                            {"sigma_mm", 8},
+                                            {"sigma_v_mm_s", 150},
                                             {"level_dbfs", -20}},
                                            options_for::planned);
     CHECK(s.plan.algorithm == algorithm_kind::tactile_brush);
@@ -90,6 +93,8 @@ TEST_CASE("options are put over the owner's, each with its type")
     CHECK(s.plan.am == modulation{20.0, 0.5});
     CHECK(envelope_text(s.render.envelope) == "tukey:0.25");
     CHECK(s.plan.scale == intensity_scale{scale_kind::stevens, 0.9, 0.0});
+    CHECK(s.compensate);
+    CHECK(s.low_speed == low_speed_observer{8.0, 150.0});
     CHECK(s.render.level_dbfs == -20.0);
     CHECK_FALSE(s.render.sl_db);
 }
@@ -122,6 +127,46 @@ TEST_CASE("what is refused names its parameter")
     CHECK(what_of({{"path", "M 0 0 L 400 0"}}) == "path");
     CHECK(what_of({{"toml", "stroke"}}) == "toml");
     CHECK(what_of({{"csv", "t_s,x_mm,y_mm\n0,0,0\n"}}) == "csv");
+}
+
+TEST_CASE("bursts are moved for the low-speed observer where it is asked for")
+{
+    planning p = palm();
+    const layout faces(p.tactors);
+    json params{{"stroke", "park2016-3"},
+                {"options", {{"compensate", "low-speed"}, {"sigma_mm", 8}, {"phantom", "barycentric"}}}};
+    plan_options o;
+    o.phantom = phantom_kind::barycentric;
+    const compensated_plan wanted =
+        make_compensated_plan(p.tactors, faces, preset_stroke("park2016-3"), o, {.sigma_mm = 8.0});
+    const planned made = make_planned(p, faces, params);
+    REQUIRE(made.moved.size() == 1);
+    CHECK(made.plans.front().schedule == wanted.schedule);
+    CHECK(made.moved.front().taps == wanted.taps);
+    CHECK(made.warnings() == wanted.schedule.warnings);
+
+    // The owner's configuration may ask for it; a client may not want it.
+    p.owner.compensate = true;
+    CHECK(make_planned(p, faces, {{"stroke", "park2016-3"}}).moved.size() == 1);
+    CHECK(make_planned(p, faces, {{"stroke", "park2016-3"}, {"options", {{"compensate", "none"}}}})
+              .moved.empty());
+    p.owner.compensate = false;
+
+    const auto refused = [&](const char* name, const json& value) {
+        return what_of({{"stroke", "park2016-3"}, {"options", {{name, value}}}});
+    };
+    CHECK(refused("compensate", "lowspeed") == "options.compensate");
+    CHECK(refused("compensate", true) == "options.compensate");
+    CHECK(refused("sigma_mm", 8) == "options.sigma_mm");
+    CHECK(refused("sigma_v_mm_s", 8) == "options.sigma_v_mm_s");
+    params["options"]["algorithm"] = "continuous";
+    CHECK(what_of(params) == "options.algorithm");
+    params["options"]["algorithm"] = "park2016";
+    params["options"]["sigma_mm"] = 1e6;
+    CHECK(what_of(params) == "options.sigma_mm");
+    CHECK(fault_from([&] {
+              with_options({}, {{"compensate", "low-speed"}}, options_for::live);
+          }).what == "options.compensate");
 }
 
 TEST_CASE("messages speak the protocol's words")

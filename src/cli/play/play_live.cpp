@@ -19,8 +19,8 @@ void check_live(const settings& s, const option_list& options, const play_option
     if (s.strokes.size() != 1 || s.strokes.front() != "-" || s.path_data)
         throw error(error_kind::bad_input, "--live", "it takes its points from standard input",
                     "give - as the only STROKE: tactor play --live -");
-    for (const char* name :
-         {"duration", "speed", "timing", "fit", "fit-margin", "snap", "drop-points", "overlap"})
+    for (const char* name : {"duration", "speed", "timing", "fit", "fit-margin", "snap", "drop-points",
+                             "overlap", "compensate", "sigma-mm", "sigma-v-mm-s"})
         if (options.given(name))
             throw error(error_kind::bad_input, fmt::format("--{}", name), "a live stroke does not know it",
                         "its points say when it is where");

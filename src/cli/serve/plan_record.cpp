@@ -46,7 +46,7 @@ std::string plan_record(const server::planned& p, const environment& e, std::siz
         throw std::bad_alloc();
     bool whole = true;
     try {
-        const piece one{p.name, p.strokes, p.plans, {}};
+        const piece one{p.name, p.strokes, p.plans, {}, p.moved};
         print_json(out, one, e, make_score(one, e, p.render), p.render);
     } catch (const std::system_error&) { // of a write that was refused
         whole = false;

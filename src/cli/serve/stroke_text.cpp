@@ -130,6 +130,9 @@ net::json options_of(const settings& s, const option_list& options)
     put("release", "release", s.render.envelope.release_s.value_or(0.0));
     put("intensity-scale", "intensity_scale", to_string(s.plan.scale.kind));
     put("stevens-exponent", "stevens_exponent", s.plan.scale.exponent);
+    put("compensate", "compensate", s.compensate ? "low-speed" : "none");
+    put("sigma-mm", "sigma_mm", s.low_speed.sigma_mm);
+    put("sigma-v-mm-s", "sigma_v_mm_s", s.low_speed.sigma_v_mm_s);
     put("phase", "phase", to_string(s.render.phase));
     put("ramp", "ramp", s.render.ramp_s.value_or(0.0));
     put("level-dbfs", "level_dbfs", s.render.level_dbfs);
