@@ -23,8 +23,8 @@ constexpr phantom_kind followed[] = {phantom_kind::inverse_distance, phantom_kin
 
 struct counted {
     unsigned places = 0;
-    unsigned held = 0; ///< by what was known of an earlier one
-    unsigned on_segments = 0;
+    unsigned held = 0;        ///< by what was known of an earlier one
+    unsigned on_segments = 0; ///< of these
 };
 
 /// From one place of the array to another in even steps.
@@ -45,7 +45,7 @@ void walk(const phantom_model& model, const layout& l, point from, point to, uns
             continue;
         }
         ++count.held;
-        count.on_segments += seen.count == 2 ? 1 : 0;
+        count.on_segments += seen.on_segment ? 1 : 0;
         detail::drives_of_same(three, l, seen, p, 0.7, drives);
         REQUIRE(drives == anew);
     }
@@ -71,24 +71,27 @@ TEST_CASE("in arrays of all kinds, a target that is followed has the same drives
 
 TEST_CASE("in arrays of all kinds, a target that goes from tactor to tactor has the same drives to the bit")
 {
-    generator g(2017);
-    counted all;
-    for (int round = 0; round < rounds(900); ++round) {
-        const array a = some_array(g, static_cast<unsigned>(round) % kinds_of_array);
-        const layout l(a);
-        const auto model = make_phantom(phantom_kind::inverse_distance, l);
-        const auto last = static_cast<unsigned>(a.tactors.size()) - 1;
-        // Beside the segment by some of what counts as on it, too.
-        const double beside = 1e-6 * static_cast<double>(pick(g, 0, 12)) / 10.0;
-        const point from = a.tactors[pick(g, 0, last)].position;
-        const point to = a.tactors[pick(g, 0, last)].position;
-        walk(*model, l, {from.x_mm + beside, from.y_mm - beside}, {to.x_mm + beside, to.y_mm - beside},
-             pick(g, 1, 2000), all);
+    for (const phantom_kind k : followed) {
+        CAPTURE(to_string(k));
+        generator g(2017);
+        counted all;
+        for (int round = 0; round < rounds(900); ++round) {
+            const array a = some_array(g, static_cast<unsigned>(round) % kinds_of_array);
+            const layout l(a);
+            const auto model = make_phantom(k, l);
+            const auto last = static_cast<unsigned>(a.tactors.size()) - 1;
+            // Beside the segment by some of what counts as on it, to either side, too.
+            const double beside = 1e-6 * (static_cast<double>(pick(g, 0, 24)) - 12.0) / 10.0;
+            const point from = a.tactors[pick(g, 0, last)].position;
+            const point to = a.tactors[pick(g, 0, last)].position;
+            walk(*model, l, {from.x_mm + beside, from.y_mm - beside}, {to.x_mm + beside, to.y_mm - beside},
+                 pick(g, 1, 2000), all);
+        }
+        CHECK(all.on_segments > all.places / 50);
     }
-    CHECK(all.on_segments > all.places / 10);
 }
 
-TEST_CASE("a slow target seldom asks, on the border between two faces only where the model changes there")
+TEST_CASE("a slow target seldom asks, on the border between two faces as little")
 {
     const layout l(make_grid("3x3", 3, 3, 20.0, 20.0));
     for (const phantom_kind k : followed) {
@@ -99,10 +102,7 @@ TEST_CASE("a slow target seldom asks, on the border between two faces only where
         CHECK(inside.held > 9'500);
         counted on_the_row;
         walk(*model, l, {0.0, 20.0}, {40.0, 20.0}, 10'000, on_the_row);
-        if (k == phantom_kind::inverse_distance)
-            CHECK(on_the_row.held > 9'500);
-        else
-            CHECK(on_the_row.held == 0);
+        CHECK(on_the_row.held > 9'500);
     }
 }
 

@@ -48,6 +48,14 @@ weights_of_three in_triangle(const layout::impl& l, const rank_triple& t, point 
     return on_segment(l, t[best], t[(best + 1) % 3], p);
 }
 
+bool is_edge(const std::vector<unsigned>& ring, rank_pair ends)
+{
+    for (std::size_t i = 0; i < ring.size(); ++i)
+        if (rank_pair(std::minmax(ring[i], ring[(i + 1) % ring.size()])) == ends)
+            return true;
+    return false;
+}
+
 /// Barycentric coordinates in the Delaunay triangle of p, and what is made of them.
 class on_triangle final : public model_of_three {
 public:
@@ -86,10 +94,30 @@ public:
         return wound ? free_mm(l, *face, p, false) : 0.0;
     }
 
+    // Of an edge between faces: of the fan's other sides, the side of them decides.
+    double three_along(point p, rank_triple& three, rank_pair& on) const override
+    {
+        const layout::impl& l = detail::access::of(layout_);
+        std::vector<unsigned> faces;
+        l.faces_at(p, faces);
+        if (tactor_at(l, faces, p) || l.faces[faces.front()].size() < 3)
+            return 0.0;
+        const auto found = segment_at(l, faces, p);
+        if (!found || !is_edge(l.faces[faces.front()], *found))
+            return 0.0;
+        on = *found;
+        three = fan_triangle(l, faces.front(), p);
+        return free_along_mm(l, faces, on, p);
+    }
+
     std::array<double, 3> amplitudes(const rank_triple& three, point p, double a_v) const override
     {
-        const weights_of_three w = settled(in_triangle(detail::access::of(layout_), three, p));
-        return {amplitude(w[0].b) * a_v, amplitude(w[1].b) * a_v, amplitude(w[2].b) * a_v};
+        // Beside the triangle they come in an order of their own.
+        std::array<double, 3> out{};
+        for (const weight& w : settled(in_triangle(detail::access::of(layout_), three, p)))
+            if (const double a = amplitude(w.b) * a_v; a > 0.0)
+                out[w.rank == three[0] ? 0 : w.rank == three[1] ? 1 : 2] = a;
+        return out;
     }
 
 private:

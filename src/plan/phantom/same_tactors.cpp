@@ -29,20 +29,24 @@ void add_drives(const std::array<double, N>& amplitudes, const layout& l, const 
     }
 }
 
-// The three, or the two, that the model takes from p on.
+// The three or two that the model takes from p on.
 void take_around(const model_of_three& m, const layout::impl& l, point p, same_tactors& seen)
 {
     seen.count = 3;
+    seen.on_segment = false;
     seen.radius_mm = std::max(m.three_around(p, seen.ranks), 0.0);
     if (seen.radius_mm > 0.0)
         return;
-    rank_pair two{};
-    seen.radius_mm = std::max(m.two_around(p, two), 0.0);
-    if (seen.radius_mm == 0.0)
-        return;
-    seen.count = 2;
-    seen.ranks = {two.first, two.second, 0};
-    seen.ends = {l.points[two.first], l.points[two.second]};
+    seen.on_segment = true;
+    rank_pair on{};
+    seen.radius_mm = std::max(m.three_along(p, seen.ranks, on), 0.0);
+    if (seen.radius_mm == 0.0) {
+        seen.radius_mm = std::max(m.two_around(p, on), 0.0);
+        seen.count = 2;
+        seen.ranks = {on.first, on.second, 0};
+    }
+    if (seen.radius_mm > 0.0)
+        seen.ends = {l.points[on.first], l.points[on.second]};
 }
 
 } // namespace
@@ -50,6 +54,11 @@ void take_around(const model_of_three& m, const layout::impl& l, point p, same_t
 bool same_tactors::is_on_segment(point p) const noexcept
 {
     return segment_distance_mm(ends[0], ends[1], p) <= surely_on_mm;
+}
+
+double model_of_three::three_along(point, rank_triple&, rank_pair&) const
+{
+    return 0.0;
 }
 
 double model_of_three::two_around(point, rank_pair&) const

@@ -13,14 +13,15 @@
 
 namespace tactor::detail {
 
-/// Where a model takes the same tactors: three in a disc, or two on what of the segment between them lies in
-/// a disc. Belongs to one reader.
+/// Where a model takes the same tactors: three in a disc, or three or two on what of a segment between
+/// tactors lies in a disc. Belongs to one reader.
 struct same_tactors {
     point centre = {};
     double radius_mm = 0.0;                    ///< 0: nothing is known
     rank_triple ranks = {};                    ///< in the model's order
     std::array<std::uint8_t, 3> by_index = {}; ///< places in `ranks`, by the tactors' indices
     unsigned count = 3;                        ///< 2: they are the ends of the segment
+    bool on_segment = false;                   ///< not in all of the disc
     std::array<point, 2> ends = {};            ///< of the segment
     unsigned in_vain = 0;                      ///< so many next places are not asked about
 
@@ -28,14 +29,15 @@ struct same_tactors {
     {
         const double dx = p.x_mm - centre.x_mm;
         const double dy = p.y_mm - centre.y_mm;
-        return dx * dx + dy * dy < radius_mm * radius_mm && (count == 3 || is_on_segment(p));
+        return dx * dx + dy * dy < radius_mm * radius_mm && (!on_segment || is_on_segment(p));
     }
 
 private:
     bool is_on_segment(point p) const noexcept;
 };
 
-/// A model that takes three tactors nearly everywhere, and may take two on the segment between them.
+/// A model that takes three tactors nearly everywhere, and on a segment between two of them the same three or
+/// those two.
 class model_of_three : public phantom_model {
 public:
     /// The three tactors that it takes at p and around it; returns how far around, mm. 0 where it does not
@@ -43,6 +45,10 @@ public:
     virtual double three_around(point p, rank_triple& three) const = 0;
     /// What weights() gives them, in their order, within that disc.
     virtual std::array<double, 3> amplitudes(const rank_triple& three, point p, double a_v) const = 0;
+
+    /// The three tactors that it takes at p, which is on the segment between the two `on`; returns how far
+    /// along it, mm. 0 where it does not. As it stands here: nowhere.
+    virtual double three_along(point p, rank_triple& three, rank_pair& on) const;
 
     /// The two tactors that it takes at p, which is on the segment between them; returns how far along it,
     /// mm. 0 where it does not. As it stands here: nowhere.
