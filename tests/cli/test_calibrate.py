@@ -511,10 +511,12 @@ class BadInput(CalibrateTest):
         self.refused(3, *Person.ARGS, "--keypad", "/dev/input/nobody", says=["/dev/input/nobody: No such file"])
         self.bad("--keypad", "/dev/input/event0", says=["--keypad: nobody is asked"])
 
-    def test_a_device_that_is_not_there_leaves_no_trace_in_the_way(self):
+    def test_what_ends_before_an_answer_leaves_no_trace(self):
         args = ("calibrate", "--participant", "P07", "-o", "me.toml", "--tactors", 0)
         self.refused(3, *args, "-D", "hw:CARD=Nowhere", says=["hw:CARD=Nowhere"])
         self.refused(1, *args, "-D", "null", says=["trial 1: no answer"])
+        self.assertEqual(list(self.dir.glob("me.*")), [])
+        self.refused(1, *args, "-D", "null", stdin="1\n", says=["trial 2: no answer"])
         self.assertEqual(json.loads((self.dir / "me.json").read_text())["participant"], "P07")
 
 

@@ -125,6 +125,11 @@ TEST_CASE("where nothing was answered a session is begun anew, on other terms to
 {
     const folder f;
     run(f / "a.tsv", false, settings(), 0);
+    CHECK_FALSE(fs::exists(f / "a.tsv"));
+    CHECK_FALSE(fs::exists(f / "a.json"));
+    // As one that was killed leaves it.
+    put(f / "a.tsv", std::string(log_header()) + "\n");
+    put(f / "a.json", settings_text(settings()));
     calibration_settings other = settings();
     other.carrier_hz = 100.0;
     const outcome again = run(f / "a.tsv", false, other);

@@ -173,8 +173,11 @@ int calibrate(settings& s, option_list& options, calibrate_options& o)
     else if (!c.done())
         signal = ask_person(c, log, s, e, o);
     if (signal != 0) {
-        say(stderr, "tactor: ended before trial {}: what was answered is in {}, and --resume goes on\n",
-            c.next().number, o.log);
+        if (c.next().number == 1)
+            say(stderr, "tactor: ended before trial 1: nothing was answered\n");
+        else
+            say(stderr, "tactor: ended before trial {}: what was answered is in {}, and --resume goes on\n",
+                c.next().number, o.log);
         return interrupt::status(signal);
     }
     return write_result(o, e, besides, c);

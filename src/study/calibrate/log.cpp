@@ -3,6 +3,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <system_error>
 #include <utility>
 
 #include <fcntl.h>
@@ -85,8 +86,30 @@ calibration_log::calibration_log(fs::path file, bool resume, calibration_setting
         else
             parse_settings(beginning, tried);
     }
+    const bool is_new = !there(file_) && !there(settings_file(file_));
     open();
-    settle(resume, s);
+    try {
+        settle(resume, s);
+    } catch (...) {
+        remove_empty(is_new);
+        throw;
+    }
+    made_ = is_new;
+}
+
+calibration_log::~calibration_log()
+{
+    remove_empty(made_);
+}
+
+// Locked: nobody else writes them.
+void calibration_log::remove_empty(bool made) const noexcept
+{
+    if (!made || !lines_.empty())
+        return;
+    std::error_code ignored;
+    fs::remove(settings_file(file_), ignored);
+    fs::remove(file_, ignored);
 }
 
 void calibration_log::fail(int code) const
@@ -175,6 +198,7 @@ void calibration_log::write(const std::string& text)
 void calibration_log::append(const calibration_record& r)
 {
     write(log_line(r) + '\n');
+    made_ = false;
 }
 
 } // namespace tactor::study

@@ -36,6 +36,8 @@ public:
     /// \throws error: bad_input where a log is there already (not `resume`), it is in use, it is none, or
     ///         it was begun otherwise; runtime for what the system refuses.
     calibration_log(std::filesystem::path file, bool resume, calibration_settings& s);
+    /// A log that it made, and in which nothing was answered, is no more.
+    ~calibration_log();
     calibration_log(const calibration_log&) = delete;
     calibration_log& operator=(const calibration_log&) = delete;
 
@@ -48,6 +50,7 @@ public:
 
 private:
     void open();
+    void remove_empty(bool made) const noexcept;
     std::string take_whole_lines();
     void settle(bool resume, calibration_settings& s);
     void write(const std::string& text);
@@ -56,6 +59,7 @@ private:
     std::filesystem::path file_;
     detail::owned_fd fd_;
     bool synced_;
+    bool made_ = false; ///< here, with nothing in it yet
     std::vector<std::string> lines_ = {};
 };
 
