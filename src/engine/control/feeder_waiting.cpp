@@ -149,8 +149,6 @@ void feeder::begun(active& a, std::uint64_t frame)
 {
     a.begun = true;
     a.base = frame;
-    if (keeps_beginnings_)
-        beginnings_.push_back({a.id, frame});
     if (begins_ && a.music)
         for (const std::uint64_t start : a.music->starts())
             begins_(a.id, frame + start);
@@ -162,6 +160,9 @@ void feeder::begun(active& a, std::uint64_t frame)
         a.late_s = static_cast<double>(frame - a.at) / a.music->rate();
     else if (!a.due_ns)
         a.late_s = 0.0;
+    // Last: without memory the report is handled once more, and nobody is told twice.
+    if (keeps_beginnings_)
+        beginnings_.push_back({a.id, frame});
 }
 
 void feeder::over(const active& a, const report& r)
