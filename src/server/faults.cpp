@@ -158,7 +158,8 @@ void only(const json& params, std::initializer_list<std::string_view> known)
         bad_param("params", "they are a list", "name them: an object");
     for (const auto& [name, value] : params.items())
         if (std::find(known.begin(), known.end(), name) == known.end())
-            bad_param(name, "there is no such parameter",
+            bad_param(name.empty() ? "params" : name,
+                      name.empty() ? "one of them has no name" : "there is no such parameter",
                       known.size() == 0 ? "it takes none" : fmt::format("one of {}", fmt::join(known, ", ")));
 }
 

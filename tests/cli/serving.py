@@ -169,5 +169,6 @@ class ServeTest(ToolTest):
         self.assertEqual(error["code"], code, error)
         self.assertEqual(set(error["data"]), {"kind", "what", "why", "hint"})
         self.assertNotIn("--", json.dumps(error))
+        self.assertTrue(error["data"]["what"] and error["data"]["why"], error)
         if what is not None:
             self.assertEqual(error["data"]["what"], what, error)

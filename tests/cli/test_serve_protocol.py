@@ -33,6 +33,7 @@ class Protocol(ServeTest):
                 (b'{"jsonrpc":"2.0","id":4,"method":"status","params":1}', -32600, 4),
                 (b'{"jsonrpc":"2.0","id":[],"method":"status"}', -32600, None),
                 (b'{"jsonrpc":"2.0","id":5,"method":"status","params":{"x":1}}', -32602, 5),
+                (b'{"jsonrpc":"2.0","id":6,"method":"play","params":{"path":"M 0 0 L 9 9","":1}}', -32602, 6),
                 (b"[" * 65, -32001, None),
                 (json.dumps([{"jsonrpc": "2.0", "method": "status"}] * 65).encode(), -32001, None)):
             r = answer(raw)
