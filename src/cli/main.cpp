@@ -180,7 +180,8 @@ int main(int argc, char** argv)
     } catch (const tactor::error& e) {
         if (is_unread(e))
             return status_unread;
-        say_error("tactor: {}\n", in_options(e).what());
+        const tactor::error said = in_options(e);
+        say_error("tactor: {}{}\n", said.subject().empty() ? R"("")" : "", said.what()); // an empty name
         return status_of(e.kind());
     } catch (const std::system_error& e) {
         if (std::ferror(stdout) != 0) // of fmt::print

@@ -130,6 +130,10 @@ class CommandLine(ToolTest):
         self.refused(2, "plan", "park2016-1", "--rate", "48000.5", says=["--rate: 48000.5 is not a whole number (give one, as 48000)"])
         self.refused(2, "play", "park2016-1", "--periods", "2.5", says=["--periods: 2.5 is not a whole number (give one, as 2)"])
         self.refused(2, "plan", "--path", "", says=["is empty (it starts with M x y)"])
+        for command in (("analyze", ""), ("report", ""), ("plan", "park2016-1", ""), ("devices", ""), ("plot", "park2016-1", "-o", "")):
+            self.refused(2, *command, says=['tactor: "": '])
+        for command in (("play", "park2016-1"), ("status",), ("stop",)):
+            self.refused(2, *command, "--socket", "", says=["tactor: --socket: the name is empty"])
         self.refused(2, "plan", "--path", "M 0 0,L 1 1", says=["'L' where a number is wanted (a number follows each comma)"])
         self.write("a.toml", '[array]\nname = "a"\ngrid = { rows = 2.0, columns = 2, pitch_mm = 9.0 }\n')
         self.refused(2, "plan", "park2016-1", "--array", "a.toml", says=["rows is 2.0 (give a whole number)"])
