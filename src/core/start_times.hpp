@@ -11,24 +11,26 @@
 
 namespace tactor::detail {
 
-/// Takes strokes in order: start() and lasts() of each. Seconds from the start of the piece.
+/// Takes strokes in order: start() and lasts() of each; one that only started is none of them yet. Seconds
+/// from the start of the piece.
 class start_times {
 public:
     /// When the next one starts. \throws error as resolve_start_s().
     double start(std::optional<double> start_s, const start_anchor& anchor)
     {
-        starts_s_.push_back(resolve_start_s(start_s, anchor, starts_s_, ends_s_));
-        return starts_s_.back();
+        return next_s_ = resolve_start_s(start_s, anchor, starts_s_, ends_s_);
     }
     /// How long it lasts; gives its end.
     double lasts(double duration_s)
     {
-        ends_s_.push_back(starts_s_.back() + duration_s);
+        starts_s_.push_back(next_s_);
+        ends_s_.push_back(next_s_ + duration_s);
         return ends_s_.back();
     }
     std::vector<double> all() && { return std::move(starts_s_); }
 
 private:
+    double next_s_ = 0.0;
     std::vector<double> starts_s_;
     std::vector<double> ends_s_;
 };

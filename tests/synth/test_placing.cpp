@@ -88,6 +88,16 @@ TEST_CASE("starts count from the start or the end of plans before")
     CHECK_THROWS_AS(score(row(2), {{p, {}}, {p, -0.1, {end, 1}}}), error);
 }
 
+TEST_CASE("a plan that was refused is none that starts count from")
+{
+    const plan p = make_plan({make_burst(0.0, 0.05, {{0, 0.5}})});
+    score_builder made(row(2), {});
+    made.add(p);
+    CHECK_THROWS_AS(made.add(p, 2e6), error);
+    made.add(p, 0.5, {start_from_kind::start, 1});
+    CHECK((made.take().starts() == std::vector<std::uint64_t>{0, 24000}));
+}
+
 TEST_CASE("strokes that are planned while they are placed have the samples of their plans")
 {
     const array a = preset_array("palm-3x3");
