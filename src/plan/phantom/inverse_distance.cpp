@@ -62,19 +62,15 @@ public:
         return at_distances({distance(three[0], p), distance(three[1], p), distance(three[2], p)}, a_v);
     }
 
-    double two_around(point p, rank_pair& two) const override
+    unsigned taken_along(const std::vector<unsigned>& faces, rank_pair on, point,
+                         rank_triple& taken) const override
     {
         const layout::impl& l = detail::access::of(layout_);
-        std::vector<unsigned> faces;
-        l.faces_at(p, faces);
         const auto is_large = [&](unsigned f) { return l.faces[f].size() > few; };
-        if (std::any_of(faces.begin(), faces.end(), is_large) || tactor_at(l, faces, p))
-            return 0.0;
-        const auto found = segment_at(l, faces, p);
-        if (!found)
-            return 0.0;
-        two = *found;
-        return free_along_mm(l, faces, two, p);
+        if (std::any_of(faces.begin(), faces.end(), is_large))
+            return 0;
+        taken = {on.first, on.second, 0};
+        return 2;
     }
 
     std::array<double, 2> amplitudes_of_two(const rank_pair& two, point p, double a_v) const override

@@ -94,20 +94,16 @@ public:
         return wound ? free_mm(l, *face, p, false) : 0.0;
     }
 
-    // Of an edge between faces: of the fan's other sides, the side of them decides.
-    double three_along(point p, rank_triple& three, rank_pair& on) const override
+    // Only along an edge of the face: of the fan's other sides, the side of them decides.
+    unsigned taken_along(const std::vector<unsigned>& faces, rank_pair on, point p,
+                         rank_triple& taken) const override
     {
         const layout::impl& l = detail::access::of(layout_);
-        std::vector<unsigned> faces;
-        l.faces_at(p, faces);
-        if (tactor_at(l, faces, p) || l.faces[faces.front()].size() < 3)
-            return 0.0;
-        const auto found = segment_at(l, faces, p);
-        if (!found || !is_edge(l.faces[faces.front()], *found))
-            return 0.0;
-        on = *found;
-        three = fan_triangle(l, faces.front(), p);
-        return free_along_mm(l, faces, on, p);
+        const unsigned face = faces.front();
+        if (l.faces[face].size() < 3 || !is_edge(l.faces[face], on))
+            return 0;
+        taken = fan_triangle(l, face, p);
+        return 3;
     }
 
     std::array<double, 3> amplitudes(const rank_triple& three, point p, double a_v) const override

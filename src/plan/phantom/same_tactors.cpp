@@ -37,16 +37,15 @@ void take_around(const model_of_three& m, const layout::impl& l, point p, same_t
     seen.radius_mm = std::max(m.three_around(p, seen.ranks), 0.0);
     if (seen.radius_mm > 0.0)
         return;
+    std::vector<unsigned> faces;
+    l.faces_at(p, faces);
+    const auto on = tactor_at(l, faces, p) ? std::nullopt : segment_at(l, faces, p);
+    if (!on)
+        return;
     seen.on_segment = true;
-    rank_pair on{};
-    seen.radius_mm = std::max(m.three_along(p, seen.ranks, on), 0.0);
-    if (seen.radius_mm == 0.0) {
-        seen.radius_mm = std::max(m.two_around(p, on), 0.0);
-        seen.count = 2;
-        seen.ranks = {on.first, on.second, 0};
-    }
-    if (seen.radius_mm > 0.0)
-        seen.ends = {l.points[on.first], l.points[on.second]};
+    seen.count = m.taken_along(faces, *on, p, seen.ranks);
+    seen.radius_mm = seen.count > 0 ? std::max(free_along_mm(l, faces, *on, p), 0.0) : 0.0;
+    seen.ends = {l.points[on->first], l.points[on->second]};
 }
 
 } // namespace
@@ -54,16 +53,6 @@ void take_around(const model_of_three& m, const layout::impl& l, point p, same_t
 bool same_tactors::is_on_segment(point p) const noexcept
 {
     return segment_distance_mm(ends[0], ends[1], p) <= surely_on_mm;
-}
-
-double model_of_three::three_along(point, rank_triple&, rank_pair&) const
-{
-    return 0.0;
-}
-
-double model_of_three::two_around(point, rank_pair&) const
-{
-    return 0.0;
 }
 
 std::array<double, 2> model_of_three::amplitudes_of_two(const rank_pair&, point, double) const

@@ -46,13 +46,11 @@ public:
     /// What weights() gives them, in their order, within that disc.
     virtual std::array<double, 3> amplitudes(const rank_triple& three, point p, double a_v) const = 0;
 
-    /// The three tactors that it takes at p, which is on the segment between the two `on`; returns how far
-    /// along it, mm. 0 where it does not. As it stands here: nowhere.
-    virtual double three_along(point p, rank_triple& three, rank_pair& on) const;
-
-    /// The two tactors that it takes at p, which is on the segment between them; returns how far along it,
-    /// mm. 0 where it does not. As it stands here: nowhere.
-    virtual double two_around(point p, rank_pair& two) const;
+    /// How many tactors it takes, and which, at p, which is on the segment between the two `on` and on no
+    /// tactor: those two, or three; 0 where others may come a little farther along it. `faces` hold p.
+    virtual unsigned taken_along(const std::vector<unsigned>& faces, rank_pair on, point p,
+                                 rank_triple& taken) const = 0;
+    /// What weights() gives to two, within that.
     virtual std::array<double, 2> amplitudes_of_two(const rank_pair& two, point p, double a_v) const;
 };
 
