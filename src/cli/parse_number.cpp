@@ -64,6 +64,7 @@ std::string without_unit(const std::string& text, double v, std::string_view res
         return {};
     return fmt::format("give {} without a unit, as {}", unit == "s" ? "seconds" : unit, plain_number(meant));
 }
+
 } // namespace
 
 double parse_number(const std::string& what, const std::string& text, double lo, double hi,

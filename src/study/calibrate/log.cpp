@@ -86,26 +86,25 @@ calibration_log::calibration_log(fs::path file, bool resume, calibration_setting
         else
             parse_settings(beginning, tried);
     }
-    const bool is_new = !there(file_) && !there(settings_file(file_));
+    made_ = !there(file_) && !there(settings_file(file_));
     open();
     try {
         settle(resume, s);
     } catch (...) {
-        remove_empty(is_new);
+        remove_empty();
         throw;
     }
-    made_ = is_new;
 }
 
 calibration_log::~calibration_log()
 {
-    remove_empty(made_);
+    remove_empty();
 }
 
 // Locked: nobody else writes them.
-void calibration_log::remove_empty(bool made) const noexcept
+void calibration_log::remove_empty() const noexcept
 {
-    if (!made || !lines_.empty())
+    if (!made_ || !lines_.empty())
         return;
     std::error_code ignored;
     fs::remove(settings_file(file_), ignored);

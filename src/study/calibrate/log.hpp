@@ -50,7 +50,7 @@ public:
 
 private:
     void open();
-    void remove_empty(bool made) const noexcept;
+    void remove_empty() const noexcept;
     std::string take_whole_lines();
     void settle(bool resume, calibration_settings& s);
     void write(const std::string& text);
@@ -59,7 +59,7 @@ private:
     std::filesystem::path file_;
     detail::owned_fd fd_;
     bool synced_;
-    bool made_ = false; ///< here, with nothing in it yet
+    bool made_ = false; ///< here, and no answer is in it
     std::vector<std::string> lines_ = {};
 };
 
