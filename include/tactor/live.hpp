@@ -42,6 +42,7 @@ struct live_counts {
     std::uint64_t points = 0;  ///< taken by to()
     std::uint64_t outside = 0; ///< of these, moved to the nearest point of the array
     std::uint64_t limited = 0; ///< of these, with a tactor that was held at its channel's limit
+    std::uint64_t held = 0;    ///< of these, with an intensity above 1, which sounded as 1
 };
 
 /// The producer's end of a live stroke. Cheap to copy; all copies feed the same stroke, and a move is a copy.
@@ -52,8 +53,9 @@ class TACTOR_API live_stroke {
 public:
     [[nodiscard]] stroke_id id() const noexcept;
 
-    /// Moves the stroke to a place, mm, at an intensity (linear, 1 is the level that was asked for). When
-    /// several points arrive within one period, the newest counts.
+    /// Moves the stroke to a place, mm, at an intensity (linear, 1 is the level that was asked for). That
+    /// level is the ceiling: an intensity above 1 sounds as 1, and live_counts::held and
+    /// stroke_report::held_points count it. When several points arrive within one period, the newest counts.
     ///
     /// Continuous: the next period that is written begins to move the weights from the last point's to
     /// this one's. The move takes one period, at least continuous_step_s. The buffer's delay comes on top.

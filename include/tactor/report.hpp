@@ -91,6 +91,7 @@ struct stroke_report {
     /// passed; none when it never sounded (`frames` is 0).
     std::optional<std::int64_t> started_ns = {};
     std::optional<live_delay> delay = {}; ///< of a live stroke, once a point of it has sounded
+    std::uint64_t held_points = 0;        ///< of a live stroke: with an intensity above 1, which sounded as 1
 };
 
 /// How a stream ended.

@@ -21,6 +21,9 @@ namespace tactor {
 /// less than half a nanosecond, which is what rounding leaves.
 [[nodiscard]] std::string seconds_text(double s, int digits = 6);
 
+/// Says that a live stroke plays an intensity above 1 at 1; for the first such point of a stroke.
+[[nodiscard]] std::string held_text(double intensity);
+
 /// Without the capitals of A to Z: of names that not everybody tells apart by them.
 [[nodiscard]] std::string in_small_letters(std::string text);
 

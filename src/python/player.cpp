@@ -61,7 +61,7 @@ py::tuple tuple_of(const stroke_report& r)
             ? py::object(py::make_tuple(r.delay->points, r.delay->least_s, r.delay->mean_s, r.delay->most_s))
             : py::object(py::none());
     return py::make_tuple(r.id.number, std::string(to_string(r.state)), r.why, r.frames, started, r.late_s,
-                          delay);
+                          delay, r.held_points);
 }
 
 py::object next_event(player_handle& h)
@@ -194,7 +194,8 @@ void bind_live(py::module_& m)
         .def_property_readonly("open", [](const live_handle& l) { return l.stroke->open(); })
         .def("counts", [](const live_handle& l) {
             const live_counts c = l.stroke->counts();
-            return py::dict("points"_a = c.points, "outside"_a = c.outside, "limited"_a = c.limited);
+            return py::dict("points"_a = c.points, "outside"_a = c.outside, "limited"_a = c.limited,
+                            "held"_a = c.held);
         });
 }
 

@@ -124,7 +124,8 @@ void service::tell_stroke(stroke_record& r, std::string_view state, const stroke
                                                 {"frames", how.frames},
                                                 {"started_s", from(0)},
                                                 {"started_unix_s", from(unix_ns() - options_.now_ns())},
-                                                {"late_s", how.late_s}});
+                                                {"late_s", how.late_s},
+                                                {"held_points", how.held_points}});
     if (!r.released) {
         r.held.push_back(std::move(n));
         return;

@@ -2,6 +2,7 @@
 // begin, to, end.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -15,7 +16,6 @@ using net::reply_json;
 
 // Places beyond this are nonsense, and clamped or refused by the stroke.
 constexpr double farthest_mm = 1e6;
-constexpr double most_intensity = 1e6;
 
 } // namespace
 
@@ -119,7 +119,8 @@ void service::to(client& c, const json& params, const answer& to)
     const double x = need_number(params, "x_mm", -farthest_mm, farthest_mm);
     const double y = need_number(params, "y_mm", -farthest_mm, farthest_mm);
     const json* given = member(params, "intensity");
-    const double intensity = given == nullptr ? 1.0 : number(*given, "intensity", 0.0, most_intensity);
+    const double intensity =
+        given == nullptr ? 1.0 : number(*given, "intensity", 0.0, std::numeric_limits<double>::max());
     stroke_record& r = own_live(c, n);
     try {
         if (!r.live->to(x, y, intensity))

@@ -223,8 +223,10 @@ class Remote(ToolTest):
         self.assertEqual(delay["points"], 1)
         self.assertGreater(delay["least_s"], 0.0)
         self.assertEqual({delay["least_s"], delay["most_s"]}, {delay["mean_s"]})
-        for line, why in (("1\n", "words"), ("1 2 3 4\n", "words"), ("1 y\n", "not a number"), ("1 2 -1\n", "out of range"),
-                          ("1 nan\n", "not a number"), ("x" * 5000, "4096")):
+        for line, why in (("1\n", "1 word"), ("1 2 3 4\n", "words"), ("1 y\n", "not a number"), ("1 2 -1\n", "out of range"),
+                          ("1 inf\n", "not a number"), ("x" * 5000, "4096"), ("20,5 10\n", "\"20,5\" has a comma that could be a decimal one"),
+                          ("0.1,20,20\n", "\"0.1,20,20\" has a comma"), ("20 ,5\n", "\",5\" has a comma"), ("20, 5,\n", "\"5,\" has a comma"),
+                          ("20,, 5\n", "\"20,\" has a comma"), (", 20 5\n", "\",\" has a comma")):
             self.refused(2, "play", "--live", "-", "-D", "null", stdin="10 10\n" + line, says=("standard input:2:", why))
         self.refused(2, "play", "--live", "park2016-1", says=("--live",))
         self.ok("play", "--live", "-", "-D", "null", "--smooth", "0.1", stdin="10 10\n20 20\n")
@@ -233,6 +235,45 @@ class Remote(ToolTest):
         for option in (("--duration", "1"), ("--compensate", "low-speed"), ("--sigma-mm", "3")):
             self.refused(2, "play", "--live", "-", *option, says=(option[0], "a live stroke does not know it"))
         self.refused(2, "play", "--live", "-", "--level-dbfs", "-1", "--array", "none.toml", says=("none.toml",))
+
+    def test_an_intensity_above_1_sounds_as_1_and_is_said_once(self):
+        lines = "20 20 80\n20, 20, 0.5\n0.1 20 20\n"
+        warning = "tactor: warning: standard input:1: an intensity of 80 sounds as 1: the level asked for is the ceiling "
+        for where in (("-D", "null"), ("--socket", self.serve().where["socket"])):
+            r = self.ok("play", "--live", "-", *where, "--format", "json", stdin=lines)
+            self.assertEqual(r.stderr.count("sounds as 1"), 1, r.stderr)
+            self.assertIn(warning, r.stderr)
+            self.assertEqual(json.loads(r.stdout)["strokes"][0]["held_points"], 2)
+        r = self.ok("play", "--live", "-", "-D", "null", "--verbose", stdin=lines)
+        self.assertIn("live: played", r.stdout)
+        self.assertIn("; 2 points above intensity 1 sounded as 1\n", r.stdout)
+        self.assertRegex(r.stderr, "warning live stroke [0-9]+: 2 points above intensity 1 sounded as 1: the level asked for is the ceiling\n")
+
+    def test_nan_lifts_the_touch_until_the_next_point(self):
+        taken = []
+        path = str(self.dir / "records.sock")
+        with socket.socket(socket.AF_UNIX) as door:
+            door.bind(path)
+            door.listen()
+            p = self.begun("play", "--live", "-", "--socket", path)
+            p.stdin.write("nan nan\n10 10\n20\t15 0.5\nNaN nan\n nan -nan nan\n20 nan 1\nnan\n30, 30\n")
+            p.stdin.close()
+            p.stdin = None
+            with door.accept()[0] as peer, peer.makefile("rw", encoding="utf-8") as lines:
+                for line in lines:
+                    m = json.loads(line)
+                    reply = {"result": {"stream": {"format": None, "state": "running"}, "stroke": 1}}
+                    if m["method"] == "to":
+                        taken.append([m["params"][name] for name in ("x_mm", "y_mm", "intensity")])
+                    if m["method"] == "end":
+                        reply = {"method": "stroke", "params": {"stroke": 1, "state": "finished"} |
+                                 {"reason": "", "frames": 1, "started_s": None, "late_s": 0}}
+                    lines.write(json.dumps({"jsonrpc": "2.0"} | ({"id": m["id"]} if "id" in m else {}) | reply) + "\n")
+                    lines.flush()
+        out, err = p.communicate(timeout=PATIENCE_S)
+        self.assertEqual((p.returncode, err), (0, ""), out)
+        self.assertEqual(taken, [[10, 10, 1], [20, 15, 0.5], *[[20, 15, 0]] * 4, [30, 30, 1]])
+        self.ok("play", "--live", "-", "-D", "null", stdin="nan nan\n")
 
     def test_ctrl_c_ends_a_live_stroke(self):
         p = self.begun("play", "--live", "-", "-D", "null")

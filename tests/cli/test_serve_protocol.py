@@ -173,7 +173,8 @@ class Protocol(ServeTest):
         self.assertIsNotNone(c.stroke(n, "started"))
         self.assertEqual(c.ok("to", stroke=n, x_mm=20, y_mm=20, intensity=100), {})
         self.assertEqual(c.ok("end", stroke=n), {})
-        self.assertEqual(c.end_of(n)["state"], "finished")
+        end = c.end_of(n)
+        self.assertEqual((end["state"], end["held_points"]), ("finished", 1))
         self.check_error(c.error("to", stroke=n, x_mm=1, y_mm=1), -32002)
         n = c.ok("begin", timeout_s=0.01)["stroke"]
         self.assertEqual(c.end_of(n)["state"], "interrupted")

@@ -198,10 +198,21 @@ TEST_CASE("outside the array the nearest point plays, and is counted; or it is a
     CHECK(field({nan, 0.0}, 1.0) == "x_mm");
     CHECK(field({0.0, nan}, 1.0) == "y_mm");
     CHECK(field({0.0, 0.0}, nan) == "intensity");
-    CHECK(r.live->to({0.0, 0.0}, 1e300)); // held at the channel's limit
-    CHECK(r.live->limited_points == 1);
+    CHECK(r.live->to({0.0, 0.0}, 1e300)); // sounds as 1
+    CHECK(r.live->limited_points == 0);
     r.play(9600);
-    CHECK(peak(r.channel(0), 0, SIZE_MAX) <= 1.0);
+    CHECK(peak(r.channel(0), 0, SIZE_MAX) <= 2.0 * live_level * (1.0 + 1e-6)); // there are two strokes
+}
+
+TEST_CASE("a point is held at its channel's limit, and counted")
+{
+    live_rig r;
+    array a = palm();
+    a.tactors[0].max_dbfs = -20.0;
+    live_stroke::impl s({7}, a, layout(a), r.out->setup(), {});
+    CHECK(s.to({0.0, 0.0}, 1.0));
+    CHECK(s.to({40.0, 40.0}, 1.0));
+    CHECK(s.limited_points == 1);
 }
 
 TEST_CASE("options that cannot be are errors, which name their field")

@@ -175,7 +175,7 @@ TEST_CASE("the mean over the window, however the points came")
         double x = 0.0;
         for (std::uint64_t frame = 0; frame < 1000; ++frame) {
             if (frame == 0 || random() % 11 == 0) {
-                x = static_cast<double>(random() % 1000);
+                x = static_cast<double>(1 + random() % 1000);
                 s.to(frame, {{x, -x}, x});
                 s.to(frame, {{x, -x}, x}); // once more counts once
             }
@@ -187,12 +187,26 @@ TEST_CASE("the mean over the window, however the points came")
             const auto p = s.at(frame + 1);
             REQUIRE(p.at.x_mm == doctest::Approx(sum / static_cast<double>(w)));
             REQUIRE(p.at.y_mm == -p.at.x_mm);
-            REQUIRE(p.intensity == p.at.x_mm);
+            REQUIRE(p.intensity == doctest::Approx(p.at.x_mm));
         }
         s.to(2000, {{5.0, 0.0}, 1.0});
         CHECK(s.settles_in() == w);
         CHECK(s.at(2000 + w).at.x_mm == 5.0);
     }
+}
+
+TEST_CASE("after a pause the touch is back at its new place, not on its way from the old one")
+{
+    engine::smoothing s(100);
+    s.to(0, {{10.0, 0.0}, 1.0});
+    s.to(200, {{10.0, 0.0}, 0.0}); // lifted
+    CHECK(s.at(250).at.x_mm == 10.0);
+    CHECK(s.at(250).intensity == doctest::Approx(0.5));
+    CHECK(s.at(300).at.x_mm == 10.0);
+    CHECK(s.at(300).intensity == 0.0);
+    s.to(400, {{30.0, 0.0}, 1.0});
+    CHECK(s.at(450).at.x_mm == 30.0);
+    CHECK(s.at(450).intensity == doctest::Approx(0.5));
 }
 
 } // namespace live_smooth_test

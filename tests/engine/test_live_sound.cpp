@@ -94,6 +94,39 @@ TEST_CASE("the intensity of a live point is as the scale says")
     CHECK(peak(heard(o, 1.0), 0, SIZE_MAX) == doctest::Approx(live_level).epsilon(1e-3));
 }
 
+TEST_CASE("the level asked for is the ceiling of a live stroke, and what was above it is counted")
+{
+    for (const algorithm_kind algorithm : {algorithm_kind::continuous, algorithm_kind::park2016})
+        for (const scale_kind scale : {scale_kind::linear, scale_kind::sl, scale_kind::stevens})
+            for (const double smooth_s : {0.0, 0.01}) {
+                CAPTURE(smooth_s);
+                live_options o;
+                o.plan.algorithm = algorithm;
+                o.plan.scale = {scale, 0.6, 7.0};
+                o.smooth_s = smooth_s;
+                live_rig r(o);
+                r.live->to({0.0, 0.0}, 0.5);
+                r.play(480);
+                for (const double intensity : {80.0, 1.0, 1.001, 1e308})
+                    r.live->to({0.0, 0.0}, intensity);
+                r.play(9600);
+                CHECK(peak(r.channel(0), 0, SIZE_MAX) == doctest::Approx(live_level).epsilon(1e-3));
+                r.live->voice.ask(engine::live_voice::wish::end);
+                r.play_out();
+                CHECK(r.report({1})->state == state_kind::finished);
+                CHECK(r.report({1})->held_points == 3);
+            }
+}
+
+TEST_CASE("points that are above the ceiling count for a live stroke that never sounds, too")
+{
+    live_rig r;
+    r.live->to({0.0, 0.0}, 2.0);
+    CHECK(r.feed.cancel({1}));
+    r.play_out();
+    CHECK(r.report({1})->held_points == 1);
+}
+
 TEST_CASE("a live stroke whose sound is gone with it leaves nothing behind")
 {
     for (const char* wave : {"square", "noise:50-500"}) {

@@ -150,6 +150,27 @@ TEST_CASE("a player tells of its start and its end, and bears a log that throws"
     }
 }
 
+TEST_CASE("a live stroke that asked for more than its level is told once, at its end")
+{
+    fake_dac dac;
+    heard told;
+    player_options o = patient();
+    o.log = told.function();
+    player p(pcm::adopt(dac.pcm(), nine()), palm(), o);
+    const running_clock clock(dac);
+    for (const double intensity : {80.0, 1.0}) {
+        live_stroke live = p.begin({.timeout_s = 86400.0});
+        live.to(20.0, 20.0, intensity);
+        live.to(20.0, 20.0, intensity);
+        CHECK(live.counts().held == (intensity > 1.0 ? 2 : 0));
+        live.end();
+        CHECK(p.wait(live.id())->held_points == live.counts().held);
+    }
+    p.stop();
+    CHECK(told.count("warning live stroke 1: 2 points above intensity 1 sounded as 1") == 1);
+    CHECK(told.count("live stroke") == 1);
+}
+
 TEST_CASE("kinds have names, and names kinds")
 {
     for (const log_kind k : {log_kind::debug, log_kind::info, log_kind::warning, log_kind::error})

@@ -142,6 +142,17 @@ def test_a_live_stroke_follows_its_points(player):
     assert finger.counts["points"] == 3 and finger.counts["outside"] == 1
 
 
+def test_an_intensity_above_1_sounds_as_1_and_is_said_once(player, short):
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        with player.live() as finger:
+            assert finger.to(20, 20, 80) and finger.to(20, 20) and finger.to(20, 20, 2)
+    assert [str(w.message) for w in said] == ["an intensity of 80 sounds as 1: the level asked for is the ceiling"]
+    assert said[0].filename == __file__
+    assert finger.counts["held"] == finger.report.held_points == 2
+    assert player.play(short).held_points == 0
+
+
 def test_a_live_strokes_report_has_the_delay_of_its_points(player, short):
     with player.live() as finger:
         stamp = time.monotonic() - 1.0

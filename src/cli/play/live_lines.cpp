@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <string_view>
 #include <vector>
 
@@ -15,20 +16,26 @@
 
 #include <tactor/error.hpp>
 
+#include "cli/say.hpp"
+#include "core/words.hpp"
+
 namespace tactor::cli {
 namespace {
 
 constexpr std::size_t longest_line = 4096;
 constexpr double farthest_mm = 1e6;
 
-std::vector<std::string_view> words_of(std::string_view line)
+// Splits at blanks. A comma is a separator only before a blank: anywhere else it may be a decimal one.
+std::vector<std::string_view> split(std::string_view line)
 {
     std::vector<std::string_view> words;
-    constexpr const char* blanks = " \t\r,";
+    constexpr const char* blanks = " \t\r";
     for (std::size_t at = line.find_first_not_of(blanks); at != std::string_view::npos;) {
         const std::size_t end = std::min(line.find_first_of(blanks, at), line.size());
         words.push_back(line.substr(at, end - at));
         at = line.find_first_not_of(blanks, end);
+        if (at != std::string_view::npos && words.back().size() > 1 && words.back().back() == ',')
+            words.back().remove_suffix(1);
     }
     return words;
 }
@@ -74,32 +81,52 @@ std::optional<timed_point> live_lines::next()
         }
         if (buffer_.size() > longest_line)
             throw error(error_kind::bad_input, place_of(line_ + 1),
-                        fmt::format("a line of more than {} bytes", longest_line), "x y [intensity], in mm");
+                        fmt::format("a line of more than {} bytes", longest_line),
+                        "give x y [intensity], in mm");
     } while (fill());
     return std::nullopt;
 }
 
-std::optional<timed_point> live_lines::parse(const std::string& line) const
+std::optional<timed_point> live_lines::parse(const std::string& line)
 {
-    const auto words = words_of(line);
+    const auto words = split(line);
     if (words.empty() || words.front().front() == '#')
         return std::nullopt;
     const auto refuse = [&](const std::string& why) {
         throw error(error_kind::bad_input, place_of(line_), why,
-                    "x y [intensity]: two places in mm and a factor from 0 up, such as 20 12.5 0.8");
+                    "give x y [intensity]: two places in mm and a factor from 0 to 1, such as 20 12.5 0.8");
     };
-    if (words.size() < 2 || words.size() > 3)
-        refuse(fmt::format("{} words", words.size()));
     double v[3] = {0.0, 0.0, 1.0};
+    bool lost = false;
     for (std::size_t i = 0; i < words.size(); ++i) {
+        if (words[i].find(',') != std::string_view::npos)
+            refuse(fmt::format("\"{}\" has a comma that could be a decimal one", words[i]));
+        if (i == std::size(v))
+            refuse(counted(words.size(), "word"));
         const char* last = words[i].data() + words[i].size();
         const auto r = std::from_chars(words[i].data(), last, v[i]);
-        if (r.ec != std::errc() || r.ptr != last || !std::isfinite(v[i]))
+        if (r.ec != std::errc() || r.ptr != last || std::isinf(v[i]))
             refuse(fmt::format("\"{}\" is not a number", words[i]));
+        lost = lost || std::isnan(v[i]);
         if (std::abs(v[i]) > farthest_mm || (i == 2 && v[i] < 0.0))
             refuse(fmt::format("{} is out of range", words[i]));
     }
-    return timed_point{.position = {v[0], v[1]}, .intensity = v[2]};
+    if (lost && last_)
+        return timed_point{.position = *last_, .intensity = 0.0};
+    if (lost)
+        return std::nullopt;
+    if (words.size() < 2)
+        refuse(counted(words.size(), "word"));
+    last_ = point{v[0], v[1]};
+    return timed_point{.position = *last_, .intensity = v[2]};
+}
+
+void live_lines::warn_of_held(double intensity) const
+{
+    say(stderr,
+        "tactor: warning: standard input:{}: {} (x y [intensity] is the order; further points of this "
+        "kind are counted)\n",
+        line_, held_text(intensity));
 }
 
 } // namespace tactor::cli

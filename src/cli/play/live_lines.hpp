@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include <tactor/geometry.hpp>
 #include <tactor/stroke.hpp>
 
 namespace tactor::cli {
@@ -19,9 +20,12 @@ public:
     /// Reads the descriptor without waiting, whatever its mode.
     explicit live_lines(int descriptor) : fd_(descriptor) {}
 
-    /// The next place that has come, mm, and its intensity; nothing where there is none yet, and at the end.
-    /// Empty lines, and those that begin with #, are left out. \throws error (bad_input) with the line.
+    /// Returns the next place that has come, mm, and its intensity; nothing where there is none yet, and at
+    /// the end. Skips empty lines and those that begin with #. A line with nan gives the last place at
+    /// intensity 0. \throws error (bad_input) with the line.
     std::optional<timed_point> next();
+    /// Warns that the stroke holds the intensity of the newest line at 1.
+    void warn_of_held(double intensity) const;
     /// No more will come, and all that came was given.
     bool over() const noexcept { return end_ && buffer_.empty(); }
     /// Readable when something has come.
@@ -29,11 +33,12 @@ public:
 
 private:
     bool fill();
-    std::optional<timed_point> parse(const std::string& line) const;
+    std::optional<timed_point> parse(const std::string& line);
 
     int fd_;
     std::string buffer_;
     std::size_t line_ = 0;
+    std::optional<point> last_ = {}; ///< newest place
     bool end_ = false;
 };
 

@@ -39,6 +39,7 @@ json to_json(const stroke_outcome& s, unsigned rate)
             {"late_s", ended ? s.report->late_s : 0.0},
             {"started_ns", ended && s.report->started_ns ? json(*s.report->started_ns) : json(nullptr)},
             {"delay", ended && s.report->delay ? to_json(*s.report->delay) : json(nullptr)},
+            {"held_points", ended ? s.report->held_points : 0},
             {"reason", has_reason ? json(s.report->why) : json(nullptr)}};
 }
 
@@ -140,6 +141,8 @@ std::string describe(const stroke_outcome& s, unsigned rate)
         text += fmt::format("; from {} to the DAC {:.1f} ms ({:.1f} to {:.1f})", counted(d.points, "point"),
                             d.mean_s * 1e3, d.least_s * 1e3, d.most_s * 1e3);
     }
+    if (s.report && s.report->held_points != 0)
+        text += fmt::format("; {} above intensity 1 sounded as 1", counted(s.report->held_points, "point"));
     return text;
 }
 

@@ -179,6 +179,8 @@ stroke_report play_session::live(const live_options& o, live_lines& lines)
         try {
             while (const auto p = lines.next()) {
                 stroke.to(p->position.x_mm, p->position.y_mm, p->intensity);
+                if (p->intensity > 1.0 && stroke.counts().held == 1)
+                    lines.warn_of_held(p->intensity);
                 begun = true;
             }
         } catch (const error&) {

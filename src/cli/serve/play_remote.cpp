@@ -117,13 +117,13 @@ private:
     {
         while (server_.signal() == 0) {
             const auto p = lines.next();
-            if (!p || !move(n, *p))
+            if (!p || !move(n, *p, lines))
                 return;
         }
     }
 
     // What comes faster than the server takes points waits here, and in the pipe: none is left out.
-    bool move(const net::json& n, const timed_point& p)
+    bool move(const net::json& n, const timed_point& p, const live_lines& lines)
     {
         const net::json to{
             {"stroke", n}, {"x_mm", p.position.x_mm}, {"y_mm", p.position.y_mm}, {"intensity", p.intensity}};
@@ -133,6 +133,8 @@ private:
                     return false;
                 std::this_thread::sleep_for(limit_pause);
             }
+            if (p.intensity > 1.0 && !std::exchange(is_loud_, true))
+                lines.warn_of_held(p.intensity);
             return true;
         } catch (const error& e) {
             if (e.subject() != "stroke")
@@ -195,7 +197,8 @@ private:
         stroke_report r{.state = from_string<state_kind>(found->value("state", "interrupted")),
                         .frames = found->value("frames", std::uint64_t{0}),
                         .why = found->value("reason", ""),
-                        .late_s = found->value("late_s", 0.0)};
+                        .late_s = found->value("late_s", 0.0),
+                        .held_points = found->value("held_points", std::uint64_t{0})};
         if ((*found)["started_s"].is_number())
             r.started_ns = std::llround((*found)["started_s"].get<double>() * 1e9);
         ends_.erase(found);
@@ -277,6 +280,7 @@ private:
     std::uint64_t xruns_ = 0;
     bool cancelled_ = false;
     bool ended_ = false;
+    bool is_loud_ = false; ///< a point was above intensity 1
     int signal_ = 0;
 };
 

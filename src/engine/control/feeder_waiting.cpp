@@ -176,7 +176,8 @@ void feeder::over(const active& a, const report& r)
                                                          : a.failure,
                        .late_s = a.late_s.value_or(0.0),
                        .started_ns = {},
-                       .delay = {}};
+                       .delay = {},
+                       .held_points = 0};
     if (r.started)
         told.started_ns = r.started_ns;
     if (r.delay.points != 0)
@@ -191,6 +192,9 @@ void feeder::over(const active& a, const report& r)
 
 void feeder::tell(stroke_report r)
 {
+    for (const live_map* live : {&playing_live_, &waiting_live_})
+        if (const auto found = live->find(r.id); found != live->end())
+            r.held_points = found->second->held_points();
     reports_.push_back(std::move(r));
 }
 

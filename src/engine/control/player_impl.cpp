@@ -210,6 +210,8 @@ bool player::impl::take_reports()
             }
             ended.insert_or_assign(r.id, r);
         }
+        for (const stroke_report& r : news_of_strokes)
+            log.look_at_end(r);
         untold.splice(untold.end(), news_of_strokes);
     } catch (const std::bad_alloc&) {
         return false;

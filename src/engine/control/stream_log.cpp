@@ -105,6 +105,19 @@ void stream_log::look_at_limits()
         add(log_kind::warning, fmt::format("{} held at a channel's own limit", counted(n, "sample")));
 }
 
+void stream_log::look_at_end(const stroke_report& r) noexcept
+{
+    if (!on() || r.held_points == 0)
+        return;
+    try {
+        add(log_kind::warning,
+            fmt::format(
+                "live stroke {}: {} above intensity 1 sounded as 1: the level asked for is the ceiling",
+                r.id.number, counted(r.held_points, "point")));
+    } catch (...) { // NOLINT(bugprone-empty-catch): no memory, and no line
+    }
+}
+
 void stream_log::end(const std::string& why) noexcept
 {
     if (!on() || std::exchange(over_, true))

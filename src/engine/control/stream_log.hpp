@@ -10,6 +10,7 @@
 
 #include <tactor/log.hpp>
 #include <tactor/render.hpp>
+#include <tactor/report.hpp>
 
 #include "engine/link.hpp"
 
@@ -29,6 +30,8 @@ public:
 
     /// What has changed since the last look, at a CLOCK_MONOTONIC.
     void look(const stream_status& s, std::int64_t now_ns) noexcept;
+    /// Notes points of a live stroke that asked for more than its level.
+    void look_at_end(const stroke_report& r) noexcept;
     /// Notes once that the stream is over, and why; empty: it was stopped in order.
     void end(const std::string& why) noexcept;
     void tell() noexcept;

@@ -169,7 +169,8 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
     if (!inside && outside == outside_kind::error)
         throw refused("outside", fmt::format("({:.6g}, {:.6g}) is outside the array", p.x_mm, p.y_mm),
                       "outside = clamp plays the nearest point of the array");
-    const bool limited = course_of(inside ? p : faces.nearest(p), intensity);
+    const bool held = intensity > 1.0 && std::isfinite(intensity);
+    const bool limited = course_of(inside ? p : faces.nearest(p), held ? 1.0 : intensity);
     if (!excess.empty()) {
         voice.fail(std::move(excess));
         return false;
@@ -179,6 +180,8 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
     points.fetch_add(1, std::memory_order_relaxed);
     outside_points.fetch_add(inside ? 0 : 1, std::memory_order_relaxed);
     limited_points.fetch_add(limited ? 1 : 0, std::memory_order_relaxed);
+    if (held)
+        voice.count_held();
     return true;
 }
 
@@ -289,7 +292,8 @@ live_counts live_stroke::counts() const noexcept
 {
     return {.points = impl_->points.load(std::memory_order_relaxed),
             .outside = impl_->outside_points.load(std::memory_order_relaxed),
-            .limited = impl_->limited_points.load(std::memory_order_relaxed)};
+            .limited = impl_->limited_points.load(std::memory_order_relaxed),
+            .held = impl_->voice.held_points()};
 }
 
 } // namespace v0

@@ -76,11 +76,15 @@ public:
     /// Frames of the stroke that are rendered: a point that comes now counts from the next frame on.
     std::uint64_t rendered() const noexcept { return rendered_.load(std::memory_order_relaxed); }
 
+    /// Counts a point whose intensity was above 1.
+    void count_held() noexcept { held_points_.fetch_add(1, std::memory_order_relaxed); }
+
     /// Ends it as interrupted, for this reason; once.
     void fail(std::string why) noexcept;
 
     // Any thread.
     void ask(wish w) noexcept;
+    std::uint64_t held_points() const noexcept { return held_points_.load(std::memory_order_relaxed); }
     /// Why it failed; only for a caller that knows that it failed.
     const std::string& failure() const noexcept { return failure_; }
     bool closed() const noexcept { return closed_.load(std::memory_order_acquire); }
@@ -143,6 +147,7 @@ private:
     std::atomic<std::uint64_t> rendered_{0};
     std::atomic<wish> asked_{wish::go_on};
     std::atomic<bool> closed_{false};
+    std::atomic<std::uint64_t> held_points_{0};
     std::string failure_;
 
     ticket ticket_ = 0;

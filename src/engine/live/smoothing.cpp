@@ -20,18 +20,26 @@ void smoothing::to(std::uint64_t frame, const place& p)
 smoothing::place smoothing::at(std::uint64_t frame) const
 {
     place mean{{0.0, 0.0}, 0.0};
+    point silent{0.0, 0.0};
+    double touched = 0.0; // part of the window
     std::uint64_t left = window_;
     std::uint64_t end = frame;
     for (auto g = given_.rbegin(); g != given_.rend() && left != 0; ++g) {
         const bool oldest = g + 1 == given_.rend();
         const std::uint64_t n = oldest ? left : std::min(left, end - std::min(end, g->from));
         const double part = static_cast<double>(n) / static_cast<double>(window_);
-        mean.at.x_mm += part * g->where.at.x_mm;
-        mean.at.y_mm += part * g->where.at.y_mm;
+        point& sum = g->where.intensity > 0.0 ? mean.at : silent;
+        sum.x_mm += part * g->where.at.x_mm;
+        sum.y_mm += part * g->where.at.y_mm;
+        touched += g->where.intensity > 0.0 ? part : 0.0;
         mean.intensity += part * g->where.intensity;
         left -= n;
         end = g->from;
     }
+    if (touched == 0.0)
+        return {silent, mean.intensity};
+    mean.at.x_mm /= touched;
+    mean.at.y_mm /= touched;
     return mean;
 }
 

@@ -11,7 +11,8 @@
 namespace tactor::engine {
 
 /// The place of a stroke is the mean of the places that it was told, over a window that ends now. So a step
-/// becomes an even movement that takes one window, and an even movement is half a window late.
+/// becomes an even movement that takes one window, and an even movement is half a window late. Where the
+/// intensity is 0 nothing touches: such a place counts only while all places in the window are such.
 class smoothing {
 public:
     struct place {

@@ -6,6 +6,7 @@ import sys
 import threading
 import time
 import typing as _t
+import warnings
 
 from tactor._checks import _number, _Unique
 
@@ -53,6 +54,8 @@ class Report(_t.NamedTuple):
         How much later than asked for that was; 0 when in time.
     delay : Delay or None
         Of a live stroke's points; None where none has sounded, and for other strokes.
+    held_points : int
+        Points of a live stroke with an intensity above 1, which sounded as 1.
     """
 
     state: _State
@@ -61,6 +64,7 @@ class Report(_t.NamedTuple):
     started_s: float | None
     late_s: float
     delay: Delay | None = None
+    held_points: int = 0
 
 
 class Ticket(_Unique):
@@ -200,6 +204,7 @@ class LiveStroke(Ticket):
     def __init__(self, player: _Shared, core: _t.Any) -> None:
         super().__init__(player, core.id)
         self._core = core
+        self._warned = False
 
     def to(self, x_mm: float, y_mm: float, intensity: float = 1.0, *, at_s: float | None = None) -> bool:
         """Moves it to a place.
@@ -208,7 +213,8 @@ class LiveStroke(Ticket):
         ----------
         x_mm, y_mm : float
         intensity : float
-            Linear; 1 is the level that was asked for.
+            Linear; 1 is the level that was asked for. What is above 1 sounds as 1: a UserWarning at the first such point, and
+            counted in the report's `held_points`.
         at_s : float, optional
             When the touch was there, s of CLOCK_MONOTONIC (`time.monotonic()`), which the report's delay counts from; else now.
 
@@ -229,7 +235,11 @@ class LiveStroke(Ticket):
             x_mm, y_mm, intensity = _number("x_mm", x_mm), _number("y_mm", y_mm), _number("intensity", intensity, 0.0)
         if at_s is not None:
             at_s = _number("at_s", at_s, 0.0, 8e9, "seconds as time.monotonic() gives them, or none for now")
-        return self._core.to(x_mm, y_mm, intensity, at_s)  # type: ignore[no-any-return]
+        moved: bool = self._core.to(x_mm, y_mm, intensity, at_s)
+        if moved and intensity > 1.0 and not self._warned:
+            self._warned = True
+            warnings.warn(f"an intensity of {intensity:g} sounds as 1: the level asked for is the ceiling", stacklevel=2)
+        return moved
 
     def end(self) -> None:
         """No more points come: fades out, or plays its last burst to the end."""
@@ -242,7 +252,8 @@ class LiveStroke(Ticket):
 
     @property
     def counts(self) -> dict[str, int]:
-        """How many `points` were taken, of these moved from `outside`, and `limited` at a channel's limit."""
+        """How many `points` were taken, of these moved from `outside`, `limited` at a channel's limit, and `held` at
+        intensity 1."""
         return self._core.counts()  # type: ignore[no-any-return]
 
     def __enter__(self) -> LiveStroke:
@@ -278,11 +289,11 @@ class _Shared:
                 if self.log is not None:
                     _call(self.log, *event)
                 continue
-            number, state, reason, frames, started_s, late_s, delay = event
+            number, state, reason, frames, started_s, late_s, delay, held_points = event
             with self.lock:  # whoever submitted it has its ticket in there first
                 ticket = self.tickets.pop(number, None)
             if ticket is not None:
-                ticket._end(Report(state, reason, frames, started_s, late_s, None if delay is None else Delay(*delay)))
+                ticket._end(Report(state, reason, frames, started_s, late_s, None if delay is None else Delay(*delay), held_points))
 
 
 def _call(function: _t.Callable[..., object], *arguments: _t.Any) -> None:

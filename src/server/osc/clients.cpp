@@ -10,6 +10,7 @@
 
 #include <tactor/error.hpp>
 
+#include "core/words.hpp"
 #include "server/clock.hpp"
 #include "server/faults.hpp"
 #include "server/osc/senders.hpp"
@@ -149,6 +150,8 @@ void osc_clients::move(osc_request r, std::optional<std::int64_t> at_ns, const e
         bad_param("number", fmt::format("no stroke {} of this sender goes on", r.number),
                   "it is the one that play or begin gave, from this address and port");
     drawn& d = found->second;
+    if (const double asked = r.params.value("intensity", 0.0); asked > 1.0 && !std::exchange(d.is_loud, true))
+        refuse(from, r.address, fmt::format("stroke {}: {}", r.number, held_text(asked)));
     if (d.held && !at_ns && r.method == "cancel")
         return drop_held([&](const held& h) { return h.from == from && h.request.number == r.number; });
     if (!at_ns)

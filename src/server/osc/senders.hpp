@@ -24,6 +24,7 @@ struct osc_clients::drawn {
     std::optional<std::uint32_t> stroke = {};        ///< the service's number, once it is known
     std::optional<std::int64_t> begins_unix_ns = {}; ///< of a live stroke, its time tag
     bool held = false;                               ///< that time has not come
+    bool is_loud = false;                            ///< a point was above intensity 1, which was said
     std::deque<osc_request> waiting = {};            ///< until its number is known
 };
 
