@@ -18,7 +18,8 @@ constexpr unsigned any_number = std::numeric_limits<unsigned>::max();
 
 calibrated_tactor read_tactor(const toml_table& t, std::vector<const toml_table*>& said)
 {
-    t.only({"tactor", "threshold_dbfs", "sd_db", "trials", "reversals_dbfs", "check_right"});
+    t.only({"tactor", "threshold_dbfs", "sd_db", "trials", "reversals_dbfs", "check_right",
+            "check_below_right", "staircases"});
     const unsigned i = t.need(t.whole("tactor", 0, static_cast<unsigned>(said.size()) - 1), "tactor");
     if (said[i] != nullptr)
         t.fail("tactor", fmt::format("tactor {} has an entry already ({})", i, said[i]->where().text()),
@@ -26,7 +27,8 @@ calibrated_tactor read_tactor(const toml_table& t, std::vector<const toml_table*
     said[i] = &t;
     calibrated_tactor r{i, t.number("threshold_dbfs", any_level_db), t.number("sd_db", spread_db),
                         t.need(t.whole("trials", 0, any_number), "trials")};
-    t.whole("check_right", 0, any_number);
+    for (const char* key : {"check_right", "check_below_right", "staircases"})
+        t.whole(key, 0, any_number);
     if (const toml::array* all = t.list("reversals_dbfs", "levels"))
         for (const toml::node& n : *all)
             t.number_of(n, "reversals_dbfs", any_level_db);

@@ -95,9 +95,10 @@ class Simulated(CalibrateTest):
             mean = sum(counted) / 8
             self.assertAlmostEqual(t["threshold_dbfs"], mean, 9)
             self.assertAlmostEqual(t["sd_db"], (sum((x - mean) ** 2 for x in counted) / 7) ** 0.5, 9)
-            checks = own[-10:]
-            self.assertEqual(sum(r["correct"] == "true" for r in checks), t["check_right"])
-            self.assertEqual({float(r["level_dbfs"]) for r in checks}, {round(mean + 6, 6)})
+            for checks, key, by in ((own[-20:-10], "check_right", 6), (own[-10:], "check_below_right", -6)):
+                self.assertEqual(sum(r["correct"] == "true" for r in checks), t[key])
+                self.assertEqual({float(r["level_dbfs"]) for r in checks}, {round(mean + by, 6)})
+            self.assertEqual(t["staircases"], 1)
         for r in rows:
             self.assertEqual(r["correct"] == "true", r["interval"] == r["response"])
 
@@ -139,6 +140,27 @@ class Simulated(CalibrateTest):
         self.assertFalse((self.dir / "me.toml").exists())
         self.ok(*args, "--resume")
         self.assertEqual((self.dir / "me.tsv").read_bytes(), whole)
+
+    def test_lapses_do_not_hold_a_threshold_far_above(self):
+        said = self.ok("calibrate", "--participant", "S25", "-o", "me.toml", "--seed", 25, "--simulate",
+                       "threshold=-45,spread=2,lapse=0.05")
+        self.assertNotIn("too high", said.stderr)
+        for t in self.toml("me.toml")["calibration"]["tactor"]:
+            self.assertLess(abs(t["threshold_dbfs"] + 44.5), 5, t)
+            self.assertLess(t["check_below_right"], 9)
+
+    def test_a_threshold_far_above_the_others_is_named_and_can_be_measured_again(self):
+        said = self.simulated("me.toml", "--tactors", "0-4", spec="threshold=-45,-44,-46,-20,-45,spread=1")
+        self.assertRegex(said.stderr, r"tactor: warning: tactor 3: the threshold is likely to be too high: it is 2\d\.\d dB above "
+                                      r"the median of the array's \(-4\d\.\d dBFS\) \(measure it again: --tactors 3 --array me\.toml")
+        self.assertEqual(said.stderr.count("too high"), 1)
+        again = self.simulated("again.toml", "--tactors", 3, "--array", "me.toml", spec="threshold=-45,spread=1")
+        self.assertEqual(again.stderr, "")
+        first, second = (self.toml(name)["tactor"] for name in ("me.toml", "again.toml"))
+        self.assertEqual([a == b for a, b in zip(first, second)], [i != 3 for i in range(9)])
+        # What an earlier session left stays named, and adjustments are looked at alike.
+        said = self.simulated("third.toml", "--tactors", 0, "--array", "me.toml", "--method", "adjustment", spec="threshold=-45,spread=1")
+        self.assertIn("warning: tactor 3: the threshold is likely", said.stderr)
 
     def test_who_feels_nothing_has_no_threshold_and_it_is_said(self):
         said = self.simulated("me.toml", "--tactors", "0,1", spec="threshold=-45,500,spread=2")

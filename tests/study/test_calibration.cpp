@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "study/calibrate/calibration.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -49,6 +50,7 @@ calibration_settings settings()
 }
 
 const observer_settings who{{-30.0}, 2.0, 0.0};
+const observer_settings careless{{-30.0}, 2.0, 0.1};
 
 struct outcome {
     std::string log;
@@ -56,11 +58,12 @@ struct outcome {
 };
 
 // A session, or the rest of one.
-outcome run(const fs::path& log, bool resume, calibration_settings s = settings(), std::size_t most = 10000)
+outcome run(const fs::path& log, bool resume, calibration_settings s = settings(), std::size_t most = 10000,
+            const observer_settings& asked = who)
 {
     calibration_log lines(log, resume, s);
     calibration c(s);
-    observer o(who, s);
+    observer o(asked, s);
     replay(c, lines, &o);
     for (std::size_t i = 0; i < most && !c.done(); ++i)
         lines.append(c.answer(o.answer(c.next())));
@@ -105,6 +108,38 @@ TEST_CASE("a log cut off anywhere goes on as if nothing had been")
         calibration_settings later = settings();
         later.date = "2026-11-30";
         const outcome again = run(f / "b.tsv", true, later);
+        REQUIRE(again.log == whole.log);
+        REQUIRE(again.tables == whole.tables);
+    }
+}
+
+TEST_CASE("a session goes on in each phase: staircase, checks above and below, second staircase")
+{
+    const folder f;
+    calibration_settings s = settings();
+    s.staircase.reversals = 12;
+    s.staircase.discard = 4;
+    const auto measured_twice = [](const calibration& c) {
+        return std::any_of(c.thresholds().begin(), c.thresholds().end(), [](const tactor_threshold& t) {
+            return t.staircases == 2 && t.end == staircase_end::felt;
+        });
+    };
+    for (s.seed = 0;; ++s.seed) {
+        calibration c(s);
+        observer o(careless, s);
+        while (!c.done())
+            c.answer(o.answer(c.next()));
+        if (measured_twice(c))
+            break;
+    }
+    const outcome whole = run(f / "a.tsv", false, s, 10000, careless);
+    REQUIRE(has(whole.tables, "staircases = 2"));
+    const std::string began = text_of(f / "a.json");
+    for (std::size_t end = whole.log.find('\n'); end != whole.log.npos; end = whole.log.find('\n', end + 1)) {
+        CAPTURE(end);
+        put(f / "b.tsv", whole.log.substr(0, end + 1));
+        put(f / "b.json", began);
+        const outcome again = run(f / "b.tsv", true, s, 10000, careless);
         REQUIRE(again.log == whole.log);
         REQUIRE(again.tables == whole.tables);
     }
@@ -303,7 +338,8 @@ snap = true
                                 .sd_db = 0.5,
                                 .trials = 70,
                                 .reversals_dbfs = {-44, -45},
-                                .check_right = 10};
+                                .check_right = 10,
+                                .check_below_right = 6};
     const tactor_threshold not_felt{.tactor = 1, .end = staircase_end::not_felt, .trials = 20};
     const array now = with_thresholds(*from.array, from.calibration, {}, {felt, not_felt});
     const std::string text = array_text(now, from) + calibration_text(settings(), {felt, not_felt});

@@ -27,16 +27,32 @@ std::vector<double> levels(staircase& s, std::string_view answers)
     return all;
 }
 
-TEST_CASE("three right go down, one wrong up, and each step begins to count anew")
+TEST_CASE("until the first reversal one right answer goes down, then three; a wrong one goes up")
 {
     staircase s({});
-    CHECK(levels(s, "1110111") == std::vector<double>{-20, -20, -20, -24, -20, -20, -20});
-    CHECK(s.reversals_dbfs() == std::vector<double>{-24, -20});
-    CHECK(s.level_dbfs() == -22); // the step at the second reversal is the new one
+    CHECK(levels(s, "1110111") == std::vector<double>{-20, -24, -28, -32, -28, -28, -28});
+    CHECK(s.reversals_dbfs() == std::vector<double>{-32, -28});
+    CHECK(s.level_dbfs() == -30); // the step at the second reversal is the new one
     staircase two({.right_for_down = 2});
-    CHECK(levels(two, "1101") == std::vector<double>{-20, -20, -24, -20});
+    CHECK(levels(two, "1101") == std::vector<double>{-20, -24, -28, -24});
     two.answer(true);
-    CHECK(two.level_dbfs() == -22);
+    CHECK(two.level_dbfs() == -26);
+    staircase up({});
+    CHECK(levels(up, "00111") == std::vector<double>{-20, -16, -12, -16, -16});
+    CHECK(up.reversals_dbfs() == std::vector<double>{-12});
+}
+
+TEST_CASE("each step begins to count anew")
+{
+    staircase s({});
+    levels(s, "0111"); // the first right answer is the first reversal: two of the three count
+    CHECK(s.level_dbfs() == -20);
+    s.answer(true);
+    CHECK(s.level_dbfs() == -24);
+    levels(s, "110");
+    CHECK(s.level_dbfs() == -22);
+    levels(s, "11");
+    CHECK(s.level_dbfs() == -22);
 }
 
 TEST_CASE("steps become smaller with every second reversal, and the last stays")
@@ -44,8 +60,8 @@ TEST_CASE("steps become smaller with every second reversal, and the last stays")
     staircase s({.right_for_down = 2});
     // down, up, down, ...: each a reversal from the second on
     const auto all = levels(s, "110110110110110");
-    CHECK(s.reversals_dbfs() == std::vector<double>{-24, -20, -22, -20, -21, -20, -21, -20, -21});
-    CHECK(s.level_dbfs() == -20);
+    CHECK(s.reversals_dbfs() == std::vector<double>{-28, -24, -26, -24, -25, -24, -25, -24, -25});
+    CHECK(s.level_dbfs() == -24);
     CHECK(all.size() == 15);
 }
 
@@ -57,7 +73,6 @@ TEST_CASE("a step that the ceiling blocks counts as up")
     s.answer(false);
     CHECK(s.level_dbfs() == -1);
     CHECK(s.reversals_dbfs().empty());
-    s.answer(true);
     s.answer(true); // down after a blocked step up: that is a turn
     CHECK(s.reversals_dbfs() == std::vector<double>{-1});
     CHECK(s.level_dbfs() == -5);
@@ -66,12 +81,14 @@ TEST_CASE("a step that the ceiling blocks counts as up")
 TEST_CASE("fewer than eight right of the last ten at the ceiling: not felt")
 {
     staircase s({.start_dbfs = 0.0});
-    levels(s, "100101010");
+    levels(s, "0101100"); // the third to the sixth are below
+    REQUIRE(s.level_dbfs() == 0.0);
+    levels(s, "001100");
     CHECK(!s.end());
     s.answer(true);
     REQUIRE(s.end());
     CHECK(*s.end() == staircase_end::not_felt);
-    CHECK(s.trials() == 10);
+    CHECK(s.trials() == 14);
     CHECK(!s.check_right());
 }
 
@@ -159,7 +176,7 @@ TEST_CASE(
         CHECK((halves[i] > 2.0) == (i + 1 < halves.size()));
 }
 
-TEST_CASE("ten check trials, 6 dB above the threshold or at the ceiling, decide")
+TEST_CASE("ten check trials, 6 dB above the threshold or at the ceiling, say what is not felt")
 {
     for (const double ceiling : {0.0, -18.0}) {
         staircase s({.ceiling_dbfs = ceiling});
@@ -170,12 +187,73 @@ TEST_CASE("ten check trials, 6 dB above the threshold or at the ceiling, decide"
         staircase t = s;
         levels(s, "1111100111");
         CHECK(s.trials() == before + 10);
-        CHECK(*s.end() == staircase_end::felt);
+        CHECK(!s.end());
         CHECK(*s.check_right() == 8);
+        CHECK(!s.check_below_right());
         levels(t, "1111100101");
         CHECK(*t.end() == staircase_end::not_felt);
         CHECK(*t.check_right() == 7);
     }
+}
+
+// At the first of the ten check trials below.
+staircase checked_above(staircase_options o = {})
+{
+    staircase s(std::move(o));
+    turn(s, 12, 0.0);
+    levels(s, "1111111111");
+    return s;
+}
+
+TEST_CASE("up to eight right of ten, 6 dB below the threshold, confirm it")
+{
+    staircase s = checked_above();
+    CHECK(s.level_dbfs() == doctest::Approx(s.threshold()->mean_dbfs - 6.0));
+    const std::size_t before = s.trials();
+    const auto all = levels(s, "1111111100");
+    CHECK(all.front() == all.back());
+    CHECK(s.trials() == before + 10);
+    CHECK(*s.end() == staircase_end::felt);
+    CHECK(*s.check_right() == 10);
+    CHECK(*s.check_below_right() == 8);
+    CHECK(s.staircases() == 1);
+}
+
+TEST_CASE("nine right 6 dB below the threshold: the staircase runs once more, from there")
+{
+    staircase s = checked_above();
+    const double from = s.level_dbfs();
+    const std::size_t before = s.trials();
+    levels(s, "1111111110");
+    CHECK(!s.end());
+    CHECK(s.staircases() == 2);
+    CHECK(s.level_dbfs() == from);
+    CHECK(!s.threshold());
+    CHECK(!s.check_right());
+    CHECK(s.reversals_dbfs().empty());
+    CHECK(levels(s, "110") == std::vector<double>{from, from - 4.0, from - 8.0}); // as from a start
+    while (!checking(s))
+        s.answer(s.level_dbfs() > -40.0);
+    CHECK(s.threshold()->mean_dbfs == doctest::Approx(-40.0));
+    CHECK(s.reversals_dbfs().size() == 12);
+    levels(s, "1111111111");
+    CHECK(!s.end());
+    levels(s, "1111111111"); // not a third time
+    CHECK(*s.end() == staircase_end::felt);
+    CHECK(*s.check_below_right() == 10);
+    CHECK(s.trials() > before + 30);
+}
+
+TEST_CASE("what the second staircase does not find is not felt")
+{
+    staircase s = checked_above({.ceiling_dbfs = -18.0});
+    levels(s, "1111111111");
+    REQUIRE(s.staircases() == 2);
+    while (!s.end())
+        s.answer(false);
+    CHECK(*s.end() == staircase_end::not_felt);
+    CHECK(!s.threshold());
+    CHECK(!s.check_right());
 }
 
 calibration_settings session(unsigned right_for_down, std::uint32_t seed)

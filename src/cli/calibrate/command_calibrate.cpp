@@ -15,6 +15,7 @@
 #include "cli/play/sound_server.hpp"
 #include "cli/say.hpp"
 #include "core/words.hpp"
+#include "study/calibrate/doubtful.hpp"
 #include "study/calibrate/log.hpp"
 #include "study/calibrate/observer.hpp"
 #include "study/calibrate/result.hpp"
@@ -57,8 +58,9 @@ void print(const study::tactor_threshold& t, double ceiling_dbfs)
             why_none(t.end));
         return;
     }
-    say(stdout, "tactor {:>3}  {:>7.2f} dBFS, sd {:.2f} dB, {}\n", t.tactor, *t.threshold_dbfs,
-        t.sd_db.value_or(0.0), counted(t.trials, "trial"));
+    say(stdout, "tactor {:>3}  {:>7.2f} dBFS, sd {:.2f} dB, {}{}\n", t.tactor, *t.threshold_dbfs,
+        t.sd_db.value_or(0.0), counted(t.trials, "trial"),
+        t.staircases == 1 ? "" : ", a second staircase: the first ended too high");
     const double missing = *t.threshold_dbfs + paper_sl_db - ceiling_dbfs;
     if (missing > 0.0)
         say(stderr,
@@ -130,6 +132,11 @@ int write_result(const calibrate_options& o, const environment& e, const setup& 
         c.settings().simulate.empty() ? "" : ": SIMULATED, nobody was asked");
     for (std::size_t i = 0; i < c.thresholds().size(); ++i)
         print(c.thresholds()[i], c.settings().ceilings_dbfs[i]);
+    for (const study::doubtful_threshold& d : study::find_doubtful(a, c.settings(), c.thresholds()))
+        say(stderr,
+            "tactor: warning: tactor {}: the threshold is likely to be too high: {} (measure it again: "
+            "--tactors {} --array {} -o ANOTHER.toml)\n",
+            d.tactor, d.why, d.tactor, o.output);
     say(stdout, "{} is written: --array {} --sl {}\n", o.output, o.output, paper_sl_db);
     return status_ok;
 }

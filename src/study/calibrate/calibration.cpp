@@ -98,7 +98,9 @@ void calibration::after_staircase(const calibration_answer& a, calibration_recor
                        .end = *end,
                        .trials = stairs_.trials(),
                        .reversals_dbfs = stairs_.reversals_dbfs(),
-                       .check_right = stairs_.check_right()};
+                       .check_right = stairs_.check_right(),
+                       .check_below_right = stairs_.check_below_right(),
+                       .staircases = stairs_.staircases()};
     if (*end == staircase_end::felt) {
         t.threshold_dbfs = stairs_.threshold()->mean_dbfs;
         t.sd_db = stairs_.threshold()->sd_db;

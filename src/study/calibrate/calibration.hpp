@@ -80,7 +80,9 @@ struct tactor_threshold {
     std::optional<double> sd_db = {};
     std::size_t trials = 0;
     std::vector<double> reversals_dbfs = {};
-    std::optional<std::size_t> check_right = {};
+    std::optional<std::size_t> check_right = {};       ///< of ten trials 6 dB above the threshold
+    std::optional<std::size_t> check_below_right = {}; ///< of ten trials 6 dB below it
+    std::size_t staircases = 1;
 };
 
 class calibration {

@@ -133,6 +133,9 @@ std::string threshold_text(const tactor_threshold& t, bool stairs)
     if (stairs)
         s += fmt::format("reversals_dbfs = [{}]\n", fmt::join(t.reversals_dbfs, ", "));
     add(s, "check_right", t.check_right);
+    add(s, "check_below_right", t.check_below_right);
+    if (stairs)
+        s += fmt::format("staircases = {}\n", t.staircases);
     return s;
 }
 

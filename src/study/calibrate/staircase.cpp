@@ -9,10 +9,11 @@
 namespace tactor::study {
 namespace {
 
-constexpr std::size_t tries = 10; // at the ceiling, at the floor, and to check
-constexpr std::size_t enough = 8;
+constexpr std::size_t tries = 10;        // at the ceiling, at the floor
+constexpr std::size_t enough = 8;        // of them, and of check trials
 constexpr std::size_t counted_after = 8; // reversals where there were more than asked for
-constexpr double check_above_db = 6.0;
+constexpr std::size_t most_staircases = 2;
+constexpr double check_db = 6.0; // above and below the threshold
 constexpr double halves_may_differ_db = 2.0;
 
 // Steps of 0.1 dB add up to what people would write.
@@ -44,46 +45,48 @@ staircase::staircase(staircase_options o) : o_(std::move(o)), level_(o_.start_db
 {
 }
 
-std::optional<std::size_t> staircase::check_right() const noexcept
-{
-    return checks_ == 0 ? std::nullopt : std::optional(checks_right_);
-}
-
 bool staircase::answer(bool right)
 {
     ++trials_;
-    if (threshold_) {
+    if (run_.threshold) {
         check(right);
         return false;
     }
     note_at_ceiling(right);
     note_at_floor(right);
     const bool turned = step(right);
-    if (!end_ && reversals_.size() >= o_.reversals)
+    if (!end_ && run_.reversals.size() >= o_.reversals)
         settle();
     return turned;
 }
 
-// The rule from the first trial on; its counter is zero after every step.
+// One right answer until the first reversal: three for each step would take so long to come down from the
+// start that a lapse on the way is likely, and would end the large steps far above the threshold.
 bool staircase::step(bool right)
 {
-    if (right && ++right_in_row_ < o_.right_for_down)
+    const unsigned for_down = run_.reversals.empty() ? 1 : o_.right_for_down;
+    if (right && ++run_.right_in_row < for_down)
         return false;
-    right_in_row_ = 0;
+    run_.right_in_row = 0;
     const bool up = !right;
     const bool turned = turn(up);
-    const double by = o_.steps_db[std::min(reversals_.size() / 2, o_.steps_db.size() - 1)];
-    level_ = std::clamp(whole_micro_db(up ? level_ + by : level_ - by), floor_dbfs, o_.ceiling_dbfs);
+    const double by = o_.steps_db[std::min(run_.reversals.size() / 2, o_.steps_db.size() - 1)];
+    go_to(up ? level_ + by : level_ - by);
     return turned;
+}
+
+void staircase::go_to(double level_dbfs)
+{
+    level_ = std::clamp(whole_micro_db(level_dbfs), floor_dbfs, o_.ceiling_dbfs);
 }
 
 // A step that the ceiling blocks has a direction all the same.
 bool staircase::turn(bool up)
 {
-    const bool turned = up_ && *up_ != up;
-    up_ = up;
+    const bool turned = run_.up && *run_.up != up;
+    run_.up = up;
     if (turned)
-        reversals_.push_back(level_);
+        run_.reversals.push_back(level_);
     return turned;
 }
 
@@ -91,38 +94,67 @@ void staircase::note_at_ceiling(bool right)
 {
     if (level_ < o_.ceiling_dbfs)
         return;
-    at_ceiling_.push_back(right);
-    if (at_ceiling_.size() >= tries &&
-        std::count(at_ceiling_.end() - tries, at_ceiling_.end(), true) < static_cast<std::ptrdiff_t>(enough))
+    std::vector<bool>& all = run_.at_ceiling;
+    all.push_back(right);
+    if (all.size() >= tries &&
+        std::count(all.end() - tries, all.end(), true) < static_cast<std::ptrdiff_t>(enough))
         end_ = staircase_end::not_felt;
 }
 
 void staircase::note_at_floor(bool right)
 {
-    right_at_floor_ = right && level_ <= floor_dbfs ? right_at_floor_ + 1 : 0;
-    if (right_at_floor_ == tries)
+    run_.right_at_floor = right && level_ <= floor_dbfs ? run_.right_at_floor + 1 : 0;
+    if (run_.right_at_floor == tries)
         end_ = staircase_end::below_range;
 }
 
 void staircase::settle()
 {
-    const std::size_t kept = (reversals_.size() - o_.discard) / 2 * 2;
-    const std::size_t counted = reversals_.size() == o_.reversals ? kept : std::min(kept, counted_after);
+    const std::vector<double>& all = run_.reversals;
+    const std::size_t kept = (all.size() - o_.discard) / 2 * 2;
+    const std::size_t counted = all.size() == o_.reversals ? kept : std::min(kept, counted_after);
     // Two more at a time, so that the number asked for and this one are both even or both odd.
-    if ((reversals_.size() - o_.reversals) % 2 != 0)
+    if ((all.size() - o_.reversals) % 2 != 0)
         return;
-    const reversal_mean m = mean_of(reversals_, counted);
-    if (m.halves_db > halves_may_differ_db && reversals_.size() + 2 <= most_reversals)
+    const reversal_mean m = mean_of(all, counted);
+    if (m.halves_db > halves_may_differ_db && all.size() + 2 <= most_reversals)
         return;
-    threshold_ = m;
-    level_ = std::clamp(whole_micro_db(m.mean_dbfs + check_above_db), floor_dbfs, o_.ceiling_dbfs);
+    run_.threshold = m;
+    go_to(m.mean_dbfs + check_db);
 }
 
 void staircase::check(bool right)
 {
-    checks_right_ += right ? 1 : 0;
-    if (++checks_ == tries)
-        end_ = checks_right_ < enough ? staircase_end::not_felt : staircase_end::felt;
+    if (run_.above.given < check_count)
+        check_above(right);
+    else
+        check_below(right);
+}
+
+void staircase::check_above(bool right)
+{
+    run_.above.right += right ? 1 : 0;
+    if (++run_.above.given < check_count)
+        return;
+    if (run_.above.right < enough)
+        end_ = staircase_end::not_felt;
+    else
+        go_to(run_.threshold->mean_dbfs - check_db);
+}
+
+// Below, guesses are right half the time: who is always right there feels it, and a lapse held the staircase
+// above.
+void staircase::check_below(bool right)
+{
+    run_.below.right += right ? 1 : 0;
+    if (++run_.below.given < check_count)
+        return;
+    if (run_.below.right < too_many_below || staircases_ == most_staircases) {
+        end_ = staircase_end::felt;
+        return;
+    }
+    run_ = {};
+    ++staircases_;
 }
 
 } // namespace tactor::study

@@ -15,6 +15,11 @@ inline constexpr double floor_dbfs = -144.0;
 /// What a rule may reach before its threshold is taken as it is.
 inline constexpr std::size_t most_reversals = 24;
 
+/// Check trials above the threshold, and below it. So many right ones below say that it is too high; of
+/// guesses, 11 in 1024 series are.
+inline constexpr std::size_t check_count = 10;
+inline constexpr std::size_t too_many_below = 9;
+
 struct staircase_options {
     unsigned right_for_down = 3; ///< 3: 79.4 %, 2: 70.7 %
     double start_dbfs = -20.0;
@@ -38,6 +43,8 @@ struct reversal_mean {
 };
 reversal_mean mean_of(std::span<const double> reversals_dbfs, std::size_t counted);
 
+/// A tactor's measurement: a staircase, check trials above its threshold, check trials below it. Where the
+/// trials below are right the staircase runs once more, from there.
 class staircase {
 public:
     explicit staircase(staircase_options o);
@@ -48,31 +55,53 @@ public:
     /// The answer to the trial at level_dbfs(). True where it turned the direction.
     bool answer(bool right);
 
+    /// Trials of both staircases, and their check trials.
     std::size_t trials() const noexcept { return trials_; }
-    const std::vector<double>& reversals_dbfs() const noexcept { return reversals_; }
-    /// Of check trials; nothing where there were none.
-    std::optional<std::size_t> check_right() const noexcept;
+    /// Staircases begun: 1 or 2.
+    std::size_t staircases() const noexcept { return staircases_; }
+    /// Reversals of the last staircase, as all that follows.
+    const std::vector<double>& reversals_dbfs() const noexcept { return run_.reversals; }
+    /// Right answers to the check trials above and below the threshold; nothing where there were none.
+    std::optional<std::size_t> check_right() const noexcept { return run_.above.right_answers(); }
+    std::optional<std::size_t> check_below_right() const noexcept { return run_.below.right_answers(); }
     /// Where the reversals say it is; of what was not felt too, if it came so far.
-    std::optional<reversal_mean> threshold() const noexcept { return threshold_; }
+    std::optional<reversal_mean> threshold() const noexcept { return run_.threshold; }
 
 private:
+    struct check_trials {
+        std::size_t given = 0;
+        std::size_t right = 0;
+
+        std::optional<std::size_t> right_answers() const noexcept
+        {
+            return given == 0 ? std::nullopt : std::optional(right);
+        }
+    };
+    struct run {
+        unsigned right_in_row = 0;
+        std::optional<bool> up = {};
+        std::vector<double> reversals = {};
+        std::vector<bool> at_ceiling = {}; ///< right or not
+        unsigned right_at_floor = 0;
+        std::optional<reversal_mean> threshold = {};
+        check_trials above = {};
+        check_trials below = {};
+    };
+
     bool step(bool right);
     bool turn(bool up);
     void note_at_ceiling(bool right);
     void note_at_floor(bool right);
     void settle();
     void check(bool right);
+    void check_above(bool right);
+    void check_below(bool right);
+    void go_to(double level_dbfs);
 
     staircase_options o_;
     double level_;
-    unsigned right_in_row_ = 0;
-    std::optional<bool> up_ = {};
-    std::vector<double> reversals_ = {};
-    std::vector<bool> at_ceiling_ = {}; ///< right or not
-    unsigned right_at_floor_ = 0;
-    std::optional<reversal_mean> threshold_ = {};
-    std::size_t checks_ = 0;
-    std::size_t checks_right_ = 0;
+    run run_ = {};
+    std::size_t staircases_ = 1;
     std::size_t trials_ = 0;
     std::optional<staircase_end> end_ = {};
 };
