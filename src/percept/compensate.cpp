@@ -47,7 +47,13 @@ std::vector<detail::beyond> ends_or_sides(const layout::impl& l)
         return {};
     const point along{(last.x_mm - first.x_mm) / length, (last.y_mm - first.y_mm) / length};
     const point back{-along.x_mm, -along.y_mm};
-    return {{along, detail::dot(along, last)}, {back, detail::dot(back, first)}};
+    // The search needs a closed figure; nothing reaches the sides across.
+    const point left{-along.y_mm, along.x_mm};
+    const point right{along.y_mm, -along.x_mm};
+    return {{along, detail::dot(along, last)},
+            {back, detail::dot(back, first)},
+            {left, detail::dot(left, first) + length},
+            {right, detail::dot(right, first) + length}};
 }
 
 // Across a line there is nothing to choose.

@@ -13,30 +13,38 @@
 
 #include "percept/band.hpp"
 #include "percept/low_speed.hpp"
+#include "percept/tap_frame.hpp"
 
 namespace tactor::detail {
 namespace {
 
 constexpr int most_steps = 200;
-constexpr double small_gap = 1e-16;    // what ends the search, in units of the array's size squared
-constexpr double bearable_gap = 1e-10; // where rounding ends it before
+constexpr double small_gap = 1e-16;    // of each tap; ends the search, in units of the array's size squared
+constexpr double bearable_gap = 1e-10; // of each tap, where rounding ends it before
 constexpr double nearly = 0.995;       // of the way to the next side
 
-/// With y the places felt and m = A y, A = I + K: minimise |y - x|^2 / 2 where each m_i keeps each side. s
-/// are the distances from the sides, lambda what they push with; y is inside from the first step on.
+/// With m the places played, y the places felt, m = A y and A = I + K: minimise |y - x|^2 / 2 where each m_i
+/// keeps each side. Slack are the distances from the sides, push the forces that the sides push with; m is
+/// inside from the first step on.
+///
+/// Newton's step is solved for the force on each tap, f: (D^-1 + A A) f = D^-1 c - A r. Solved for y instead,
+/// I + A D A has to keep its 1 beside the weights of the sides that are reached, which grow without bound.
+/// Forces and steps of a tap are in its own frame.
 class inner_search {
 public:
     inner_search(std::span<const double> give, std::vector<point> x, std::vector<beyond> sides)
         : give_(give),
           x_(std::move(x)),
           sides_(std::move(sides)),
-          y_(x_.size()),
+          m_(x_.size()),
           slack_(x_.size() * sides_.size()),
           push_(slack_.size()),
           slack_step_(slack_.size()),
           push_step_(slack_.size()),
           rhs_(2 * x_.size()),
-          matrix_(2 * x_.size())
+          matrix_(2 * x_.size()),
+          force_(x_.size()),
+          way_(x_.size())
     {
         for (std::size_t k = 0; k < slack_.size(); ++k) {
             slack_[k] = sides_[k % sides_.size()].reach;
@@ -44,24 +52,25 @@ public:
         }
     }
 
-    /// False: rounding ended it too early. The best place on the way counts.
+    /// False: rounding ended it too early. The best places on the way count.
     bool run()
     {
+        const double taps = static_cast<double>(x_.size());
         double best = std::numeric_limits<double>::infinity();
-        for (int i = 0; i < most_steps && best > small_gap; ++i) {
+        for (int i = 0; i < most_steps && best > small_gap * taps; ++i) {
             find_residual();
             const double now = gap();
             if (now < best) {
                 best = now;
-                best_ = y_;
+                best_ = m_;
             }
             if (!(now < 1e3 * best) || !step())
                 break;
         }
-        return best <= bearable_gap;
+        return best <= bearable_gap * taps;
     }
 
-    const std::vector<point>& felt() const { return best_; }
+    const std::vector<point>& played() const { return best_; }
 
 private:
     double sum_of_products() const
@@ -82,25 +91,20 @@ private:
         return sum_of_products() + squares / 2.0;
     }
 
-    // A sum_e out_e v_e.
-    template <class Value>
-    std::vector<point> from_sides(Value&& v) const
-    {
-        std::vector<point> sum(x_.size());
-        for (std::size_t i = 0, k = 0; i < sum.size(); ++i)
-            for (const beyond& e : sides_) {
-                const double u = v(k++);
-                sum[i] = {sum[i].x_mm + u * e.out.x_mm, sum[i].y_mm + u * e.out.y_mm};
-            }
-        return pushed(give_, sum);
-    }
-
+    // y - x + A sum_e out_e push_e.
     void find_residual()
     {
-        residual_ = from_sides([&](std::size_t k) { return push_[k]; });
+        residual_.assign(x_.size(), {});
+        for (std::size_t k = 0; k < push_.size(); ++k) {
+            point& r = residual_[k / sides_.size()];
+            const point& out = sides_[k % sides_.size()].out;
+            r = {r.x_mm + push_[k] * out.x_mm, r.y_mm + push_[k] * out.y_mm};
+        }
+        residual_ = pushed(give_, residual_);
+        const std::vector<point> y = pulled(give_, m_);
         for (std::size_t i = 0; i < x_.size(); ++i)
-            residual_[i] = {residual_[i].x_mm + y_[i].x_mm - x_[i].x_mm,
-                            residual_[i].y_mm + y_[i].y_mm - x_[i].y_mm};
+            residual_[i] = {residual_[i].x_mm + y[i].x_mm - x_[i].x_mm,
+                            residual_[i].y_mm + y[i].y_mm - x_[i].y_mm};
     }
 
     // The three elements of A in row l, from column l - 1.
@@ -111,63 +115,69 @@ private:
         return {-before, 1.0 + before + after, -after};
     }
 
-    // I + A D A, D having blocks sum_e (push / slack) out out'.
+    // D^-1 + A A, D having blocks sum_e (push / slack) out out'.
     bool build()
     {
-        const std::size_t n = x_.size();
+        const std::size_t sides = sides_.size();
         matrix_.clear();
-        for (std::size_t r = 0; r < 2 * n; ++r)
-            matrix_.at(r, r) = 1.0;
-        for (std::size_t l = 0, k = 0; l < n; ++l) {
-            double xx = 0.0;
-            double xy = 0.0;
-            double yy = 0.0;
-            for (const beyond& e : sides_) {
-                const double w = push_[k] / slack_[k];
-                ++k;
-                xx += w * e.out.x_mm * e.out.x_mm;
-                xy += w * e.out.x_mm * e.out.y_mm;
-                yy += w * e.out.y_mm * e.out.y_mm;
-            }
+        frames_.clear();
+        for (std::size_t l = 0; l < x_.size(); ++l) {
+            frames_.emplace_back(sides_,
+                                 [&](std::size_t e) { return push_[l * sides + e] / slack_[l * sides + e]; });
             const std::array<double, 3> a = row_of(l);
-            const std::size_t from = l > 0 ? 0 : 1;
-            const std::size_t to = l + 1 < n ? 3 : 2;
-            for (std::size_t i = from; i < to; ++i)
-                for (std::size_t j = from; j <= i; ++j) {
-                    const double f = a[i] * a[j];
-                    const std::size_t r = 2 * (l + i - 1);
-                    const std::size_t c = 2 * (l + j - 1);
-                    matrix_.at(r, c) += f * xx;
-                    matrix_.at(r + 1, c) += f * xy;
-                    matrix_.at(r + 1, c + 1) += f * yy;
-                    if (c < r)
-                        matrix_.at(r, c + 1) += f * xy;
-                }
+            const std::array<double, 3>& d = frames_.back().inverse();
+            const double here = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
+            matrix_.at(2 * l, 2 * l) = here + d[0];
+            matrix_.at(2 * l + 1, 2 * l) = d[1];
+            matrix_.at(2 * l + 1, 2 * l + 1) = here + d[2];
+            if (l > 0)
+                link(l, l - 1, a[0] * (row_of(l - 1)[1] + a[1]));
+            if (l > 1)
+                link(l, l - 2, a[0] * row_of(l - 1)[0]);
         }
         return matrix_.factor();
     }
 
-    // Steps of y, slack and push for products slack * push that change by what `wanted` says.
+    // The same element for both axes, between two frames.
+    void link(std::size_t l, std::size_t earlier, double v)
+    {
+        const point turned = frames_[l].into(frames_[earlier].axis());
+        matrix_.at(2 * l, 2 * earlier) = v * turned.x_mm;
+        matrix_.at(2 * l + 1, 2 * earlier) = v * turned.y_mm;
+        matrix_.at(2 * l, 2 * earlier + 1) = -v * turned.y_mm;
+        matrix_.at(2 * l + 1, 2 * earlier + 1) = v * turned.x_mm;
+    }
+
+    // Steps of m, slack and push for products slack * push that change by what `wanted` says.
     template <class Wanted>
     void aim(Wanted&& wanted)
     {
-        const std::vector<point> force = from_sides([&](std::size_t k) { return wanted(k) / slack_[k]; });
+        const std::size_t sides = sides_.size();
+        const std::vector<point> off = pushed(give_, residual_);
         for (std::size_t i = 0; i < x_.size(); ++i) {
-            rhs_[2 * i] = -residual_[i].x_mm - force[i].x_mm;
-            rhs_[2 * i + 1] = -residual_[i].y_mm - force[i].y_mm;
+            point sum;
+            for (std::size_t e = 0; e < sides; ++e) {
+                const double v = wanted(i * sides + e) / slack_[i * sides + e];
+                const point out = frames_[i].out(e);
+                sum = {sum.x_mm + v * out.x_mm, sum.y_mm + v * out.y_mm};
+            }
+            force_[i] = sum;
+            const point c = frames_[i].times_inverse(sum);
+            const point r = frames_[i].into(off[i]);
+            rhs_[2 * i] = c.x_mm - r.x_mm;
+            rhs_[2 * i + 1] = c.y_mm - r.y_mm;
         }
         matrix_.solve(rhs_);
-        way_.resize(x_.size());
-        for (std::size_t i = 0; i < x_.size(); ++i)
-            way_[i] = {rhs_[2 * i], rhs_[2 * i + 1]};
-        const std::vector<point> moved = pushed(give_, way_);
-        for (std::size_t i = 0, k = 0; i < x_.size(); ++i)
-            for (const beyond& e : sides_) {
+        for (std::size_t i = 0; i < x_.size(); ++i) {
+            way_[i] =
+                frames_[i].times_inverse({rhs_[2 * i] - force_[i].x_mm, rhs_[2 * i + 1] - force_[i].y_mm});
+            for (std::size_t e = 0; e < sides; ++e) {
+                const std::size_t k = i * sides + e;
                 const double goal = wanted(k); // before the steps that it looks at change
-                slack_step_[k] = -dot(e.out, moved[i]);
+                slack_step_[k] = -dot(frames_[i].out(e), way_[i]);
                 push_step_[k] = (goal - push_[k] * slack_step_[k]) / slack_[k];
-                ++k;
             }
+        }
     }
 
     double longest_step() const
@@ -196,8 +206,10 @@ private:
         const double centring = std::pow(after / count / mean, 3.0) * mean;
         aim([&](std::size_t k) { return -slack_[k] * push_[k] - slack_step_[k] * push_step_[k] + centring; });
         const double length = std::min(1.0, nearly * longest_step());
-        for (std::size_t i = 0; i < y_.size(); ++i)
-            y_[i] = {y_[i].x_mm + length * way_[i].x_mm, y_[i].y_mm + length * way_[i].y_mm};
+        for (std::size_t i = 0; i < m_.size(); ++i) {
+            const point way = frames_[i].back(way_[i]);
+            m_[i] = {m_[i].x_mm + length * way.x_mm, m_[i].y_mm + length * way.y_mm};
+        }
         for (std::size_t k = 0; k < slack_.size(); ++k) {
             slack_[k] += length * slack_step_[k];
             push_[k] += length * push_step_[k];
@@ -208,7 +220,7 @@ private:
     std::span<const double> give_;
     std::vector<point> x_;
     std::vector<beyond> sides_;
-    std::vector<point> y_;
+    std::vector<point> m_;
     std::vector<point> best_;
     std::vector<double> slack_; // by tap, then by side
     std::vector<double> push_;
@@ -216,8 +228,10 @@ private:
     std::vector<double> push_step_;
     std::vector<double> rhs_;
     band matrix_;
+    std::vector<tap_frame> frames_;
     std::vector<point> residual_;
-    std::vector<point> way_;
+    std::vector<point> force_;
+    std::vector<point> way_; // step of m
 };
 
 } // namespace
@@ -248,7 +262,7 @@ std::vector<point> fit_inside(std::span<const double> give, std::span<const poin
         throw error(error_kind::bad_input, "compensation",
                     "the observer pulls bursts together too strongly for an answer to be found",
                     "a smaller sigma_mm, a larger sigma_v_mm_s or a longer SOA");
-    std::vector<point> m = pushed(give, search.felt());
+    std::vector<point> m = search.played();
     for (point& p : m)
         p = {inside.x_mm + size * p.x_mm, inside.y_mm + size * p.y_mm};
     return m;

@@ -19,10 +19,10 @@ inline constexpr std::size_t most_fit_constraints = 4'000'000;
 
 /// The m with dot(out, m_i) <= reach for all sides that minimises sum |x(m) - targets|^2, where (I + K) x = m
 /// (low_speed.hpp). By an interior-point method (Mehrotra 1992) whose steps are banded: O(n sides), some
-/// twenty times. The sum is within 1e-15 of the least in units of the array's size squared, by its duality
-/// gap. `inside`: a point that keeps all sides. No `give` may be 0. \throws error (bad_input) for more
-/// constraints than can be kept, and where links are too strong for numbers
-///         of sixteen digits.
+/// twenty times. The sum is within 1e-16 n of the least in units of the array's size squared, by its duality
+/// gap; within 1e-10 n where rounding ends the search before. `inside`: a point that keeps all sides. No
+/// `give` may be 0.
+/// \throws error (bad_input) for more constraints than can be kept, or links too strong for sixteen digits.
 std::vector<point> fit_inside(std::span<const double> give, std::span<const point> targets,
                               const std::vector<beyond>& sides, point inside);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -152,6 +153,76 @@ TEST_CASE("at the edge no other way finds places that are felt nearer")
         CHECK(theirs <= ours + 1e-3 * (1.0 + ours)); // they are after the same thing
     }
     CHECK(at_edge > rounds(40));
+}
+
+// Circles 0.1 mm inside the edge, 20 taps each; they are felt far inside, so most are played at the edge.
+std::vector<point> circles(std::size_t taps)
+{
+    std::vector<point> x;
+    for (std::size_t i = 0; i < taps; ++i) {
+        const double turn = 2.0 * std::numbers::pi * 0.05 * static_cast<double>(i);
+        x.push_back({20.0 + 19.9 * std::cos(turn), 20.0 + 19.9 * std::sin(turn)});
+    }
+    return x;
+}
+
+TEST_CASE("circles at the edge have an answer at every sigma, and it is the other way's")
+{
+    const layout l(palm);
+    const std::vector<point> x = circles(1001);
+    const std::vector<double> t = onsets(x.size(), 0.07);
+    double before = 0.0;
+    for (double sigma = 5.0; sigma <= 200.0; sigma += 1.0) {
+        CAPTURE(sigma);
+        const double rms = std::sqrt(cost(compensate(l, {sigma, 100.0}, t, x).felt, x) / 1001.0);
+        CHECK(rms > before); // a stronger pull leaves less
+        before = rms;
+    }
+    CHECK(before < 19.9); // all in the middle
+    for (const double sigma : {20.0, 80.0, 81.0}) {
+        CAPTURE(sigma);
+        const low_speed_observer o{sigma, 100.0};
+        const double ours = cost(compensate(l, o, t, x).felt, x);
+        const double theirs = by_gradients(l, o, t, x, 3000);
+        CHECK(ours <= theirs * (1.0 + 1e-9));
+        CHECK(theirs <= ours * (1.0 + 1e-4));
+    }
+    CHECK(std::sqrt(cost(compensate(l, {80.0, 100.0}, t, x).felt, x) / 1001.0) ==
+          doctest::Approx(18.04).epsilon(3e-4)); // L-BFGS-B, too
+}
+
+TEST_CASE("long chains and quick ones have an answer")
+{
+    const layout l(palm);
+    const std::vector<point> x = circles(20'001);
+    for (const double sigma : {5.0, 20.0, 35.0, 80.0, 95.0, 200.0})
+        for (const double soa_s : {0.07, 0.0035}) {
+            CAPTURE(sigma);
+            CAPTURE(soa_s);
+            const compensated_places p = compensate(l, {sigma, 100.0}, onsets(x.size(), soa_s), x);
+            CHECK(cost(p.felt, x) < cost(std::vector<point>(x.size(), {20.0, 20.0}), x));
+        }
+}
+
+TEST_CASE("arrays of all kinds have an answer, however strong the pull")
+{
+    generator g(29);
+    for (int round = 0; round < rounds(96); ++round) {
+        CAPTURE(round);
+        const layout l(some_array(g, static_cast<unsigned>(round) % kinds_of_array));
+        const low_speed_observer o{std::pow(10.0, between(g, 0.0, 3.0)), 100.0};
+        CAPTURE(o.sigma_mm);
+        std::vector<double> t{0.0};
+        std::vector<point> x{some_point(g, l)};
+        while (t.size() < 300) {
+            t.push_back(t.back() + between(g, 0.01, 0.2));
+            x.push_back(some_point(g, l));
+        }
+        const compensated_places p = compensate(l, o, t, x);
+        for (const point& m : p.played)
+            REQUIRE(l.contains(m));
+        CHECK(cost(p.felt, x) <= by_gradients(l, o, t, x, 100) + 1e-6);
+    }
 }
 
 TEST_CASE("strong pulls and long chains have an answer, or are refused")
