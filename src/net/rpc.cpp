@@ -78,16 +78,21 @@ rpc_refusal invalid(json id, std::string why)
             std::move(id)};
 }
 
-std::variant<rpc_request, rpc_refusal> read_request(json& j)
+std::variant<rpc_request, rpc_refusal> read_request(json& j, std::string_view any_form)
 {
     if (!j.is_object())
         return invalid(nullptr, "it is no object");
     rpc_request r;
-    if (const auto id = j.find("id"); id == j.end())
-        r.wants_reply = false;
-    else if (id->is_string() || id->is_number() || id->is_null())
+    const auto id = j.find("id");
+    r.wants_reply = id != j.end();
+    const bool usable = r.wants_reply && (id->is_string() || id->is_number() || id->is_null());
+    if (usable)
         r.id = *id;
-    else
+    if (const auto m = j.find("method"); !any_form.empty() && m != j.end() && *m == any_form) {
+        r.method = any_form;
+        return r;
+    }
+    if (r.wants_reply && !usable)
         return invalid(nullptr, "its id is neither a text nor a number");
     if (const auto version = j.find("jsonrpc"); version == j.end() || *version != "2.0")
         return invalid(r.id, R"(its "jsonrpc" is not "2.0")");
@@ -95,11 +100,12 @@ std::variant<rpc_request, rpc_refusal> read_request(json& j)
     if (method == j.end() || !method->is_string())
         return invalid(r.id, R"(its "method" is no text)");
     r.method = method->get<std::string>();
-    if (const auto params = j.find("params"); params != j.end()) {
-        if (!params->is_structured())
-            return invalid(r.id, R"(its "params" are no object)");
-        r.params = std::move(*params);
-    }
+    const auto params = j.find("params");
+    if (params == j.end() || params->empty()) // null, too, is empty
+        return r;
+    if (!params->is_structured())
+        return invalid(r.id, R"(its "params" are no object)");
+    r.params = std::move(*params);
     return r;
 }
 
@@ -137,7 +143,7 @@ rpc_message parse_rpc(std::string_view text, const rpc_limits& l)
     }
     if (!j.is_array()) {
         rpc_message m;
-        m.parts.push_back(read_request(j));
+        m.parts.push_back(read_request(j, l.any_form));
         return m;
     }
     if (j.empty())
@@ -148,7 +154,7 @@ rpc_message parse_rpc(std::string_view text, const rpc_limits& l)
     rpc_message m;
     m.batch = true;
     for (json& one : j)
-        m.parts.push_back(read_request(one));
+        m.parts.push_back(read_request(one, l.any_form));
     return m;
 }
 

@@ -62,6 +62,8 @@ struct rpc_message {
 struct rpc_limits {
     std::size_t nesting = 64; ///< levels of arrays and objects
     std::size_t batch = 64;   ///< requests in one message
+    /// Method that is accepted in any form: with any params, id and version. Empty: none.
+    std::string_view any_form = {};
 };
 
 /// Never throws for what the text says: what is wrong is in the parts.

@@ -136,7 +136,7 @@ bool service::receive(client_number number, std::string_view text)
     client* c = find(number);
     if (c == nullptr)
         return false;
-    net::rpc_message m = net::parse_rpc(text, {.nesting = options_.limits.max_nesting});
+    net::rpc_message m = net::parse_rpc(text, {.nesting = options_.limits.max_nesting, .any_form = "stop"});
     if (!admitted(*c, m))
         return false;
     const auto all = std::make_shared<pending>(*this, number);
@@ -180,7 +180,7 @@ void service::handle(client& c, net::rpc_request& r, const answer& to, std::size
     if (m == "cancel")
         return cancel(c, r.params, to);
     if (m == "stop")
-        return stop(r.params, to);
+        return stop(to);
     if (m == "fire")
         return fire(r.params, to);
     if (m == "begin")

@@ -161,7 +161,7 @@ private:
                                       const std::vector<score>& scores, bool stopped);
     void check_free_place(const client& c) const;
     void cancel(client& c, const net::json& params, const answer& to);
-    void stop(const net::json& params, const answer& to);
+    void stop(const answer& to);
     void fire(const net::json& params, const answer& to);
     void release(const std::vector<std::uint32_t>& numbers);
 

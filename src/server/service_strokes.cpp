@@ -132,9 +132,8 @@ void service::cancel(client& c, const json& params, const answer& to)
         p->cancel(r.id);
 }
 
-void service::stop(const json& params, const answer& to)
+void service::stop(const answer& to)
 {
-    only(params, {});
     ++stops_;
     player* p = stream_.current();
     std::vector<std::uint32_t> all;

@@ -94,8 +94,8 @@ class ServeOsc(ToolTest):
             other.say("/tactor/nonsense")
             # What loopback says later is answered later.
             local = Sender(self, s)
-            local.say("/tactor/stop", 1)
-            self.assertEqual(local.next()[1], "/tactor/stop")
+            local.say("/tactor/end")
+            self.assertEqual(local.next()[1], "/tactor/end")
             if heard:
                 self.assertEqual(other.next()[1], "/tactor/nonsense")
             else:

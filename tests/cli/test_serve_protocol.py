@@ -49,6 +49,28 @@ class Protocol(ServeTest):
         self.assertEqual(batch[1]["error"]["code"], -32600)
         self.assertEqual(c.end_of(batch[2]["result"]["stroke"])["state"], "finished")
 
+    def test_no_parameters_are_empty_ones_for_every_method(self):
+        c = self.serve().client()
+        for method in ("hello", "play", "plan", "cancel", "stop", "fire", "begin", "to", "end", "drive", "status", "subscribe"):
+            told = []
+            for raw in (b"", b',"params":{}', b',"params":[]', b',"params":null'):
+                c.raw(b'{"jsonrpc":"2.0","id":1,"method":"%s"%s}\n' % (method.encode(), raw))
+                r = c.reply()
+                told.append((list(r), r.get("error")))
+            self.assertEqual(told, told[:1] * 4, method)
+
+    def test_stop_is_never_refused_for_its_form(self):
+        s = self.serve()
+        a, b = s.client(), s.client()
+        for raw, answered in ((b'"id":1,"params":[]', True), (b'"id":1,"params":null', True), (b'"id":1,"params":["now",1]', True),
+                              (b'"id":1,"params":{"why":"hurts"}', True), (b'"id":1,"params":true', True),
+                              (b'"id":[],"params":0', True), (b'"params":"x"', False)):
+            mine = a.ok("play", **LONG)["stroke"]
+            b.raw(b'{"jsonrpc":"2.0","method":"stop",' + raw + b'}\n')
+            if answered:
+                self.assertEqual(b.reply()["result"], {}, raw)
+            self.assertEqual(a.end_of(mine)["state"], "cancelled", raw)
+
     def test_play_in_all_forms(self):
         c = self.serve().client()
         toml = "[[stroke]]\npath = 'M 0 0 L 40 0'\nduration_s = 0.1\n[[stroke]]\npath = 'M 0 0 L 0 40'\nduration_s = 0.1\n"

@@ -53,6 +53,37 @@ TEST_CASE("what is no request has the standard's code")
     CHECK(code_of(R"({"jsonrpc":"2.0","method":"m","params":[1],"id":null})") == 0);
 }
 
+TEST_CASE("no parameters are the same in each form")
+{
+    for (const char* text :
+         {R"({"jsonrpc":"2.0","method":"m"})", R"({"jsonrpc":"2.0","method":"m","params":{}})",
+          R"({"jsonrpc":"2.0","method":"m","params":[]})",
+          R"({"jsonrpc":"2.0","method":"m","params":null})"}) {
+        CAPTURE(text);
+        CHECK(std::get<rpc_request>(parse_rpc(text, {}).parts.front()).params == json::object());
+    }
+    for (const char* params : {"0", "false", "\"\"", "1"})
+        CHECK(code_of(R"({"jsonrpc":"2.0","method":"m","params":)" + std::string(params) + "}") ==
+              code_invalid_request);
+}
+
+TEST_CASE("a method that is accepted in any form is a request, whatever is beside its name")
+{
+    for (const char* rest :
+         {"", R"(,"params":1)", R"(,"params":["x"],"id":5)", R"(,"jsonrpc":"1.0","params":{"x":[]},"id":5)",
+          R"(,"id":{},"params":null)", R"(,"id":true)"}) {
+        CAPTURE(rest);
+        const std::string text = R"({"method":"halt")" + std::string(rest) + "}";
+        const rpc_message m = parse_rpc(text, {.any_form = "halt"});
+        const auto& r = std::get<rpc_request>(m.parts.front());
+        CHECK(r.method == "halt");
+        CHECK(r.params == json::object());
+        CHECK(r.wants_reply == (text.find("id") != std::string::npos));
+        CHECK(r.id == (text.find("5") != std::string::npos ? json(5) : json(nullptr)));
+    }
+    CHECK(code_of(R"({"method":""})") == code_invalid_request); // as without such a method
+}
+
 TEST_CASE("a number that no double holds is no number, and its message is answered")
 {
     const rpc_message m = parse_rpc(

@@ -83,6 +83,36 @@ TEST_CASE("numbers belong to an address with its port")
     CHECK(rig.silent(me));
 }
 
+TEST_CASE("a stop stops in whatever form it comes, but a button's release does not")
+{
+    osc_rig rig;
+    ready(rig);
+    const auto packet = [](const std::string& types, const std::string& data) {
+        return "/tactor/stop\0\0\0\0"s + types + data;
+    };
+    for (const std::string& stop :
+         {packet(",i\0\0"s, "\0\0\0\1"s), packet(",f\0\0"s, "\x3f\x80\0\0"s), packet(",T\0\0"s, ""),
+          packet(",N\0\0"s, ""), packet(",I\0\0"s, ""), packet(",s\0\0"s, "\0\0\0\0"s),
+          packet(",c\0\0"s, "\0\0\0\0"s), packet(",b\0\0"s, "\0\0\0\0"s),
+          packet(",[i]\0\0\0\0"s, "\0\0\0\1"s), packet("", ""), "/tactor/stop"s, packet(",i\0\0"s, ""),
+          packet(",?\0\0"s, ""), packet("ii\0\0"s, "\0\0\0\1"s),
+          osc_rig::bundle(rig.unix_ns() + 100'000'000'000, {packet(",T\0\0"s, "")})}) {
+        CAPTURE(stop);
+        rig.say(me, "/tactor/begin", endless(1));
+        rig.osc.receive(stop, you);
+        CHECK(rig.next(me) == "/tactor/stroke 1 cancelled");
+        CHECK(rig.silent(you));
+    }
+    rig.say(me, "/tactor/begin", endless(1));
+    rig.osc.receive(packet(",F\0\0"s, ""), you);
+    rig.say(you, "/tactor/stop", {0_i});
+    rig.say(you, "/tactor/stop", {0.0});
+    CHECK(rig.silent(me));
+    CHECK(rig.silent(you));
+    rig.osc.receive(packet(",T\0\0"s, ""), me); // one's own
+    CHECK(rig.next(me) == "/tactor/stroke 1 cancelled");
+}
+
 TEST_CASE("a live stroke in one packet, before its own number is known to anybody")
 {
     osc_rig rig([](auto&, auto& s) { s.idle_stop_s = 0.001; });

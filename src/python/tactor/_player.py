@@ -245,8 +245,8 @@ class Player(_Unique):
         """Starts all armed strokes, now or at a time of CLOCK_MONOTONIC; how many there were."""
         return self._get().core.fire(time.monotonic() if at_s is None else _number("at_s", at_s, -_LATEST_S, _LATEST_S, _CLOCK))  # type: ignore[no-any-return]
 
-    def stop(self) -> None:
-        """Fades everything out and stops the stream. What that ends counts as cancelled."""
+    def stop(self, *_: object) -> None:
+        """Fades everything out and stops the stream. What that ends counts as cancelled. Ignores its arguments, such as the event of a button."""
         self._get().core.stop()
 
     @property

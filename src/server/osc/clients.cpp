@@ -49,7 +49,11 @@ void osc_clients::receive(std::string_view packet, const endpoint& from)
         for (const osc_message& m : net::parse_osc(packet))
             take(m, from);
     } catch (const error& e) {
-        refuse(from, "", e.what());
+        // A stop whose values cannot be read is one all the same.
+        if (packet.substr(0, packet.find('\0')) == osc_stop)
+            stop(from);
+        else
+            refuse(from, "", e.what());
     }
     act();
     look_at(from);
@@ -63,8 +67,8 @@ void osc_clients::take(const osc_message& m, const endpoint& from)
         osc_request r = read_osc(m);
         // At once, whatever its time is.
         if (r.method == "stop")
-            stop(std::move(r), from);
-        else
+            stop(from);
+        else if (!r.method.empty())
             handle(std::move(r), time_of(m), from);
     } catch (...) {
         refuse(from, m.address, current_fault("values"));
@@ -113,10 +117,10 @@ void osc_clients::handle(osc_request r, std::optional<std::int64_t> at_ns, const
 }
 
 // Also of somebody who is not known, and where there is no place for more.
-void osc_clients::stop(osc_request r, const endpoint& from)
+void osc_clients::stop(const endpoint& from)
 {
     if (sender* s = find(from))
-        return ask(*s, r);
+        return ask(*s, {.address = std::string(osc_stop), .method = "stop"});
     class nowhere final : public client_link {
         void send(std::string) override {}
         std::size_t waiting() const override { return 0; }

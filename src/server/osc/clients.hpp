@@ -74,7 +74,7 @@ private:
     // osc_clients.cpp
     void take(const net::osc_message& m, const endpoint& from);
     void handle(osc_request r, std::optional<std::int64_t> at_ns, const endpoint& from);
-    void stop(osc_request r, const endpoint& from);
+    void stop(const endpoint& from);
     void subscribe(const osc_request& r, const endpoint& from);
     void move(osc_request r, std::optional<std::int64_t> at_ns, const endpoint& from);
     void draw(osc_request r, std::optional<std::int64_t> at_ns, const endpoint& from);

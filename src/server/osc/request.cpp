@@ -28,6 +28,18 @@ public:
 
     bool left() const { return next_ != all_.size(); }
     bool next_is_number() const { return left() && is_number(all_[next_]); }
+    /// Returns true where the next value is 0 or false.
+    bool released() const
+    {
+        if (!left())
+            return false;
+        const osc_value& v = all_[next_];
+        const auto* n = std::get_if<std::int64_t>(&v);
+        const auto* x = std::get_if<double>(&v);
+        const auto* other = std::get_if<net::osc_other>(&v);
+        return (n != nullptr && *n == 0) || (x != nullptr && *x == 0.0) ||
+               (other != nullptr && other->tag == 'F');
+    }
 
     double number(const char* what)
     {
@@ -56,6 +68,7 @@ public:
             bad_param(what, "it is no text", "s is taken");
         return *s;
     }
+    void ignore_rest() { next_ = all_.size(); }
     void end() const
     {
         if (left())
@@ -153,6 +166,15 @@ void read_to(value_list& v, osc_request& r)
 void read_own_stroke(value_list& v, osc_request& r)
 {
     r.number = stroke_number(v);
+    v.ignore_rest();
+}
+
+// Any value but 0 and false: controllers append a button's state, and nothing a controller may append fails.
+void read_stop(value_list& v, osc_request& r)
+{
+    if (v.released())
+        r.method.clear();
+    v.ignore_rest();
 }
 
 void read_drive(value_list& v, osc_request& r)
@@ -190,7 +212,7 @@ constexpr std::array osc_addresses{
     known_address{"/tactor/to", read_to},
     known_address{"/tactor/end", read_own_stroke},
     known_address{"/tactor/cancel", read_own_stroke},
-    known_address{"/tactor/stop", [](value_list&, osc_request&) {}},
+    known_address{osc_stop, read_stop},
     known_address{"/tactor/drive", read_drive},
     known_address{"/tactor/subscribe", read_subscribe},
 };

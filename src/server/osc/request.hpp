@@ -15,7 +15,7 @@ namespace tactor::server {
 
 struct osc_request {
     std::string address;
-    std::string method; ///< of the protocol
+    std::string method; ///< of the protocol; empty: a button's release, which asks for nothing
     net::json params = net::json::object();
     std::int32_t number = 0;                  ///< the sender's for its stroke; 0: none
     std::optional<std::int64_t> unix_ns = {}; ///< its time tag
@@ -24,6 +24,9 @@ struct osc_request {
 
 /// Whether a server sends such messages: they are never answered, so that two servers do not talk for ever.
 bool is_servers_own(std::string_view address);
+
+/// Address of the message that fades everything out.
+constexpr std::string_view osc_stop = "/tactor/stop";
 
 /// \throws fault_error for addresses that are not known, and for wrong values.
 osc_request read_osc(const net::osc_message& m);
