@@ -209,6 +209,9 @@ void bind_plan(py::module_& m)
              [](const plan_handle& a, const plan_handle& b) {
                  return a.schedule() == b.schedule() && a.placed.anchor == b.placed.anchor;
              })
+        .def("sounds_like",
+             [](const plan_handle& a, const plan_handle& b) { return a.schedule() == b.schedule(); })
+        .def_property_readonly("recipe", &recipe_of)
         .def_property_readonly("array", [](const plan_handle& p) { return p.on; })
         .def_property_readonly("stroke", [](const plan_handle& p) { return p.drawn; })
         .def_property_readonly("algorithm", [](const plan_handle& p) { return p.schedule().algorithm; })

@@ -45,6 +45,10 @@ asked_stroke stroke_as_asked(const stroke& s, const layout& faces, const wishes&
 /// As many channels as the array and the marker need, where nobody says how many.
 render_options settled(const array& a, render_options o);
 
+/// Everything that decides how the plan sounds where nobody says otherwise, as values that Python compares
+/// and hashes.
+py::tuple recipe_of(const plan_handle& p);
+
 /// \throws error (bad_input) where the plan is for tactors elsewhere or on other channels.
 void check_same_array(const plan_handle& p, const array& in_use);
 

@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <tuple>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "core/words.hpp"
+#include "plan/scaled.hpp"
 #include "python/plan_handle.hpp"
 
 namespace tactor::python {
@@ -15,31 +22,119 @@ namespace {
 // Frames between two looks for Ctrl-C: some 10 ms of work.
 constexpr std::uint64_t frames_at_once = 1 << 18;
 
-using placed = std::pair<std::optional<double>, const plan_handle*>;
+// A plan, its start, and what is said of its sound beside what it was made with.
+using score_part = std::tuple<std::optional<double>, const plan_handle*, py::dict>;
 
 bool says(const py::dict& options, const char* name)
 {
     return options.contains(name) && !options[name].is_none();
 }
 
-// A score sounds as its first plan was meant to, but for what is said here.
-score make_score(const array_handle& on, const std::vector<placed>& plans, const py::dict& options)
+render_options sound_of(const plan_handle& p, const py::dict& said)
+{
+    wishes w;
+    w.sound = p.sound;
+    take_options(w, said, 0);
+    // A plan that was recorded says how many channels it had without a marker.
+    if (w.sound.marker_channel && w.sound.channels != 0 && !says(said, "channels"))
+        w.sound.channels = std::max(w.sound.channels, *w.sound.marker_channel + 1);
+    return w.sound;
+}
+
+[[noreturn]] void refuse_different(const std::string& name, const std::string& a, const std::string& b)
+{
+    throw error(error_kind::bad_input, name, fmt::format("the plans differ: {} and {}", a, b),
+                fmt::format("say {}= here, which counts for all of them", name))
+        .with_field(name);
+}
+
+std::string text_of(const std::optional<double>& d)
+{
+    return d ? plain_number(*d) : "none";
+}
+
+// A score has these once.
+void check_alike(const render_options& a, const render_options& b)
+{
+    if (a.rate != b.rate)
+        refuse_different("rate", fmt::format("{} Hz", a.rate), fmt::format("{} Hz", b.rate));
+    if (a.phase != b.phase)
+        refuse_different("phase", std::string(to_string(a.phase)), std::string(to_string(b.phase)));
+    if (a.ramp_s != b.ramp_s)
+        refuse_different("ramp", text_of(a.ramp_s), text_of(b.ramp_s));
+    if (a.envelope.attack_s != b.envelope.attack_s)
+        refuse_different("attack", text_of(a.envelope.attack_s), text_of(b.envelope.attack_s));
+    if (a.envelope.release_s != b.envelope.release_s)
+        refuse_different("release", text_of(a.envelope.release_s), text_of(b.envelope.release_s));
+    if (a.envelope != b.envelope)
+        refuse_different("envelope", envelope_text(a.envelope), envelope_text(b.envelope));
+    if (a.sl_db.has_value() != b.sl_db.has_value())
+        refuse_different("sl", text_of(a.sl_db), text_of(b.sl_db));
+    if (a.marker_channel && b.marker_channel && a.marker_channel != b.marker_channel)
+        refuse_different("marker_channel", std::to_string(*a.marker_channel),
+                         std::to_string(*b.marker_channel));
+}
+
+double level_of(const render_options& o)
+{
+    return o.sl_db.value_or(o.level_dbfs);
+}
+
+// The sound of them all, at the level of the loudest.
+render_options joined(std::span<const render_options> sounds)
+{
+    render_options all = sounds.front();
+    for (const render_options& o : sounds) {
+        check_alike(all, o);
+        all.channels = std::max(all.channels, o.channels);
+        if (!all.marker_channel && o.marker_channel) {
+            all.marker_channel = o.marker_channel;
+            all.marker_s = o.marker_s;
+        }
+        if (level_of(o) > level_of(all)) {
+            all.level_dbfs = o.level_dbfs;
+            all.sl_db = o.sl_db;
+        }
+    }
+    return all;
+}
+
+// All that decides on samples beside plans and array.
+py::tuple recipe(const render_options& o)
+{
+    const py::object limits =
+        o.limits ? py::object(py::make_tuple(o.limits->power_dbfs, o.limits->max_drive_s, o.limits->window_s))
+                 : py::object(py::none());
+    return py::make_tuple(o.rate, std::string(to_string(o.phase)), o.ramp_s, envelope_text(o.envelope),
+                          o.envelope.attack_s, o.envelope.release_s, o.channels, o.marker_channel, o.marker_s,
+                          limits, o.sl_db.has_value());
+}
+
+// Each plan keeps its level; what they have in common is the score's.
+py::tuple make_score(const array_handle& on, const std::vector<score_part>& plans)
 {
     if (plans.empty())
         throw error(error_kind::bad_input, "plans", "there are none", "give at least one");
-    wishes w;
-    w.sound = plans.front().second->sound;
-    take_options(w, options, 0);
-    // A plan that was recorded says how many channels it had without a marker.
-    if (w.sound.marker_channel && w.sound.channels != 0 && !says(options, "channels"))
-        w.sound.channels = std::max(w.sound.channels, *w.sound.marker_channel + 1);
-    const without_lock free;
-    std::vector<placed_plan> all;
-    for (const auto& [start_s, p] : plans) {
+    std::vector<render_options> sounds;
+    std::vector<double> levels;
+    for (const auto& [start_s, p, said] : plans) {
         check_same_array(*p, on.value());
-        all.push_back(p->at(start_s));
+        sounds.push_back(sound_of(*p, said));
+        levels.push_back(level_of(sounds.back()));
     }
-    return {on.value(), std::move(all), settled(on.value(), w.sound)};
+    const render_options common = settled(on.value(), joined(sounds));
+    const auto made = [&] {
+        const without_lock free;
+        std::vector<placed_plan> all;
+        for (std::size_t i = 0; i < plans.size(); ++i) {
+            all.push_back(std::get<1>(plans[i])->at(std::get<0>(plans[i])));
+            if (levels[i] != level_of(common))
+                all.back().schedule = detail::scaled(std::move(all.back().schedule),
+                                                     std::pow(10.0, (levels[i] - level_of(common)) / 20.0));
+        }
+        return score(on.value(), std::move(all), common);
+    }();
+    return py::make_tuple(made, recipe(common) + py::make_tuple(py::tuple(py::cast(levels))));
 }
 
 void process(const score& s, format_kind f, std::span<std::byte> out)
@@ -88,10 +183,15 @@ void write(const score& s, const std::string& file, const std::string& format)
 
 } // namespace
 
+py::tuple recipe_of(const plan_handle& p)
+{
+    return recipe(settled(p.on->value(), p.sound)) + py::make_tuple(level_of(p.sound));
+}
+
 void bind_score(py::module_& m)
 {
+    m.def("make_score", &make_score);
     py::class_<score>(m, "Score")
-        .def(py::init(&make_score))
         .def_property_readonly("frames", &score::frames)
         .def_property_readonly("channels", &score::channels)
         .def_property_readonly("rate", &score::rate)

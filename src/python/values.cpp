@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
 #include <optional>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "core/profile.hpp"
+#include "files/output_file.hpp"
 #include "files/setup_defaults.hpp"
+#include "files/setup_text.hpp"
 #include "python/binding.hpp"
 #include "python/state.hpp"
 
@@ -62,8 +67,18 @@ py::tuple pair(point p)
     return py::make_tuple(p.x_mm, p.y_mm);
 }
 
+// Whole or not at all.
+void write_text(const std::string& file, const std::string& text)
+{
+    const without_lock free;
+    detail::output_file out{std::filesystem::path(file)};
+    out.write(text.data(), static_cast<std::int64_t>(text.size()));
+    out.commit();
+}
+
 void bind_array(py::module_& m)
 {
+    m.def("write_text", &write_text);
     py::class_<array_handle, std::shared_ptr<array_handle>>(m, "Array")
         .def(py::init(&make_array))
         .def_static("preset", [](const std::string& name) { return array_handle(preset_array(name)); })
@@ -74,6 +89,7 @@ void bind_array(py::module_& m)
         .def_property_readonly("name", [](const array_handle& h) { return h.value().name; })
         .def_property_readonly("channels", [](const array_handle& h) { return h.value().channels(); })
         .def_property_readonly("rows", &rows_of)
+        .def("text", [](const array_handle& h) { return detail::array_text(h.value()); })
         .def_property_readonly("positions",
                                [](const py::object& self) {
                                    const auto& t = self.cast<const array_handle&>().value().tactors;
@@ -101,6 +117,12 @@ void bind_array(py::module_& m)
 
     py::class_<setup>(m, "Setup")
         .def_static("load", [](const std::string& file) { return load_setup(file); })
+        .def_static("parse", [](const std::string& text) { return parse_setup(text, "array"); })
+        .def("besides", [](const setup& s) { return detail::besides_text(s); })
+        .def("origin",
+             [](const setup& s) {
+                 return s.calibration ? detail::origin_text(*s.calibration) : std::string();
+             })
         .def_property_readonly("array",
                                [](const setup& s) -> std::optional<array_handle> {
                                    return s.array ? std::optional<array_handle>(std::in_place, *s.array)

@@ -122,7 +122,7 @@ def test_an_observer_of_a_file_may_stand_there_for_other_strokes(tmp_path, strok
 
 
 def test_numbers_of_numpy_are_numbers(palm, stroke):
-    assert tactor.plan(palm, stroke, soa=np.float64(0.06), fit=np.bool_(False), rate=np.int64(44100)) == tactor.plan(palm, stroke, soa=0.06)
+    assert tactor.plan(palm, stroke, soa=np.float64(0.06), fit=np.bool_(False), rate=np.int64(44100)) == tactor.plan(palm, stroke, soa=0.06, rate=44100)
 
 
 def test_a_plan_is_compared_by_what_it_plays(palm, stroke):

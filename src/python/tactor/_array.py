@@ -14,6 +14,8 @@ if _t.TYPE_CHECKING:
     import numpy as _np
     from numpy.typing import ArrayLike as _ArrayLike, NDArray as _NDArray
     _Actuator = _t.Literal["unknown", "piezo", "voice-coil", "lra", "erm"]
+    _EachTactor = _t.Union[float, _t.Iterable[float], None]
+    _Thresholds = _t.Union[float, _t.Iterable[_t.Union[float, _t.Sequence[tuple[float, float]], None]], None]
 
 
 class Point(_t.NamedTuple):
@@ -70,31 +72,31 @@ class Array(_Value):
         For no tactors, two on one place or channel, and numbers out of range.
     """
 
-    __slots__ = ("_core", "_file", "_setup", "_tactors")
+    __slots__ = ("_core", "_file", "_besides", "_origin", "_setup", "_tactors")
 
     _core: _t.Any
     _file: str | None
-    _setup: _t.Any
+    _besides: str  # [output], [amplifier], [sync], [limits] and [defaults] of its file, as TOML
+    _origin: str  # [calibration], the same way
+    _setup: _t.Any  # what they say, once somebody asks
     _tactors: tuple[Tactor, ...]
 
     def __init__(self, name: str, tactors: _t.Iterable[Tactor]) -> None:
-        tactors = tuple(tactors)
-        for t in tactors:
-            _need(t, Tactor, "tactors")
-        _need(name, str, "name")
-        self._take(_tactor.Array(name, [_row(t) for t in tactors]))
+        self._take(_core_of(name, tactors))
 
-    def _take(self, core: _t.Any, file: str | None = None, setup: _t.Any = None) -> None:
+    def _take(self, core: _t.Any, file: str | None = None, besides: str = "", origin: str = "") -> None:
         self._core = core
         self._file = file
-        self._setup = setup
+        self._besides = besides
+        self._origin = origin
+        self._setup = None
         self._tactors = tuple(Tactor._make((Point(x, y), *rest, tuple(thresholds), rise_s))
                               for x, y, *rest, thresholds, rise_s in core.rows)
 
     @classmethod
-    def _of(cls, core: _t.Any, file: str | None = None, setup: _t.Any = None) -> Array:
+    def _of(cls, core: _t.Any, file: str | None = None, besides: str = "", origin: str = "") -> Array:
         made = cls.__new__(cls)
-        made._take(core, file, setup)
+        made._take(core, file, besides, origin)
         return made
 
     @classmethod
@@ -108,7 +110,8 @@ class Array(_Value):
         """Reads an array file, see tactor.toml(5).
 
         What else the file says belongs to the array, as in the tool: [defaults] for what nobody says, the rate and channels of
-        [output], the marker of [sync], and for a `Player` on it also amplifier and limits.
+        [output], the marker of [sync], and for a `Player` on it also amplifier and limits. `replace` keeps it, and arrays that differ
+        in it are not equal.
 
         Raises
         ------
@@ -119,7 +122,7 @@ class Array(_Value):
             setup = _tactor.Setup.load(name)
             if setup.array is None:
                 raise InputError(os.fspath(path), "says no [array]", "see tactor.toml(5)")
-        return cls._of(setup.array, os.path.abspath(path), setup)
+        return cls._of(setup.array, os.path.abspath(path), setup.besides(), setup.origin())
 
     @classmethod
     def grid(cls, name: str, rows: int, columns: int, pitch_mm: float | tuple[float, float]) -> Array:
@@ -196,11 +199,72 @@ class Array(_Value):
         _need(phantom, str, "phantom")
         return dict(_tactor.phantom_weights(phantom, self._core, *_place("point", point), _number("intensity", intensity)))
 
+    def replace(self, *, name: str | None = None, tactors: _t.Iterable[Tactor] | None = None, channels: _t.Iterable[int] | None = None,
+                gains: _EachTactor = None, max_dbfs: _EachTactor = None, thresholds: _Thresholds = None,
+                polarities: _t.Iterable[int] | None = None) -> Array:
+        """The same array but for what is given; what its file says of [output], [amplifier], [sync], [limits] and [defaults] stays.
+
+        Parameters
+        ----------
+        name : str, optional
+        tactors : iterable of Tactor, optional
+            All of them anew; the other arguments count on top.
+        channels : iterable of int, optional
+            Channel of each tactor.
+        gains : float or iterable of float, optional
+            Gain of all, or of each, dB.
+        max_dbfs : float or iterable of float, optional
+            Limit of all, or of each, at most 0 dBFS.
+        thresholds : iterable of float, of None or of [(Hz, dBFS), ...], optional
+            Threshold of each, dBFS; None where none was measured. What the file says of how they were measured goes.
+        polarities : iterable of int, optional
+            1 or -1 of each.
+
+        Returns
+        -------
+        Array
+
+        Raises
+        ------
+        InputError
+            For another number of values than tactors, and as `Array` does.
+        """
+        made = self._tactors if tactors is None else _tactors_of(tactors)
+        made = _with_each(made, "channel", "channels", channels)
+        made = _with_each(made, "gain_db", "gains", gains)
+        made = _with_each(made, "max_dbfs", "max_dbfs", max_dbfs)
+        made = _with_each(made, "polarity", "polarities", polarities)
+        if thresholds is not None:
+            made = tuple(t._replace(threshold_dbfs=None, thresholds=()) for t in made)
+            for i, one in enumerate(_each("thresholds", thresholds, len(made))):
+                listed = hasattr(one, "__len__") and not isinstance(one, str)
+                made = (*made[:i], made[i]._replace(**{"thresholds" if listed else "threshold_dbfs": one}), *made[i + 1:])
+        origin = self._origin if tactors is None and thresholds is None else ""
+        return Array._of(_core_of(self.name if name is None else name, made), self._file, self._besides, origin)
+
+    def write(self, file: str | os.PathLike[str]) -> None:
+        """Writes an array file that `from_file` and the tool read, with all that `replace` keeps. It needs no other file.
+
+        Complete or not at all: an existing file is replaced at the end.
+
+        Parameters
+        ----------
+        file : path-like
+
+        Raises
+        ------
+        InputError
+            For a folder that does not exist.
+        StreamError
+            For what the file system refuses.
+        """
+        with reading(file) as to:
+            _tactor.write_text(to, self._core.text() + self._besides + self._origin)
+
     def _settings(self) -> _t.Any:
-        """What its file says beside the array; None without a file. A pickle knows the name only."""
-        if self._setup is None and self._file is not None:
-            with reading(self._file) as name:
-                self._setup = _tactor.Setup.load(name)
+        """What its file says beside the array; None where it says nothing."""
+        if self._setup is None and self._besides:
+            self._setup = _tactor.Setup.parse(self._besides)
         return self._setup
 
     def __len__(self) -> int:
@@ -219,7 +283,7 @@ class Array(_Value):
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Array):
             return NotImplemented
-        return self.name == other.name and self._tactors == other._tactors
+        return self.name == other.name and self._tactors == other._tactors and self._besides == other._besides
 
     def __hash__(self) -> int:
         return hash((self.name, self._tactors))
@@ -228,7 +292,7 @@ class Array(_Value):
         return f"<tactor.Array {self.name!r}: {_counted(len(self), 'tactor')}, {_counted(self.channels, 'channel')}>"
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
-        return _array_again, (self.name, self._tactors, self._file)
+        return _array_again, (self.name, self._tactors, self._file, self._besides, self._origin)
 
 
 def _row(t: Tactor) -> tuple[_t.Any, ...]:
@@ -246,10 +310,40 @@ def _row(t: Tactor) -> tuple[_t.Any, ...]:
             level("threshold_dbfs"), _whole("polarity", t.polarity, -1, 1, "1 or -1"), t.actuator, thresholds, level("rise_s"))
 
 
-def _array_again(name: str, tactors: tuple[Tactor, ...], file: str | None) -> Array:
-    made = Array(name, tactors)
-    made._file = file
-    return made
+def _tactors_of(tactors: _t.Iterable[Tactor]) -> tuple[Tactor, ...]:
+    tactors = tuple(tactors)
+    for t in tactors:
+        _need(t, Tactor, "tactors")
+    return tactors
+
+
+def _core_of(name: str, tactors: _t.Iterable[Tactor]) -> _t.Any:
+    tactors = _tactors_of(tactors)
+    _need(name, str, "name")
+    return _tactor.Array(name, [_row(t) for t in tactors])
+
+
+def _each(what: str, values: _t.Any, count: int) -> list[_t.Any]:
+    """One value for each tactor: of an iterable its members, else the same for all."""
+    if isinstance(values, (str, bytes)):
+        raise InputError(what, f"{_shown(values)} is no list", "give one for each tactor", field=what)
+    try:
+        all_of_them = list(values)
+    except TypeError:
+        return [values] * count
+    if len(all_of_them) != count:
+        raise InputError(what, f"there are {len(all_of_them)}, and {_counted(count, 'tactor')}", "give one for each tactor", field=what)
+    return all_of_them
+
+
+def _with_each(tactors: tuple[Tactor, ...], field: str, what: str, values: _t.Any) -> tuple[Tactor, ...]:
+    if values is None:
+        return tactors
+    return tuple(t._replace(**{field: value}) for t, value in zip(tactors, _each(what, values, len(tactors))))
+
+
+def _array_again(name: str, tactors: tuple[Tactor, ...], file: str | None, besides: str, origin: str) -> Array:
+    return Array._of(_core_of(name, tactors), file, besides, origin)
 
 
 def array_presets() -> list[str]:

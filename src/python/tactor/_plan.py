@@ -9,6 +9,7 @@ from tactor import _tactor
 from tactor._array import Array, Point
 from tactor._checks import _Value
 from tactor._errors import InputError
+from tactor._options import _SOUNDING, check_used, settled
 from tactor._parts import Burst, Conflict, Curve, Drive, Meeting, PerceptSample
 from tactor._stroke import Stroke
 
@@ -25,22 +26,24 @@ class Plan(_Value):
     it has are made when they are first asked for.
     """
 
-    __slots__ = ("_core", "_array", "_recorded", "_kept")
+    __slots__ = ("_core", "_array", "_recorded", "_asked", "_kept")
 
     _core: _t.Any
     _array: Array
     _recorded: bool
+    _asked: dict[str, _t.Any]  # how it is to sound, as far as somebody said
     _kept: dict[str, _t.Any]
 
     def __init__(self) -> None:
         raise TypeError("use tactor.plan() or Plan.from_dict()")
 
     @classmethod
-    def _of(cls, core: _t.Any, array: Array | None = None, recorded: bool = False) -> Plan:
+    def _of(cls, core: _t.Any, array: Array | None = None, recorded: bool = False, asked: dict[str, _t.Any] | None = None) -> Plan:
         made = cls.__new__(cls)
         made._core = core
         made._array = array if array is not None else Array._of(core.array)
         made._recorded = recorded
+        made._asked = asked or {}
         made._kept = {}
         return made
 
@@ -211,10 +214,16 @@ class Plan(_Value):
         columns |= {f"tactor_{i}": amplitudes[:, i] for i in range(amplitudes.shape[1])}
         return pandas.DataFrame(columns)
 
-    def _is_settled_on(self, array: Array) -> bool:
-        """Whether it says how it is to sound on that array: it has taken over what its array's file says, and a record says all."""
-        own = self._array
-        return self._recorded or own is array or (own == array and own._file == array._file)
+    def _sound_on(self, array: Array, given: dict[str, _t.Any]) -> dict[str, _t.Any]:
+        """Options of a score on that array, where `given` wins. The plan has taken over what its own array's file says, and a record
+        says all; elsewhere the other array's file says what the plan leaves open."""
+        sound = self._core.sound
+        if self._recorded or self._array == array:
+            check_used(given, {**sound, **{name: value for name, value in given.items() if value is not None}})
+            return given
+        rivals = {"level_dbfs", "sl"} if given.get("level_dbfs") is not None or given.get("sl") is not None else set()
+        asked = {name: value for name, value in self._asked.items() if given.get(name) is None and name not in rivals}
+        return settled(array, {**given, **asked}, _SOUNDING, sound)
 
     def _keep(self, name: str, make: _t.Callable[[], _t.Any]) -> _t.Any:
         if name not in self._kept:
@@ -224,10 +233,11 @@ class Plan(_Value):
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Plan):
             return NotImplemented
-        return bool(self._core.same(other._core)) and self.start == other.start and self._array == other._array
+        return (bool(self._core.same(other._core)) and self.start == other.start and self._array == other._array
+                and self._core.recipe == other._core.recipe)
 
     def __hash__(self) -> int:
-        return hash((self.algorithm, self.phantom, self.total, self._core.size, self._array))
+        return hash((self.algorithm, self.phantom, self.total, self._core.size, self._array, self._core.recipe))
 
     def __repr__(self) -> str:
         what = "continuous" if self._core.continuous else f"{self._core.size} burst{'s' if self._core.size != 1 else ''}"
@@ -238,7 +248,7 @@ class Plan(_Value):
         return svg_of_plans([self])
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
-        return _plan_again, (self._core.json(), self._core.stroke.state(), self._array, self._recorded)
+        return _plan_again, (self._core.json(), self._core.stroke.state(), self._array, self._recorded, self._asked)
 
 
 def _plain(value: _t.Any) -> _t.Any:
@@ -250,5 +260,5 @@ def _plain(value: _t.Any) -> _t.Any:
     raise TypeError(f"there is a {type(value).__name__} in it")
 
 
-def _plan_again(text: str, stroke: bytes, array: Array, recorded: bool = False) -> Plan:
-    return Plan._of(_tactor.Plan.from_parts(text, _tactor.Stroke.from_state(stroke), array._core), array, recorded)
+def _plan_again(text: str, stroke: bytes, array: Array, recorded: bool, asked: dict[str, _t.Any]) -> Plan:
+    return Plan._of(_tactor.Plan.from_parts(text, _tactor.Stroke.from_state(stroke), array._core), array, recorded, asked)

@@ -7,7 +7,7 @@ import typing as _t
 from tactor import _tactor
 from tactor._array import Array
 from tactor._checks import _need
-from tactor._options import _PLANNING_AND_SOUNDING, settled
+from tactor._options import _PLANNING_AND_SOUNDING, _SOUNDING, settled
 from tactor._parts import PhantomModel
 from tactor._plan import Plan
 from tactor._stroke import Stroke
@@ -106,7 +106,9 @@ def plan(array: Array, stroke: Stroke, *, algorithm: _Algorithm | None = None, p
         "envelope": envelope, "attack": attack, "release": release, "tukey_part": tukey_part, "level_dbfs": level_dbfs, "sl": sl,
         "rate": rate,
     }
-    return Plan._of(_tactor.Plan(array._core, stroke._core, settled(array, options, _PLANNING_AND_SOUNDING)), array)
+    options = settled(array, options, _PLANNING_AND_SOUNDING)
+    asked = {name: options[name] for name in _SOUNDING if options.get(name) is not None}
+    return Plan._of(_tactor.Plan(array._core, stroke._core, options), array, asked=asked)
 
 
 def burst_duration(*, soa: float | None = None, burst: float | None = None, slope: float | None = None,

@@ -11,7 +11,7 @@ from tactor._array import Array
 from tactor._checks import _counted, _need, _number, _Value
 from tactor._errors import InputError
 from tactor._files import reading
-from tactor._options import _SOUNDING, check_used, in_parts, settled
+from tactor._options import in_parts
 from tactor._plan import Plan
 
 if _t.TYPE_CHECKING:
@@ -79,14 +79,19 @@ class Score(_Value):
     Raises
     ------
     InputError
-        A carrier at or above half the rate, a level that a tactor may not have, too few channels, plans for another array.
+        A carrier at or above half the rate, a level that a tactor may not have, too few channels, plans for another array, plans that
+        differ in rate, phase, envelope or ramp, or of which only some have a level in dB SL.
 
     Notes
     -----
-    What nobody says is as the first plan was to sound, and then as the array's file says.
+    Each plan keeps the level that it was made with, unless one is given here. Of all else that nobody gives here the plans must agree;
+    what they do not say is as the array's file says.
+
+    Two scores are equal, and hash alike, where the same samples are made in the same way: levels, phase, envelope, ramps and rate count,
+    names do not.
     """
 
-    __slots__ = ("_core", "_array", "_plans", "_options")
+    __slots__ = ("_core", "_array", "_plans", "_options", "_recipe")
 
     def __init__(self, array: Array, plans: _Plans, *, level_dbfs: float | None = None, sl: float | None = None, rate: int | None = None,
                  phase: _Phase | None = None, ramp: float | None = None, envelope: _Envelope | None = None, attack: float | None = None,
@@ -98,25 +103,18 @@ class Score(_Value):
             "attack": attack, "release": release, "tukey_part": tukey_part, "channels": channels, "marker_channel": marker_channel,
             "marker_s": marker_s, "power_dbfs": power_dbfs, "max_drive_s": max_drive_s, "drive_window_s": drive_window_s,
         }
-        given = in_parts(given)
         _need(array, Array, "array")
-        all_of_them = placed(plans)
-        sound = all_of_them[0][1]._core.sound if all_of_them else {}
-        if all_of_them and all_of_them[0][1]._is_settled_on(array):
-            check_used(given, {**sound, **{name: value for name, value in given.items() if value is not None}})
-        else:
-            given = settled(array, given, _SOUNDING, sound)
-        self._take(array, tuple(all_of_them), given)
+        self._take(array, tuple(placed(plans)), in_parts(given))
 
     def _take(self, array: Array, plans: tuple[tuple[float | None, Plan], ...], options: dict[str, _t.Any]) -> None:
         self._array = array
         self._plans = plans
         self._options = options
-        self._core = _tactor.Score(array._core, [(start, p._core) for start, p in plans], options)
+        self._core, self._recipe = _tactor.make_score(
+            array._core, [(start, p._core, p._sound_on(array, options)) for start, p in plans])
 
     @classmethod
     def _of(cls, array: Array, plans: tuple[tuple[float | None, Plan], ...], options: dict[str, _t.Any]) -> Score:
-        """Of options that are settled."""
         made = cls.__new__(cls)
         made._take(array, plans, options)
         return made
@@ -212,10 +210,15 @@ class Score(_Value):
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Score):
             return NotImplemented
-        return (self._array, self._plans, self._options) == (other._array, other._plans, other._options)
+        return self._sounds() == other._sounds() and all(
+            a._core.sounds_like(b._core) for a, b in zip(self.plans, other.plans))
 
     def __hash__(self) -> int:
-        return hash((self._array, self._plans))
+        return hash(self._sounds())
+
+    def _sounds(self) -> tuple[_t.Any, ...]:
+        """What decides on the samples, but for the plans' bursts and curves."""
+        return self._array.tactors, tuple(self.starts), self.frames, self._recipe
 
     def __repr__(self) -> str:
         return (f"<tactor.Score: {_counted(len(self._plans), 'plan')}, {_counted(self.channels, 'channel')}, {self.rate} Hz, "

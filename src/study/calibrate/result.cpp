@@ -14,7 +14,7 @@
 #include <tactor/error.hpp>
 
 #include "files/output_file.hpp"
-#include "files/setup_defaults.hpp"
+#include "files/setup_text.hpp"
 #include "study/bids/disk.hpp"
 #include "study/data/kept.hpp"
 #include "study/data/text_table.hpp"
@@ -22,106 +22,11 @@
 namespace tactor::study {
 namespace {
 
-std::string toml_string(std::string_view s)
-{
-    std::string q = "\"";
-    for (const char c : s)
-        if (c == '"' || c == '\\')
-            q += fmt::format("\\{}", c);
-        else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-            q += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
-        else
-            q += c;
-    return q + '"';
-}
-
-std::string line_text(const gpio_line_name& l)
-{
-    if (!l.name.empty())
-        return fmt::format("name = {}", toml_string(l.name));
-    return fmt::format("chip = {}, offset = {}", toml_string(l.chip), l.offset.value_or(0));
-}
-
-// The file says milliseconds.
-double ms(double s)
-{
-    return s * 1e3;
-}
-
 template <typename T>
 void add(std::string& to, std::string_view key, const std::optional<T>& v)
 {
     if (v)
         to += fmt::format("{} = {}\n", key, *v);
-}
-
-std::string output_text(const output_settings& o)
-{
-    std::string s;
-    if (o.pcm)
-        s += fmt::format("pcm = {}\n", toml_string(*o.pcm));
-    add(s, "rate", o.rate);
-    add(s, "channels", o.channels);
-    add(s, "period_frames", o.period_frames);
-    add(s, "periods", o.periods);
-    return s.empty() ? s : "\n[output]\n" + s;
-}
-
-std::string lines_text(const setup& u)
-{
-    std::string s;
-    if (u.amplifier)
-        s += fmt::format("\n[amplifier]\nline = {{ {} }}\nactive_low = {}\nsettle_ms = {}\n",
-                         line_text(u.amplifier->line), u.amplifier->active_low, ms(u.amplifier->settle_s));
-    if (!u.sync)
-        return s;
-    s += "\n[sync]\n";
-    if (u.sync->out)
-        s += fmt::format("out = {{ {}, pulse_ms = {} }}\n", line_text(*u.sync->out), ms(u.sync->pulse_s));
-    add(s, "channel", u.sync->channel);
-    if (u.sync->in)
-        s += fmt::format("in = {{ {}, edge = \"{}\", debounce_ms = {}, pull = \"{}\" }}\n",
-                         line_text(*u.sync->in), to_string(u.sync->edge), ms(u.sync->debounce_s),
-                         to_string(u.sync->pull));
-    return s;
-}
-
-std::string limits_text(const limit_settings& l)
-{
-    std::string s = "\n[limits]\n";
-    add(s, "power_dbfs", l.power_dbfs);
-    add(s, "max_drive_s", l.max_drive_s);
-    add(s, "window_s", l.window_s);
-    return s;
-}
-
-std::string list_text(const std::vector<threshold_point>& points)
-{
-    std::string s;
-    for (const threshold_point& p : points)
-        s += fmt::format("{}[{}, {}]", s.empty() ? "" : ", ", p.hz, p.dbfs);
-    return fmt::format("threshold_dbfs = [{}]\n", s);
-}
-
-std::string tactor_text(const tactor_spec& t)
-{
-    std::string s = fmt::format("\n[[tactor]]\nx_mm = {}\ny_mm = {}\nchannel = {}\n", t.position.x_mm,
-                                t.position.y_mm, t.channel);
-    if (t.gain_db != 0.0)
-        s += fmt::format("gain_db = {}\n", t.gain_db);
-    if (t.max_dbfs != 0.0)
-        s += fmt::format("max_dbfs = {}\n", t.max_dbfs);
-    if (t.thresholds.empty())
-        add(s, "threshold_dbfs", t.threshold_dbfs);
-    else
-        s += list_text(t.thresholds);
-    if (t.polarity != 1)
-        s += fmt::format("polarity = {}\n", t.polarity);
-    if (t.actuator != actuator_kind::unknown)
-        s += fmt::format("actuator = \"{}\"\n", to_string(t.actuator));
-    if (t.rise_s)
-        s += fmt::format("rise_ms = {}\n", ms(*t.rise_s));
-    return s;
 }
 
 std::string threshold_text(const tactor_threshold& t, bool stairs)
@@ -141,35 +46,20 @@ std::string threshold_text(const tactor_threshold& t, bool stairs)
 
 } // namespace
 
-std::string array_text(const array& a, const setup& besides)
-{
-    std::string s = fmt::format("[array]\nname = {}\n", toml_string(a.name));
-    for (const tactor_spec& t : a.tactors)
-        s += tactor_text(t);
-    s += output_text(besides.output) + lines_text(besides);
-    if (besides.limits)
-        s += limits_text(*besides.limits);
-    const std::map<std::string, std::string> defaults = detail::default_texts(besides.defaults);
-    if (!defaults.empty())
-        s += "\n[defaults]\n";
-    for (const auto& [name, value] : defaults)
-        s += fmt::format("{} = {}\n", name, toml_string(value));
-    return s;
-}
-
 std::string calibration_text(const calibration_settings& s, const std::vector<tactor_threshold>& thresholds)
 {
     const bool stairs = s.method == calibration_method::staircase;
     std::string t = fmt::format("\n[calibration]\nparticipant = {}\nmethod = \"{}\"\n",
-                                toml_string(s.participant), stairs ? "staircase" : "adjustment");
+                                detail::toml_string(s.participant), stairs ? "staircase" : "adjustment");
     if (stairs)
         t += fmt::format("rule = \"{}\"\n", rule_name(s));
     t += fmt::format("carrier_hz = {}\ninterval_s = {}\n", s.carrier_hz, s.interval_s);
     if (stairs)
         t += fmt::format("feedback = {}\n", s.feedback);
-    t += fmt::format("masker = {}\ndate = {}\nseed = {}\nsimulated = {}\n",
-                     toml_string(s.masker.empty() ? "none" : fmt::format("{}, {}", s.masker, s.masker_pcm)),
-                     toml_string(s.date), s.seed, !s.simulate.empty());
+    t += fmt::format(
+        "masker = {}\ndate = {}\nseed = {}\nsimulated = {}\n",
+        detail::toml_string(s.masker.empty() ? "none" : fmt::format("{}, {}", s.masker, s.masker_pcm)),
+        detail::toml_string(s.date), s.seed, !s.simulate.empty());
     for (const tactor_threshold& one : thresholds)
         t += threshold_text(one, stairs);
     return t;

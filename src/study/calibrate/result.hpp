@@ -10,13 +10,12 @@
 
 #include <tactor/setup.hpp>
 
+#include "files/setup_text.hpp"
 #include "study/calibrate/calibration.hpp"
 
 namespace tactor::study {
 
-/// An array file that says all of an array, and what else a file says of how it is driven. It needs no other
-/// file.
-std::string array_text(const array& a, const setup& besides);
+using detail::array_text;
 
 /// The tables [calibration] and [[calibration.tactor]].
 std::string calibration_text(const calibration_settings& s, const std::vector<tactor_threshold>& thresholds);
