@@ -39,13 +39,11 @@ PUBLIC = {
 USES_ALL_PUBLIC = {"cli", "plot", "python", "server", "study"}
 # What those may know of the library's inside, which is in the tool: no program that embeds it needs these.
 INSIDE = {
-    "cli": {"core/kind_names.hpp", "core/option_bounds.hpp", "core/owned.hpp", "core/split.hpp", "core/start_times.hpp", "core/suggest.hpp", "core/words.hpp", "files/channel_map.hpp", "files/output_file.hpp", "files/setup_defaults.hpp", "files/stroke/text.hpp", "files/text_file.hpp", "percept/summaries.hpp", "rt/advice.hpp", "rt/clock.hpp", "rt/event_fd.hpp", "synth/score/drive_room.hpp", "synth/score/sounding_now.hpp"},
+    "cli": {"core/kind_names.hpp", "core/option_bounds.hpp", "core/owned.hpp", "core/split.hpp", "core/start_times.hpp", "core/suggest.hpp", "core/words.hpp", "files/channel_map.hpp", "files/input_files.hpp", "files/output_file.hpp", "files/setup_defaults.hpp", "files/stroke/text.hpp", "files/text_file.hpp", "percept/summaries.hpp", "rt/advice.hpp", "rt/clock.hpp", "rt/event_fd.hpp", "synth/score/drive_room.hpp", "synth/score/sounding_now.hpp"},
     "study": {"core/kind_names.hpp", "core/owned.hpp", "core/split.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_text.hpp", "files/text_file.hpp", "files/toml_reader.hpp", "rt/event_fd.hpp", "rt/thread.hpp", "synth/mix/converter.hpp"},
     "plot": {"core/split.hpp", "core/words.hpp", "files/output_file.hpp", "synth/mix/sample_ranges.hpp"},
     "server": {"core/kind_names.hpp", "core/option_bounds.hpp", "core/start_times.hpp", "core/words.hpp"},
-    "python": {"core/access.hpp", "core/kind_names.hpp", "core/option_bounds.hpp", "core/path/impl.hpp", "core/path/outline.hpp",
-               "core/profile.hpp", "core/trajectory/impl.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_defaults.hpp", "files/setup_text.hpp",
-               "plan/scaled.hpp"},
+    "python": {"core/access.hpp", "core/kind_names.hpp", "core/option_bounds.hpp", "core/path/impl.hpp", "core/path/outline.hpp", "core/profile.hpp", "core/trajectory/impl.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_defaults.hpp", "files/setup_text.hpp", "plan/scaled.hpp"},
 }
 # Header prefix: the only places that may include it.
 ONLY_IN = {
@@ -66,9 +64,9 @@ ONLY_IN = {
 PURE = {"core", "files", "plan", "percept", "synth"}
 IMPURE = {"thread", "mutex", "condition_variable", "chrono", "atomic", "future", "poll.h", "unistd.h", "time.h"}
 
-# But for what reads and writes files that a user named, by descriptors, and for a guess where to look first, which
+# But for what reads and writes files that a user named, by descriptors, and keeps which were read, and for a guess where to look first, which
 # threads share and no answer depends on.
-IMPURE_IN = {"src/core/owned.hpp": {"unistd.h"}, "src/files/text_file.cpp": {"unistd.h"}, "src/files/output_file.cpp": {"unistd.h", "poll.h"},
+IMPURE_IN = {"src/core/owned.hpp": {"unistd.h"}, "src/files/input_files.cpp": {"mutex"}, "src/files/text_file.cpp": {"unistd.h"}, "src/files/output_file.cpp": {"unistd.h", "poll.h"},
              "src/plan/faces/layout_impl.hpp": {"atomic"}}
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.M)

@@ -23,6 +23,7 @@ struct plot_settings {
     std::string file;
     plot::figure_options figure;
     unsigned dpi = 300;
+    bool force = false;
 };
 
 figure_view parse_view(const std::string& text)
@@ -42,6 +43,7 @@ figure_view parse_view(const std::string& text)
 void add_picture_options(CLI::App& c, plot_settings& p)
 {
     c.add_option("-o,--output", p.file, "the file to write")->type_name("FILE.svg|.png|.pdf")->required();
+    add_force_option(c, p.force);
     c.add_option_function<std::string>(
          "--view", [&p](const std::string& t) { p.figure.view = parse_view(t); },
          "what is shown: the array, who plays when, the samples, or the first two (default both)")
@@ -75,6 +77,7 @@ int draw(settings& s, option_list& options, const plot_settings& p)
     plot::format_of(p.file); // before the work
     const environment e = read_environment(s, options);
     const piece q = plan_one_piece(s, e);
+    plot::check_output(p.file, p.force);
     // Only the samples have levels: a picture of a plan needs none that a card could play.
     std::optional<score> sound;
     if (p.figure.view == figure_view::wave)
@@ -82,7 +85,7 @@ int draw(settings& s, option_list& options, const plot_settings& p)
     const plot::canvas picture = plot::draw_figure(
         {e.tactors, name_of(q), q.strokes, q.plans, sound ? &*sound : nullptr, q.moved}, p.figure);
     tell_of_pipe_to_write(p.file);
-    plot::save(picture, p.file, p.dpi);
+    plot::save(picture, p.file, p.dpi, p.force);
     for (const placed_plan& k : q.plans)
         for (const std::string& w : k.schedule.warnings)
             say(stderr, "tactor: warning: {}\n", w);

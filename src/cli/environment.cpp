@@ -12,6 +12,7 @@
 
 #include "cli/pipes.hpp"
 #include "cli/variable.hpp"
+#include "files/input_files.hpp"
 #include "files/stroke/text.hpp"
 #include "files/text_file.hpp"
 
@@ -105,6 +106,7 @@ void refuse_planning(const std::string& what, const option_list& options)
 void read_standard_input(const option_list& options, environment& e)
 {
     constexpr const char* name = "standard input";
+    detail::note_input("/dev/fd/0");
     const detail::whole_text text = detail::read_text(STDIN_FILENO, name, detail::max_stroke_bytes);
     if (!holds_plans(text)) {
         e.standard_input = parse_strokes(text, name);

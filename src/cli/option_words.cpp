@@ -15,7 +15,7 @@ struct translation {
 };
 
 // What can only mean a field, in advice too.
-constexpr std::array<translation, 22> in_advice{{{"soa_s", "--soa"},
+constexpr std::array<translation, 23> in_advice{{{"soa_s", "--soa"},
                                                  {"burst_s", "--burst"},
                                                  {"carrier_hz", "--carrier"},
                                                  {"ramp_s", "--ramp"},
@@ -26,6 +26,7 @@ constexpr std::array<translation, 22> in_advice{{{"soa_s", "--soa"},
                                                  {"timing = ", "--timing "},
                                                  {"outside = ", "--outside "},
                                                  {"algorithm = ", "--algorithm "},
+                                                 {"force = true", "--force"},
                                                  {"snap = true", "--snap"},
                                                  {"drop_points = true", "--drop-points"},
                                                  {"array = FILE", "--array FILE"},

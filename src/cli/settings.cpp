@@ -83,6 +83,11 @@ error said_at(const source_place& at, const std::string& name, const error& e)
 
 } // namespace
 
+void add_force_option(CLI::App& command, bool& into)
+{
+    command.add_flag("--force", into, "replace a file that tactor did not write; never one that is read");
+}
+
 void add_format_option(CLI::App& command, std::string& into, const std::vector<std::string>& names,
                        const std::string& help)
 {

@@ -105,4 +105,7 @@ void check_sound(const settings& s, const option_list& options);
 void add_format_option(CLI::App& command, std::string& into, const std::vector<std::string>& names,
                        const std::string& help);
 
+/// --force: output replaces a file that tactor did not write.
+void add_force_option(CLI::App& command, bool& into);
+
 } // namespace tactor::cli

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <charconv>
 #include <climits>
+#include <fstream>
 #include <random>
 #include <string>
 #include <system_error>
@@ -85,6 +86,34 @@ fs::path follow_links(const fs::path& asked)
 
 } // namespace
 
+void check_replaced(const fs::path& file, bool force,
+                    const std::function<bool(std::string_view begin, std::string_view end)>& is_ours)
+{
+    constexpr std::size_t begin_bytes = 16384;
+    constexpr std::size_t end_bytes = 1024;
+    struct stat there {};
+    if (::stat(file.c_str(), &there) != 0)
+        return;
+    refuse_input(there, file);
+    if (force || !S_ISREG(there.st_mode) || there.st_size == 0)
+        return;
+    std::ifstream in(file, std::ios::binary);
+    std::string begin(begin_bytes, '\0');
+    in.read(begin.data(), begin_bytes);
+    begin.resize(static_cast<std::size_t>(in.gcount()));
+    std::string end = begin;
+    if (begin.size() == begin_bytes) {
+        in.seekg(-static_cast<std::streamoff>(end_bytes), std::ios::end);
+        end.resize(end_bytes);
+        in.read(end.data(), end_bytes);
+    }
+    if (!is_ours(begin, end))
+        throw error(error_kind::bad_input, source_place{file.string()},
+                    "there is such a file already, and tactor did not write it",
+                    "choose another name, or replace it with force = true")
+            .with_field("force");
+}
+
 void sync_folder(const fs::path& folder) noexcept
 {
     const owned_fd fd(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
@@ -92,19 +121,23 @@ void sync_folder(const fs::path& folder) noexcept
         ::fsync(fd.get());
 }
 
-output_file::output_file(const fs::path& file, patience go_on) : asked_(file), go_on_(std::move(go_on))
+output_file::output_file(const fs::path& file, patience go_on, owner_kind writer)
+    : asked_(file), go_on_(std::move(go_on))
 {
     if (file.empty())
         throw error(error_kind::bad_input, "file", "its name is empty", "name a file");
     target_ = follow_links(file);
     if (const int n = descriptor_in(target_); n >= 0) {
-        open_descriptor(n);
+        open_descriptor(n, writer);
         return;
     }
     std::error_code failed;
     const fs::file_status there = fs::status(target_, failed);
     if (fs::is_directory(there) || !target_.has_filename())
         refuse(asked_, "is a folder", "name a file in it");
+    struct stat s {};
+    if (::stat(target_.c_str(), &s) == 0)
+        refuse_input(s, asked_, writer);
     if (fs::exists(there) && !fs::is_regular_file(there)) {
         open_directly();
         return;
@@ -121,12 +154,14 @@ output_file::output_file(const fs::path& file, patience go_on) : asked_(file), g
 
 // A pipe's other end may be anybody's: it is waited for with poll(), not with O_NONBLOCK, which they would
 // share.
-void output_file::open_descriptor(int descriptor)
+void output_file::open_descriptor(int descriptor, owner_kind writer)
 {
     directly_ = true;
     fd_ = owned_fd(::fcntl(descriptor, F_DUPFD_CLOEXEC, 3));
-    if (!fd_)
+    struct stat s {};
+    if (!fd_ || ::fstat(fd_.get(), &s) != 0)
         fail(errno);
+    refuse_input(s, asked_, writer);
 }
 
 // Non-blocking: a pipe that nobody reads would keep the program for ever.

@@ -6,10 +6,18 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <string_view>
 
 #include "core/owned.hpp"
+#include "files/input_files.hpp"
 
 namespace tactor::detail {
+
+/// Refuses to replace a file that was read as input, and, without `force`, one that another program or a
+/// person wrote: a regular file, not empty, of whose first 16 kB and last 1 kB `is_ours` returns false.
+/// \throws error (bad_input).
+void check_replaced(const std::filesystem::path& file, bool force,
+                    const std::function<bool(std::string_view begin, std::string_view end)>& is_ours);
 
 /// Brings the names in a folder (empty: this one) to the disk, so that they survive a power cut, too. Not
 /// every file system can, and none says so.
@@ -26,11 +34,12 @@ public:
     /// Asked some 50 times a second while a pipe has no reader or is full; false gives up.
     using patience = std::function<bool()>;
 
-    /// Waits for a reader where `file` is a pipe without one.
-    /// \throws error: bad_input for an empty name, one that is a folder's, a folder that is missing, or a
-    /// link in a
-    ///         sticky folder; runtime for what the system refuses.
-    explicit output_file(const std::filesystem::path& file, patience go_on = {});
+    /// Waits for a reader where `file` is a pipe without one. `writer`: who owns what is written.
+    /// \throws error: bad_input for an empty name, one that is a folder's, a folder that is missing, a link
+    /// in a sticky
+    ///         folder, or a file that was read as input; runtime for what the system refuses.
+    explicit output_file(const std::filesystem::path& file, patience go_on = {},
+                         owner_kind writer = owner_kind::user);
     ~output_file();
     output_file(const output_file&) = delete;
     output_file& operator=(const output_file&) = delete;
@@ -52,7 +61,7 @@ public:
     [[noreturn]] void fail(int code) const;
 
 private:
-    void open_descriptor(int descriptor);
+    void open_descriptor(int descriptor, owner_kind writer);
     void open_directly();
     void open_beside();
     void keep_owner_and_rights() noexcept;

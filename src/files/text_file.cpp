@@ -58,7 +58,7 @@ whole_text read_text(int descriptor, std::string_view name, std::size_t max_byte
     }
 }
 
-whole_text read_text_file(const std::filesystem::path& file, std::size_t max_bytes)
+whole_text read_text_file(const std::filesystem::path& file, std::size_t max_bytes, owner_kind owner)
 {
     std::error_code ignored;
     if (std::filesystem::is_directory(file, ignored))
@@ -66,6 +66,7 @@ whole_text read_text_file(const std::filesystem::path& file, std::size_t max_byt
     const owned_fd in(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
     if (!in)
         refuse(file.string(), errno);
+    note_input(file, owner);
     return read_text(in.get(), file.string(), max_bytes);
 }
 

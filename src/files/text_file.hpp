@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "core/owned.hpp"
+#include "files/input_files.hpp"
 
 namespace tactor::detail {
 
@@ -32,9 +33,11 @@ private:
 /// \throws error (bad_input) with `name` when it cannot be read or gives more than `max_bytes`.
 whole_text read_text(int descriptor, std::string_view name, std::size_t max_bytes);
 
-/// The bytes of a file; pipes and devices are read up to `max_bytes` as well.
+/// The bytes of a file, which no output replaces from then on (files/input_files.hpp); pipes and devices are
+/// read up to `max_bytes` as well.
 /// \throws error (bad_input) naming the file when it is missing, a folder, not readable or longer.
-whole_text read_text_file(const std::filesystem::path& file, std::size_t max_bytes);
+whole_text read_text_file(const std::filesystem::path& file, std::size_t max_bytes,
+                          owner_kind owner = owner_kind::user);
 
 /// \throws error (bad_input) that says what it is where it begins as sound, a picture or an archive do: it
 /// would be refused anyway, and in words about bytes.

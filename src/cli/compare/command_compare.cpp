@@ -63,6 +63,7 @@ struct compare_options {
     std::string picture; // empty: none
     double width_mm = plot::figure_options{}.width_mm;
     unsigned dpi = 300;
+    bool force = false;
 };
 
 void add_lists(CLI::App& c, const std::shared_ptr<compare_options>& o)
@@ -97,6 +98,7 @@ void add_picture_options(CLI::App& c, const std::shared_ptr<compare_options>& o)
          },
          "draw it too: target and prediction on the array, speed over time")
         ->type_name("FILE.svg|.png|.pdf");
+    add_force_option(c, o->force);
     c.add_option_function<std::string>(
          "--width",
          [o](const std::string& t) {
@@ -176,6 +178,8 @@ int run(settings& s, option_list& options, const compare_options& asked, bool on
     if (!asked.picture.empty() && p.strokes.size() > 1)
         throw error(error_kind::bad_input, "-o", fmt::format("there are {} strokes", p.strokes.size()),
                     "a picture shows one");
+    if (!asked.picture.empty())
+        plot::check_output(asked.picture, asked.force);
     std::vector<comparison> all;
     for (const stroke& k : p.strokes)
         all.push_back(compare(k, e.tactors, faces, s.plan, choice));
@@ -184,7 +188,7 @@ int run(settings& s, option_list& options, const compare_options& asked, bool on
         throw why_refused(all, p);
     if (!asked.picture.empty()) {
         tell_of_pipe_to_write(asked.picture);
-        plot::save(picture_of(all[0], e.tactors, asked.width_mm), asked.picture, asked.dpi);
+        plot::save(picture_of(all[0], e.tactors, asked.width_mm), asked.picture, asked.dpi, asked.force);
     }
     if (asked.format == "json")
         print_json(stdout, all, e.tactors);

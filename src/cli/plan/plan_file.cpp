@@ -15,6 +15,7 @@
 #include "cli/plan/plan_fields.hpp"
 #include "cli/plan/plan_fit.hpp"
 #include "core/words.hpp"
+#include "files/input_files.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -138,6 +139,7 @@ plan_file load_plans(const std::string& file)
     if (in.bad() || !in.is_open())
         throw error(error_kind::bad_input, file, std::generic_category().message(errno),
                     "check the name and its rights");
+    detail::note_input(file);
     return read_from(in, file);
 }
 

@@ -16,6 +16,7 @@
 #include <tactor/error.hpp>
 
 #include "cli/say.hpp"
+#include "files/input_files.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -86,6 +87,7 @@ void play_log::open()
     if (::fstat(fd_.get(), &s) != 0 || !S_ISREG(s.st_mode))
         throw error(error_kind::bad_input, file_, "is no regular file",
                     "name a file; --verbose writes to standard error");
+    detail::refuse_input(s, file_);
     if (!may_be_appended_to(fd_.get()))
         throw error(error_kind::bad_input, file_, "there is such a file already, and it is no log",
                     "choose another name: lines are appended to logs only");

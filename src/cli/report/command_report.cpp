@@ -7,6 +7,7 @@
 #include "cli/commands.hpp"
 #include "cli/pipes.hpp"
 #include "cli/say.hpp"
+#include "cli/settings.hpp"
 #include "study/report/methods.hpp"
 
 namespace tactor::cli {
@@ -15,6 +16,7 @@ namespace {
 struct report_options {
     std::string folder;
     std::string file; // empty: standard output
+    bool force = false;
     study::selection who;
 };
 
@@ -29,7 +31,7 @@ int run(const report_options& o)
     else {
         make_derivatives(o.folder, o.file);
         tell_of_pipe_to_write(o.file);
-        study::write_report(o.file, text);
+        study::write_report(o.file, text, o.force);
     }
     for (const std::string& w : a.warnings)
         say(stderr, "tactor: warning: {}\n", w);
@@ -51,6 +53,7 @@ command add_report(CLI::App& app)
          },
          "the file to write, Markdown (default standard output)")
         ->type_name("FILE.md");
+    add_force_option(*c, o->force);
     c->footer("Example: tactor report study -o methods.md");
     return [o] { return run(*o); };
 }

@@ -81,7 +81,8 @@ net::owned_fd lock(const std::string& folder)
 std::string read(const std::string& file)
 {
     try {
-        return std::string(std::string_view(detail::read_text_file(file, longest_text)));
+        return std::string(
+            std::string_view(detail::read_text_file(file, longest_text, detail::owner_kind::program)));
     } catch (const error&) {
         return {};
     }
@@ -195,7 +196,7 @@ std::string kept_drive::write(const std::string& file, const drive_history& h)
         if (text.empty()) {
             std::filesystem::remove(path);
         } else {
-            detail::output_file out(path);
+            detail::output_file out(path, {}, detail::owner_kind::program);
             out.write(text.data(), static_cast<std::int64_t>(text.size()));
             out.commit();
         }

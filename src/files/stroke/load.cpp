@@ -7,6 +7,7 @@
 
 #include "core/path/number.hpp"
 #include "core/words.hpp"
+#include "files/input_files.hpp"
 #include "files/stroke/sound.hpp"
 #include "files/stroke/text.hpp"
 #include "files/text_file.hpp"
@@ -102,6 +103,7 @@ std::vector<stroke> load_strokes(const std::filesystem::path& file)
 
 std::vector<stroke> load_strokes(int descriptor, const std::string& name)
 {
+    detail::note_input(fmt::format("/dev/fd/{}", descriptor));
     return parse_strokes(detail::read_text(descriptor, name, detail::max_stroke_bytes), name);
 }
 

@@ -48,20 +48,35 @@ std::uint32_t crc(std::string_view bytes) noexcept
     return ~c;
 }
 
-// Cairo does not say how large a pixel is; a pHYs chunk behind the header (8 + 25 bytes) does.
-void add_resolution(std::string& png, unsigned dpi)
+void add_chunk(std::string& to, const std::string& name_and_content)
+{
+    constexpr std::size_t name_bytes = 4;
+    add_big_endian(to, static_cast<std::uint32_t>(name_and_content.size() - name_bytes));
+    to += name_and_content;
+    add_big_endian(to, crc(name_and_content));
+}
+
+// Cairo says neither how large a pixel is nor who drew it; chunks behind the header (8 + 25 bytes) do.
+void add_resolution_and_mark(std::string& png, unsigned dpi)
 {
     constexpr std::size_t after_header = 33;
     const auto per_metre = static_cast<std::uint32_t>(std::lround(dpi / 0.0254));
-    std::string chunk = "pHYs";
-    add_big_endian(chunk, per_metre);
-    add_big_endian(chunk, per_metre);
-    chunk += '\1';
-    std::string whole;
-    add_big_endian(whole, 9);
-    whole += chunk;
-    add_big_endian(whole, crc(chunk));
-    png.insert(after_header, whole);
+    std::string resolution = "pHYs";
+    add_big_endian(resolution, per_metre);
+    add_big_endian(resolution, per_metre);
+    resolution += '\1';
+    std::string chunks;
+    add_chunk(chunks, resolution);
+    add_chunk(chunks, std::string(png_mark));
+    png.insert(after_header, chunks);
+}
+
+// A comment in front of the place of the table of references: no other place moves.
+void add_mark(std::string& pdf)
+{
+    const std::size_t at = pdf.rfind("\nstartxref");
+    if (at != std::string::npos)
+        pdf.replace(at, std::string_view("\nstartxref").size(), pdf_mark);
 }
 
 } // namespace
@@ -80,7 +95,7 @@ std::string to_png(const canvas& c, unsigned dpi)
     paint(c, surface.get(), scale);
     std::string png;
     check(cairo_surface_write_to_png_stream(surface.get(), append, &png));
-    add_resolution(png, dpi);
+    add_resolution_and_mark(png, dpi);
     return png;
 }
 
@@ -97,6 +112,7 @@ std::string to_pdf(const canvas& c)
     paint(c, surface.get(), 1.0);
     cairo_surface_finish(surface.get());
     check(cairo_surface_status(surface.get()));
+    add_mark(pdf);
     return pdf;
 }
 

@@ -31,8 +31,19 @@ file_format format_of(const fs::path& file)
                     : "end the name in .svg, .png or .pdf");
 }
 
-void save(const canvas& c, const fs::path& file, unsigned dpi)
+void check_output(const fs::path& file, bool force)
 {
+    const file_format format = format_of(file);
+    detail::check_replaced(file, force, [format](std::string_view begin, std::string_view end) {
+        return format == file_format::pdf   ? end.find(pdf_mark) != end.npos
+               : format == file_format::png ? begin.find(png_mark) != begin.npos
+                                            : begin.find(svg_mark) != begin.npos;
+    });
+}
+
+void save(const canvas& c, const fs::path& file, unsigned dpi, bool force)
+{
+    check_output(file, force);
     const file_format format = format_of(file);
     const std::string bytes = format == file_format::svg   ? to_svg(c)
                               : format == file_format::png ? to_png(c, dpi)

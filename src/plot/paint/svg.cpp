@@ -51,10 +51,10 @@ class writer {
 public:
     std::string write(const canvas& c)
     {
-        add("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {} {}\" "
+        add("<?xml version=\"1.0\" encoding=\"UTF-8\"{}xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" "
+            "height=\"{}mm\" viewBox=\"0 0 {} {}\" "
             "role=\"img\" aria-labelledby=\"title desc\" font-family=\"{}\">\n",
-            coordinate(c.width / pt_per_mm), coordinate(c.height / pt_per_mm), coordinate(c.width),
+            svg_mark, coordinate(c.width / pt_per_mm), coordinate(c.height / pt_per_mm), coordinate(c.width),
             coordinate(c.height), fonts);
         add("<title id=\"title\">{}</title>\n<desc id=\"desc\">{}</desc>\n", escaped(c.title),
             escaped(c.description));

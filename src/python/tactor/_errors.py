@@ -9,7 +9,7 @@ _NAMES = {
     "soa_s": "soa", "burst_s": "burst", "carrier_hz": "carrier", "ramp_s": "ramp", "sl_db": "sl", "margin_mm": "fit_margin",
     "pitch_x_mm": "pitch_mm", "pitch_y_mm": "pitch_mm", "window_s": "drive_window_s", "rests": "pauses", "start_s": "start",
     "duration_s": "duration", "speed_mm_s": "speed", "timeout_s": "timeout", "longest_s": "longest", "smooth_s": "smooth", "at_ns": "at_s",
-    "duration of a burst": "burst", "fit_strokes()": "fit=True", "snap = true": "snap=True", "drop_points = true": "drop_points=True",
+    "duration of a burst": "burst", "fit_strokes()": "fit=True", "snap = true": "snap=True", "force = true": "force=True", "drop_points = true": "drop_points=True",
 }
 _FIELDS = {"wave": "waveform"}  # words that stand elsewhere, too
 _CHOICE = r"(?<![\w.-])(timing|outside|algorithm) = ([\w-]+)"

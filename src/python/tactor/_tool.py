@@ -45,10 +45,10 @@ class Comparison(list[dict[str, _t.Any]]):
         self._core = core
         super().__init__(self.record["results"])
 
-    def plot(self, file: str | os.PathLike[str], *, width: float = 85.0, dpi: int = 300) -> None:
-        """Draws it, as `tactor compare -o` does: .svg, .png or .pdf, `width` in mm."""
+    def plot(self, file: str | os.PathLike[str], *, width: float = 85.0, dpi: int = 300, force: bool = False) -> None:
+        """Draws it, as `tactor compare -o` does: .svg, .png or .pdf, `width` in mm. `force`: as in `plot`."""
         with reading(file) as name:
-            self._core.save(name, *_size(width, dpi))
+            self._core.save(name, *_size(width, dpi), bool(force))
 
     def _repr_svg_(self) -> str:
         return self._core.svg(85.0)  # type: ignore[no-any-return]
@@ -155,7 +155,7 @@ def _picture(plans: _Plans, view: str) -> tuple[_t.Any, list[tuple[float | None,
 
 
 def plot(plans: _Plans, file: str | os.PathLike[str], *, view: _View = "both", width: float = 85.0, dpi: int = 300,
-         name: str | None = None) -> None:
+         name: str | None = None, force: bool = False) -> None:
     """Draws the array, the path, the bursts and who plays when, as `tactor plot` does.
 
     Parameters
@@ -171,18 +171,21 @@ def plot(plans: _Plans, file: str | os.PathLike[str], *, view: _View = "both", w
         Of a PNG.
     name : str, optional
         The title; default: the stroke's name.
+    force : bool
+        Replace a file that tactor did not write.
 
     Raises
     ------
     InputError
-        For another extension or a width out of range.
+        For another extension, a width out of range, a file that was read as input, or one that tactor did not write.
     """
     _need(view, str, "view")
     array, all_of_them, own_name, score = _picture(plans, view)
     if name is not None:
         _need(name, str, "name")
     with reading(file) as to:
-        _tactor.save_picture(array, all_of_them, own_name if name is None else name, score, view, _size(width, dpi)[0], to, _size(width, dpi)[1])
+        _tactor.save_picture(array, all_of_them, own_name if name is None else name, score, view, _size(width, dpi)[0], to, _size(width, dpi)[1],
+                             bool(force))
 
 
 def svg_of_plans(plans: _t.Sequence[Plan]) -> str:

@@ -55,7 +55,7 @@ int write_to_disk(int fd, std::string_view text)
 
 void write_whole(const fs::path& file, std::string_view text)
 {
-    detail::output_file out(file);
+    detail::output_file out(file, {}, detail::owner_kind::program);
     out.write(text.data(), static_cast<std::int64_t>(text.size()));
     if (out.failure() != 0)
         fail_on_disk(file, out.failure());

@@ -148,7 +148,7 @@ void calibration_log::settle(bool resume, calibration_settings& s)
                     "it is missing, which says how the log was begun", "begin another, with another log");
     } else {
         const std::string said = settings_text(s);
-        detail::output_file out(beginning);
+        detail::output_file out(beginning, {}, detail::owner_kind::program);
         out.write(said.data(), static_cast<std::int64_t>(said.size()));
         out.commit();
     }

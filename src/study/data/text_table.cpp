@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 
 #include <fmt/format.h>
 
 #include "core/split.hpp"
+#include "files/text_file.hpp"
 
 namespace tactor::study {
 namespace {
@@ -43,14 +43,7 @@ std::string read_file(const std::filesystem::path& file, std::size_t most)
     if (!std::filesystem::is_regular_file(s))
         throw error(error_kind::bad_input, file.string(), "it is no file",
                     "the folder of a study has files only");
-    if (std::filesystem::file_size(file, failed) > most)
-        throw error(error_kind::bad_input, file.string(), fmt::format("longer than {} MB", most >> 20),
-                    "is it the right file?");
-    std::ifstream in(file, std::ios::binary);
-    std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-    if (!in)
-        throw error(error_kind::bad_input, file.string(), "it cannot be read", "check the permissions");
-    return text;
+    return std::string(std::string_view(detail::read_text_file(file, most, detail::owner_kind::program)));
 }
 
 bool is_there(const std::filesystem::path& study, const std::filesystem::path& below)

@@ -2,6 +2,7 @@
 #include "study/report/methods.hpp"
 
 #include <cstdint>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -21,6 +22,8 @@ std::string title_of(const study_facts& f, const dataset& d)
         return s.design ? plain(s.design->title) : plain(d.experiment.name);
     });
 }
+
+constexpr std::string_view mark = "Written by tactor ";
 
 // What no file of the folder knows, and a paper must say.
 constexpr const char* by_hand =
@@ -44,10 +47,10 @@ std::string methods_text(const study_facts& f, const dataset& d, const analysis&
                         told(f, [](const session_facts& s) {
                             return plain(s.facts()["simulation"].text().value_or(""));
                         }));
-    text += fmt::format("Written by tactor {} from the files of the study; what they do not say is \"{}\". "
+    text += fmt::format("{}{} from the files of the study; what they do not say is \"{}\". "
                         "Lengths are in mm with x to the\nright and y down, levels in dB below full scale "
                         "(dBFS) unless said otherwise.\n",
-                        version(), not_recorded);
+                        mark, version(), not_recorded);
     text += participants_section(f);
     text += apparatus_section(f);
     text += stimuli_section(f);
@@ -65,9 +68,12 @@ void check_report_name(const std::filesystem::path& file)
         throw error(error_kind::bad_input, file.string(), "the report is Markdown", "end the name in .md");
 }
 
-void write_report(const std::filesystem::path& file, const std::string& text)
+void write_report(const std::filesystem::path& file, const std::string& text, bool force)
 {
     check_report_name(file);
+    detail::check_replaced(file, force, [](std::string_view begin, std::string_view) {
+        return begin.starts_with("# Methods: ") && begin.find(mark) != begin.npos;
+    });
     detail::output_file out(file);
     out.write(text.data(), static_cast<std::int64_t>(text.size()));
     out.commit();

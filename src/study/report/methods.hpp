@@ -17,9 +17,9 @@ std::string methods_text(const study_facts& f, const dataset& d, const analysis&
 /// Whether a name is one for a text in Markdown: it ends in .md. \throws error (bad_input).
 void check_report_name(const std::filesystem::path& file);
 
-/// Writes it whole, or nothing. \throws error: bad_input for the name, or a folder that does not exist;
-/// runtime
-///         for what the system refuses.
-void write_report(const std::filesystem::path& file, const std::string& text);
+/// Writes it whole, or nothing. \throws error: bad_input for the name, a folder that does not exist, a file
+/// that was read as input or, without `force`, one that is no report of tactor; runtime for what the system
+/// refuses.
+void write_report(const std::filesystem::path& file, const std::string& text, bool force);
 
 } // namespace tactor::study
