@@ -224,13 +224,20 @@ class Picture(ToolTest):
         self.assertIn(w.process.returncode, (1, 129))
 
     def test_plain_where_that_is_asked_for(self):
-        for env in ({"NO_COLOR": "1"}, {"TERM": "dumb"}, {"TERM": ""}):
+        for env in ({"TERM": "dumb"}, {"TERM": ""}):
             w = Window(self, SHORT, 80, 24, **env)
             self.assertEqual(w.to_the_end(), 0)
             self.assertNotIn(b"\033", w.raw)
         w = Window(self, (*SHORT, "--format", "json"), 80, 24)
         self.assertEqual(w.to_the_end(), 0)
         self.assertNotIn(b"\033", w.raw)
+
+    def test_no_color_takes_the_colours_and_leaves_the_picture(self):
+        for env, coloured in (({"NO_COLOR": "1"}, False), ({"NO_COLOR": ""}, True), ({}, True)):
+            w = Window(self, SHORT, 80, 24, **env)
+            self.assertEqual(w.to_the_end(), 0)
+            self.assertRegex(w.raw, rb"\033\[\d+A")  # it was drawn again
+            self.assertEqual(re.search(rb"\033\[[0-9;]*m", w.raw) is not None, coloured, env)
 
     def test_letters_where_the_locale_has_no_shades(self):
         w = Window(self, LONG, 80, 24, LC_ALL="C")

@@ -18,7 +18,7 @@ std::string to_its_beginning(std::size_t lines)
 
 } // namespace
 
-live_picture::live_picture(const array& a, bool wanted) : array_(a), unicode_(speaks_utf8())
+live_picture::live_picture(const array& a, bool wanted) : array_(a), style_{speaks_utf8(), may_colour()}
 {
     std::fflush(stdout); // what was printed before stands above it
     if (wanted && can_draw())
@@ -40,7 +40,7 @@ void live_picture::draw(const instant& now, double t_s, double total_s)
 {
     if (!terminal_ || !terminal_->idle())
         return;
-    const auto lines = picture_lines(array_, now, t_s, total_s, terminal_->size(), unicode_);
+    const auto lines = picture_lines(array_, now, t_s, total_s, terminal_->size(), style_);
     std::string text = to_its_beginning(drawn_lines_);
     for (const std::string& line : lines)
         text += line + "\033[K\n";

@@ -14,7 +14,7 @@ namespace tactor::cli {
 
 /// Draws over itself, and takes itself away when destroyed. It changes no mode of the terminal (the cursor
 /// stays visible), so that there is nothing to restore whatever ends the program. Where standard output is no
-/// terminal, or NO_COLOR is set, it draws nothing.
+/// terminal, it draws nothing.
 class live_picture {
 public:
     explicit live_picture(const array& a, bool wanted = true);
@@ -29,7 +29,7 @@ public:
 private:
     const array& array_;
     std::optional<terminal> terminal_ = {};
-    bool unicode_;
+    picture_style style_;
     std::size_t drawn_lines_ = 0;
 };
 

@@ -67,13 +67,13 @@ public:
 
     void put_target(point p) { target_ = cell_of(p) + 1; }
 
-    std::vector<std::string> lines(bool unicode) const
+    std::vector<std::string> lines(picture_style style) const
     {
         std::vector<std::string> all;
         for (unsigned r = 0; r < rows_; ++r) {
             std::string line(margin, ' ');
             for (std::size_t i = std::size_t{r} * columns_; i < std::size_t{r + 1} * columns_; ++i)
-                line += text_of(i, unicode);
+                line += text_of(i, style);
             line.erase(line.find_last_not_of(' ') + 1);
             all.push_back(line);
         }
@@ -90,13 +90,16 @@ private:
                whole((p.x_mm - low_.x_mm) / mm_, columns_ - 3);
     }
 
-    std::string text_of(std::size_t i, bool unicode) const
+    std::string text_of(std::size_t i, picture_style style) const
     {
+        const auto coloured = [&](const char* colour, const char* text) {
+            return style.colours ? fmt::format("{}{}{}", colour, text, no_colour) : text;
+        };
         if (target_ == i)
-            return fmt::format("{}o{}", target_colour, no_colour);
+            return coloured(target_colour, "o");
         if (levels_[i] > 0.0)
-            return fmt::format("{}{}{}", level_colour, shade(levels_[i], unicode), no_colour);
-        return levels_[i] == 0.0 ? shade(0.0, unicode) : " ";
+            return coloured(level_colour, shade(levels_[i], style.unicode));
+        return levels_[i] == 0.0 ? shade(0.0, style.unicode) : " ";
     }
 
     point low_;
@@ -133,7 +136,7 @@ std::string status_line(const instant& now, double t_s, double total_s, unsigned
 } // namespace
 
 std::vector<std::string> picture_lines(const array& a, const instant& now, double t_s, double total_s,
-                                       terminal_size size, bool unicode)
+                                       terminal_size size, picture_style style)
 {
     if (size.columns < 2 || size.rows < 2)
         return {};
@@ -151,7 +154,7 @@ std::vector<std::string> picture_lines(const array& a, const instant& now, doubl
             g.put_tactor(a.tactors[i].position, now.levels[i]);
         if (now.target)
             g.put_target(*now.target);
-        lines = g.lines(unicode);
+        lines = g.lines(style);
         lines.resize(lines.size() + gap);
     }
     lines.push_back(status_line(now, t_s, total_s, columns));

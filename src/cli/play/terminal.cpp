@@ -2,7 +2,6 @@
 #include "cli/play/terminal.hpp"
 
 #include <cerrno>
-#include <cstdlib>
 #include <string_view>
 
 #include <fcntl.h>
@@ -24,8 +23,12 @@ constexpr int patience_ms = 2000;
 bool can_draw()
 {
     const std::string kind = variable("TERM");
-    return isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr && !kind.empty() &&
-           kind != "dumb";
+    return isatty(STDOUT_FILENO) != 0 && !kind.empty() && kind != "dumb";
+}
+
+bool may_colour()
+{
+    return variable("NO_COLOR").empty();
 }
 
 // From the environment: the program itself stays in the C locale, whatever it is called in.

@@ -9,8 +9,11 @@
 
 namespace tactor::cli {
 
-/// Whether standard output is a terminal on which lines can be drawn again, and nobody asked for it plain.
+/// Returns true if standard output is a terminal on which lines can be drawn again.
 bool can_draw();
+
+/// Returns true unless NO_COLOR asks for no colours (no-color.org: set, and not empty).
+bool may_colour();
 
 /// Whether the locale's characters are UTF-8.
 bool speaks_utf8();
