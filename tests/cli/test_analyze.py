@@ -5,6 +5,7 @@ import csv
 import io
 import json
 import os
+import re
 import shutil
 import sys
 
@@ -167,8 +168,12 @@ class Forms(AnalyzeTest):
         text = self.ok("analyze", folder, "--format", "tsv").stdout
         notes = [line for line in text.splitlines() if line.startswith("#")]
         self.assertEqual(notes[0], "# simulated: these are no people's answers")
-        self.assertIn('# glmer(chosen ~ motion + order + (1 | participant), family = binomial, '
+        self.assertEqual(notes[2], '# options(contrasts = c("contr.sum", "contr.poly"))')
+        self.assertIn('# glmer(chosen ~ motion + order + (1 + motion | participant), family = binomial, '
                       'data = subset(d, run == "similarity"))', notes)
+        self.assertIn('# lmer(rating ~ method * motion + (1 + method | participant), '
+                      'data = subset(d, run == "similarity-rating"))', notes)
+        self.assertIn("skip = 8,", notes[3])
         rows = list(csv.DictReader(io.StringIO("".join(line + "\n" for line in text.splitlines() if line[0] != "#")),
                                    delimiter="\t"))
         self.assertEqual(len(rows), 12 * 160)
@@ -193,9 +198,9 @@ class Forms(AnalyzeTest):
         studies.write_study(folder, text, ["1", "2"], lambda *_: 3, simulated=True)
         lines = self.ok("analyze", folder, "--format", "tsv").stdout.splitlines()
         notes = next(i for i, line in enumerate(lines) if not line.startswith("#"))
-        self.assertIn(f"skip = {notes}, ", lines[2])
+        self.assertIn(f"skip = {notes}, ", lines[3])
         self.assertTrue(lines[notes].startswith("participant\trun\t"))
-        self.assertTrue(lines[3].endswith(f"subset(d, run == {json.dumps(name)}))"), lines[3])
+        self.assertTrue(lines[4].endswith(f"subset(d, run == {json.dumps(name)}))"), lines[4])
 
     def test_text_fits_a_terminal_and_says_what_the_paper_found(self):
         text = self.ok("analyze", self.study("simulated")).stdout

@@ -3,7 +3,7 @@
 
 Usage: check_r.py TOOL [--write]   --write: keeps what R says in golden/, which the suite compares with, without R.
 Compares R with golden/, and the tool with R: within 1e-8 max(1, |value|), Tukey's p within 1e-6. Then fits the models
-that --format tsv names, where lme4 is there. Ends with a line that counts.
+that --format tsv names, where lme4 is there, and counts the effects that they find where there are none. Ends with a line that counts.
 """
 import json
 import pathlib
@@ -77,9 +77,58 @@ FIT = """
 lines <- readLines("trials.tsv")
 said <- sub("^# ", "", grep("^# [a-z]+(4|\\\\()|^# d <-|^# library", lines, value = TRUE))
 for (line in said) suppressMessages(suppressWarnings(eval(parse(text = line))))
-stopifnot(length(said) >= 4, nrow(d) == sum(!grepl("^#", lines)) - 1)
-cat("fitted", length(said) - 2)
+stopifnot(length(said) >= 5, nrow(d) == sum(!grepl("^#", lines)) - 1)
+cat("fitted", length(said) - 3)
 """
+
+# Ratings by people who differ in what the methods are to them, and of whom nobody prefers one on the whole: how often
+# the line that is printed finds an effect of the method all the same, and one without slopes. And ratings in which a
+# method is better in one motion and worse in the others: the method's coefficient is that over all of them.
+SLOPES = """
+lines <- readLines("trials.tsv")
+said <- sub("^# ", "", grep("^# ", lines, value = TRUE))
+said <- said[!startsWith(said, "simulated")]
+for (line in said[1:3]) suppressMessages(eval(parse(text = line)))
+line <- grep("^lmer", said, value = TRUE)[1]
+rated <- d[!is.na(d$rating), ]
+people <- unique(rated$participant); motions <- sort(unique(rated$motion))
+sign <- ifelse(rated$method == sort(unique(rated$method))[1], 0.5, -0.5)
+who <- match(rated$participant, people)
+model <- function(line, rating) {
+  made <- rated
+  made$rating <- rating
+  d <<- made
+  coef(summary(suppressMessages(suppressWarnings(eval(parse(text = line))))))
+}
+found <- function(line, rating) {
+  t <- model(line, rating)["method1", "t value"]
+  2 * pt(-abs(t), length(people) - 1) < 0.05
+}
+set.seed(20261125)
+times <- 100
+hits <- c(0, 0)
+flat <- sub("(1 + method | participant)", "(1 | participant)", line, fixed = TRUE)
+stopifnot(flat != line)
+for (i in 1:times) {
+  rating <- 3 + rnorm(length(people), 0, 0.5)[who] + sign * rnorm(length(people), 0, 0.8)[who] + rnorm(nrow(rated), 0, 0.8)
+  hits <- hits + c(found(line, rating), found(flat, rating))
+}
+crossed <- 3 + sign * c(3, rep(-3 / (length(motions) - 1), length(motions) - 1))[match(rated$motion, motions)]
+over_all <- model(line, crossed + rnorm(nrow(rated), 0, 0.01))["method1", "Estimate"]
+cat(hits / times, over_all)
+"""
+
+
+def check_slopes(tool, name, folder):
+    (folder / "trials.tsv").write_text(run(tool, "analyze", folder / name, "--format", "tsv"))
+    said = subprocess.run(["Rscript", "-e", SLOPES], cwd=folder, capture_output=True, text=True, check=False)
+    if said.returncode:
+        return [f"slopes: {said.stderr[-1500:]}"]
+    printed, flat, over_all = map(float, said.stdout.split()[-3:])
+    print(f"{name}: false effects of the method: {printed:.1%} by the line printed, {flat:.1%} without slopes")
+    bad = [f"false effects: {printed:.1%}"] if printed > 0.1 else []
+    bad += [f"without slopes only {flat:.1%}: the simulation shows nothing"] if flat < 0.25 else []
+    return bad + ([f"the method's coefficient is {over_all}, not that over all motions"] if abs(over_all) > 0.05 else [])
 
 
 def check_models(tool, name, folder):
@@ -100,6 +149,8 @@ def main():
             cases = {name: lambda n=name: check(tool, n, folder, write)}
             if has_lme4:
                 cases[f"{name}, models"] = lambda n=name: check_models(tool, n, folder)
+                if name == "simulated":
+                    cases[f"{name}, slopes"] = lambda n=name: check_slopes(tool, n, folder)
             else:
                 print(f"SKIPPED: {name}, models: lme4 is not here")
                 skipped += 1

@@ -22,23 +22,26 @@ std::string in_quotes(std::string_view text)
     return fmt::format("\"{}\"", q);
 }
 
-// What fits a run: participants differ, and of the stimuli nothing is taken to be a sample.
+// The model of a run. People differ in what is asked about, too: without its slope for each of them, such a
+// difference passes for an effect of all. Nothing of the stimuli is taken to be a sample.
 std::string model_of(const study::run_outline& r)
 {
     const char* motion = r.motions.size() > 1 ? "motion" : "1";
+    const char* people = r.task != task_kind::choose && r.methods.size() > 1 ? "(1 + method | participant)"
+                         : r.motions.size() > 1                              ? "(1 + motion | participant)"
+                                                                             : "(1 | participant)";
     const std::string data = fmt::format("data = subset(d, run == {})", in_quotes(r.name));
     switch (r.task) {
     case task_kind::choose:
-        return fmt::format("glmer(chosen ~ {} + order + (1 | participant), family = binomial, {})", motion,
-                           data);
+        return fmt::format("glmer(chosen ~ {} + order + {}, family = binomial, {})", motion, people, data);
     case task_kind::rate:
-        return fmt::format("lmer(rating ~ {}{} + (1 | participant), {})",
-                           r.methods.size() > 1 ? "method * " : "", motion, data);
+        return fmt::format("lmer(rating ~ {}{} + {}, {})", r.methods.size() > 1 ? "method * " : "", motion,
+                           people, data);
     case task_kind::identify:
         break;
     }
-    return fmt::format("glmer(correct ~ {}{} + (1 | participant), family = binomial, {})",
-                       r.methods.size() > 1 ? "method * " : "", motion, data);
+    return fmt::format("glmer(correct ~ {}{} + {}, family = binomial, {})",
+                       r.methods.size() > 1 ? "method * " : "", motion, people, data);
 }
 
 // The columns that depend on the task; "method" of choose is the one that may be chosen.
@@ -68,8 +71,10 @@ void print_trials(std::FILE* out, const study::dataset& d)
     if (d.simulated)
         text += "# simulated: these are no people's answers\n";
     // Names may have "#" in them: the notes are counted, not told by their first letter.
-    const std::size_t notes = 2 + (d.simulated ? 1 : 0) + d.experiment.runs.size();
+    const std::size_t notes = 3 + (d.simulated ? 1 : 0) + d.experiment.runs.size();
+    // With sum contrasts an effect is over all motions, not that at the first one.
     text += fmt::format("# library(lme4)\n"
+                        "# options(contrasts = c(\"contr.sum\", \"contr.poly\"))\n"
                         "# d <- read.delim(\"trials.tsv\", skip = {}, na.strings = \"n/a\", quote = \"\", "
                         "colClasses = c(participant = \"character\"))\n",
                         notes);
