@@ -163,6 +163,23 @@ class Counting(AnalyzeTest):
 
 
 class Forms(AnalyzeTest):
+    def test_columns_are_explained_and_no_interval_is_beyond_a_per_cent(self):
+        beyond = 0
+        for name in studies.STUDIES:
+            folder = self.study(name)
+            text = self.ok("analyze", folder).stdout
+            told = self.analysis(folder)
+            beyond += sum(v < 0 or v > 100 for p, v in check_r.flat(told["runs"]) if v is not None
+                          and re.search(r"\.(preference|correct)\..*\.ci\.[01]$", p))
+            shown = re.findall(r"^  \S.*? +[\d.]+ +[\d.]+ +(-?[\d.]+) \.\.\. (-?[\d.]+) ", text, re.M)
+            self.assertTrue(all(0 <= float(low) <= float(high) <= 100 for low, high in shown), shown)
+            self.assertEqual(bool(shown), "Columns: mean and se" in text, name)
+            rated = re.findall(r" all \S+ \(\S+\), 95 % (-?[\d.]+) \.\.\. (-?[\d.]+)$", text, re.M)
+            self.assertTrue(all(float(low) >= 1 for low, _ in rated), rated)
+            for low, high in re.findall(r"95 % interval (-?[\d.]+) \.\.\. (-?[\d.]+)\) of trials", self.ok("report", folder).stdout):
+                self.assertTrue(0 <= float(low) <= float(high) <= 100)
+        self.assertGreater(beyond, 0)  # else nothing was tried
+
     def test_a_line_for_each_trial_that_counts(self):
         folder = self.study("simulated")
         text = self.ok("analyze", folder, "--format", "tsv").stdout

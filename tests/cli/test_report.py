@@ -8,6 +8,7 @@ import shutil
 import statistics
 import sys
 
+import experiments
 from experiments import ExperimentTest, contents, read_table
 from harness import ROOT, main
 
@@ -244,7 +245,7 @@ class Differences(ReportTest):
         self.assertIn("sub-04 is left out: no trial that counts", text)
         text = self.report("study", "--participants", "02")
         self.assertIn("1 participant: sub-02. Age: 36 years, mean 36.0. ", text)
-        self.assertNotIn("sub-01", text)
+        self.assertNotIn("sub-01", text.replace("Excluded from all that follows: sub-01 (not among those selected).", ""))
 
     def test_names_are_no_markdown_and_steer_no_terminal(self):
         def named(told):
@@ -254,7 +255,7 @@ class Differences(ReportTest):
         text = self.report("study")
         self.assertNotIn("\x1b", text)
         self.assertIn(r"pcm: hw:0\\x1b\[2J, name: a \| b \*c\* (sub-01); none (sub-02, sub-03)", text)
-        self.assertIn("Dates of the sessions: 2026-11-21.", text)
+        self.assertIn("Dates of the sessions (UTC): 2026-11-21.", text)
 
     def test_other_methods_have_their_own_words(self):
         for kind, told in (("barycentric", r"A_i = \sqrt{b_i}"), ("gaussian", r"e^{-d_i^2"), ("linear", "A_i = b_i A_v"),
@@ -310,6 +311,111 @@ class Differences(ReportTest):
             self.assertIn(f"tactor: warning: the thresholds {'were ' if told[0] == 'm' else 'are '}{told}", said.stderr)
             self.assertIn(told, self.report("others"))
         self.assertNotIn("SIMULATED", self.report("others").partition("Calibration:")[2].partition("\n")[0])
+
+
+class AsItWasHeld(ReportTest):
+    """Simulated sessions, changed into what sessions with people leave."""
+
+    NOISE = '[masking]\nnoise = "white"\nlevel_dbfs = -30\n[[motion]]'
+    ASKED = "white noise of -30 dBFS (root mean square), faded over 0.05 s, while stimuli played"
+
+    def hold(self, *streams, **facts):
+        """A session for each list of openings of the device."""
+        self.small(experiments.SMALL.replace("[[motion]]", self.NOISE, 1))
+        codes = [f"{i + 1:02}" for i in range(len(streams))]
+        for code in codes:
+            self.ok("experiment", "small.toml", "--participant", code, "-o", "study", "--simulate", "seed=1,sigma=1")
+        for code, own in zip(codes, streams):
+            def real(told, own=own):
+                told.update({"simulated": False, "simulation": None, "date": "2026-11-21T09:00:00.000000Z"}, **facts)
+                told["streams"] = [{"stream": i + 1, "opened": f"2026-11-2{i + 1}T09:00:00.000000Z", "device": "hw:0",
+                                    "masker": None, "masking": None, **one} for i, one in enumerate(own)]
+            self.change(code, real)
+
+    def people(self, *rows):
+        self.write("study/participants.tsv", "participant_id\tage\tsex\thandedness\n" +
+                   "".join(f"sub-{code}\t{age}\tn/a\tn/a\n" for code, age in rows))
+
+    def test_noise_and_animation_are_those_that_there_were(self):
+        noise = {"masker": "hw:1", "masking": {"noise": "pink", "level_dbfs": -20, "fade_s": 0.1, "while": "run"}}
+        self.hold([{"display": "terminal without animation"}], [{"display": "page", **noise}],
+                  [{"display": "terminal with animation", "masker": "hw:2"}])  # the last as older versions say it
+        text = self.report("study")
+        self.assertIn(f"Masking noise: none (the definition asks for {self.ASKED}) (sub-01); pink noise of -20 dBFS (root mean "
+                      f"square), faded over 0.1 s, through each run, from hw:1 (sub-02); {self.ASKED}, from hw:2 (sub-03).", text)
+        self.assertIn("Animation of the target before the first stimulus: no, the terminal could not show it (the definition "
+                      "asks for it) (sub-01); yes, on the page (sub-02); yes, on the terminal (sub-03)\n", text)
+        self.assertIn("Animation of the target before the first stimulus: no\n", text)  # the run that has none
+        self.assertIn("Display: terminal without animation (sub-01); page (sub-02); terminal with animation (sub-03).", text)
+        self.simulate("01", folder="simulated")
+        self.assertIn("none: the session was simulated (the definition asks for it)", self.report("simulated"))
+
+    def test_openings_of_the_device_that_differ(self):
+        self.hold([{"display": "page"}, {"display": "terminal without animation"}])
+        beh = self.dir / "study/sub-01/beh/sub-01_task-whichone_beh.tsv"
+        head, *lines = beh.read_text().splitlines()
+        at = head.split("\t").index("stream")
+        rows = [line.split("\t") for line in lines]
+        rows[-1][at] = "2"
+        beh.write_text("\n".join([head, *("\t".join(r) for r in rows)]) + "\n")
+        self.assertIn("yes, on the page (opening 1 of the device), no, the terminal could not show it (opening 2 of the device)",
+                      self.report("study"))
+
+    def test_days_and_consent_of_a_session_that_went_on_later(self):
+        self.hold([{"display": "page"}] * 3, consent="2026-11-21T08:59:00.000000Z",
+                  walk=[{"tactor": i % 9, "asked": f"2026-11-21T08:59:{i + 10}.000000Z"} for i in range(18)])
+        text = self.report("study")
+        self.assertIn("Dates of the sessions (UTC): 2026-11-21 to 2026-11-23.", text)
+        self.assertIn("The session of sub-01 was held on 2026-11-21, 2026-11-22, 2026-11-23.", text)
+        self.assertIn("Consent: given on 2026-11-21T08:59:00.000000Z.", text)
+        self.assertIn("before the runs: 9 tactors, the last on 2026-11-21T08:59:27.000000Z.", text)
+
+    def test_ages_as_bids_has_them(self):
+        for code in ("01", "02", "03", "04"):
+            self.simulate(code)
+        self.people(("01", "31"), ("02", "89+"), ("03", "n/a"), ("04", "30-39"))
+        self.assertIn('Age: 31 to 89 years, mean 60.0, sd 41.0 (1 recorded as at least so old, as 89+, and counted as that) '
+                      '(of 2; of 1: not recorded); sub-04: "30-39". Sex', self.report("study"))
+        self.people(("01", "inf"), ("02", "nan"), ("03", "-3"), ("04", "n/a"))
+        self.assertIn('Age: sub-01: "inf"; sub-02: "nan"; sub-03: "-3". Sex', self.report("study"))
+
+    def test_who_was_excluded_and_why(self):
+        for code in ("01", "02", "03", "04"):
+            self.simulate(code)
+        text = self.report("study", "--exclude", "sub-02:fell asleep,03")
+        self.assertIn("Excluded from all that follows: sub-02 (fell asleep).", text)
+        self.assertIn("Excluded from all that follows: sub-03 (no reason was given).", text)
+        self.assertIn("sub-04 (not among those selected)", self.report("study", "--participants", "01,02,03"))
+        self.assertNotIn("Excluded", self.report("study"))
+        self.assertIn("excluded: sub-02 (fell asleep)", self.ok("analyze", "study", "--exclude", "02:fell asleep").stdout)
+
+    def test_void_trials_that_did_not_come_again(self):
+        self.simulate("01", spec="seed=1,sigma=1,void=0.5")
+        self.assertIn("they do not count. All of them came again.", self.report("study"))
+        beh = self.dir / "study/sub-01/beh/sub-01_task-howgood_beh.tsv"
+        head, *lines = beh.read_text().splitlines()
+        last = max(i for i, line in enumerate(lines) if "\ttrue\t" in line)
+        beh.write_text("\n".join([head, *lines[:last + 1]]) + "\n")  # broken off after a void one
+        self.assertRegex(self.report("study"), r"they do not count. \d+ of them came again, [1-9]\d* did not\.")
+
+    def test_no_thresholds_where_the_level_needs_none(self):
+        self.small(experiments.SMALL.replace("gap_s = 0.25", "gap_s = 0.25\nlevel = { dbfs = -20 }"))
+        self.ok("experiment", "small.toml", "--participant", "01", "-o", "study", "--simulate", "seed=1,sigma=1")
+        levels = section(self.report("study"), "### Levels and thresholds")
+        self.assertIn("Thresholds: not used: the level is in dBFS.", levels)
+        self.assertNotIn("| none |", levels)
+        self.assertNotIn("threshold (dBFS)", levels)
+
+    def test_papers_that_the_text_names_and_no_others(self):
+        self.simulate("01")
+        self.assertNotIn("Yun", self.report("study"))
+        self.small(experiments.SMALL.replace('algorithm = "park2016"', 'algorithm = "park2016"\nphantom = "gaussian"'))
+        self.ok("experiment", "small.toml", "--participant", "01", "-o", "other", "--simulate", "seed=1,sigma=1")
+        self.assertIn("- Yun, G.", self.report("other"))
+        text = self.report("other")
+        named, _, listed = text.partition("## References")
+        for name in re.findall(r"^- (\w+)", listed, re.M):
+            self.assertIn(name, named)
 
 
 class OtherStudies(ReportTest):

@@ -36,8 +36,8 @@ void print_tests(std::FILE* out, const study::by_motion& b, const std::vector<st
     const auto row = [&](const std::string& name, const study::t_test& t, std::optional<double> holm) {
         const std::string d = t.d ? fmt::format("{:.2f}", *t.d) : "-";
         say(out, "  {:<{}} {:>6} {:>5} {:>16} {:>6} {:>5} {:>5} {:>5}  {}\n", name, w, value_text(t.mean),
-            value_text(t.se), interval_text(t.ci), value_text(t.t), p_text(t.p), p_text(holm),
-            p_text(t.p_signflip), d);
+            value_text(t.se), interval_text(t.ci, study::per_cents), value_text(t.t), p_text(t.p),
+            p_text(holm), p_text(t.p_signflip), d);
     };
     row("all", b.all, {});
     for (std::size_t m = 0; m < motions.size(); ++m)
@@ -46,6 +46,13 @@ void print_tests(std::FILE* out, const study::by_motion& b, const std::vector<st
         fmt::print(out, "  all: t({:.0f}) = {:.2f}, {}; d = {:.2f} ({})\n", *b.all.df, *b.all.t,
                    p_clause(b.all.p), *b.all.d, interval_text(b.all.d_ci));
 }
+
+constexpr const char* column_legend =
+    "mean and se (standard error) are over participants, in per cent; 95 % is the interval of the mean, cut "
+    "to 0 "
+    "to 100; t and p compare the mean with what guessing gives (two-sided); Holm is p adjusted for the "
+    "number of "
+    "motions; signs is the exact p of all changes of sign; d is the effect size, (mean - guessing) / sd.";
 
 void print_effect(std::FILE* out, const char* name, const study::effect& e)
 {
@@ -99,7 +106,7 @@ void print_rate(std::FILE* out, const study::run_analysis& r)
     };
     for (std::size_t m = 0; m < r.run.methods.size(); ++m) {
         say(out, "  {:<{}} all {}", r.run.methods[m], w, cell(r.cells[m].all));
-        fmt::print(out, ", 95 % {}\n", interval_text(r.cells[m].all.ci));
+        fmt::print(out, ", 95 % {}\n", interval_text(r.cells[m].all.ci, study::possible_values(r.run)));
         for (std::size_t k = 0; k < r.run.motions.size(); ++k)
             say(out, "  {:<{}} {} {}\n", "", w, r.run.motions[k], cell(r.cells[m].motion[k]));
     }
@@ -162,8 +169,13 @@ void print_analysis_text(std::FILE* out, const study::analysis& a)
         voids += r.voids;
     if (voids != 0)
         fmt::print(out, "{} void, not counted\n", counted(voids, "trial"));
+    for (const study::left_out& one : a.excluded)
+        say(out, "excluded: sub-{} ({})\n", one.participant, one.why);
     for (const study::run_analysis& r : a.runs)
         print_run(out, a, r);
+    if (std::any_of(a.runs.begin(), a.runs.end(),
+                    [](const study::run_analysis& r) { return r.n != 0 && r.run.task != task_kind::rate; }))
+        fmt::print(out, "\n{}", wrapped("Columns: ", column_legend));
 }
 
 } // namespace tactor::cli

@@ -26,6 +26,18 @@ std::vector<std::string> parse_codes(const char* option, std::string_view text)
     return codes;
 }
 
+// "CODE:REASON,...": the reasons are optional, and have no comma.
+void parse_excluded(std::string_view text, study::selection& who)
+{
+    for (const std::string& one : parse_codes("--exclude", text)) {
+        const std::size_t colon = one.find(':');
+        const std::string code = one.substr(0, colon);
+        who.without.push_back(code);
+        if (colon != std::string::npos && colon + 1 < one.size())
+            who.reasons[code.starts_with("sub-") ? code.substr(4) : code] = one.substr(colon + 1);
+    }
+}
+
 } // namespace
 
 void add_study_options(CLI::App& command, std::string& folder, study::selection& who)
@@ -38,9 +50,9 @@ void add_study_options(CLI::App& command, std::string& folder, study::selection&
         ->type_name("CODES");
     command
         .add_option_function<std::string>(
-            "--exclude", [&who](const std::string& t) { who.without = parse_codes("--exclude", t); },
-            "all but these")
-        ->type_name("CODES");
+            "--exclude", [&who](const std::string& t) { parse_excluded(t, who); },
+            "all but these; the report names them with their reasons")
+        ->type_name("CODE[:REASON],...");
 }
 
 void make_derivatives(const std::filesystem::path& folder, const std::filesystem::path& file)

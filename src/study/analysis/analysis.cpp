@@ -200,6 +200,7 @@ analysis analyse(const dataset& d)
     a.experiment = d.experiment.name;
     a.participants = d.participants.size();
     a.simulated = d.simulated;
+    a.excluded = d.excluded;
     a.warnings = d.warnings;
     for (std::size_t i = 0; i < d.experiment.runs.size(); ++i) {
         a.runs.push_back(analyse_run(d, i));

@@ -22,19 +22,13 @@ struct by_motion {
     std::vector<std::optional<double>> p_holm = {}; ///< of the motions' p
 };
 
-/// Somebody whose trials of a run are not in its figures.
-struct left_out {
-    std::string participant;
-    std::string why;
-};
-
 struct run_analysis {
     run_outline run;
     std::size_t n = 0; ///< participants with a trial that counts in each cell
     std::vector<std::string> participants = {};
-    std::vector<left_out> missing = {};
-    std::size_t trials = 0; ///< that count, of the n
-    std::size_t voids = 0;  ///< of everybody who was selected
+    std::vector<left_out> missing = {}; ///< have trials that are not in the figures
+    std::size_t trials = 0;             ///< that count, of the n
+    std::size_t voids = 0;              ///< of everybody who was selected
 
     /// choose: per cent of trials in which the last method was chosen, against 50.
     /// rate: mean ratings by method, not tested. identify: per cent correct by method, against chance.
@@ -56,6 +50,7 @@ struct analysis {
     std::string experiment; ///< its name
     std::size_t participants = 0;
     bool simulated = false;
+    std::vector<left_out> excluded = {}; ///< by whoever asked for the analysis
     std::vector<run_analysis> runs = {};
     std::vector<std::string> warnings = {};
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "study/analysis/number_text.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 namespace tactor::study {
@@ -23,6 +25,18 @@ std::string p_clause(std::optional<double> p)
 std::string interval_text(const std::optional<interval>& i)
 {
     return i ? fmt::format("{:.2f} ... {:.2f}", i->first, i->second) : "-";
+}
+
+interval possible_values(const run_outline& run)
+{
+    return run.task == task_kind::rate ? interval{1.0, run.scale} : per_cents;
+}
+
+std::string interval_text(const std::optional<interval>& i, const interval& possible)
+{
+    if (!i)
+        return "-";
+    return interval_text(interval{std::max(i->first, possible.first), std::min(i->second, possible.second)});
 }
 
 std::string t_text(const t_test& t)

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "study/data/outline.hpp"
 #include "study/statistics/anova.hpp"
 #include "study/statistics/t_test.hpp"
 
@@ -21,6 +22,13 @@ std::string p_clause(std::optional<double> p);
 
 /// "1.20 ... 3.40"
 std::string interval_text(const std::optional<interval>& i);
+
+/// What a mean of per cents can be, and one of a run's values: a per cent, or a rating.
+inline constexpr interval per_cents{0.0, 100.0};
+interval possible_values(const run_outline& run);
+
+/// The same, cut to what is possible: an interval from t knows no bounds.
+std::string interval_text(const std::optional<interval>& i, const interval& possible);
 
 /// "t(11) = 6.84, p < 0.001"; of a test that is there.
 std::string t_text(const t_test& t);

@@ -91,7 +91,7 @@ std::string readme_text(const experiment_definition& d, bool simulated)
         "each\n"
         "stimulus, named by the SHA-256 of its plan, are in sourcedata. Trials whose column void is true "
         "were\n"
-        "played or answered under conditions that were not as planned; they do not count, and came again.\n"
+        "played or answered under conditions that were not as planned; they do not count, and come again.\n"
         "tactor analyze prints the statistics.\n",
         d.title, simulated ? std::string(simulated_note) + "\n\n" : std::string(), d.name);
 }
@@ -132,7 +132,7 @@ std::string task_text(const run_definition& r, bool simulated)
     j["response"] = column_json(response_meaning(r).c_str());
     j["response_time"] = column_json("From the last stimulus frame at the DAC to the answer", "s");
     j["rating"] = column_json("The rating; n/a where nothing is rated");
-    j["void"] = column_json("Whether the trial does not count: it came again at the end of the run");
+    j["void"] = column_json("Whether the trial does not count; it comes again at the end of the run");
     j["void"]["Levels"] = {{"true", "does not count"}, {"false", "counts"}};
     j["xruns"] = column_json("Gaps in the sound while the stimuli played, as the device tells them");
     j["stream"] = column_json("Counts openings of the device, from 1");

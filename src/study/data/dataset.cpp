@@ -81,6 +81,24 @@ std::vector<std::string> select(const std::vector<std::string>& known, const sel
     return left;
 }
 
+std::vector<left_out> excluded(const std::vector<std::string>& known,
+                               const std::vector<std::string>& selected, const selection& who)
+{
+    std::vector<left_out> all;
+    for (const std::string& code : known) {
+        if (std::find(selected.begin(), selected.end(), code) != selected.end())
+            continue;
+        const bool named = std::any_of(who.without.begin(), who.without.end(), [&](const std::string& w) {
+            return w == code || w == std::string(prefix) + code;
+        });
+        const auto reason = who.reasons.find(code);
+        all.push_back({code, reason != who.reasons.end() ? reason->second
+                             : named                     ? "no reason was given"
+                                                         : "not among those selected"});
+    }
+    return all;
+}
+
 std::size_t place_of(const text_table& t, std::size_t row, std::string_view column,
                      const std::vector<std::string>& known)
 {
@@ -261,9 +279,12 @@ dataset read_dataset(const fs::path& folder, const selection& who)
                     "tactor experiment adds a line for each participant");
     refuse_strangers(folder, known);
     reader r(folder);
-    for (const std::string& code : select(known, who))
+    const std::vector<std::string> selected = select(known, who);
+    for (const std::string& code : selected)
         r.add(code);
-    return r.finish();
+    dataset d = r.finish();
+    d.excluded = excluded(known, selected, who);
+    return d;
 }
 
 } // namespace tactor::study

@@ -12,6 +12,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,11 +37,18 @@ struct run_data {
     std::size_t voids = 0; ///< lines that do not count
 };
 
+/// Somebody whose trials are left out, and why.
+struct left_out {
+    std::string participant;
+    std::string why;
+};
+
 struct dataset {
     experiment_outline experiment;
     bool simulated = false;
     std::vector<std::string> participants = {};   ///< codes, without sub-
     std::vector<std::vector<run_data>> data = {}; ///< by participant, by run
+    std::vector<left_out> excluded = {};          ///< in participants.tsv, not selected
     std::vector<std::string> warnings = {};
 };
 
@@ -48,6 +56,7 @@ struct dataset {
 struct selection {
     std::vector<std::string> only = {}; ///< empty: all
     std::vector<std::string> without = {};
+    std::map<std::string, std::string> reasons = {}; ///< why a code of `without` is there
 };
 
 /// Reads the folder; of participants who are not selected nothing is opened.

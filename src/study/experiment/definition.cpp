@@ -87,13 +87,14 @@ void read_head(const toml_table& root, const fs::path* folder, experiment_defini
     const auto t = root.table("experiment", "[experiment]", "[experiment]");
     if (!t)
         root.fail("there is no [experiment]", "it begins with one");
-    t->only({"name", "title", "array", "level", "gap_s", "seed", "consent", "authors"});
+    t->only({"name", "title", "array", "level", "gap_s", "rest_s", "seed", "consent", "authors"});
     d.name = name_in(*t, "name");
     d.title = t->has("title") ? name_in(*t, "title") : d.name;
     if (t->has("array") && folder != nullptr)
         d.array = array_in(*t, *folder);
     read_level(*t, d);
     d.gap_s = t->number("gap_s", {0.0, 60.0}).value_or(d.gap_s);
+    d.rest_s = t->number("rest_s", {0.0, 60.0}).value_or(d.rest_s);
     d.seed = read_seed(*t);
     d.consent = t->text("consent").value_or("");
     d.authors = texts(*t, "authors", 1000);

@@ -64,6 +64,7 @@ struct experiment_definition {
     std::optional<double> level_dbfs = {};  ///< none: sl_db
     double sl_db = 7.0;                     ///< above each tactor's threshold
     double gap_s = 1.0;                     ///< choose: from the first stimulus' end to the second's begin
+    double rest_s = 0.0;                    ///< before each trial
     std::optional<std::uint64_t> seed = {}; ///< none: seed_of(code)
     std::string consent = {};
     std::vector<std::string> authors = {};

@@ -89,11 +89,26 @@ std::string level_text(const session_facts& s)
     return dbfs ? fmt::format("{} dBFS, the same for all tactors but for their gains", digits(*dbfs)) : "";
 }
 
+bool needs_thresholds(const session_facts& s)
+{
+    return !s.facts()["level"]["dbfs"].there();
+}
+
+// Whether a session lists thresholds that say anything.
+bool has_thresholds(const session_facts& s)
+{
+    const std::vector<json_fact> all = s.facts()["thresholds_dbfs"].list();
+    return needs_thresholds(s) ||
+           std::any_of(all.begin(), all.end(), [](const json_fact& one) { return one.there(); });
+}
+
 std::string assumed_text(const session_facts& s)
 {
     const auto assumed = s.facts()["thresholds_assumed"].truth();
     if (!assumed)
         return "";
+    if (!needs_thresholds(s))
+        return "not used: the level is in dBFS";
     return *assumed ? "assumed, **not measured**, for tactors without one"
                     : "from the array file, none assumed";
 }
@@ -131,15 +146,20 @@ std::string thresholds_table(const study_facts& f)
 {
     std::size_t most = 0;
     for (const session_facts& s : f.sessions)
-        most = std::max(most, s.facts()["thresholds_dbfs"].list().size());
+        if (has_thresholds(s))
+            most = std::max(most, s.facts()["thresholds_dbfs"].list().size());
     if (most == 0)
-        return "Thresholds are not recorded.\n";
+        return std::any_of(f.sessions.begin(), f.sessions.end(), needs_thresholds)
+                   ? "Thresholds are not recorded.\n"
+                   : "";
     std::vector<std::string> head{"threshold (dBFS)"};
     for (std::size_t i = 0; i < most; ++i)
         head.push_back(fmt::format("tactor {}", i));
     std::string text = table_head(head);
     std::vector<std::vector<double>> columns(most);
     for (const session_facts& s : f.sessions) {
+        if (!has_thresholds(s))
+            continue;
         std::vector<std::string> row{"sub-" + s.code};
         for (const json_fact& one : s.facts()["thresholds_dbfs"].list()) {
             row.push_back(threshold_text(one));

@@ -17,6 +17,13 @@ std::string gaps_text(const void_count& c)
                                   : fmt::format("{} (of {}: {})", c.with_xruns, c.unknown, not_recorded);
 }
 
+std::string again_text(const void_count& c)
+{
+    if (c.again == c.voids)
+        return c.voids == 1 ? "It came again" : "All of them came again";
+    return fmt::format("{} of them came again, {} did not", c.again, c.voids - c.again);
+}
+
 // A line for each participant: trials that count, void ones, those with gaps in the sound.
 std::string trials_table(const study_facts& f, const dataset& d)
 {
@@ -61,14 +68,13 @@ std::string data_section(const study_facts& f, const dataset& d)
     void_count all;
     for (const session_facts& s : f.sessions)
         for (const void_count& c : s.voids)
-            all = {all.voids + c.voids, all.with_xruns + c.with_xruns, all.unknown + c.unknown};
+            all = {all.voids + c.voids, all.again + c.again, all.with_xruns + c.with_xruns,
+                   all.unknown + c.unknown};
     if (all.voids == 0)
         text += "No trial was void. ";
     else
-        text +=
-            fmt::format("Void trials: {}, of which had gaps in the sound: {}; they do not count, and came "
-                        "again. ",
-                        all.voids, gaps_text(all));
+        text += fmt::format("Void trials: {}, of which had gaps in the sound: {}; they do not count. {}. ",
+                            all.voids, gaps_text(all), again_text(all));
     text += "Trials that count / void / void\nwith gaps in the sound:\n\n";
     text += trials_table(f, d);
     text += "\n### Versions and hashes\n\n";

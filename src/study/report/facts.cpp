@@ -2,6 +2,7 @@
 #include "study/report/facts.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -90,27 +91,36 @@ void check_plan(const text_table& t, std::size_t row, const session_facts& s, co
                  "it was changed");
 }
 
-void_count voids_of(const fs::path& folder, const fs::path& table, const session_facts& s)
+// Adds what a run's table says to the session.
+void add_table(const fs::path& folder, const fs::path& table, session_facts& s)
 {
-    void_count c;
+    void_count& c = s.voids.emplace_back();
+    std::set<unsigned>& streams = s.streams.emplace_back();
     if (!is_there(folder, table))
-        return c;
+        return;
     const text_table t(folder / table);
+    std::map<std::string_view, std::size_t> waiting; // void attempts at a trial that did not come again yet
     for (std::size_t i = 0; i < t.rows(); ++i) {
         if (!s.stimuli.empty()) {
             check_plan(t, i, s, "method_1", "plan_1");
             check_plan(t, i, s, "method_2", "plan_2");
         }
-        if (t.need(i, "void") != "true")
+        if (const auto came = waiting.extract(t.need(i, "trial")); !came.empty())
+            c.again += came.mapped();
+        if (t.need(i, "void") != "true") {
+            if (t.has("stream"))
+                if (const auto stream = t.whole(i, "stream", 0, 1000000000))
+                    streams.insert(*stream);
             continue;
+        }
         ++c.voids;
+        ++waiting[t.need(i, "trial")];
         const auto xruns = t.has("xruns") ? t.whole(i, "xruns", 0, 1000000000) : std::nullopt;
         if (!xruns)
             ++c.unknown;
         else if (*xruns > 0)
             ++c.with_xruns;
     }
-    return c;
 }
 
 session_facts session_of(const fs::path& folder, const std::string& code, const experiment_outline& outline)
@@ -131,8 +141,7 @@ session_facts session_of(const fs::path& folder, const std::string& code, const 
     s.tactors = array_in(s.facts()["array"]);
     s.stimuli = stimuli_of(s, source / "plans");
     for (const run_outline& r : outline.runs)
-        s.voids.push_back(
-            voids_of(folder, fs::path(sub) / "beh" / fmt::format("{}_task-{}_beh.tsv", sub, r.file_name), s));
+        add_table(folder, fs::path(sub) / "beh" / fmt::format("{}_task-{}_beh.tsv", sub, r.file_name), s);
     return s;
 }
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,9 +31,11 @@ struct planned_stimulus {
     json_fact facts() const { return {plan, file}; }
 };
 
-/// Void trials of a run, in how many of them the sound had gaps, and of how many nobody knows.
+/// Void trials of a run, how many of them were given again, in how many the sound had gaps, and of how many
+/// nobody knows.
 struct void_count {
     std::size_t voids = 0;
+    std::size_t again = 0;
     std::size_t with_xruns = 0;
     std::size_t unknown = 0;
 
@@ -52,7 +55,8 @@ struct session_facts {
     std::string definition_hash; ///< SHA-256 of its text
     std::optional<array> tactors = {};
     std::vector<planned_stimulus> stimuli = {};
-    std::vector<void_count> voids = {}; ///< by run of the outline
+    std::vector<void_count> voids = {};           ///< by run of the outline
+    std::vector<std::set<unsigned>> streams = {}; ///< openings of the device in which its trials count
 
     json_fact facts() const { return {document, file}; }
 };

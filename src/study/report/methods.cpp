@@ -51,14 +51,14 @@ std::string methods_text(const study_facts& f, const dataset& d, const analysis&
                         "Lengths are in mm with x to the\nright and y down, levels in dB below full scale "
                         "(dBFS) unless said otherwise.\n",
                         mark, version(), not_recorded);
-    text += participants_section(f);
+    text += participants_section(f, a);
     text += apparatus_section(f);
     text += stimuli_section(f);
     text += procedure_section(f, d);
     text += data_section(f, d);
     text += results_section(a);
     text += by_hand;
-    text += references_section();
+    text += references_section(text);
     return text;
 }
 

@@ -3,35 +3,67 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "core/words.hpp"
+#include "study/report/conduct.hpp"
 #include "study/report/markdown.hpp"
 #include "study/report/sections.hpp"
 
 namespace tactor::study {
 namespace {
 
+// An age in years. BIDS writes ages from 89 on as "89+", so that nobody is known by them: those count as what
+// they are at least.
+struct age_value {
+    double years = 0.0;
+    bool at_least = false;
+};
+
+std::optional<age_value> read_age(const std::string& text)
+{
+    age_value a;
+    a.at_least = text.ends_with('+');
+    const char* end = text.data() + text.size() - (a.at_least ? 1 : 0);
+    const auto [stop, failed] = std::from_chars(text.data(), end, a.years);
+    if (failed != std::errc() || stop != end || !(a.years >= 0.0 && a.years < 200.0))
+        return {};
+    return a;
+}
+
 std::string ages_text(const study_facts& f)
 {
     std::vector<double> ages;
+    std::size_t at_least = 0;
+    std::string others;
+    std::size_t missing = 0;
     for (const person& p : f.people) {
-        double age = 0.0;
         const std::string text = p.age.value_or("");
-        const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), age);
-        if (!text.empty() && failed == std::errc() && end == text.data() + text.size())
-            ages.push_back(age);
+        if (const auto age = read_age(text)) {
+            ages.push_back(age->years);
+            at_least += age->at_least ? 1 : 0;
+        } else if (text.empty())
+            ++missing;
+        else
+            others += fmt::format("; sub-{}: \"{}\"", p.code, plain(text));
     }
     if (ages.empty())
-        return not_recorded;
+        return others.empty() ? not_recorded : others.substr(2);
     const t_test t = test_mean(ages, 0.0);
     std::string text = fmt::format("{} years, mean {:.1f}", range_text(ages), *t.mean);
     if (t.se)
         text += fmt::format(", sd {:.1f}", *t.se * std::sqrt(static_cast<double>(ages.size())));
+    if (at_least != 0)
+        text += fmt::format(" ({} recorded as at least so old, as 89+, and counted as that)", at_least);
     if (ages.size() != f.people.size())
-        text += fmt::format(" (of {}; the others': {})", ages.size(), not_recorded);
-    return text;
+        text += fmt::format(" (of {}{})", ages.size(),
+                            missing == 0     ? std::string()
+                            : others.empty() ? fmt::format("; the others': {}", not_recorded)
+                                             : fmt::format("; of {}: {}", missing, not_recorded));
+    return text + others;
 }
 
 // How many said what, in a column.
@@ -52,29 +84,54 @@ std::string dates_text(const study_facts& f)
 {
     std::vector<std::string> days;
     for (const session_facts& s : f.sessions)
-        if (const std::string date = s.facts()["date"].words(); !date.empty())
-            days.push_back(date.substr(0, date.find('T')));
+        for (std::string& day : session_days(s))
+            days.push_back(std::move(day));
     if (days.empty())
         return not_recorded;
     const auto [first, last] = std::minmax_element(days.begin(), days.end());
     return *first == *last ? plain(*first) : fmt::format("{} to {}", plain(*first), plain(*last));
 }
 
+// Sessions that were broken off, and went on on another day.
+std::string long_sessions_text(const study_facts& f)
+{
+    std::string text;
+    for (const session_facts& s : f.sessions)
+        if (const std::vector<std::string> days = session_days(s); days.size() > 1)
+            text += fmt::format("\nThe session of sub-{} was held on {}.\n", s.code, plain_list(days));
+    return text;
+}
+
+std::string left_out_text(const analysis& a)
+{
+    std::string text;
+    for (const left_out& one : a.excluded)
+        text +=
+            fmt::format("\nExcluded from all that follows: sub-{} ({}).\n", one.participant, plain(one.why));
+    for (const run_analysis& r : a.runs)
+        for (const left_out& one : r.missing)
+            text += fmt::format("\nLeft out of the run {}: sub-{} ({}).\n", plain(r.run.name),
+                                one.participant, plain(one.why));
+    return text;
+}
+
 } // namespace
 
-std::string participants_section(const study_facts& f)
+std::string participants_section(const study_facts& f, const analysis& a)
 {
     std::vector<std::string> codes;
     for (const person& p : f.people)
         codes.push_back(p.code);
     std::string text = "\n## Participants\n\n";
-    text += fmt::format("{}: {}. Age: {}. Sex: {}. Handedness: {}. Dates of the sessions: {}.\n",
+    text += fmt::format("{}: {}. Age: {}. Sex: {}. Handedness: {}. Dates of the sessions (UTC): {}.\n",
                         counted(codes.size(), "participant"), subjects(codes), ages_text(f),
                         counts_text(f, &person::sex), counts_text(f, &person::handedness), dates_text(f));
     for (const std::string& code : codes)
         if (std::none_of(f.sessions.begin(), f.sessions.end(),
                          [&](const session_facts& s) { return s.code == code; }))
             text += fmt::format("\nsub-{} is among the participants and has no session.\n", code);
+    text += long_sessions_text(f);
+    text += left_out_text(a);
     return text;
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/words.hpp"
 #include "study/experiment/sequence.hpp"
+#include "study/report/conduct.hpp"
 #include "study/report/markdown.hpp"
 #include "study/report/sections.hpp"
 
@@ -52,7 +53,7 @@ std::string run_text(const study_facts& f, const run_outline& o, std::size_t run
     text += fmt::format("- Question: {}\n",
                         of_run(f, run, [](const run_definition& r) { return plain(r.question); }));
     text += fmt::format("- Animation of the target before the first stimulus: {}\n",
-                        of_run(f, run, [](const run_definition& r) { return r.animation ? "yes" : "no"; }));
+                        told(f, [&](const session_facts& s) { return animation_text(s, run); }));
     text +=
         fmt::format("- Trials: {}; practice trials before, which do not count: {}\n",
                     o.trials == 0 ? std::string(not_recorded) : fmt::format("{}", o.trials),
@@ -97,17 +98,6 @@ std::string order_of(const session_facts& s)
     return all;
 }
 
-std::string masking_text(const session_facts& s)
-{
-    const json_fact m = s.facts()["masking"];
-    if (!m.there())
-        return s.design ? "none" : "";
-    return fmt::format("{} noise of {} dBFS (root mean square), faded over {} s, {}",
-                       plain(m["noise"].need_text()), digits(m["level_dbfs"].need_number()),
-                       digits(m["fade_s"].need_number()),
-                       m["while"].need_text() == "run" ? "through each run" : "while stimuli played");
-}
-
 // The session file's numbers are whole: as digits() they would lose some of theirs.
 std::string seed_of_session(const session_facts& s)
 {
@@ -146,12 +136,21 @@ std::string procedure_section(const study_facts& f, const dataset& d)
                         told(f, [](const session_facts& s) {
                             return s.design ? digits(s.design->gap_s) + " s" : std::string();
                         }));
+    text += fmt::format("Rest before each trial: {}.\n", told(f, [](const session_facts& s) {
+                            return !s.design              ? std::string()
+                                   : s.design->rest_s > 0 ? digits(s.design->rest_s) + " s"
+                                                          : std::string("none");
+                        }));
     for (std::size_t i = 0; i < d.experiment.runs.size(); ++i)
         text += run_text(f, d.experiment.runs[i], i);
     text += randomisation(f);
     for (std::size_t i = 0; i < d.experiment.runs.size(); ++i)
         text += cells_text(d, i);
-    return text + fmt::format("\n### Masking\n\nMasking noise: {}.\n", told(f, masking_text));
+    return text + fmt::format("\n### As it was held\n\n"
+                              "Masking noise: {}.\n\nDisplay: {}.\n\nConsent: {}.\n\n"
+                              "Tactors that the participant confirmed to feel before the runs: {}.\n",
+                              told(f, masking_text), told(f, display_text), told(f, consent_text),
+                              told(f, walk_text));
 }
 
 } // namespace tactor::study

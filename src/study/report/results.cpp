@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include <array>
+#include <string_view>
+
 #include <fmt/format.h>
 
 #include "core/words.hpp"
@@ -37,10 +40,14 @@ private:
     bool after_table_ = false;
 };
 
-std::string mean_text(const t_test& t, const char* unit)
+std::string mean_text(const t_test& t, const char* unit, const std::string& ci)
 {
-    return fmt::format("{}{} (se {}, 95 % interval {})", value_text(t.mean), unit, value_text(t.se),
-                       interval_text(t.ci));
+    return fmt::format("{}{} (se {}, 95 % interval {})", value_text(t.mean), unit, value_text(t.se), ci);
+}
+
+std::string mean_text(const t_test& t, const char* unit, const interval& possible)
+{
+    return mean_text(t, unit, interval_text(t.ci, possible));
 }
 
 // Of a mean against a number; "not tested" says why there is nothing.
@@ -59,9 +66,9 @@ std::string tests_table(const by_motion& b, const std::vector<std::string>& moti
         table_head({"motion", "mean", "se", "95 % interval", "test", "p (Holm)", "p (sign flips)", "d"});
     for (std::size_t m = 0; m < motions.size(); ++m) {
         const t_test& t = b.motion[m];
-        rows +=
-            table_row({plain(motions[m]), value_text(t.mean), value_text(t.se), interval_text(t.ci),
-                       t.t ? t_text(t) : "-", p_text(b.p_holm[m]), p_text(t.p_signflip), value_text(t.d)});
+        rows += table_row({plain(motions[m]), value_text(t.mean), value_text(t.se),
+                           interval_text(t.ci, per_cents), t.t ? t_text(t) : "-", p_text(b.p_holm[m]),
+                           p_text(t.p_signflip), value_text(t.d)});
     }
     return rows;
 }
@@ -82,9 +89,9 @@ void choose(results& r, const run_analysis& a)
 {
     const by_motion& b = a.cells[0];
     r.line(fmt::format("{} was chosen in {} of trials, against 50 %: {}.", plain(a.run.methods.back()),
-                       mean_text(b.all, " %"), test_text(b.all, "d")));
+                       mean_text(b.all, " %", per_cents), test_text(b.all, "d")));
     r.line(fmt::format("The first interval was chosen in {} of trials, against 50 %: {}.",
-                       mean_text(a.first_interval, " %"), test_text(a.first_interval, "d")));
+                       mean_text(a.first_interval, " %", per_cents), test_text(a.first_interval, "d")));
     r.effect_line("motion", a.effects.second);
     r.table("By motion, against 50 %", tests_table(b, a.run.motions));
     pairs(r, a.pairs[0], a.run.motions, " of motions");
@@ -93,10 +100,11 @@ void choose(results& r, const run_analysis& a)
 void rate(results& r, const run_analysis& a)
 {
     for (std::size_t m = 0; m < a.run.methods.size(); ++m)
-        r.line(fmt::format("{}: mean rating {}.", plain(a.run.methods[m]), mean_text(a.cells[m].all, "")));
+        r.line(fmt::format("{}: mean rating {}.", plain(a.run.methods[m]),
+                           mean_text(a.cells[m].all, "", possible_values(a.run))));
     if (a.run.methods.size() > 1)
         r.line(fmt::format("{} less {}, paired: {}, {}.", plain(a.run.methods.back()),
-                           plain(a.run.methods.front()), mean_text(a.paired, ""),
+                           plain(a.run.methods.front()), mean_text(a.paired, "", interval_text(a.paired.ci)),
                            test_text(a.paired, "d_z")));
     r.effect_line("method", a.effects.first);
     r.effect_line("motion", a.effects.second);
@@ -106,7 +114,7 @@ void rate(results& r, const run_analysis& a)
         for (std::size_t k = 0; k < a.run.motions.size(); ++k) {
             const t_test& t = a.cells[m].motion[k];
             rows += table_row({plain(a.run.methods[m]), plain(a.run.motions[k]), value_text(t.mean),
-                               value_text(t.se), interval_text(t.ci)});
+                               value_text(t.se), interval_text(t.ci, possible_values(a.run))});
         }
     r.table("Mean ratings", rows);
     for (std::size_t m = 0; m < a.run.methods.size(); ++m)
@@ -119,7 +127,7 @@ void identify(results& r, const run_analysis& a)
     for (std::size_t m = 0; m < a.run.methods.size(); ++m) {
         const by_motion& b = a.cells[m];
         r.line(fmt::format("{}: correct in {} of trials, against {}: {}.", plain(a.run.methods[m]),
-                           mean_text(b.all, " %"), against, test_text(b.all, "d")));
+                           mean_text(b.all, " %", per_cents), against, test_text(b.all, "d")));
         r.table(fmt::format("{}: by motion, against {}", plain(a.run.methods[m]), against),
                 tests_table(b, a.run.motions));
         std::vector<std::string> head{"motion, then its answers"};
@@ -159,6 +167,33 @@ std::string run_results(const run_analysis& a, bool simulated)
     return text + r.text();
 }
 
+/// A paper, and the word by which the text names what is taken from it.
+struct reference {
+    std::string_view mark;
+    std::string_view text;
+};
+
+constexpr std::array<reference, 10> references{
+    {{"Blackman", "- Blackman, D., Vigna, S. (2018): Scrambled linear pseudorandom number generators. arXiv "
+                  "1805.01407.\n"},
+     {"Greenhouse", "- Greenhouse, S. W., Geisser, S. (1959): On methods in the analysis of profile data. "
+                    "Psychometrika 24.\n"},
+     {"Holm", "- Holm, S. (1979): A simple sequentially rejective multiple test procedure. Scandinavian "
+              "Journal of Statistics 6.\n"},
+     {"Israr", "- Israr, A., Poupyrev, I. (2011): Tactile brush: drawing on skin with a tactile grid "
+               "display. CHI 2011, 2019-2028.\n"},
+     {"Lemire", "- Lemire, D. (2019): Fast random integer generation in an interval. ACM Transactions on "
+                "Modeling and Computer\n  Simulation 29.\n"},
+     {"Mauchly", "- Mauchly, J. W. (1940): Significance test for sphericity of a normal n-variate "
+                 "distribution. Annals of\n  Mathematical Statistics 11.\n"},
+     {"Olejnik", "- Olejnik, S., Algina, J. (2003): Generalized eta and omega squared statistics. "
+                 "Psychological Methods 8.\n"},
+     {"Park et al.", "- Park, J., Kim, J., Oh, Y., Tan, H. Z. (2016): Rendering moving tactile stroke on the "
+                     "palm using a sparse 2D array.\n  EuroHaptics 2016.\n"},
+     {"Williams", "- Williams, E. J. (1949): Experimental designs balanced for the estimation of residual "
+                  "effects of treatments.\n  Australian Journal of Scientific Research A 2.\n"},
+     {"Yun", "- Yun, G., Oh, S., Choi, S. (2019), World Haptics Conference: the Gaussian phantom model.\n"}}};
+
 } // namespace
 
 std::string results_section(const analysis& a)
@@ -181,35 +216,13 @@ std::string results_section(const analysis& a)
     return text;
 }
 
-std::string references_section()
+std::string references_section(std::string_view named)
 {
-    return "\n## References\n\n"
-           "- Blackman, D., Vigna, S. (2018): Scrambled linear pseudorandom number generators. arXiv "
-           "1805.01407.\n"
-           "- Greenhouse, S. W., Geisser, S. (1959): On methods in the analysis of profile data. "
-           "Psychometrika 24.\n"
-           "- Holm, S. (1979): A simple sequentially rejective multiple test procedure. Scandinavian Journal "
-           "of "
-           "Statistics 6.\n"
-           "- Israr, A., Poupyrev, I. (2011): Tactile brush: drawing on skin with a tactile grid display. "
-           "CHI "
-           "2011, 2019-2028.\n"
-           "- Lemire, D. (2019): Fast random integer generation in an interval. ACM Transactions on Modeling "
-           "and "
-           "Computer\n  Simulation 29.\n"
-           "- Mauchly, J. W. (1940): Significance test for sphericity of a normal n-variate distribution. "
-           "Annals "
-           "of\n  Mathematical Statistics 11.\n"
-           "- Olejnik, S., Algina, J. (2003): Generalized eta and omega squared statistics. Psychological "
-           "Methods "
-           "8.\n"
-           "- Park, J., Kim, J., Oh, Y., Tan, H. Z. (2016): Rendering moving tactile stroke on the palm "
-           "using a "
-           "sparse 2D array.\n  EuroHaptics 2016.\n"
-           "- Williams, E. J. (1949): Experimental designs balanced for the estimation of residual effects "
-           "of "
-           "treatments.\n  Australian Journal of Scientific Research A 2.\n"
-           "- Yun, G., Oh, S., Choi, S. (2019), World Haptics Conference: the Gaussian phantom model.\n";
+    std::string text = "\n## References\n\n";
+    for (const reference& r : references)
+        if (named.find(r.mark) != std::string_view::npos)
+            text += r.text;
+    return text;
 }
 
 } // namespace tactor::study
