@@ -129,6 +129,39 @@ class DryRun(ExperimentTest):
                     self.assertEqual(row[key], "n/a" if trial[key] is None else str(trial[key]))
                 self.assertAlmostEqual(float(row["duration"]), trial["duration_s"], 6)
 
+    def test_times_count_leads_animations_and_rests(self):
+        small = self.small(SMALL.replace("gap_s = 0.25", "gap_s = 0.25\nrest_s = 6"))
+        told, _ = self.dry(small)
+        self.assertEqual(told["rest_s"], 6)
+        for run in told["runs"]:
+            trials = run["practice"] + run["trials"]
+            shown = 0.7 if run["animation"] else 0
+            self.assertAlmostEqual(run["duration_s"], sum(6 + shown + 0.5 + t["duration_s"] for t in trials), 4)
+            self.assertEqual((run["waits"], run["waits_s"]), (0, 0))
+        self.refused(2, "experiment", self.small(SMALL.replace("gap_s = 0.25", "rest_s = 61")), "--dry-run", says=("rest_s",))
+
+    def test_times_count_the_waits_for_max_drive_s(self):
+        text = SMALL.replace("trials = 4", "trials = 40").replace("duration = 0.7", "duration = 1.6")
+        self.write("tired.toml", "[limits]\nmax_drive_s = 4.0\nwindow_s = 20.0\n")
+        told, _ = self.dry(self.small(text), "--config", "tired.toml")
+        rested, _ = self.dry(self.small(text.replace("gap_s = 0.25", "gap_s = 0.25\nrest_s = 30")), "--config", "tired.toml")
+        for run, other in zip(told["runs"], rested["runs"]):
+            trials = run["practice"] + run["trials"]
+            shown = 1.6 if run["animation"] else 0
+            played = sum(shown + 0.5 + t["duration_s"] for t in trials)
+            self.assertAlmostEqual(run["duration_s"], played + run["waits_s"], 3)
+            if len(trials) > 30:
+                self.assertGreater(run["waits"], 10)
+            self.assertEqual(other["waits"], 0)
+        said = self.ok("experiment", "small.toml", "--dry-run", "--config", "tired.toml").stdout
+        self.assertIn("s without the answers", said)
+
+    def test_the_shipped_one_waits_by_exception(self):
+        told, _ = self.dry("park2016")
+        waits = sum(r["waits"] for r in told["runs"])
+        trials = sum(len(r["practice"]) + len(r["trials"]) for r in told["runs"])
+        self.assertLess(waits, trials / 20)
+
     def test_the_table_has_the_same(self):
         told, _ = self.dry(self.small())
         text = self.ok("experiment", "small.toml", "--dry-run").stdout
@@ -240,7 +273,7 @@ class Simulated(ExperimentTest):
         times = [s["acq_time"] for s in scans]
         self.assertEqual(times, sorted(times))
         for t in times:
-            self.assertRegex(t, r"^2000-01-01T\d\d:\d\d:\d\d\.\d{6}$")
+            self.assertRegex(t, r"^2000-01-01T\d\d:\d\d:\d\d\.\d{6}Z$")
 
     def test_columns_of_each_task(self):
         self.simulate()

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """tactor experiment with somebody at a terminal, and with lines for keys: what is shown, asked, written and refused."""
 import contextlib
+import datetime
 import fcntl
 import json
 import os
@@ -12,6 +13,7 @@ import signal
 import struct
 import subprocess
 import tempfile
+import time
 
 from experiments import SMALL, ExperimentTest, contents, read_table
 from harness import PATIENCE_S, TOOL, main
@@ -244,6 +246,56 @@ class AtTheTerminal(PersonTest):
         self.assertEqual(t.said().count("is void: the experimenter says so"), 3)
         self.ok("experiment", "short.toml", "--participant", "01", "-o", "study", "-D", "null", "--resume")
 
+    def test_what_the_participant_reads_breaks_at_words(self):
+        words = [f"word{i}x{'y' * (i % 9)}" for i in range(60)]
+        self.write("short.toml", SHORT.replace("Be at ease.", " ".join(words) + "\\n\\nA second part.")
+                   .replace("Which one?", " ".join(reversed(words)) + "?"))
+        t = self.start()
+        for pattern, key in (("Do you agree", "y"), ("0: Did you feel it", "y"), ("1: Did you feel it", "y"), ("Any key begins", "q")):
+            t.until(pattern)
+            t.key(key)
+        self.assertEqual(t.end(), 130)
+        lines = t.all.replace("\r", "").split("\n")
+        self.assertLessEqual(max(map(len, lines)), 79)
+        text = " ".join(lines)
+        self.assertIn(" ".join(words) + "  A second part.", text)
+        self.assertIn(" ".join(reversed(words)) + "? 1 or 2", text)
+
+    def test_q_is_no_signal(self):
+        t = self.start()
+        t.begin()
+        t.answer("Which one\\? ", "q")
+        self.assertEqual(t.end(), 130)
+        self.assertIn("tactor: ended by the experimenter (q): what was answered is in study, and --resume goes on", t.said())
+
+    def test_consent_has_the_time_of_the_yes(self):
+        t = self.start()
+        t.answer("Do you agree", "y")
+        t.until("0: Did you feel it")
+        seen = datetime.datetime.now(datetime.timezone.utc)
+        time.sleep(0.05)
+        t.key("y")
+        t.answer("1: Did you feel it", "y")
+        t.answer("Any key begins", "q")
+        self.assertEqual(t.end(), 130)
+        s = self.session("01")
+        agreed, asked = (datetime.datetime.fromisoformat(v.replace("Z", "+00:00")) for v in (s["consent"], s["walk"][0]["asked"]))
+        self.assertLess(agreed, seen)
+        self.assertGreater(asked, seen)
+        self.assertEqual(s["streams"][0]["display"], "terminal with animation")
+
+    def test_no_color_leaves_the_target_on_the_terminal(self):
+        self.env["NO_COLOR"] = "1"
+        t = self.start()
+        t.begin()
+        t.answer("Which one\\? ", "1")
+        t.answer("Which one\\? ", "q")
+        self.assertEqual(t.end(), 130)
+        self.assertNotIn("cannot be drawn", t.said())
+        self.assertRegex(t.all, r"\033\[\d+A")
+        self.assertNotRegex(t.all, r"\033\[[0-9;]*m")
+        self.assertEqual(self.session("01")["streams"][0]["display"], "terminal with animation")
+
     def test_ctrl_c_at_any_place_and_on_from_there(self):
         t = self.start()
         t.answer("Do you agree", "\x03")
@@ -253,6 +305,7 @@ class AtTheTerminal(PersonTest):
         t.answer("Do you agree", "y")
         t.answer("0: Did you feel it", "q")  # as good
         self.assertEqual(t.end(), 130)
+        self.assertIn("tactor: ended by the experimenter (q), before anything was answered: nothing is written", t.said())
         self.assertFalse((self.dir / "study/sourcedata").exists())
         for n, place in enumerate(("Any key begins", "Practice 1/1", "Trial 1/2: ", "A break")):
             more = ("--resume",) if n else ()
@@ -293,11 +346,18 @@ class ByLines(PersonTest):
         self.assertEqual([w["tactor"] for w in s["walk"]], [0, 1])
         self.assertEqual(len(s["streams"]), 1)
         self.assertRegex(s["consent"], r"^20\d\d-")
-        self.assertEqual((s["streams"][0]["device"], s["streams"][0]["display"]), ("null", "terminal"))
+        self.assertEqual((s["streams"][0]["device"], s["streams"][0]["display"], s["streams"][0]["masking"]),
+                         ("null", "terminal without animation", None))
         self.assertNotIn("simulated", (self.dir / "study/README").read_text().lower())
         self.assertNotIn("SIMULATED", result.stdout)
         for scan in read_table(self.dir / "study/sub-01/sub-01_scans.tsv"):
-            self.assertRegex(scan["acq_time"], r"^20\d\d-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{6}$")
+            self.assertRegex(scan["acq_time"], r"^20\d\d-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{6}Z$")
+        for at in (s["date"], s["consent"], s["streams"][0]["opened"], s["walk"][0]["asked"]):
+            self.assertRegex(at, r"^20\d\d-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{6}Z$")
+        text = self.ok("report", "study").stdout
+        self.assertIn("no, the terminal could not show it (the definition asks for it)", text)
+        self.assertIn("Masking noise: none.", text)
+        self.assertIn(f"Consent: given on {s['consent']}.", text)
         told = json.loads(self.ok("analyze", "study", "--format", "json").stdout)
         self.assertFalse(told["simulated"])
         before = contents(self.dir / "study")
@@ -456,6 +516,14 @@ class Masking(PersonTest):
         self.ok(*args, "--masker", "raw:two.raw", "--resume", stdin="y\ny\n" + "1\n2\n1\n2\n")
         s = self.session()
         self.assertEqual((s["masker"], [one["masker"] for one in s["streams"]]), ("raw:one.raw", ["raw:one.raw", "raw:two.raw"]))
+        self.assertEqual(s["streams"][1]["masking"], {"noise": "white", "level_dbfs": -20, "fade_s": 0.05, "while": "stimulus"})
+        self.assertEqual([w["tactor"] for w in s["walk"]], [0, 1, 0, 1])
+        self.assertIn("Masking noise: white noise of -20 dBFS (root mean square), faded over 0.05 s, while stimuli played, from "
+                      "raw:two.raw.", self.ok("report", "study").stdout)
+
+    def test_noise_that_was_asked_for_and_not_played_is_not_reported_as_played(self):
+        self.ok(*self.args(definition=self.noisy()), stdin=ByLines.ANSWERS)
+        self.assertIn("Masking noise: none (the definition asks for white noise of -20 dBFS", self.ok("report", "study").stdout)
 
     def test_its_level_is_checked_by_ear(self):
         check = ("experiment", self.noisy(), "--check-noise", "-D", "null")

@@ -139,8 +139,8 @@ class ParticipantPage(BrowserTest, ExperimentTest):
     def test_all_160_trials(self):
         """The paper's four runs, with quick motions."""
         text = self.ok("experiment", "park2016", "--print").stdout
-        for pattern, other in ((r"^(preset = .*)", r"\1\nduration = 0.15"), ("^gap_s.*", "gap_s = 0.05"), ("^break_s.*", "break_s = 0.2"),
-                               ("^practice.*", "practice = 1"), ("^level = .*", "level = { dbfs = -20 }"), ("^noise = .*", 'noise = "none"')):
+        for pattern, other in ((r"^(preset = .*)", r"\1\nduration = 0.15"), ("^gap_s.*", "gap_s = 0.05"), ("^rest_s.*", "rest_s = 0"),
+                               ("^break_s.*", "break_s = 0.2"), ("^practice.*", "practice = 1"), ("^level = .*", "level = { dbfs = -20 }"), ("^noise = .*", 'noise = "none"')):
             text = re.sub(pattern, other, text, flags=re.M)
         self.write("quick.toml", text)
         s = self.start("quick.toml")

@@ -97,10 +97,11 @@ int ask_person(study::calibration& c, study::calibration_log& log, const setting
         noise.seed = fmt::format("{}/calibrate/{}/noise", c.settings().seed, c.settings().participant);
         who.mask(asked.masker, noise);
     }
-    return until_left(who, [&] {
+    const stage::left why = until_left(who, [&] {
         ask(c, log, who, [&](const study::calibration_record& r) { who.tell(r); });
         who.thank();
     });
+    return why.signal;
 }
 
 // Of tactors that are not measured now; they would pass for this session's.

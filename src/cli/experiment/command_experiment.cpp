@@ -9,11 +9,13 @@
 #include <fmt/format.h>
 
 #include "cli/commands.hpp"
+#include "cli/experiment/dry_run.hpp"
 #include "cli/experiment/experiment_options.hpp"
 #include "cli/experiment/noise_check.hpp"
 #include "cli/experiment/power.hpp"
 #include "cli/experiment/prepared.hpp"
 #include "cli/experiment/real_session.hpp"
+#include "cli/experiment/session_facts.hpp"
 #include "cli/experiment/simulated_session.hpp"
 #include "cli/experiment/trials.hpp"
 #include "cli/interrupt.hpp"
@@ -52,17 +54,20 @@ int hold_session(const prepared_experiment& p, const experiment_options& o, cons
         return status_ok;
     }
     store.try_to_write(p.definition.runs);
-    int signal = 0;
+    stage::left why{0};
     if (o.simulate) {
         store.begin(p.stimuli.all());
-        signal = simulate_session(p, *o.simulate, store);
+        why.signal = simulate_session(p, *o.simulate, store);
     } else {
-        signal = hold_real_session(p, o, s, between, std::move(listening), store);
+        why = hold_real_session(p, o, s, between, std::move(listening), store);
     }
-    if (signal != 0) {
-        say(stderr, "tactor: ended by a signal: what was answered is in {}, and --resume goes on\n",
-            o.folder);
-        return interrupt::status(signal);
+    if (why.signal != 0) {
+        if (!store.begun())
+            say(stderr, "tactor: ended by {}, before anything was answered: nothing is written\n", why.by);
+        else
+            say(stderr, "tactor: ended by {}: what was answered is in {}, and --resume goes on\n", why.by,
+                o.folder);
+        return interrupt::status(why.signal);
     }
     say(stdout, "{}: {} in {}, in {}\n", who, counted(trials_of(p), "trial"), counted(p.runs.size(), "run"),
         o.folder);

@@ -80,7 +80,7 @@ int check_noise(const prepared_experiment& p, const experiment_options& o, const
     const std::unique_ptr<stage> there = open_stage(p, o, s);
     show(fmt::format("{} noise, {} dBFS, on {}. n noise on and off, s a stimulus under it, q ends.\n",
                      to_string(m.noise), m.level_dbfs, o.masker));
-    const int signal = until_left(*there, [&] { noise_check(p, *there).hold(); });
+    const int signal = until_left(*there, [&] { noise_check(p, *there).hold(); }).signal;
     return signal != 0 ? interrupt::status(signal) : 0;
 }
 

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include "cli/say.hpp"
+#include "cli/wrapped.hpp"
+#include "core/split.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -57,6 +59,12 @@ std::string choices_text(const study::experiment_definition& d, const study::run
     for (std::size_t i = 0; i < r.motions.size(); ++i)
         text += fmt::format("{}{} {}", i == 0 ? "" : ", ", i + 1, d.motions[r.motions[i]].name);
     return text;
+}
+
+void show_text(std::string_view text)
+{
+    for (const std::string_view line : detail::split(text, '\n'))
+        show(wrapped("", std::string(line)));
 }
 
 target_picture::target_picture(const array& a, const stroke& target, const study::page_words& words)

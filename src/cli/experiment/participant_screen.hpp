@@ -17,6 +17,9 @@ std::string choices_text(const study::experiment_definition& d, const study::run
 /// How many answers there are.
 unsigned choices_in(const study::run_definition& r);
 
+/// Prints text for the participant; its lines break at words.
+void show_text(std::string_view text);
+
 /// The moving target on a terminal, as long as this lives; elsewhere one line, without motion.
 class target_picture {
 public:

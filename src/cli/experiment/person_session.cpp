@@ -6,11 +6,11 @@
 
 #include <fmt/format.h>
 
-#include "cli/check/walk.hpp"
-#include "cli/experiment/array_walk.hpp"
 #include "cli/experiment/participant_screen.hpp"
+#include "cli/experiment/session_facts.hpp"
 #include "cli/experiment/trials.hpp"
 #include "cli/json_values.hpp"
+#include "cli/play/terminal.hpp"
 #include "cli/say.hpp"
 #include "study/bids/acq_time.hpp"
 
@@ -105,76 +105,6 @@ const study::run_definition& person_session::run_of(const study::session_step& s
     return p_.definition.runs[p_.runs[s.run].run];
 }
 
-void person_session::ask_consent()
-{
-    const study::page_words& w = p_.definition.page;
-    on_page(consent_screen(p_));
-    show(fmt::format("{}\n\n{} y {}, n {}: ", p_.definition.consent, w["agree"], w["yes"], w["no"]));
-    for (;;) {
-        const session_key k = keys_.wait();
-        if (k.asked == operator_key::quit)
-            obey(*k.asked);
-        if (k.character != 'y' && k.character != 'n')
-            continue;
-        show(k.character == 'y' ? w["yes"] + "\n\n" : w["no"] + "\n");
-        agreed_ = k.character == 'y';
-        return flow_.agree(agreed_);
-    }
-}
-
-void person_session::walk(unsigned tactor)
-{
-    const array& a = p_.where.tactors;
-    const study::page_words& w = p_.definition.page;
-    if (tactor == 0)
-        show(fmt::format("{}\n\n{}\n", w["walk"], numbered_map(a)));
-    on_page(walk_screen(p_, tactor, false));
-    const score s = walk_score(p_.definition, a, p_.render, tactor);
-    const given_stimulus g = [&] {
-        const noise_around noise(stage_);
-        return stage_.give(fmt::format("tactor {}", tactor), s, 0.0, [](std::uint64_t) {});
-    }();
-    if (!g.flaw.empty()) {
-        say(stderr, "tactor: tactor {}: {}\n", tactor, g.flaw);
-        find_device();
-    }
-    on_page(walk_screen(p_, tactor, true));
-    show(fmt::format("{}: {} y {}, n {}, r {}{}: ", tactor, w["felt"], w["yes"], w["no"], w["again"],
-                     tactor > 0 ? ", b " + w["back"] : ""));
-    for (;;) {
-        const session_key k = keys_.wait();
-        if (k.asked == operator_key::quit)
-            obey(*k.asked);
-        if (k.character == '\0' || std::string("ynrb").find(k.character) == std::string::npos ||
-            (k.character == 'b' && tactor == 0))
-            continue;
-        show(fmt::format("{}\n", k.character));
-        if (k.character == 'y')
-            walked_.push_back({{"tactor", tactor}, {"asked", study::acq_time_text(study::utc_now_ns())}});
-        return flow_.felt(k.character == 'y'   ? study::walk_answer::felt
-                          : k.character == 'n' ? study::walk_answer::not_felt
-                          : k.character == 'r' ? study::walk_answer::again
-                                               : study::walk_answer::back);
-    }
-}
-
-// Only who agreed, and felt each tactor, leaves anything on the disk.
-void person_session::begin_store()
-{
-    if (std::exchange(begun_, true))
-        return;
-    const std::string now = study::acq_time_text(study::utc_now_ns());
-    store_.begin(p_.stimuli.all());
-    if (store_.facts()["date"].is_null()) // new, or ended before it was written down
-        store_.note("date", now);
-    if (agreed_)
-        store_.note("consent", now);
-    store_.note("walk", walked_);
-    store_.note("sound_server", or_null(devices_.between.array));
-    store_.note("masker_sound_server", or_null(devices_.between.masker));
-    note_stream();
-}
-
 // Each opening of the device is counted.
 void person_session::note_stream()
 {
@@ -183,16 +113,20 @@ void person_session::note_stream()
     ++stream_;
     const stream_setup& d = stage_.session().setup();
     json all = store_.facts().contains("streams") ? store_.facts()["streams"] : json::array();
-    all.push_back({{"stream", stream_},
-                   {"opened", study::acq_time_text(study::utc_now_ns())},
-                   {"device", devices_.pcm},
-                   {"masker", or_null(devices_.masker)},
-                   {"display", page_ != nullptr ? "page" : "terminal"},
-                   {"format", std::string(to_string(d.format))},
-                   {"period_frames", d.period_frames},
-                   {"buffer_frames", d.buffer_frames},
-                   {"realtime", stage_.session().stats().realtime},
-                   {"locked_memory", stage_.session().locked_memory()}});
+    all.push_back(
+        {{"stream", stream_},
+         {"opened", study::acq_time_text(study::utc_now_ns())},
+         {"device", devices_.pcm},
+         {"masker", or_null(devices_.masker)},
+         {"masking", devices_.masker.empty() ? json(nullptr) : masking_facts(p_.definition.masking)},
+         {"display", page_ != nullptr ? "page"
+                     : can_draw()     ? "terminal with animation"
+                                      : "terminal without animation"},
+         {"format", std::string(to_string(d.format))},
+         {"period_frames", d.period_frames},
+         {"buffer_frames", d.buffer_frames},
+         {"realtime", stage_.session().stats().realtime},
+         {"locked_memory", stage_.session().locked_memory()}});
     store_.note("streams", all);
 }
 
@@ -213,8 +147,8 @@ void person_session::introduce(const study::session_step& s)
     practice_.emplace(store_, r, true);
     table_.emplace(store_, r, false);
     const study::page_words& w = p_.definition.page;
-    show(fmt::format("\n{} {}/{}\n{}\n{}\n", w["part"], s.run + 1, p_.runs.size(), r.question,
-                     choices_text(p_.definition, r)));
+    show_text(fmt::format("\n{} {}/{}\n{}\n{}", w["part"], s.run + 1, p_.runs.size(), r.question,
+                          choices_text(p_.definition, r)));
     on_page(introduce_screen(p_, s));
     if (keys_.come_early()) {
         show(page_ != nullptr ? "The participant begins, or g.\n" : w["any_key_begins"] + "\n");
@@ -266,7 +200,7 @@ void person_session::obey(operator_key k)
         say(stderr, "tactor: a pause comes before the next trial\n");
         return;
     case operator_key::quit:
-        throw stage::left{SIGINT};
+        throw stage::left{SIGINT, experimenter};
     case operator_key::repeat:
     case operator_key::go_on:
         return;

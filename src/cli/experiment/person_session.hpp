@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <nlohmann/json.hpp>
 
@@ -25,6 +26,9 @@ struct session_devices {
     std::string masker = {}; ///< empty: none
     sound_servers between = {};
 };
+
+/// Who ends a session with q, for messages.
+inline constexpr std::string_view experimenter = "the experimenter (q)";
 
 class person_session {
 public:
@@ -52,6 +56,8 @@ private:
         unsigned choice = 0; ///< 0: the experimenter repeats the trial
         double time_s = 0.0;
     };
+    /// Lets the definition's rest pass. False where the device is gone.
+    bool rest_before(const study::session_step& s);
     /// Waits until no tactor would be driven for too long. False where the device is gone.
     bool make_room(const study::session_step& s, const study::planned_trial& t, const score& stimuli);
     /// Shows the target. Why the trial is void by now, or nothing.
@@ -84,9 +90,9 @@ private:
     std::optional<run_table> table_ = {};
     nlohmann::ordered_json walked_ = nlohmann::ordered_json::array();
     unsigned stream_ = 0;
-    bool agreed_ = false;
-    bool begun_ = false;  ///< the store is
-    bool repeat_ = false; ///< asked for while the stimulus plays
+    std::string agreed_at_ = {}; ///< time of the yes; empty: not asked
+    bool begun_ = false;         ///< the store is
+    bool repeat_ = false;        ///< asked for while the stimulus plays
     bool quit_ = false;
 };
 

@@ -8,17 +8,13 @@
 
 #include "cli/experiment/participant_screen.hpp"
 #include "cli/experiment/person_session.hpp"
+#include "cli/experiment/session_time.hpp"
 #include "cli/experiment/trials.hpp"
 #include "cli/say.hpp"
 #include "rt/clock.hpp"
 #include "study/bids/acq_time.hpp"
 
 namespace tactor::cli {
-namespace {
-
-constexpr double lead_s = 0.5; // from what was shown before to the first frame, so that nobody is surprised
-
-} // namespace
 
 const study::planned_trial& person_session::trial_of(const study::session_step& s) const
 {
@@ -52,11 +48,22 @@ std::string person_session::animate(const study::session_step& s, const study::p
     return passed ? "" : gone;
 }
 
+bool person_session::rest_before(const study::session_step& s)
+{
+    if (p_.definition.rest_s == 0.0)
+        return true;
+    on_page(stimulus_screen(p_, s));
+    return stage_.pass(p_.definition.rest_s, [&](double) {
+        heed();
+        return !repeat_ && !quit_;
+    });
+}
+
 // Before the target is shown, which the stimulus follows at once.
 bool person_session::make_room(const study::session_step& s, const study::planned_trial& t,
                                const score& stimuli)
 {
-    double ahead_s = lead_s;
+    double ahead_s = stimulus_lead_s;
     if (run_of(s).animation)
         ahead_s += p_.definition.motions[t.motion].drawn.motion.duration_s();
     bool told = false;
@@ -73,7 +80,7 @@ bool person_session::make_room(const study::session_step& s, const study::planne
 given_stimulus person_session::give(const study::session_step& s, const study::planned_trial& t)
 {
     const score stimuli = p_.stimuli.make_score(t);
-    if (!make_room(s, t, stimuli))
+    if (!rest_before(s) || !make_room(s, t, stimuli))
         return {.flaw = "the device is gone"};
     if (run_of(s).animation)
         if (std::string flaw = animate(s, t); !flaw.empty())
@@ -84,7 +91,7 @@ given_stimulus person_session::give(const study::session_step& s, const study::p
         std::optional<noise_around> noise;
         if (!p_.definition.masking.through_run)
             noise.emplace(stage_);
-        g = stage_.give(fmt::format("trial {}", s.which.trial), stimuli, lead_s, [&](std::uint64_t) {
+        g = stage_.give(fmt::format("trial {}", s.which.trial), stimuli, stimulus_lead_s, [&](std::uint64_t) {
             heed();
             if (repeat_ || quit_)
                 stage_.cut();
@@ -92,7 +99,7 @@ given_stimulus person_session::give(const study::session_step& s, const study::p
     }
     heed(); // what was pressed too early is no answer
     if (quit_)
-        throw stage::left{SIGINT};
+        throw stage::left{SIGINT, experimenter};
     if (std::exchange(repeat_, false))
         g.flaw = "the experimenter repeats it";
     else

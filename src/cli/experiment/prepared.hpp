@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "cli/experiment/experiment_options.hpp"
 #include "cli/input.hpp"
 #include "study/experiment/definition.hpp"
@@ -44,12 +42,5 @@ inline constexpr double assumed_threshold_dbfs = -40.0;
 /// \throws error (bad_input): the definition, array or configuration is wrong, a stimulus cannot be planned
 ///         or played; there are no thresholds and somebody is to feel it.
 prepared_experiment prepare(const experiment_options& o, settings& s, option_list& options);
-
-/// What session.json says.
-nlohmann::ordered_json session_facts(const prepared_experiment& p, const experiment_options& o);
-
-/// --dry-run.
-void print_dry_run_text(std::FILE* out, const prepared_experiment& p);
-void print_dry_run_json(std::FILE* out, const prepared_experiment& p);
 
 } // namespace tactor::cli

@@ -81,8 +81,8 @@ void warn_of_animation(const prepared_experiment& p)
     const auto& runs = p.definition.runs;
     if (!can_draw() && std::any_of(runs.begin(), runs.end(), [](const auto& r) { return r.animation; }))
         say(stderr,
-            "tactor: warning: the target cannot be drawn: standard output is no terminal, or NO_COLOR is "
-            "set\n");
+            "tactor: warning: the target cannot be drawn: standard output is no terminal that can move its "
+            "cursor\n");
 }
 
 } // namespace
@@ -117,8 +117,9 @@ std::unique_ptr<stage> open_stage(const prepared_experiment& p, const experiment
     return there;
 }
 
-int hold_real_session(const prepared_experiment& p, const experiment_options& o, const settings& s,
-                      const sound_servers& between, net::owned_fd listening, study::session_store& store)
+stage::left hold_real_session(const prepared_experiment& p, const experiment_options& o, const settings& s,
+                              const sound_servers& between, net::owned_fd listening,
+                              study::session_store& store)
 {
     const std::unique_ptr<stage> there = open_stage(p, o, s);
     std::optional<participant_page> page; // its thread has the signals blocked that the stage takes

@@ -24,8 +24,9 @@ std::unique_ptr<stage> open_stage(const prepared_experiment& p, const experiment
                                   const settings& s);
 
 /// All trials that are left, with a person at the terminal or, where `listening` is a socket, before a page.
-/// Returns the signal that ended it, or 0. \throws error.
-int hold_real_session(const prepared_experiment& p, const experiment_options& o, const settings& s,
-                      const sound_servers& between, net::owned_fd listening, study::session_store& store);
+/// Returns why it was left. \throws error.
+stage::left hold_real_session(const prepared_experiment& p, const experiment_options& o, const settings& s,
+                              const sound_servers& between, net::owned_fd listening,
+                              study::session_store& store);
 
 } // namespace tactor::cli

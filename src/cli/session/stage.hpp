@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "cli/input.hpp"
 #include "cli/play/play_session.hpp"
@@ -33,9 +34,10 @@ struct given_stimulus {
 /// One thread.
 class stage {
 public:
-    /// A signal came.
+    /// Why somebody left.
     struct left {
-        int signal;
+        int signal;                       ///< 0: nobody left
+        std::string_view by = "a signal"; ///< for messages: who ended it
     };
 
     /// Opens the device. \throws error.
@@ -109,21 +111,21 @@ private:
 };
 
 /// Runs what is held on a stage (or on somebody who has one) and ends its streams, whatever ends it. Returns
-/// the signal that came, or 0. \throws what `held` throws, but stage::left.
+/// why it was left. \throws what `held` throws, but stage::left.
 template <typename Stage, typename Held>
-[[nodiscard]] int until_left(Stage& s, const Held& held)
+[[nodiscard]] stage::left until_left(Stage& s, const Held& held)
 {
-    int signal = 0;
+    stage::left why{0};
     try {
         held();
     } catch (const stage::left& l) {
-        signal = l.signal;
+        why = l;
     } catch (const error&) {
         s.finish();
         throw;
     }
     s.finish();
-    return signal;
+    return why;
 }
 
 } // namespace tactor::cli

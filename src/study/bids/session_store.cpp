@@ -112,6 +112,7 @@ void session_store::try_to_write(const std::vector<run_definition>& runs) const
 
 void session_store::begin(const std::vector<const stimulus*>& stimuli)
 {
+    begun_ = true;
     make_folder(folder_.path() / "sourcedata");
     make_folder(source_);
     make_folder(source_ / "plans");

@@ -45,6 +45,8 @@ public:
 
     /// Whether this session goes on with one that was begun.
     bool resumed() const noexcept { return resumed_; }
+    /// Whether anything of the session is on the disk.
+    bool begun() const { return resumed_ || begun_; }
 
     /// The lines of a run's table so far; and those of the practice before it.
     std::vector<trial_row> rows(const run_definition& r) const;
@@ -77,6 +79,7 @@ private:
     nlohmann::ordered_json facts_;
     std::filesystem::path source_; ///< sourcedata/sub-CODE
     bool resumed_ = false;
+    bool begun_ = false; ///< by this process
 };
 
 } // namespace tactor::study

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#include "cli/experiment/dry_run.hpp"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/experiment/session_facts.hpp"
+#include "cli/experiment/session_time.hpp"
+#include "cli/json_values.hpp"
+#include "cli/say.hpp"
+#include "core/words.hpp"
+#include "study/random/sha256.hpp"
+
+namespace tactor::cli {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+json trial_json(const prepared_experiment& p, const study::planned_trial& t, std::size_t place)
+{
+    const study::experiment_definition& d = p.definition;
+    json j{{"trial", place},
+           {"motion", d.motions[t.motion].name},
+           {"method_1", d.methods[t.method_1].name},
+           {"method_2", nullptr},
+           {"duration_s", static_cast<double>(p.stimuli.frames(t)) / p.render.rate},
+           {"plan_1", p.stimuli.at(t.motion, t.method_1).hash},
+           {"plan_2", nullptr}};
+    if (t.method_2) {
+        j["method_2"] = d.methods[*t.method_2].name;
+        j["plan_2"] = p.stimuli.at(t.motion, *t.method_2).hash;
+    }
+    return j;
+}
+
+json trials_json(const prepared_experiment& p, const std::vector<study::planned_trial>& trials)
+{
+    json all = json::array();
+    for (const study::planned_trial& t : trials)
+        all.push_back(trial_json(p, t, all.size() + 1));
+    return all;
+}
+
+json time_json(const run_time& t)
+{
+    return {{"duration_s", t.total_s}, {"waits", t.waits}, {"waits_s", t.waits_s}};
+}
+
+json run_json(const prepared_experiment& p, const study::run_sequence& s, const run_time& t)
+{
+    const study::run_definition& r = p.definition.runs[s.run];
+    json j{{"name", r.outline.name},
+           {"file_name", r.outline.file_name},
+           {"task", std::string(to_string(r.outline.task))}};
+    j["attribute"] = or_null(r.attribute);
+    j["question"] = r.question;
+    j["animation"] = r.animation;
+    j["scale"] = r.outline.task == study::task_kind::rate ? json(r.outline.scale) : json(nullptr);
+    j["break_s"] = r.break_s;
+    j.update(time_json(t));
+    j["practice"] = trials_json(p, s.practice);
+    j["trials"] = trials_json(p, s.trials);
+    return j;
+}
+
+std::string time_text(const run_time& t)
+{
+    std::string text = fmt::format("{:.0f} s without the answers", t.total_s);
+    if (t.waits != 0)
+        text += fmt::format(", of which {:.0f} s are waits before {}", t.waits_s, counted(t.waits, "trial"));
+    return text;
+}
+
+} // namespace
+
+void print_dry_run_json(std::FILE* out, const prepared_experiment& p)
+{
+    json j{{"schema", "tactor-experiment/1"}};
+    const study::experiment_definition& d = p.definition;
+    j["experiment"] = {{"name", d.name}, {"title", d.title}, {"sha256", study::sha256_text(d.text)}};
+    j["participant"] = p.participant;
+    j["seed"] = p.seed;
+    j["array"] = p.where.tactors.name;
+    j["level"] = level_facts(d);
+    j["thresholds_assumed"] = p.assumed;
+    j["rate"] = p.render.rate;
+    j["gap_s"] = d.gap_s;
+    j["rest_s"] = d.rest_s;
+    j["masking"] = masking_facts(d.masking);
+    j["runs"] = json::array();
+    const std::vector<run_time> times = session_times(p, 0.0);
+    for (std::size_t i = 0; i < p.runs.size(); ++i)
+        j["runs"].push_back(run_json(p, p.runs[i], times[i]));
+    j["stimuli"] = stimulus_facts(p);
+    j["warnings"] = p.warnings;
+    fmt::print(out, "{}\n", j.dump(1, ' ', false, json::error_handler_t::replace));
+}
+
+void print_dry_run_text(std::FILE* out, const prepared_experiment& p)
+{
+    const study::experiment_definition& d = p.definition;
+    say_text(out, fmt::format("{}: {}\nparticipant {}, seed {}, array {}, level {}\n", d.name, d.title,
+                              p.participant, p.seed, p.where.tactors.name,
+                              d.level_dbfs ? fmt::format("{} dBFS", *d.level_dbfs)
+                                           : fmt::format("{} dB SL", d.sl_db)));
+    const auto row = [&](const study::planned_trial& t, const std::string& place) {
+        say_text(out, fmt::format("{:>8}  {:<16} {:<16} {:<16} {:>7.3f}\n", place, d.motions[t.motion].name,
+                                  d.methods[t.method_1].name, t.method_2 ? d.methods[*t.method_2].name : "-",
+                                  static_cast<double>(p.stimuli.frames(t)) / p.render.rate));
+    };
+    const std::vector<run_time> times = session_times(p, 0.0);
+    for (std::size_t i = 0; i < p.runs.size(); ++i) {
+        const study::run_sequence& s = p.runs[i];
+        const study::run_definition& r = d.runs[s.run];
+        say_text(out, fmt::format("\nrun {} of {}: {} ({}{}), {}, {}\n{}\n", i + 1, p.runs.size(),
+                                  r.outline.name, to_string(r.outline.task), r.animation ? ", animation" : "",
+                                  counted(s.trials.size(), "trial"), time_text(times[i]), r.question));
+        say_text(out, fmt::format("{:>8}  {:<16} {:<16} {:<16} {:>7}\n", "trial", "motion", "method_1",
+                                  "method_2", "s"));
+        for (const study::planned_trial& t : s.practice)
+            row(t, "practice");
+        for (std::size_t k = 0; k < s.trials.size(); ++k)
+            row(s.trials[k], fmt::format("{}", k + 1));
+    }
+}
+
+} // namespace tactor::cli

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "cli/experiment/session_facts.hpp"
+
+#include <algorithm>
+
+#include <tactor/version.hpp>
+
+#include "cli/experiment/calibration_facts.hpp"
+#include "cli/json_values.hpp"
+#include "study/random/sha256.hpp"
+
+namespace tactor::cli {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+json array_facts(const array& a)
+{
+    json tactors = json::array();
+    for (const tactor_spec& t : a.tactors)
+        tactors.push_back({{"x_mm", t.position.x_mm},
+                           {"y_mm", t.position.y_mm},
+                           {"channel", t.channel},
+                           {"polarity", t.polarity},
+                           {"gain_db", t.gain_db},
+                           {"max_dbfs", t.max_dbfs},
+                           {"threshold_dbfs", threshold_json(t)},
+                           {"actuator", std::string(to_string(t.actuator))}});
+    return {{"name", a.name}, {"tactors", tactors}};
+}
+
+json experiment_facts(const study::experiment_definition& d)
+{
+    return {{"name", d.name}, {"sha256", study::sha256_text(d.text)}, {"text", d.text}};
+}
+
+json run_names(const prepared_experiment& p)
+{
+    json names = json::array();
+    for (const study::run_sequence& r : p.runs)
+        names.push_back(p.definition.runs[r.run].outline.name);
+    return names;
+}
+
+} // namespace
+
+json level_facts(const study::experiment_definition& d)
+{
+    return {{"sl_db", d.level_dbfs ? json(nullptr) : json(d.sl_db)}, {"dbfs", or_null(d.level_dbfs)}};
+}
+
+json masking_facts(const study::masking_definition& m)
+{
+    if (m.noise == study::noise_kind::none)
+        return nullptr;
+    return {{"noise", std::string(to_string(m.noise))},
+            {"level_dbfs", m.level_dbfs},
+            {"fade_s", m.fade_s},
+            {"while", m.through_run ? "run" : "stimulus"}};
+}
+
+json stimulus_facts(const prepared_experiment& p)
+{
+    json all = json::array();
+    for (const study::run_definition& r : p.definition.runs)
+        for (const std::size_t motion : r.motions)
+            for (const std::size_t method : r.methods) {
+                const json one{{"sha256", p.stimuli.at(motion, method).hash},
+                               {"motion", p.definition.motions[motion].name},
+                               {"method", p.definition.methods[method].name}};
+                if (std::find(all.begin(), all.end(), one) == all.end())
+                    all.push_back(one);
+            }
+    return all;
+}
+
+json session_facts(const prepared_experiment& p, const experiment_options& o)
+{
+    json thresholds = json::array();
+    for (const tactor_spec& t : p.where.tactors.tactors)
+        thresholds.push_back(threshold_json(t));
+    json j{{"schema", "tactor-session/1"}, {"participant", p.participant}};
+    j["simulated"] = o.simulate.has_value();
+    j["simulation"] = o.simulate ? json(study::to_text(*o.simulate)) : json(nullptr);
+    j["seed"] = p.seed;
+    j["order"] = run_names(p);
+    j["level"] = level_facts(p.definition);
+    j["array"] = array_facts(p.where.tactors);
+    j["thresholds_dbfs"] = thresholds;
+    j["thresholds_assumed"] = p.assumed;
+    j["calibration"] = calibration_facts(p);
+    j["rate"] = p.render.rate;
+    j["channels"] = p.render.channels;
+    j["masking"] = masking_facts(p.definition.masking);
+    j["masker"] = o.simulate || o.masker.empty() ? json(nullptr) : json(o.masker);
+    j["stimuli"] = stimulus_facts(p);
+    j["experiment"] = experiment_facts(p.definition);
+    j["versions"] = {{"tactor", std::string(version())}, {"build", std::string(build_facts())}};
+    j["device"] = o.simulate ? json(nullptr) : json(p.pcm);
+    j["sound_server"] = nullptr;
+    j["masker_sound_server"] = nullptr;
+    j["streams"] = json::array();
+    j["date"] = nullptr;
+    return j;
+}
+
+} // namespace tactor::cli
