@@ -334,6 +334,7 @@ class Person(CalibrateTest):
                     raise AssertionError(f"no {pattern} in {seen!r}")
                 seen += os.read(fd, 4096).decode()
             seen = seen[re.search(pattern, seen).end():]
+        until("\\d+ tactors?, about \\d+ trials: some \\d+ minutes?\\.\r?\n")
         until("Any key begins")
         os.write(fd, b" 2")  # the second is too early: it does not count
         until("trial 1: interval 1 interval 2 which\\? ")

@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "cli/calibrate/calibrate_options.hpp"
+#include "cli/calibrate/calibration_time.hpp"
 #include "cli/calibrate/person.hpp"
 #include "cli/commands.hpp"
 #include "cli/play/sound_server.hpp"
@@ -97,6 +98,7 @@ int ask_person(study::calibration& c, study::calibration_log& log, const setting
         noise.seed = fmt::format("{}/calibrate/{}/noise", c.settings().seed, c.settings().participant);
         who.mask(asked.masker, noise);
     }
+    show(time_text(c) + ".\n");
     const stage::left why = until_left(who, [&] {
         ask(c, log, who, [&](const study::calibration_record& r) { who.tell(r); });
         who.thank();
