@@ -72,8 +72,9 @@ struct serve_settings {
     std::optional<unsigned> max_message_bytes = {};
     std::optional<unsigned> max_nesting = {};
     std::optional<double> max_message_s = {};
-    std::optional<unsigned> max_unread_bytes = {};     ///< that wait for one client
-    std::optional<unsigned> max_all_unread_bytes = {}; ///< that wait for all together
+    std::optional<unsigned> max_unread_bytes = {};         ///< that wait for one client
+    std::optional<unsigned> max_all_unread_bytes = {};     ///< that wait for all together
+    std::optional<unsigned> max_all_unfinished_bytes = {}; ///< of messages of all that have not come whole
 };
 
 /// [defaults]: values for strokes, plans and their sound where nothing else is said. Reading the file checks

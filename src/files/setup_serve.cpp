@@ -86,6 +86,7 @@ void read_serve_limits(const toml_table& t, serve_settings& s)
     s.max_message_s = t.number("max_message_s", {0.001, 86400.0});
     s.max_unread_bytes = t.whole("max_unread_bytes", 1024, most);
     s.max_all_unread_bytes = t.whole("max_all_unread_bytes", 1024, most);
+    s.max_all_unfinished_bytes = t.whole("max_all_unfinished_bytes", 65536, most);
     if (s.kept_clients && *s.kept_clients >= s.max_clients.value_or(128))
         t.fail("kept_clients",
                fmt::format("{} places are kept of {}", *s.kept_clients, s.max_clients.value_or(128)),
@@ -118,7 +119,8 @@ void read_serve(const toml_table& root, located_setup& out)
              "max_nesting",
              "max_message_s",
              "max_unread_bytes",
-             "max_all_unread_bytes"});
+             "max_all_unread_bytes",
+             "max_all_unfinished_bytes"});
     serve_settings s;
     s.socket = t->text("socket");
     s.tcp = address(*t, "tcp");

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <new>
 #include <utility>
 
 #include <boost/asio/buffer.hpp>
@@ -13,15 +14,18 @@ namespace tactor::net {
 namespace {
 
 constexpr std::size_t chunk_bytes = 16U << 10;
+constexpr std::size_t block_bytes = 128U << 10;
 constexpr std::size_t lines_at_once = 16;
 constexpr std::chrono::seconds linger{1};
 
 } // namespace
 
-line_connection::line_connection(socket_type s, const line_limits& l, write_budget& all)
+line_connection::line_connection(socket_type s, const line_limits& l, shared_by_peers& all)
     : socket_(std::move(s)),
       limits_(l),
-      share_(all, [this] { give_up_unread(); }),
+      unread_(all.unread, [this] { give_up_soon(line_fault::unread); }),
+      unfinished_(all.unfinished, [this] { give_up_soon(line_fault::crowded); }),
+      turns_(all.turns),
       deadline_(socket_.get_executor()),
       linger_(socket_.get_executor()),
       chunk_(chunk_bytes)
@@ -37,27 +41,32 @@ void line_connection::start(handlers h)
     read();
 }
 
+// What one peer sends may take more memory than there is: then it goes, and the others stay.
+template <typename F>
+void line_connection::within_memory(F f)
+{
+    const auto self = shared_from_this();
+    try {
+        f();
+    } catch (const std::bad_alloc&) {
+        give_up(line_fault::memory);
+    }
+}
+
 void line_connection::read()
 {
     if (!reading_ || closed_)
         return;
     socket_.async_read_some(boost::asio::buffer(chunk_),
                             [self = shared_from_this()](const boost::system::error_code& e, std::size_t n) {
-                                if (self->closed_)
+                                if (self->closed_ || e == boost::asio::error::operation_aborted)
                                     return;
-                                if (!e) {
-                                    self->received(n);
-                                } else if (e == boost::asio::error::eof) {
-                                    self->last_line();
-                                    if (self->closed_ || self->finishing_)
-                                        return;
-                                    self->reading_ = false;
-                                    self->deadline_.cancel();
-                                    self->watch();
-                                    self->handlers_.input_ended();
-                                } else if (e != boost::asio::error::operation_aborted) {
+                                if (!e)
+                                    self->within_memory([&] { self->received(n); });
+                                else if (e == boost::asio::error::eof)
+                                    self->within_memory([&] { self->all_read(); });
+                                else
                                     self->give_up(line_fault::gone);
-                                }
                             });
 }
 
@@ -74,55 +83,135 @@ void line_connection::watch()
 void line_connection::received(std::size_t n)
 {
     partial_.append(chunk_.data(), n);
-    const auto self = shared_from_this();
-    if (!take_lines() || closed_ || !reading_)
-        return;
-    read();
+    if (hold())
+        next_line();
+}
+
+bool line_connection::hold()
+{
+    return unfinished_.hold(partial_.capacity() + blocks_.size() * block_bytes);
 }
 
 // The end of the input ends a line, too: what was cut off is no JSON, and is told so.
-void line_connection::last_line()
+void line_connection::all_read()
 {
-    if (!partial_.empty() && reading_) {
+    if (!reading_)
+        return;
+    over_ = true;
+    if (partial_.size() != begin_ || !blocks_.empty())
         partial_ += '\n';
-        take_lines();
+    next_line();
+}
+
+// One line, then others have their turn.
+void line_connection::next_line()
+{
+    if (closed_ || !reading_)
+        return;
+    const std::size_t end = partial_.find('\n', std::max(begin_, scanned_));
+    if (end == std::string::npos)
+        return no_line();
+    std::size_t size = end - begin_;
+    for (const std::string& b : blocks_)
+        size += b.size();
+    if (size != 0 && (end != begin_ ? partial_[end - 1] : blocks_.back().back()) == '\r')
+        --size;
+    scanned_ = end;
+    if (size > limits_.message_bytes)
+        return give_up(line_fault::too_long);
+    if (met_) {
+        armed_ = false;
+        deadline_.cancel();
+    }
+    if (size <= small_message || !handlers_.large)
+        return handle_line(size);
+    turns_.join([self = shared_from_this(), size] { self->handle_large(size); });
+}
+
+void line_connection::handle_line(std::size_t size)
+{
+    const auto self = shared_from_this();
+    const std::string large = blocks_.empty() ? std::string() : whole_line(size);
+    const std::string_view line =
+        blocks_.empty() ? std::string_view(partial_.data() + begin_, size) : std::string_view(large);
+    handled(size, size == 0 || handlers_.line(line));
+}
+
+std::string line_connection::whole_line(std::size_t size)
+{
+    std::string all;
+    all.reserve(size + 1);
+    for (const std::string& b : blocks_)
+        all += b;
+    all.append(partial_, begin_, size + 1 - all.size());
+    all.resize(size);
+    return all;
+}
+
+void line_connection::handle_large(std::size_t size)
+{
+    if (closed_ || !reading_)
+        return turns_.pass();
+    const auto done = [self = shared_from_this(), size](bool go_on) {
+        self->turns_.pass();
+        if (!self->closed_)
+            self->within_memory([&] { self->handled(size, go_on); });
+    };
+    try {
+        handlers_.large(whole_line(size), done);
+    } catch (const std::bad_alloc&) {
+        turns_.pass();
+        give_up(line_fault::memory);
     }
 }
 
-// False when the connection is at its end.
-bool line_connection::take_lines()
+void line_connection::handled(std::size_t size, bool go_on)
 {
-    std::size_t from = 0;
-    for (std::size_t end = partial_.find('\n'); end != std::string::npos; end = partial_.find('\n', from)) {
-        std::string_view line(partial_.data() + from, end - from);
-        if (!line.empty() && line.back() == '\r')
-            line.remove_suffix(1);
-        if (line.size() > limits_.message_bytes) {
-            give_up(line_fault::too_long);
-            return false;
-        }
-        from = end + 1;
-        if (!line.empty() && !handlers_.line(line)) {
-            reading_ = false;
-            return false;
-        }
-        if (closed_ || !reading_)
-            return false;
-        met_ = met_ || (!line.empty() && (!handlers_.met || handlers_.met()));
-        if (met_) {
-            armed_ = false;
-            deadline_.cancel();
-        }
+    if (closed_)
+        return;
+    reading_ = reading_ && go_on;
+    if (!reading_)
+        return;
+    blocks_.clear();
+    begin_ = scanned_ = partial_.find('\n', scanned_) + 1;
+    met_ = met_ || (size != 0 && (!handlers_.met || handlers_.met()));
+    if (met_) {
+        armed_ = false;
+        deadline_.cancel();
     }
-    partial_.erase(0, from);
+    if (partial_.find('\n', begin_) == std::string::npos)
+        return next_line();
+    boost::asio::post(socket_.get_executor(),
+                      [self = shared_from_this()] { self->within_memory([&] { self->next_line(); }); });
+}
+
+// What is left is the beginning of a line, or nothing.
+void line_connection::no_line()
+{
+    partial_.erase(0, std::exchange(begin_, 0));
+    if (blocks_.empty() && partial_.empty())
+        std::string().swap(partial_); // which gives its memory back
+    std::size_t size = partial_.size();
+    for (const std::string& b : blocks_)
+        size += b.size();
     const bool may_end = !partial_.empty() && partial_.back() == '\r';
-    if (partial_.size() > limits_.message_bytes + (may_end ? 1 : 0)) {
-        give_up(line_fault::too_long);
-        return false;
+    // Blocks, and no string that is copied as it grows: all peers' may grow in one turn.
+    if (partial_.size() + chunk_bytes > block_bytes)
+        blocks_.push_back(std::exchange(partial_, {}));
+    scanned_ = partial_.size();
+    if (!hold())
+        return;
+    if (size > limits_.message_bytes + (may_end ? 1 : 0))
+        return give_up(line_fault::too_long);
+    if (over_) {
+        reading_ = false;
+        deadline_.cancel();
+        watch();
+        return handlers_.input_ended();
     }
-    if (!partial_.empty() && !armed_)
+    if (size != 0 && !armed_)
         arm(limits_.message_s);
-    return true;
+    read();
 }
 
 void line_connection::arm(double seconds)
@@ -141,9 +230,10 @@ void line_connection::give_up(line_fault f)
         return;
     const auto self = shared_from_this();
     reading_ = false;
+    drop_unfinished();
     if (handlers_.fault)
         handlers_.fault(f);
-    if (f == line_fault::too_long || f == line_fault::too_slow)
+    if (f != line_fault::unread && f != line_fault::gone)
         finish();
     else
         close();
@@ -155,9 +245,9 @@ void line_connection::send(std::string line)
         return;
     line += '\n';
     const std::size_t n = line.size();
-    if (share_.waiting() + n > limits_.waiting_bytes)
-        share_.give_up();
-    if (!share_.add(n))
+    if (unread_.held() + n > limits_.waiting_bytes)
+        unread_.give_up();
+    if (!unread_.add(n))
         return;
     queue_.push_back(std::move(line));
     if (in_flight_ == 0)
@@ -165,11 +255,21 @@ void line_connection::send(std::string line)
 }
 
 // Not here: whoever sends may be in the middle of going through all peers.
-void line_connection::give_up_unread()
+void line_connection::drop_unfinished()
 {
-    finishing_ = true;
-    boost::asio::post(socket_.get_executor(),
-                      [self = shared_from_this()] { self->give_up(line_fault::unread); });
+    blocks_ = {};
+    std::string().swap(partial_);
+    begin_ = scanned_ = 0;
+    unfinished_.take(unfinished_.held());
+}
+
+void line_connection::give_up_soon(line_fault f)
+{
+    if (f == line_fault::crowded)
+        drop_unfinished();
+    finishing_ = finishing_ || f == line_fault::unread;
+    reading_ = reading_ && f == line_fault::unread;
+    boost::asio::post(socket_.get_executor(), [self = shared_from_this(), f] { self->give_up(f); });
 }
 
 void line_connection::write()
@@ -191,7 +291,7 @@ void line_connection::write()
 
 void line_connection::wrote(std::size_t n)
 {
-    share_.take(n);
+    unread_.take(n);
     queue_.erase(queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(in_flight_));
     in_flight_ = 0;
     if (!queue_.empty())
@@ -228,7 +328,7 @@ void line_connection::close()
     boost::system::error_code ignored;
     // What the peer sent and nobody read would turn our last words into a reset.
     socket_.shutdown(boost::asio::socket_base::shutdown_send, ignored);
-    for (std::size_t drained = 0; drained < (1U << 20) && socket_.available(ignored) != 0 && !ignored;)
+    for (std::size_t drained = 0; drained < block_bytes && socket_.available(ignored) != 0 && !ignored;)
         drained += socket_.read_some(boost::asio::buffer(chunk_), ignored);
     socket_.close(ignored);
     if (handlers_.closed)

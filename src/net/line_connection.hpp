@@ -16,7 +16,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
 
-#include "net/write_budget.hpp"
+#include "net/shared_by_peers.hpp"
 
 namespace tactor::net {
 
@@ -33,11 +33,16 @@ inline std::chrono::steady_clock::duration steady_seconds(double seconds)
         std::chrono::duration<double>(seconds));
 }
 
+/// Bytes of a message that is handled at once. A larger one waits for its turn.
+constexpr std::size_t small_message = 2048;
+
 /// Why a peer is given up.
 enum class line_fault {
     too_long, ///< a line beyond message_bytes
     too_slow, ///< a line beyond message_s
+    crowded,  ///< unfinished messages of all peers are too many, and this one has most
     unread,   ///< it does not read what it is sent
+    memory,   ///< there is not enough memory for what it sends
     gone,     ///< the socket failed, or everything is said
 };
 
@@ -56,9 +61,12 @@ public:
         std::function<void()> closed;
         /// Whether what came was the first message that is owed; none: any that is not empty is.
         std::function<bool()> met = {};
+        /// A line above `small_message`, on its turn; the next one is handled when `done` is called, with
+        /// what `line` would return. None: `line` has them all.
+        std::function<void(std::string text, std::function<void(bool)> done)> large = {};
     };
 
-    line_connection(socket_type s, const line_limits& l, write_budget& all);
+    line_connection(socket_type s, const line_limits& l, shared_by_peers& all);
     ~line_connection();
     line_connection(const line_connection&) = delete;
     line_connection& operator=(const line_connection&) = delete;
@@ -70,33 +78,48 @@ public:
     void finish();
     void close();
     /// Bytes that the peer has not taken.
-    std::size_t waiting() const noexcept { return share_.waiting(); }
+    std::size_t waiting() const noexcept { return unread_.held(); }
 
 private:
     void read();
     void watch();
     void received(std::size_t n);
-    void last_line();
-    bool take_lines();
+    void next_line();
+    void handle_line(std::size_t size);
+    void handle_large(std::size_t size);
+    void handled(std::size_t size, bool go_on);
+    std::string whole_line(std::size_t size);
+    bool hold();
+    void drop_unfinished();
+    void no_line();
+    void all_read();
     void arm(double seconds);
     void give_up(line_fault f);
-    void give_up_unread();
+    void give_up_soon(line_fault f);
+    template <typename F>
+    void within_memory(F f);
     void write();
     void wrote(std::size_t n);
 
     socket_type socket_;
     line_limits limits_;
-    write_budget::share share_;
+    byte_budget::share unread_;
+    byte_budget::share unfinished_;
+    message_turns& turns_;
     handlers handlers_;
     boost::asio::steady_timer deadline_;
     boost::asio::steady_timer linger_;
     std::vector<char> chunk_;
-    std::string partial_;
+    std::vector<std::string> blocks_; ///< the beginning of a line that is longer than one
+    std::string partial_;             ///< the rest of it, or short lines
+    std::size_t begin_ = 0;           ///< of the next line in it
+    std::size_t scanned_ = 0;         ///< no line ends between begin_ and there
     std::deque<std::string> queue_;
     std::size_t in_flight_ = 0; ///< lines
     bool armed_ = false;
     bool met_ = false; ///< the first message has come
     bool reading_ = true;
+    bool over_ = false; ///< the peer sends no more
     bool finishing_ = false;
     bool closed_ = false;
 };

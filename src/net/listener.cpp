@@ -3,6 +3,7 @@
 
 #include <cerrno>
 #include <chrono>
+#include <new>
 #include <utility>
 
 #include <fcntl.h>
@@ -64,7 +65,10 @@ void listener::take()
         if (failed)
             ::close(fd);
         else
-            taken_(std::move(s));
+            try {
+                taken_(std::move(s));
+            } catch (const std::bad_alloc&) { // NOLINT(bugprone-empty-catch): the socket closes, others stay
+            }
         return start();
     }
     if (errno == EAGAIN || errno == EINTR || errno == ECONNABORTED)

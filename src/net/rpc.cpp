@@ -11,6 +11,8 @@
 namespace tactor::net {
 namespace {
 
+constexpr std::size_t most_id_bytes = 80;
+
 // Counted in the text, so that nothing is built of what is too deep.
 bool nests_deeper(std::string_view text, std::size_t most)
 {
@@ -85,7 +87,10 @@ std::variant<rpc_request, rpc_refusal> read_request(json& j, std::string_view an
     rpc_request r;
     const auto id = j.find("id");
     r.wants_reply = id != j.end();
-    const bool usable = r.wants_reply && (id->is_string() || id->is_number() || id->is_null());
+    // A reply repeats it, whole.
+    const bool text =
+        r.wants_reply && id->is_string() && id->get_ref<const std::string&>().size() <= most_id_bytes;
+    const bool usable = text || (r.wants_reply && (id->is_number() || id->is_null()));
     if (usable)
         r.id = *id;
     if (const auto m = j.find("method"); !any_form.empty() && m != j.end() && *m == any_form) {
@@ -93,7 +98,8 @@ std::variant<rpc_request, rpc_refusal> read_request(json& j, std::string_view an
         return r;
     }
     if (r.wants_reply && !usable)
-        return invalid(nullptr, "its id is neither a text nor a number");
+        return invalid(nullptr, id->is_string() ? "its id is longer than 80 bytes"
+                                                : "its id is neither a text nor a number");
     if (const auto version = j.find("jsonrpc"); version == j.end() || *version != "2.0")
         return invalid(r.id, R"(its "jsonrpc" is not "2.0")");
     const auto method = j.find("method");
@@ -136,7 +142,7 @@ rpc_message parse_rpc(std::string_view text, const rpc_limits& l)
         std::string_view why = e.what();
         why.remove_prefix(std::min(why.find("] ") + 2, why.size()));
         std::string plain;
-        for (const char c : why)
+        for (const char c : cut_echo(why))
             plain += static_cast<unsigned char>(c) < 0x80U ? c : '?';
         return alone(
             {{code_parse_error, "bad-input", "message", plain, "one JSON value a line, in UTF-8"}, nullptr});
@@ -163,15 +169,47 @@ reply_json result_reply(const json& id, reply_json result)
     return {{"jsonrpc", "2.0"}, {"id", id}, {"result", std::move(result)}};
 }
 
+std::string cut_echo(std::string_view text)
+{
+    constexpr std::size_t most_echoed = 80; // characters
+    constexpr std::size_t most = 1000;
+    std::string out;
+    std::size_t run = 0; // characters since the last blank, or within quotes
+    char quote = '\0';
+    for (std::size_t i = 0; i < text.size() && out.size() < most; ++i) {
+        const char c = text[i];
+        const bool continues =
+            (static_cast<unsigned char>(c) & 0xc0U) == 0x80U; // within a character of UTF-8
+        if (c == quote || (quote == '\0' && c == ' '))
+            run = 0;
+        else if (!continues)
+            ++run;
+        if (quote == '\0' && run == 1 && (c == '"' || c == '\''))
+            quote = c, run = 0;
+        else if (c == quote)
+            quote = '\0';
+        if (run <= most_echoed)
+            out += c;
+        else if (run == most_echoed + 1 && !continues)
+            out += "...";
+    }
+    if (out.size() >= most)
+        out += "...";
+    return out;
+}
+
 std::string words_of(const rpc_fault& f)
 {
-    return f.hint.empty() ? fmt::format("{}: {}", f.what, f.why)
-                          : fmt::format("{}: {} ({})", f.what, f.why, f.hint);
+    const std::string what = cut_echo(f.what);
+    const std::string why = cut_echo(f.why);
+    return f.hint.empty() ? fmt::format("{}: {}", what, why)
+                          : fmt::format("{}: {} ({})", what, why, cut_echo(f.hint));
 }
 
 reply_json error_reply(const json& id, const rpc_fault& f)
 {
-    reply_json data{{"kind", f.kind}, {"what", f.what}, {"why", f.why}, {"hint", f.hint}};
+    reply_json data{
+        {"kind", f.kind}, {"what", cut_echo(f.what)}, {"why", cut_echo(f.why)}, {"hint", cut_echo(f.hint)}};
     return {{"jsonrpc", "2.0"},
             {"id", id},
             {"error", {{"code", f.code}, {"message", words_of(f)}, {"data", std::move(data)}}}};

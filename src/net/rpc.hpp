@@ -70,7 +70,9 @@ struct rpc_limits {
 rpc_message parse_rpc(std::string_view text, const rpc_limits& l);
 
 reply_json result_reply(const json& id, reply_json result);
-/// "what: why (hint)".
+/// Cuts what a message repeats of a client's text: words and quoted pieces at 80 characters, all at 1,000.
+std::string cut_echo(std::string_view text);
+/// "what: why (hint)", with echoes cut.
 std::string words_of(const rpc_fault& f);
 reply_json error_reply(const json& id, const rpc_fault& f);
 reply_json notification(std::string_view method, reply_json params);

@@ -2,7 +2,9 @@
 #include "net/web_connection.hpp"
 
 #include <chrono>
+#include <new>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include <boost/asio/post.hpp>
@@ -22,6 +24,17 @@ constexpr std::chrono::seconds to_hang_up{1};
 
 } // namespace
 
+// As line_connection::within_memory().
+template <typename F>
+void web_connection::session::within_memory(F f)
+{
+    try {
+        f();
+    } catch (const std::bad_alloc&) {
+        finish({websocket::close_code::policy_error, "there is not enough memory for it"});
+    }
+}
+
 void web_connection::session::read()
 {
     if (!reading || closed)
@@ -32,21 +45,55 @@ void web_connection::session::read()
                                 return;
                             if (e)
                                 return self->close(); // Beast has said why, where somebody is there
-                            self->received();
+                            self->within_memory([&] { self->received(); });
                         });
 }
 
 void web_connection::session::received()
 {
+    if (!unfinished.hold(buffer.capacity()))
+        return;
     if (!ws->is_message_done())
         return read();
-    const std::string text(static_cast<const char*>(buffer.data().data()), buffer.size());
+    constexpr std::size_t much = 64U << 10;
+    std::string text(static_cast<const char*>(buffer.data().data()), buffer.size());
     buffer.consume(buffer.size());
+    if (buffer.capacity() > much)
+        buffer.shrink_to_fit();
     if (!ws->got_text())
         return finish({websocket::close_code::unknown_data, "text is taken"});
-    if (!text.empty() && !calls.text(text))
+    if (text.size() > small_message && calls.large) {
+        if (unfinished.hold(buffer.capacity() + text.size()))
+            turns.join([self = shared_from_this(), text = std::move(text)]() mutable {
+                self->handle_large(std::move(text));
+            });
+        return;
+    }
+    handled(text.empty(), text.empty() || calls.text(text));
+}
+
+void web_connection::session::handle_large(std::string text)
+{
+    if (closed || finishing)
+        return turns.pass();
+    const auto done = [self = shared_from_this()](bool go_on) {
+        self->turns.pass();
+        if (!self->closed && !self->finishing && self->unfinished.hold(self->buffer.capacity()))
+            self->within_memory([&] { self->handled(false, go_on); });
+    };
+    try {
+        calls.large(std::move(text), done);
+    } catch (const std::bad_alloc&) {
+        turns.pass();
+        finish({websocket::close_code::policy_error, "there is not enough memory for it"});
+    }
+}
+
+void web_connection::session::handled(bool empty, bool go_on)
+{
+    if (!go_on)
         return finish({websocket::close_code::policy_error, "this is not taken"});
-    if (!met && !text.empty() && (!calls.met || calls.met())) {
+    if (!met && !empty && (!calls.met || calls.met())) {
         met = true;
         disarm();
         watch();
@@ -78,9 +125,9 @@ void web_connection::session::send(std::string text)
     if (closed || finishing || !accepted)
         return;
     const std::size_t n = text.size();
-    if (share.waiting() + n > limits.waiting_bytes)
-        share.give_up();
-    if (!share.add(n))
+    if (unread.held() + n > limits.waiting_bytes)
+        unread.give_up();
+    if (!unread.add(n))
         return;
     queue.push_back(std::move(text));
     if (!writing && ws && ws->is_open())
@@ -94,6 +141,15 @@ void web_connection::session::give_up()
     asio::post(socket.get_executor(), [self = shared_from_this()] { self->close(); });
 }
 
+void web_connection::session::give_up_crowded()
+{
+    reading = false;
+    asio::post(socket.get_executor(), [self = shared_from_this()] {
+        self->finish(
+            {websocket::close_code::try_again_later, "unfinished messages of all clients are too many"});
+    });
+}
+
 void web_connection::session::write()
 {
     writing = true;
@@ -105,7 +161,7 @@ void web_connection::session::write()
                             return;
                         if (e)
                             return self->close();
-                        self->share.take(self->queue.front().size());
+                        self->unread.take(self->queue.front().size());
                         self->queue.pop_front();
                         if (!self->queue.empty())
                             self->write();
@@ -194,7 +250,7 @@ std::optional<asio::ip::tcp::socket> web_socket(asio::io_context& io, line_conne
     return stream;
 }
 
-web_connection::web_connection(socket_type s, const line_limits& l, write_budget& all,
+web_connection::web_connection(socket_type s, const line_limits& l, shared_by_peers& all,
                                std::vector<std::string> allowed_hosts)
     : session_(std::make_shared<session>(std::move(s), l, all, std::move(allowed_hosts)))
 {
@@ -225,7 +281,7 @@ void web_connection::turn_out(const char* why)
 
 std::size_t web_connection::waiting() const noexcept
 {
-    return session_->share.waiting();
+    return session_->unread.held();
 }
 
 } // namespace tactor::net

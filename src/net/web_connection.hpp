@@ -44,9 +44,11 @@ public:
         std::function<void()> closed;
         /// Whether what came was the first message that is owed; none: any that is not empty is.
         std::function<bool()> met = {};
+        /// As line_connection::handlers::large.
+        std::function<void(std::string text, std::function<void(bool)> done)> large = {};
     };
 
-    web_connection(socket_type s, const line_limits& l, write_budget& all,
+    web_connection(socket_type s, const line_limits& l, shared_by_peers& all,
                    std::vector<std::string> allowed_hosts);
     ~web_connection();
     web_connection(const web_connection&) = delete;

@@ -28,10 +28,12 @@ std::string_view view(boost::string_view s)
 
 } // namespace
 
-web_connection::session::session(socket_type s, const line_limits& l, write_budget& budget,
+web_connection::session::session(socket_type s, const line_limits& l, shared_by_peers& all,
                                  std::vector<std::string> hosts)
     : limits(l),
-      share(budget, [this] { give_up(); }),
+      unread(all.unread, [this] { give_up(); }),
+      unfinished(all.unfinished, [this] { give_up_crowded(); }),
+      turns(all.turns),
       allowed(std::move(hosts)),
       local(local_address(s.native_handle())),
       socket(std::move(s)),

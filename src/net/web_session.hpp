@@ -23,7 +23,7 @@
 namespace tactor::net {
 
 struct web_connection::session : std::enable_shared_from_this<session> {
-    session(socket_type s, const line_limits& l, write_budget& budget, std::vector<std::string> hosts);
+    session(socket_type s, const line_limits& l, shared_by_peers& all, std::vector<std::string> hosts);
     ~session() = default;
     session(const session&) = delete;
     session& operator=(const session&) = delete;
@@ -36,9 +36,14 @@ struct web_connection::session : std::enable_shared_from_this<session> {
     // The WebSocket.
     void read();
     void received();
+    void handle_large(std::string text);
+    void handled(bool empty, bool go_on);
     void send(std::string text);
     void write();
     void give_up();
+    void give_up_crowded();
+    template <typename F>
+    void within_memory(F f);
     void finish(const boost::beast::websocket::close_reason& r);
     void hang_up_soon();
     void watch();
@@ -48,7 +53,9 @@ struct web_connection::session : std::enable_shared_from_this<session> {
     void close();
 
     line_limits limits;
-    write_budget::share share;
+    byte_budget::share unread;
+    byte_budget::share unfinished;
+    message_turns& turns;
     std::vector<std::string> allowed;
     std::string local;
     handlers calls;

@@ -20,6 +20,7 @@ struct service_limits {
     std::size_t max_unread_bytes = 4U << 20; ///< that wait for one client
     std::size_t max_all_unread_bytes = 64U
                                        << 20; ///< for all, and as many of requests that wait to be planned
+    std::size_t max_all_unfinished_bytes = 32U << 20; ///< of messages that have not come whole, of all
 };
 
 } // namespace tactor::server

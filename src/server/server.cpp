@@ -49,7 +49,7 @@ public:
         : io_(io),
           limits_(o.limits),
           allow_hosts_(std::move(w.allow_hosts)),
-          budget_(limits_.max_all_unread_bytes),
+          shared_(io, limits_.max_all_unread_bytes, limits_.max_all_unfinished_bytes),
           service_(io, std::move(o), std::move(s)),
           farewell_(io),
           watchdog_(io)
@@ -119,7 +119,7 @@ private:
         const auto c = std::make_shared<line_connection>(
             std::move(s),
             net::line_limits{limits_.max_message_bytes, limits_.max_message_s, limits_.max_unread_bytes},
-            budget_);
+            shared_);
         ++open_;
         if (!service_.has_place(kind)) {
             c->start(
@@ -147,7 +147,14 @@ private:
                       if (const auto self = weak.lock(); self && !why.empty())
                           self->send(why);
                   },
-                  [this, n] { closed(n); }, [this, n] { return service_.is_admitted(n); }});
+                  [this, n] { closed(n); }, [this, n] { return service_.is_admitted(n); },
+                  [this, n, weak](std::string text, const std::function<void(bool)>& done) {
+                      service_.receive_large(n, std::move(text), [weak, done](bool go_on) {
+                          if (const auto self = weak.lock(); self && !go_on)
+                              self->finish();
+                          done(go_on);
+                      });
+                  }});
     }
 
     std::string no_place(client_kind kind) const
@@ -174,7 +181,7 @@ private:
         const auto c = std::make_shared<net::web_connection>(
             *std::move(stream),
             net::line_limits{limits_.max_message_bytes, limits_.max_message_s, limits_.max_unread_bytes},
-            budget_, allow_hosts_);
+            shared_, allow_hosts_);
         ++open_;
         visitors_.insert(c);
         // Number of the client that it becomes.
@@ -195,7 +202,10 @@ private:
                       visitors_.erase(weak.lock());
                       closed(*n);
                   },
-                  [this, n] { return service_.is_admitted(*n); }});
+                  [this, n] { return service_.is_admitted(*n); },
+                  [this, n](std::string text, std::function<void(bool)> done) {
+                      service_.receive_large(*n, std::move(text), std::move(done));
+                  }});
     }
 
     net::web_reply page(std::string_view path, std::string_view host, std::string_view token)
@@ -238,7 +248,7 @@ private:
     asio::io_context& io_;
     service_limits limits_;
     std::vector<std::string> allow_hosts_;
-    net::write_budget budget_;
+    net::shared_by_peers shared_;
     service service_;
     std::optional<osc_endpoint> osc_;
     std::vector<std::unique_ptr<listener>> listeners_;

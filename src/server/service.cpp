@@ -2,7 +2,11 @@
 #include "server/service.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <new>
 #include <utility>
+
+#include <malloc.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,6 +17,23 @@ namespace tactor::server {
 
 using net::json;
 using net::reply_json;
+
+namespace {
+
+// Never throws: a message that is too large for the memory that there is is refused.
+net::rpc_message parsed(std::string_view text, const service_limits& l)
+{
+    try {
+        return net::parse_rpc(text, {.nesting = l.max_nesting, .any_form = "stop"});
+    } catch (const std::bad_alloc&) {
+        net::rpc_message m;
+        m.parts.emplace_back(net::rpc_refusal{
+            {net::code_limit, "limit", "message", "there is not enough memory for it", "make it smaller"}});
+        return m;
+    }
+}
+
+} // namespace
 
 void service::pending::give(std::size_t at, std::string reply, const std::vector<std::uint32_t>& strokes)
 {
@@ -58,6 +79,7 @@ void service::answer::fault(const net::rpc_fault& f) const
 
 service::service(boost::asio::io_context& io, service_options o, stream_options s)
     : io_(io),
+      quiet_(io),
       options_(std::move(o)),
       faces_(options_.plans.tactors),
       stream_(io, std::move(s),
@@ -70,7 +92,9 @@ service::service(boost::asio::io_context& io, service_options o, stream_options 
 service::~service()
 {
     ending_ = true;
-    planner_.join();
+    small_.thread.join();
+    large_.thread.join();
+    reader_.join();
 }
 
 std::size_t service::places(client_kind k) const noexcept
@@ -81,7 +105,13 @@ std::size_t service::places(client_kind k) const noexcept
 
 bool service::has_place(client_kind k) const
 {
-    return clients_.size() - gone() < places(k);
+    constexpr std::size_t osc_part = 4; // a quarter, beside the places of sockets
+    const bool datagram = k == client_kind::datagram;
+    const auto taken =
+        static_cast<std::size_t>(std::count_if(clients_.begin(), clients_.end(), [&](const auto& c) {
+            return !c.second->input_over && (c.second->kind == client_kind::datagram) == datagram;
+        }));
+    return taken < (datagram ? std::max<std::size_t>(1, options_.limits.max_clients / osc_part) : places(k));
 }
 
 // Over TCP nobody knows whether who sends no more still reads; they wait for what they are owed, and take no
@@ -133,11 +163,43 @@ bool service::admitted(client& c, const net::rpc_message& m)
 
 bool service::receive(client_number number, std::string_view text)
 {
+    net::rpc_message m = parsed(text, options_.limits);
+    return receive(number, m, text.size());
+}
+
+void service::receive_large(client_number number, std::string text, std::function<void(bool)> done)
+{
+    boost::asio::post(reader_, [this, number, text = std::move(text), done = std::move(done)]() mutable {
+        const std::size_t bytes = text.size();
+        auto m = std::make_shared<net::rpc_message>(parsed(text, options_.limits));
+        std::string().swap(text);
+        boost::asio::post(io_, [this, number, bytes, m = std::move(m), done = std::move(done)]() mutable {
+            const bool go_on = receive(number, *m, bytes);
+            boost::asio::post(reader_, [m = std::move(m)] {}); // which frees it
+            give_memory_back_when_quiet();
+            done(go_on);
+        });
+    });
+}
+
+// What large messages took in small parts stays in the heap otherwise. It keeps all others from the heap
+// meanwhile: not before nothing large came for a while.
+void service::give_memory_back_when_quiet()
+{
+    constexpr std::chrono::milliseconds quiet_for{500};
+    quiet_.expires_after(quiet_for);
+    quiet_.async_wait([this](const boost::system::error_code& e) {
+#ifdef __GLIBC__
+        if (!e)
+            boost::asio::post(reader_, [] { ::malloc_trim(0); });
+#endif
+    });
+}
+
+bool service::receive(client_number number, net::rpc_message& m, std::size_t bytes)
+{
     client* c = find(number);
-    if (c == nullptr)
-        return false;
-    net::rpc_message m = net::parse_rpc(text, {.nesting = options_.limits.max_nesting, .any_form = "stop"});
-    if (!admitted(*c, m))
+    if (c == nullptr || !admitted(*c, m))
         return false;
     const auto all = std::make_shared<pending>(*this, number);
     all->batch = m.batch;
@@ -148,7 +210,7 @@ bool service::receive(client_number number, std::string_view text)
             {r != nullptr ? r->id : std::get<net::rpc_refusal>(part).id, r == nullptr || r->wants_reply});
     }
     ++c->unanswered;
-    const std::size_t bytes = text.size() / m.parts.size();
+    bytes /= m.parts.size();
     for (std::size_t i = 0; i < m.parts.size(); ++i) {
         const answer to{all, i};
         c = find(number);
@@ -176,11 +238,11 @@ void service::handle(client& c, net::rpc_request& r, const answer& to, std::size
     if (m == "to")
         return this->to(c, r.params, to);
     if (m == "play" || m == "plan")
-        return plan_or_play(c, r.params, to, m == "play", bytes);
+        return plan_or_play(c, std::move(r.params), to, m == "play", bytes);
     if (m == "cancel")
         return cancel(c, r.params, to);
     if (m == "stop")
-        return stop(to);
+        return stop(c.number, to);
     if (m == "fire")
         return fire(r.params, to);
     if (m == "begin")

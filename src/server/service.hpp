@@ -83,6 +83,8 @@ public:
     client_number connect(std::shared_ptr<client_link> link, client_kind k);
     /// One message. False when the connection is to be closed unanswered.
     bool receive(client_number number, std::string_view text);
+    /// The same for a large message, which is read on another thread; `done` has the result, on this one.
+    void receive_large(client_number number, std::string text, std::function<void(bool)> done);
     /// The client sends no more: its live strokes end. True when nothing is left to tell it.
     bool input_ended(client_number number);
     /// Called when that has become so.
@@ -120,13 +122,24 @@ private:
 
     struct plan_job {
         answer to;
-        net::json params;
+        net::json params; ///< of play and plan; freed when it is planned
+        net::json start = "now";
         std::size_t bytes = 0;
         bool play = false;
         std::uint64_t stops = 0; ///< how often stop had been asked for when it came
     };
 
+    /// Requests that wait to be planned, and the thread that plans them: small ones have their own, so that
+    /// they pass large ones.
+    struct planner_lane {
+        std::map<client_number, std::deque<plan_job>> queued = {};
+        std::deque<client_number> turns = {}; ///< whose turn it is, of those that have some
+        std::optional<answer> planning = {};  ///< where the result of the one that is being planned goes
+        boost::asio::thread_pool thread{1};
+    };
+
     // service.cpp
+    bool receive(client_number number, net::rpc_message& m, std::size_t bytes);
     void handle(client& c, net::rpc_request& r, const answer& to, std::size_t bytes);
     bool admitted(client& c, const net::rpc_message& m);
     client* find(client_number c);
@@ -134,6 +147,7 @@ private:
     void send(client& c, const reply_json& message);
     void tell_stream(stream_state s, const std::string& reason);
     void check_told_all(client_number number);
+    void give_memory_back_when_quiet();
 
     // service_methods.cpp
     void hello(client& c, const net::json& params, const answer& to);
@@ -145,14 +159,15 @@ private:
     reply_json limits_json() const;
 
     // service_jobs.cpp
-    void plan_or_play(client& c, const net::json& params, const answer& to, bool play, std::size_t bytes);
+    void plan_or_play(client& c, net::json&& params, const answer& to, bool play, std::size_t bytes);
+    planner_lane& lane_for(std::size_t bytes) noexcept;
     void queue_job(client_number number, plan_job j);
-    void next_job();
+    void next_job(planner_lane& lane);
     void keep_jobs(client_number gone);
     void refuse_jobs();
-    void post_job(plan_job j);
-    void job_done(const plan_job& job, std::shared_ptr<planned> p, std::vector<score> scores,
-                  std::string text, std::optional<net::rpc_fault> fault);
+    void post_job(planner_lane& lane, plan_job j);
+    void job_done(planner_lane& lane, const plan_job& job, std::shared_ptr<planned> p,
+                  std::vector<score> scores, std::string text, std::optional<net::rpc_fault> fault);
     void submit_all(const plan_job& job, const std::shared_ptr<planned>& p, const std::vector<score>& scores);
 
     // service_strokes.cpp
@@ -161,7 +176,7 @@ private:
                                       const std::vector<score>& scores, bool stopped);
     void check_free_place(const client& c) const;
     void cancel(client& c, const net::json& params, const answer& to);
-    void stop(const answer& to);
+    void stop(client_number by, const answer& to);
     void fire(const net::json& params, const answer& to);
     void release(const std::vector<std::uint32_t>& numbers);
 
@@ -181,9 +196,12 @@ private:
     void finish(stroke_record& r, const stroke_report& how);
     void tell_stroke(stroke_record& r, std::string_view state, const stroke_report& how);
     void send_to_listeners(const stroke_record& r, const net::reply_json& message);
+    std::string reason(const stroke_record& r, const stroke_report& how) const;
+    const char* stopped_for(client_number owner) const;
     void note_busy();
 
     boost::asio::io_context& io_;
+    boost::asio::steady_timer quiet_; ///< since the last large message
     service_options options_;
     layout faces_;
     stream stream_;
@@ -193,16 +211,16 @@ private:
     std::map<std::pair<std::uint64_t, stroke_id>, std::uint32_t> by_player_;
     std::uint32_t last_stroke_ = 0;
     std::uint64_t stops_ = 0;
-    std::map<client_number, std::deque<plan_job>> queued_; ///< that wait to be planned
-    std::deque<client_number> turns_;                      ///< whose turn it is, of those that have some
-    std::optional<answer> planning_; ///< where the result of the one that is being planned goes
+    client_number stopped_by_ = 0; ///< who asked for the last stop
     std::size_t planning_bytes_ = 0;
     std::size_t jobs_ = 0;
     bool closing_ = false;
     std::atomic<bool> ending_{false}; ///< the planner looks at it between strokes
     std::function<void(client_number)> told_all_;
     std::function<void()> stopped_;
-    boost::asio::thread_pool planner_{1};
+    planner_lane small_;
+    planner_lane large_;
+    boost::asio::thread_pool reader_{1}; ///< parses large messages, and frees what is large
 };
 
 } // namespace tactor::server

@@ -80,6 +80,7 @@ void service::ended(std::uint64_t player, const stroke_report& report)
             stroke_report same = report;
             same.frames = 0;
             same.started_ns.reset();
+            f->second->ended_by = r.ended_by;
             finish(*f->second, same);
         }
     if (report.started_ns && r.state != "started" && report.frames != 0) {
@@ -103,12 +104,29 @@ void service::finish(stroke_record& r, const stroke_report& how)
     }
     r.state = "ended";
     stroke_report told = how;
-    if (closing_ && told.state == state_kind::cancelled && told.why.empty())
-        told.why = "the server ends";
+    told.why = reason(r, how);
     tell_stroke(r, to_string(told.state), told);
     if (r.released)
         strokes_.erase(r.number);
     check_told_all(owner);
+}
+
+std::string service::reason(const stroke_record& r, const stroke_report& how) const
+{
+    if (how.state == state_kind::cancelled)
+        return r.ended_by != nullptr ? r.ended_by : "stopped by the owner";
+    switch (how.reason) {
+    case reason_kind::xrun:
+    case reason_kind::suspended:
+    case reason_kind::lost:
+    case reason_kind::failed:
+        return "device: " + how.why;
+    case reason_kind::crowded:
+    case reason_kind::too_long:
+        return "limit: " + how.why;
+    default:
+        return how.why;
+    }
 }
 
 void service::tell_stroke(stroke_record& r, std::string_view state, const stroke_report& how)

@@ -45,7 +45,8 @@ struct service::stroke_record {
     stroke_id id = {};
     std::string state = "waiting"; ///< "armed", "started"
     std::optional<live_stroke> live = {};
-    bool released = false; ///< its number was told
+    bool released = false;          ///< its number was told
+    const char* ended_by = nullptr; ///< the reason, once somebody cancelled or stopped it
     std::vector<reply_json> held = {};
     std::optional<std::int64_t> asked_ns = {};
     std::optional<std::int64_t> started_ns = {};

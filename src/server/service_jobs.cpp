@@ -24,6 +24,14 @@ std::string on_one_line(std::string json_text)
     return json_text;
 }
 
+// Of the text or the list that says what to draw, about as it came.
+std::size_t size_of_source(const json& source)
+{
+    constexpr std::size_t point_bytes = 16;
+    const auto* text = source.get_ptr<const json::string_t*>();
+    return text != nullptr ? text->size() : source.size() * point_bytes;
+}
+
 net::rpc_fault server_ends()
 {
     return {net::code_no_stream, "not-available", "stream", "the server ends", ""};
@@ -31,10 +39,16 @@ net::rpc_fault server_ends()
 
 } // namespace
 
-void service::plan_or_play(client& c, const json& params, const answer& to, bool play, std::size_t bytes)
+service::planner_lane& service::lane_for(std::size_t bytes) noexcept
+{
+    constexpr std::size_t most_small = 16U << 10;
+    return bytes <= most_small ? small_ : large_;
+}
+
+void service::plan_or_play(client& c, json&& params, const answer& to, bool play, std::size_t bytes)
 {
     only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start"});
-    static_cast<void>(source_of(params));
+    bytes = std::max(bytes, size_of_source(params[source_of(params)]));
     static_cast<void>(read_start(member(params, "start"), options_.now_ns()));
     if (const json* o = member(params, "options"))
         static_cast<void>(with_options(options_.plans.owner, *o, options_for::planned));
@@ -48,67 +62,75 @@ void service::plan_or_play(client& c, const json& params, const answer& to, bool
     planning_bytes_ += bytes;
     ++jobs_;
     ++c.coming;
-    queue_job(c.number, {to, params, bytes, play, stops_});
+    const json* start = member(params, "start");
+    plan_job job{to, {}, start == nullptr ? json("now") : *start, bytes, play, stops_};
+    job.params = std::move(params);
+    queue_job(c.number, std::move(job));
     note_busy();
-    next_job();
+    next_job(lane_for(bytes));
 }
 
 void service::queue_job(client_number number, plan_job j)
 {
-    std::deque<plan_job>& own = queued_[number];
+    planner_lane& lane = lane_for(j.bytes);
+    std::deque<plan_job>& own = lane.queued[number];
     if (own.empty())
-        turns_.push_back(number);
+        lane.turns.push_back(number);
     own.push_back(std::move(j));
 }
 
 // One after the other, and one of each client in turn: who has many does not keep the others waiting.
-void service::next_job()
+void service::next_job(planner_lane& lane)
 {
-    if (planning_ || turns_.empty())
+    if (lane.planning || lane.turns.empty())
         return;
-    const client_number number = turns_.front();
-    turns_.pop_front();
-    const auto own = queued_.find(number);
+    const client_number number = lane.turns.front();
+    lane.turns.pop_front();
+    const auto own = lane.queued.find(number);
     plan_job job = std::move(own->second.front());
     own->second.pop_front();
     if (own->second.empty())
-        queued_.erase(own);
+        lane.queued.erase(own);
     else
-        turns_.push_back(number);
-    planning_ = job.to;
-    post_job(std::move(job));
+        lane.turns.push_back(number);
+    lane.planning = job.to;
+    post_job(lane, std::move(job));
 }
 
 // What a client asked for that has gone is played, whoever hears of it.
 void service::keep_jobs(client_number gone)
 {
-    auto own = queued_.extract(gone);
-    if (own.empty())
-        return;
-    std::erase(turns_, gone);
-    for (plan_job& j : own.mapped())
-        queue_job(nobody, std::move(j));
+    for (planner_lane* lane : {&small_, &large_}) {
+        auto own = lane->queued.extract(gone);
+        if (own.empty())
+            continue;
+        std::erase(lane->turns, gone);
+        for (plan_job& j : own.mapped())
+            queue_job(nobody, std::move(j));
+    }
 }
 
 // Where the server ends.
 void service::refuse_jobs()
 {
     ending_ = true;
-    turns_.clear();
-    for (const auto& [number, jobs] : std::exchange(queued_, {}))
-        for (const plan_job& j : jobs) {
-            planning_bytes_ -= j.bytes;
-            --jobs_;
-            j.to.fault(server_ends());
-        }
-    if (planning_)
-        planning_->fault(server_ends());
+    for (planner_lane* lane : {&small_, &large_}) {
+        lane->turns.clear();
+        for (const auto& [number, jobs] : std::exchange(lane->queued, {}))
+            for (const plan_job& j : jobs) {
+                planning_bytes_ -= j.bytes;
+                --jobs_;
+                j.to.fault(server_ends());
+            }
+        if (lane->planning)
+            lane->planning->fault(server_ends());
+    }
 }
 
-void service::post_job(plan_job j)
+void service::post_job(planner_lane& lane, plan_job j)
 {
     auto job = std::make_shared<plan_job>(std::move(j));
-    boost::asio::post(planner_, [this, job] {
+    boost::asio::post(lane.thread, [this, &lane, job] {
         std::shared_ptr<planned> p;
         std::vector<score> scores;
         std::string text;
@@ -131,19 +153,20 @@ void service::post_job(plan_job j)
         } catch (...) {
             fault = current_fault("params");
         }
-        boost::asio::post(io_, [this, job, p, scores = std::move(scores), text = std::move(text),
+        job->params = nullptr;
+        boost::asio::post(io_, [this, &lane, job, p, scores = std::move(scores), text = std::move(text),
                                 fault = std::move(fault)]() mutable {
-            job_done(*job, std::move(p), std::move(scores), std::move(text), std::move(fault));
+            job_done(lane, *job, std::move(p), std::move(scores), std::move(text), std::move(fault));
         });
     });
 }
 
-void service::job_done(const plan_job& job, std::shared_ptr<planned> p, std::vector<score> scores,
-                       std::string text, std::optional<net::rpc_fault> fault)
+void service::job_done(planner_lane& lane, const plan_job& job, std::shared_ptr<planned> p,
+                       std::vector<score> scores, std::string text, std::optional<net::rpc_fault> fault)
 {
     planning_bytes_ -= job.bytes;
     --jobs_;
-    planning_.reset();
+    lane.planning.reset();
     const client_number number = job.to.all->to;
     if (closing_ && !fault)
         fault = server_ends();
@@ -160,11 +183,12 @@ void service::job_done(const plan_job& job, std::shared_ptr<planned> p, std::vec
             if (client* then = find(number))
                 --then->coming;
             submit_all(job, p, scores);
+            boost::asio::post(reader_, [p] {}); // which frees it
             note_busy();
         });
     }
     note_busy();
-    next_job();
+    next_job(lane);
 }
 
 void service::submit_all(const plan_job& job, const std::shared_ptr<planned>& p,
@@ -179,13 +203,14 @@ void service::submit_all(const plan_job& job, const std::shared_ptr<planned>& p,
                           fmt::format("{} strokes are more than the {} that a client may have at once",
                                       scores.size(), options_.limits.max_strokes),
                           "send fewer");
-        const json* start = member(job.params, "start");
-        const auto numbers =
-            submit(number, start == nullptr ? json("now") : *start, *p, scores, job.stops != stops_);
+        const auto numbers = submit(number, job.start, *p, scores, job.stops != stops_);
+        auto warnings = p->warnings();
+        for (std::string& w : warnings)
+            w = net::cut_echo(w);
         job.to.result({{"stroke", numbers.front()},
                        {"strokes", numbers},
                        {"total_s", p->total_s()},
-                       {"warnings", p->warnings()}},
+                       {"warnings", warnings}},
                       numbers);
     } catch (...) {
         job.to.fault(current_fault("stream"));

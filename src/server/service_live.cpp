@@ -70,7 +70,8 @@ void service::begin_now(client& c, const live_options& o, const answer& to, bool
     if (stopped) {
         // While the stream was being started: as with what was being planned then.
         stroke_record& r = add_record(c.number);
-        finish(r, {.state = state_kind::cancelled, .why = "stopped"});
+        r.ended_by = stopped_for(c.number);
+        finish(r, {.state = state_kind::cancelled});
         to.result({{"stroke", r.number}}, {r.number});
         return;
     }

@@ -87,7 +87,8 @@ reply_json service::limits_json() const
             {"max_nesting", l.max_nesting},
             {"max_message_s", l.max_message_s},
             {"max_unread_bytes", l.max_unread_bytes},
-            {"max_all_unread_bytes", l.max_all_unread_bytes}};
+            {"max_all_unread_bytes", l.max_all_unread_bytes},
+            {"max_all_unfinished_bytes", l.max_all_unfinished_bytes}};
 }
 
 void service::status(const json& params, const answer& to)

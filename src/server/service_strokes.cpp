@@ -15,6 +15,8 @@ namespace {
 using net::json;
 using net::reply_json;
 
+constexpr const char* cancelled_by_client = "cancelled by its client";
+
 } // namespace
 
 void service::check_free_place(const client& c) const
@@ -53,8 +55,10 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
         numbers.push_back(r.number);
         records.push_back(&r);
         r.player = stream_.number();
-        if (stopped)
+        if (stopped) {
+            r.ended_by = stopped_for(owner);
             continue;
+        }
         if (wish.armed && i != first) {
             r.music = scores[i];
             r.state = "armed";
@@ -84,7 +88,7 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
     const auto end = out->ended();
     for (std::size_t i = 0; i < records.size(); ++i)
         if (records[i]->id == stroke_id{} && !records[i]->music)
-            finish(*records[i], stopped ? stroke_report{.state = state_kind::cancelled, .why = "stopped"}
+            finish(*records[i], stopped ? stroke_report{.state = state_kind::cancelled}
                                         : stroke_report{.state = state_kind::interrupted,
                                                         .reason = end ? end->reason : reason_kind::failed,
                                                         .why = end ? end->why : refused[i]});
@@ -115,6 +119,12 @@ void service::drive(client& c, const json& params, const answer& to)
     });
 }
 
+// The reason of strokes that the last stop ended.
+const char* service::stopped_for(client_number owner) const
+{
+    return owner == stopped_by_ ? cancelled_by_client : "stopped by another client";
+}
+
 void service::cancel(client& c, const json& params, const answer& to)
 {
     only(params, {"stroke"});
@@ -122,6 +132,8 @@ void service::cancel(client& c, const json& params, const answer& to)
     if (!c.strokes.contains(n))
         no_such_stroke(n);
     stroke_record& r = *strokes_.at(n);
+    if (r.ended_by == nullptr)
+        r.ended_by = cancelled_by_client;
     to.result(reply_json::object());
     if (r.music) {
         // It waits for another to begin.
@@ -132,9 +144,10 @@ void service::cancel(client& c, const json& params, const answer& to)
         p->cancel(r.id);
 }
 
-void service::stop(const answer& to)
+void service::stop(client_number by, const answer& to)
 {
     ++stops_;
+    stopped_by_ = by;
     player* p = stream_.current();
     std::vector<std::uint32_t> all;
     for (const auto& [number, r] : strokes_)
@@ -144,8 +157,10 @@ void service::stop(const answer& to)
         if (found == strokes_.end())
             continue;
         stroke_record& r = *found->second;
+        if (r.ended_by == nullptr)
+            r.ended_by = stopped_for(r.owner);
         if (r.music)
-            finish(r, {.state = state_kind::cancelled, .why = "stopped"});
+            finish(r, {.state = state_kind::cancelled});
         else if (p != nullptr && r.player == stream_.number())
             p->cancel(r.id);
     }

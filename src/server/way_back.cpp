@@ -22,6 +22,13 @@ std::string why_given_up(net::line_fault f, const service_limits& l, bool admitt
         return refusal("max_message_bytes",
                        fmt::format("a message of more than {} bytes", l.max_message_bytes),
                        "send smaller ones");
+    if (f == net::line_fault::crowded)
+        return refusal("max_all_unfinished_bytes",
+                       fmt::format("unfinished messages of all clients take more than {} bytes",
+                                   l.max_all_unfinished_bytes),
+                       "try again later");
+    if (f == net::line_fault::memory)
+        return refusal("message", "there is not enough memory for it", "send smaller ones");
     if (f == net::line_fault::too_slow && !admitted)
         return refusal("max_message_s", fmt::format("no hello with the token in {} s", l.max_message_s),
                        "begin with it");

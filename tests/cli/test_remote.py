@@ -212,7 +212,7 @@ class Remote(ToolTest):
         p.stdin.write("10 10\n")
         p.stdin.flush()
         self.assertEqual(p.wait(PATIENCE_S), 1)
-        self.assertRegex(p.stderr.read(), "tactor: live: interrupted after .* s: it has lasted as long as it may\n")
+        self.assertRegex(p.stderr.read(), "tactor: live: interrupted after .* s: limit: it has lasted as long as it may\n")
 
     def test_lines_move_a_live_stroke_here(self):
         r = self.ok("play", "--live", "-", "-D", "null", stdin="10 10\n20 20 0.5\n30, 30\n")

@@ -41,7 +41,7 @@ class Limits(ServeTest):
         n = c.ok("begin", timeout_s=3600)["stroke"]
         c.ok("to", stroke=n, x_mm=1, y_mm=1)
         end = c.end_of(n)
-        self.assertEqual((end["state"], end["reason"]), ("interrupted", "it has lasted as long as it may"))
+        self.assertEqual((end["state"], end["reason"]), ("interrupted", "limit: it has lasted as long as it may"))
         self.assertGreaterEqual(end["frames"], 4800)
 
     def test_live_strokes_that_are_smoothed(self):
@@ -161,6 +161,53 @@ class Limits(ServeTest):
                 c.close()
         self.check_error(c.next()["error"], -32001, "max_message_s")
         self.assertIsNone(c.next())
+
+    def test_unfinished_messages_of_all_together(self):
+        s = self.serve(config="[serve]\nmax_all_unfinished_bytes = 600000\n")
+        most, other = s.client(), s.client()
+        most.raw(b"x" * 400_000)
+        # What has come of it is not to be seen: it is given up with the second message, or that waits.
+        other.raw(b"x" * 300_000)
+        self.check_error(most.next()["error"], -32001, "max_all_unfinished_bytes")
+        self.assertIsNone(most.next())
+        other.raw(b"\n")
+        self.check_error(other.next()["error"], -32700)
+        self.assertEqual(other.ok("hello")["protocol"], "tactor/1")
+
+    def test_many_that_send_much_in_little_memory(self):
+        s = self.serve()
+        resource.prlimit(s.process.pid, resource.RLIMIT_AS, (256 << 20, 256 << 20))
+        bystander = s.client()
+        mine = bystander.ok("play", **LONG)["stroke"]
+        for _ in range(2):
+            many = [s.client() for _ in range(110)]
+            for c in many:
+                c.socket.settimeout(0.01)
+                with contextlib.suppress(OSError):
+                    c.raw(b"x" * (1 << 20))
+            for c in many:
+                c.close()
+        self.assertEqual(bystander.ok("stop"), {})
+        self.assertEqual(bystander.end_of(mine)["reason"], "cancelled by its client")
+        self.assertEqual(bystander.end_of(bystander.ok("play", **SHORT)["stroke"])["state"], "finished")
+        self.assertEqual(s.terminate()[0], 0)
+
+    def test_an_answer_repeats_little(self):
+        c = self.serve().client()
+        much = "x" * 1_000_000
+        for raw in (much, '"' + much, json.dumps({"jsonrpc": "2.0", "id": 1, "method": much}),
+                    json.dumps({"jsonrpc": "2.0", "id": 1, "method": "status", "params": {much: 1}}),
+                    json.dumps({"jsonrpc": "2.0", "id": 1, "method": "play", "params": {"stroke": much}}),
+                    json.dumps({"jsonrpc": "2.0", "id": 1, "method": "play", "params": {"path": much}}),
+                    json.dumps({"jsonrpc": "2.0", "id": 1, "method": "play", "params": {"toml": f"{much} = 1"}}),
+                    json.dumps({"jsonrpc": "2.0", "id": 1, "method": "play", "params": {"csv": f"{much},1"}}),
+                    json.dumps({"jsonrpc": "2.0", "id": 1, "method": "play", "params": {"path": "M 0 0 L 9 9", "options": {"phantom": much}}}),
+                    json.dumps({"jsonrpc": "2.0", "id": 1, "method": "subscribe", "params": {"events": [much]}}),
+                    json.dumps({"jsonrpc": "2.0", "id": much, "method": "status"})):
+            c.raw(raw.encode() + b"\n")
+            said = json.dumps(c.reply()["error"])
+            self.assertLess(len(said), 3000)
+            self.assertNotIn("x" * 81, said)
 
     def test_a_token_that_does_not_come(self):
         token = self.write("token", "secret\n")

@@ -36,6 +36,7 @@ max_nesting = 10
 max_message_s = 1
 max_unread_bytes = 3000
 max_all_unread_bytes = 4000
+max_all_unfinished_bytes = 70000
 )",
                                   "t");
     REQUIRE(all.serve);
@@ -60,6 +61,7 @@ max_all_unread_bytes = 4000
     CHECK(s.max_message_s == 1.0);
     CHECK(s.max_unread_bytes == 3000U);
     CHECK(s.max_all_unread_bytes == 4000U);
+    CHECK(s.max_all_unfinished_bytes == 70000U);
     CHECK_FALSE(parse_setup("", "t").serve);
     CHECK_FALSE(parse_setup("[serve]\n", "t").serve->tcp);
 }

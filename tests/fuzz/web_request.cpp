@@ -46,9 +46,9 @@ void check_connection(std::string_view bytes, bool open)
     {
         boost::asio::io_context io(1);
         boost::asio::ip::tcp::socket s(io, boost::asio::ip::tcp::v4(), ends[0]);
-        net::write_budget budget;
+        net::shared_by_peers shared(io);
         const net::line_limits limits{.message_bytes = 1024};
-        const auto c = std::make_shared<net::web_connection>(std::move(s), limits, budget,
+        const auto c = std::make_shared<net::web_connection>(std::move(s), limits, shared,
                                                              std::vector<std::string>{"h"});
         c->start({[](std::string_view, std::string_view host, std::string_view) {
                       HOLDS(host == "h" || host == "H" || host.starts_with("h:") || host.starts_with("H:") ||

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <functional>
 #include <memory>
+#include <new>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -20,9 +21,12 @@ using namespace tactor::net;
 namespace {
 
 struct machine {
-    explicit machine(std::size_t most = 64U << 20) : all(most) {}
+    explicit machine(std::size_t most_unread = 64U << 20, std::size_t most_unfinished = 32U << 20)
+        : all(io, most_unread, most_unfinished)
+    {
+    }
     boost::asio::io_context io;
-    write_budget all;
+    shared_by_peers all;
 };
 
 /// A connection and its peer, a plain descriptor.
@@ -37,14 +41,17 @@ struct pair {
         line_connection::socket_type s(io);
         s.assign(boost::asio::generic::stream_protocol(AF_UNIX, 0), fds[0]);
         end = std::make_shared<line_connection>(std::move(s), l, all);
-        end->start(
-            {[this](std::string_view t) {
-                 lines.emplace_back(t);
-                 return true;
-             },
-             [this] { input_over = true; }, [this](line_fault f) { faults.push_back(f); },
-             [this] { closed = true; },
-             is_first ? [this, is_first] { return is_first(lines.back()); } : std::function<bool()>()});
+        end->start({[this](std::string_view t) {
+                        lines.emplace_back(t);
+                        return true;
+                    },
+                    [this] { input_over = true; }, [this](line_fault f) { faults.push_back(f); },
+                    [this] { closed = true; },
+                    is_first ? [this, is_first] { return is_first(lines.back()); } : std::function<bool()>(),
+                    [this](std::string t, std::function<void(bool)> done) {
+                        lines.push_back(std::move(t));
+                        large_done = std::move(done);
+                    }});
     }
     ~pair()
     {
@@ -65,11 +72,12 @@ struct pair {
 
     std::shared_ptr<machine> on;
     boost::asio::io_context& io;
-    write_budget& all;
+    shared_by_peers& all;
     int peer = -1;
     std::shared_ptr<line_connection> end;
     std::vector<std::string> lines;
     std::vector<line_fault> faults;
+    std::function<void(bool)> large_done; ///< of the last large line
     bool input_over = false;
     bool closed = false;
 };
@@ -157,7 +165,7 @@ TEST_CASE("who does not read is dropped, and what waited is given back")
     p.io.poll();
     p.end.reset();
     p.io.poll();
-    CHECK(p.all.waiting() == 0);
+    CHECK(p.all.unread.held() == 0);
 }
 
 TEST_CASE("an empty line is no first message, and after that no message that is late")
@@ -184,28 +192,28 @@ TEST_CASE("the first message may be owed until one is the right one")
 
 TEST_CASE("where all together have too much waiting, it ends for who has most")
 {
-    write_budget all(10'000);
+    byte_budget all(10'000);
     std::vector<int> given_up;
     const auto share = [&](int i) { return [&, i] { given_up.push_back(i); }; };
-    write_budget::share innocent(all, share(0));
-    write_budget::share hog(all, share(1));
+    byte_budget::share innocent(all, share(0));
+    byte_budget::share hog(all, share(1));
     {
-        write_budget::share gone(all, share(2));
+        byte_budget::share gone(all, share(2));
         CHECK(gone.add(9'000));
     }
-    CHECK(all.waiting() == 0);
+    CHECK(all.held() == 0);
     CHECK(innocent.add(1'000));
     CHECK(hog.add(9'000));
     CHECK(innocent.add(1'000));
     CHECK(given_up == std::vector<int>{1});
-    CHECK(all.waiting() == 2'000);
+    CHECK(all.held() == 2'000);
     CHECK_FALSE(hog.add(1));
     hog.take(9'000); // what was on its way when it was given up
-    CHECK(all.waiting() == 2'000);
+    CHECK(all.held() == 2'000);
     innocent.take(2'000);
     CHECK_FALSE(innocent.add(10'001)); // more than there is
     CHECK(given_up == std::vector<int>{1, 0});
-    CHECK(all.waiting() == 0);
+    CHECK(all.held() == 0);
 }
 
 TEST_CASE("a peer that is sent to is not given up for another that does not read")
@@ -224,6 +232,123 @@ TEST_CASE("a peer that is sent to is not given up for another that does not read
     char bytes[100];
     REQUIRE(::read(reads.peer, bytes, sizeof bytes) == sizeof bytes);
     CHECK(std::string_view(bytes, 6) == "heard.");
+}
+
+TEST_CASE("each peer has one line a turn")
+{
+    const auto both = std::make_shared<machine>();
+    pair many({}, both);
+    pair one({}, both);
+    std::string lines;
+    for (int i = 0; i < 1000; ++i)
+        lines += "line\n";
+    many.write(lines);
+    one.write("stop\n");
+    one.until([&] { return one.lines.size() == 1; });
+    CHECK(many.lines.size() < 10);
+    many.until([&] { return many.lines.size() == 1000; });
+}
+
+TEST_CASE("a long line comes whole, wherever its blocks end")
+{
+    for (const std::size_t size : {100'000U, 114'688U, 131'070U, 131'072U, 131'073U, 262'144U, 500'000U}) {
+        CAPTURE(size);
+        std::string text;
+        for (std::size_t i = 0; i < size; ++i)
+            text += static_cast<char>('a' + i % 23);
+        for (const char* end : {"\n", "\r\n", ""}) {
+            pair p;
+            const std::string all = text + end;
+            for (std::size_t sent = 0; sent < all.size();) {
+                const ssize_t n = ::write(p.peer, all.data() + sent, all.size() - sent);
+                sent += n > 0 ? static_cast<std::size_t>(n) : 0;
+                p.io.poll();
+            }
+            if (*end == '\0')
+                ::shutdown(p.peer, SHUT_WR);
+            p.until([&] { return p.lines.size() == 1; });
+            CHECK(p.lines.front() == text);
+            p.large_done(true);
+            if (*end != '\0')
+                p.write("next\n");
+            if (*end != '\0')
+                p.until([&] { return p.lines.size() == 2; });
+            p.io.poll();
+            CHECK(p.all.unfinished.held() < 1000);
+        }
+    }
+}
+
+TEST_CASE("large lines are read one at a time, and small ones of others pass them")
+{
+    const auto all = std::make_shared<machine>();
+    pair first({}, all);
+    pair second({}, all);
+    pair small({}, all);
+    const std::string large(small_message + 1, 'x');
+    first.write(large + "\nnext\n");
+    second.write(large + "\n");
+    first.until([&] { return first.lines.size() + second.lines.size() == 1; });
+    small.write("stop\n");
+    small.until([&] { return small.lines.size() == 1; });
+    all->io.poll();
+    CHECK(first.lines.size() + second.lines.size() == 1);
+    pair& earlier = first.lines.empty() ? second : first;
+    pair& later = first.lines.empty() ? first : second;
+    ::close(std::exchange(later.peer, -1)); // it waits all the same
+    earlier.large_done(true);
+    later.until([&] { return later.lines.size() == 1; });
+    CHECK(later.lines.front() == large);
+    CHECK_FALSE(later.closed);
+    later.large_done(true);
+    later.until([&] { return later.closed; });
+    first.until([&] { return first.closed || first.lines.size() == 2; });
+    CHECK(all->all.unfinished.held() < 4 * small_message);
+}
+
+TEST_CASE("where all together have too much unfinished, it ends for who has most")
+{
+    const auto both = std::make_shared<machine>(64U << 20, 45'000);
+    pair large({}, both);
+    pair small({}, both);
+    large.write(std::string(30'000, 'x'));
+    both->io.poll();
+    small.write(std::string(15'000, 'x'));
+    both->io.poll();
+    large.until([&] { return large.closed; });
+    CHECK(large.faults == std::vector<line_fault>{line_fault::crowded});
+    CHECK(both->all.unfinished.held() < 45'000);
+    small.write("\n");
+    small.until([&] { return small.lines.size() == 1; });
+    small.large_done(true);
+    CHECK(small.faults.empty());
+}
+
+TEST_CASE("what one peer sends may not fit into memory: only that one goes")
+{
+    const auto both = std::make_shared<machine>();
+    pair other({}, both);
+    // The handler fails as an allocation does.
+    int fds[2] = {-1, -1};
+    REQUIRE(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, fds) == 0);
+    line_connection::socket_type s(both->io);
+    s.assign(boost::asio::generic::stream_protocol(AF_UNIX, 0), fds[0]);
+    const auto end = std::make_shared<line_connection>(std::move(s), line_limits{}, both->all);
+    std::vector<line_fault> faults;
+    end->start({[](std::string_view) -> bool { throw std::bad_alloc(); }, [] {},
+                [&](line_fault f) {
+                    faults.push_back(f);
+                    end->send("why");
+                },
+                [] {}});
+    REQUIRE(::write(fds[1], "x\n", 2) == 2);
+    other.write("one\n");
+    other.until([&] { return other.lines.size() == 1 && !faults.empty(); });
+    both->io.poll();
+    CHECK(faults == std::vector<line_fault>{line_fault::memory});
+    char bytes[10];
+    CHECK(::read(fds[1], bytes, sizeof bytes) == 4);
+    ::close(fds[1]);
 }
 
 } // namespace line_connection_test

@@ -117,6 +117,34 @@ TEST_CASE("nesting is counted outside of texts, and refused before anything is b
     CHECK(code_of("[[[]]]") == code_invalid_request);
 }
 
+TEST_CASE("what an error repeats of a client's text is cut at 80 characters")
+{
+    const std::string x(200, 'x');
+    const std::string x80 = x.substr(0, 80) + "...";
+    CHECK(cut_echo("there is no \"" + x + "\", sorry") == "there is no \"" + x80 + "\", sorry");
+    CHECK(cut_echo("last read: '" + x + "'") == "last read: '" + x80 + "'");
+    CHECK(cut_echo(x + " " + x) == x80 + " " + x80);
+    std::string blanks;
+    std::string umlauts;
+    for (int i = 0; i < 1000; ++i)
+        blanks += "a ", umlauts += "\xc3\xa4";
+    CHECK(cut_echo('"' + blanks + '"') == '"' + blanks.substr(0, 80) + "...\"");
+    CHECK(cut_echo(umlauts) == umlauts.substr(0, 160) + "...");
+    CHECK(cut_echo(blanks) == blanks.substr(0, 1000) + "...");
+    const std::string own =
+        "one of algorithm, phantom, duration, speed, soa, burst, slope, intercept, timing, outside, \"snap\"";
+    CHECK(cut_echo(own) == own);
+    const rpc_fault f{code_bad_params, "bad-input", x, "no '" + x + "'", "not \"" + x + '"'};
+    CHECK(text_of(error_reply(7, f)).size() < 1000);
+    CHECK(words_of(f) == x80 + ": no '" + x80 + "' (not \"" + x80 + "\")");
+    CHECK(code_of(R"({"jsonrpc":"2.0","method":"m","id":")" + x + "\"}") == code_invalid_request);
+    CHECK(code_of(R"({"jsonrpc":"2.0","method":"m","id":")" + x.substr(0, 80) + "\"}") == 0);
+    CHECK(text_of(
+              error_reply(nullptr,
+                          std::get<rpc_refusal>(parse_rpc(std::string(1U << 20, 'x'), {}).parts.front()).why))
+              .size() < 1000);
+}
+
 TEST_CASE("errors say kind, what, why and hint")
 {
     const reply_json e = error_reply(7, {code_bad_params, "bad-input", "options.soa", "too long", "shorter"});

@@ -157,7 +157,7 @@ class DrawingPage(BrowserTest, ToolTest):
         p.value("play({path: 'M 0 0 L 40 40'}).then(() => 1)")
         self.next_stroke(watcher, "started")
         s.client().ok("stop")
-        self.says(p, "somebody else stopped")
+        self.says(p, "stopped by another client")
 
     def test_files_and_their_errors(self):
         p, watcher = self.ready(self.serve())

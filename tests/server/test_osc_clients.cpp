@@ -397,8 +397,8 @@ TEST_CASE("what one sender may keep waiting has an end")
 TEST_CASE("places are for those of whom something goes on")
 {
     osc_rig rig([](auto& o, auto&) {
-        o.limits.max_clients = 4;
-        o.limits.kept_clients = 1;
+        o.limits.max_clients = 12; // a quarter of them for senders of OSC
+        o.limits.kept_clients = 0;
     });
     ready(rig);
     for (std::uint16_t port = 1; port <= 50; ++port) {
@@ -412,6 +412,13 @@ TEST_CASE("places are for those of whom something goes on")
         rig.say(osc_rig::at(port), "/tactor/begin", endless(1));
     rig.say(me, "/tactor/begin", endless(1));
     CHECK(has(rig.next(me), "/tactor/error /tactor/begin max_clients: "));
+    // Those of sockets are not among them, and the senders' not among those of sockets.
+    std::vector<service_rig::connected> sockets;
+    for (int i = 0; i < 12; ++i) {
+        REQUIRE(rig.all->has_place(server::client_kind::network));
+        sockets.push_back(rig.client(server::client_kind::network));
+    }
+    CHECK_FALSE(rig.all->has_place(server::client_kind::network));
     rig.say(me, "/tactor/stop"); // needs none
     for (std::uint16_t port = 1; port <= 3; ++port)
         CHECK(rig.next(osc_rig::at(port)) == "/tactor/stroke 1 cancelled");

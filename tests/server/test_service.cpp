@@ -113,6 +113,90 @@ TEST_CASE("other people's strokes are not touched, but stop is everybody's")
     CHECK(rig.ok(b, "fire")["count"] == 0);
 }
 
+TEST_CASE("the reason of an end says who ended it")
+{
+    service_rig rig;
+    rig.plug();
+    rig.start();
+    const auto a = rig.client();
+    const auto b = rig.client();
+    const json armed = with(stroke, "start", "armed");
+    const json several{{"toml", "[[stroke]]\npath = 'M 0 0 L 40 0'\nduration_s = 1\n[[stroke]]\npath = 'M 0 "
+                                "0 L 0 40'\nduration_s = 1\n"},
+                       {"start", "armed"}};
+    const auto reason = [&](const json& n) { return rig.end_of(a, n)["reason"]; };
+    const json own = rig.ok(a, "play", armed)["stroke"];
+    rig.ok(a, "cancel", {{"stroke", own}});
+    CHECK(reason(own) == "cancelled by its client");
+    const json file = rig.ok(a, "play", several)["strokes"];
+    rig.ok(a, "cancel", {{"stroke", file[0]}});
+    CHECK(reason(file[0]) == "cancelled by its client");
+    CHECK(reason(file[1]) == "cancelled by its client"); // which was to follow
+    const json mine = rig.ok(a, "play", several)["strokes"];
+    const json live = rig.ok(a, "begin", {{"timeout_s", 86400}})["stroke"];
+    rig.ok(a, "stop");
+    for (const json& n : {mine[0], mine[1], live})
+        CHECK(reason(n) == "cancelled by its client");
+    const json theirs = rig.ok(a, "play", several)["strokes"];
+    const json lively = rig.ok(a, "begin", {{"timeout_s", 86400}})["stroke"];
+    rig.ok(b, "stop");
+    rig.ok(a, "stop"); // too late to be the reason
+    for (const json& n : {theirs[0], theirs[1], lively})
+        CHECK(reason(n) == "stopped by another client");
+    const json ends = rig.ok(a, "play", stroke)["stroke"];
+    CHECK(reason(ends) == "");
+    const json starved = rig.ok(a, "begin", {{"timeout_s", 0.001}})["stroke"];
+    CHECK(reason(starved) == "no more points came");
+    const json lost = rig.ok(a, "begin", {{"timeout_s", 86400}})["stroke"];
+    rig.ok(a, "to", {{"stroke", lost}, {"x_mm", 20}, {"y_mm", 20}});
+    rig.until([&] { return !a.box->of_stroke(lost).empty(); });
+    rig.unplug();
+    CHECK(reason(lost) == "device: the device is gone");
+    rig.plug();
+    rig.until([&] { return rig.all->output().state() == server::stream_state::running; });
+    const json last = rig.ok(a, "play", armed)["stroke"];
+    rig.close();
+    CHECK(reason(last) == "stopped by the owner");
+}
+
+TEST_CASE("a large message is read on another thread, and answered as a small one")
+{
+    service_rig rig;
+    rig.plug();
+    rig.start();
+    const auto c = rig.client();
+    json points = json::array();
+    for (int i = 0; i < 1000; ++i)
+        points.push_back({i * 1e-4, 20, 20});
+    std::vector<bool> done;
+    const auto large = [&](const std::string& text) {
+        rig.all->receive_large(c.number, text, [&](bool go_on) { done.push_back(go_on); });
+        const std::size_t before = done.size();
+        rig.until([&] { return done.size() != before; });
+    };
+    large(json{{"jsonrpc", "2.0"},
+               {"id", 900},
+               {"method", "play"},
+               {"params", {{"points", points}, {"start", "armed"}}}}
+              .dump());
+    rig.until([&] { return c.box->reply(900).has_value(); });
+    const json n = (*c.box->reply(900))["result"]["stroke"];
+    CHECK(rig.ok(c, "fire")["count"] == 1);
+    CHECK(rig.end_of(c, n)["state"] == "finished");
+    const std::string noise(10'000, 'x');
+    large(noise);
+    CHECK(c.box->all.back()["error"]["code"] == -32700);
+    CHECK(c.box->all.back().dump().size() < 1000); // what it repeats is cut
+    large(json{{"jsonrpc", "2.0"}, {"id", 901}, {"method", noise}, {"params", {{noise, noise}}}}.dump());
+    CHECK((*c.box->reply(901))["error"]["code"] == -32601);
+    CHECK(c.box->all.back().dump().size() < 1500);
+    CHECK(done == std::vector{true, true, true});
+    const auto stranger = rig.client(server::client_kind::network);
+    rig.all->receive_large(stranger.number, noise, [&](bool go_on) { done.push_back(go_on); });
+    rig.until([&] { return done.size() == 4; });
+    CHECK_FALSE(done.back()); // no hello
+}
+
 TEST_CASE("one tactor alone has a start, too")
 {
     service_rig rig;
@@ -218,7 +302,7 @@ TEST_CASE("max_stroke_s holds for live strokes, too, however many points come")
     rig.send(c, point);
     const json end = rig.end_of(c, n);
     CHECK(end["state"] == "interrupted");
-    CHECK(end["reason"] == "it has lasted as long as it may");
+    CHECK(end["reason"] == "limit: it has lasted as long as it may");
     CHECK(end["frames"] >= 9600);
     CHECK(end["frames"] <= 9600 + 2 * 480);
     CHECK(rig.ok(c, "status")["strokes"].empty());

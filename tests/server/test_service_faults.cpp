@@ -102,7 +102,7 @@ TEST_CASE("at the end each number has had exactly one end, whoever is still ther
         int ends = 0;
         for (const json& m : c.box->of_stroke(n)) {
             ends += m["state"] != "started" ? 1 : 0;
-            CHECK((m["state"] != "cancelled" || m["reason"] == "the server ends"));
+            CHECK((m["state"] != "cancelled" || m["reason"] == "stopped by the owner"));
         }
         CHECK(ends == 1);
     }
@@ -190,7 +190,7 @@ TEST_CASE("stop reaches what waits for an idle stream to start")
         const json n = (*c.box->reply(id))["result"]["stroke"];
         const json end = rig.end_of(c, n);
         CHECK(end["state"] == "cancelled");
-        CHECK(end["reason"] == "stopped");
+        CHECK(end["reason"] == "cancelled by its client");
         CHECK(end["frames"] == 0);
         CHECK(c.box->of_stroke(n).size() == 1);
         CHECK(rig.code(c, "to", {{"stroke", n}, {"x_mm", 1}, {"y_mm", 1}}) == -32002);

@@ -89,6 +89,16 @@ std::string lock_own_memory()
     return "";
 }
 
+void give_memory_back()
+{
+    constexpr int large = 128 << 10;
+    constexpr int most_at_end = 1 << 20;
+    mallopt(M_ARENA_MAX, 1);
+    mallopt(M_MMAP_MAX, 1 << 16);
+    mallopt(M_MMAP_THRESHOLD, large);
+    mallopt(M_TRIM_THRESHOLD, most_at_end);
+}
+
 void limit_runaway_threads()
 {
     constexpr rlim_t soft_us = 200'000; // SIGXCPU

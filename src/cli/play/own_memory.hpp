@@ -15,6 +15,10 @@ std::string lock_own_memory();
 /// How much lock_own_memory() would lock now, with what threads will need.
 std::uint64_t memory_to_lock();
 
+/// Lets the heap give back what is freed, for a process that lives long and whose clients come and go: large
+/// blocks are mapped one by one. Call it after lock_own_memory(), which keeps all.
+void give_memory_back();
+
 /// A real-time thread that runs for 0.2 s without a pause is ended, and the process with it: it would hold
 /// a computer with one core for good.
 void limit_runaway_threads();

@@ -77,6 +77,7 @@ void settle_realtime(const play_options& o)
 {
     limit_runaway_threads();
     const std::string refused = lock_own_memory();
+    give_memory_back();
     const player_options defaults;
     const realtime_rights rights = probe_realtime_rights();
     const std::string advice = rt::realtime_advice(rights, defaults.priority);

@@ -97,6 +97,7 @@ server::service_limits settle_service_limits(const serve_settings& s)
     l.max_message_s = s.max_message_s.value_or(l.max_message_s);
     l.max_unread_bytes = s.max_unread_bytes.value_or(l.max_unread_bytes);
     l.max_all_unread_bytes = s.max_all_unread_bytes.value_or(l.max_all_unread_bytes);
+    l.max_all_unfinished_bytes = s.max_all_unfinished_bytes.value_or(l.max_all_unfinished_bytes);
     return l;
 }
 

@@ -237,9 +237,7 @@ private:
             return;
         const bool cancelled = out.report->state == state_kind::cancelled;
         const bool gone = server_.call("status")["stream"].value("state", "") == "lost";
-        std::string why = fate(out, report_.device.rate);
-        if (cancelled && out.report->why.empty())
-            why += " by somebody else";
+        const std::string why = fate(out, report_.device.rate);
         if (cancelled || gone || options_.void_on_xrun)
             broken_.emplace(error_kind::runtime, shown_name(out.name), why,
                             options_.void_on_xrun && !cancelled ? "the run is void: --void-on-xrun" : "");

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <new>
 #include <utility>
 
 #include <boost/asio/buffer.hpp>
@@ -15,9 +16,6 @@ namespace {
 
 namespace asio = boost::asio;
 using udp = asio::ip::udp;
-
-// Of the packets that wait; then others have their turn.
-constexpr int packets_at_once = 64;
 
 udp protocol_of(int fd)
 {
@@ -73,17 +71,17 @@ void osc_endpoint::stop()
     clients_.drop_held();
 }
 
+// One packet, then others have their turn.
 void osc_endpoint::take()
 {
-    for (int i = 0; i < packets_at_once; ++i) {
-        boost::system::error_code failed;
-        udp::endpoint from;
-        const std::size_t n = socket_.receive_from(asio::buffer(packet_), from, 0, failed);
-        if (failed == asio::error::would_block)
-            break;
-        if (!failed && net::is_heard(from.address(), peers_))
+    boost::system::error_code failed;
+    udp::endpoint from;
+    const std::size_t n = socket_.receive_from(asio::buffer(packet_), from, 0, failed);
+    if (!failed && net::is_heard(from.address(), peers_))
+        try {
             clients_.receive({packet_.data(), n}, from);
-    }
+        } catch (const std::bad_alloc&) { // NOLINT(bugprone-empty-catch): lost, as it may be on its way
+        }
     arm();
 }
 

@@ -46,7 +46,7 @@ struct page_server::state {
     handlers calls;
     asio::executor_work_guard<asio::io_context::executor_type> work;
     net::listener door;
-    net::write_budget budget;
+    net::shared_by_peers shared{io};
     std::set<std::shared_ptr<web_connection>> all;
     std::map<visitor, std::shared_ptr<web_connection>> visitors;
     visitor last = 0;
@@ -61,7 +61,7 @@ void page_server::state::take(net::listener::socket_type s)
     if (!stream)
         return;
     const auto c =
-        std::make_shared<web_connection>(*std::move(stream), page_limits, budget, std::vector<std::string>{});
+        std::make_shared<web_connection>(*std::move(stream), page_limits, shared, std::vector<std::string>{});
     all.insert(c);
     const visitor n = ++last;
     c->start({[this](std::string_view path, std::string_view host, std::string_view) {

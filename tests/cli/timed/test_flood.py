@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: MIT
+"""How soon stop is answered, and how much memory the server holds, while many clients send much."""
+import json
+import os
+import resource
+import subprocess
+import sys
+import threading
+import time
+import unittest
+
+from harness import PATIENCE_S, main
+from serving import LONG, Client, ServeTest
+
+CLIENTS = 200
+MIB = 1 << 20
+STOP_S = 0.020
+ABOVE_REST_BYTES = 64 * MIB
+
+
+def resident(pid):
+    with open(f"/proc/{pid}/statm", encoding="ascii") as file:
+        return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+# In a process of its own, which does not keep the bystander waiting for Python's lock: clients that send as fast as they
+# can; the server may refuse them.
+FLOOD = """
+import contextlib, socket, sys, threading
+address, count, close_at_once = sys.argv[1], int(sys.argv[2]), sys.argv[3] == "True"
+data = sys.stdin.buffer.read()
+ready = threading.Barrier(count)
+def one():
+    s = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    with contextlib.suppress(OSError):
+        s.connect(address)
+    ready.wait()
+    with contextlib.suppress(OSError):
+        s.sendall(data)
+        if not close_at_once:
+            s.shutdown(socket.SHUT_WR)
+            while s.recv(65536):
+                pass
+    s.close()
+all_ = [threading.Thread(target=one) for _ in range(count)]
+for t in all_:
+    t.start()
+for t in all_:
+    t.join()
+"""
+
+
+@unittest.skipIf(resource.getrlimit(resource.RLIMIT_NOFILE)[1] < 1024, "too few descriptors")
+class Flood(ServeTest):
+    def look(self, s, data, close_at_once=True):
+        """The longest that a bystander waits for stop, in seconds, and the most memory, while CLIENTS send `data`."""
+        bystander = s.client()
+        rest = resident(s.process.pid)
+        flood = subprocess.Popen([sys.executable, "-c", FLOOD, s.where["socket"], str(CLIENTS), str(close_at_once)],
+                                 stdin=subprocess.PIPE)
+        threading.Thread(target=flood.communicate, args=(data,)).start()
+        waits, most = [], rest
+        while flood.poll() is None or len(waits) < 50:
+            began = time.monotonic()
+            self.assertEqual(bystander.ok("stop"), {})
+            waits.append(time.monotonic() - began)
+            most = max(most, resident(s.process.pid))
+            time.sleep(0.001)
+        self.assertIsNone(s.process.poll())
+        mine = bystander.ok("play", **LONG)["stroke"]
+        bystander.ok("stop")
+        self.assertEqual(bystander.end_of(mine)["state"], "cancelled")
+        bystander.close()
+        time.sleep(1.0)
+        waits.sort()
+        figures = (waits[-1], waits[len(waits) * 99 // 100], waits[len(waits) // 2], (most - rest) / MIB, (resident(s.process.pid) - rest) / MIB)
+        print("stop: longest {:.4f} s, 99 % {:.4f} s, median {:.4f} s; above rest {:.1f} MiB, afterwards {:.1f} MiB".format(*figures))
+        return figures
+
+    def hold(self, s, data, **more):
+        for _ in range(3):
+            longest, _, _, above, after = self.look(s, data, **more)
+            self.assertLess(longest, STOP_S)
+            self.assertLess(above * MIB, ABOVE_REST_BYTES)
+            self.assertLess(after, 16)
+
+    def test_messages_that_never_end(self):
+        for name, data in (("text", b"x" * MIB), ("an open quote", b'"' + b"x" * (MIB - 1)),
+                           ("a path", b'{"jsonrpc":"2.0","id":1,"method":"play","params":{"path":"M 0 0' + b" L 9 9" * 170_000)):
+            with self.subTest(name):
+                self.hold(self.serve("--socket", self.dir / f"{name[:3].strip()}.sock"), data[:MIB])
+
+    def test_whole_messages(self):
+        points = json.dumps({"jsonrpc": "2.0", "id": 1, "method": "play",
+                             "params": {"points": [[i / 1000, 20, 20] for i in range(40_000)]}}).encode() + b"\n"
+        self.hold(self.serve(), points, close_at_once=False)
+        small = json.dumps({"jsonrpc": "2.0", "id": 1, "method": "status"}).encode() + b"\n"
+        self.hold(self.serve("--socket", self.dir / "small.sock"), small * 2000, close_at_once=False)
+
+    def test_in_little_memory(self):
+        s = self.serve()
+        resource.prlimit(s.process.pid, resource.RLIMIT_AS, (256 * MIB, 256 * MIB))
+        self.hold(s, b"x" * MIB)
+
+
+class Planning(ServeTest):
+    def test_small_plays_pass_large_ones(self):
+        s = self.serve()
+        path = "M 0 0" + " L 40 40 L 0 0" * 68_000
+        many = [s.client() for _ in range(20)]
+        for c in many:
+            threading.Thread(target=c.send, args=({"jsonrpc": "2.0", "id": 1, "method": "plan", "params": {
+                "path": path, "options": {"algorithm": "continuous", "duration": 10}}},)).start()
+        time.sleep(0.2)
+        c = Client(s.where["socket"])
+        self.addCleanup(c.close)
+        waits = []
+        for _ in range(20):
+            began = time.monotonic()
+            c.ok("plan", path="M 0 0 L 40 40", options={"algorithm": "continuous", "duration": 0.1})
+            waits.append(time.monotonic() - began)
+        print(f"plan beside 20 of 950 kB: longest {max(waits):.3f} s")
+        self.assertLess(max(waits), 0.25)
+        for one in many:
+            while b"\n" not in one.buffer: # held against no schema: that takes longer than all the rest
+                one.buffer += one.socket.recv(1 << 20)
+            self.assertIn(b'"result"', one.buffer[:100])
+
+
+if __name__ == "__main__":
+    main()
