@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
-#include <fstream>
 #include <memory>
 
 #include <fcntl.h>
@@ -21,6 +20,7 @@
 #include <tactor/error.hpp>
 
 #include "core/refused.hpp"
+#include "net/port_holder.hpp"
 
 namespace tactor::net {
 namespace {
@@ -48,13 +48,6 @@ sockaddr_un unix_address(const std::string& path)
 const sockaddr* generic(const sockaddr_un& a)
 {
     return reinterpret_cast<const sockaddr*>(&a); // NOLINT(cppcoreguidelines-pro-type-reinterpret-cast)
-}
-
-std::string process_name(pid_t pid)
-{
-    std::string name;
-    std::getline(std::ifstream(fmt::format("/proc/{}/comm", pid)), name);
-    return name.empty() ? fmt::format("process {}", pid) : fmt::format("{}, process {}", name, pid);
 }
 
 // Nobody listens there any more, or there is nothing: then the name may be used. Else an error.
@@ -112,6 +105,17 @@ bound_to local(int fd)
     return b;
 }
 
+[[noreturn]] void refused_port(const std::string& what, std::uint16_t port, bool stream, int code)
+{
+    const std::string holder = code == EADDRINUSE ? find_port_holder(port, stream) : "";
+    if (holder.empty())
+        refused(what, code);
+    detail::throw_caused(error(error_kind::not_available, what,
+                               fmt::format("{}: by {}", std::strerror(code), holder),
+                               "choose another port, or end it"),
+                         code);
+}
+
 // A stream listens.
 owned_fd bind_internet(const host_and_port& at, const std::string& what, int type)
 {
@@ -131,7 +135,7 @@ owned_fd bind_internet(const host_and_port& at, const std::string& what, int typ
     if (!fd || (stream && ::setsockopt(fd.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) != 0) ||
         ::bind(fd.get(), found->ai_addr, found->ai_addrlen) != 0 ||
         (stream && ::listen(fd.get(), SOMAXCONN) != 0))
-        refused(where, errno);
+        refused_port(where, at.port, stream, errno);
     return fd;
 }
 

@@ -98,11 +98,12 @@ bool origin_is_ours(std::string_view origin, std::string_view host, const std::v
 web_target target_of(std::string_view target, std::string_view host)
 {
     constexpr std::string_view http = "http://";
+    const auto without_query = [](std::string_view t) { return t.substr(0, t.find('?')); };
     if (!same_name(target.substr(0, http.size()), http))
-        return {host, target};
+        return {host, without_query(target)};
     target.remove_prefix(http.size());
-    const std::size_t end = std::min(target.find('/'), target.size());
-    const std::string_view path = target.substr(end);
+    const std::size_t end = std::min(target.find_first_of("/?"), target.size());
+    const std::string_view path = without_query(target.substr(end));
     return {target.substr(0, end), path.empty() ? "/" : path};
 }
 

@@ -75,9 +75,11 @@ void web_connection::session::answer_request()
     for (auto o = origins.first; o != origins.second; ++o)
         ours = ours && origin_is_ours(view(o->value()), to.host, allowed);
     if (!ours)
-        return respond({403, "text/plain", "another name or another page than this server's\n", ""});
-    if (request.method() != http::verb::get)
-        return respond({405, "text/plain", "GET only\n", ""});
+        return respond(
+            {403, "text/plain",
+             "another name or another page than this server's: its owner lists more in allow_hosts\n", ""});
+    if (request.method() != http::verb::get && request.method() != http::verb::head)
+        return respond({405, "text/plain", "GET and HEAD only\n", ""});
     if (parser.chunked() || parser.content_length().value_or(0) > 0)
         return respond({413, "text/plain", "too much\n", ""});
     if (to.path == "/rpc" && websocket::is_upgrade(request))
@@ -101,7 +103,7 @@ void web_connection::session::respond(web_reply r)
     response.set("Content-Security-Policy",
                  r.policy.empty() ? "default-src 'none'; frame-ancestors 'none'" : r.policy);
     if (r.status == 405)
-        response.set(http::field::allow, "GET");
+        response.set(http::field::allow, "GET, HEAD");
     if (r.status == 426) {
         response.set(http::field::upgrade, "websocket");
         response.set(http::field::connection, "upgrade, close");

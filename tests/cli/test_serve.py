@@ -2,6 +2,7 @@
 """tactor serve as programs meet it: where it listens, who may, and its end."""
 import json
 import os
+import resource
 import signal
 import socket
 import stat
@@ -140,6 +141,9 @@ class Serve(ServeTest):
             while len(said) < 3: # on a slow machine the watchdog is fed more than once before the rest comes
                 said.add(manager.recv(1000))
             self.assertEqual(said, {b"READY=1", b"WATCHDOG=1", b"STATUS=stream: running"})
+            for _ in range(2): # and again and again
+                while manager.recv(1000) != b"WATCHDOG=1":
+                    pass
             s.process.terminate()
             while manager.recv(1000) != b"STOPPING=1":
                 pass
@@ -147,6 +151,10 @@ class Serve(ServeTest):
     def test_what_is_not_served_and_where_nothing_says_where(self):
         self.refuses_to_start(2, "--tcp", "nonsense:1:2", says="no address")
         self.refuses_to_start(2, "--tcp", "0.0.0.0:0", says="token_file")
+        token = self.write("token", "fifteen letters\n")
+        token.chmod(0o600)
+        for option in ("--tcp", "--http"):
+            self.refuses_to_start(2, option, "0.0.0.0:0", config=f'[serve]\ntoken_file = "{token}"\n', says="15 characters (put at least 16")
         self.refuses_to_start(2, "--socket", "x" * 200, says="name")
         self.refuses_to_start(2, config="[serve]\nhttpp = 4\n", says="httpp")
         self.refuses_to_start(2, config='[serve]\ntcp = "x"\n', says="serve.toml:2:")
@@ -155,9 +163,29 @@ class Serve(ServeTest):
         r = self.run_tool("serve", "-D", "null", env={"XDG_RUNTIME_DIR": "", "RUNTIME_DIRECTORY": ""})
         self.assertEqual(r.returncode, 2)
 
+    def test_a_port_that_is_in_use_is_said_with_who_has_it(self):
+        s = self.serve("--tcp", "0", "--http", "0")
+        me = f"by tactor, process {s.process.pid} (choose another port, or end it)"
+        self.refuses_to_start(3, "--socket", self.dir / "b.sock", "--tcp", s.where["tcp"], says=me)
+        self.refuses_to_start(3, "--socket", self.dir / "b.sock", "--http", s.where["http"][7:-1], says=me)
+
+    def test_too_few_descriptors_are_said(self):
+        before = resource.getrlimit(resource.RLIMIT_NOFILE)
+        few = self.serve_with_descriptors(60, 60)
+        self.assertIn("too few descriptors: 60 may be open, and 128 clients need 224", few)
+        self.assertNotIn("descriptors", self.serve_with_descriptors(60, before[1]))
+
+    def serve_with_descriptors(self, soft, hard):
+        """What it says when it begins so."""
+        p = subprocess.Popen(["prlimit", f"--nofile={soft}:{hard}", TOOL, "serve", "--socket", self.dir / f"{hard}.sock", "-D", "null"],
+                             cwd=self.dir, env=self.env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.assertIn("listening", p.stdout.readline())
+        p.terminate()
+        return p.communicate(timeout=PATIENCE_S)[1]
+
     def test_check_says_what_listens_where(self):
         s = self.serve("--tcp", "0")
-        token = self.write("token", "secret\n")
+        token = self.write("token", "sixteen letters!\n")
         token.chmod(0o600)
         open_to_all = self.serve("--socket", self.dir / "open.sock", config=f'[serve]\ntcp = "0.0.0.0:0"\ntoken_file = "{token}"\n')
         r = self.run_tool("check", "-D", "null", "--format", "json")

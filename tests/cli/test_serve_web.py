@@ -92,13 +92,22 @@ class Web(ToolTest):
 
     def test_nothing_else(self):
         s = self.serve()
-        for target, method, status in (("/x", "GET", 404), ("/status/", "GET", 404), ("/rpc", "GET", 426), ("/", "HEAD", 405),
+        for target, method, status in (("/x", "GET", 404), ("/status/", "GET", 404), ("/rpc", "GET", 426), ("/rpc", "HEAD", 426),
+                                       ("/x?/", "GET", 404),
                                        ("/", "PUT", 405), ("/rpc", "POST", 405), ("/../etc/passwd", "GET", 404)):
             self.assertEqual(s.peer().request(target, method)[0], status, (target, method))
+        status, page = s.peer().request("/")
+        self.assertEqual(status, 200)
+        for target, method in (("/", "HEAD"), ("/?x", "HEAD"), ("/?", "GET"), ("/?token=1/status", "GET")):
+            p = s.peer()
+            status, headers = p.request(target, method)
+            self.assertEqual((status, headers["content-length"]), (200, page["content-length"]), target)
+            if method == "HEAD":
+                self.assertRaises(EOFError, p.take, 1)
         p = s.peer()
-        status, headers = p.request("/", "HEAD")
-        self.assertEqual((status, headers["content-length"]), (405, "9"))
-        self.assertRaises(EOFError, p.take, 1)
+        status, headers = p.request("/", host="evil.example")
+        self.assertEqual(status, 403)
+        self.assertIn("allow_hosts", p.body(headers).decode())
         p = s.peer()
         self.assertEqual(p.request("/", Content_Length="5")[0], 413)
         # Whoever asks is looked at before what is asked for: a body makes no difference.
@@ -192,6 +201,15 @@ class Web(ToolTest):
         p.frame(TEXT, json.dumps({"jsonrpc": "2.0", "method": "end", "params": {"stroke": number}}).encode())
         self.assertEqual(p.message()["params"]["state"], "finished")
         self.assertEqual(p.call("status")["result"]["clients"], 1)
+
+    def test_large_messages(self):
+        p = self.websocket(self.serve())
+        points = [[i / 10000, 20, 20] for i in range(1000)]
+        self.assertEqual(len(p.call("play", points=points, start="armed")["result"]["strokes"]), 1)
+        p.frame(TEXT, b"x" * 100_000)
+        self.assertEqual(p.message()["error"]["code"], -32700)
+        self.assertEqual(p.call("stop")["result"], {})
+        self.assertEqual(p.message()["params"]["reason"], "cancelled by its client")
 
     def test_who_goes_ends_live_strokes(self):
         s = self.serve()

@@ -9,10 +9,13 @@
 #include <doctest/doctest.h>
 #include <fcntl.h>
 #include <sys/file.h>
+#include <unistd.h>
 
 #include <tactor/error.hpp>
 
 #include "folder.hpp"
+#include "has.hpp"
+#include "net/port_holder.hpp"
 
 namespace listen_test {
 
@@ -48,6 +51,28 @@ TEST_CASE("what the system refuses a listener has its errno")
     CHECK(os_code([&] { listen_unix((here.write("file") / "s").string(), 0600, {}); }) == ENOTDIR);
     const owned_fd first = listen_tcp({}, "port");
     CHECK(os_code([&] { listen_tcp(parse_host(local_address(first.get()), "port"), "port"); }) == EADDRINUSE);
+}
+
+TEST_CASE("a port that is in use is said with the process that has it")
+{
+    const auto says = [](const std::function<void()>& call) {
+        try {
+            call();
+        } catch (const error& e) {
+            CHECK(e.kind() == error_kind::not_available);
+            return std::string(e.why());
+        }
+        return std::string();
+    };
+    const std::string me = "process " + std::to_string(::getpid());
+    const owned_fd stream = listen_tcp({}, "tcp");
+    const host_and_port tcp = parse_host(local_address(stream.get()), "tcp");
+    CHECK(has(says([&] { listen_tcp(tcp, "tcp"); }), me));
+    const owned_fd packets = bind_udp({}, "osc");
+    const host_and_port udp = parse_host(local_address(packets.get()), "osc");
+    CHECK(has(says([&] { bind_udp(udp, "osc"); }), me));
+    CHECK(find_port_holder(tcp.port, true).ends_with(me));
+    CHECK(find_port_holder(0, true).empty());
 }
 
 } // namespace listen_test

@@ -79,7 +79,10 @@ TEST_CASE("what a request is for, as a path or as a whole address")
     CHECK(is("/rpc", "said:4003", "/rpc"));
     CHECK(is("/", "said:4003", "/"));
     CHECK(is("http://pi.lan:4003/rpc", "pi.lan:4003", "/rpc"));
-    CHECK(is("HTTP://[::1]:4003/a/b?c", "[::1]:4003", "/a/b?c"));
+    CHECK(is("HTTP://[::1]:4003/a/b?c", "[::1]:4003", "/a/b"));
+    CHECK(is("/?x", "said:4003", "/"));
+    CHECK(is("/rpc?a/b?c", "said:4003", "/rpc"));
+    CHECK(is("http://pi.lan?x/y", "pi.lan", "/"));
     CHECK(is("http://pi.lan", "pi.lan", "/"));
     CHECK(is("http:///rpc", "", "/rpc"));
     for (const char* path : {"https://pi.lan/rpc", "http:/rpc", "*", "", "http"}) {

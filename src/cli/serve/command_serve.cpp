@@ -28,6 +28,7 @@
 #include "cli/serve/owner.hpp"
 #include "cli/serve/plan_record.hpp"
 #include "cli/session/kept_drive.hpp"
+#include "core/words.hpp"
 #include "rt/advice.hpp"
 #include "rt/clock.hpp"
 #include "server/server.hpp"
@@ -99,13 +100,20 @@ void say_who_may(const server::endpoints& at, const std::string& token, bool has
     if (!at.osc_address.empty())
         say(stderr, "tactor: warning: osc {}: every user of this machine may draw there{}\n", at.osc_address,
             has_peers ? ", and whoever sends in the name of osc_peers" : "");
-    if (!token.empty())
-        return;
+    constexpr std::size_t least_token = 16;
     for (const auto& [kind, address, fd] :
          {std::tuple("tcp", &at.tcp_address, &at.tcp), std::tuple("http", &at.http_address, &at.http)}) {
         if (address->empty())
             continue;
-        if (!net::is_loopback(fd->get()))
+        const bool beyond = !net::is_loopback(fd->get());
+        if (!token.empty() && beyond && token.size() < least_token)
+            throw error(error_kind::bad_input, fmt::format("{} {}", kind, *address),
+                        fmt::format("it is reached from other machines, and the token has {}",
+                                    counted(token.size(), "character")),
+                        fmt::format("put at least {} characters into token_file", least_token));
+        if (!token.empty())
+            continue;
+        if (beyond)
             throw error(error_kind::bad_input, fmt::format("{} {}", kind, *address),
                         "it is reached from other machines, and nobody needs a token",
                         "say token_file under [serve] in the configuration, or listen on 127.0.0.1");
@@ -186,6 +194,7 @@ int serve(settings& s, owners_defaults& defaults, const play_options& play, cons
 
     server::service_options service;
     service.limits = settle_service_limits(serve);
+    provide_descriptors(service.limits);
     service.token = read_token(serve);
     service.version = version();
     service.array = array_json(e.tactors);

@@ -8,6 +8,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <grp.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -99,6 +100,23 @@ server::service_limits settle_service_limits(const serve_settings& s)
     l.max_all_unread_bytes = s.max_all_unread_bytes.value_or(l.max_all_unread_bytes);
     l.max_all_unfinished_bytes = s.max_all_unfinished_bytes.value_or(l.max_all_unfinished_bytes);
     return l;
+}
+
+void provide_descriptors(const server::service_limits& l)
+{
+    // Senders of OSC share one; browsers that only load the page come beside clients.
+    constexpr rlim_t others = 96;
+    const rlim_t wanted = l.max_clients + others;
+    rlimit now{};
+    if (::getrlimit(RLIMIT_NOFILE, &now) != 0 || now.rlim_cur >= wanted)
+        return;
+    now.rlim_cur = std::min(wanted, now.rlim_max);
+    if (::setrlimit(RLIMIT_NOFILE, &now) != 0 || now.rlim_cur < wanted)
+        say(stderr,
+            "tactor: warning: too few descriptors: {} may be open, and {} clients need {}: later ones are "
+            "refused "
+            "(raise ulimit -n, or LimitNOFILE= of the unit)\n",
+            now.rlim_cur, l.max_clients, wanted);
 }
 
 std::string read_token(const serve_settings& s)

@@ -32,6 +32,9 @@ server::network_options settle_network(const serve_settings& s);
 
 server::service_limits settle_service_limits(const serve_settings& s);
 
+/// Raises how many files may be open to what so many clients need; warns where that is not allowed.
+void provide_descriptors(const server::service_limits& l);
+
 /// The text of token_file without its line end; empty for none. \throws error (bad_input) for a file that
 /// others may read, and for an empty one.
 std::string read_token(const serve_settings& s);

@@ -208,6 +208,7 @@ class Units(unittest.TestCase):
 
     def test_8_it_is_hardened(self):
         run("systemd-analyze", "security", "--offline=true", "--threshold=20", UNITS / "system/tactor.service")
+        run("systemd-analyze", "security", "--offline=true", "--threshold=30", UNITS / "user/tactor.service")
 
     def test_9_one_users_own(self):
         systemctl("stop", "tactor.service", "tactor.socket")
