@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/pipes.hpp"
 
+#include <cerrno>
 #include <filesystem>
 #include <system_error>
 
@@ -39,7 +40,8 @@ void refuse_unreadable(const std::string& file)
     if (::stat(file.c_str(), &s) != 0)
         return;
     if (S_ISDIR(s.st_mode))
-        throw error(error_kind::bad_input, file, "is a folder", "name a file in it");
+        throw error(error_kind::bad_input, source_place{file}, "is a folder", "name a file in it")
+            .with_os_code(EISDIR);
     if ((S_ISFIFO(s.st_mode) || S_ISREG(s.st_mode)) &&
         (is_descriptor(s, STDOUT_FILENO) || is_descriptor(s, STDERR_FILENO)))
         throw error(error_kind::bad_input, file, "is where this program writes to",

@@ -52,9 +52,9 @@ int descriptor_in(const fs::path& p)
     return n;
 }
 
-[[noreturn]] void refuse(const fs::path& file, const std::string& why, std::string_view hint)
+[[noreturn]] void refuse(const fs::path& file, const std::string& why, std::string_view hint, int code = 0)
 {
-    throw error(error_kind::bad_input, source_place{file.string()}, why, hint);
+    throw error(error_kind::bad_input, source_place{file.string()}, why, hint).with_os_code(code);
 }
 
 /// Where anybody may put a link, what it points to is not what the user meant.
@@ -134,7 +134,7 @@ output_file::output_file(const fs::path& file, patience go_on, owner_kind writer
     std::error_code failed;
     const fs::file_status there = fs::status(target_, failed);
     if (fs::is_directory(there) || !target_.has_filename())
-        refuse(asked_, "is a folder", "name a file in it");
+        refuse(asked_, "is a folder", "name a file in it", EISDIR);
     struct stat s {};
     if (::stat(target_.c_str(), &s) == 0)
         refuse_input(s, asked_, writer);
@@ -145,7 +145,7 @@ output_file::output_file(const fs::path& file, patience go_on, owner_kind writer
     const fs::path folder = folder_of(target_);
     if (!fs::is_directory(folder, failed)) {
         refuse(asked_, fmt::format("the folder \"{}\" does not exist", folder.string()),
-               "make it first, or name another");
+               "make it first, or name another", ENOENT);
     }
     if (fs::exists(there) && ::access(target_.c_str(), W_OK) != 0)
         fail(errno);

@@ -62,7 +62,8 @@ whole_text read_text_file(const std::filesystem::path& file, std::size_t max_byt
 {
     std::error_code ignored;
     if (std::filesystem::is_directory(file, ignored))
-        throw error(error_kind::bad_input, source_place{file.string()}, "is a folder", "name a file in it");
+        throw error(error_kind::bad_input, source_place{file.string()}, "is a folder", "name a file in it")
+            .with_os_code(EISDIR);
     const owned_fd in(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
     if (!in)
         refuse(file.string(), errno);

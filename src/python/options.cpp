@@ -33,9 +33,17 @@ std::string shown(py::handle v)
     }
 }
 
+// No complex number and no time of NumPy's, which would lose a part of what they say.
+bool is_plain(py::handle v)
+{
+    return py::module_::import("tactor._checks").attr("_is_plain")(v).cast<bool>();
+}
+
 double number(const std::string& name, py::handle v, detail::bounds b)
 {
     const std::string range = fmt::format("{} to {}", plain_number(b.low), plain_number(b.high));
+    if (!is_plain(v))
+        refuse(name, fmt::format("{} is not a number", shown(v)), range);
     double d = PyFloat_AsDouble(v.ptr());
     bool is_one = !py::isinstance<py::bool_>(v);
     if (PyErr_Occurred() != nullptr) {

@@ -122,21 +122,56 @@ py::object samples(const plan_handle& p)
                           given(std::move(all), tactors));
 }
 
-py::list felt(const plan_handle& p)
+// Columns of the prediction: t, targets, places felt (NaN where nothing is), intensities, target intensities,
+// shared, speeds.
+py::tuple felt(const plan_handle& p)
 {
-    std::vector<percept_sample> all;
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    std::vector<double> t, targets, places, intensities, asked, shared, speeds;
     {
         const without_lock free;
-        all = predict_percept(p.on->value(), p.drawn, p.schedule());
+        for (const percept_sample& s : predict_percept(p.on->value(), p.drawn, p.schedule())) {
+            t.push_back(s.t_s);
+            targets.insert(targets.end(), {s.target.x_mm, s.target.y_mm});
+            const point where = s.felt.value_or(point{none, none});
+            places.insert(places.end(), {where.x_mm, where.y_mm});
+            intensities.push_back(s.intensity);
+            asked.push_back(s.target_intensity);
+            shared.push_back(s.shared ? 1.0 : 0.0);
+            speeds.push_back(s.speed_mm_s.value_or(none));
+        }
     }
-    py::list rows;
-    for (const percept_sample& s : all) {
-        const py::object where =
-            s.felt ? py::object(py::make_tuple(s.felt->x_mm, s.felt->y_mm)) : py::object(py::none());
-        rows.append(py::make_tuple(s.t_s, py::make_tuple(s.target.x_mm, s.target.y_mm), where, s.intensity,
-                                   s.target_intensity, s.shared, s.speed_mm_s));
+    return py::make_tuple(given(std::move(t)), given(std::move(targets), 2), given(std::move(places), 2),
+                          given(std::move(intensities)), given(std::move(asked)), given(std::move(shared)),
+                          given(std::move(speeds)));
+}
+
+// Amplitudes of all tactors for a phantom at each of the places.
+py::array_t<double> weights(const std::string& kind, const array_handle& on,
+                            const py::array_t<double, py::array::c_style | py::array::forcecast>& places,
+                            double intensity)
+{
+    const layout& faces = on.faces();
+    const auto model = make_phantom(from_string<phantom_kind>(kind), faces);
+    const std::size_t tactors = on.value().tactors.size();
+    const auto at = places.unchecked<2>();
+    std::vector<double> all(static_cast<std::size_t>(places.shape(0)) * tactors);
+    std::vector<drive> drives;
+    for (py::ssize_t i = 0; i < places.shape(0); ++i) {
+        const point p{at(i, 0), at(i, 1)};
+        if (!faces.contains(p)) {
+            const point near = faces.nearest(p);
+            throw error(error_kind::bad_input, "point",
+                        fmt::format("({:.6g}, {:.6g}) mm is outside the array, {:.3g} mm from it", p.x_mm,
+                                    p.y_mm, distance_mm(p, near)),
+                        "Array.nearest() gives the nearest place of it")
+                .with_field("point");
+        }
+        model->weights(p, intensity, drives);
+        for (const drive& d : drives)
+            all[static_cast<std::size_t>(i) * tactors + d.tactor] = d.amplitude;
     }
-    return rows;
+    return given(std::move(all), tactors);
 }
 
 py::dict summary(const plan_handle& p)
@@ -182,19 +217,14 @@ void bind_plan(py::module_& m)
         take_options(w, options, 0);
         return burst_duration_s(w.plan);
     });
-    m.def("phantom_weights",
-          [](const std::string& kind, const array_handle& on, double x, double y, double intensity) {
-              burst b;
-              make_phantom(from_string<phantom_kind>(kind), on.faces())->weights({x, y}, intensity, b.drives);
-              return drives_of(b);
-          });
+    m.def("phantom_weights", &weights);
     py::class_<plan_handle>(m, "Plan")
         .def(py::init(&planned))
         .def_static("from_json", &plan_from_json)
         .def_static(
             "from_parts",
             [](const std::string& text, const stroke& drawn, const std::shared_ptr<array_handle>& on) {
-                plan_handle p = plan_from_json(text);
+                plan_handle p = plan_from_json(text, "plan");
                 check_same_array(p, on->value());
                 p.drawn = drawn;
                 if (drawn.anchor != start_anchor{}) { // which a record does not know

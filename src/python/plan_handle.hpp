@@ -30,7 +30,8 @@ struct plan_handle {
 
 /// The tool's tactor-plan/1 object as text, and back. \throws error.
 std::string json_of(const plan_handle& p);
-plan_handle plan_from_json(const std::string& text);
+/// `named`: what stands for it in messages.
+plan_handle plan_from_json(const std::string& text, const std::string& named);
 
 /// A stroke as it was asked for.
 struct asked_stroke {

@@ -15,7 +15,7 @@
 namespace tactor::python {
 namespace {
 
-constexpr const char* named = "plan";
+constexpr const char* plan_itself = "plan";
 
 } // namespace
 
@@ -65,7 +65,7 @@ std::string json_of(const plan_handle& p)
     return written([&](std::FILE* out) { cli::print_json(out, piece, e, samples, sound); });
 }
 
-plan_handle plan_from_json(const std::string& text)
+plan_handle plan_from_json(const std::string& text, const std::string& named)
 {
     const without_lock free;
     cli::plan_file f = cli::read_plans(text, named);
@@ -82,7 +82,7 @@ plan_handle plan_from_json(const std::string& text)
 
 void check_same_array(const plan_handle& p, const array& in_use)
 {
-    cli::check_same_array(named, p.on->value(), in_use);
+    cli::check_same_array(plan_itself, p.on->value(), in_use);
 }
 
 } // namespace tactor::python

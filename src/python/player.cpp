@@ -104,7 +104,7 @@ py::dict stats_of(const player_handle& h)
     player_stats s;
     {
         const without_lock free;
-        s = h.use([](player& p) { return p.stats(); });
+        s = h.stats();
     }
     return py::dict("periods"_a = s.periods, "frames"_a = s.frames, "xruns"_a = s.xruns,
                     "limited_frames"_a = s.limited_frames, "power_limited_frames"_a = s.power_limited_frames,
@@ -220,18 +220,8 @@ void bind_player(py::module_& m)
             free_call())
         .def(
             "stop", [](const player_handle& h) { h.use([](player& p) { p.stop(); }); }, free_call())
-        .def(
-            "ended",
-            [](const player_handle& h) {
-                return h.use([](player& p) {
-                    const auto end = p.ended();
-                    return end ? std::optional(end->why) : std::nullopt;
-                });
-            },
-            free_call())
-        .def(
-            "history", [](const player_handle& h) { return h.use([](player& p) { return p.history(); }); },
-            free_call())
+        .def("ended", &player_handle::ended, free_call())
+        .def("history", &player_handle::history, free_call())
         .def("close", &player_handle::close, free_call())
         .def("refuse_child", &player_handle::refuse_child)
         .def_property_readonly("closed", &player_handle::closed)

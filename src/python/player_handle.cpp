@@ -112,6 +112,33 @@ bool player_handle::closed() const
     return open_->stream == nullptr;
 }
 
+std::optional<std::string> player_handle::ended_of(const player& p)
+{
+    const auto end = p.ended();
+    return end ? std::optional(end->why) : std::nullopt;
+}
+
+player_stats player_handle::stats() const
+{
+    refuse_child();
+    const std::shared_lock lock(open_->mutex);
+    return open_->stream != nullptr ? open_->stream->stats() : open_->last.stats;
+}
+
+std::optional<std::string> player_handle::ended() const
+{
+    refuse_child();
+    const std::shared_lock lock(open_->mutex);
+    return open_->stream != nullptr ? ended_of(*open_->stream) : open_->last.ended;
+}
+
+drive_history player_handle::history() const
+{
+    refuse_child();
+    const std::shared_lock lock(open_->mutex);
+    return open_->stream != nullptr ? open_->stream->history() : open_->last.history;
+}
+
 bool player_handle::cancel(stroke_id id) const
 {
     refuse_child();
@@ -122,13 +149,18 @@ bool player_handle::cancel(stroke_id id) const
 void player_handle::close()
 {
     refuse_child();
+    {
+        const std::shared_lock lock(open_->mutex);
+        if (open_->stream != nullptr)
+            open_->stream->stop();
+    }
     std::unique_ptr<player> ended;
     {
         const std::unique_lock lock(open_->mutex);
         ended = std::move(open_->stream);
+        if (ended != nullptr)
+            open_->last = {ended->stats(), ended_of(*ended), ended->history()};
     }
-    if (ended != nullptr)
-        ended->stop();
     ended.reset();
     {
         const std::unique_lock lock(open_->mutex);

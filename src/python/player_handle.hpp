@@ -60,6 +60,11 @@ public:
         return std::forward<F>(f)(*open_->stream);
     }
 
+    /// As the player's; once it is closed, as they were at the end. \throws error in a forked process.
+    player_stats stats() const;
+    std::optional<std::string> ended() const;
+    drive_history history() const;
+
     /// False where the stroke has ended, as all have once it is closed. \throws error in a forked process.
     bool cancel(stroke_id id) const;
     /// Fades out, stops and closes; all strokes have been reported then. Once more: nothing.
@@ -69,11 +74,20 @@ public:
     void refuse_child() const;
 
 private:
+    /// All that is left of a player.
+    struct last_words {
+        player_stats stats = {};
+        std::optional<std::string> ended = {};
+        drive_history history = {};
+    };
+    static std::optional<std::string> ended_of(const player& p);
+
     // All that a forked process must not touch, not even to destroy it.
     struct open_state {
         mutable std::shared_mutex mutex;
         cli::play_lines lines;
         std::unique_ptr<player> stream;
+        last_words last; ///< without a stream
     };
 
     pid_t owner_;

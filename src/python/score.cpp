@@ -137,35 +137,48 @@ py::tuple make_score(const array_handle& on, const std::vector<score_part>& plan
     return py::make_tuple(made, recipe(common) + py::make_tuple(py::tuple(py::cast(levels))));
 }
 
-void process(const score& s, format_kind f, std::span<std::byte> out)
-{
-    renderer r(s, f);
-    const std::size_t frame = s.channels() * bytes_of(f);
-    for (std::uint64_t done = 0; done < s.frames();) {
-        const std::uint64_t n = std::min(frames_at_once, s.frames() - done);
-        r.process(out.subspan(done * frame, n * frame));
-        done += n;
-        if (!r.failure().empty())
-            throw error(error_kind::runtime, "render", r.failure());
-        if (done < s.frames())
-            check_signals();
+// Makes the next frames of a score, block by block.
+class block_renderer {
+public:
+    block_renderer(const score& s, const std::string& format)
+        : renderer_(s, from_string<format_kind>(format)),
+          frame_(s.channels() * bytes_of(from_string<format_kind>(format)))
+    {
     }
-}
 
-py::array render(const score& s, const std::string& format, const py::dtype& dtype)
-{
-    const auto f = from_string<format_kind>(format);
-    const std::size_t bytes = static_cast<std::size_t>(s.frames()) * s.channels() * bytes_of(f);
-    auto out = std::make_unique_for_overwrite<std::byte[]>(bytes);
+    /// Fills memory with frames, which it is a whole number of.
+    void fill(std::span<std::byte> out)
+    {
+        while (!out.empty()) {
+            const std::size_t n = std::min<std::size_t>(out.size(), frames_at_once * frame_);
+            renderer_.process(out.first(n));
+            if (!renderer_.failure().empty())
+                throw error(error_kind::runtime, "render", renderer_.failure());
+            out = out.subspan(n);
+            if (!out.empty())
+                check_signals();
+        }
+    }
+    void into(const py::buffer& to)
+    {
+        const py::buffer_info info = to.request(true);
+        const std::span out(static_cast<std::byte*>(info.ptr),
+                            static_cast<std::size_t>(info.size * info.itemsize));
+        const without_lock free;
+        fill(out);
+    }
+    void skip(std::uint64_t frames)
     {
         const without_lock free;
-        process(s, f, {out.get(), bytes});
+        std::vector<std::byte> unheard(std::min(frames, frames_at_once) * frame_);
+        for (; frames > 0; frames -= std::min(frames, frames_at_once))
+            fill(std::span(unheard).first(std::min(frames, frames_at_once) * frame_));
     }
-    std::byte* const first = out.get();
-    const py::capsule owner(out.release(), [](void* p) { delete[] static_cast<std::byte*>(p); });
-    return {
-        dtype, {static_cast<py::ssize_t>(s.frames()), static_cast<py::ssize_t>(s.channels())}, first, owner};
-}
+
+private:
+    renderer renderer_;
+    std::size_t frame_; ///< bytes
+};
 
 void write(const score& s, const std::string& file, const std::string& format)
 {
@@ -196,8 +209,11 @@ void bind_score(py::module_& m)
         .def_property_readonly("channels", &score::channels)
         .def_property_readonly("rate", &score::rate)
         .def_property_readonly("starts", &score::starts)
-        .def("render", &render)
         .def("write", &write);
+    py::class_<block_renderer>(m, "Renderer")
+        .def(py::init<const score&, const std::string&>())
+        .def("into", &block_renderer::into)
+        .def("skip", &block_renderer::skip);
 }
 
 } // namespace tactor::python

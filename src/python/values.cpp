@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -12,6 +13,8 @@
 #include "files/output_file.hpp"
 #include "files/setup_defaults.hpp"
 #include "files/setup_text.hpp"
+#include "files/stroke/stroke_text.hpp"
+#include "files/text_file.hpp"
 #include "python/binding.hpp"
 #include "python/state.hpp"
 
@@ -76,8 +79,16 @@ void write_text(const std::string& file, const std::string& text)
     out.commit();
 }
 
+std::string read_text(const std::string& file)
+{
+    constexpr std::size_t most = std::size_t{1} << 30;
+    const without_lock free;
+    return std::string(std::string_view(detail::read_text_file(file, most)));
+}
+
 void bind_array(py::module_& m)
 {
+    m.def("read_text", &read_text);
     m.def("write_text", &write_text);
     py::class_<array_handle, std::shared_ptr<array_handle>>(m, "Array")
         .def(py::init(&make_array))
@@ -191,6 +202,16 @@ stroke along(const std::string& name, const path& p, std::optional<double> durat
 }
 
 using number_rows = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using number_list = number_rows;
+
+// As TOML; a preset by its name, which keeps its note.
+std::string text_of(const stroke& s)
+{
+    for (const std::string& name : stroke_presets())
+        if (name == s.name && state_of(preset_stroke(name)) == state_of(s))
+            return "[stroke]\npreset = " + detail::toml_string(name) + "\n";
+    return detail::stroke_text(s);
+}
 
 std::vector<profile_point> profile_of(const number_rows& r)
 {
@@ -299,6 +320,23 @@ void bind_stroke(py::module_& m)
         .def_property_readonly("length_mm", [](const stroke& s) { return s.motion.length_mm(); })
         .def("position", [](const stroke& s, double t) { return pair(s.motion.position(t)); })
         .def("intensity", [](const stroke& s, double t) { return s.motion.intensity(t); })
+        .def("positions",
+             [](const stroke& s, const number_list& t) {
+                 std::vector<double> out;
+                 for (py::ssize_t i = 0; i < t.size(); ++i) {
+                     const point q = s.motion.position(t.data()[i]);
+                     out.insert(out.end(), {q.x_mm, q.y_mm});
+                 }
+                 return given(std::move(out), 2);
+             })
+        .def("intensities",
+             [](const stroke& s, const number_list& t) {
+                 std::vector<double> out;
+                 for (py::ssize_t i = 0; i < t.size(); ++i)
+                     out.push_back(s.motion.intensity(t.data()[i]));
+                 return given(std::move(out));
+             })
+        .def("text", &text_of)
         .def("meets_x", [](const stroke& s, double x) { return s.motion.meets_x(x); })
         .def("meets_y", [](const stroke& s, double y) { return s.motion.meets_y(y); });
     m.def("stroke_presets", [] { return stroke_presets(); });

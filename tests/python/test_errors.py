@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Exceptions say what is wrong, and where."""
 import errno
+import json
+import os
 import pickle
 
 import pytest
@@ -90,3 +92,89 @@ def test_another_type_is_said_with_the_arguments_name(palm, stroke, call, what):
 def test_a_full_disk_is_a_stream_error(palm, stroke):
     with pytest.raises(tactor.StreamError):
         tactor.Score(palm, tactor.plan(palm, stroke)).write("/dev/full")
+
+
+@pytest.mark.parametrize("text,hint,field", [
+    ('[[stroke]]\npath = "M 0 0 L 9 9"\nduration = 1\n', "did you mean 'duration_s'?", "duration"),
+    ('[[stroke]]\npath = "M 0 0 L 9 9"\nspeed = 1\n', "did you mean 'speed_mm_s'?", "speed"),
+    ('[[stroke]]\npath = "M 0 0 L 9 9"\nsoa = 0.07\n', "did you mean 'soa_s'?", "soa"),
+    ('[[stroke]]\npath = "M 0 0 L 9 9"\nstart = 1\n', "did you mean 'start_s'?", "start"),
+])
+def test_errors_in_files_use_the_files_words(tmp_path, text, hint, field):
+    (tmp_path / "s.toml").write_text(text)
+    for read in (lambda: tactor.load(tmp_path / "s.toml"), lambda: tactor.parse(text)):
+        with pytest.raises(tactor.InputError) as e:
+            read()
+        assert (e.value.hint, e.value.field, e.value.line) == (hint, field, 3)
+
+
+@pytest.mark.parametrize("key", ["soa_s", "start_s", "total_s"])
+def test_records_of_plans_keep_their_words(palm, stroke, tmp_path, key):
+    record = {**tactor.plan(palm, stroke).to_dict(), key: "x"}
+    with pytest.raises(tactor.InputError) as e:
+        tactor.Plan.from_dict(record)
+    assert (e.value.what, e.value.field, e.value.file) == (f"plan: {key}", key, None)
+    (tmp_path / "p.json").write_text(json.dumps(record))
+    with pytest.raises(tactor.InputError) as e:
+        tactor.load_plan(tmp_path / "p.json")
+    assert e.value.field == key and e.value.file == str(tmp_path / "p.json") and key in e.value.what
+
+
+def test_no_words_of_the_tool_are_said(palm, stroke):
+    with pytest.raises(tactor.InputError) as e:
+        tactor.Score(tactor.Array.preset("palm-2x4"), tactor.plan(palm, stroke))
+    assert "--" not in str(e.value) and "plan.array" in e.value.hint
+    with pytest.raises(tactor.DeviceError) as e:
+        tactor.Player("hw:CARD=Nope", palm, config=os.devnull)
+    assert "tactor devices" not in str(e.value) and " -D " not in str(e.value)
+    with pytest.raises(tactor.InputError) as e:
+        tactor.Array.preset("palm")
+    assert "name a file" not in e.value.hint
+    with pytest.raises(tactor.InputError) as e:
+        tactor.Player("null", palm, config=os.devnull, sample_format="x")
+    assert e.value.what == "sample_format"
+    with pytest.raises(TypeError, match="an Array is wanted"):
+        tactor.plan(stroke, stroke)
+
+
+def missing(tmp_path, palm, plan):
+    there = tmp_path / "none"
+    return [lambda: tactor.load(there / "s.toml"), lambda: tactor.Array.from_file(there), lambda: tactor.load_plan(there / "p.json"),
+            lambda: tactor.Player("null", palm, config=there), lambda: tactor.devices(config=there), lambda: tactor.plan(palm, plan.stroke, waveform=f"{there}.wav"),
+            lambda: tactor.Score(palm, plan).write(there / "x.wav"), lambda: tactor.plot(plan, there / "x.svg"), lambda: palm.write(there / "a.toml"),
+            lambda: plan.write(there / "p.json"), lambda: plan.stroke.write(there / "s.toml"), lambda: tactor.compare(palm, plan.stroke).plot(there / "x.svg")]
+
+
+def test_what_is_missing_is_also_a_file_not_found_error(tmp_path, palm, stroke):
+    for call in missing(tmp_path, palm, tactor.plan(palm, stroke)):
+        with pytest.raises(FileNotFoundError) as e:
+            call()
+        assert isinstance(e.value, tactor.InputError) and e.value.errno == errno.ENOENT and e.value.filename == e.value.file
+        assert str(tmp_path / "none") in str(e.value.filename)
+        again = pickle.loads(pickle.dumps(e.value))
+        assert isinstance(again, FileNotFoundError) and type(again) is type(e.value) and str(again) == str(e.value)
+
+
+def test_folders_and_rights_have_their_classes_too(tmp_path, palm, stroke):
+    for call in (lambda: tactor.load(tmp_path), lambda: tactor.Array.from_file(tmp_path), lambda: tactor.Score(palm, tactor.plan(palm, stroke)).write(tmp_path)):
+        with pytest.raises(IsADirectoryError) as e:
+            call()
+        assert isinstance(e.value, tactor.InputError)
+
+
+def test_a_full_disk_is_an_os_error_with_errno(palm, stroke, tmp_path):
+    plan = tactor.plan(palm, stroke)
+    (tmp_path / "full.json").symlink_to("/dev/full")
+    (tmp_path / "full.toml").symlink_to("/dev/full")
+    for call in (lambda: tactor.Score(palm, plan).write("/dev/full"), lambda: palm.write("/dev/full"), lambda: plan.write(tmp_path / "full.json"),
+                 lambda: stroke.write(tmp_path / "full.toml")):
+        with pytest.raises(tactor.StreamError) as e:
+            call()
+        assert isinstance(e.value, OSError) and isinstance(e.value, RuntimeError) and e.value.errno == errno.ENOSPC
+
+
+@pytest.mark.parametrize("kind", [tactor.Error, tactor.InputError, tactor.DeviceError, tactor.StreamError])
+def test_args_and_repr_keep_the_hint(kind):
+    e = kind("what", "why", "hint", errno=5)
+    assert e.args == ("what", "why", "hint") and "hint" in repr(e)
+    assert _errors.made("not-available", "pcm", "why", "hint", errno=19).args == ("pcm", "why", "hint")

@@ -10,14 +10,22 @@
 
 #include <fmt/format.h>
 
+#include "core/kind_names.hpp"
+
 namespace tactor::cli {
 namespace {
+
+constexpr double most_amplitude = 1000.0; // as the intensity of a stroke
 
 std::vector<drive> drives_of(const fields& f)
 {
     std::vector<drive> drives;
-    for (const fields& d : f.list("drives"))
+    for (const fields& d : f.list("drives")) {
         drives.push_back({d.count("tactor"), d.number("amplitude")});
+        if (!(drives.back().amplitude >= 0.0 && drives.back().amplitude <= most_amplitude))
+            d.refuse("amplitude",
+                     fmt::format("is {}, not from 0 to {}", drives.back().amplitude, most_amplitude));
+    }
     return drives;
 }
 
@@ -30,8 +38,20 @@ burst place_of(const fields& f)
     return b;
 }
 
+// A built-in model shares the intensity out and adds nothing to it.
+void check_amplitudes(const fields& f, const std::string& name, const plan& p, const burst& b)
+{
+    constexpr double rounding = 1e-9;
+    if (!detail::kind_named<phantom_kind>(p.phantom))
+        return;
+    for (const drive& d : b.drives)
+        if (d.amplitude > b.intensity * (1.0 + rounding))
+            f.refuse(name.c_str(), fmt::format("drives tactor {} at {}, above its intensity of {}", d.tactor,
+                                               d.amplitude, b.intensity));
+}
+
 // Drives and their order as planners make them.
-void check_bursts(const fields& f, const array& a, const std::vector<burst>& bursts)
+void check_bursts(const fields& f, const array& a, const plan& p, const std::vector<burst>& bursts)
 {
     double latest = 0.0;
     for (std::size_t i = 0; i < bursts.size(); ++i) {
@@ -48,11 +68,19 @@ void check_bursts(const fields& f, const array& a, const std::vector<burst>& bur
             if (k > 0 && b.drives[k].tactor <= b.drives[k - 1].tactor)
                 refuse("its drives are not in order of tactor");
         }
+        check_amplitudes(f, fmt::format("bursts[{}]", i), p, b);
     }
 }
 
-void check_samples(const fields& f, const array& a, const curve_samples& samples)
+void check_samples(const fields& f, const array& a, const plan& p, const curve_samples& samples)
 {
+    burst b;
+    for (std::size_t i = 0; i < samples.ends.size(); ++i) {
+        const drive* const first = samples.drives.data() + (i == 0 ? 0 : samples.ends[i - 1]);
+        b.intensity = samples.intensities[i];
+        b.drives.assign(first, samples.drives.data() + samples.ends[i]);
+        check_amplitudes(f, fmt::format("points[{}]", i), p, b);
+    }
     for (const drive& d : samples.drives)
         if (d.tactor >= a.tactors.size())
             f.refuse("points", fmt::format("drive tactor {} of {}", d.tactor, a.tactors.size()));
@@ -65,7 +93,9 @@ constexpr std::uint64_t most_way_points = 10000;
 void fields::refuse(const char* name, const std::string& why) const
 {
     const std::string where = place_.empty() ? name : fmt::format("{}.{}", place_, name);
-    throw error(error_kind::bad_input, fmt::format("{}: {}", file_, where), why, "see tactor-json(5)");
+    throw error(error_kind::bad_input, fmt::format("{}: {}", file_, where), why, "see tactor-json(5)")
+        .with_field(where)
+        .with_place({file_});
 }
 
 const nlohmann::json& fields::member(const char* name) const
@@ -250,12 +280,12 @@ placed_plan plan_of(const fields& f, const array& a, std::vector<burst> bursts, 
     p.overlap = f.object("render").kind<overlap_kind>("overlap");
     p.soa_s = f.number_or_null("soa_s");
     p.total_s = f.number("total_s");
-    check_bursts(f, a, bursts);
+    check_bursts(f, a, p, bursts);
     p.bursts = std::move(bursts);
     if (f.has("continuous")) {
         if (f.object("continuous").number("step_s") != continuous_step_s)
             f.refuse("continuous.step_s", fmt::format("only {} s can be played", continuous_step_s));
-        check_samples(f, a, samples);
+        check_samples(f, a, p, samples);
         try {
             p.curve = curve(p.stroke_duration_s, std::move(samples));
         } catch (const error& e) {

@@ -136,9 +136,11 @@ plan_file load_plans(const std::string& file)
     check_readable(file);
     std::ifstream in(file, std::ios::binary);
     in.peek(); // a folder opens, and cannot be read
+    const int code = errno;
     if (in.bad() || !in.is_open())
-        throw error(error_kind::bad_input, file, std::generic_category().message(errno),
-                    "check the name and its rights");
+        throw error(error_kind::bad_input, source_place{file}, std::generic_category().message(code),
+                    "check the name and its rights")
+            .with_os_code(code);
     detail::note_input(file);
     return read_from(in, file);
 }
@@ -160,7 +162,7 @@ void check_same_array(const std::string& file, const array& made_for, const arra
         throw error(error_kind::bad_input, file,
                     fmt::format("it was planned for the array \"{}\", not for \"{}\": {}", made_for.name,
                                 in_use.name, why),
-                    "plan the stroke for this array, or say no --array: the plan has its own");
+                    "plan the stroke for this array, or leave array out: the plan has its own");
     };
     if (made_for.tactors.size() != in_use.tactors.size())
         refuse(fmt::format("{} there, {} here", counted(made_for.tactors.size(), "tactor"),

@@ -14,15 +14,16 @@ from tactor import _tactor
 from tactor._array import Array, Point, Tactor, array_presets
 from tactor._errors import DeviceError, Error, InputError, StreamError
 from tactor._fitting import Fitting, fit_as_asked, fit_strokes
-from tactor._parts import Burst, Conflict, Curve, Drive, Meeting, PerceptSample, PhantomModel
+from tactor._parts import Burst, Conflict, Curve, Drive, Meeting, Percept, PerceptMap, PerceptSample, PhantomModel
 from tactor._path import Path
-from tactor._plan import Plan
+from tactor._plan import Plan, load_plan
 from tactor._planning import burst_duration, plan
 from tactor._score import Score
 from tactor._stroke import Stroke, load, parse, stroke_presets
 
 if _t.TYPE_CHECKING:
     from tactor import lsl as lsl
+    from tactor._client import Client, RemoteLive, RemoteStroke, Reply
     from tactor._player import Player
     from tactor._ticket import Delay, LiveStroke, Report, Ticket
     from tactor._tool import Comparison, compare, devices, plot
@@ -30,9 +31,10 @@ if _t.TYPE_CHECKING:
 __version__: str = _tactor.version()
 
 __all__ = [
-    "Array", "Burst", "Comparison", "Conflict", "Curve", "Delay", "DeviceError", "Drive", "Error", "Fitting", "InputError", "LiveStroke",
-    "Meeting", "Path", "PerceptSample", "PhantomModel", "Plan", "Player", "Point", "Report", "Score", "StreamError", "Stroke", "Tactor", "Ticket",
-    "array_presets", "build_facts", "burst_duration", "compare", "devices", "fit_as_asked", "fit_strokes", "load", "parse", "plan", "plot",
+    "Array", "Burst", "Client", "Comparison", "Conflict", "Curve", "Delay", "DeviceError", "Drive", "Error", "Fitting", "InputError", "LiveStroke",
+    "Meeting", "Path", "Percept", "PerceptMap", "PerceptSample", "PhantomModel", "Plan", "Player", "Point", "RemoteLive",
+    "RemoteStroke", "Reply", "Report", "Score", "StreamError", "Stroke", "Tactor", "Ticket",
+    "array_presets", "build_facts", "burst_duration", "compare", "devices", "fit_as_asked", "fit_strokes", "load", "load_plan", "parse", "plan", "plot",
     "stroke_presets",
 ]
 
@@ -44,7 +46,7 @@ def build_facts() -> str:
 
 # What not every script needs is loaded when it is first named: a fifth of the time that the import takes.
 _LATER = {
-    "Player": "_player", "Delay": "_ticket", "LiveStroke": "_ticket", "Report": "_ticket", "Ticket": "_ticket",
+    "Client": "_client", "RemoteLive": "_client", "RemoteStroke": "_client", "Reply": "_client", "Player": "_player", "Delay": "_ticket", "LiveStroke": "_ticket", "Report": "_ticket", "Ticket": "_ticket",
     "Comparison": "_tool", "compare": "_tool", "devices": "_tool", "plot": "_tool",
 }
 

@@ -13,6 +13,7 @@ from tactor._files import reading
 if _t.TYPE_CHECKING:
     import numpy as _np
     from numpy.typing import ArrayLike as _ArrayLike, NDArray as _NDArray
+    from tactor._parts import PerceptMap as _PerceptMap
     _Actuator = _t.Literal["unknown", "piezo", "voice-coil", "lra", "erm"]
     _EachTactor = _t.Union[float, _t.Iterable[float], None]
     _Thresholds = _t.Union[float, _t.Iterable[_t.Union[float, _t.Sequence[tuple[float, float]], None]], None]
@@ -146,10 +147,7 @@ class Array(_Value):
     @classmethod
     def from_points(cls, points: _ArrayLike, name: str = "points") -> Array:
         """An array of places [(x_mm, y_mm), ...]; channels are counted from 0 in this order."""
-        places = _floats("points", points)
-        if places.ndim != 2 or places.shape[1] != 2:
-            raise InputError("points", f"they have the shape {places.shape}", "give [(x_mm, y_mm), ...]", field="points")
-        return cls(name, [Tactor(Point(x, y), i) for i, (x, y) in enumerate(places.tolist())])
+        return cls(name, [Tactor(Point(x, y), i) for i, (x, y) in enumerate(_places("points", points).tolist())])
 
     @property
     def name(self) -> str:
@@ -194,10 +192,76 @@ class Array(_Value):
         """The place of the hull that is nearest to one."""
         return Point(*self._core.nearest(*_place("point", point)))
 
-    def weights(self, point: _t.Sequence[float], phantom: str = "inverse-distance", intensity: float = 1.0) -> dict[int, float]:
-        """Which tactors make a phantom at a place, and how strongly: amplitudes by number."""
+    @_t.overload
+    def weights(self, point: tuple[float, float], phantom: str = "inverse-distance", intensity: float = 1.0) -> dict[int, float]: ...
+    @_t.overload
+    def weights(self, point: _NDArray[_np.float64] | _t.Sequence[_t.Sequence[float]], phantom: str = "inverse-distance",
+                intensity: float = 1.0) -> _NDArray[_np.float64]: ...
+    def weights(self, point: _t.Any, phantom: str = "inverse-distance", intensity: float = 1.0) -> _t.Any:
+        """Which tactors make a phantom at a place, and how strongly.
+
+        Parameters
+        ----------
+        point : (float, float) or array_like, shape (n, 2)
+            A place or several, mm.
+        phantom : str
+            Name of a built-in model, see `plan`.
+        intensity : float
+            Linear.
+
+        Returns
+        -------
+        dict of int and float, or ndarray, shape (n, tactors)
+            Of one place the amplitudes above 0 by number, of several all of them.
+
+        Raises
+        ------
+        InputError
+            For a place outside the array, as `plan` has it.
+        """
+        import numpy as np
         _need(phantom, str, "phantom")
-        return dict(_tactor.phantom_weights(phantom, self._core, *_place("point", point), _number("intensity", intensity)))
+        strength = _number("intensity", intensity, 0.0)
+        if np.ndim(point) == 2:
+            return _tactor.phantom_weights(phantom, self._core, _places("point", point), strength)
+        (row,) = _tactor.phantom_weights(phantom, self._core, np.array([_place("point", point)]), strength).tolist()
+        return {i: amplitude for i, amplitude in enumerate(row) if amplitude > 0.0}
+
+    def percept_map(self, step_mm: float = 1.0, phantom: str = "inverse-distance") -> _PerceptMap:
+        """What is predicted to be felt of phantoms all over the array.
+
+        Parameters
+        ----------
+        step_mm : float
+            Distance of the places, from 0.01 mm; at most a million places.
+        phantom : str
+            Name of a built-in model, see `plan`.
+
+        Returns
+        -------
+        PerceptMap
+
+        Raises
+        ------
+        InputError
+            For a step that gives more places.
+        """
+        import numpy as np
+        from tactor._parts import PerceptMap
+        step = _number("step_mm", step_mm, 0.01, 1e6)
+        low, high = self.positions.min(axis=0), self.positions.max(axis=0)
+        counts = np.floor((high - low) / step + 1e-9) + 1
+        if counts.prod() > 1e6:
+            raise InputError("step_mm", f"{step:g} gives {counts.prod():.0f} places", "at most 1000000", field="step_mm")
+        x, y = (low[axis] + step * np.arange(counts[axis]) for axis in (0, 1))
+        asked = np.stack(np.meshgrid(x, y), axis=-1)
+        inside = np.array([self.contains(place) for place in asked.reshape(-1, 2)]).reshape(asked.shape[:2])
+        energy = self.weights(asked[inside].reshape(-1, 2), phantom) ** 2
+        felt, intensity = np.full(asked.shape, np.nan), np.full(asked.shape[:2], np.nan)
+        total = energy.sum(axis=1)
+        felt[inside] = energy @ self.positions / total[:, None]
+        intensity[inside] = np.sqrt(total)
+        return PerceptMap(y, x, felt, np.hypot(*np.moveaxis(felt - asked, -1, 0)), intensity)
 
     def replace(self, *, name: str | None = None, tactors: _t.Iterable[Tactor] | None = None, channels: _t.Iterable[int] | None = None,
                 gains: _EachTactor = None, max_dbfs: _EachTactor = None, thresholds: _Thresholds = None,
@@ -293,6 +357,13 @@ class Array(_Value):
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
         return _array_again, (self.name, self._tactors, self._file, self._besides, self._origin)
+
+
+def _places(what: str, points: _t.Any) -> _t.Any:
+    places = _floats(what, points)
+    if places.ndim != 2 or places.shape[1] != 2:
+        raise InputError(what, f"they have the shape {places.shape}", "give [(x_mm, y_mm), ...]", field=what)
+    return places
 
 
 def _row(t: Tactor) -> tuple[_t.Any, ...]:

@@ -10,14 +10,38 @@ from tactor._errors import InputError
 
 
 def _floats(what: str, values: _t.Any) -> _t.Any:
+    """Numbers as an array of float64; refuses what would lose something on the way, as complex numbers, times and masks do."""
     import numpy as np
     try:
-        numbers: _t.Any = np.ascontiguousarray(values, dtype=np.float64) if np.ndim(values) else np.float64(values)
+        raw: _t.Any = values if isinstance(values, np.ma.MaskedArray) else np.asarray(values)
+        if raw.size and not _are_plain(raw):
+            raise TypeError("it has " + ("masked values" if _is_masked(raw) else f"values of type {raw.dtype}"))
+        numbers: _t.Any = np.ascontiguousarray(raw, dtype=np.float64) if raw.ndim else np.float64(raw)
     except (TypeError, ValueError, OverflowError) as e:
-        raise InputError(what, f"it is no array of numbers: {e}", field=what) from None
+        raise InputError(what, f"it is no array of numbers: {e}", "give real numbers", field=what) from None
     if np.isnan(numbers).any():  # which None becomes, too
         raise InputError(what, "there is what is no number in it", field=what)
     return numbers
+
+
+def _are_plain(array: _t.Any) -> bool:
+    """Whether an array has real numbers alone."""
+    if array.dtype.kind == "O":
+        return all(not isinstance(v, (str, bytes, bool, complex)) and _is_plain(v) for v in array.flat)
+    return array.dtype.kind in "iuf" and not _is_masked(array)
+
+
+def _is_masked(array: _t.Any) -> bool:
+    mask = getattr(array, "mask", False)
+    return bool(mask.any() if hasattr(mask, "any") else mask)
+
+
+def _is_plain(value: _t.Any) -> bool:
+    """False for what has a type of NumPy's that is no real number: complex numbers, times, truths, texts, masked and several values."""
+    dtype = getattr(value, "dtype", None)
+    if dtype is None:
+        return True
+    return getattr(dtype, "kind", "") in "iuf" and getattr(value, "ndim", 0) == 0 and not getattr(value, "mask", False)
 
 
 def _number(what: str, value: _t.Any, least: float = -math.inf, most: float = math.inf, hint: str = "", finite: bool = True) -> float:
@@ -25,7 +49,7 @@ def _number(what: str, value: _t.Any, least: float = -math.inf, most: float = ma
     if not hint and math.isfinite(least):
         hint = f"{least:g} to {most:g}" if math.isfinite(most) else f"{least:g} or more"
     try:
-        if isinstance(value, (str, bytes, bytearray, bool)):
+        if isinstance(value, (str, bytes, bytearray, bool)) or not _is_plain(value):
             raise TypeError
         number = float(value)
     except (TypeError, ValueError):
@@ -69,7 +93,8 @@ def _shown(value: object) -> str:
 def _need(value: object, kind: type, what: str) -> None:
     """Says which argument is of another type; where it were passed on, nobody would know its name."""
     if not isinstance(value, kind):
-        raise TypeError(f"{what}: a {kind.__name__} is wanted, not {type(value).__name__}")
+        article = "an" if kind.__name__[0] in "AEIOU" else "a"
+        raise TypeError(f"{what}: {article} {kind.__name__} is wanted, not {type(value).__name__}")
 
 
 def _counted(n: int, noun: str) -> str:

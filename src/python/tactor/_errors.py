@@ -10,6 +10,8 @@ _NAMES = {
     "pitch_x_mm": "pitch_mm", "pitch_y_mm": "pitch_mm", "window_s": "drive_window_s", "rests": "pauses", "start_s": "start",
     "duration_s": "duration", "speed_mm_s": "speed", "timeout_s": "timeout", "longest_s": "longest", "smooth_s": "smooth", "at_ns": "at_s",
     "duration of a burst": "burst", "fit_strokes()": "fit=True", "snap = true": "snap=True", "force = true": "force=True", "drop_points = true": "drop_points=True",
+    "tactor devices": "tactor.devices()", "tactor plan STROKE --format json": "Plan.write()",
+    "or name a file": "or Array.from_file() reads one", "sample format": "sample_format", "leave array out: the plan has its own": "give its own, plan.array",
 }
 _FIELDS = {"wave": "waveform"}  # words that stand elsewhere, too
 _CHOICE = r"(?<![\w.-])(timing|outside|algorithm) = ([\w-]+)"
@@ -17,6 +19,9 @@ _CHOICE = r"(?<![\w.-])(timing|outside|algorithm) = ([\w-]+)"
 
 class Error(Exception):
     """Base of what the library raises.
+
+    Where a call of the system failed it is also an `OSError` with its errno: a missing file is an `InputError` and a
+    `FileNotFoundError`, a full disk a `StreamError` and an `OSError`.
 
     Attributes
     ----------
@@ -48,21 +53,30 @@ class Error(Exception):
     def __init__(self, what: str = "", why: str = "", hint: str = "", *, file: str | None = None, line: int | None = None,
                  column: int | None = None, field: str | None = None, errno: int = 0) -> None:
         super().__init__(what, why, hint)
+        self.args = what, why, hint  # OSError takes the third for a file's name
         self.what = what
         self.why = why
         self.hint = hint
-        self.file = file
         self.line = line
         self.column = column
         self.field = field
         self.errno = errno
+        self._name_file(file)
+
+    def _name_file(self, file: str | None) -> None:
+        """Says which file it is about, in OSError's way, too."""
+        self.file = file
+        in_system: _t.Any = self
+        if OSError in type(self).__mro__:
+            in_system.strerror, in_system.filename = self.why, file
 
     def __str__(self) -> str:
         text = f"{self.what}: {self.why}" if self.why else self.what
         return f"{text} ({self.hint})" if self.hint else text
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
-        return _again, (type(self), self.what, self.why, self.hint, self.file, self.line, self.column, self.field, self.errno)
+        kind = _kind_of(self)
+        return _again, (kind, kind is not type(self), self.what, self.why, self.hint, self.file, self.line, self.column, self.field, self.errno)
 
 
 class InputError(Error, ValueError):
@@ -72,10 +86,6 @@ class InputError(Error, ValueError):
 class DeviceError(Error, OSError):
     """A device or a line that is missing, busy, or cannot do what is asked."""
 
-    def __init__(self, what: str = "", why: str = "", hint: str = "", **place: _t.Any) -> None:
-        super().__init__(what, why, hint, **place)
-        self.filename = self.file  # OSError takes its third argument for one
-
 
 class StreamError(Error, RuntimeError):
     """What failed while it ran: the stream, a disk that is full."""
@@ -84,21 +94,43 @@ class StreamError(Error, RuntimeError):
 _KINDS: dict[str, type[Error]] = {"bad-input": InputError, "not-available": DeviceError, "runtime": StreamError}
 
 
-def _again(kind: type[Error], what: str, why: str, hint: str, file: str | None, line: int | None, column: int | None,
+def _of_system(kind: type[Error], errno: int) -> type[Error]:
+    """The class of that kind that is also what Python raises for an errno; the kind itself for none."""
+    base = type(OSError(errno, "")) if errno else kind
+    if issubclass(kind, base):
+        return kind
+    if (kind, base) not in _system_classes:
+        _system_classes[kind, base] = type(base.__name__, (kind, base), {"__doc__": kind.__doc__, "__module__": __name__})
+    return _system_classes[kind, base]
+
+
+_system_classes: dict[tuple[type, type], type[Error]] = {}
+
+
+def _kind_of(e: Error) -> type[Error]:
+    """The class that has a name, of one that _of_system() has made."""
+    kind = type(e)
+    return kind.__mro__[1] if kind in _system_classes.values() else kind
+
+
+def _again(kind: type[Error], of_system: bool, what: str, why: str, hint: str, file: str | None, line: int | None, column: int | None,
            field: str | None, errno: int) -> Error:
-    return kind(what, why, hint, file=file, line=line, column=column, field=field, errno=errno)
+    made = _of_system(kind, errno) if of_system else kind
+    return made(what, why, hint, file=file, line=line, column=column, field=field, errno=errno)
 
 
 def _in_python(text: str) -> str:
     import re
     fields = "|".join(map(re.escape, _NAMES))
     text = re.sub(rf"(?<![\w.-])(?:{fields})(?![\w.-])", lambda m: _NAMES[m[0]], text)
+    text = re.sub(r"(?<!\S)-D ([\w:=.,]*\w)", r'device="\1"', text)
     return re.sub(_CHOICE, r'\1="\2"', text)
 
 
 def made(kind: str, what: str, why: str, hint: str, field: str = "", file: str = "", line: int = 0, column: int = 0,
          errno: int = 0) -> Error:
-    """Makes the exception of a library's error; called by the extension."""
-    placed = bool(file or line)
-    return _KINDS[kind](what if placed else _in_python(what), why, _in_python(hint), file=file or None, line=line or None,
-                        column=column or None, field=(field if placed else _FIELDS.get(field, _in_python(field))) or None, errno=errno)
+    """Makes the exception of a library's error; called by the extension. About a file it speaks in the file's own words."""
+    if not (file or line):
+        what, hint, field = _in_python(what), _in_python(hint), _FIELDS.get(field, _in_python(field))
+    return _of_system(_KINDS[kind], errno)(what, why, hint, file=file or None, line=line or None, column=column or None, field=field or None,
+                                           errno=errno)

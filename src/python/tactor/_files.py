@@ -25,5 +25,5 @@ def reading(file: str | os.PathLike[str]) -> _t.Iterator[bytes]:
         yield encoded(name)
     except Error as e:
         if e.file is None:
-            e.file = name
+            e._name_file(name)
         raise

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import collections.abc as _abc
+import os
 import typing as _t
 
 from tactor import _tactor
 from tactor._array import Array, Point
 from tactor._checks import _Value
-from tactor._errors import InputError
+from tactor._errors import Error, InputError
+from tactor._files import reading
 from tactor._options import _SOUNDING, check_used, settled
-from tactor._parts import Burst, Conflict, Curve, Drive, Meeting, PerceptSample
+from tactor._parts import Burst, Conflict, Curve, Drive, Frozen, Meeting, Percept
 from tactor._stroke import Stroke
 
 if _t.TYPE_CHECKING:
@@ -54,14 +56,48 @@ class Plan(_Value):
         Raises
         ------
         InputError
-            That names the field.
+            That names the field: one that is missing, one that no plan has, an amplitude above its burst's intensity.
         """
         import json
         try:
             text = json.dumps(d, allow_nan=False, default=_plain)
         except (TypeError, ValueError, RecursionError) as e:
             raise InputError("plan", f"it is no JSON: {e}", "see tactor-json(5)") from None
-        return cls._of(_tactor.Plan.from_json(text), recorded=True)
+        try:
+            return cls._read(text, "plan")
+        except Error as e:
+            e.file = None
+            raise
+
+    @classmethod
+    def _read(cls, text: str, name: str) -> Plan:
+        """A plan of JSON; `name` stands for it in messages."""
+        from tactor._records import check_keys
+        core = _tactor.Plan.from_json(text, name)
+        check_keys(text, name)
+        return cls._of(core, recorded=True)
+
+    def write(self, file: str | os.PathLike[str]) -> None:
+        """Writes the plan as `tactor plan --format json` does: a record of every sample, for `load_plan` and the tool.
+
+        Complete or not at all: an existing file is replaced at the end.
+
+        Parameters
+        ----------
+        file : path-like
+            Ends in .json.
+
+        Raises
+        ------
+        InputError
+            For another extension, a folder that does not exist, and a level that a tactor may not have.
+        StreamError
+            For what the file system refuses.
+        """
+        with reading(file) as to:
+            if not to.endswith(b".json"):
+                raise InputError(os.fspath(file), "a plan is written as JSON", "end the name in .json")
+            _tactor.write_text(to, self._core.json())
 
     def to_dict(self) -> dict[str, _t.Any]:
         """The tactor-plan/1 object, as `tactor plan --format json` prints it: a record of every sample.
@@ -137,18 +173,19 @@ class Plan(_Value):
     @property
     def conflicts(self) -> list[Conflict]:
         """Where bursts overlap on one tactor."""
-        return [Conflict(*c) for c in self._core.conflicts]
+        return self._keep("conflicts", lambda: Frozen(Conflict(*c) for c in self._core.conflicts))  # type: ignore[no-any-return]
 
     @property
     def dropped(self) -> list[Meeting]:
         """Crossings of the Tactile Brush that were left out."""
-        return [Meeting(t, Point(x, y)) for t, x, y in self._core.dropped]
+        return self._keep("dropped", lambda: Frozen(Meeting(t, Point(x, y)) for t, x, y in self._core.dropped))  # type: ignore[no-any-return]
 
     @property
     def bursts(self) -> list[Burst]:
-        """Bursts by onset; empty for a continuous stroke."""
-        return [Burst(onset, duration, Point(*at), intensity, tuple(Drive(*d) for d in drives))
-                for onset, duration, at, intensity, drives in self._core.rows()]
+        """Bursts by onset; empty for a continuous stroke. The list is made once and cannot be changed."""
+        return self._keep("bursts", lambda: Frozen(  # type: ignore[no-any-return]
+            Burst(onset, duration, Point(*at), intensity, tuple(Drive(*d) for d in drives))
+            for onset, duration, at, intensity, drives in self._core.rows()))
 
     @property
     def curve(self) -> Curve | None:
@@ -190,10 +227,18 @@ class Plan(_Value):
         """What `compensate` did, as in the record (observer, residuals and taps); None without it."""
         return self.to_dict().get("compensation")
 
-    def percept(self) -> list[PerceptSample]:
-        """What is predicted to be felt at 0, 1, 2 ... ms: a model, never a measurement."""
-        return [PerceptSample(t, Point(*target), None if felt is None else Point(*felt), *rest)
-                for t, target, felt, *rest in self._core.felt()]
+    def percept(self) -> Percept:
+        """What is predicted to be felt at 0, 1, 2 ... ms: a model, never a measurement.
+
+        Returns
+        -------
+        Percept
+            With the arrays t, positions, intensity and speed.
+        """
+        def made() -> Percept:
+            t, targets, positions, intensity, target_intensity, shared, speed = self._core.felt()
+            return Percept(t, positions, intensity, speed, targets, target_intensity, shared != 0.0)
+        return self._keep("percept", made)  # type: ignore[no-any-return]
 
     def percept_summary(self) -> dict[str, float | None]:
         """How far the prediction is from the target: rms_error_mm, largest_error_mm, speed_cv, intensity_cv, silent_share, shared_share."""
@@ -218,7 +263,7 @@ class Plan(_Value):
         """Options of a score on that array, where `given` wins. The plan has taken over what its own array's file says, and a record
         says all; elsewhere the other array's file says what the plan leaves open."""
         sound = self._core.sound
-        if self._recorded or self._array == array:
+        if self._recorded or self._array is array or self._array == array:
             check_used(given, {**sound, **{name: value for name, value in given.items() if value is not None}})
             return given
         rivals = {"level_dbfs", "sl"} if given.get("level_dbfs") is not None or given.get("sl") is not None else set()
@@ -249,6 +294,27 @@ class Plan(_Value):
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
         return _plan_again, (self._core.json(), self._core.stroke.state(), self._array, self._recorded, self._asked)
+
+
+def load_plan(file: str | os.PathLike[str]) -> Plan:
+    """Reads a plan that `Plan.write` or `tactor plan --format json` wrote.
+
+    Parameters
+    ----------
+    file : path-like
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    InputError
+        That names the file and the field, and for several plans in one file. A missing file is a FileNotFoundError, too.
+    """
+    with reading(file) as name:
+        text = _tactor.read_text(name)
+        return Plan._read(text, os.fspath(file))
 
 
 def _plain(value: _t.Any) -> _t.Any:

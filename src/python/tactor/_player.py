@@ -18,7 +18,7 @@ from tactor._files import encoded
 from tactor._options import _LIVE, settled
 from tactor._parts import PhantomModel
 from tactor._score import Score
-from tactor._ticket import LiveStroke, Report, Ticket, _call, _Shared
+from tactor._ticket import LiveStroke, Report, Ticket, _call, _Held, _Shared
 
 if _t.TYPE_CHECKING:
     from types import TracebackType as _TracebackType
@@ -104,8 +104,8 @@ class Player(_Unique):
         driven = _tactor.DriveHistory() if after is None else after._history()
         core = _tactor.Player(array._core, device, given, driven)
         self._setup: dict[str, _t.Any] = core.setup()
-        self._driven: _t.Any = None
-        self._shared = _Shared(core, log)
+        self._held = _Held(log)
+        self._shared = _Shared(core, self._held)
         _open.add(self)
 
     @property
@@ -184,7 +184,7 @@ class Player(_Unique):
         core = self._fitting(score)
         with shared.lock:
             number = shared.core.submit(core, what, when, 0 if frame is None else frame)
-            ticket = shared.tickets[number] = Ticket(shared, number)
+            ticket = self._held.tickets[number] = Ticket(shared, number)
         return ticket
 
     def _fitting(self, score: Score) -> _t.Any:
@@ -238,7 +238,7 @@ class Player(_Unique):
         with shared.lock:
             core = shared.core.live(self._array._core, options, *times)
             stroke = LiveStroke(shared, core)
-            shared.tickets[stroke.id] = stroke
+            self._held.tickets[stroke.id] = stroke
         return stroke
 
     def fire(self, at_s: float | None = None) -> int:
@@ -251,11 +251,11 @@ class Player(_Unique):
 
     @property
     def ended(self) -> str | None:
-        """Why the stream has ended; empty where `stop` ended it in order, None while it goes on."""
+        """Why the stream has ended; empty where `stop` or `close` ended it in order, None while it goes on."""
         return self._get().core.ended()  # type: ignore[no-any-return]
 
     def stats(self) -> dict[str, _t.Any]:
-        """Counters since it was opened: periods, frames, xruns, limited_frames, power_limited_frames, drives_cut, stalls, realtime, ..."""
+        """Counters since it was opened, after `close` those of the end: periods, frames, xruns, limited_frames, power_limited_frames, drives_cut, stalls, realtime, ..."""
         return self._get().core.stats()  # type: ignore[no-any-return]
 
     def position(self) -> dict[str, _t.Any]:
@@ -265,17 +265,17 @@ class Player(_Unique):
     def close(self) -> None:
         """Stops, closes the device and leaves the amplifier off. All strokes have been reported then, and their callbacks called."""
         shared = self._get()
+        held = self._held
+        shared.held = lambda: held  # collected, it is still told how its strokes ended
         with shared.closing:  # who comes second finds it closed
-            if not shared.core.closed:
-                shared.core.stop()
-                self._driven = shared.core.history()
             shared.core.close()
         _open.discard(self)
         if threading.current_thread() is not shared.thread:
             shared.thread.join()
+            shared.held = weakref.ref(held)
 
     def _history(self) -> _t.Any:
-        return self._driven if self._driven is not None else self._get().core.history()
+        return self._get().core.history()
 
     def _get(self) -> _Shared:
         if self._shared is None:

@@ -8,7 +8,7 @@ import typing as _t
 
 from tactor import _tactor
 from tactor._array import Array
-from tactor._checks import _counted, _need, _number, _Value
+from tactor._checks import _counted, _need, _number, _Value, _whole
 from tactor._errors import InputError
 from tactor._files import reading
 from tactor._options import in_parts
@@ -25,6 +25,22 @@ if _t.TYPE_CHECKING:
 
 _FORMATS = {"float32": "float", "int16": "s16", "int32": "s32"}
 _dtypes: dict[str, _t.Any] = {}  # of these names, for NumPy takes its time for each
+
+
+def _format_of(dtype: _DTypeLike) -> str:
+    """Name of a type that can be rendered, which then stands in _dtypes."""
+    name = dtype if isinstance(dtype, str) else ""
+    if name not in _dtypes:
+        import numpy as np
+        try:
+            wanted = np.dtype(dtype)
+        except TypeError:
+            wanted = None
+        if wanted is None or wanted.name not in _FORMATS or not wanted.isnative:
+            raise InputError("dtype", f"{dtype!r} is not known", 'one of "float32", "int16", "int32"', field="dtype")
+        name = wanted.name
+        _dtypes[name] = wanted
+    return name
 
 
 def placed(plans: _Plans) -> list[tuple[float | None, Plan]]:
@@ -154,13 +170,20 @@ class Score(_Value):
         """First frame of each plan."""
         return self._core.starts  # type: ignore[no-any-return]
 
-    def render(self, dtype: _DTypeLike = "float32") -> _NDArray[_t.Any]:
+    def render(self, dtype: _DTypeLike = "float32", *, start: int = 0, frames: int | None = None,
+               out: _NDArray[_t.Any] | None = None) -> _NDArray[_t.Any]:
         """The samples, the same as `tactor render` writes.
 
         Parameters
         ----------
         dtype : data-type
             "float32" (full scale is 1.0), "int16" or "int32".
+        start : int
+            First frame, from 0. What is before it is computed, too, and dropped; `blocks` goes through a long score faster.
+        frames : int, optional
+            How many; default: to the end. After the end there is silence.
+        out : ndarray, shape (frames, channels), optional
+            Is filled and returned, in place of a new array; of that type, and contiguous in C's order.
 
         Returns
         -------
@@ -169,20 +192,53 @@ class Score(_Value):
         Raises
         ------
         InputError
-            For another type.
+            For another type, and for an array that does not fit.
         """
-        name = dtype if isinstance(dtype, str) else ""
-        if name not in _dtypes:
+        name = _format_of(dtype if out is None else out.dtype)
+        first = _whole("start", start, 0, 1 << 62)
+        count = max(self.frames - first, 0) if frames is None and out is None else \
+            len(_t.cast(_t.Any, out)) if frames is None else _whole("frames", frames, 0, 1 << 40)
+        if out is None:
             import numpy as np
-            try:
-                wanted = np.dtype(dtype)
-            except TypeError:
-                wanted = None
-            if wanted is None or wanted.name not in _FORMATS or not wanted.isnative:
-                raise InputError("dtype", f"{dtype!r} is not known", 'one of "float32", "int16", "int32"')
-            name = wanted.name
-            _dtypes[name] = wanted
-        return self._core.render(_FORMATS[name], _dtypes[name])  # type: ignore[no-any-return]
+            out = np.empty((count, self.channels), _dtypes[name])
+        elif out.shape != (count, self.channels) or not out.flags.c_contiguous or not out.flags.writeable:
+            raise InputError("out", f"an array of shape {out.shape} does not fit",
+                             f"give one of shape ({count}, {self.channels}) that can be written, in C's order", field="out")
+        renderer = _tactor.Renderer(self._core, _FORMATS[name])
+        renderer.skip(min(first, self.frames))
+        renderer.into(out)
+        return out
+
+    def blocks(self, frames: int, dtype: _DTypeLike = "float32") -> _t.Iterator[_NDArray[_t.Any]]:
+        """The samples block by block, so that a long score need not be in memory.
+
+        Parameters
+        ----------
+        frames : int
+            Of each block, 1 to 16777216; the last one may be shorter.
+        dtype : data-type
+            As in `render`.
+
+        Yields
+        ------
+        ndarray, shape (frames, channels)
+            A new one each time.
+
+        Raises
+        ------
+        InputError
+            For another type or number.
+        """
+        name = _format_of(dtype)
+        return self._blocks(name, _whole("frames", frames, 1, 1 << 24))
+
+    def _blocks(self, name: str, frames: int) -> _t.Iterator[_NDArray[_t.Any]]:
+        import numpy as np
+        renderer = _tactor.Renderer(self._core, _FORMATS[name])
+        for first in range(0, self.frames, frames):
+            block = np.empty((min(frames, self.frames - first), self.channels), _dtypes[name])
+            renderer.into(block)
+            yield block
 
     def to_numpy(self) -> _NDArray[_np.float32]:
         """The same as `render()`."""

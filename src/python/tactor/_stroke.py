@@ -13,7 +13,8 @@ from tactor._files import reading
 from tactor._path import Path
 
 if _t.TYPE_CHECKING:
-    from numpy.typing import ArrayLike as _ArrayLike
+    import numpy as _np
+    from numpy.typing import ArrayLike as _ArrayLike, NDArray as _NDArray
     _Note = _t.Literal["none", "reconstructed"]
     _StartFrom = _t.Literal["piece", "start", "end"]
     _Easing = _t.Literal["linear", "in-out", "minimum-jerk"]
@@ -43,6 +44,13 @@ def _pauses(pauses: _t.Any) -> _t.Any:
 def _is_one(value: _t.Any) -> bool:
     """Whether it is one number, not a list of them."""
     return not hasattr(value, "__len__") or getattr(value, "ndim", 1) == 0
+
+
+def _times(t: _t.Any) -> _t.Any:
+    times = _floats("t", t)
+    if times.ndim != 1:
+        raise InputError("t", f"it has the shape {times.shape}", "give a time, or a list of them", field="t")
+    return times
 
 
 def _placed(name: str, start: float | None, carrier: float | None) -> tuple[str, float | None, float | None]:
@@ -205,13 +213,25 @@ class Stroke(_Value):
         """What was odd about the input and taken nevertheless."""
         return self._core.warnings  # type: ignore[no-any-return]
 
-    def position(self, t: float) -> Point:
-        """Where the target is at a time in seconds, clamped to 0 ... duration."""
-        return Point(*self._core.position(_number("t", t, finite=False)))
+    @_t.overload
+    def position(self, t: float) -> Point: ...
+    @_t.overload
+    def position(self, t: _t.Sequence[float] | _NDArray[_np.float64]) -> _NDArray[_np.float64]: ...
+    def position(self, t: _t.Any) -> _t.Any:
+        """Where the target is at a time in seconds, clamped to 0 ... duration; of an array of n times the places, shape (n, 2), mm."""
+        if _is_one(t):
+            return Point(*self._core.position(_number("t", t, finite=False)))
+        return self._core.positions(_times(t))
 
-    def intensity(self, t: float) -> float:
-        """How strong the target is at a time in seconds, clamped to 0 ... duration."""
-        return self._core.intensity(_number("t", t, finite=False))  # type: ignore[no-any-return]
+    @_t.overload
+    def intensity(self, t: float) -> float: ...
+    @_t.overload
+    def intensity(self, t: _t.Sequence[float] | _NDArray[_np.float64]) -> _NDArray[_np.float64]: ...
+    def intensity(self, t: _t.Any) -> _t.Any:
+        """How strong the target is at a time in seconds, clamped to 0 ... duration; of an array of n times all, shape (n,), linear."""
+        if _is_one(t):
+            return self._core.intensity(_number("t", t, finite=False))
+        return self._core.intensities(_times(t))
 
     def meets_x(self, x_mm: float) -> list[float]:
         """Times, ascending, at which the target meets the line x = x_mm."""
@@ -236,6 +256,28 @@ class Stroke(_Value):
     def with_intensity(self, factor: float) -> Stroke:
         """The same movement with every intensity times a factor."""
         return self._of(self._core.with_intensity(_number("factor", factor)))
+
+    def write(self, file: str | os.PathLike[str]) -> None:
+        """Writes a stroke file in TOML that `load` and the tool read.
+
+        Warnings, and a start that counts from another stroke, are lost. Complete or not at all: an existing file is replaced at the end.
+
+        Parameters
+        ----------
+        file : path-like
+            Ends in .toml.
+
+        Raises
+        ------
+        InputError
+            For another extension, a folder that does not exist, and what no file can say: along a path an intensity above 1.
+        StreamError
+            For what the file system refuses.
+        """
+        with reading(file) as to:
+            if not to.endswith(b".toml"):
+                raise InputError(os.fspath(file), "a stroke is written as TOML", "end the name in .toml")
+            _tactor.write_text(to, self._core.text())
 
     def fitted(self, array: Array, margin_mm: float = 0.0) -> Stroke:
         """The same shape, as large as the array has space for and in its middle; see `fit_strokes`."""

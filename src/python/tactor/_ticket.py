@@ -2,11 +2,13 @@
 """Strokes that a player was given: tickets, live strokes and reports."""
 from __future__ import annotations
 
+import collections
 import sys
 import threading
 import time
 import typing as _t
 import warnings
+import weakref
 
 from tactor._checks import _number, _Unique
 
@@ -76,9 +78,9 @@ class Ticket(_Unique):
     def __init__(self, player: _Shared, number: int) -> None:
         self._player = player
         self._number = number
-        self._ended = threading.Event()
+        self._ended = _Gate()
         self._report: Report | None = None
-        self._lock = threading.Lock()
+        self._lock = threading.RLock()  # a signal's handler may interrupt who has it
         self._callbacks: list[_t.Callable[[_t.Any], object]] = []
 
     @property
@@ -98,7 +100,7 @@ class Ticket(_Unique):
 
     def done(self) -> bool:
         """Whether it has ended."""
-        return self._ended.is_set()
+        return self._report is not None
 
     def wait(self, timeout: float | None = None) -> Report:
         """Waits until it has ended. Ctrl-C fades it out.
@@ -143,11 +145,9 @@ class Ticket(_Unique):
     def _wait(self, timeout: float | None) -> bool:
         # Where the kernel gives a signal to another thread, nothing wakes one that waits: it looks for itself.
         until = None if timeout is None else time.monotonic() + timeout
-        while not self._ended.is_set():
-            left = _LOOK_S if until is None else until - time.monotonic()
-            if left <= 0.0:
+        while not self._ended.wait(_LOOK_S if until is None else min(max(until - time.monotonic(), 0.0), _LOOK_S)):
+            if until is not None and time.monotonic() >= until:
                 return False
-            self._ended.wait(min(left, _LOOK_S))
         return True
 
     def cancel(self) -> bool:
@@ -189,7 +189,7 @@ class Ticket(_Unique):
         with self._lock:
             self._report = report
             callbacks, self._callbacks = self._callbacks, []
-        self._ended.set()
+        self._ended.open()
         for callback in callbacks:
             _call(callback, self)
 
@@ -270,28 +270,63 @@ class LiveStroke(Ticket):
             self.wait()
 
 
-class _Shared:
-    """What a player and its thread have in common: not the player, so that a forgotten one can be collected."""
+class _Gate:
+    """Is opened once. Those who wait may be interrupted by a signal's handler that waits, too, which threading.Event does not allow."""
 
-    def __init__(self, core: _t.Any, log: _t.Callable[[_LogKind, str], object] | None) -> None:
-        self.core = core
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._lock.acquire()
+
+    def open(self) -> None:
+        self._lock.release()
+
+    def wait(self, timeout: float) -> bool:
+        there = self._lock.acquire(timeout=timeout)
+        if there:
+            self._lock.release()
+        return there
+
+
+class _Held:
+    """What a player holds for its thread: callbacks may know the player, so that a thread which held them would keep it alive."""
+
+    def __init__(self, log: _t.Callable[[_LogKind, str], object] | None) -> None:
         self.log = log
-        self.rate: int = core.setup()["rate"]
-        self.lock = threading.Lock()
-        self.closing = threading.Lock()
         self.tickets: dict[int, Ticket] = {}
+
+
+class _Shared:
+    """What a player, its tickets and its thread have in common: not the player, so that a forgotten one can be collected."""
+
+    def __init__(self, core: _t.Any, held: _Held) -> None:
+        self.core = core
+        self.rate: int = core.setup()["rate"]
+        self.lock = threading.RLock()  # as a ticket's
+        self.closing = threading.RLock()
+        self.held: _t.Callable[[], _Held | None] = weakref.ref(held)
+        self.events: collections.deque[tuple[_t.Any, ...]] = collections.deque()
         self.thread = threading.Thread(target=self._run, name="tactor", daemon=True)
         self.thread.start()
 
     def _run(self) -> None:
         while (event := self.core.next()) is not None:
+            self.events.append(event)
+            self._tell()
+        self._tell()
+
+    def _tell(self) -> None:
+        held = self.held()
+        if held is None:  # the player is being collected: its close() gives it back
+            return
+        while self.events:
+            event = self.events.popleft()
             if len(event) == 2:
-                if self.log is not None:
-                    _call(self.log, *event)
+                if held.log is not None:
+                    _call(held.log, *event)
                 continue
             number, state, reason, frames, started_s, late_s, delay, held_points = event
             with self.lock:  # whoever submitted it has its ticket in there first
-                ticket = self.tickets.pop(number, None)
+                ticket = held.tickets.pop(number, None)
             if ticket is not None:
                 ticket._end(Report(state, reason, frames, started_s, late_s, None if delay is None else Delay(*delay), held_points))
 

@@ -1,0 +1,542 @@
+# SPDX-License-Identifier: MIT
+"""Drawing through `tactor serve`, beside other programs."""
+from __future__ import annotations
+
+import json
+import os
+import socket as _socket
+import sys
+import threading
+import time
+import typing as _t
+
+from tactor._checks import _need, _number, _shown, _Unique, _whole
+from tactor._errors import _KINDS, DeviceError, Error, InputError, StreamError, _of_system
+from tactor._path import Path
+from tactor._stroke import Stroke
+from tactor._ticket import Report, _call, _Gate
+
+if _t.TYPE_CHECKING:
+    import asyncio
+    from types import TracebackType as _TracebackType
+    from tactor._plan import Plan as _Plan
+
+_LOOK_S = 0.1  # so late Ctrl-C may be noticed
+_HELLO_S = 10.0
+
+
+class Reply(_Unique):
+    """What a `Client` was asked for. It was sent at once; the answer can be awaited, or waited for by `wait`.
+
+    Both give the result, or raise what the service refused it with: `InputError`, `DeviceError` or `StreamError` with its words.
+    """
+
+    def __init__(self, client: _Connection, convert: _t.Callable[[_t.Any], _t.Any]) -> None:
+        self._client = client
+        self._convert = convert
+        self._gate = _Gate()
+        self._lock = threading.RLock()
+        self._callbacks: list[_t.Callable[[_t.Any], object]] = []
+        self._result: _t.Any = None
+        self._error: Error | None = None
+        self._done = False
+
+    def done(self) -> bool:
+        """Whether the answer is there."""
+        return self._done
+
+    def wait(self, timeout: float | None = None) -> _t.Any:
+        """Blocks until the answer is there.
+
+        Parameters
+        ----------
+        timeout : float, optional
+            Seconds.
+
+        Returns
+        -------
+        object
+
+        Raises
+        ------
+        TimeoutError
+            When there is none after that.
+        Error
+            What the service answered, or that it has gone.
+        """
+        until = None if timeout is None else time.monotonic() + _number("timeout", timeout, finite=False)
+        if not self._done and threading.current_thread() is self._client.thread:
+            raise RuntimeError("a callback cannot wait for an answer")
+        while not self._gate.wait(_LOOK_S if until is None else min(max(until - time.monotonic(), 0.0), _LOOK_S)):
+            if until is not None and time.monotonic() >= until:
+                raise TimeoutError(f"there is no answer after {timeout:g} s")
+        return self._answer()
+
+    def add_done_callback(self, callback: _t.Callable[[_t.Any], object]) -> None:
+        """Calls `callback(reply)` once the answer is there: in the client's thread, or at once and here when it is already."""
+        with self._lock:
+            if not self._done:
+                self._callbacks.append(callback)
+                return
+        callback(self)
+
+    def __await__(self) -> _t.Generator[_t.Any, None, _t.Any]:
+        import asyncio
+        loop = asyncio.get_running_loop()
+        future: asyncio.Future[None] = loop.create_future()
+
+        def set_result() -> None:
+            if not future.done():
+                future.set_result(None)
+
+        def tell(_: Reply) -> None:
+            try:
+                loop.call_soon_threadsafe(set_result)
+            except RuntimeError:
+                pass  # the loop was closed meanwhile: nobody waits
+        self.add_done_callback(tell)
+        try:
+            yield from future.__await__()
+        except asyncio.CancelledError:
+            self._forsake()
+            raise
+        return self._answer()
+
+    def _forsake(self) -> None:
+        """Whoever awaited it was cancelled."""
+
+    def _answer(self) -> _t.Any:
+        if self._error is not None:
+            raise self._error
+        return self._result
+
+    def _take(self, result: _t.Any) -> None:
+        """The service's result."""
+        try:
+            self._end(self._convert(result))
+        except Error as e:
+            self._end(None, e)
+
+    def _end(self, result: _t.Any, error: Error | None = None) -> None:
+        with self._lock:
+            if self._done:
+                return
+            self._result, self._error, self._done = result, error, True
+            callbacks, self._callbacks = self._callbacks, []
+        self._gate.open()
+        for callback in callbacks:
+            _call(callback, self)
+
+    def __repr__(self) -> str:
+        how = "waits" if not self._done else "refused" if self._error is not None else "done"
+        return f"<tactor.{type(self).__name__}: {how}>"
+
+
+_R = _t.TypeVar("_R", bound=Reply)
+
+
+class RemoteStroke(Reply):
+    """A stroke that a service plays. Awaiting it, or `wait`, gives its `Report`; who cancels the awaiting cancels the stroke."""
+
+    def __init__(self, client: _Connection) -> None:
+        super().__init__(client, lambda result: result)
+        self._numbers: list[int] = []
+        self._left: set[int] = set()
+        self._wish: str | None = None
+        self.warnings: list[str] = []
+        """What was odd and taken nevertheless; there once the service has answered."""
+
+    @property
+    def id(self) -> int | None:
+        """Its number in the service; None until that has answered."""
+        return self._numbers[0] if self._numbers else None
+
+    @property
+    def report(self) -> Report | None:
+        """How it ended; None as long as it has not."""
+        return self._result  # type: ignore[no-any-return]
+
+    def cancel(self) -> None:
+        """Fades it out."""
+        self._later("cancel")
+
+    def _later(self, method: str) -> None:
+        """Sends it for each stroke: now, or once the numbers are known."""
+        with self._lock:
+            self._wish = method
+            numbers = list(self._left)
+        for number in numbers:
+            self._client.tell(method, stroke=number)
+
+    def _forsake(self) -> None:
+        self.cancel()
+
+    def _take(self, result: _t.Any) -> None:
+        with self._lock:
+            self._numbers = result.get("strokes", [result["stroke"]])
+            self._left = set(self._numbers)
+            self.warnings = result.get("warnings", [])
+            wish = self._wish
+        for number in self._numbers:
+            self._client.strokes[number] = self
+        if wish is not None:
+            self._later(wish)
+
+    def _told(self, event: dict[str, _t.Any]) -> None:
+        if event["state"] == "started":
+            return
+        self._client.strokes.pop(event["stroke"], None)
+        self._left.discard(event["stroke"])
+        if not self._left:
+            self._end(Report(event["state"], event.get("reason") or "", event["frames"], event.get("started_s"), event.get("late_s") or 0.0))
+
+
+class RemoteLive(RemoteStroke):
+    """A live stroke in a service. Leaving its block ends it, with an exception it fades out; `async with` also waits for its end."""
+
+    def to(self, x_mm: float, y_mm: float, intensity: float = 1.0) -> None:
+        """Moves it to a place; without an answer, so that points do not wait for one another.
+
+        Parameters
+        ----------
+        x_mm, y_mm : float
+        intensity : float
+            Linear; 1 is the level that was asked for.
+
+        Raises
+        ------
+        InputError
+            For what is not finite.
+        StreamError
+            When the service has gone.
+        """
+        point = {"x_mm": _number("x_mm", x_mm), "y_mm": _number("y_mm", y_mm), "intensity": _number("intensity", intensity, 0.0)}
+        self._client.tell("to", stroke=self._numbers[0], **point)
+
+    def end(self) -> None:
+        """No more points come."""
+        self._later("end")
+
+    def __enter__(self) -> RemoteLive:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, trace: _TracebackType | None) -> None:
+        self._later("end" if kind is None else "cancel")
+        if kind is None:
+            self.wait()
+
+    async def __aenter__(self) -> RemoteLive:
+        return self
+
+    async def __aexit__(self, kind: type[BaseException] | None, value: BaseException | None, trace: _TracebackType | None) -> None:
+        self._later("end" if kind is None else "cancel")
+        if kind is None:
+            await self
+
+
+class _Connection:
+    """The socket and its thread: not the client, so that a forgotten one can be collected."""
+
+    def __init__(self, path: str) -> None:
+        self.socket = _socket.socket(_socket.AF_UNIX, _socket.SOCK_STREAM | _socket.SOCK_CLOEXEC)
+        try:
+            self.socket.connect(path)
+        except OSError as e:
+            self.socket.close()
+            raise _of_system(DeviceError, e.errno or 0)(
+                path, os.strerror(e.errno or 0), "start one: tactor serve", file=path, errno=e.errno or 0) from None
+        self.path = path
+        self.owner = os.getpid()
+        self.lock = threading.RLock()
+        self.last = 0
+        self.waiting: dict[int, Reply] = {}
+        self.strokes: dict[int, RemoteStroke] = {}
+        self.gone = False
+        self.thread = threading.Thread(target=self._run, name="tactor-client", daemon=True)
+        self.thread.start()
+
+    def tell(self, method: str, **params: _t.Any) -> None:
+        """Sends what is not answered."""
+        self._send({"jsonrpc": "2.0", "method": method, "params": params})
+
+    def ask(self, reply: Reply, method: str, params: dict[str, _t.Any]) -> None:
+        with self.lock:
+            self.last += 1
+            number = self.last
+            self.waiting[number] = reply
+        try:
+            self._send({"jsonrpc": "2.0", "id": number, "method": method, "params": params})
+        except Error:
+            self.waiting.pop(number, None)
+            raise
+
+    def _send(self, message: dict[str, _t.Any]) -> None:
+        if os.getpid() != self.owner:
+            raise StreamError("client", "this process was forked from the one that has it", "make one of its own")
+        try:
+            line = json.dumps(message, allow_nan=False).encode() + b"\n"
+        except (TypeError, ValueError) as e:
+            raise InputError("params", f"they are no JSON: {e}", "give numbers, texts, lists and dicts") from None
+        try:
+            with self.lock:
+                self.socket.sendall(line)
+        except OSError:
+            raise self._gone() from None
+
+    def _gone(self) -> StreamError:
+        return StreamError(self.path, "the service has gone", "start it, and make a new client")
+
+    def _run(self) -> None:
+        try:
+            with self.socket.makefile("rb") as lines:
+                for line in lines:
+                    self._received(json.loads(line))
+        except (OSError, ValueError):
+            pass
+        self.gone = True
+        for reply in [*self.waiting.values(), *self.strokes.values()]:
+            reply._end(None, self._gone())
+
+    def _received(self, message: dict[str, _t.Any]) -> None:
+        if message.get("method") == "stroke":
+            stroke = self.strokes.get(message["params"]["stroke"])
+            if stroke is not None:
+                stroke._told(message["params"])
+            return
+        reply = self.waiting.pop(message.get("id") or 0, None)
+        if reply is None:
+            return
+        if "error" in message:
+            reply._end(None, _refused(message["error"]))
+        else:
+            reply._take(message["result"])
+
+    def close(self) -> None:
+        if os.getpid() != self.owner:
+            return
+        try:
+            self.socket.shutdown(_socket.SHUT_RDWR)
+        except OSError:
+            pass
+        if threading.current_thread() is not self.thread:
+            self.thread.join()
+        self.socket.close()
+
+
+def _refused(error: dict[str, _t.Any]) -> Error:
+    data = error.get("data") or {}
+    what: str = data.get("what") or "service"
+    kind: type[Error] = _KINDS.get(data.get("kind", ""), StreamError)
+    why: str = data.get("why") or error.get("message") or ""
+    return kind(what, why, data.get("hint") or "", field=what.rpartition(".")[2] or None)
+
+
+def _connected(socket: str | os.PathLike[str] | None) -> _Connection:
+    """To the service at that socket, or to the first that listens: the user's, then the system's."""
+    if socket is not None:
+        return _Connection(os.fspath(socket))
+    folder = os.environ.get("XDG_RUNTIME_DIR")
+    places = [f"{folder}/tactor.sock"] if folder else []
+    first: Error | None = None
+    for place in (*places, "/run/tactor.sock", "/run/tactor/tactor.sock"):
+        try:
+            return _Connection(place)
+        except DeviceError as e:
+            first = first or e
+    assert first is not None
+    raise first
+
+
+class Client(_Unique):
+    """Draws through `tactor serve`, with or without asyncio: tactor-protocol(7).
+
+    What is asked for is sent at once; what a method returns can be awaited, or waited for by its `wait`::
+
+        async with tactor.Client() as c:
+            await c.play(stroke)
+
+        with tactor.Client() as c:
+            c.play(stroke).wait()
+
+    Parameters
+    ----------
+    socket : path-like, optional
+        The service's Unix socket; default: where a user's service listens ($XDG_RUNTIME_DIR/tactor.sock), else the system's.
+
+    Raises
+    ------
+    DeviceError
+        When nobody listens there; a missing socket is a FileNotFoundError, too.
+    """
+
+    def __init__(self, socket: str | os.PathLike[str] | None = None) -> None:
+        self._wire: _Connection | None = None
+        self._wire = _connected(socket)
+        try:
+            self._hello: dict[str, _t.Any] = self.call("hello").wait(_HELLO_S)
+        except BaseException:
+            self._wire.close()
+            raise
+
+    @property
+    def hello(self) -> dict[str, _t.Any]:
+        """What the service said of itself (protocol, version, array, stream, presets, clock and max_level_dbfs)."""
+        return dict(self._hello)
+
+    @property
+    def closed(self) -> bool:
+        """Whether it was closed, or the service has gone."""
+        return self._get().gone
+
+    def call(self, method: str, **params: _t.Any) -> Reply:
+        """Any method of the protocol, with its parameters; gives its result as JSON has it."""
+        _need(method, str, "method")
+        return self._ask(Reply(self._get(), lambda result: result), method, params)
+
+    def play(self, stroke: _t.Union[Stroke, Path, str], *, start: _t.Union[str, dict[str, float]] = "now", at_s: float | None = None,
+             delay: float | None = None, **options: _t.Any) -> RemoteStroke:
+        """Plays a stroke.
+
+        Parameters
+        ----------
+        stroke : Stroke, Path or str
+            A text is the name of a preset.
+        start : str or dict
+            "now", "armed", or as the protocol has it.
+        at_s : float, optional
+            Time at which the first sample is to be at the DAC, s of CLOCK_MONOTONIC (`time.monotonic()`).
+        delay : float, optional
+            The same, counted from when the service has the stroke, s.
+        options
+            Keyword arguments as in `plan`: algorithm, phantom, soa, duration, level_dbfs, ...; what they do not say is as the owner has it.
+
+        Returns
+        -------
+        RemoteStroke
+            It gives a `Report`.
+
+        Raises
+        ------
+        StreamError
+            When the service has gone.
+        """
+        given = [value for value in (at_s, delay) if value is not None]
+        if len(given) > 1 or (given and start != "now"):
+            raise InputError("start", "there are several starts", "give one of start, at_s and delay", field="start")
+        if at_s is not None:
+            start = {"monotonic_s": _number("at_s", at_s)}
+        elif delay is not None:
+            start = {"delay_s": _number("delay", delay)}
+        return self._ask(RemoteStroke(self._get()), "play", {**_drawn(stroke), "options": _said(options), "start": start})
+
+    def plan(self, stroke: _t.Union[Stroke, Path, str], **options: _t.Any) -> Reply:
+        """Plans a stroke as `play` would, and plays nothing; gives a `Plan`."""
+        def made(result: dict[str, _t.Any]) -> _Plan:
+            from tactor._plan import Plan
+            return Plan.from_dict(result)
+        return self._ask(Reply(self._get(), made), "plan", {**_drawn(stroke), "options": _said(options)})
+
+    def live(self, *, timeout: float | None = None, smooth: float | None = None, **options: _t.Any) -> RemoteLive:
+        """Begins a stroke that is fed point by point; silent until the first. Blocks until the service has answered.
+
+        Parameters
+        ----------
+        timeout : float, optional
+            A producer that gives no point for so long, s, has failed: it fades out, interrupted (0.5).
+        smooth : float, optional
+            For points that come in bursts, s, 0 (off) to 1.
+        options
+            Keyword arguments as in `Player.live`.
+
+        Returns
+        -------
+        RemoteLive
+
+        Raises
+        ------
+        Error
+            What the service refuses it with.
+        """
+        params: dict[str, _t.Any] = {"options": _said(options)}
+        if timeout is not None:
+            params["timeout_s"] = _number("timeout", timeout)
+        if smooth is not None:
+            params["smooth_s"] = _number("smooth", smooth)
+        wire = self._get()
+        stroke = RemoteLive(wire)
+        begun = Reply(wire, stroke._take)
+        self._ask(begun, "begin", params).wait()
+        return stroke
+
+    def drive(self, tactor: int, intensity: float = 1.0, duration: float = 0.5) -> RemoteStroke:
+        """Drives one tactor for a while, s, at an intensity of 0 to 1; gives a `Report`."""
+        params = {"tactor": _whole("tactor", tactor, 0, 16383), "intensity": _number("intensity", intensity, 0.0, 1.0),
+                  "duration_s": _number("duration", duration, 0.0)}
+        return self._ask(RemoteStroke(self._get()), "drive", params)
+
+    def stop(self) -> Reply:
+        """Fades everybody's strokes out; the service goes on."""
+        return self.call("stop")
+
+    def fire(self) -> Reply:
+        """Starts everybody's armed strokes; gives their count."""
+        return self._ask(Reply(self._get(), lambda result: result["count"]), "fire", {})
+
+    def status(self) -> Reply:
+        """How the service is: a dict with stream, amplifier, clients, strokes and limits."""
+        return self.call("status")
+
+    def close(self) -> None:
+        """Leaves the service: live strokes end, what was asked to be played is played."""
+        self._get().close()
+
+    def _ask(self, reply: _R, method: str, params: dict[str, _t.Any]) -> _R:
+        reply._client.ask(reply, method, params)
+        return reply
+
+    def _get(self) -> _Connection:
+        if self._wire is None:
+            raise RuntimeError("the client never had a service")
+        return self._wire
+
+    def __enter__(self) -> Client:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    async def __aenter__(self) -> Client:
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        self.close()
+
+    def __del__(self) -> None:
+        wire = getattr(self, "_wire", None)
+        if wire is not None and not sys.is_finalizing():
+            wire.close()
+
+    def __repr__(self) -> str:
+        return f"<tactor.Client: {'closed' if self.closed else self._get().path}>"
+
+
+def _drawn(stroke: _t.Any) -> dict[str, str]:
+    if isinstance(stroke, Stroke):
+        return {"toml": stroke._core.text()}
+    if isinstance(stroke, Path):
+        return {"path": stroke.data}
+    if isinstance(stroke, str):
+        return {"stroke": stroke}
+    raise TypeError(f"stroke: a Stroke, a Path or the name of a preset is wanted, not {type(stroke).__name__}")
+
+
+def _said(options: dict[str, _t.Any]) -> dict[str, _t.Any]:
+    """Options that say something, in JSON's types."""
+    said = {}
+    for name, value in options.items():
+        if value is None:
+            continue
+        if hasattr(value, "weights"):
+            raise InputError(name, f"{_shown(value)} is of this process", "a service has built-in models only", field=name)
+        said[name] = value.item() if hasattr(value, "item") else value
+    return said

@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: MIT
+"""The service, as programs in Python draw through it."""
+import asyncio
+import contextlib
+import gc
+import os
+import subprocess
+import threading
+import time
+
+import pytest
+
+import tactor
+
+LONG = 120.0  # s: an answer that takes longer never comes
+
+
+@contextlib.contextmanager
+def serving(folder):
+    """A service on ALSA's null device: where it listens, and its process."""
+    path, config = folder / "tactor.sock", folder / "c.toml"
+    config.write_text("[serve]\nmax_level_dbfs = -6.0\n")
+    with subprocess.Popen([os.environ["TACTOR_TOOL"], "serve", "--socket", path, "-D", "null", "--config", config], stdout=subprocess.PIPE,
+                          stderr=subprocess.DEVNULL) as server:
+        assert server.stdout.readline()  # says where it listens
+        yield path, server
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory):
+    """Where one listens."""
+    with serving(tmp_path_factory.mktemp("service")) as (path, server):
+        yield path
+        server.terminate()
+
+
+@pytest.fixture
+def client(service):
+    with tactor.Client(service) as c:
+        yield c
+
+
+@pytest.fixture
+def tap():
+    return tactor.Stroke.along(tactor.Path.svg("M 5 5 L 35 30"), duration=0.1)
+
+
+@pytest.fixture
+def endless():
+    return tactor.Stroke.along(tactor.Path.svg("M 5 5 L 35 30"), duration=300)
+
+
+def test_strokes_are_played_and_waited_for(client, tap):
+    assert client.hello["protocol"].startswith("tactor/") and client.hello["array"]["name"] == "palm-3x3"
+    before = time.monotonic()
+    stroke = client.play(tap, algorithm="continuous", level_dbfs=-30)
+    report = stroke.wait(LONG)
+    assert (report.state, report.reason) == ("finished", "") and report.frames == 4800 and before < report.started_s < time.monotonic()
+    assert stroke.done() and stroke.report == report and stroke.id > 0
+    for drawn in (tactor.Path.svg("M 5 5 L 9 9"), "park2016-1"):
+        assert client.play(drawn, duration=0.05, algorithm="continuous").wait(LONG).state == "finished"
+    late = client.play(tap, delay=0.2).wait(LONG)
+    assert late.started_s > report.started_s + 0.2 and late.late_s < LONG
+
+
+def test_strokes_are_awaited(service, tap, endless):
+    async def draw():
+        async with tactor.Client(service) as c:
+            first, second = await asyncio.gather(c.play(tap), c.play(tap))
+            assert first.state == second.state == "finished"
+            forsaken = asyncio.ensure_future(c.play(endless, algorithm="continuous"))
+            await asyncio.sleep(0.2)
+            forsaken.cancel()
+            with pytest.raises(asyncio.CancelledError):
+                await forsaken
+            with pytest.raises(tactor.InputError):
+                await c.play("park")
+            while (await c.status())["strokes"]:
+                await asyncio.sleep(0.02)
+            async with c.live(level_dbfs=-30) as finger:
+                finger.to(10, 10)
+                await asyncio.sleep(0.05)
+            return finger.report.state
+    assert asyncio.run(draw()) == "finished"
+
+
+def test_what_the_service_refuses_is_raised(client, tap):
+    for call, what in ((lambda: client.play("park"), "stroke"), (lambda: client.play(tap, soa=5), "options.soa"), (lambda: client.play(tap, level_dbfs=0), "level"),
+                       (lambda: client.call("dance"), "method"), (lambda: client.plan(tap, tempo=3), "options.tempo")):
+        with pytest.raises(tactor.InputError) as e:
+            call().wait(LONG)
+        assert what in e.value.what and e.value.why
+    with pytest.raises(tactor.Error):
+        client.live(algorithm="tango")
+    with pytest.raises(TypeError, match="stroke: "):
+        client.play(3)
+    for wrong in (dict(at_s=1.0, delay=2.0), dict(start="armed", delay=1.0), dict(phantom=type("own", (), {"weights": None})())):
+        with pytest.raises(tactor.InputError):
+            client.play(tap, **wrong)
+
+
+def test_plans_are_those_of_this_package(client, tap, palm):
+    plan = client.plan(tap, level_dbfs=-20).wait(LONG)
+    assert isinstance(plan, tactor.Plan) and plan.bursts == tactor.plan(palm, tap).bursts
+
+
+def test_strokes_are_cancelled_stopped_and_fired(client, endless, tap):
+    stroke = client.play(endless, algorithm="continuous")
+    stroke.cancel()  # before its number is known, too
+    assert stroke.wait(LONG).state == "cancelled"
+    stroke = client.play(endless, algorithm="continuous")
+    client.stop().wait(LONG)
+    assert stroke.wait(LONG).state == "cancelled"
+    armed = client.play(tap, start="armed")
+    while not any(s["state"] == "armed" for s in client.status().wait(LONG)["strokes"]):
+        time.sleep(0.01)
+    with pytest.raises(TimeoutError):
+        armed.wait(0.05)
+    assert client.fire().wait(LONG) == 1 and armed.wait(LONG).state == "finished"
+    assert client.drive(4, 0.1, 0.05).wait(LONG).state == "finished"
+
+
+def test_live_strokes_follow_and_end_with_their_block(client):
+    with client.live(smooth=0.01, phantom="barycentric", level_dbfs=-30) as finger:
+        for i in range(20):
+            finger.to(10 + i, 20, 0.5)
+            time.sleep(0.002)
+    assert finger.report.state == "finished" and finger.report.frames > 0
+    with pytest.raises(ValueError, match="out"):
+        with client.live() as finger:
+            finger.to(10, 10)
+            raise ValueError("out")
+    assert finger.wait(LONG).state == "cancelled"
+    assert client.live(timeout=0.05).wait(LONG).state == "interrupted"
+    with pytest.raises(tactor.InputError):
+        finger.to(float("nan"), 0)
+
+
+def test_callbacks_run_in_the_clients_thread(client, tap):
+    told = []
+    stroke = client.play(tap)
+    stroke.add_done_callback(lambda s: told.append((threading.current_thread().name, s.report.state)))
+    stroke.wait(LONG)
+    while not told:
+        time.sleep(0.01)
+    assert told == [("tactor-client", "finished")]
+    stroke.add_done_callback(lambda s: told.append(s))
+    assert told[-1] is stroke
+
+
+def test_a_service_that_is_not_there(tmp_path, monkeypatch):
+    with pytest.raises(FileNotFoundError) as e:
+        tactor.Client(tmp_path / "none.sock")
+    assert isinstance(e.value, tactor.DeviceError) and e.value.file == str(tmp_path / "none.sock") and "tactor serve" in e.value.hint
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+    with pytest.raises(tactor.DeviceError, match="tactor.sock"):
+        tactor.Client()
+
+
+def test_a_service_that_goes_ends_what_waits(tmp_path, endless):
+    with serving(tmp_path) as (path, server):
+        c = tactor.Client(path)
+        stroke = c.play(endless, algorithm="continuous")
+        c.status().wait(LONG)
+        server.kill()
+        with pytest.raises(tactor.StreamError, match="has gone"):
+            stroke.wait(LONG)
+    with pytest.raises(tactor.StreamError):
+        c.play(endless)
+    assert c.closed and "closed" in repr(c)
+    c.close()
+
+
+def test_a_forgotten_client_is_closed(service):
+    c = tactor.Client(service)
+    thread = c._wire.thread
+    del c
+    gc.collect()
+    thread.join(LONG)
+    assert not thread.is_alive()

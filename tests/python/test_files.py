@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: MIT
+"""Plans, strokes and records as files."""
+import json
+
+import numpy as np
+import pytest
+
+import tactor
+
+PATH = "M 0 10 C 20 -5 20 45 40 30"
+
+
+def drawn():
+    path = tactor.Path.svg(PATH)
+    yield tactor.Stroke.along(path, 1.2)
+    yield tactor.Stroke.along(path, speed=47.0, name="a \"b\"", start=0.3, carrier=120)
+    yield tactor.Stroke.along(path, 1.7, intensity=0.3).reversed().with_duration(0.123456789)
+    yield tactor.Stroke.along(path, 1.0, easing="minimum-jerk")
+    yield tactor.Stroke.along(path, 2.0, pauses=[(0.2, 0.1), (0.5, 0.3, 0.0)], intensity=[(0, 0.2), (1, 1)], easing="in-out")
+    yield tactor.Stroke.timed([0, 0.1, 0.5], [0, 10, 40], [0, 20, 5], [1, 3.5, 0], name="t")
+    yield tactor.Stroke.timed([0, 0.1, 0.5], [0, 10, 40], [0, 20, 5]).with_duration(0.7)
+    yield tactor.Stroke.preset("park2016-3")
+    yield tactor.Stroke.preset("wave-2x4")
+    yield tactor.parse(f'[stroke]\nname = "all"\npath = "{PATH}"\nduration_s = 1.0\nam_hz = 30.0\nam_depth = 0.5\nwaveform = "noise:60-400"\nnoise_seed = 7\n'
+                       'algorithm = "continuous"\nphantom = "barycentric"\nsoa_s = 0.06\nburst_s = 0.05\nlevel_db = -3.0\nfit = true\nfit_margin_mm = 2.0\n')[0]
+    yield tactor.parse(f'[stroke]\npath = "{PATH}"\nduration_s = 1.0\ncarrier_profile = [[0.0, 100.0], [1.0, 300.0]]\n', "p")[0]
+
+
+@pytest.mark.parametrize("stroke", list(drawn()), ids=str)
+def test_strokes_are_written_and_read_again(tmp_path, stroke):
+    stroke.write(tmp_path / "s.toml")
+    (again,) = tactor.load(tmp_path / "s.toml")
+    assert again == stroke and again.note == stroke.note
+
+
+def test_what_is_no_number_of_the_file_itself_is_written_closely(tmp_path):
+    for stroke in (tactor.Stroke.along(tactor.Path.svg(PATH), speed=[(0, 20), (1, 80)], pauses=[(0.5, 0.2)]),
+                   tactor.Stroke.along(tactor.Path.arc((20, 20), 8, 0, 300), 1.0, easing="in-out"),
+                   tactor.Stroke.along(tactor.Path.svg(PATH), 3.0, speed=[(0, 20), (0.5, 80)]).with_duration(1.5)):
+        stroke.write(tmp_path / "s.toml")
+        (again,) = tactor.load(tmp_path / "s.toml")
+        t = np.linspace(0, stroke.duration, 100)
+        assert again.duration == pytest.approx(stroke.duration, rel=1e-12)
+        assert np.allclose(again.position(t), stroke.position(t), rtol=0, atol=1e-8)
+
+
+def test_what_no_stroke_file_can_say_is_refused(tmp_path, stroke):
+    with pytest.raises(tactor.InputError, match="above 1"):
+        stroke.with_intensity(2.0).write(tmp_path / "s.toml")
+    with pytest.raises(tactor.InputError, match="TOML"):
+        stroke.write(tmp_path / "s.svg")
+    grouped = tactor.parse(f'[[stroke]]\nfit = true\n[[stroke.stroke]]\npath = "{PATH}"\n[[stroke.stroke]]\npath = "{PATH}"\n')
+    with pytest.raises(tactor.InputError, match="group"):
+        grouped[0].write(tmp_path / "s.toml")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("how", [{}, {"algorithm": "continuous"}, {"level_dbfs": -20, "rate": 44100, "envelope": "tukey:0.2"}])
+def test_plans_are_written_and_read_again(tool, tmp_path, palm, stroke, how):
+    plan = tactor.plan(palm, stroke, **how)
+    plan.write(tmp_path / "p.json")
+    again = tactor.load_plan(tmp_path / "p.json")
+    assert again == plan and tactor.Score(palm, again) == tactor.Score(palm, plan)
+    tool("render", "p.json", "-o", "tool.wav")
+    tactor.Score(palm, plan).write(tmp_path / "ours.wav")
+    assert (tmp_path / "ours.wav").read_bytes() == (tmp_path / "tool.wav").read_bytes()
+    (tmp_path / "tool.json").write_text(tool("plan", "park2016-1", "--format", "json"))
+    assert tactor.load_plan(str(tmp_path / "tool.json")).algorithm == "park2016"
+    with pytest.raises(tactor.InputError, match="JSON"):
+        plan.write(tmp_path / "p.txt")
+
+
+def test_files_of_several_plans_say_so(tool, tmp_path, root):
+    (tmp_path / "two.json").write_text(tool("plan", root / "examples/strokes/several.toml", "--format", "json"))
+    with pytest.raises(tactor.InputError) as e:
+        tactor.load_plan(tmp_path / "two.json")
+    assert "plans in it" in e.value.why and e.value.file == str(tmp_path / "two.json")
+    one, *_ = json.loads((tmp_path / "two.json").read_text())["plans"]
+    assert tactor.Plan.from_dict(one)
+
+
+def changed(record, value, *keys):
+    record = json.loads(json.dumps(record))
+    at = record
+    for key in keys[:-1]:
+        at = at[key]
+    at[keys[-1]] = value
+    return record
+
+
+@pytest.mark.parametrize("keys,hint", [
+    (("levl_dbfs",), "see"), (("render", "level_db"), "level_dbfs"), (("stroke", "durations"), "duration_s"), (("array", "tactors", 2, "chanel"), "channel"),
+    (("bursts", 3, "onsets"), "onset_s"), (("bursts", 3, "drives", 0, "amplitudes"), "amplitude")])
+def test_keys_that_no_plan_has_are_refused(palm, stroke, tmp_path, keys, hint):
+    record = changed(tactor.plan(palm, stroke).to_dict(), 1, *keys)
+    with pytest.raises(tactor.InputError) as e:
+        tactor.Plan.from_dict(record)
+    assert e.value.field.endswith(keys[-1]) and hint in e.value.hint and e.value.file is None
+    (tmp_path / "p.json").write_text(json.dumps(record))
+    with pytest.raises(tactor.InputError) as e:
+        tactor.load_plan(tmp_path / "p.json")
+    assert e.value.file == str(tmp_path / "p.json")
+
+
+@pytest.mark.parametrize("amplitude", [1.5, 1e300, -0.1])
+@pytest.mark.parametrize("algorithm", ["park2016", "continuous"])
+def test_amplitudes_beyond_the_plans_are_refused(palm, stroke, algorithm, amplitude):
+    rows = ("bursts",) if algorithm == "park2016" else ("continuous", "points")
+    record = changed(tactor.plan(palm, stroke, algorithm=algorithm).to_dict(), amplitude, *rows, 3, "drives", 0, "amplitude")
+    with pytest.raises(tactor.InputError, match="amplitude|intensity"):
+        tactor.Plan.from_dict(record)
+
+
+@pytest.mark.parametrize("algorithm", ["park2016", "continuous", "tactile-brush"])
+@pytest.mark.parametrize("phantom", ["inverse-distance", "barycentric", "linear", "log", "gaussian"])
+@pytest.mark.parametrize("scale", [{}, {"intensity_scale": "stevens"}, {"compensate": "low-speed"}])
+def test_what_a_plan_gives_is_taken_again(palm, algorithm, phantom, scale):
+    if algorithm != "park2016":
+        scale = {name: value for name, value in scale.items() if name != "compensate"}  # it moves bursts of park2016 only
+    stroke = tactor.Stroke.along(tactor.Path.svg("M 0 10 L 40 10"), 1.0, intensity=0.7) if algorithm == "tactile-brush" else tactor.Stroke.preset("park2016-2")
+    plan = tactor.plan(palm, stroke, algorithm=algorithm, phantom=phantom, **scale)
+    assert tactor.Plan.from_dict(plan.to_dict()) == plan
