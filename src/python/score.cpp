@@ -48,7 +48,7 @@ render_options sound_of(const plan_handle& p, const py::dict& said)
         .with_field(name);
 }
 
-std::string text_of(const std::optional<double>& d)
+std::string value_text(const std::optional<double>& d)
 {
     return d ? plain_number(*d) : "none";
 }
@@ -61,15 +61,15 @@ void check_alike(const render_options& a, const render_options& b)
     if (a.phase != b.phase)
         refuse_different("phase", std::string(to_string(a.phase)), std::string(to_string(b.phase)));
     if (a.ramp_s != b.ramp_s)
-        refuse_different("ramp", text_of(a.ramp_s), text_of(b.ramp_s));
+        refuse_different("ramp", value_text(a.ramp_s), value_text(b.ramp_s));
     if (a.envelope.attack_s != b.envelope.attack_s)
-        refuse_different("attack", text_of(a.envelope.attack_s), text_of(b.envelope.attack_s));
+        refuse_different("attack", value_text(a.envelope.attack_s), value_text(b.envelope.attack_s));
     if (a.envelope.release_s != b.envelope.release_s)
-        refuse_different("release", text_of(a.envelope.release_s), text_of(b.envelope.release_s));
+        refuse_different("release", value_text(a.envelope.release_s), value_text(b.envelope.release_s));
     if (a.envelope != b.envelope)
         refuse_different("envelope", envelope_text(a.envelope), envelope_text(b.envelope));
     if (a.sl_db.has_value() != b.sl_db.has_value())
-        refuse_different("sl", text_of(a.sl_db), text_of(b.sl_db));
+        refuse_different("sl", value_text(a.sl_db), value_text(b.sl_db));
     if (a.marker_channel && b.marker_channel && a.marker_channel != b.marker_channel)
         refuse_different("marker_channel", std::to_string(*a.marker_channel),
                          std::to_string(*b.marker_channel));
