@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+"""What pip builds the package with: meson-python, after a look at what this machine lacks.
+
+Meson stops at the first library that it does not find, under a page of pip's own words. This names all of them in one line.
+"""
+import importlib.util
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+import sysconfig
+
+# What is needed, Debian's package, and the option that does without it: a name of pkg-config's, or a header.
+LIBRARIES = (
+    ("Boost", "libboost-dev", None, None, "boost/asio.hpp"),
+    ("fmt", "libfmt-dev", None, "fmt", "fmt/format.h"),
+    ("pugixml", "libpugixml-dev", None, "pugixml", "pugixml.hpp"),
+    ("toml++", "libtomlplusplus-dev", None, "tomlplusplus", "toml++/toml.h"),
+    ("CLI11", "libcli11-dev", None, "CLI11", "CLI/CLI.hpp"),
+    ("nlohmann-json", "nlohmann-json3-dev", None, "nlohmann_json", "nlohmann/json.hpp"),
+    ("ALSA", "libasound2-dev", "alsa", "alsa", "alsa/asoundlib.h"),
+    ("libgpiod", "libgpiod-dev", "gpio", "libgpiod", "gpiod.h"),
+    ("Cairo", "libcairo2-dev", "plots", "cairo", "cairo/cairo.h"),
+)
+
+
+def __getattr__(name):
+    """The other hooks are meson-python's."""
+    if name.startswith("_"):
+        raise AttributeError(name)
+    return getattr(_mesonpy(), name)
+
+
+def get_requires_for_build_wheel(config_settings=None):
+    check(config_settings)
+    return _mesonpy().get_requires_for_build_wheel(config_settings)
+
+
+def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    check(config_settings)
+    return _mesonpy().build_wheel(wheel_directory, config_settings, metadata_directory)
+
+
+def check(config_settings=None):
+    """Ends the build with one line where something is missing."""
+    lacks = missing(config_settings)
+    if lacks:
+        without = "".join(f", or do without {name}: --config-settings=setup-args=-D{option}=disabled" for name, _, option in lacks if option)
+        print(f"tactor: build: missing {', '.join(name for name, *_ in lacks)} (on Debian: apt-get install "
+              f"{' '.join(package for _, package, _ in lacks)}{without})", file=sys.stderr)
+        raise SystemExit(1)
+
+
+def missing(config_settings=None):
+    """(name, Debian's package, option) of all that is needed and not here."""
+    off = _switched_off(config_settings)
+    lacks = []
+    compiler = shlex.split(os.environ.get("CXX", "")) or [next((c for c in ("c++", "g++", "clang++") if shutil.which(c)), "c++")]
+    if not shutil.which(compiler[0]):
+        lacks.append(("a C++ compiler", "g++", None))
+    if not (shutil.which("pkg-config") or shutil.which("pkgconf")):
+        lacks.append(("pkg-config", "pkg-config", None))
+    if not os.path.exists(os.path.join(sysconfig.get_path("include"), "Python.h")):
+        lacks.append(("Python's headers", "python3-dev", None))
+    for name, package, option, module, header in LIBRARIES:
+        if option not in off and not _is_there(compiler, module, header):
+            lacks.append((name, package, option))
+    for module, package in (("mesonpy", "python3-mesonpy"), ("pybind11", "pybind11-dev")):
+        if importlib.util.find_spec(module) is None and not _succeeds(["pkg-config", "--exists", module]):
+            lacks.append((module, package, None))
+    return lacks
+
+
+def _switched_off(config_settings):
+    given = (config_settings or {}).get("setup-args", [])
+    given = [given] if isinstance(given, str) else given
+    return {option for _, _, option, *_ in LIBRARIES if option and f"-D{option}=disabled" in given}
+
+
+def _is_there(compiler, module, header):
+    if module is not None and _succeeds(["pkg-config", "--exists", module]):
+        return True
+    return _succeeds([*compiler, "-E", "-x", "c++", "-"], f"#if !__has_include(<{header}>)\n#error\n#endif\n")
+
+
+def _succeeds(command, text=""):
+    try:
+        return subprocess.run(command, input=text, text=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False).returncode == 0
+    except OSError:
+        return False
+
+
+def _mesonpy():
+    import mesonpy
+    return mesonpy

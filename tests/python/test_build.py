@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: MIT
+"""How pip builds the package, and what it says where it cannot."""
+import importlib.util
+import re
+import subprocess
+
+import pytest
+
+import tactor
+
+
+@pytest.fixture
+def backend(root):
+    spec = importlib.util.spec_from_file_location("build_backend", root / "src/python/build_backend.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_a_machine_with_nothing_is_told_all_in_one_line(backend, monkeypatch, capsys):
+    monkeypatch.setenv("PATH", "/nonexistent")
+    monkeypatch.delenv("CXX", raising=False)
+    with pytest.raises(SystemExit) as e:
+        backend.get_requires_for_build_wheel()
+    said = capsys.readouterr().err
+    assert e.value.code == 1 and said.count("\n") == 1 and said.startswith("tactor: build: missing a C++ compiler")
+    for word in ("g++", "libboost-dev", "libasound2-dev", "libgpiod-dev", "libcairo2-dev", "setup-args=-Dgpio=disabled"):
+        assert word in said
+    assert {package for _, package, _ in backend.missing({"setup-args": ["-Dalsa=disabled", "-Dgpio=disabled"]})} \
+        == {package for _, package, _ in backend.missing()} - {"libasound2-dev", "libgpiod-dev"}
+
+
+def test_one_library_that_is_missing_is_named_alone(backend, monkeypatch, capsys):
+    monkeypatch.setattr(backend, "_is_there", lambda compiler, module, header: header != "gpiod.h")
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: name)
+    monkeypatch.setattr(backend.os.path, "exists", lambda path: True)
+    with pytest.raises(SystemExit):
+        backend.check()
+    assert capsys.readouterr().err == ("tactor: build: missing libgpiod (on Debian: apt-get install libgpiod-dev, or do without libgpiod: "
+                                       "--config-settings=setup-args=-Dgpio=disabled)\n")
+    backend.check({"setup-args": "-Dgpio=disabled"})
+
+
+def test_its_packages_are_those_of_the_list_and_of_the_readme(backend, root):
+    listed = set(re.findall(r"\S+", (root / "tests/packages").read_text()))
+    needed = {package for _, package, *_ in backend.LIBRARIES} | {"g++", "pkg-config", "python3-dev", "pybind11-dev", "python3-mesonpy"}
+    assert needed <= listed
+    readme = (root / "README.md").read_text()
+    assert "--system-site-packages" in readme and all(f" {package}" in readme for package in needed)
+
+
+def test_what_plays_and_paints_is_required(root):
+    setup = (root / "pyproject.toml").read_text()
+    assert all(f'"-D{option}"' in setup for option in ("alsa=enabled", "gpio=enabled", "plots=enabled", "unity=on"))
+
+
+@pytest.mark.unsanitized
+def test_facts_of_the_build_have_the_libraries_own_versions():
+    for name, module in (("toml++", "tomlplusplus"), ("pugixml", "pugixml"), ("fmt", "fmt")):
+        version = subprocess.run(["pkg-config", "--modversion", module], capture_output=True, text=True, check=True).stdout.strip()
+        assert re.search(rf"{re.escape(name)} ([\d.]+)", tactor.build_facts())[1] == version, tactor.build_facts()
