@@ -7,6 +7,7 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -115,7 +116,10 @@ int run(const std::vector<std::string>& given)
     try {
         app.parse(std::vector<std::string>(given.rbegin(), given.rend())); // the last first, as it wants them
     } catch (const CLI::Success& e) {
-        return app.exit(e);
+        std::ostringstream text; // of --help or --version
+        const int status = app.exit(e, text);
+        say_text(stdout, text.str());
+        return status;
     } catch (const CLI::ParseError& e) {
         throw usage_error(app, e);
     }
@@ -134,7 +138,7 @@ int unprinted(int code)
     if (code == EPIPE)
         return status_unread;
     const bool full = code == ENOSPC || code == EDQUOT;
-    say_error("tactor: standard output: {}{}\n", std::strerror(code == 0 ? EIO : code),
+    say_error("tactor: standard output: {}{}\n", std::strerror(code),
               full            ? " (free some space, or write to another disk; what was written is cut short)"
               : code == EBADF ? " (it is closed: send it to a file or a pipe)"
                               : "");
@@ -152,7 +156,7 @@ int flushed(int status)
     errno = 0;
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
         return status;
-    return unprinted(errno);
+    return unprinted(output_error() != 0 ? output_error() : errno);
 }
 
 // Where one was closed, the next file that is opened would get its number, and what is printed go there.
@@ -185,7 +189,7 @@ int main(int argc, char** argv)
         return status_of(e.kind());
     } catch (const std::system_error& e) {
         if (std::ferror(stdout) != 0) // of fmt::print
-            return unprinted(e.code().value());
+            return unprinted(output_error() != 0 ? output_error() : e.code().value());
         say_error("tactor: failed: {}\n", e.what());
     } catch (const std::bad_alloc&) {
         say_error("tactor: memory: not enough for this input\n");

@@ -2,9 +2,13 @@
 #include "cli/say.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <cerrno>
 #include <cstdlib>
 
 #include <sys/stat.h>
+
+#include "cli/wrapped.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -59,6 +63,16 @@ std::string with_levels(const std::string& lines, log_kind k)
     return out;
 }
 
+std::atomic<int> first_output_error = 0;
+
+// The stream itself remembers that it failed, not why.
+void keep_error(std::FILE* to, bool arrived)
+{
+    int none = 0;
+    if (!arrived && to == stdout)
+        first_output_error.compare_exchange_strong(none, errno);
+}
+
 } // namespace
 
 std::string shown(std::string_view name)
@@ -74,18 +88,28 @@ bool goes_to_journal(std::FILE* to)
            fmt::format("{}:{}", is.st_dev, is.st_ino) == journal;
 }
 
+int output_error()
+{
+    return first_output_error;
+}
+
 void say_text(std::FILE* to, std::string_view text, log_kind kind)
 {
-    std::string line = escaped(text, true);
+    std::string line = fit_lines(to, escaped(text, true));
     if (goes_to_journal(to))
         line = with_levels(line, text.starts_with("tactor: warning: ") ? log_kind::warning : kind);
-    std::fwrite(line.data(), 1, line.size(), to);
+    keep_error(to, std::fwrite(line.data(), 1, line.size(), to) == line.size());
+}
+
+void flush_output()
+{
+    keep_error(stdout, std::fflush(stdout) == 0);
 }
 
 void show(std::string_view text)
 {
     say_text(stdout, text);
-    std::fflush(stdout);
+    flush_output();
 }
 
 } // namespace tactor::cli

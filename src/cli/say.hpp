@@ -18,11 +18,17 @@ namespace tactor::cli {
 /// cursor or worse, become escapes such as \x1b or \n.
 std::string shown(std::string_view name);
 
-/// Prints text, escaped as above but for line ends. Never throws for what cannot be written: standard error
-/// that is gone (2>&-, a full disk) does not decide whether the work was done, and main() looks after
-/// standard output.
-/// To the journal each line goes with its level: `kind`, or a warning's where it begins "tactor: warning: ".
+/// Prints text, escaped as above but for line ends, and on a terminal wrapped at words to its width. Never
+/// throws for what cannot be written: standard error that is gone (2>&-, a full disk) does not decide whether
+/// the work was done, and main() looks after standard output. To the journal each line goes with its level:
+/// `kind`, or a warning's where it begins "tactor: warning: ".
 void say_text(std::FILE* to, std::string_view text, log_kind kind = log_kind::info);
+
+/// Hands what was printed on standard output to its reader, and never throws, like say_text().
+void flush_output();
+
+/// Returns the errno of the first write to standard output by these that failed, else 0.
+int output_error();
 
 /// Whether systemd reads what is written there, for its journal.
 bool goes_to_journal(std::FILE* to);

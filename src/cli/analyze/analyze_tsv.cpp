@@ -91,7 +91,7 @@ void print_trials(std::FILE* out, const study::dataset& d)
                                     to_string(r.task), t.place, t.attempt, r.motions[t.motion], answer(t, r),
                                     t.response_time_s ? fmt::format("{}", *t.response_time_s) : "n/a");
         }
-    std::fwrite(text.data(), 1, text.size(), out);
+    fmt::print(out, "{}", text);
 }
 
 } // namespace tactor::cli
