@@ -15,16 +15,17 @@
 namespace tactor {
 inline namespace v0 {
 
-/// One open or closed curve of lines, arcs and Beziers. Immutable; copies and moves share it, and a path that
-/// was moved from keeps its value. All members may be called from any thread and do not block.
+/// One open or closed curve of lines, arcs and Beziers, or one place, whose length is 0. Immutable; copies
+/// and moves share it, and a path that was moved from keeps its value. All members may be called from any
+/// thread and do not block.
 class TACTOR_API path {
 public:
-    /// SVG path data in millimetres, e.g. "M 0 10 C 20 -5 20 45 40 30".
+    /// SVG path data in millimetres, e.g. "M 0 10 C 20 -5 20 45 40 30"; "M 20 20" is one place.
     /// \throws error (bad_input) for a text that is not path data (with the column), for numbers that are not
-    ///         finite or beyond 1e6 mm, for more than one subpath and for a path without length.
+    ///         finite or beyond 1e6 mm, and for more than one subpath.
     [[nodiscard]] static path from_svg(std::string_view data);
 
-    /// Straight lines from point to point (at least two, not all the same). Throws like from_svg.
+    /// Straight lines from point to point, or one place. Throws like from_svg, and for no point.
     [[nodiscard]] static path polyline(std::span<const point> points);
 
     /// Circular arc round `centre`; angles in degrees from the x axis towards the y axis (clockwise

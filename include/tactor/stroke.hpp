@@ -46,13 +46,14 @@ public:
     /// A touch that rests at (0, 0) mm for a second.
     trajectory();
 
-    /// Along a path at constant speed in `duration_s`.
+    /// Along a path at constant speed in `duration_s`; on a path that is one place, a touch that rests there.
     /// \throws error (bad_input) unless 0 < duration_s <= 86400.
     [[nodiscard]] static trajectory along(path p, double duration_s, double intensity = 1.0);
 
     /// Along a path as `m` says: in its duration, else at its speeds (default_speed_mm_s where it has none).
     /// \throws error (bad_input) for a movement that cannot be: parts that do not ascend from 0 to 1, speeds
-    ///         that are not above 0, rests that take all of the duration or more.
+    ///         that are not above 0, rests that take all of the duration or more, and for a path that is one
+    ///         place where there is no duration, or rests or a profile of intensities.
     [[nodiscard]] static trajectory along(path p, const movement& m, double intensity = 1.0);
 
     /// Linear between timed points: at least two, times strictly ascending from 0, finite.
@@ -154,6 +155,7 @@ struct stroke {
     source_place start_at = {};
     source_place carrier_at = {}; ///< of carrier_hz, or of carrier_profile
     source_place wave_at = {};
+    std::string made_for = {}; ///< name of the array preset that it is drawn for; messages name it
 };
 
 /// Names of the built-in strokes: "park2016-1" ... "park2016-4" for palm-3x3, "wave-2x4" and "round-2x4" for
@@ -162,6 +164,13 @@ struct stroke {
 
 /// A built-in stroke by name. \throws error (bad_input) that lists the presets.
 [[nodiscard]] TACTOR_API stroke preset_stroke(std::string_view name);
+
+/// Names of the shapes for first steps: "tap", "line", "circle", "eight" and "spiral".
+[[nodiscard]] TACTOR_API const std::vector<std::string>& stroke_shapes();
+
+/// A shape by name, as large as the array on which it is played (stroke::fit_margin_mm): at
+/// default_speed_mm_s, but a tap takes 0.3 s. \throws error (bad_input) that lists the shapes.
+[[nodiscard]] TACTOR_API stroke shape_stroke(std::string_view name);
 
 /// Reads a stroke file by its extension: .toml, .csv or .svg; see tactor.toml(5). One or more strokes.
 /// May block on the file system.

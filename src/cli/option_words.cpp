@@ -15,7 +15,9 @@ struct translation {
 };
 
 // What can only mean a field, in advice too.
-constexpr std::array<translation, 23> in_advice{{{"soa_s", "--soa"},
+constexpr std::array<translation, 26> in_advice{{{"measure its detection threshold", "run tactor calibrate"},
+                                                 {"soa_s", "--soa"},
+                                                 {"duration_s", "--duration"},
                                                  {"burst_s", "--burst"},
                                                  {"carrier_hz", "--carrier"},
                                                  {"ramp_s", "--ramp"},
@@ -29,7 +31,7 @@ constexpr std::array<translation, 23> in_advice{{{"soa_s", "--soa"},
                                                  {"force = true", "--force"},
                                                  {"snap = true", "--snap"},
                                                  {"drop_points = true", "--drop-points"},
-                                                 {"array = FILE", "--array FILE"},
+                                                 {"array = ", "--array "},
                                                  {"config = FILE", "--config FILE"},
                                                  {"margin_mm", "--fit-margin"},
                                                  {"leave array out", "say no --array"},
@@ -41,15 +43,16 @@ constexpr std::array<translation, 23> in_advice{{{"soa_s", "--soa"},
                                                  {"sigma_v_mm_s", "--sigma-v-mm-s"}}};
 
 // Words of every day.
-constexpr std::array<translation, 5> as_subject{{{"rate", "--rate"},
+constexpr std::array<translation, 6> as_subject{{{"rate", "--rate"},
+                                                 {"shape", "--shape"},
                                                  {"phantom", "--phantom"},
                                                  {"simulate", "--simulate"},
                                                  {"waveform", "--waveform"},
                                                  {"am", "--am"}}};
 
 // Those that files have as keys, too.
-constexpr std::array<std::string_view, 5> keys{"soa_s", "burst_s", "carrier_hz", "texture_mm",
-                                               "algorithm = "};
+constexpr std::array<std::string_view, 6> keys{"duration_s", "soa_s",      "burst_s",
+                                               "carrier_hz", "texture_mm", "algorithm = "};
 
 bool is_key(std::string_view field)
 {

@@ -19,7 +19,7 @@ void add_outline(const trajectory& t, std::vector<point>& corners, std::vector<s
 /// The same movement where `from` is the origin first, which keeps the digits of a small picture that is far
 /// away, and then `m` maps it. With `line`, the direction of the line to which `m` flattens all, curves
 /// become straight pieces between their turns. Time and intensity stay. `what` stands for it in messages.
-/// \throws error (bad_input) for coordinates beyond what a path may have, and for a path without length.
+/// \throws error (bad_input) for coordinates beyond what a path may have.
 trajectory moved(const trajectory& t, point from, const affine& m, std::optional<point> line,
                  const std::function<std::string()>& what);
 

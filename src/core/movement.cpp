@@ -102,8 +102,11 @@ trajectory trajectory::along(path p, const movement& m, double intensity)
 {
     detail::check_movement(m);
     detail::check_intensity("stroke", intensity);
+    const bool one_place = p.length_mm() == 0.0;
+    if (one_place && (m.duration_s.value_or(0.0) == 0.0 || !m.intensity.empty() || !m.rests.empty()))
+        detail::refuse_one_place();
     const double moving = moving_time_s(m, p.length_mm());
-    if (is_even(m))
+    if (one_place || is_even(m))
         return along(p, moving, intensity);
     auto moves = std::make_shared<const pace>(m, moving);
     const double duration = m.duration_s.value_or(moves->total_s());

@@ -7,6 +7,7 @@
 #include <array>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <tactor/error.hpp>
 
@@ -46,6 +47,22 @@ constexpr std::array drawings{
     drawing{"round-2x4", "M 58 10 A 28 8 0 0 1 2 10 A 28 8 0 0 1 58 10", 2.8},
 };
 
+// For first steps on any array, which gives them their size. y points down: they begin clockwise.
+struct shape {
+    std::string_view name;
+    std::string_view path;
+};
+
+constexpr double tap_s = 0.3;
+
+constexpr std::array shapes{
+    shape{"tap", "M 0 0"},
+    shape{"line", "M 0 0 H 100"},
+    shape{"circle", "M 50 0 A 50 50 0 0 1 50 100 A 50 50 0 0 1 50 0"},
+    shape{"eight", "M 50 25 A 25 25 0 0 1 100 25 A 25 25 0 0 1 50 25 A 25 25 0 0 0 0 25 A 25 25 0 0 0 50 25"},
+    shape{"spiral", "M 0 0 A 5 5 0 0 1 10 0 A 10 10 0 0 1 -10 0 A 15 15 0 0 1 20 0 A 20 20 0 0 1 -20 0"},
+};
+
 double duration_s(const motion& m)
 {
     return (m.sweep_deg < 0.0 ? -m.sweep_deg : m.sweep_deg) / 90.0 * quarter_turn_s;
@@ -68,19 +85,49 @@ const std::vector<std::string>& stroke_presets()
 
 stroke preset_stroke(std::string_view name)
 {
-    for (const motion& m : motions) {
+    for (const motion& m : motions)
         if (m.name == name)
-            return {std::string(name),
-                    trajectory::along(path::arc(m.centre, radius_mm, m.from_deg, m.sweep_deg), duration_s(m)),
-                    {},
-                    {},
-                    note_kind::reconstructed};
-    }
+            return {.name = std::string(name),
+                    .motion = trajectory::along(path::arc(m.centre, radius_mm, m.from_deg, m.sweep_deg),
+                                                duration_s(m)),
+                    .note = note_kind::reconstructed,
+                    .made_for = "palm-3x3"};
     for (const drawing& d : drawings)
         if (d.name == name)
-            return {std::string(name), trajectory::along(path::from_svg(d.path), d.duration_s), {}, {}, {}};
+            return {.name = std::string(name),
+                    .motion = trajectory::along(path::from_svg(d.path), d.duration_s),
+                    .made_for = "palm-2x4"};
     throw error(error_kind::bad_input, "stroke", fmt::format("no preset {}", detail::quoted(name)),
                 detail::preset_hint(name, stroke_presets()));
+}
+
+const std::vector<std::string>& stroke_shapes()
+{
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all;
+        for (const shape& s : shapes)
+            all.emplace_back(s.name);
+        return all;
+    }();
+    return names;
+}
+
+stroke shape_stroke(std::string_view name)
+{
+    for (const shape& s : shapes) {
+        if (s.name != name)
+            continue;
+        const path p = path::from_svg(s.path);
+        const bool tap = p.length_mm() == 0.0;
+        stroke k{.name = std::string(name),
+                 .motion = trajectory::along(p, tap ? tap_s : p.length_mm() / default_speed_mm_s),
+                 .fit_margin_mm = 0.0};
+        if (!tap)
+            k.speed_mm_s = default_speed_mm_s;
+        return k;
+    }
+    throw error(error_kind::bad_input, "shape", fmt::format("{} is not known", detail::quoted(name)),
+                fmt::format("one of {}", fmt::join(stroke_shapes(), ", ")));
 }
 
 } // namespace v0

@@ -264,6 +264,7 @@ void bind_stroke(py::module_& m)
         .def_static("moving", &moving)
         .def_static("timed", &timed)
         .def_static("preset", [](const std::string& name) { return preset_stroke(name); })
+        .def_static("shape", [](const std::string& name) { return shape_stroke(name); })
         .def_static("load", [](const std::string& file) { return load_strokes(file); })
         .def_static("parse", [](const std::string& text,
                                 const std::string& name) { return parse_strokes(text, name); })

@@ -23,7 +23,7 @@ struct translation {
 };
 
 // What the library calls its fields, in advice.
-constexpr std::array<translation, 15> in_advice{{{"fit_strokes() scales it to the array, ", ""},
+constexpr std::array<translation, 17> in_advice{{{"fit_strokes() scales it to the array, ", ""},
                                                  {"soa_s", "options.soa"},
                                                  {"burst_s", "options.burst"},
                                                  {"carrier_hz", "options.carrier"},
@@ -37,7 +37,9 @@ constexpr std::array<translation, 15> in_advice{{{"fit_strokes() scales it to th
                                                  {"drop_points = true", "options.drop_points true"},
                                                  {"sigma_mm", "options.sigma_mm"},
                                                  {"sigma_v_mm_s", "options.sigma_v_mm_s"},
-                                                 {"array = FILE", "another array of the server"}}};
+                                                 {"duration_s", "options.duration"},
+                                                 {"array = FILE", "another array of the server"},
+                                                 {"array = palm", "palm"}}};
 
 // What it is about, by how it begins.
 constexpr std::array<translation, 24> subjects{{{"soa_s", "options.soa"},

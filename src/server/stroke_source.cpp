@@ -58,13 +58,19 @@ stroke stroke_of_path(const std::string& data, const stroke_settings& s)
     return k;
 }
 
+bool is_shape(const std::string& name)
+{
+    const auto& shapes = stroke_shapes();
+    return std::find(shapes.begin(), shapes.end(), name) != shapes.end();
+}
+
 std::vector<stroke> read_strokes(const std::string& source, const json& v, const stroke_settings& s)
 {
     if (source == "points")
         return read_points(v);
     const std::string& t = text(v, source);
     if (source == "stroke")
-        return {preset_stroke(t)};
+        return {is_shape(t) ? shape_stroke(t) : preset_stroke(t)};
     if (source == "path")
         return {stroke_of_path(t, s)};
     if (source == "toml")

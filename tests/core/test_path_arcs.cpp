@@ -100,9 +100,7 @@ TEST_CASE("an arc with a radius of 0 is a line, and one to where it begins is no
         CHECK(path::from_svg(data).svg() == "M 0 0 L 3 4");
     }
     CHECK(path::from_svg("M 0 0 H 3 a 5 5 0 0 1 0 0 v 4").length_mm() == 7.0);
-    CHECK(message_of([] {
-              static_cast<void>(path::from_svg("M 5 5 A 1 1 0 0 0 5 5"));
-          }).find("draws nothing") != std::string::npos);
+    CHECK(path::from_svg("M 5 5 A 1 1 0 0 0 5 5").length_mm() == 0.0);
 }
 
 TEST_CASE("a turned ellipse's quarter ends on its axes")

@@ -82,10 +82,6 @@ TEST_CASE("what is not path data is refused at the first bad column")
         {"M 0 0 L 1 1 M 5 5 L 6 6", "path data: column 13: a second subpath begins"},
         {"M 0 0 L 1 1 Z L 5 5", "path data: column 15: a second subpath begins"},
         {"M 0 0 M 1 1 L 2 2", "path data: column 7: a second subpath begins"},
-        {"M 5 5", "path data: draws nothing"},
-        {"M 5 5 Z", "path data: has no length"},
-        {"M 5 5 L 5 5", "path data: has no length"},
-        {"M 5 5 l 1e-8 0", "path data: has no length"},
         {"M 900000 0 l 900000 0", "path data: goes to 1.8e+06 mm, beyond 1e+06 mm"},
     };
     for (const sample& s : samples) {

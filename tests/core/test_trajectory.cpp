@@ -141,6 +141,25 @@ TEST_CASE("a target that rests on a line meets it when it arrives")
     CHECK(still.position(0.5) == point{5.0, 5.0});
 }
 
+TEST_CASE("a path that is one place is a tap of the duration that it is given")
+{
+    const path place = path::from_svg("M 5 7");
+    const trajectory tap = trajectory::along(place, 0.4, 0.5);
+    CHECK(tap.duration_s() == 0.4);
+    CHECK(tap.length_mm() == 0.0);
+    CHECK(tap.position(0.3) == point{5.0, 7.0});
+    CHECK(tap.intensity(0.3) == 0.5);
+    CHECK(tap.reversed().position(0.0) == point{5.0, 7.0});
+    CHECK(tap.with_speed(60.0).duration_s() == 0.4);
+    const movement reach{.duration_s = 2.0, .easing = easing_kind::minimum_jerk};
+    CHECK(trajectory::along(place, reach).duration_s() == 2.0);
+    const std::string refusal = "path: has no length (duration_s makes it a tap)";
+    CHECK(message_of([&] { static_cast<void>(trajectory::along(place, 0.0)); }) == refusal);
+    for (const movement& m : {movement{}, movement{.duration_s = 1.0, .intensity = {{0.0, 0.5}}},
+                              movement{.rests = {{0.5, 1.0}}}})
+        CHECK(message_of([&] { static_cast<void>(trajectory::along(place, m)); }) == refusal);
+}
+
 TEST_CASE("durations and intensities out of range are refused")
 {
     for (const double d : {0.0, -1.0, nan_value, infinite, 86400.1}) {

@@ -40,6 +40,9 @@ call_table file_calls(const call_things& t)
     return {
         {"stroke_presets", [] { return stroke_presets().size(); }},
         {"preset_stroke", [] { return preset_stroke("park2016-4"); }},
+        {"stroke_shapes", [] { return stroke_shapes().size(); }},
+        {"shape_stroke", [] { return shape_stroke("spiral"); }},
+        {"shape_stroke, unknown", [] { return shape_stroke("square"); }},
         {"preset_stroke, unknown", [] { return preset_stroke("park2016-5"); }},
         {"load_strokes", [csv_file] { return load_strokes(csv_file); }, opens},
         {"load_strokes, of TOML", [toml_file] { return load_strokes(toml_file); }, opens_ends},

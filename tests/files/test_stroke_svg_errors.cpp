@@ -52,7 +52,7 @@ TEST_CASE("what is wrong in an SVG file is named by line and column")
          "a.svg:3:6: d of <path> 'p': 'x' where L wants a number"},
         {"<svg>\n<path d='L 1 1'/></svg>", "a.svg:2:10: d of <path>: 'L' where a path starts"},
         {"<svg>\n<path id='dot' d='M 1 1 L 1 1'/><line x2='3'/></svg>",
-         "a.svg:2:2: <path> 'dot': has no length"},
+         "a.svg:2:2: <path> 'dot': has no length (data-duration-s makes it a tap)"},
         {"<svg><path d='M 1 1 h 2 M 1 1 z'/></svg>", "a.svg:1:7: <path>: has no length"},
         {"<svg>\n<line x2='3zz'/></svg>", "a.svg:2:12: x2 of <line>: unit 'zz' is not known"},
         {"<svg><line x2='nan'/></svg>", "a.svg:1:16: x2 of <line>: 'nan' is not a number"},

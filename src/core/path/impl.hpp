@@ -36,7 +36,7 @@ struct path::impl {
 namespace tactor::detail {
 
 /// Measures an outline. What `what` gives stands for it in messages.
-/// \throws error (bad_input) for coordinates that are not finite or beyond max_mm and for no length.
+/// \throws error (bad_input) for coordinates that are not finite or beyond max_mm.
 path make_path(outline o, const std::function<std::string()>& what);
 
 } // namespace tactor::detail

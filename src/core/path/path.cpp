@@ -75,8 +75,11 @@ path make_path(outline o, const std::function<std::string()>& what)
         else if (i + 1 < made->vertices.size())
             length.add(distance_mm(made->vertices[i], made->vertices[i + 1]));
     }
-    if (made->s.empty() || !(made->s.back() > same_place_mm))
-        throw error(error_kind::bad_input, what(), "has no length", "a path needs two different points");
+    if (!(made->s.back() > same_place_mm)) { // one place
+        made->vertices.resize(1);
+        made->s.resize(1);
+        made->curves.clear();
+    }
     return detail::access::make<path>(std::shared_ptr<const path::impl>(std::move(made)));
 }
 
@@ -87,9 +90,8 @@ inline namespace v0 {
 
 path path::polyline(std::span<const point> points)
 {
-    if (points.size() < 2)
-        throw error(error_kind::bad_input, "polyline",
-                    fmt::format("has {} of at least 2 points", points.size()),
+    if (points.empty())
+        throw error(error_kind::bad_input, "polyline", "has no point",
                     "give where it starts and where it ends")
             .with_field("points");
     detail::outline o;

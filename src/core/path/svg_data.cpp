@@ -65,7 +65,10 @@ public:
             command();
             detail::skip_blanks(data_, at_);
         }
-        return pen_.take();
+        std::vector<detail::outline> drawn = pen_.take();
+        if (one_ && drawn.empty()) // a move alone: one place
+            drawn.push_back({{pen_.start()}, {}});
+        return drawn;
     }
 
 private:
@@ -190,8 +193,6 @@ path path::from_svg(std::string_view data)
     constexpr const char* what = "path data";
     try {
         std::vector<detail::outline> found = detail::parse_path_data(data, detail::max_mm, subpaths::one);
-        if (found.empty())
-            throw error(error_kind::bad_input, what, "draws nothing", "e.g. \"M 0 10 L 40 30\"");
         return detail::make_path(std::move(found.front()), [] { return what; });
     } catch (const value_fault& f) {
         throw error(error_kind::bad_input, what, fmt::format("column {}: {}", f.offset + 1, f.why), f.hint);

@@ -30,6 +30,9 @@ public:
     /// The subpaths that were drawn; leaves none.
     std::vector<outline> take();
 
+    /// The place of the last move.
+    point start() const { return start_; }
+
 private:
     void move(point to);
     void line(point to);

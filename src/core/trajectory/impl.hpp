@@ -32,6 +32,8 @@ struct timed_points {
 /// \throws error (bad_input) for what no stroke can have; `what` stands for it in messages.
 void check_duration(double duration_s);
 void check_intensity(std::string_view what, double intensity);
+/// \throws error (bad_input) that asks for a duration: the path is one place.
+[[noreturn]] void refuse_one_place();
 
 } // namespace tactor::detail
 

@@ -91,6 +91,12 @@ void check_duration(double duration_s)
             .with_field("duration_s");
 }
 
+void refuse_one_place()
+{
+    throw error(error_kind::bad_input, "path", "has no length", "duration_s makes it a tap")
+        .with_field("duration_s");
+}
+
 void check_intensity(std::string_view what, double intensity)
 {
     if (!(intensity >= 0.0 && intensity <= max_intensity))
@@ -161,8 +167,13 @@ trajectory::trajectory(std::shared_ptr<const impl> p) noexcept : impl_(std::move
 
 trajectory trajectory::along(path p, double duration_s, double intensity)
 {
+    const bool rests = p.length_mm() == 0.0;
+    if (rests && duration_s == 0.0)
+        detail::refuse_one_place();
     check_duration(duration_s);
     check_intensity("stroke", intensity);
+    if (rests)
+        return timed({{0.0, p.at(0.0), intensity}, {duration_s, p.at(0.0), intensity}});
     return trajectory(std::make_shared<impl>(impl{drawn_path{p, intensity, {}}, duration_s, 1.0}));
 }
 

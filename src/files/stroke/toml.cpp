@@ -175,7 +175,9 @@ stroke read_drawn(const toml_table& t, std::string name)
         const std::string preset = *t.text("preset");
         stroke s = at_key(t, kind, [&] { return preset_stroke(preset); });
         name = s.name;
+        std::string made_for = s.made_for;
         s = described(preset_as_told(t, asked, s.motion), s.note);
+        s.made_for = std::move(made_for);
         if (!asked.moves.speed_mm_s.empty())
             s.speed_mm_s = detail::kept_speed(asked, s.motion.length_mm());
         return s;

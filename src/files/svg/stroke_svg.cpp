@@ -217,7 +217,11 @@ private:
         for (std::size_t i = 0; i < paths.size(); ++i) {
             const double length = paths[i].length_mm();
             const double speed = s.speed_mm_s.value_or(default_speed_mm_s);
-            const double time = duration ? *duration * (length / all) : length / speed;
+            const double part = all > 0.0 ? length / all : 1.0 / static_cast<double>(paths.size());
+            const double time = duration ? *duration * part : length / speed;
+            if (time == 0.0)
+                doc_.fail(n, fmt::format("{}: has no length", doc_.called(n)),
+                          "data-duration-s makes it a tap");
             if (time > detail::longest_stroke_s)
                 doc_.fail(n, fmt::format("{} takes {:g} s", doc_.called(n), time),
                           "a stroke takes at most a day");

@@ -21,7 +21,7 @@ class Path(_Value):
     Raises
     ------
     InputError
-        For what is not path data (with its column), for numbers that are not finite or beyond 1e6 mm, and for no length.
+        For what is not path data (with its column), for numbers that are not finite or beyond 1e6 mm, and for no point.
     """
 
     __slots__ = ("_core",)

@@ -62,7 +62,7 @@ def _placed(name: str, start: float | None, carrier: float | None) -> tuple[str,
 class Stroke(_Value):
     """A movement: where the target is at which time, and how strongly. Immutable.
 
-    Made by `along`, `timed`, `preset` or `tactor.load`.
+    Made by `along`, `timed`, `preset`, `shape` or `tactor.load`.
     """
 
     __slots__ = ("_core",)
@@ -70,7 +70,7 @@ class Stroke(_Value):
     _core: _t.Any
 
     def __init__(self) -> None:
-        raise TypeError("use Stroke.along(), Stroke.timed(), Stroke.preset() or tactor.load()")
+        raise TypeError("use Stroke.along(), Stroke.timed(), Stroke.preset(), Stroke.shape() or tactor.load()")
 
     @classmethod
     def _of(cls, core: _t.Any) -> Stroke:
@@ -89,6 +89,7 @@ class Stroke(_Value):
         Parameters
         ----------
         path : Path
+            One place makes a tap of the duration, which must be given then.
         duration : float, optional
             Time of the stroke in seconds, pauses included, more than 0 and at most a day.
         speed : float or [(part, mm/s), ...], optional
@@ -157,6 +158,12 @@ class Stroke(_Value):
         """A built-in stroke: "park2016-1" ... "park2016-4", "wave-2x4", "round-2x4" (`stroke_presets`)."""
         _need(name, str, "name")
         return cls._of(_tactor.Stroke.preset(name))
+
+    @classmethod
+    def shape(cls, name: str) -> Stroke:
+        """A "tap", "line", "circle", "eight" or "spiral", as large as the array for which it is planned."""
+        _need(name, str, "name")
+        return cls._of(_tactor.Stroke.shape(name))
 
     @property
     def name(self) -> str:

@@ -50,15 +50,12 @@ stroke read_file_stroke(const toml_table& t, const std::filesystem::path& folder
     return std::move(all.front());
 }
 
-stroke along_path(const toml_table& t, std::optional<double> speed_mm_s)
+stroke along_path(const toml_table& t, std::optional<double> duration_s, std::optional<double> speed_mm_s)
 {
     return at_key(t, "path", [&] {
         const path way = path::from_svg(*t.text("path"));
-        return stroke{"path",
-                      trajectory::along(way, way.length_mm() / speed_mm_s.value_or(default_speed_mm_s)),
-                      {},
-                      {},
-                      {}};
+        const double usual_s = way.length_mm() / speed_mm_s.value_or(default_speed_mm_s);
+        return stroke{"path", trajectory::along(way, duration_s.value_or(usual_s)), {}, {}, {}};
     });
 }
 
@@ -111,7 +108,7 @@ motion_definition read_motion(const toml_table& t, const std::filesystem::path& 
         t.fail(speed_key, fmt::format("{} has both {} and {}", t.title(), duration_key, speed_key),
                "keep one of them");
     stroke drawn = kind == "file"   ? read_file_stroke(t, folder)
-                   : kind == "path" ? along_path(t, speed)
+                   : kind == "path" ? along_path(t, duration, speed)
                                     : at_key(t, "preset", [&] { return preset_stroke(*t.text("preset")); });
     if (duration)
         drawn.motion = at_key(t, duration_key, [&] { return drawn.motion.with_duration(*duration); });
