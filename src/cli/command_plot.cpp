@@ -11,6 +11,7 @@
 #include "cli/parse_number.hpp"
 #include "cli/pipes.hpp"
 #include "cli/say.hpp"
+#include "cli/warnings.hpp"
 #include "plot/figure.hpp"
 #include "plot/paint/output.hpp"
 
@@ -86,9 +87,7 @@ int draw(settings& s, option_list& options, const plot_settings& p)
         {e.tactors, name_of(q), q.strokes, q.plans, sound ? &*sound : nullptr, q.moved}, p.figure);
     tell_of_pipe_to_write(p.file);
     plot::save(picture, p.file, p.dpi, p.force);
-    for (const placed_plan& k : q.plans)
-        for (const std::string& w : k.schedule.warnings)
-            say(stderr, "tactor: warning: {}\n", w);
+    say_warnings(collect_warnings(q.plans));
     say(stdout, "{}: {:.4g} x {:.4g} mm\n", p.file, picture.width / plot::pt_per_mm,
         picture.height / plot::pt_per_mm);
     return status_ok;

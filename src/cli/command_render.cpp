@@ -17,6 +17,7 @@
 #include "cli/pipes.hpp"
 #include "cli/say.hpp"
 #include "cli/threshold_carrier.hpp"
+#include "cli/warnings.hpp"
 #include "core/words.hpp"
 
 namespace tactor::cli {
@@ -107,9 +108,7 @@ int render(settings& s, option_list& options, const std::string& name)
     const render_options how = settle_render(s, e);
     const score sc = plan_and_score(p, s, e, faces, how);
     const format_kind format = s.format.value_or(format_kind::float32);
-    for (const placed_plan& q : sc.plans())
-        for (const std::string& w : q.schedule.warnings)
-            say(stderr, "tactor: warning: {}\n", w);
+    say_warnings(collect_warnings(sc.plans()));
     tell_of_other_carrier(e, how, std::span(&sc, 1));
     tell_of_pipe_to_write(file.string());
     interrupt stop;

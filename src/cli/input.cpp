@@ -59,6 +59,8 @@ piece read_piece(const settings& s, const environment& e, const layout& faces, c
     piece p{argument, {}, {}};
     if (s.path_data)
         p.strokes.push_back(stroke_of_path(s, *s.path_data));
+    else if (s.shape)
+        p.strokes.push_back(shape_stroke(*s.shape));
     else
         p.strokes = read_one(e, argument);
     p.strokes = fitted_as_asked(std::move(p.strokes), faces, shown_name(argument));
@@ -73,19 +75,6 @@ piece read_piece(const settings& s, const environment& e, const layout& faces, c
         else if (s.speed_mm_s && k.motion.length_mm() > 0.0)
             k.motion = k.motion.with_speed(*s.speed_mm_s);
     return p;
-}
-
-std::vector<std::string> stroke_arguments(const settings& s)
-{
-    if (s.path_data && !s.strokes.empty())
-        throw error(error_kind::bad_input, "--path",
-                    fmt::format("there is also the stroke \"{}\"", s.strokes[0]), "give one of them");
-    if (s.path_data)
-        return {"--path"};
-    if (s.strokes.empty())
-        throw error(error_kind::bad_input, "command line", "no stroke",
-                    "give a preset such as park2016-1, a stroke file, - or --path DATA");
-    return s.strokes;
 }
 
 std::string only_argument(const settings& s)
@@ -109,18 +98,32 @@ error in_piece(const error& x, const std::string& argument, std::size_t number, 
     return x.reworded(said ? from : fmt::format("{}: {}", from, x.subject()), x.why(), x.hint());
 }
 
+// --path and --shape NAME stand for a STROKE.
+bool is_option(const std::string& argument)
+{
+    return argument.starts_with("--");
+}
+
+// The name of an argument's only stroke that has none of its own.
+std::string default_name(const std::string& argument)
+{
+    if (is_option(argument))
+        return argument.substr(argument.find_first_not_of("-", argument.rfind(' ') + 1));
+    const bool file = argument != "-" && !is_preset(stroke_presets(), argument);
+    return file ? fs::path(argument).stem().string() : shown_name(argument);
+}
+
 // A file's only stroke: which file, for the planner knows the stroke's name at most. What the command line or
 // a preset says is known without.
 error in_file(const error& x, const std::string& argument)
 {
     const bool about_it = x.subject() == "stroke" || x.subject().starts_with("stroke \"");
-    const bool file = argument != "--path" && !is_preset(stroke_presets(), argument);
+    const bool file = !is_option(argument) && !is_preset(stroke_presets(), argument);
     if (!about_it || !file)
         return x;
     const std::string from = shown_name(argument);
-    // A stroke without a name of its own has the file's.
-    const std::string given = argument == "-" ? from : std::filesystem::path(argument).stem().string();
-    const bool said = x.subject() == "stroke" || x.subject() == fmt::format("stroke \"{}\"", given);
+    const bool said =
+        x.subject() == "stroke" || x.subject() == fmt::format("stroke \"{}\"", default_name(argument));
     return x.reworded(said ? from : fmt::format("{}: {}", from, x.subject()), x.why(), x.hint());
 }
 
@@ -132,7 +135,7 @@ piece open_argument(const settings& s, const environment& e, const layout& faces
         return read_piece(s, e, faces, argument);
     const plan_file& f = planned->second;
     check_same_array(argument, f.tactors, e.tactors);
-    return {argument, f.strokes, f.plans, f.fit, f.moved};
+    return {argument, f.strokes, f.plans, f.fit, f.moved, true};
 }
 
 bool has_own_carrier(const stroke& s)
@@ -170,9 +173,35 @@ void check_starts(const piece& p)
 
 } // namespace
 
+std::vector<std::string> stroke_arguments(const settings& s)
+{
+    const std::string option = s.path_data ? "--path" : s.shape ? "--shape " + *s.shape : "";
+    if (s.path_data && s.shape)
+        throw error(error_kind::bad_input, option, "there is also --shape " + *s.shape, "give one of them");
+    if (!option.empty() && !s.strokes.empty())
+        throw error(error_kind::bad_input, option,
+                    fmt::format("there is also the stroke \"{}\"", s.strokes[0]), "give one of them");
+    if (!option.empty())
+        return {option};
+    if (s.strokes.empty())
+        throw error(error_kind::bad_input, "command line", "no stroke",
+                    "give a preset such as park2016-1, a stroke file, -, --path DATA or --shape circle");
+    return s.strokes;
+}
+
 std::string shown_name(const std::string& argument)
 {
     return argument == "-" ? "standard input" : argument;
+}
+
+std::string name_stroke(const piece& p, std::size_t i)
+{
+    const std::string argument = shown_name(p.name);
+    const std::string& own = p.strokes[i].name;
+    if (p.from_plan)
+        return own;
+    return p.strokes.size() == 1 && own == default_name(p.name) ? argument
+                                                                : fmt::format("{}: {}", argument, own);
 }
 
 error of_stroke(const error& x, const piece& p, std::size_t i)

@@ -21,10 +21,19 @@ struct piece {
     std::optional<fitting> fit = {}; ///< what --fit did
     /// What --compensate did to each plan; empty without it. Their schedules are moved to `plans`.
     std::vector<compensated_plan> moved = {};
+    bool from_plan = false; ///< the argument is a plan, which knows its stroke's name
 };
+
+/// Returns the STROKE arguments, or the option that stands for them. \throws error unless there is one of
+/// them.
+std::vector<std::string> stroke_arguments(const settings& s);
 
 /// A STROKE argument as people read it: - is standard input.
 std::string shown_name(const std::string& argument);
+
+/// Returns the name of the piece's stroke i as every command prints it: the STROKE argument, followed by the
+/// stroke's own name where it has one; of a plan, the name of the stroke that was planned.
+std::string name_stroke(const piece& p, std::size_t i);
 
 /// An error about the piece's stroke i, with the file that has it, and which of several it is.
 error of_stroke(const error& x, const piece& p, std::size_t i);

@@ -135,6 +135,11 @@ void option_list::add_stroke_options()
     strokes->expected(0, max_strokes);
     value("--path", "DATA", "SVG path data in mm instead of STROKE",
           [&s](const std::string& t) { s.path_data = t; });
+    value("--shape", fmt::format("{}", fmt::join(stroke_shapes(), "|")),
+          "as large as the array, instead of STROKE, for first steps", [&s](const std::string& t) {
+              static_cast<void>(shape_stroke(t)); // refuses what is none
+              s.shape = t;
+          });
     add_array_options();
     add_timing_options();
     value("--phantom", phantoms.names("|"), "how strongly (default inverse-distance)",

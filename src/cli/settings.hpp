@@ -23,6 +23,7 @@ namespace tactor::cli {
 struct settings {
     std::vector<std::string> strokes;       ///< STROKE arguments
     std::optional<std::string> path_data;   ///< --path
+    std::optional<std::string> shape;       ///< --shape
     std::optional<std::string> array_name;  ///< --array
     std::optional<std::string> config_file; ///< --config
     std::optional<std::string> pcm;         ///< -D

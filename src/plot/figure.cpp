@@ -15,6 +15,7 @@
 #include "plot/draw/stroke_legend.hpp"
 #include "plot/draw/time_colours.hpp"
 #include "plot/paint/text.hpp"
+#include "plot/sound_text.hpp"
 #include "plot/timing_view.hpp"
 #include "plot/wave_view.hpp"
 
@@ -54,7 +55,7 @@ std::vector<std::string> details(const scene& s, const timeline& t)
                             seconds_text(seconds(s, t), 4)));
     if (channels_are_numbers(s.tactors))
         d.emplace_back(s.tactors.tactors.size() == 1 ? "tactor 0 on channel 0" : "tactor n on channel n");
-    d.push_back(common(s, [](const plan& p) { return fmt::format("{} Hz", number(p.carrier_hz, 5)); }));
+    d.push_back(common(s, describe_sound));
     return d;
 }
 

@@ -1,13 +1,18 @@
 # SPDX-License-Identifier: MIT
 """Where `render` writes: pipes, standard output, files of others; and what people read of names that strangers chose."""
 import os
+import pathlib
 import pty
 import resource
 import select
 import signal
 import stat
 import subprocess
+import sys
 import termios
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "study"))
+import studies
 
 from harness import PATIENCE_S, TOOL, ToolTest, Wav, main
 
@@ -155,6 +160,29 @@ class People(Output):
         said = process.stderr.read()
         self.assertEqual((process.wait(timeout=PATIENCE_S), said), (128 + signal.SIGPIPE, b""))
         process.stderr.close()
+
+    def test_nobody_who_reads_is_no_error_whatever_is_printed(self):
+        # More than a buffer holds, and less: help, listings, tables.
+        studies.simulated(self.dir / "study")
+        for args in (("help", "play"), ("help",), ("--version",), ("plan", "park2016-1"), ("plan", "park2016-1", "--format", "json"),
+                     ("compare", "park2016-1"), ("check", "-D", "null"), ("devices",), ("analyze", "study"),
+                     ("analyze", "study", "--format", "tsv"), ("report", "study"), ("experiment", "park2016", "--dry-run"),
+                     ("experiment", "park2016", "--print"), ("plot", "park2016-1", "-o", "o.svg"), ("play", "park2016-1", "-D", "null")):
+            ours, theirs = os.pipe()
+            os.close(ours)
+            process = self.start(*args, stdout=theirs)
+            os.close(theirs)
+            _, said = process.communicate(timeout=PATIENCE_S)
+            self.assertEqual(process.returncode, 128 + signal.SIGPIPE, f"{args}: {said}")
+            self.assertNotIn(b"standard output", said, args)
+
+    def test_a_full_disk_is_named_whatever_is_printed(self):
+        for args in (("help", "play"), ("plan", "park2016-1"), ("devices",), ("--version",)):
+            with open("/dev/full", "wb") as full:
+                process = self.start(*args, stdout=full)
+                _, said = process.communicate(timeout=PATIENCE_S)
+            self.assertEqual(process.returncode, 1, args)
+            self.assertIn(b"No space left on device", said, args)
 
     def test_who_reads_only_the_beginning_of_sound_gets_no_error_either(self):
         # However standard output is named; one that is a pipe by name has its error elsewhere.

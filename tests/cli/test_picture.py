@@ -107,6 +107,21 @@ class Picture(ToolTest):
         self.assertRegex(text, r"\[ {30}\] \d+\.\d\d / 3600\.\d\d s   at 0\.\d, 10\.\d mm")
         self.assertIn("9 channels", w.lines()[0])
 
+    def test_ctrl_z_leaves_no_row_behind(self):
+        w = Window(self, LONG, 80, 24)
+        w.until(has_picture)
+        for again in range(2):
+            w.process.send_signal(signal.SIGTSTP)
+            os.waitpid(w.process.pid, os.WUNTRACED)
+            while select.select([w.primary], [], [], 0.2)[0]:
+                w.read()
+            self.assertEqual((w.shades(), len(w.text().splitlines())), (0, 1), w.text())
+            w.process.send_signal(signal.SIGCONT)
+            w.until(lambda w: has_picture(w) and w.shades() == 27)
+            self.assertEqual(sum("3600" in line for line in w.lines()), 1, w.text())
+        w.process.send_signal(signal.SIGINT)
+        self.assertEqual(w.to_the_end(), 130)
+
     def test_the_touch_is_where_the_stroke_is(self):
         # To and fro, until enough of it has been seen.
         w = Window(self, ("play", "--path", "M 0 0" + " L 40 40 L 0 0" * 150, "--duration", "600", "-D", "null"), 80, 24)

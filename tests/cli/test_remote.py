@@ -4,6 +4,7 @@ import json
 import signal
 import socket
 import subprocess
+import time
 
 from harness import PATIENCE_S, TOOL, ToolTest, main
 from serving import Server
@@ -149,6 +150,18 @@ class Remote(ToolTest):
         s.process.terminate()
         self.assertEqual(json.loads(p.stdout.readline())["params"]["state"], "closing")
         self.assertEqual(p.wait(PATIENCE_S), 0)
+
+    def test_a_watch_ends_with_its_reader(self):
+        s = self.serve()
+        p = self.begun("status", "--watch", "--socket", s.where["socket"])
+        p.stdout.readline()
+        p.stdout.close()
+        client = s.client()
+        deadline = time.monotonic() + PATIENCE_S
+        while p.poll() is None and time.monotonic() < deadline:
+            client.ok("drive", tactor=0, duration_s=0.001)
+            time.sleep(0.05)
+        self.assertEqual((p.wait(PATIENCE_S), p.stderr.read()), (128 + signal.SIGPIPE, ""))
 
     def test_lines_move_a_live_stroke_through_a_server(self):
         s = self.serve()

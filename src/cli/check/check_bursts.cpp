@@ -9,6 +9,7 @@
 
 #include "cli/check/check_array.hpp"
 #include "core/words.hpp"
+#include "plot/sound_text.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -94,6 +95,14 @@ void check_actuators(const array& a, double carrier_hz, double burst_s, bool has
                      : ""));
 }
 
+// Noise and recordings have no carrier that cycles could be counted of.
+finding name_sound(const plan_options& p, double burst_s, bool has_bursts)
+{
+    const std::string sound = plot::describe_sound({.carrier_hz = p.carrier_hz, .wave = p.wave, .am = p.am});
+    return fine("bursts", has_bursts ? fmt::format("{} ms of {}", plain_number(burst_s * 1e3, 4), sound)
+                                     : "none (continuous), " + sound);
+}
+
 finding check_carrier(double carrier_hz, double burst_s, bool has_bursts, unsigned rate)
 {
     const double cycles = carrier_hz * burst_s;
@@ -132,7 +141,9 @@ std::vector<finding> check_bursts(const plan_options& p, const array& a, unsigne
         return {failure("bursts", e)};
     }
     check_actuators(a, p.carrier_hz, burst_s, has_bursts, all);
-    all.push_back(check_carrier(p.carrier_hz, burst_s, has_bursts, rate));
+    const bool has_carrier = p.wave.kind != waveform_kind::noise && p.wave.kind != waveform_kind::recording;
+    all.push_back(has_carrier ? check_carrier(p.carrier_hz, burst_s, has_bursts, rate)
+                              : name_sound(p, burst_s, has_bursts));
     return all;
 }
 

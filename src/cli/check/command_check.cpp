@@ -162,7 +162,7 @@ int check(settings& s, option_list& options, const check_options& o)
         say(stdout, "{}", check_text(all, o.walk));
     else if (!walks)
         fmt::print("{}", check_json(all, {}));
-    std::fflush(stdout);
+    flush_output();
     if (status_of(all) != status_ok)
         return complain(all);
     return walks ? run_walk(s, o, *e, all) : status_ok;

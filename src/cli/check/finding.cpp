@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/check/finding.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "cli/commands.hpp"
@@ -16,10 +18,12 @@ std::string_view to_string(level l)
 std::string findings_text(const std::vector<finding>& all)
 {
     std::string s;
-    for (const finding& f : all) {
-        s += wrapped(fmt::format("{:<8} {:<14} ", to_string(f.how), f.check), f.found);
-        if (!f.cure.empty())
-            s += wrapped(fmt::format("{:<24}-> ", ""), f.cure);
+    for (auto f = all.begin(); f != all.end(); ++f) {
+        s += wrapped(fmt::format("{:<8} {:<14} ", to_string(f->how), f->check), f->found);
+        const auto first =
+            std::find_if(all.begin(), f, [&](const finding& earlier) { return earlier.cure == f->cure; });
+        if (!f->cure.empty())
+            s += wrapped(fmt::format("{:<24}-> ", ""), first == f ? f->cure : "as for " + first->check);
     }
     return s;
 }

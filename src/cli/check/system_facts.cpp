@@ -81,7 +81,7 @@ preemption preemption_of(const std::string& kernel, const fs::path& root)
     return has(kernel, "PREEMPT") ? preemption::full : preemption::none;
 }
 
-std::vector<process_info> sound_servers(const fs::path& root)
+std::vector<process_info> find_sound_servers(const fs::path& root)
 {
     constexpr std::array known{"pulseaudio",  "pipewire", "pipewire-pulse",
                                "wireplumber", "jackd",    "jackdbus"};
@@ -165,7 +165,7 @@ system_facts read_system(own_facts own, const fs::path& root)
         if (const std::string g = text_of(cpu / "cpufreq/scaling_governor"); !g.empty())
             governors.insert(g);
     f.governors.assign(governors.begin(), governors.end());
-    f.servers = sound_servers(root);
+    f.servers = find_sound_servers(root);
     f.services = find_services(root);
     for (const fs::path& module : entries(root / "sys/module")) {
         const fs::path file = module / "parameters/persist_gpio_outputs";

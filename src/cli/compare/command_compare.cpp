@@ -181,8 +181,11 @@ int run(settings& s, option_list& options, const compare_options& asked, bool on
     if (!asked.picture.empty())
         plot::check_output(asked.picture, asked.force);
     std::vector<comparison> all;
-    for (const stroke& k : p.strokes)
+    std::vector<std::string> titles;
+    for (const stroke& k : p.strokes) {
+        titles.push_back(name_stroke(p, all.size()));
         all.push_back(compare(k, e.tactors, faces, s.plan, choice));
+    }
     const auto playable = std::count_if(all.begin(), all.end(), [](const auto& c) { return c.playable(); });
     if (playable == 0)
         throw why_refused(all, p);
@@ -195,7 +198,7 @@ int run(settings& s, option_list& options, const compare_options& asked, bool on
     else if (asked.format == "csv")
         print_csv(stdout, all, e.tactors);
     else
-        print_text(stdout, all, e.tactors);
+        print_text(stdout, all, titles, e.tactors);
     if (static_cast<std::size_t>(playable) < all.size())
         throw why_refused(all, p);
     return status_ok;

@@ -65,7 +65,9 @@ comparison compare(const stroke& given, const array& a, const layout& faces, con
                    const comparison_choice& choice);
 
 /// All write to `out`.
-void print_text(std::FILE* out, const std::vector<comparison>& all, const array& a);
+/// `titles`: names of the strokes.
+void print_text(std::FILE* out, const std::vector<comparison>& all, const std::vector<std::string>& titles,
+                const array& a);
 void print_json(std::FILE* out, const std::vector<comparison>& all, const array& a);
 void print_csv(std::FILE* out, const std::vector<comparison>& all, const array& a);
 

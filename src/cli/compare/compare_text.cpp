@@ -97,10 +97,10 @@ void print_heading(std::FILE* out, bool by_taps)
                "bursts", "RMS", "max", "speed", "intens.", "silent", "shared");
 }
 
-void print_one(std::FILE* out, const comparison& c, const array& a)
+void print_one(std::FILE* out, const comparison& c, const std::string& title, const array& a)
 {
     const trajectory& m = c.target.motion;
-    say(out, "{} on {}: {} mm in {}\n", c.target.name, a.name, plain_number(m.length_mm()),
+    say(out, "{} on {}: {} mm in {}\n", title, a.name, plain_number(m.length_mm()),
         seconds_text(m.duration_s()));
     if (c.target.note != note_kind::none)
         say(out, "note: {}\n", note_text(c.target.note));
@@ -131,20 +131,21 @@ std::string field(std::optional<double> v)
 
 } // namespace
 
-void print_text(std::FILE* out, const std::vector<comparison>& all, const array& a)
+void print_text(std::FILE* out, const std::vector<comparison>& all, const std::vector<std::string>& titles,
+                const array& a)
 {
-    for (const comparison& c : all) {
-        print_one(out, c, a);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        print_one(out, all[i], titles[i], a);
         fmt::print(out, "\n");
     }
     const observer_choice& o = all.front().observer;
     if (all.front().spread.people != 0)
-        fmt::print(out, "{}.\n", spread_note(all.front().spread, o.kind == observer_kind::low_speed));
-    fmt::print(out, "{}\nThis is {}.\n",
-               o.kind == observer_kind::low_speed
-                   ? "Errors count at the onsets of the bursts; length: of the chain of bursts."
-                   : "CV: standard deviation / mean; shared: a tactor serves two bursts.",
-               prediction_note(o));
+        say(out, "{}.\n", spread_note(all.front().spread, o.kind == observer_kind::low_speed));
+    say(out, "{}\nThis is {}.\n",
+        o.kind == observer_kind::low_speed
+            ? "Errors count at the onsets of the bursts; length: of the chain of bursts."
+            : "CV: standard deviation / mean; shared: a tactor serves two bursts.",
+        prediction_note(o));
 }
 
 namespace {

@@ -20,6 +20,7 @@
 #include "cli/experiment/trials.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/say.hpp"
+#include "cli/warnings.hpp"
 #include "core/words.hpp"
 
 namespace tactor::cli {
@@ -84,8 +85,7 @@ int run(const experiment_options& o, const power_options& power, settings& s, op
         return status_ok;
     }
     const prepared_experiment p = prepare(o, s, options);
-    for (const std::string& w : p.warnings)
-        say(stderr, "tactor: warning: {}\n", w);
+    say_warnings(p.warnings);
     if (!power.participants.empty())
         return tell_power(p, power, o);
     if (!o.dry_run)

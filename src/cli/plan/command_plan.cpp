@@ -8,8 +8,8 @@
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
 #include "cli/plan/plan_output.hpp"
-#include "cli/say.hpp"
 #include "cli/threshold_carrier.hpp"
+#include "cli/warnings.hpp"
 
 namespace tactor::cli {
 
@@ -25,12 +25,10 @@ int print_plan(settings& s, option_list& options, const std::string& format)
     if (format == "json")
         print_json(stdout, p, e, samples, sound);
     else if (format == "csv") {
-        for (const placed_plan& q : p.plans)
-            for (const std::string& w : q.schedule.warnings)
-                say(stderr, "tactor: warning: {}\n", w); // there is no place for them in a table
+        say_warnings(collect_warnings(p.plans)); // there is no place for them in a table
         print_csv(stdout, p, e);
     } else
-        print_text(stdout, p, e);
+        print_text(stdout, p, e, sound);
     return status_ok;
 }
 

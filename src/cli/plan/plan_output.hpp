@@ -12,7 +12,7 @@
 namespace tactor::cli {
 
 /// All write to `out` as they go: a plan of an hour needs no document in memory.
-void print_text(std::FILE* out, const piece& p, const environment& e);
+void print_text(std::FILE* out, const piece& p, const environment& e, const render_options& sound);
 /// `samples` is made of the piece with `options`: with them the JSON is a record of every sample.
 void print_json(std::FILE* out, const piece& p, const environment& e, const score& samples,
                 const render_options& options);

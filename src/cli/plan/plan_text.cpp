@@ -4,7 +4,9 @@
 #include "cli/plan/plan_output.hpp"
 #include "cli/plan/plan_rows.hpp"
 #include "cli/say.hpp"
+#include "cli/wrapped.hpp"
 #include "core/words.hpp"
+#include "plot/sound_text.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -18,43 +20,57 @@ std::string fit_note(const fitting& f)
         f.line ? ", onto the line of the array" : "");
 }
 
-std::string heading(const stroke& s, const plan& p, double start_s, const array& a)
+std::string level_text(const render_options& sound, const stroke& s)
+{
+    std::string text = sound.sl_db ? fmt::format("{} dB SL", plain_number(*sound.sl_db))
+                                   : fmt::format("{} dBFS", plain_number(sound.level_dbfs));
+    if (s.choices.level_db != 0.0)
+        text += fmt::format(" and {} dB of its own", plain_number(s.choices.level_db));
+    return text;
+}
+
+std::string heading(const std::string& title, const stroke& s, const plan& p, double start_s, const array& a,
+                    const render_options& sound)
 {
     const std::string soa = p.soa_s ? ", SOA " + seconds_text(*p.soa_s) : "";
     const std::string bursts = p.curve ? "continuous" : counted(p.bursts.size(), "burst");
-    return fmt::format("{} on {}: {} with {}, {}{}\nstarts at {}, {} mm in {}, {} of sound, carrier {} Hz\n",
-                       s.name, a.name, p.algorithm, p.phantom, bursts, soa, seconds_text(start_s, 9),
+    return fmt::format("{} on {}: {} with {}, {}{}\nstarts at {}, {} mm in {}, {} of sound\n"
+                       "vibration: {}{}, level {}\n",
+                       title, a.name, p.algorithm, p.phantom, bursts, soa, seconds_text(start_s, 9),
                        plain_number(p.stroke_length_mm), seconds_text(p.stroke_duration_s),
-                       seconds_text(p.total_s), plain_number(p.carrier_hz));
+                       seconds_text(p.total_s), p.wave.kind == waveform_kind::sine ? "sine of " : "",
+                       plot::describe_sound(p), level_text(sound, s));
 }
 
-void print_one(std::FILE* out, const stroke& s, const plan& p, double start_s, const array& a)
+void print_one(std::FILE* out, const std::string& title, const stroke& s, const plan& p, double start_s,
+               const array& a, const render_options& sound)
 {
-    say(out, "{}", heading(s, p, start_s, a));
+    say(out, "{}", heading(title, s, p, start_s, a, sound));
     if (s.note != note_kind::none)
         say(out, "note: {}\n", note_text(s.note));
-    fmt::print(out, "\n{:>10} {:>10} {:>9} {:>9}  {}\n", p.curve ? "t_s" : "onset_s", "duration_s", "x_mm",
-               "y_mm", "tactor:amplitude");
+    say(out, "\n{:>10} {:>10} {:>9} {:>9}  {}\n", p.curve ? "t_s" : "onset_s", "duration_s", "x_mm", "y_mm",
+        "tactor:amplitude");
     for_each_row(p, [&](const burst& b) {
         std::string drives;
         for (const drive& d : b.drives)
             drives += fmt::format(" {}:{:.4f}", d.tactor, d.amplitude);
-        fmt::print(out, "{:10.6f} {:10.6f} {:9.3f} {:9.3f} {}\n", b.onset_s, b.duration_s, b.position.x_mm,
-                   b.position.y_mm, drives);
+        fmt::print(out, "{}",
+                   fit_lines(out, fmt::format("{:10.6f} {:10.6f} {:9.3f} {:9.3f} {}\n", b.onset_s,
+                                              b.duration_s, b.position.x_mm, b.position.y_mm, drives)));
     });
     for (const conflict& c : p.conflicts)
-        fmt::print(out, "conflict: tactor {} serves two bursts from {:.6f} s to {:.6f} s\n", c.tactor,
-                   c.from_s, c.to_s);
+        say(out, "conflict: tactor {} serves two bursts from {:.6f} s to {:.6f} s\n", c.tactor, c.from_s,
+            c.to_s);
     for (const meeting& m : p.dropped)
-        fmt::print(out, "dropped: the crossing at ({:.3f}, {:.3f}) mm, {:.6f} s\n", m.position.x_mm,
-                   m.position.y_mm, m.t_s);
+        say(out, "dropped: the crossing at ({:.3f}, {:.3f}) mm, {:.6f} s\n", m.position.x_mm, m.position.y_mm,
+            m.t_s);
     for (const std::string& w : p.warnings)
         say(out, "warning: {}\n", w);
 }
 
 } // namespace
 
-void print_text(std::FILE* out, const piece& p, const environment& e)
+void print_text(std::FILE* out, const piece& p, const environment& e, const render_options& sound)
 {
     const auto starts = starts_of(p.plans);
     if (p.fit)
@@ -62,7 +78,7 @@ void print_text(std::FILE* out, const piece& p, const environment& e)
     for (std::size_t i = 0; i < p.plans.size(); ++i) {
         if (i != 0)
             fmt::print(out, "\n");
-        print_one(out, p.strokes[i], p.plans[i].schedule, starts[i], e.tactors);
+        print_one(out, name_stroke(p, i), p.strokes[i], p.plans[i].schedule, starts[i], e.tactors, sound);
     }
 }
 

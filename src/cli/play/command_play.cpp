@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -14,6 +17,7 @@
 #include "cli/say.hpp"
 #include "cli/serve/play_remote.hpp"
 #include "cli/threshold_carrier.hpp"
+#include "cli/warnings.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -22,12 +26,13 @@ std::vector<score> make_scores(std::vector<piece>& pieces, const settings& s, co
                                const layout& faces, const render_options& render)
 {
     std::vector<score> scores;
+    std::vector<std::string> warnings;
     for (piece& p : pieces) {
         scores.push_back(plan_and_score(p, s, e, faces, render));
-        for (const placed_plan& q : scores.back().plans())
-            for (const std::string& w : q.schedule.warnings)
-                say(stderr, "tactor: warning: {}\n", w);
+        for (std::string& w : collect_warnings(scores.back().plans()))
+            warnings.push_back(std::move(w));
     }
+    say_warnings(warnings);
     tell_of_other_carrier(e, render, scores);
     return scores;
 }
@@ -83,7 +88,7 @@ std::optional<broken_off> play_all(play_session& session, const play_options& o,
                               session.waits() ? "it did not come back in time" : wait_hint};
         if (!o.json() && outcomes[i].report) {
             say(stdout, "{}\n", describe(outcomes[i], session.setup().rate));
-            std::fflush(stdout);
+            flush_output();
         }
         if (session.signal() != 0)
             return {};
@@ -116,7 +121,7 @@ int play(settings& s, option_list& options, const play_options& o)
     play_session session(device, o, e);
     if (!o.json())
         say(stdout, "{}\n", describe(session.setup()));
-    std::fflush(stdout);
+    flush_output();
     const std::string warning = latency_warning(o, session.setup());
     if (!warning.empty())
         say(stderr, "tactor: warning: {}\n", warning);

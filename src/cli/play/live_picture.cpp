@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "cli/play/live_picture.hpp"
 
-#include <cstdio>
 #include <new>
 #include <string>
 #include <utility>
 
 #include <fmt/format.h>
+#include <unistd.h>
+
+#include "cli/say.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -16,29 +18,74 @@ std::string to_its_beginning(std::size_t lines)
     return lines == 0 ? "\r" : fmt::format("\r\033[{}A", lines);
 }
 
+volatile std::sig_atomic_t stop_asked = 0;
+
+void ask_to_stop(int) noexcept
+{
+    stop_asked = 1;
+}
+
+// Of another terminal, or none that it controls, nothing is known.
+bool is_in_background() noexcept
+{
+    const pid_t front = ::tcgetpgrp(STDOUT_FILENO);
+    return front >= 0 && front != ::getpgrp();
+}
+
 } // namespace
 
 live_picture::live_picture(const array& a, bool wanted) : array_(a), style_{speaks_utf8(), may_colour()}
 {
-    std::fflush(stdout); // what was printed before stands above it
-    if (wanted && can_draw())
-        terminal_.emplace();
+    flush_output(); // what was printed before stands above it
+    if (!wanted || !can_draw())
+        return;
+    terminal_.emplace();
+    struct sigaction ask = {};
+    ask.sa_handler = ask_to_stop;
+    ask.sa_flags = SA_RESTART;
+    ::sigaction(SIGTSTP, &ask, &before_);
 }
 
 live_picture::~live_picture()
 {
-    if (!terminal_ || drawn_lines_ == 0)
+    if (!terminal_)
         return;
+    ::sigaction(SIGTSTP, &before_, nullptr);
     try {
-        terminal_->write(to_its_beginning(drawn_lines_) + "\033[J");
-        terminal_->finish();
+        erase();
     } catch (const std::bad_alloc&) { // then it stays
     }
+    if (stop_asked == 0)
+        return;
+    stop_asked = 0;
+    std::raise(SIGTSTP);
+}
+
+void live_picture::erase()
+{
+    const std::size_t lines = std::exchange(drawn_lines_, 0);
+    if (lines == 0)
+        return;
+    terminal_->write(to_its_beginning(lines) + "\033[J");
+    terminal_->finish();
+}
+
+// The shell's prompt comes where the picture was.
+void live_picture::stop_where_asked()
+{
+    if (stop_asked == 0)
+        return;
+    erase();
+    stop_asked = 0;
+    std::raise(SIGSTOP);
 }
 
 void live_picture::draw(const instant& now, double t_s, double total_s)
 {
-    if (!terminal_ || !terminal_->idle())
+    if (!terminal_)
+        return;
+    stop_where_asked();
+    if (is_in_background() || !terminal_->idle())
         return;
     const auto lines = picture_lines(array_, now, t_s, total_s, terminal_->size(), style_);
     std::string text = to_its_beginning(drawn_lines_);

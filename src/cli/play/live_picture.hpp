@@ -3,6 +3,7 @@
 /// The array on a terminal while it plays.
 #pragma once
 
+#include <csignal>
 #include <optional>
 
 #include <tactor/tactor.hpp>
@@ -12,7 +13,8 @@
 
 namespace tactor::cli {
 
-/// Draws over itself, and takes itself away when destroyed. It changes no mode of the terminal (the cursor
+/// Draws over itself, and takes itself away when destroyed and before Ctrl-Z stops the program. In the
+/// background it draws nothing. It changes no mode of the terminal (the cursor
 /// stays visible), so that there is nothing to restore whatever ends the program. Where standard output is no
 /// terminal, it draws nothing.
 class live_picture {
@@ -27,10 +29,14 @@ public:
     void draw(const instant& now, double t_s, double total_s);
 
 private:
+    void erase();
+    void stop_where_asked();
+
     const array& array_;
     std::optional<terminal> terminal_ = {};
     picture_style style_;
     std::size_t drawn_lines_ = 0;
+    struct sigaction before_ = {}; ///< what SIGTSTP did
 };
 
 } // namespace tactor::cli

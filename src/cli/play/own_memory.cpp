@@ -19,6 +19,8 @@
 
 #include <tactor/tactor.hpp>
 
+#include "cli/say.hpp"
+
 namespace tactor::cli {
 namespace {
 
@@ -97,6 +99,17 @@ void give_memory_back()
     mallopt(M_MMAP_MAX, 1 << 16);
     mallopt(M_MMAP_THRESHOLD, large);
     mallopt(M_TRIM_THRESHOLD, most_at_end);
+}
+
+void warn_of_rights(bool realtime, bool locked)
+{
+    if (realtime && locked)
+        return;
+    say(stderr,
+        "tactor: warning: {}{}{}: xruns are likelier (run tactor check, which says how: rtprio and memlock "
+        "in limits.d, group audio)\n",
+        realtime ? "" : "no real-time priority", realtime || locked ? "" : ", ",
+        locked ? "" : "memory is not locked");
 }
 
 void limit_runaway_threads()

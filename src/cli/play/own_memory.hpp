@@ -23,4 +23,7 @@ void give_memory_back();
 /// a computer with one core for good.
 void limit_runaway_threads();
 
+/// Warns on standard error where the audio thread has no real-time priority or its memory is not locked.
+void warn_of_rights(bool realtime, bool locked);
+
 } // namespace tactor::cli

@@ -53,7 +53,7 @@ int play_live(settings& s, option_list& options, const play_options& o)
     play_session session(device, o, e);
     if (!o.json())
         say(stdout, "{}\n", describe(session.setup()));
-    std::fflush(stdout);
+    flush_output();
     live_lines lines(STDIN_FILENO);
     run_report r;
     r.strokes.push_back({"live"});

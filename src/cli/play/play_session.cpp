@@ -8,7 +8,6 @@
 #include <optional>
 #include <utility>
 
-#include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
 
@@ -43,18 +42,13 @@ play_session::play_session(const alsa_options& device, const play_options& o, co
     limit_runaway_threads();
     const std::string refused = lock_own_memory();
     locked_ = refused.empty();
-    const player_options defaults;
-    const auto advice = [&] { return rt::realtime_advice(probe_realtime_rights(), defaults.priority); };
     if (!locked_ && o.require_realtime)
-        throw error(error_kind::not_available, "locked memory", refused, advice());
+        throw error(error_kind::not_available, "locked memory", refused,
+                    rt::realtime_advice(probe_realtime_rights(), player_options{}.priority));
     start(std::move(s));
     if (const std::string unknown = wiring_note(setup_); !unknown.empty())
         say(stderr, "tactor: warning: {} ({})\n", unknown, server_cure);
-    const bool realtime = player_->stats().realtime;
-    if (!realtime || !locked_)
-        say(stderr, "tactor: warning: {}{}{}: xruns are likelier ({})\n",
-            realtime ? "" : "no real-time priority", realtime || locked_ ? "" : ", ",
-            locked_ ? "" : fmt::format("memory is not locked ({})", refused), advice());
+    warn_of_rights(player_->stats().realtime, locked_);
 }
 
 play_session::~play_session()
@@ -139,7 +133,7 @@ stroke_report play_session::play(const piece& p, const score& s, const watcher& 
     }
     if (options_.arm && !options_.json()) {
         say(stdout, "{}: armed\n", shown_name(p.name));
-        std::fflush(stdout);
+        flush_output();
     }
     double t = 0.0; // stays where it was while the report of the stroke's end is on its way
     for (;;) {

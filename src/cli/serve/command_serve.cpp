@@ -79,16 +79,11 @@ void settle_realtime(const play_options& o)
     limit_runaway_threads();
     const std::string refused = lock_own_memory();
     give_memory_back();
-    const player_options defaults;
     const realtime_rights rights = probe_realtime_rights();
-    const std::string advice = rt::realtime_advice(rights, defaults.priority);
     if (!refused.empty() && o.require_realtime)
-        throw error(error_kind::not_available, "locked memory", refused, advice);
-    if (rights.priority == 0 || !refused.empty())
-        say(stderr, "tactor: warning: {}{}{}: xruns are likelier ({})\n",
-            rights.priority != 0 ? "" : "no real-time priority",
-            rights.priority != 0 || refused.empty() ? "" : ", ",
-            refused.empty() ? "" : fmt::format("memory is not locked ({})", refused), advice);
+        throw error(error_kind::not_available, "locked memory", refused,
+                    rt::realtime_advice(rights, player_options{}.priority));
+    warn_of_rights(rights.priority != 0, refused.empty());
 }
 
 void say_who_may(const server::endpoints& at, const std::string& token, bool has_peers)

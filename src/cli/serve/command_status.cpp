@@ -69,7 +69,9 @@ int watch(rpc_client& server, const status_options& o)
                 print_json_line(*n);
             else
                 print_event(*n);
-            std::fflush(stdout);
+            flush_output();
+            if (std::ferror(stdout) != 0)
+                return status_ok; // main() says why
             if ((*n)["method"] == "stream" && (*n)["params"].value("state", "") == "closing")
                 return status_ok;
         }
@@ -87,7 +89,7 @@ int status(const status_options& o, interrupt& stop)
         print_json_line(s);
     else
         print_status(s);
-    std::fflush(stdout);
+    flush_output();
     return o.watch ? watch(server, o) : static_cast<int>(status_ok);
 }
 

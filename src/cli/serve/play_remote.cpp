@@ -26,6 +26,7 @@
 #include "cli/serve/rpc_client.hpp"
 #include "cli/serve/server_words.hpp"
 #include "cli/serve/stroke_text.hpp"
+#include "cli/warnings.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -70,7 +71,7 @@ public:
     {
         if (!options_.json())
             say(stdout, "{} through {}\n", describe(report_.device), server_.socket());
-        std::fflush(stdout);
+        flush_output();
         for (const auto& [name, params] : pieces)
             report_.strokes.push_back({name});
         for (std::size_t i = 0; i < pieces.size() && signal_ == 0 && !broken_; ++i)
@@ -155,13 +156,12 @@ private:
         } catch (const error& e) {
             throw in_words_of_the_tool(e, shown_name(out.name));
         }
-        for (const net::json& w : r["warnings"])
-            say(stderr, "tactor: warning: {}\n", w.get<std::string>());
+        say_warnings(r["warnings"].get<std::vector<std::string>>());
         out.length_frames =
             static_cast<std::uint64_t>(std::llround(r.value("total_s", 0.0) * report_.device.rate));
         if (options_.arm && !options_.json())
             say(stdout, "{}: armed\n", shown_name(out.name));
-        std::fflush(stdout);
+        flush_output();
         for (const net::json& n : r["strokes"])
             while (!ended(n, out)) {
                 wait(-1);
@@ -228,7 +228,7 @@ private:
         if (options_.json() || !out.report)
             return;
         say(stdout, "{}\n", describe(out, report_.device.rate));
-        std::fflush(stdout);
+        flush_output();
     }
 
     void judge(const stroke_outcome& out, bool last)

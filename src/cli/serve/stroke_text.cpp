@@ -13,6 +13,7 @@
 
 #include <tactor/stroke.hpp>
 
+#include "cli/input.hpp"
 #include "cli/pipes.hpp"
 #include "cli/plan/plan_file.hpp"
 #include "net/listen.hpp"
@@ -87,16 +88,13 @@ net::json params_of(const std::string& argument)
 
 std::vector<std::pair<std::string, net::json>> stroke_params(const settings& s)
 {
-    if (s.path_data && !s.strokes.empty())
-        throw error(error_kind::bad_input, "--path",
-                    fmt::format("there is also the stroke \"{}\"", s.strokes[0]), "give one of them");
+    const std::vector<std::string> arguments = stroke_arguments(s);
     if (s.path_data)
-        return {{"--path", {{"path", *s.path_data}}}};
-    if (s.strokes.empty())
-        throw error(error_kind::bad_input, "command line", "no stroke",
-                    "give a preset such as park2016-1, a stroke file, - or --path DATA");
+        return {{arguments.front(), {{"path", *s.path_data}}}};
+    if (s.shape)
+        return {{arguments.front(), {{"stroke", *s.shape}}}};
     std::vector<std::pair<std::string, net::json>> all;
-    for (const std::string& argument : s.strokes)
+    for (const std::string& argument : arguments)
         all.emplace_back(argument, params_of(argument));
     return all;
 }

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include "cli/warnings.hpp"
+
+#include <map>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "cli/say.hpp"
+
+namespace tactor::cli {
+namespace {
+
+// Returns the text without numbers and quoted names.
+std::string find_kind(std::string_view text)
+{
+    std::string kind;
+    bool quoted = false;
+    for (const char c : text) {
+        quoted = quoted != (c == '"');
+        if (!quoted && std::string_view("0123456789.").find(c) == std::string_view::npos)
+            kind += c;
+    }
+    return kind;
+}
+
+} // namespace
+
+void say_warnings(std::span<const std::string> warnings)
+{
+    std::map<std::string, std::size_t> counts;
+    for (const std::string& w : warnings)
+        ++counts[find_kind(w)];
+    for (const std::string& w : warnings) {
+        const std::size_t n = std::exchange(counts[find_kind(w)], 0);
+        if (n != 0)
+            say(stderr, "tactor: warning: {}{}\n", w,
+                n == 1 ? "" : fmt::format("; and {} more like it", n - 1));
+    }
+}
+
+std::vector<std::string> collect_warnings(std::span<const placed_plan> plans)
+{
+    std::vector<std::string> all;
+    for (const placed_plan& p : plans)
+        all.insert(all.end(), p.schedule.warnings.begin(), p.schedule.warnings.end());
+    return all;
+}
+
+} // namespace tactor::cli

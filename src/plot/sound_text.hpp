@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// A plan's vibration in words.
+#pragma once
+
+#include <string>
+
+#include <tactor/plan.hpp>
+
+namespace tactor::plot {
+
+/// Returns what vibrates, for captions and listings: "250 Hz" (a sine), "square of 60 to 120 Hz", "noise of
+/// 60 to 400 Hz", "brush.wav along the path"; with ", AM of 30 Hz" where it is modulated.
+std::string describe_sound(const plan& p);
+
+} // namespace tactor::plot
