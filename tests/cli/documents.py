@@ -23,7 +23,7 @@ def kind_of(text):
 
 
 def commands_in(text, line):
-    """The commands of a block: a backslash goes on, two spaces outside quotes begin what a command does."""
+    """The commands of a manual's block: a backslash goes on, two spaces outside quotes begin what a command does."""
     joined, number = "", line
     for offset, part in enumerate(text.split("\n")):
         number = number if joined else line + offset
@@ -46,9 +46,14 @@ def inline(code, line):
     return [Block("name" if name else "command", code, line)]
 
 
-def of_block(text, line):
+def copied_lines(text, line):
+    """The commands of a block as somebody copies them: whole lines, explanations and all."""
+    return [Block("command", part.rstrip(), line + i) for i, part in enumerate(text.split("\n")) if part.strip()]
+
+
+def of_block(text, line, commands=commands_in):
     kind = kind_of(text)
-    return commands_in(text, line) if kind == "command" else [Block(kind, text, line)]
+    return commands(text, line) if kind == "command" else [Block(kind, text, line)]
 
 
 def code_of_markdown(text):
@@ -59,7 +64,7 @@ def code_of_markdown(text):
             end = at
             while end < len(lines) and (lines[end].startswith("    ") or not lines[end].strip()):
                 end += 1
-            yield from of_block("\n".join(part[4:] for part in lines[at:end]).rstrip("\n") + "\n", at + 1)
+            yield from of_block("\n".join(part[4:] for part in lines[at:end]).rstrip("\n") + "\n", at + 1, copied_lines)
             at = end
             continue
         end = at + 1
