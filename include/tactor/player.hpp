@@ -89,7 +89,10 @@ struct player_position {
 struct player_lines {
     std::unique_ptr<enable_line> amplifier = {}; ///< on only while the stream is known to run
     double settle_s = 0.010;                     ///< turn-on time of the amplifier, spent in silence
-    std::unique_ptr<enable_line> sync_out = {};  ///< a pulse at each stroke's first sample at the DAC
+    /// The DAC must have played so long before the amplifier goes on, s, 0 to 600; two periods at least. More
+    /// is for a device that was lost: one that fails again at once then never switches the amplifier on.
+    double proof_s = 0.0;
+    std::unique_ptr<enable_line> sync_out = {}; ///< a pulse at each stroke's first sample at the DAC
     double pulse_s = 0.005;
     std::unique_ptr<edge_input> trigger = {}; ///< starts armed strokes
     double trigger_delay_s = 0.050;           ///< from the edge to the first sample at the DAC

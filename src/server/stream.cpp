@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <exception>
 #include <utility>
 
@@ -11,19 +10,10 @@
 
 #include <tactor/error.hpp>
 
+#include "server/clock.hpp"
+#include "server/stream_watch.hpp"
+
 namespace tactor::server {
-namespace {
-
-constexpr double longest_pause_s = 5.0;
-constexpr double going_pause_s = 0.5;
-
-std::chrono::steady_clock::duration duration(double seconds)
-{
-    return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-        std::chrono::duration<double>(seconds));
-}
-
-} // namespace
 
 std::string_view name_of(stream_state s) noexcept
 {
@@ -31,60 +21,9 @@ std::string_view name_of(stream_state s) noexcept
     return names[static_cast<std::size_t>(s)];
 }
 
-/// What the player's threads tell the context's: that something happened. Outlives both.
-struct stream::watch : std::enable_shared_from_this<stream::watch> {
-    explicit watch(boost::asio::io_context& c) : io(c) {}
-
-    void stir()
-    {
-        if (stirred.exchange(true))
-            return;
-        boost::asio::post(io, [self = shared_from_this()] {
-            self->stirred = false;
-            if (self->owner != nullptr)
-                self->owner->look();
-        });
-    }
-
-    boost::asio::io_context& io;
-    stream* owner = nullptr; ///< the context's thread
-    std::atomic<bool> stirred{false};
-    std::atomic<bool> amplifier_on{false};
-    std::atomic<bool> was_on{false}; ///< by this player
-};
-
 namespace {
 
-template <typename Watch>
-class watched_line final : public enable_line {
-public:
-    watched_line(std::unique_ptr<enable_line> l, std::shared_ptr<Watch> w)
-        : line_(std::move(l)), watch_(std::move(w))
-    {
-    }
-    ~watched_line() override { watch_->amplifier_on = false; }
-    watched_line(const watched_line&) = delete;
-    watched_line& operator=(const watched_line&) = delete;
-
-    bool set(bool on) noexcept override
-    {
-        const bool done = line_->set(on);
-        if (!done || watch_->amplifier_on.exchange(on) == on)
-            return done;
-        if (on)
-            watch_->was_on = true;
-        try {
-            watch_->stir();
-        } catch (...) { // NOLINT(bugprone-empty-catch): told with what happens next
-        }
-        return done;
-    }
-    bool beat() noexcept override { return line_->beat(); }
-
-private:
-    std::unique_ptr<enable_line> line_;
-    std::shared_ptr<Watch> watch_;
-};
+constexpr double longest_pause_s = 5.0;
 
 void add(player_stats& sum, const player_stats& more)
 {
@@ -104,6 +43,7 @@ stream::stream(boost::asio::io_context& io, stream_options o, handlers h)
       peaks_(std::make_shared<level_peaks>(std::max(options_.wished.channels, options_.tactors.channels()))),
       setup_(options_.wished),
       again_(io),
+      proof_(io),
       idle_(io),
       going_(io)
 {
@@ -139,7 +79,8 @@ void stream::open()
     opening_ = true;
     if (options_.driven)
         driven_ = options_.driven();
-    boost::asio::post(worker_, [this, w = watch_, number = number_ + 1, driven = driven_] {
+    const double proof_s = tried_ && state_ == stream_state::lost ? options_.proof_s : 0.0;
+    boost::asio::post(worker_, [this, w = watch_, number = number_ + 1, driven = driven_, proof_s] {
         std::unique_ptr<player> p;
         std::string failure;
         std::exception_ptr bad;
@@ -152,6 +93,7 @@ void stream::open()
                 w->stir();
             };
             player_lines lines = options_.lines ? options_.lines() : player_lines{};
+            lines.proof_s = proof_s;
             w->was_on = false;
             if (lines.amplifier != nullptr)
                 lines.amplifier = std::make_unique<watched_line<watch>>(std::move(lines.amplifier), w);
@@ -193,11 +135,12 @@ void stream::opened(std::unique_ptr<player> p, std::string failure, const std::e
         player_ = std::move(p);
         ++number_;
         setup_ = player_->setup();
-        pause_s_ = options_.retry_s;
         if (closing_)
             return retire(std::exchange(closed_, {}));
-        set(stream_state::running, "");
-        busy(busy_);
+        if (first || state_ != stream_state::lost)
+            run();
+        else
+            prove();
         tell_waiting();
         return look();
     }
@@ -212,6 +155,25 @@ void stream::opened(std::unique_ptr<player> p, std::string failure, const std::e
     retry();
 }
 
+void stream::run()
+{
+    pause_s_ = options_.retry_s;
+    set(stream_state::running, "");
+    busy(busy_);
+}
+
+// That it opens proves little: a full disk or a loose cable shows with the first periods.
+void stream::prove()
+{
+    proof_.expires_after(steady_seconds(options_.proof_s));
+    proof_.async_wait([this, number = number_](const boost::system::error_code& e) {
+        if (e || player_ == nullptr || number != number_ || closing_ || player_->ended())
+            return;
+        run();
+        look();
+    });
+}
+
 void stream::tell_waiting()
 {
     for (const auto& ready : std::exchange(waiting_, {}))
@@ -220,10 +182,10 @@ void stream::tell_waiting()
 
 void stream::retry()
 {
-    again_.expires_after(duration(pause_s_));
+    again_.expires_after(steady_seconds(pause_s_));
     pause_s_ = std::min(2.0 * pause_s_, longest_pause_s);
     again_.async_wait([this](const boost::system::error_code& e) {
-        if (!e && !closing_ && player_ == nullptr && !opening_)
+        if (!e && !closing_ && player_ == nullptr && !opening_ && !left_on_)
             open();
     });
 }
@@ -249,6 +211,7 @@ void stream::retire(std::function<void()> then)
 {
     retiring_ = true;
     idle_.cancel();
+    proof_.cancel();
     std::shared_ptr<player> p(std::move(player_));
     boost::asio::post(worker_, [this, p = std::move(p), then = std::move(then)]() mutable {
         p->stop();
@@ -265,7 +228,9 @@ void stream::retire(std::function<void()> then)
             driven_ = driven.value_or(driven_);
             if (driven && options_.settled)
                 options_.settled(*driven);
-            if (!waiting_.empty() && !closing_)
+            if (last.left_on && !closing_)
+                give_up();
+            else if (!waiting_.empty() && !closing_)
                 open();
             if (then)
                 then();
@@ -293,35 +258,6 @@ bool stream::progresses()
     return player_->stats().periods != std::exchange(seen_periods_, player_->stats().periods);
 }
 
-void stream::tell_going()
-{
-    going_.cancel();
-    if (!busy_ || player_ == nullptr || !options_.going)
-        return;
-    options_.going(setup_.channels);
-    going_.expires_after(duration(going_pause_s));
-    going_.async_wait([this](const boost::system::error_code& e) {
-        if (!e)
-            tell_going();
-    });
-}
-
-void stream::busy(bool is)
-{
-    busy_ = is;
-    idle_.cancel();
-    tell_going();
-    if (is || options_.idle_stop_s <= 0.0 || player_ == nullptr || closing_)
-        return;
-    idle_.expires_after(duration(options_.idle_stop_s));
-    idle_.async_wait([this](const boost::system::error_code& e) {
-        if (e || busy_ || player_ == nullptr || closing_ || player_->ended())
-            return;
-        set(stream_state::idle, "nothing was drawn for a while; the next stroke starts it");
-        retire({});
-    });
-}
-
 void stream::set(stream_state s, std::string reason)
 {
     if (s == state_ && reason == reason_)
@@ -331,23 +267,6 @@ void stream::set(stream_state s, std::string reason)
     if (options_.changed)
         options_.changed(state_, reason_);
     handlers_.changed(state_, reason_);
-}
-
-void stream::close(std::function<void()> done)
-{
-    closing_ = true;
-    again_.cancel();
-    idle_.cancel();
-    set(stream_state::closing, "the server ends");
-    tell_waiting();
-    if (player_ != nullptr)
-        return retire(std::move(done));
-    if (opening_) {
-        closed_ = std::move(done);
-        return;
-    }
-    // What is being retired comes before this in the worker.
-    boost::asio::post(worker_, [this, done = std::move(done)] { boost::asio::post(io_, done); });
 }
 
 } // namespace tactor::server

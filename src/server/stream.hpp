@@ -52,6 +52,7 @@ struct stream_options {
     bool has_amplifier = false;
     double idle_stop_s = 0.0; ///< 0: never
     double retry_s = 0.1;     ///< first pause before the device is tried again; then twice as long
+    double proof_s = 1.0;     ///< a device that was lost is running when it has held for so long
 };
 
 /// One thread, the context's, calls all members, and is where all handlers run.
@@ -104,11 +105,14 @@ private:
 
     void open();
     void opened(std::unique_ptr<player> p, std::string failure, const std::exception_ptr& bad);
+    void prove();
+    void run();
     void look();
     void retire(std::function<void()> then);
     void set(stream_state s, std::string reason);
     void retry();
     void tell_waiting();
+    void give_up();
     void tell_going();
 
     boost::asio::io_context& io_;
@@ -130,9 +134,11 @@ private:
     bool retiring_ = false;
     bool closing_ = false;
     bool busy_ = false;
+    bool left_on_ = false; ///< the amplifier may be on: the device is not opened again
     double pause_s_ = 0.0;
     std::uint64_t seen_periods_ = 0;
     boost::asio::steady_timer again_;
+    boost::asio::steady_timer proof_;
     boost::asio::steady_timer idle_;
     boost::asio::steady_timer going_;
     boost::asio::thread_pool worker_{1}; ///< opens and closes, which blocks

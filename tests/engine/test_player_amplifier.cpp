@@ -56,6 +56,18 @@ player_lines with(const std::shared_ptr<line_state>& s)
 
 } // namespace
 
+TEST_CASE("an amplifier waits until the DAC has played as long as is asked for")
+{
+    const auto state = std::make_shared<line_state>();
+    player_lines l = with(state);
+    l.proof_s = 0.3;
+    player p(open_alsa(nine()), palm(), patient(), std::move(l));
+    state->await(1);
+    CHECK(p.position().played >= 14400);
+    p.stop();
+    CHECK(state->log == std::vector<bool>{true, false});
+}
+
 TEST_CASE("the player switches its amplifier on once, plays, and off once")
 {
     const auto state = std::make_shared<line_state>();

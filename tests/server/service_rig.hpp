@@ -103,6 +103,7 @@ public:
         s.wished.channels = 9;
         s.wished.rate = 48000;
         s.retry_s = 0.001;
+        s.proof_s = 0.01;
         s.open = [this] { return open(); };
         if (change)
             change(o, s);

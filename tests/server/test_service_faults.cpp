@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Cards that come and go, and the end.
 #include <atomic>
+#include <chrono>
 #include <exception>
 #include <future>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include <boost/asio/post.hpp>
 
 #include <doctest/doctest.h>
 
@@ -34,6 +40,12 @@ struct misfit {
     std::atomic<bool> bad = false;
     std::atomic<int> tries = 0;
     int refused = 0; ///< the context's thread
+};
+
+/// The line of an amplifier that goes on and never off again.
+class stuck_line final : public enable_line {
+public:
+    bool set(bool on) noexcept override { return on; }
 };
 
 } // namespace
@@ -157,6 +169,69 @@ TEST_CASE("a card that does not fit in the place of one that did is tried again"
     card.bad = false;
     rig.until([&] { return rig.all->output().state() == server::stream_state::running; });
     CHECK(card.refused == 0);
+}
+
+TEST_CASE("a card that opens and then fails is tried less and less often, and does not count as running")
+{
+    using clock = std::chrono::steady_clock;
+    std::atomic<int> opened{0};
+    service_rig* here = nullptr;
+    service_rig rig([&](server::service_options&, server::stream_options& s) {
+        s.proof_s = 3600.0;
+        s.open = [&, open = s.open] {
+            fake_dac& card = here->plug();
+            std::unique_ptr<sink> taken = open();
+            if (opened++ != 0)
+                boost::asio::post(here->io, [&card] { card.disconnect(); });
+            return taken;
+        };
+    });
+    here = &rig;
+    rig.start();
+    rig.until([&] { return rig.all->output().state() == server::stream_state::running; });
+    const auto c = rig.client();
+    rig.ok(c, "subscribe", {{"events", {"stream"}}});
+    const auto begin = clock::now();
+    rig.unplug();
+    rig.until([&] { return opened >= 9; });
+    // 1, 2, 4 ... 128 ms
+    CHECK(clock::now() - begin >= std::chrono::milliseconds(255));
+    CHECK(rig.all->output().state() == server::stream_state::lost);
+    for (const std::string& state : c.box->streams())
+        CHECK(state == "lost");
+}
+
+TEST_CASE("with an amplifier that may be on, a lost card is not opened again")
+{
+    std::atomic<int> opened{0};
+    service_rig rig([&](server::service_options&, server::stream_options& s) {
+        s.has_amplifier = true;
+        s.lines = [] {
+            player_lines l;
+            l.amplifier = std::make_unique<stuck_line>();
+            return l;
+        };
+        s.open = [&opened, open = s.open] {
+            ++opened;
+            return open();
+        };
+    });
+    rig.plug();
+    rig.start();
+    const auto c = rig.client();
+    rig.ok(c, "subscribe", {{"events", {"stream"}}});
+    rig.until([&] { return rig.all->output().amplifier() == "on"; });
+    rig.unplug();
+    rig.plug();
+    rig.until([&] { return rig.all->output().is_out(); });
+    CHECK(rig.all->output().reason().find("start the service again") != std::string::npos);
+    CHECK(rig.all->output().amplifier() == "on");
+    CHECK(rig.code(c, "play", brief) == -32000);
+    CHECK(rig.code(c, "begin") == -32000);
+    // The pauses between two tries are 1, 2, 4 ms.
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    rig.io.poll();
+    CHECK(opened == 1);
 }
 
 TEST_CASE("stop reaches what waits for an idle stream to start")

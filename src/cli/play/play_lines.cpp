@@ -50,12 +50,13 @@ play_lines::play_lines(const setup& config, bool arm, double trigger_delay_s)
     trigger_ = open_edges(*config.sync->in, config.sync->edge, config.sync->debounce_s, config.sync->pull);
 }
 
-player_lines play_lines::lend() const
+player_lines play_lines::lend(double proof_s) const
 {
     player_lines l;
     if (amplifier_) {
         l.amplifier = std::make_unique<lent_line>(amplifier_);
         l.settle_s = settle_s_;
+        l.proof_s = proof_s;
     }
     if (sync_out_) {
         l.sync_out = std::make_unique<lent_line>(sync_out_);

@@ -17,8 +17,8 @@ public:
     /// \throws error as open_amplifier() does. `arm`: whether the trigger is wanted.
     play_lines(const setup& config, bool arm, double trigger_delay_s);
 
-    /// For one player at a time.
-    player_lines lend() const;
+    /// Lends the lines to one player at a time. `proof_s`: as player_lines.
+    player_lines lend(double proof_s = 0.0) const;
 
 private:
     std::shared_ptr<enable_line> amplifier_;

@@ -24,6 +24,8 @@ namespace {
 constexpr int frame_ms = 40;   // of the picture: 25 a second
 constexpr int settled_ms = 10; // more than one turn of the audio thread takes
 constexpr int kept_ms = 1000;  // how often it is kept that the array is driven
+constexpr int proof_ms = 1000; // a device that was lost is back when it has held for so long
+constexpr double longest_pause_s = 5.0;
 
 } // namespace
 
@@ -67,14 +69,14 @@ void play_session::end_stream()
     kept_.settled(player_->history());
 }
 
-void play_session::start(std::unique_ptr<sink> s)
+void play_session::start(std::unique_ptr<sink> s, double proof_s)
 {
     player_options o = source_.player;
     o.limits = limits_of(options_, environment_);
     o.require_realtime = options_.require_realtime;
     o.driven = kept_.until_now();
     o.log = device_.log;
-    player_ = std::make_unique<player>(std::move(s), environment_.tactors, o, lines_.lend());
+    player_ = std::make_unique<player>(std::move(s), environment_.tactors, o, lines_.lend(proof_s));
     player_->on_begin([this](stroke_id, std::optional<std::int64_t>) {
         begun_ = true;
         news_.signal();
@@ -202,35 +204,50 @@ stroke_report play_session::end_of(stroke_id id)
     return last ? *last : stroke_report{.id = id, .state = state_kind::cancelled};
 }
 
-bool play_session::reopen()
+void play_session::close_player()
 {
-    using clock = std::chrono::steady_clock;
-    // With an amplifier that may be on there is nothing to wait for: the run ends, and says so.
-    if (!waits() || (player_ != nullptr && player_->stats().left_on))
-        return false;
-    say(stderr, "tactor: waiting for \"{}\" to come back (Ctrl-C ends)\n", device_.pcm);
     if (player_ != nullptr) {
         add_stats(before_, player_->stats());
         end_stream();
     }
+    player_.reset(); // it holds the device and borrows the lines
+}
+
+// Opens the device once, as soon as that is possible; false when it is to wait no longer.
+bool play_session::try_again(const std::function<bool(double)>& pause)
+{
+    std::unique_ptr<sink> s = reopen_alsa(device_, pause);
+    if (s == nullptr)
+        return false;
+    try {
+        start(std::move(s), proof_ms * 1e-3);
+    } catch (const error& e) {
+        if (e.kind() == error_kind::bad_input)
+            throw;
+        return true;
+    }
+    return sleep(-1, proof_ms);
+}
+
+bool play_session::reopen()
+{
+    using clock = std::chrono::steady_clock;
+    if (!waits() || may_be_on())
+        return false;
+    say(stderr, "tactor: waiting for \"{}\" to come back (Ctrl-C ends)\n", device_.pcm);
     const auto until = clock::now() + std::chrono::duration<double>(options_.reopen_s);
+    // Opening proves little: each time that the device opens and then fails, the next pause is longer.
+    double longest_yet_s = 0.0;
     const auto pause = [&](double wait_s) {
         const double left_s = std::chrono::duration<double>(until - clock::now()).count();
-        return left_s > 0.0 && sleep(-1, static_cast<int>(std::ceil(std::min(wait_s, left_s) * 1e3)));
+        longest_yet_s = std::max(wait_s, std::min(2.0 * longest_yet_s, longest_pause_s));
+        return left_s > 0.0 && sleep(-1, static_cast<int>(std::ceil(std::min(longest_yet_s, left_s) * 1e3)));
     };
-    // The old stream holds the device and borrows the lines.
-    player_.reset();
-    while (player_ == nullptr) {
-        std::unique_ptr<sink> s = reopen_alsa(device_, pause);
-        if (s == nullptr)
+    do {
+        close_player();
+        if (!try_again(pause) || may_be_on())
             return false;
-        try {
-            start(std::move(s));
-        } catch (const error& e) {
-            if (e.kind() == error_kind::bad_input)
-                throw;
-        }
-    }
+    } while (lost());
     ++reopened_;
     say(stderr, "tactor: \"{}\" is back\n", device_.pcm);
     return true;

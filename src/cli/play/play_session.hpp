@@ -76,7 +76,11 @@ public:
     void finish(run_report& r);
 
 private:
-    void start(std::unique_ptr<sink> s);
+    void start(std::unique_ptr<sink> s, double proof_s = 0.0);
+    void close_player();
+    bool try_again(const std::function<bool(double)>& pause);
+    /// Whether the amplifier may be on although its line is switched off: there is nothing to wait for then.
+    bool may_be_on() const { return player_ != nullptr && player_->stats().left_on; }
     /// False when a signal has come.
     bool sleep(int fd, int timeout_ms, int also = -1);
     stroke_report end_of(stroke_id id);

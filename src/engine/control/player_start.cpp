@@ -71,7 +71,8 @@ engine::driver_options driver_options(const player_lines& l, const stream_setup&
     const std::int64_t four_periods = 4LL * s.period_frames * 1'000'000'000 / s.rate;
     engine::driver_options d;
     d.amplifier.settle_ns = std::int64_t{frames_of(l.settle_s, 1'000'000, "settle_s")} * 1000;
-    d.amplifier.proof_frames = 2ULL * s.period_frames;
+    d.amplifier.proof_frames =
+        std::max<std::uint64_t>(2ULL * s.period_frames, frames_of(l.proof_s, s.rate, "proof_s"));
     d.watchdog_ns = std::max(d.watchdog_ns, four_periods);
     return d;
 }
@@ -88,6 +89,7 @@ player_lines checked(player_lines l, unsigned rate)
 {
     frames_of(l.trigger_delay_s, rate, "trigger_delay_s");
     frames_of(l.settle_s, rate, "settle_s");
+    frames_of(l.proof_s, rate, "proof_s");
     frames_of(l.pulse_s, rate, "pulse_s");
     return l;
 }
