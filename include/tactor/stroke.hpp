@@ -135,6 +135,8 @@ struct stroke {
     std::vector<std::string> warnings = {};
     /// The speed from which the motion's time follows; none where a time is given. fit_strokes() keeps it.
     std::optional<double> speed_mm_s = {};
+    /// The input says neither a time nor a speed: default_speed_mm_s holds, unless a set-up has another one.
+    bool usual_pace = false;
     start_anchor anchor = {};
     stroke_choices choices = {};
     /// The place in a file of choices.soa_s, or else of choices.burst_s, for messages; line 0: it is not in a

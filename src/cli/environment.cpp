@@ -193,6 +193,8 @@ array find_array(const settings& s, option_list& options, environment& e)
     if (!file.array)
         throw error(error_kind::bad_input, *s.array_name, "says no [array]", "see tactor.toml(5)");
     options.apply_defaults(file);
+    if (file.defaults.latency_s)
+        e.latency_s = file.defaults.latency_s;
     use_array_file(config, file);
     e.array_file = *s.array_name;
     return *file.array;
@@ -225,6 +227,7 @@ environment read_environment(settings& s, option_list& options)
         check_readable(e.config_name);
         e.config = load_setup(e.config_name);
         options.apply_defaults(e.config);
+        e.latency_s = e.config.defaults.latency_s;
     }
     read_given(s, options, e);
     e.tactors = find_array(s, options, e);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,8 @@ struct environment {
     setup config;
     std::string config_name; ///< file it came from; empty: none
     array tactors;
-    std::string array_file; ///< that the array came from; empty: it is a preset of its name
+    std::string array_file;               ///< that the array came from; empty: it is a preset of its name
+    std::optional<double> latency_s = {}; ///< that [defaults] say
     std::map<std::string, plan_file> plans = {}; ///< STROKE arguments that are planned already
     std::vector<stroke> standard_input = {};     ///< strokes of the STROKE "-", unless it is a plan
 };

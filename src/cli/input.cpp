@@ -9,6 +9,7 @@
 
 #include "cli/option_words.hpp"
 #include "cli/pipes.hpp"
+#include "core/asked_pace.hpp"
 #include "core/start_times.hpp"
 
 namespace tactor::cli {
@@ -35,7 +36,7 @@ std::vector<stroke> read_one(const environment& e, const std::string& argument)
 stroke stroke_of_path(const settings& s, const std::string& data)
 {
     const path p = path::from_svg(data);
-    const double speed = s.speed_mm_s.value_or(default_speed_mm_s);
+    const double speed = s.speed_mm_s.value_or(s.usual_speed_mm_s.value_or(default_speed_mm_s));
     stroke k{"path", trajectory::along(p, s.duration_s.value_or(p.length_mm() / speed)), {}, {}, {}};
     k.speed_mm_s = speed;
     return k;
@@ -70,10 +71,7 @@ piece read_piece(const settings& s, const environment& e, const layout& faces, c
         p.fit = fitted.placed;
     }
     for (stroke& k : p.strokes)
-        if (s.duration_s)
-            k.motion = k.motion.with_duration(*s.duration_s);
-        else if (s.speed_mm_s && k.motion.length_mm() > 0.0)
-            k.motion = k.motion.with_speed(*s.speed_mm_s);
+        detail::set_pace(k, {s.duration_s, s.speed_mm_s, s.usual_speed_mm_s});
     return p;
 }
 

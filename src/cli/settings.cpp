@@ -2,6 +2,7 @@
 #include "cli/settings.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -292,6 +293,8 @@ void option_list::apply_defaults(const setup& says)
         } catch (const error& e) {
             throw said_at(at, name, e);
         }
+        if (name == "speed") // what a stroke says itself comes first
+            settings_.usual_speed_mm_s = std::exchange(settings_.speed_mm_s, std::nullopt);
         from_files_.insert_or_assign(name, at);
     }
 }

@@ -29,7 +29,8 @@ struct settings {
     std::optional<std::string> pcm;         ///< -D
     std::optional<double> duration_s;
     std::optional<double> speed_mm_s;
-    bool fit = false; ///< --fit
+    std::optional<double> usual_speed_mm_s; ///< of strokes that say neither a time nor a speed
+    bool fit = false;                       ///< --fit
     double fit_margin_mm = 0.0;
     std::optional<unsigned> rate;
     std::optional<format_kind> format;

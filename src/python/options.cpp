@@ -153,6 +153,7 @@ std::map<std::string, setter> planning()
         {"intercept", numbers(of::intercept, [](W w, double d) { w.intercept_s = d; })},
         {"duration", numbers({0.001, 86400}, [](W w, double d) { w.duration_s = d; })},
         {"speed", numbers(of::speed, [](W w, double d) { w.speed_mm_s = d; })},
+        {"usual_speed", numbers(of::speed, [](W w, double d) { w.usual_speed_mm_s = d; })},
         {"timing", [](W w, auto& n, py::handle v) { w.plan.timing = one_of<timing_kind>(n, v); }},
         {"outside", [](W w, auto& n, py::handle v) { w.plan.outside = one_of<outside_kind>(n, v); }},
         {"fit", [](W w, auto& n, py::handle v) { w.fit = truth(n, v); }},

@@ -18,6 +18,7 @@ struct wishes {
     render_options sound = {};
     std::optional<double> duration_s = {};
     std::optional<double> speed_mm_s = {};
+    std::optional<double> usual_speed_mm_s = {}; ///< of strokes that say neither a time nor a speed
     bool fit = false;
     double fit_margin_mm = 0.0;
     std::optional<double> slope = {};

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/asked_pace.hpp"
 #include "python/plan_handle.hpp"
 
 namespace tactor::python {
@@ -202,10 +203,7 @@ asked_stroke stroke_as_asked(const stroke& s, const layout& faces, const wishes&
         a.drawn = std::move(f.strokes.front());
         a.fit = f.placed;
     }
-    if (w.duration_s)
-        a.drawn.motion = a.drawn.motion.with_duration(*w.duration_s);
-    else if (w.speed_mm_s)
-        a.drawn.motion = a.drawn.motion.with_speed(*w.speed_mm_s);
+    detail::set_pace(a.drawn, {w.duration_s, w.speed_mm_s, w.usual_speed_mm_s});
     return a;
 }
 

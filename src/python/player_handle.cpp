@@ -40,7 +40,13 @@ cli::environment environment_of(cli::settings& s, const array* a)
 {
     CLI::App none;
     cli::option_list options(none, s);
+    options.add_rate_options();
+    const cli::settings given = s;
     cli::environment e = cli::read_environment(s, options);
+    if (given.rate) // wins over [defaults]
+        s.rate = given.rate;
+    if (given.format)
+        s.format = given.format;
     if (a == nullptr)
         return e;
     // A channel count belongs to its map.

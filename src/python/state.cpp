@@ -277,6 +277,7 @@ std::string state_of(const stroke& s)
     w.maybe(s.start_s);
     w.maybe(s.carrier_hz);
     w.maybe(s.speed_mm_s);
+    w.put(s.usual_pace);
     w.text(to_string(s.anchor.from));
     w.put(s.anchor.back);
     w.text(s.choices.algorithm ? to_string(*s.choices.algorithm) : "");
@@ -317,6 +318,7 @@ stroke stroke_from(std::string_view state)
     s.start_s = r.maybe();
     s.carrier_hz = r.maybe();
     s.speed_mm_s = r.maybe();
+    s.usual_pace = r.get<bool>();
     s.anchor.from = from_string<start_from_kind>(r.text());
     s.anchor.back = r.get<unsigned>();
     if (const std::string name = r.text(); !name.empty())

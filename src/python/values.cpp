@@ -198,6 +198,7 @@ stroke along(const std::string& name, const path& p, std::optional<double> durat
     stroke s{name, trajectory::along(p, duration_s.value_or(p.length_mm() / speed), intensity)};
     if (!duration_s)
         s.speed_mm_s = speed;
+    s.usual_pace = !duration_s && !speed_mm_s;
     return s;
 }
 
@@ -234,11 +235,13 @@ stroke moving(const std::string& name, const path& p, std::optional<double> dura
         m.rests.push_back({v(i, 0), v(i, 1), v(i, 2)});
         resting_s += v(i, 1);
     }
+    const bool usual = !duration_s && !speed_mm_s && m.speed_mm_s.empty();
     if (m.speed_mm_s.empty() && speed_mm_s)
         m.speed_mm_s = {{0.0, *speed_mm_s}};
     stroke s{name, trajectory::along(p, m, intensity)};
     if (!duration_s)
         s.speed_mm_s = p.length_mm() / (s.motion.duration_s() - resting_s);
+    s.usual_pace = usual;
     return s;
 }
 
@@ -284,6 +287,7 @@ void bind_stroke(py::module_& m)
                  stroke t = s;
                  t.motion = s.motion.with_duration(duration_s);
                  t.speed_mm_s.reset();
+                 t.usual_pace = false;
                  return t;
              })
         .def("with_speed",
@@ -291,6 +295,7 @@ void bind_stroke(py::module_& m)
                  stroke t = s;
                  t.motion = s.motion.with_speed(speed_mm_s);
                  t.speed_mm_s = speed_mm_s;
+                 t.usual_pace = false;
                  return t;
              })
         .def("reversed",

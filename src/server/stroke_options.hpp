@@ -19,7 +19,8 @@ struct stroke_settings {
     render_options render = {};
     std::optional<double> duration_s = {};
     std::optional<double> speed_mm_s = {};
-    bool compensate = false; ///< for low_speed
+    std::optional<double> usual_speed_mm_s = {}; ///< of strokes that say neither a time nor a speed
+    bool compensate = false;                     ///< for low_speed
     low_speed_observer low_speed = {};
 };
 

@@ -10,6 +10,7 @@
 
 #include <tactor/fit.hpp>
 
+#include "core/asked_pace.hpp"
 #include "core/start_times.hpp"
 #include "core/words.hpp"
 #include "server/faults.hpp"
@@ -52,7 +53,7 @@ std::vector<stroke> read_points(const json& list)
 stroke stroke_of_path(const std::string& data, const stroke_settings& s)
 {
     const path p = path::from_svg(data);
-    const double speed = s.speed_mm_s.value_or(default_speed_mm_s);
+    const double speed = s.speed_mm_s.value_or(s.usual_speed_mm_s.value_or(default_speed_mm_s));
     stroke k{.name = "path", .motion = trajectory::along(p, s.duration_s.value_or(p.length_mm() / speed))};
     k.speed_mm_s = speed;
     return k;
@@ -104,10 +105,7 @@ void place_strokes(const planning& with, const stroke_settings& s, std::vector<s
     detail::start_times times;
     double together_s = 0.0;
     for (stroke& k : strokes) {
-        if (s.duration_s)
-            k.motion = k.motion.with_duration(*s.duration_s);
-        else if (s.speed_mm_s && k.motion.length_mm() > 0.0)
-            k.motion = k.motion.with_speed(*s.speed_mm_s);
+        detail::set_pace(k, {s.duration_s, s.speed_mm_s, s.usual_speed_mm_s});
         times.start(k.start_s, k.anchor);
         in_time(with, times.lasts(k.motion.duration_s()));
         together_s += k.motion.duration_s();

@@ -2,6 +2,7 @@
 """tactor plan: the schedule as JSON, CSV and text, against calculations made here by other means."""
 import csv
 import io
+import json
 import math
 import unittest
 
@@ -157,6 +158,31 @@ class Options(ToolTest):
     def test_outside_can_be_clamped(self):
         p = self.plan("--path", "M 0 -5 L 40 -5", "--outside", "clamp")
         self.assertTrue(all(b["y_mm"] == 0 for b in p["bursts"]))
+
+    def test_what_a_stroke_says_of_its_time_comes_before_the_speed_of_defaults(self):
+        self.write("c.toml", "[defaults]\nspeed = 20\n")
+        line = 'path = "M 0 20 L 40 20"\n'
+        self.write("time.toml", f"[stroke]\n{line}duration_s = 1\n")
+        self.write("speed.toml", f"[stroke]\n{line}speed_mm_s = 80\n")
+        self.write("rests.toml", f"[stroke]\n{line}duration_s = 1\npauses = [[0.5, 0.2]]\n")
+        self.write("none.toml", f"[stroke]\n{line}")
+        self.write("times.csv", "t_s,x_mm,y_mm\n0,0,20\n1,40,20\n")
+        svg = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 40" width="40mm" height="40mm"><path {} d="M 0 20 L 40 20"/></svg>'
+        self.write("time.svg", svg.format('data-duration-s="1"'))
+        self.write("none.svg", svg.format(""))
+
+        def lasts(*args):
+            return json.loads(self.ok("plan", *args, "--format", "json").stdout)["stroke"]["duration_s"]
+        for name, own_s, asked_s in (("time.toml", 1.0, 2.0), ("speed.toml", 0.5, 2.0), ("rests.toml", 1.0, 2.2), ("times.csv", 1.0, 2.0),
+                                     ("time.svg", 1.0, 2.0)):
+            self.assertAlmostEqual(lasts(name, "--config", "c.toml"), own_s, msg=name)
+            self.assertAlmostEqual(lasts(name, "--config", "c.toml", "--speed", "20"), asked_s, msg=name)
+        self.assertAlmostEqual(lasts("park2016-1", "--config", "c.toml"), 1.4)
+        for name in ("none.toml", "none.svg"):
+            self.assertAlmostEqual(lasts(name, "--config", "c.toml"), 2.0, msg=name)
+            self.assertAlmostEqual(lasts(name), 40 / 60, msg=name)
+        self.assertAlmostEqual(lasts("--path", "M 0 20 L 40 20", "--config", "c.toml"), 2.0)
+        self.assertAlmostEqual(lasts("none.toml", "--config", "c.toml", "--duration", "3"), 3.0)
 
     def test_config_gives_defaults_that_the_command_line_overrides(self):
         self.write("c.toml", '[array]\npreset = "palm-2x4"\n[defaults]\nphantom = "barycentric"\nsoa = 0.06\n')

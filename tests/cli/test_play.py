@@ -104,6 +104,12 @@ class Play(ToolTest):
         self.write("c.toml", '[output]\npcm = "null"\nperiod_frames = 500\nperiods = 5\n')
         self.assertEqual(sizes("--config", "c.toml", "--latency-ms", "5").groups(), ("48", "240", "5.0"))
         self.refused(2, "play", *self.SHORT, "--latency-ms", "3", "--period-frames", "64", says=["--latency-ms"])
+        self.write("d.toml", "[defaults]\nlatency-ms = 5\n[output]\nperiod_frames = 128\n")
+        self.assertEqual(sizes("--config", "d.toml").groups(), ("80", "240", "5.0"))
+        self.assertEqual(sizes("--config", "d.toml", "--latency-ms", "3").groups(), ("48", "144", "3.0"))
+        self.assertEqual(sizes("--config", "d.toml", "--period-frames", "64").groups(), ("64", "192", "4.0"))
+        self.write("a.toml", 'array.preset = "palm-3x3"\n[defaults]\nlatency-ms = 10\n')
+        self.assertEqual(sizes("--config", "d.toml", "--array", "a.toml").groups(), ("160", "480", "10.0"))
         for option, value in (("--latency-ms", "nan"), ("--latency-ms", "0"), ("--period-frames", "1.5"),
                               ("--periods", "1"), ("--reopen-s", "-1"), ("--sync-delay-ms", "x"), ("--format", "xml")):
             self.refused(2, "play", *self.SHORT, option, value, says=[option])

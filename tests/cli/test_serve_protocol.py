@@ -140,6 +140,15 @@ class Protocol(ServeTest):
         self.assertEqual(said["id"], 77)
         self.check_error(said["error"], -32602, "x_mm")
 
+    def test_the_owners_speed_is_for_strokes_that_say_neither_time_nor_speed(self):
+        c = self.serve(config="[defaults]\nspeed = 20\nlatency-ms = 5\n").client()
+        line = {"path": "M 0 20 L 40 20"}
+        self.assertAlmostEqual(c.ok("plan", **line)["stroke"]["duration_s"], 2.0)
+        self.assertAlmostEqual(c.ok("plan", **line, options={"speed": 80})["stroke"]["duration_s"], 0.5)
+        self.assertAlmostEqual(c.ok("plan", toml='[stroke]\npath = "M 0 20 L 40 20"\nduration_s = 1\n')["stroke"]["duration_s"], 1.0)
+        self.assertAlmostEqual(c.ok("plan", points=[[0, 0, 20], [1, 40, 20]])["stroke"]["duration_s"], 1.0)
+        self.assertAlmostEqual(c.ok("hello")["stream"]["latency_s"], 0.005)
+
     def test_the_owners_level_is_the_ceiling(self):
         c = self.serve(config='[serve]\nmax_level_dbfs = -30\n[defaults]\nlevel-dbfs = -20\n').client()
         self.assertEqual(c.ok("hello")["max_level_dbfs"], -30)

@@ -82,6 +82,7 @@ def test_options_have_the_names_of_the_tools(tool):
     not_ours = {"help", "path", "array", "config", "format", "sample_format", "algorithms", "phantoms", "output", "width", "dpi",
                 "version"}  # objects and arguments of their own
     own = {"channels", "marker_channel", "marker_s", "power_dbfs", "max_drive_s", "drive_window_s",  # a score's, from files and `play`
+           "usual_speed",  # from [defaults] speed
            "tukey_part"}  # the tool's --envelope tukey:PART
     assert said - not_ours == set(_tactor.option_names()) - own
 
@@ -190,6 +191,18 @@ def test_what_is_predicted_to_be_felt(palm, stroke):
 def test_the_timing_law():
     assert tactor.burst_duration(soa=0.07) == pytest.approx(0.07) and tactor.burst_duration(soa=0.06) == pytest.approx((0.06 - 0.0473) / 0.32)
     assert tactor.burst_duration(soa=0.07, burst=0.02) == 0.02
+
+
+def test_a_stroke_keeps_its_time_beside_a_files_speed(tmp_path):
+    file = tmp_path / "slow.toml"
+    file.write_text('[array]\npreset = "palm-3x3"\n[defaults]\nspeed = 20\n')
+    slow = tactor.Array.from_file(file)
+    path = tactor.Path.svg("M 0 20 L 40 20")
+    lasts = {name: tactor.plan(slow, s, **options).to_dict()["stroke"]["duration_s"] for name, s, options in (
+        ("time", tactor.Stroke.along(path, duration=1.0), {}), ("speed", tactor.Stroke.along(path, speed=80.0), {}),
+        ("neither", tactor.Stroke.along(path), {}), ("asked", tactor.Stroke.along(path, duration=1.0), {"speed": 40}),
+        ("copy", pickle.loads(pickle.dumps(tactor.Stroke.along(path))), {}), ("preset", tactor.Stroke.preset("park2016-1"), {}))}
+    assert lasts == pytest.approx({"time": 1.0, "speed": 0.5, "neither": 2.0, "asked": 1.0, "copy": 2.0, "preset": 1.4})
 
 
 def test_a_file_says_what_nobody_else_does(tmp_path, stroke, tool):

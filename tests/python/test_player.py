@@ -376,6 +376,25 @@ def test_the_configuration_counts(palm, tmp_path, monkeypatch, short):
     tactor.Player("null", palm, no_gpio=True).close()
 
 
+def test_rate_and_sample_format_of_defaults_are_the_streams_too(tmp_path):
+    file = tmp_path / "palm.toml"
+    file.write_text('[array]\npreset = "palm-3x3"\n[defaults]\nrate = 44100\nsample-format = "s16"\nlatency-ms = 10\n')
+    array = tactor.Array.from_file(file)
+    score = tactor.Score(array, tactor.plan(array, tactor.Stroke.preset("park2016-1"), duration=0.2))
+    with tactor.Player("null", array, config=os.devnull) as p:
+        assert (p.rate, p.setup["format"], p.setup["buffer_frames"]) == (44100, "s16", 441)
+        assert p.play(score).state == "finished"
+    with tactor.Player("null", array, config=os.devnull, rate=48000, sample_format="s32", period_frames=96) as p:
+        assert (p.rate, p.setup["format"], p.setup["period_frames"]) == (48000, "s32", 96)
+
+
+@pytest.mark.parametrize("limit", [{"power_dbfs": 1000}, {"power_dbfs": 60.1}, {"power_dbfs": float("nan")}, {"max_drive_s": 3601}, {"max_drive_s": float("inf")},
+                                   {"drive_window_s": 0.01}])
+def test_limits_are_bounded_as_in_the_tool(palm, limit):
+    with pytest.raises(tactor.InputError, match="out of range"):
+        tactor.Player("null", palm, config=os.devnull, **limit)
+
+
 def test_an_arrays_file_brings_its_limits(tmp_path):
     file = tmp_path / "palm.toml"
     file.write_text('[array]\npreset = "palm-3x3"\n[output]\nchannels = 12\n[limits]\npower_dbfs = -40.0\n')

@@ -17,17 +17,17 @@ finding told_lost(const alsa_options& device, const std::string& lost)
                               "bindings), or play on the card itself: -D hw:CARD=NAME"});
 }
 
-finding told_open(const alsa_options& device, const play_options& o, const array& a, bool named)
+finding told_open(const alsa_options& device, const play_options& o, const environment& e, bool named)
 {
     const std::string server = settle_server(device.pcm);
     const stream_setup made = open_alsa(device)->setup();
-    if (const std::string lost = lost_tactor(a, made.wiring); !lost.empty())
+    if (const std::string lost = lost_tactor(e.tactors, made.wiring); !lost.empty())
         return told_lost(device, lost);
     const std::string found = describe(made) + (server.empty() ? "" : "; " + server_note(server));
     if (!named)
         return warning("device", "none is named, so play goes to " + found,
                        "-D PCM, or pcm under [output]; tactor devices lists them");
-    const std::string late = latency_warning(o, made);
+    const std::string late = latency_warning(asked_latency_ms(o, e), made);
     if (!late.empty())
         return warning("device", found + "; " + late, "a device with shorter periods, or more latency");
     if (!server.empty())
@@ -39,10 +39,10 @@ finding told_open(const alsa_options& device, const play_options& o, const array
 
 } // namespace
 
-finding check_device(const alsa_options& device, const play_options& o, const array& a, bool named)
+finding check_device(const alsa_options& device, const play_options& o, const environment& e, bool named)
 {
     if (route_of(device.pcm).writes) {
-        const std::string lost = lost_tactor(a, wiring_of(device.pcm, device.channels));
+        const std::string lost = lost_tactor(e.tactors, wiring_of(device.pcm, device.channels));
         return lost.empty()
                    ? warning("device",
                              fmt::format("{}: not opened, for that would empty its file or start its command",
@@ -51,7 +51,7 @@ finding check_device(const alsa_options& device, const play_options& o, const ar
                    : told_lost(device, lost);
     }
     try {
-        return told_open(device, o, a, named);
+        return told_open(device, o, e, named);
     } catch (const error& e) {
         return failure("device", e);
     }

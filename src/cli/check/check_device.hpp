@@ -9,7 +9,7 @@
 namespace tactor::cli {
 
 /// Opens and closes it, but for one that writes a file; nothing sounds. `named`: whether anything names it,
-/// else it is the default. `a`: what is to be felt through it.
-finding check_device(const alsa_options& device, const play_options& o, const array& a, bool named);
+/// else it is the default.
+finding check_device(const alsa_options& device, const play_options& o, const environment& e, bool named);
 
 } // namespace tactor::cli

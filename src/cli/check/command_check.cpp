@@ -59,7 +59,7 @@ std::vector<finding> check_all(const settings& s, const check_options& o, const 
     alsa_options device;
     try {
         device = device_for(s, o, e);
-        all.push_back(check_device(device, o.play, e.tactors, names_device(s, e)));
+        all.push_back(check_device(device, o.play, e, names_device(s, e)));
     } catch (const error& x) {
         all.push_back(failure("device", x));
     }

@@ -122,7 +122,7 @@ int play(settings& s, option_list& options, const play_options& o)
     if (!o.json())
         say(stdout, "{}\n", describe(session.setup()));
     flush_output();
-    const std::string warning = latency_warning(o, session.setup());
+    const std::string warning = latency_warning(asked_latency_ms(o, e), session.setup());
     if (!warning.empty())
         say(stderr, "tactor: warning: {}\n", warning);
     if (!server.empty())

@@ -162,8 +162,8 @@ alsa_options device_options(const settings& s, const play_options& p, const envi
     o.format = s.format;
     o.periods = p.periods.value_or(out.periods.value_or(o.periods));
     o.period_frames = p.period_frames.value_or(out.period_frames.value_or(o.period_frames));
-    if (p.latency_ms) {
-        const double frames = *p.latency_ms * 1e-3 * o.rate / o.periods;
+    if (const auto latency_ms = asked_latency_ms(p, e)) {
+        const double frames = *latency_ms * 1e-3 * o.rate / o.periods;
         o.period_frames = std::max(1U, static_cast<unsigned>(std::lround(frames)));
     }
     return o;
@@ -178,18 +178,25 @@ drive_limits limits_of(const play_options& o, const environment& e)
     return l;
 }
 
+std::optional<double> asked_latency_ms(const play_options& o, const environment& e)
+{
+    if (o.latency_ms || o.period_frames || !e.latency_s)
+        return o.latency_ms;
+    return 1e3 * *e.latency_s;
+}
+
 double latency_ms(const stream_setup& s)
 {
     return 1e3 * s.buffer_frames / s.rate;
 }
 
-std::string latency_warning(const play_options& o, const stream_setup& made)
+std::string latency_warning(std::optional<double> asked_ms, const stream_setup& made)
 {
     // Rounding to whole frames is no news.
     constexpr double tolerance = 1.05;
-    if (!o.latency_ms || latency_ms(made) <= *o.latency_ms * tolerance + 1e3 / made.rate)
+    if (!asked_ms || latency_ms(made) <= *asked_ms * tolerance + 1e3 / made.rate)
         return {};
-    return fmt::format("a latency of {} ms was asked for, the device makes it {:.1f} ms", *o.latency_ms,
+    return fmt::format("a latency of {} ms was asked for, the device makes it {:.1f} ms", *asked_ms,
                        latency_ms(made));
 }
 

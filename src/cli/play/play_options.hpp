@@ -57,8 +57,11 @@ alsa_options device_options(const settings& s, const play_options& p, const envi
 /// What holds: the options, else [limits], else the defaults. \throws error for a drive time that is none.
 drive_limits limits_of(const play_options& o, const environment& e);
 
+/// Latency that is asked for, ms: the option's, else that of [defaults] where no option gives a period.
+std::optional<double> asked_latency_ms(const play_options& o, const environment& e);
+
 /// A sentence where the device makes more latency than was asked for; else empty.
-std::string latency_warning(const play_options& o, const stream_setup& made);
+std::string latency_warning(std::optional<double> asked_ms, const stream_setup& made);
 
 /// Time that the buffer holds.
 double latency_ms(const stream_setup& s);

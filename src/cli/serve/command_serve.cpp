@@ -63,7 +63,7 @@ server::planning planning_of(const settings& s, const environment& e, const serv
     server::planning p;
     p.owner.plan = s.plan;
     p.owner.render = settle_render(s, e);
-    p.owner.speed_mm_s = s.speed_mm_s;
+    p.owner.usual_speed_mm_s = s.usual_speed_mm_s;
     p.owner.compensate = s.compensate;
     p.owner.low_speed = s.low_speed;
     p.max_level_dbfs = serve.max_level_dbfs.value_or(p.owner.render.level_dbfs);

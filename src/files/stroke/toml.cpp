@@ -188,7 +188,8 @@ stroke read_drawn(const toml_table& t, std::string name)
                          : at_key(t, kind, [&, data = *t.text("path")] { return path::from_svg(data); });
     stroke s = described(detail::along_as_told(t, kind, way, asked, {}));
     s.speed_mm_s = detail::kept_speed(asked, way.length_mm());
-    if (!asked.duration_s && !s.speed_mm_s)
+    s.usual_pace = !asked.duration_s && !s.speed_mm_s;
+    if (s.usual_pace)
         s.speed_mm_s = default_speed_mm_s;
     return s;
 }

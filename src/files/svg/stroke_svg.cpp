@@ -233,7 +233,8 @@ private:
                                 s.carrier_hz,
                                 {},
                                 {},
-                                duration ? std::nullopt : std::optional(speed)});
+                                duration ? std::nullopt : std::optional(speed),
+                                !duration && !s.speed_mm_s});
             start.reset();
         }
     }

@@ -90,7 +90,8 @@ def _completed(setup: _t.Any, given: dict[str, _t.Any], known: frozenset[str]) -
         name = option.replace("-", "_")
         rival = {"speed": "duration", "sl": "level_dbfs", "level_dbfs": "sl"}.get(name)
         if name in known and not says(name) and not (rival is not None and given.get(rival) is not None):
-            options[name] = _value(text)
+            # What a stroke says itself comes before a file's speed.
+            options["usual_speed" if name == "speed" else name] = _value(text)
     kind, _, part = str(options.get("envelope") or "").partition(":")
     if part and given.get("envelope") is None:  # tukey:PART, as the tool takes it
         options["envelope"] = kind

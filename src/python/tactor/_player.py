@@ -98,8 +98,9 @@ class Player(_Unique):
         }
         for what, number, least in (("rate", rate, 8000), ("period_frames", period_frames, 1), ("periods", periods, 2), ("channels", channels, 1)):
             given[what] = None if number is None else _whole(what, number, least, (1 << 31) - 1, f"a whole number from {least} on")
-        for what, limit in (("power_dbfs", power_dbfs), ("max_drive_s", max_drive_s), ("drive_window_s", drive_window_s)):
-            given[what] = None if limit is None else _number(what, limit, finite=False)
+        for what, limit, low, high, unit in (("power_dbfs", power_dbfs, -120.0, 60.0, "dB"), ("max_drive_s", max_drive_s, 0.1, 3600.0, "s"),
+                                             ("drive_window_s", drive_window_s, 0.1, 3600.0, "s")):
+            given[what] = None if limit is None else _number(what, limit, low, high, f"{low:g} to {high:g} {unit}")
         given["latency"] = None if latency is None else _number("latency", latency, 0.0001, 10.0, "0.0001 to 10 s")
         driven = _tactor.DriveHistory() if after is None else after._history()
         core = _tactor.Player(array._core, device, given, driven)
