@@ -98,10 +98,15 @@ struct player_lines {
     double trigger_delay_s = 0.050;           ///< from the edge to the first sample at the DAC
 };
 
-/// The first tactor that cannot be felt by itself on a stream of this wiring, and why: its channel reaches no
-/// channel of the device, or only channels that other tactors' channels reach, too. Empty: there is no such
-/// tactor, or it cannot be known (stream_wiring::hidden_by).
+/// The first tactor that cannot be played on a stream of this wiring, and why: its channel reaches no channel
+/// of the device, or only channels that other tactors' channels reach, too, or it arrives there louder than
+/// it was written, beyond its limit. Empty: there is no such tactor, or it cannot be known
+/// (stream_wiring::hidden_by).
 [[nodiscard]] TACTOR_API std::string lost_tactor(const array& a, const stream_wiring& w);
+
+/// Sentences about tactors that are felt in another way than they were written: weaker, with their polarity
+/// reversed, or through several channels of the device.
+[[nodiscard]] TACTOR_API std::vector<std::string> wiring_warnings(const array& a, const stream_wiring& w);
 
 /// Owns the sink, the audio thread and the control thread. Its members may be called from any thread but the
 /// audio thread; they lock, so that several producers are safe. All numbers may be given: an impossible one

@@ -25,6 +25,11 @@ struct stream_wiring {
     /// By channel of the stream: the device's channels that it reaches, ascending (those of a second device
     /// count from 1024). A channel with none is lost. Empty: each channel reaches the one of its own number.
     std::vector<std::vector<unsigned>> outputs = {};
+    /// The factor on the samples of each of `outputs`, in the same order; below 0 the polarity is reversed.
+    /// What is below 0.001 (-60 dB) counts as not reached. Empty: all are 1.
+    std::vector<std::vector<double>> gains = {};
+    /// The part in between that sets a level which cannot be known: "type softvol". Empty: none does.
+    std::string level_by = {};
     /// The part in between that may give any channel any place, so that `outputs` cannot be known: "type
     /// pulse". Empty: `outputs` is known.
     std::string hidden_by = {};

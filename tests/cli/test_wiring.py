@@ -11,6 +11,12 @@ pcm.straight { type plug slave.pcm { type copy slave.pcm "null" } }
 pcm.named { type route slave.pcm "null" ttable { 0.FL 1 1.FR 1 2.RL 1 3.RR 1 4.FC 1 5.LFE 1 6.SL 1 7.SR 1 8.RC 1 } }
 pcm.kept { type route slave.pcm { type file slave.pcm "null" file "kept.raw" format raw } ttable { 0.0 1 } }
 """
+GAINS = """
+pcm.quiet { type route slave { pcm "null" channels 10 } ttable { 0.0 0.1 1.1 1 2.2 -1 3.3 1 4.4 1 5.5 1 6.6 1 7.7 1 8.8 0.5 8.9 1 } }
+pcm.loud { type route slave.pcm "null" ttable { 0.0 1 1.1 2 2.2 1 3.3 1 4.4 1 5.5 1 6.6 1 7.7 1 8.8 1 } }
+pcm.below { type route slave.pcm "null" ttable { 0.0 1 1.1 1 2.2 1 3.3 1 4.4 1 5.5 1 6.6 1 7.7 1 8.8 0.00001 } }
+pcm.soft { type softvol slave.pcm "null" control { name "Soft" card 0 } }
+"""
 LOST = "tactor 8 of palm-3x3 is on channel 8, which reaches no channel of the device"
 
 
@@ -21,7 +27,7 @@ class Wiring(ToolTest):
         super().setUp()
         eight = EIGHT.replace('"hw:CARD=Tactor,DEV=0"', '"null"')
         self.assertNotEqual(eight, EIGHT)
-        self.write("alsa.conf", ALSA_CONFIG + eight + MORE_PCMS)
+        self.write("alsa.conf", ALSA_CONFIG + eight + MORE_PCMS + GAINS)
 
     def device(self, pcm, *args, status=0):
         r = self.run_tool("check", "--format", "json", "-D", pcm, *args)
@@ -58,6 +64,28 @@ class Wiring(ToolTest):
         self.assertEqual((pcms["tactor8"]["fits"], pcms["tactor8"]["misfit"]), (False, LOST))
         self.assertEqual((pcms["straight"]["fits"], pcms["straight"]["misfit"]), (True, None))
         self.assertIn("    unfit     tactor 8 of palm-3x3 is on channel 8", self.ok("devices").stdout)
+
+    def test_a_level_that_alsa_changes_is_said_and_a_louder_one_refused(self):
+        said = ("tactor 0 of palm-3x3 is on channel 0, which ALSA's configuration plays at -20 dB",
+                "tactor 2 of palm-3x3 is on channel 2, which ALSA's configuration plays at 0 dB with its polarity reversed",
+                "tactor 8 of palm-3x3 is on channel 8, which reaches 2 channels of the device, at -6.02 dB, 0 dB")
+        found = self.device("quiet")
+        self.assertEqual(found["level"], "warning")
+        self.assertIn("ttable", found["cure"])
+        r = self.ok("play", *self.STROKE, "-D", "quiet")
+        for text in said:
+            self.assertIn(text, found["found"])
+            self.assertIn(f"tactor: warning: {text} (", r.stderr)
+        self.assertEqual(found["found"].count("tactor "), 3)
+        louder = "tactor 1 of palm-3x3 is on channel 1, which ALSA's configuration plays at 6.02 dB: louder than its limit allows"
+        self.assertIn(louder, self.device("loud", status=3)["found"])
+        self.refused(3, "play", *self.STROKE, "-D", "loud", says=[louder])
+        pcms = {p["name"]: p for p in json.loads(self.ok("devices", "--format", "json").stdout)["pcms"]}
+        self.assertEqual((pcms["loud"]["fits"], pcms["loud"]["misfit"]), (False, louder))
+
+    def test_what_is_below_60_db_is_lost(self):
+        self.assertIn(LOST, self.device("below", status=3)["found"])
+        self.refused(3, "play", *self.STROKE, "-D", "below", says=[LOST])
 
     def test_where_it_cannot_be_known_there_is_a_warning(self):
         note = "not known: type route to a channel FL is between"

@@ -117,6 +117,10 @@ call_table player_calls(player_things& t)
          [] {
              return lost_tactor(palm(), {.outputs = {{0}, {0}}});
          }},
+        {"wiring_warnings",
+         [] {
+             return wiring_warnings(palm(), {.outputs = {{0}}, .gains = {{0.1}}, .level_by = "type softvol"});
+         }},
         {"drive_history::with", [&t] { return t.driven.with(t.driven); }},
         {"drive_history::with_ahead", [&t] { return t.driven.with_ahead(9, 1.0); }},
         {"drive_history::with_ahead, for ever", [&t] { return t.driven.with_ahead(9, 1e6); }},

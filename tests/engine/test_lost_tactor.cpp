@@ -45,6 +45,25 @@ TEST_CASE("a tactor is lost whose channel reaches nothing, or nothing by itself"
     CHECK(lost_tactor(line_of_three(), {.hidden_by = "type pulse"}).empty());
 }
 
+TEST_CASE("a tactor that arrives louder is refused, and one that arrives in another way is told")
+{
+    stream_wiring w{.outputs = {{0}, {1}, {2, 3}}, .gains = {{1.0}, {-0.5}, {1.0, 0.1}}};
+    CHECK(lost_tactor(line_of_three(), w).empty());
+    CHECK(wiring_warnings(line_of_three(), w) ==
+          std::vector<std::string>{
+              "tactor 1 of line is on channel 1, which ALSA's configuration plays at -6.02 "
+              "dB with its polarity reversed",
+              "tactor 2 of line is on channel 2, which reaches 2 channels of the device, "
+              "at 0 dB, -20 dB"});
+    w.gains[1] = {-2.0};
+    CHECK(lost_tactor(line_of_three(), w) ==
+          "tactor 1 of line is on channel 1, which ALSA's configuration plays at 6.02 dB with its polarity "
+          "reversed: louder than its limit allows");
+    CHECK(wiring_warnings(line_of_three(), {}).empty());
+    CHECK(wiring_warnings(line_of_three(), {.level_by = "type softvol"}) ==
+          std::vector<std::string>{"a mixer control sets the level of all tactors: type softvol is between"});
+}
+
 TEST_CASE("there is no player for an array of which a tactor is lost")
 {
     alsa_options o{.pcm = "t",
@@ -59,8 +78,8 @@ TEST_CASE("there is no player for an array of which a tactor is lost")
         CHECK(
             std::string(e.what()) ==
             "stream on \"t\": tactor 1 of line is on channel 1, which reaches no channel of the device (give "
-            "each channel one of the device's where the PCM is defined (ttable, bindings), or play on the "
-            "card itself, hw:CARD=NAME)");
+            "each channel one of the device's, at 1, where the PCM is defined (ttable, bindings), or play on "
+            "the card itself, hw:CARD=NAME)");
     }
     array two = line_of_three();
     two.tactors.erase(two.tactors.begin() + 1);

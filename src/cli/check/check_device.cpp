@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "cli/check/check_device.hpp"
 
+#include <string>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "cli/play/play_report.hpp"
@@ -12,9 +15,10 @@ namespace {
 
 finding told_lost(const alsa_options& device, const std::string& lost)
 {
-    return failure("device", {error_kind::not_available, fmt::format("PCM \"{}\"", device.pcm), lost,
-                              "give each channel one of the device's where the PCM is defined (ttable, "
-                              "bindings), or play on the card itself: -D hw:CARD=NAME"});
+    return failure("device",
+                   {error_kind::not_available, fmt::format("PCM \"{}\"", device.pcm), lost,
+                    "give each channel one of the device's, at 1, where the PCM is defined (ttable, "
+                    "bindings), or play on the card itself: -D hw:CARD=NAME"});
 }
 
 finding told_open(const alsa_options& device, const play_options& o, const environment& e, bool named)
@@ -32,8 +36,12 @@ finding told_open(const alsa_options& device, const play_options& o, const envir
         return warning("device", found + "; " + late, "a device with shorter periods, or more latency");
     if (!server.empty())
         return warning("device", found, server_cure);
-    if (const std::string unknown = wiring_note(made); !unknown.empty())
-        return warning("device", found + "; " + unknown, server_cure);
+    const std::vector<device_note> notes = wiring_notes(e.tactors, made);
+    std::string told = found;
+    for (const device_note& n : notes)
+        told += "; " + n.text;
+    if (!notes.empty())
+        return warning("device", told, notes.front().cure);
     return fine("device", found);
 }
 

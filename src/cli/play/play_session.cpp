@@ -48,8 +48,8 @@ play_session::play_session(const alsa_options& device, const play_options& o, co
         throw error(error_kind::not_available, "locked memory", refused,
                     rt::realtime_advice(probe_realtime_rights(), player_options{}.priority));
     start(std::move(s));
-    if (const std::string unknown = wiring_note(setup_); !unknown.empty())
-        say(stderr, "tactor: warning: {} ({})\n", unknown, server_cure);
+    for (const device_note& n : wiring_notes(environment_.tactors, setup_))
+        say(stderr, "tactor: warning: {} ({})\n", n.text, n.cure);
     warn_of_rights(player_->stats().realtime, locked_);
 }
 

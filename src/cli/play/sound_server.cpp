@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -34,13 +35,21 @@ std::string server_note(const std::string& server)
     return fmt::format("{} is in between: it may mix, resample and hide xruns", server);
 }
 
-std::string wiring_note(const stream_setup& s)
+std::vector<device_note> wiring_notes(const array& a, const stream_setup& s)
 {
+    std::vector<device_note> all;
+    for (std::string& odd : wiring_warnings(a, s.wiring))
+        all.push_back({std::move(odd),
+                       "set the coefficient to 1 where the PCM is defined (ttable), or play on "
+                       "the card itself, -D hw:CARD=NAME"});
     const std::string& between = s.wiring.hidden_by;
-    if (between.empty() || !route_of(s.name).server.empty())
-        return {};
-    return fmt::format(
-        "whether each tactor has a channel of the device to itself is not known: {} is between", between);
+    if (!between.empty() && route_of(s.name).server.empty())
+        all.push_back(
+            {fmt::format("whether each tactor has a channel of the device to itself is not known: {} "
+                         "is between",
+                         between),
+             server_cure});
+    return all;
 }
 
 } // namespace tactor::cli

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include <tactor/array.hpp>
 #include <tactor/sink.hpp>
 
 namespace tactor::cli {
@@ -20,11 +22,17 @@ bool is_felt(const std::string& pcm);
 /// What a server in between may do.
 std::string server_note(const std::string& server);
 
-/// What is not known of the ways that the stream's channels go; empty: all is, or a server is between, of
-/// which server_note() tells.
-std::string wiring_note(const stream_setup& s);
+/// Something about a stream that is felt, or may be, and what to do about it.
+struct device_note {
+    std::string text;
+    const char* cure;
+};
 
-/// What to do about it.
+/// Notes about the ways that the stream's channels go: levels that ALSA's configuration changes, and ways
+/// that are not known (but not those through a server, of which server_note() tells).
+std::vector<device_note> wiring_notes(const array& a, const stream_setup& s);
+
+/// What to do about a server.
 inline constexpr const char* server_cure =
     "-D hw:CARD=NAME plays on the card itself; tactor devices lists them";
 

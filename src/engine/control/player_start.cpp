@@ -197,6 +197,8 @@ void player::impl::log_start(const player_options& o) const
     detail::log(log.function(), log_kind::info, "{} runs: {} at {} Hz, {} of {} frames{}", stream,
                 counted(s.channels, "channel"), s.rate, s.buffer_frames / s.period_frames, s.period_frames,
                 s.has_clock ? "" : ", timed by us");
+    for (const std::string& odd : wiring_warnings(tactors, s.wiring))
+        detail::log(log.function(), log_kind::warning, "{}: {}", stream, odd);
     if (!o.realtime && !o.require_realtime)
         return;
     const int refused = audio.fifo_error();

@@ -101,6 +101,27 @@ TEST_CASE("tables and bindings say which channels of the device are reached, thr
     CHECK(defined("same", 2).outputs == channels{{7}, {7}}); // one device on two ways
 }
 
+TEST_CASE("tables change levels, and what is below -60 dB is not reached")
+{
+    const auto through = [](const std::string& table) {
+        return wired("pcm.n { type null } pcm.h { type route slave.pcm n ttable { 0.0 0.5 1.1 1 } }"
+                     "pcm.t { type route slave.pcm h ttable { " +
+                         table + " } }",
+                     "t", 2);
+    };
+    using gains = std::vector<std::vector<double>>;
+    CHECK(through("0.0 1 1.1 1").gains == gains{{0.5}, {1.0}});
+    CHECK(through("0.0 2 1.1 1").outputs.empty()); // back to 1
+    CHECK(through("0.0 -0.1 1.1 4").gains == gains{{-0.05}, {4.0}});
+    CHECK(through("0.0 1 0.1 0.5 1.1 1").gains == gains{{0.5, 0.5}, {1.0}});
+    CHECK(through("0.0 0.001 1.1 0.001").outputs == channels{{}, {1}});
+    CHECK(through("0.0 0.001 1.1 0.001").gains == gains{{}, {0.001}});
+    const stream_wiring soft =
+        wired("pcm.n { type null } pcm.t { type softvol slave.pcm n control { name x card 0 } }", "t", 2);
+    CHECK(soft.outputs.empty());
+    CHECK(soft.level_by == "type softvol");
+}
+
 TEST_CASE("what is not understood is told, and nothing is said of the channels")
 {
     const auto hidden = [](const std::string& name) {

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -31,7 +31,11 @@ constexpr std::array straight{"plug",  "linear", "lfloat", "copy",  "rate",    "
 // They lead each channel to the slave's that their bindings say.
 constexpr std::array binding{"dmix", "dshare", "share"};
 
-using outputs = std::vector<std::set<unsigned>>; // of each channel
+constexpr double least_gain = 1e-3; // -60 dB: less is not felt
+constexpr double rounding = 1e-6;
+
+// Of each channel: the device's channels that it reaches, and the factor on its samples there.
+using outputs = std::vector<std::map<unsigned, double>>;
 
 snd_config_t* member(snd_config_t* compound, const char* id)
 {
@@ -79,6 +83,9 @@ public:
         return at(definition.get(), channels, depth);
     }
 
+    /// The part that sets a level of its own; empty: none does.
+    const std::string& level_by() const noexcept { return level_by_; }
+
 private:
     configuration look_up(const char* base, const std::string& name)
     {
@@ -111,6 +118,8 @@ private:
             return of_table(definition, channels, depth);
         if (among(binding, type) && member(definition, "bindings") != nullptr)
             return of_bindings(definition, channels, depth);
+        if (type == "softvol")
+            level_by_ = "type softvol";
         if (among(straight, type) || among(binding, type))
             return slave(member(definition, "slave"), channels, depth);
         throw hidden{type.empty() ? "a definition without a type" : fmt::format("type {}", type)};
@@ -122,7 +131,7 @@ private:
         const unsigned first = devices_.try_emplace(key, devices_.size() * most_channels).first->second;
         outputs all(channels);
         for (unsigned c = 0; c < channels; ++c)
-            all[c] = {first + c};
+            all[c] = {{first + c, 1.0}};
         return all;
     }
 
@@ -145,13 +154,15 @@ private:
         return at(pcm, channels, depth + 1);
     }
 
-    void link(std::set<unsigned>& from, const outputs& inner, std::optional<unsigned> to)
+    void link(std::map<unsigned, double>& from, const outputs& inner, std::optional<unsigned> to,
+              double gain = 1.0)
     {
         if (!to || *to >= inner.size())
             return;
         if ((links_ += inner[*to].size()) > most_links)
             throw hidden{"a larger table than anyone has"};
-        from.insert(inner[*to].begin(), inner[*to].end());
+        for (const auto& [output, further] : inner[*to])
+            from[output] += gain * further;
     }
 
     outputs of_table(snd_config_t* definition, unsigned channels, int depth)
@@ -168,7 +179,7 @@ private:
                 if (!channel_number(to)) // FL, FR: the device says which these are
                     throw hidden{fmt::format("type route to a channel {}", to)};
                 if (from && *from < channels && snd_config_get_ireal(gain, &value) >= 0 && value != 0.0)
-                    link(all[*from], inner, channel_number(to));
+                    link(all[*from], inner, channel_number(to), value);
             });
         });
         return all;
@@ -209,15 +220,30 @@ private:
     snd_config_t* top_;
     int definitions_ = 0;
     std::size_t links_ = 0;
+    std::string level_by_ = {};
     std::map<std::string, unsigned> devices_ = {}; ///< and the number of the first output of each
 };
 
 bool is_straight(const outputs& all)
 {
     for (unsigned c = 0; c < all.size(); ++c)
-        if (all[c] != std::set{c})
+        if (all[c].size() != 1 || all[c].begin()->first != c ||
+            std::abs(all[c].begin()->second - 1.0) > rounding)
             return false;
     return true;
+}
+
+void write_down(const outputs& all, stream_wiring& w)
+{
+    for (const std::map<unsigned, double>& one : all) {
+        w.outputs.emplace_back();
+        w.gains.emplace_back();
+        for (const auto& [output, gain] : one)
+            if (std::abs(gain) >= least_gain) {
+                w.outputs.back().push_back(output);
+                w.gains.back().push_back(gain);
+            }
+    }
 }
 
 } // namespace
@@ -229,11 +255,12 @@ stream_wiring find_wiring(snd_config_t* top, const std::string& name, unsigned c
     if (top == nullptr)
         return w;
     try {
-        outputs all = tracer(top).named("pcm", name, channels, 0);
+        tracer t(top);
+        outputs all = t.named("pcm", name, channels, 0);
         all.resize(channels);
         if (!is_straight(all))
-            for (const std::set<unsigned>& one : all)
-                w.outputs.emplace_back(one.begin(), one.end());
+            write_down(all, w);
+        w.level_by = t.level_by();
     } catch (const hidden& h) {
         w.hidden_by = h.by;
     }
