@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 #include <random>
+#include <string_view>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -164,6 +165,37 @@ TEST_CASE("a point that is refused leaves it where it was, also on its way")
     const auto x = places(r, base, came);
     for (std::size_t k = 0; k < 50; ++k)
         REQUIRE(near(x[k], 10.0 + 30.0 * std::min((48.0 + 96.0 * static_cast<double>(k)) / window, 1.0)));
+}
+
+namespace {
+
+// Gives too much where it is asked first, and then refuses its second point.
+struct odd_model final : phantom_model {
+    void weights(point, double a_v, std::vector<drive>& out) const override
+    {
+        ++asked;
+        if (asked == 2)
+            throw error(error_kind::bad_input, "point", "not here", "go on");
+        out.push_back({4, asked == 1 ? 2.0 * a_v : a_v});
+    }
+    std::string_view name() const noexcept override { return "odd"; }
+    mutable int asked = 0;
+};
+
+} // namespace
+
+TEST_CASE("too much for a point that is refused does not fail the next one")
+{
+    live_options o = smoothed();
+    const auto model = std::make_shared<odd_model>();
+    model->asked = 100;
+    o.plan.custom_phantom = model;
+    live_rig r(o);
+    REQUIRE(r.live->to({10.0, 0.0}, 0.5));
+    r.play(960);
+    model->asked = 0;
+    CHECK_THROWS_AS(r.live->to({20.0, 0.0}, 0.5), error);
+    CHECK(r.live->to({20.0, 0.0}, 0.5));
 }
 
 TEST_CASE("the mean over the window, however the points came")

@@ -8,7 +8,10 @@
 #include <memory>
 #include <mutex>
 #include <new>
+#include <stdexcept>
 #include <string>
+#include <string_view>
+#include <thread>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -19,7 +22,9 @@
 #include "clock_runner.hpp"
 #include "count_allocations.hpp"
 #include "exhaustion_calls.hpp"
+#include "own_curve.hpp"
 #include "player_support.hpp"
+#include "rig.hpp"
 #include "scores.hpp"
 #include "sink/alsa/adopt.hpp"
 
@@ -207,6 +212,60 @@ COUNTING_TEST_CASE("the player's own thread waits for memory: every stroke ends,
     CHECK(told.size() == strokes);
     for (const auto& [id, times] : told)
         CHECK(times == 1);
+}
+
+COUNTING_TEST_CASE("a stream that ends while there is no memory for one thing ends in order, with a log")
+{
+    for (std::uint64_t granted = 0; granted < 40; ++granted) {
+        CAPTURE(granted);
+        fake_dac dac;
+        player_options o = patient();
+        o.log = [](log_kind, std::string_view) {};
+        player p(pcm::adopt(dac.pcm(), nine()), palm(), o);
+        const running_clock clock(dac);
+        const stroke_id id = p.submit(tone(3600.0));
+        while (!p.position().stroke)
+            std::this_thread::yield();
+        refuse_allocations(granted, 1);
+        dac.disconnect();
+        while (p.position().running)
+            std::this_thread::yield();
+        p.stop();
+        refuse_allocations(0, 0);
+        CHECK(p.wait(id)->state != state_kind::finished);
+    }
+}
+
+COUNTING_TEST_CASE("a plan that fails at once ends once, also where there is no memory to say why")
+{
+    plan broken;
+    broken.total_s = broken.stroke_duration_s = 1.0;
+    for (std::uint64_t granted = 0; granted < 20; ++granted) {
+        CAPTURE(granted);
+        const auto fails = std::make_shared<bool>(false);
+        broken.curve = make_curve(1.0, [fails](double, burst& out) {
+            if (*fails)
+                throw std::runtime_error("a reason that is longer than what a string keeps within itself");
+            out.drives = {{4, 0.5}};
+        });
+        render_options sound;
+        sound.rate = rate;
+        const score s(palm(), {{.schedule = broken, .start_s = {}}}, sound);
+        *fails = true;
+        rig r;
+        REQUIRE(r.start().status == io_kind::ok);
+        r.feed.submit({1}, s, start_at::now());
+        refuse_allocations(granted, 1);
+        try {
+            r.feed.pump(r.status().written, r.link.clock.load());
+        } catch (const std::bad_alloc&) { // NOLINT(bugprone-empty-catch): it is tried again below
+        }
+        refuse_allocations(0, 0);
+        r.play(9600);
+        REQUIRE(r.report({1}));
+        CHECK(r.report({1})->state == state_kind::interrupted);
+        CHECK(r.ended.at({1}).size() == 1);
+    }
 }
 
 } // namespace no_memory_test

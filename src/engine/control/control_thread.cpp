@@ -46,6 +46,9 @@ struct control_thread::state {
         : event(e), woken(std::move(w)), descriptor(context, e.fd())
     {
     }
+    ~state() { end(); } // also where the thread could not be made
+    state(const state&) = delete;
+    state& operator=(const state&) = delete;
 
     void wait()
     {

@@ -75,8 +75,14 @@ bool feeder::admit(std::uint64_t written)
                                                .due_ns = t.due_ns,
                                                .at = at,
                                                .source = synth::event_source(t.music)});
-        // A score that begins later is fed in time, in the common order.
-        hand_over_beginning(*slots_[place].use, ticket_of(place), soon ? std::max<std::size_t>(share, 1) : 0);
+        try {
+            // A score that begins later is fed in time, in the common order.
+            hand_over_beginning(*slots_[place].use, ticket_of(place),
+                                soon ? std::max<std::size_t>(share, 1) : 0);
+        } catch (...) {
+            release(slots_[place]); // it still waits
+            throw;
+        }
         waiting_.erase(waiting_.begin());
     }
     return true;

@@ -43,7 +43,7 @@ player::~player()
 
 const stream_setup& player::setup() const noexcept
 {
-    return impl_->out->setup();
+    return impl_->made;
 }
 
 stroke_id player::submit(const score& s, start_at start)
@@ -150,7 +150,7 @@ player_stats player::stats() const
             .sync_mean_late_s = pulses.mean_late_s,
             .sync_worst_late_s = pulses.worst_late_s,
             .ring_low_water = low == UINT64_MAX ? 0 : low,
-            .latest_wakeup_s = static_cast<double>(get(c.late_frames)) / impl_->out->setup().rate,
+            .latest_wakeup_s = static_cast<double>(get(c.late_frames)) / impl_->made.rate,
             .minor_faults = get(c.minor_faults),
             .major_faults = get(c.major_faults),
             .realtime =

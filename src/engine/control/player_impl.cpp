@@ -133,7 +133,8 @@ wait_result player::impl::wait(stroke_id id, std::optional<double> timeout_s)
     }
     const auto found = ended.find(id);
     if (found != ended.end()) {
-        wait_result r(std::move(found->second));
+        wait_result r(std::move(found->second.report));
+        by_end.erase(found->second.nth);
         ended.erase(found);
         return r;
     }
@@ -165,7 +166,7 @@ void player::impl::woken()
     if (log.on())
         log.look(link.status.load(), rt::monotonic_ns());
     if (last)
-        log.end(end().why);
+        log.end(handler_failed.empty() ? feed.end().why : handler_failed); // no copy: there may be no memory
     gone.swap(feed.gone_live());
     lock.unlock();
     gone.clear();
@@ -208,7 +209,7 @@ bool player::impl::take_reports()
                 r.reason = reason_kind::handler;
                 r.why = handler_failed;
             }
-            ended.insert_or_assign(r.id, r);
+            keep(r);
         }
         for (const stroke_report& r : news_of_strokes)
             log.look_at_end(r);
@@ -216,9 +217,21 @@ bool player::impl::take_reports()
     } catch (const std::bad_alloc&) {
         return false;
     }
-    while (ended.size() > most_unread_reports)
-        ended.erase(ended.begin());
+    while (ended.size() > most_unread_reports) {
+        ended.erase(by_end.begin()->second);
+        by_end.erase(by_end.begin());
+    }
     return true;
+}
+
+// Called again for the same report where memory ran out.
+void player::impl::keep(const stroke_report& r)
+{
+    if (ended.contains(r.id))
+        return;
+    by_end.insert_or_assign(ends, r.id);
+    ended.emplace(r.id, kept_report{r, ends});
+    ++ends;
 }
 
 } // namespace v0

@@ -54,15 +54,25 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     std::shared_ptr<const drive_history::impl> history();
     /// How the stream has ended, or is about to. Under the mutex.
     stream_end end() const;
+    void keep(const stroke_report& r);
 
     std::unique_ptr<sink> out;
+    /// As the stream started: the sink's own may change while the audio thread uses it.
+    stream_setup made;
     const std::string stream; ///< as messages call it
     player_lines lines;
     engine::link link;
     std::mutex mutex; ///< guards all that follows but the threads; the audio thread never sees it
     std::condition_variable news;
     engine::feeder feed;
-    std::map<stroke_id, stroke_report> ended;
+    /// A report that nobody has taken, and the how manieth end it is about.
+    struct kept_report {
+        stroke_report report;
+        std::uint64_t nth = 0;
+    };
+    std::map<stroke_id, kept_report> ended;
+    std::map<std::uint64_t, stroke_id> by_end; ///< of `ended`
+    std::uint64_t ends = 0;
     std::list<stroke_report> untold; ///< that the handlers have not seen
     std::shared_ptr<const report_handler> handler;
     std::list<std::pair<stroke_id, std::optional<std::int64_t>>> begun; ///< that its handler has not seen

@@ -121,6 +121,7 @@ void player::impl::start(const player_options& o)
 {
     try {
         check_start(o);
+        made = out->setup();
         log_start(o);
         start_lines(o);
         control = std::make_unique<engine::control_thread>(link.to_control, [weak = weak_from_this()] {
@@ -193,7 +194,7 @@ void player::impl::check_start(const player_options& o)
 
 void player::impl::log_start(const player_options& o) const
 {
-    const stream_setup& s = out->setup();
+    const stream_setup& s = made;
     detail::log(log.function(), log_kind::info, "{} runs: {} at {} Hz, {} of {} frames{}", stream,
                 counted(s.channels, "channel"), s.rate, s.buffer_frames / s.period_frames, s.period_frames,
                 s.has_clock ? "" : ", timed by us");

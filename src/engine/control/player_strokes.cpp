@@ -80,7 +80,7 @@ bool player::impl::on_end(stroke_id id, report_handler done)
         watchers.emplace(id, std::move(done));
         return true;
     }
-    const stroke_report r = found->second;
+    const stroke_report r = found->second.report;
     lock.unlock();
     done(r);
     return true;

@@ -193,6 +193,7 @@ bool live_stroke::impl::course_of(point p, double intensity)
             fmt::format("phantom model \"{}\" failed: {}", model->name(), what.substr(0, what.find('\n'))));
     };
     const asked_now now(asking);
+    excess.clear(); // of a point that was refused
     try {
         return course_to({p, intensity}, voice.draft());
     } catch (const error& e) {
