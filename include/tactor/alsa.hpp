@@ -20,8 +20,11 @@ inline constexpr unsigned max_pcm_channels = 1024;
 
 struct alsa_options {
     std::string pcm = "null"; ///< any ALSA name
-    unsigned channels = 0;    ///< exact, up to max_pcm_channels
-    unsigned rate = 48000;    ///< exact, Hz; the library never resamples
+    unsigned channels = 0;    ///< of the stream, up to max_pcm_channels
+    /// Takes the fewest channels that the PCM can do and that hold `channels`; the others are silent. Off:
+    /// the PCM is opened with `channels`, or not at all.
+    bool wider = false;
+    unsigned rate = 48000; ///< exact, Hz; the library never resamples
     std::optional<format_kind> format =
         {};                      ///< none: the first of s32, float, s24_3, s24_4, s16 that the PCM takes
     unsigned period_frames = 96; ///< requested, 50 us at least; the device may round it

@@ -39,7 +39,8 @@ struct stream_wiring {
 struct stream_setup {
     std::string name; ///< as the user named it
     unsigned channels = 0;
-    unsigned rate = 0; ///< Hz
+    unsigned device_channels = 0; ///< of the PCM; more than `channels`: the rest is silent; 0: as many
+    unsigned rate = 0;            ///< Hz
     format_kind format = format_kind::s32;
     unsigned period_frames = 0;
     unsigned buffer_frames = 0;

@@ -139,6 +139,7 @@ command add_render(CLI::App& app)
     auto file = std::make_shared<std::string>();
     options->add_stroke_options();
     options->add_sound_options();
+    options->add_channels_option();
     c->add_option("-o,--output", *file, "the file to write; - is standard output")
         ->type_name("FILE.wav")
         ->required();

@@ -12,6 +12,7 @@
 
 #include "cli/pipes.hpp"
 #include "cli/variable.hpp"
+#include "core/words.hpp"
 #include "files/input_files.hpp"
 #include "files/stroke/text.hpp"
 #include "files/text_file.hpp"
@@ -166,8 +167,7 @@ void use_sound_of(const plan_file& f, settings& s, const option_list& options)
 // What the array file of the plan said when it was made counts with its array.
 array use_array_of(const plan_file& f, environment& e)
 {
-    if (!e.config.output.channels)
-        e.config.output.channels = f.render.channels;
+    e.plan_channels = f.render.channels;
     return f.tactors;
 }
 
@@ -259,7 +259,14 @@ render_options settle_render(const settings& s, const environment& e)
         r.marker_s = e.config.sync->pulse_s;
     }
     const unsigned marker = r.marker_channel ? *r.marker_channel + 1 : 0;
-    r.channels = e.config.output.channels.value_or(std::max(e.tactors.channels(), marker));
+    const unsigned needed = std::max(e.tactors.channels(), marker);
+    if (s.channels && *s.channels < needed)
+        throw error(error_kind::bad_input, "channels",
+                    fmt::format("{} needs {}", e.tactors.name, counted(needed, "channel")),
+                    fmt::format("give {} or more", needed))
+            .with_field("channels");
+    r.channels =
+        s.channels ? *s.channels : e.config.output.channels.value_or(e.plan_channels.value_or(needed));
     return r;
 }
 

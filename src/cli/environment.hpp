@@ -22,6 +22,7 @@ struct environment {
     array tactors;
     std::string array_file;               ///< that the array came from; empty: it is a preset of its name
     std::optional<double> latency_s = {}; ///< that [defaults] say
+    std::optional<unsigned> plan_channels = {};  ///< of the plan that the array came from
     std::map<std::string, plan_file> plans = {}; ///< STROKE arguments that are planned already
     std::vector<stroke> standard_input = {};     ///< strokes of the STROKE "-", unless it is a plan
 };

@@ -43,8 +43,9 @@ constexpr std::array<translation, 26> in_advice{{{"measure its detection thresho
                                                  {"sigma_v_mm_s", "--sigma-v-mm-s"}}};
 
 // Words of every day.
-constexpr std::array<translation, 6> as_subject{{{"rate", "--rate"},
+constexpr std::array<translation, 7> as_subject{{{"rate", "--rate"},
                                                  {"shape", "--shape"},
+                                                 {"channels", "--channels"},
                                                  {"phantom", "--phantom"},
                                                  {"simulate", "--simulate"},
                                                  {"waveform", "--waveform"},

@@ -258,12 +258,24 @@ void option_list::add_rate_options()
           [&s](const std::string& t) { s.format = from_string<format_kind>(t); });
 }
 
+void option_list::add_channels_option()
+{
+    settings& s = settings_;
+    value("--channels", "N",
+          "channels of the stream (default: the configuration's, else what the array needs)",
+          [&s](const std::string& t) {
+              s.channels = static_cast<unsigned>(
+                  parse_whole("--channels", t, {1.0, double{max_pcm_channels}}, "channels"));
+          });
+}
+
 void option_list::add_device_options(const char* otherwise)
 {
     settings& s = settings_;
     value("-D,--device", "PCM",
           fmt::format("ALSA device, e.g. hw:CARD=Tactor (default: the configuration's, {})", otherwise),
           [&s](const std::string& t) { s.pcm = t; });
+    add_channels_option();
 }
 
 bool option_list::given(const std::string& name) const

@@ -33,6 +33,7 @@ struct settings {
     bool fit = false;                       ///< --fit
     double fit_margin_mm = 0.0;
     std::optional<unsigned> rate;
+    std::optional<unsigned> channels; ///< --channels
     std::optional<format_kind> format;
     std::optional<double> slope;
     std::optional<double> intercept_s;
@@ -68,7 +69,9 @@ public:
     void add_sound_options();
     /// --rate and --sample-format alone.
     void add_rate_options();
-    /// -D.
+    /// --channels.
+    void add_channels_option();
+    /// -D and --channels.
     void add_device_options(const char* otherwise = "else null");
 
     /// Fills options that the command line does not give from what [defaults] says.

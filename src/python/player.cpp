@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -119,7 +120,8 @@ py::dict stats_of(const player_handle& h)
 py::dict setup_of(const player_handle& h)
 {
     const stream_setup& s = h.setup();
-    return py::dict("name"_a = s.name, "channels"_a = s.channels, "rate"_a = s.rate,
+    return py::dict("name"_a = s.name, "channels"_a = s.channels,
+                    "device_channels"_a = std::max(s.device_channels, s.channels), "rate"_a = s.rate,
                     "format"_a = std::string(to_string(s.format)), "period_frames"_a = s.period_frames,
                     "buffer_frames"_a = s.buffer_frames, "batch"_a = s.batch, "has_clock"_a = s.has_clock);
 }

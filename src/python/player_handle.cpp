@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <unistd.h>
 
+#include "cli/play/open_device.hpp"
 #include "cli/play/sound_server.hpp"
 
 namespace tactor::python {
@@ -19,6 +20,7 @@ cli::settings settings_of(const player_wishes& w)
     s.config_file = w.config;
     s.array_name = w.array_file;
     s.rate = w.rate;
+    s.channels = w.channels;
     if (w.format)
         s.format = from_string<format_kind>(*w.format);
     return s;
@@ -62,7 +64,7 @@ player_handle::player_handle(const array& a, const player_wishes& w)
     cli::settings s = settings_of(w);
     const cli::environment e = environment_of(s, &a);
     const render_options sound = cli::settle_render(s, e);
-    alsa_options device = cli::device_options(s, w.play, e, w.channels.value_or(sound.channels), sound.rate);
+    alsa_options device = cli::device_options(s, w.play, e, sound.channels, sound.rate);
     const auto events = events_;
     if (w.wants_log)
         device.log = [events](log_kind k, std::string_view text) {
@@ -78,7 +80,7 @@ player_handle::player_handle(const array& a, const player_wishes& w)
     o.require_realtime = w.play.require_realtime;
     o.driven = w.driven;
     o.log = device.log;
-    open_->stream = std::make_unique<player>(open_alsa(device), a, o, open_->lines.lend());
+    open_->stream = std::make_unique<player>(cli::open_device(device), a, o, open_->lines.lend());
     open_->stream->on_report([events](const stroke_report& r) { events->put(r); });
     setup_ = open_->stream->setup();
 }

@@ -110,14 +110,7 @@ std::string devices(const array_handle* on, const std::optional<std::string>& ar
     s.config_file = config;
     s.array_name = array_file;
     const cli::environment e = environment_of(s, on != nullptr ? &on->value() : nullptr);
-    const render_options render = cli::settle_render(s, e);
-    cli::device_list d;
-    d.array_name = e.tactors.name;
-    d.pcm_is_configured = cli::names_device(s, e);
-    d.wanted = cli::device_options(s, {}, e, render.channels, render.rate);
-    d.pcms = list_pcms(d.wanted);
-    d.chips = list_gpio();
-    return cli::devices_json(d);
+    return cli::devices_json(cli::look_for_devices(s, e));
 }
 
 } // namespace

@@ -69,7 +69,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         HOLDS(route.empty());
         return 0;
     }
-    const stream_wiring w = pcm::find_wiring(top.get(), name, 9);
+    const stream_wiring w = pcm::find_wiring(top.get(), name, 9, 9);
     HOLDS(w.outputs.empty() || w.hidden_by.empty());
     const configuration owned(definition);
     if (pcm::unsafe_type(route).empty())

@@ -395,6 +395,40 @@ def test_limits_are_bounded_as_in_the_tool(palm, limit):
         tactor.Player("null", palm, config=os.devnull, **limit)
 
 
+FIXED = """
+import sys
+import tactor
+palm = tactor.Array.preset("palm-3x3")
+score = tactor.Score(palm, tactor.plan(palm, tactor.Stroke.preset("park2016-1"), duration=0.2))
+with tactor.Player("sixteen", palm) as p:
+    print(p.channels, p.setup["device_channels"], p.play(score).state)
+with tactor.Player("sixteen", palm, channels=16) as p:
+    print(p.channels, p.setup["device_channels"], p.play(score).state)
+for options in ({"channels": 9}, {"channels": 4}):
+    try:
+        tactor.Player("sixteen", palm, **options)
+    except tactor.Error as e:
+        print(type(e).__name__, e.what, e.why)
+try:
+    tactor.Player("eight", palm)
+except tactor.DeviceError as e:
+    print(e.hint)
+"""
+
+
+def test_a_card_of_fixed_channels_takes_the_array_or_says_which_one_fits(tmp_path):
+    def fixed(name, n):
+        bindings = " ".join(f"bindings.{c} {{ slave a channel {c} }}" for c in range(n))
+        return f"pcm.{name} {{ type multi slaves.a {{ pcm {{ type null }} channels {n} }} {bindings} }}\n"
+    (tmp_path / "asound.conf").write_text(fixed("sixteen", 16) + fixed("eight", 8))
+    env = {**os.environ, "TACTOR_CONFIG": os.devnull, "ALSA_CONFIG_PATH": str(tmp_path / "asound.conf")}
+    out = subprocess.run([sys.executable, "-c", FIXED], env=env, capture_output=True, text=True, check=True).stdout.splitlines()
+    assert out[:2] == ["9 16 finished", "16 16 finished"]
+    assert out[2].startswith('DeviceError PCM "sixteen" cannot play 9 channels')
+    assert out[3] == "InputError channels palm-3x3 needs 9 channels"
+    assert "the array palm-2x4 fits" in out[4]
+
+
 def test_an_arrays_file_brings_its_limits(tmp_path):
     file = tmp_path / "palm.toml"
     file.write_text('[array]\npreset = "palm-3x3"\n[output]\nchannels = 12\n[limits]\npower_dbfs = -40.0\n')

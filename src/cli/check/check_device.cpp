@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/play/open_device.hpp"
 #include "cli/play/play_report.hpp"
 #include "cli/play/sound_server.hpp"
 
@@ -24,7 +25,7 @@ finding told_lost(const alsa_options& device, const std::string& lost)
 finding told_open(const alsa_options& device, const play_options& o, const environment& e, bool named)
 {
     const std::string server = settle_server(device.pcm);
-    const stream_setup made = open_alsa(device)->setup();
+    const stream_setup made = open_device(device)->setup();
     if (const std::string lost = lost_tactor(e.tactors, made.wiring); !lost.empty())
         return told_lost(device, lost);
     const std::string found = describe(made) + (server.empty() ? "" : "; " + server_note(server));

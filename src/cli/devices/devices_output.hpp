@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What `devices` prints, from plain values.
+/// What there is to play on, and what `devices` prints of it.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include <tactor/tactor.hpp>
+
+#include "cli/environment.hpp"
+#include "cli/settings.hpp"
 
 namespace tactor::cli {
 
@@ -18,6 +21,9 @@ struct device_list {
     std::vector<pcm_info> pcms;
     std::vector<gpio_chip_info> chips;
 };
+
+/// Looks at all devices, for what the settings ask for. \throws error.
+device_list look_for_devices(const settings& s, const environment& e);
 
 /// For people, at most 80 columns wide.
 std::string devices_text(const device_list& d);

@@ -158,6 +158,7 @@ alsa_options device_options(const settings& s, const play_options& p, const envi
     const output_settings& out = e.config.output;
     o.pcm = pcm_name(s, out);
     o.channels = channels;
+    o.wider = !s.channels && !out.channels;
     o.rate = rate;
     o.format = s.format;
     o.periods = p.periods.value_or(out.periods.value_or(o.periods));

@@ -47,6 +47,7 @@ json to_json(const stream_setup& d)
 {
     return {{"pcm", d.name},
             {"channels", d.channels},
+            {"device_channels", std::max(d.device_channels, d.channels)},
             {"rate_hz", d.rate},
             {"format", std::string(to_string(d.format))},
             {"period_frames", d.period_frames},
@@ -149,8 +150,10 @@ std::string describe(const stroke_outcome& s, unsigned rate)
 std::string describe(const stream_setup& d)
 {
     return fmt::format("{}: {}, {} Hz, {}, period {} of {} frames, latency {:.1f} ms", d.name,
-                       counted(d.channels, "channel"), d.rate, to_string(d.format), d.period_frames,
-                       d.buffer_frames, latency_ms(d));
+                       d.device_channels > d.channels
+                           ? fmt::format("{} of {} channels", d.channels, d.device_channels)
+                           : counted(d.channels, "channel"),
+                       d.rate, to_string(d.format), d.period_frames, d.buffer_frames, latency_ms(d));
 }
 
 void warn_of_cuts(const drive_limits& l, const player_stats& s)

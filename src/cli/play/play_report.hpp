@@ -37,7 +37,7 @@ std::string fate(const stroke_outcome& s, unsigned rate);
 /// The same after "name: ".
 std::string describe(const stroke_outcome& s, unsigned rate);
 
-/// "hw:Tactor: 9 channels, 48000 Hz, s32, period 96 of 288 frames, latency 6.0 ms"
+/// "hw:Tactor: 9 of 16 channels, 48000 Hz, s32, period 96 of 288 frames, latency 6.0 ms"
 std::string describe(const stream_setup& d);
 
 /// On standard error, where tactors were driven for too long.

@@ -14,6 +14,7 @@
 #include "cli/interrupt.hpp"
 #include "cli/play/live_lines.hpp"
 #include "cli/play/live_picture.hpp"
+#include "cli/play/open_device.hpp"
 #include "cli/play/play_lines.hpp"
 #include "cli/play/play_log.hpp"
 #include "cli/play/play_options.hpp"
@@ -25,7 +26,7 @@ namespace tactor::cli {
 
 /// How a run comes to its stream: tests have devices of their own.
 struct stream_source {
-    std::function<std::unique_ptr<sink>(const alsa_options&)> open = open_alsa;
+    std::function<std::unique_ptr<sink>(const alsa_options&)> open = open_device;
     player_options player = {};
 };
 

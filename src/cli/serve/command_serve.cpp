@@ -19,6 +19,7 @@
 #include "cli/json_values.hpp"
 #include "cli/parse_number.hpp"
 #include "cli/plan/plan_output.hpp"
+#include "cli/play/open_device.hpp"
 #include "cli/play/own_memory.hpp"
 #include "cli/play/play_lines.hpp"
 #include "cli/play/play_log.hpp"
@@ -151,7 +152,7 @@ server::stream_options stream_of(const alsa_options& device, const play_options&
                                  const std::shared_ptr<play_lines>& lines)
 {
     server::stream_options s;
-    s.open = [device] { return open_alsa(device); };
+    s.open = [device] { return open_device(device); };
     s.lines = [lines] { return lines->lend(); };
     s.log = device.log;
     s.player.limits = limits_of(o, e);

@@ -35,11 +35,10 @@ constexpr std::chrono::seconds to_finish{10};       // for a server to fade out,
 constexpr std::chrono::milliseconds limit_pause{5}; // some ten points of 2,000 a second
 // What a server's owner decides, or the server does not do.
 constexpr std::array owners{
-    "array",         "config",         "device",           "rate",          "sample-format",
-    "fit",           "fit-margin",     "texture",          "texture-mm",    "latency-ms",
-    "period-frames", "periods",        "require-realtime", "no-gpio",       "power-dbfs",
-    "max-drive-s",   "drive-window-s", "reopen-s",         "sync-delay-ms", "log",
-    "verbose"};
+    "array",    "config",           "device",  "rate",       "sample-format", "channels",
+    "fit",      "fit-margin",       "texture", "texture-mm", "latency-ms",    "period-frames",
+    "periods",  "require-realtime", "no-gpio", "power-dbfs", "max-drive-s",   "drive-window-s",
+    "reopen-s", "sync-delay-ms",    "log",     "verbose"};
 
 void refuse_owners(const option_list& options)
 {

@@ -70,6 +70,7 @@ void stage::mask(const std::string& pcm, const study::masking_options& o)
         [pcm] {
             return open_alsa({.pcm = pcm,
                               .channels = masker_channels,
+                              .wider = true,
                               .period_frames = masker_period_frames,
                               .periods = masker_periods});
         },

@@ -44,7 +44,7 @@ class Player(_Unique):
     rate, period_frames, periods : int, optional
         Default: the configuration's, else 48000 Hz, 96 frames, 3 periods.
     channels : int, optional
-        Default: as many as the array needs, or its file says.
+        Exact. Default: as many as its file says, else as the array needs: a device that can do only more is given silence in the others.
     sample_format : str, optional
         Default: what the device takes.
     latency : float, optional
@@ -116,7 +116,7 @@ class Player(_Unique):
 
     @property
     def setup(self) -> dict[str, _t.Any]:
-        """What was agreed on with the device (name, channels, rate, format, period_frames, buffer_frames, batch, has_clock)."""
+        """What was agreed on with the device (name, channels, device_channels, rate, format, period_frames, buffer_frames, batch, has_clock)."""
         return dict(self._setup)
 
     @property

@@ -49,33 +49,64 @@ bool takes_format(snd_pcm_t* p, const hw_params& space, std::span<const format_k
     return false;
 }
 
+// Restricts to the channels asked for, else, where more will do, to the fewest that hold them; 0: neither.
+unsigned set_channels(snd_pcm_t* p, const hw_params& h, const alsa_options& o)
+{
+    if (snd_pcm_hw_params_set_channels(p, h.get(), o.channels) == 0)
+        return o.channels;
+    unsigned n = o.channels;
+    const bool there = o.wider && snd_pcm_hw_params_set_channels_min(p, h.get(), &n) == 0 &&
+                       snd_pcm_hw_params_set_channels_first(p, h.get(), &n) == 0;
+    return there && n <= most_channels ? n : 0;
+}
+
 // Names what the device does not take; of what it takes one by one only the combination fails.
-std::string refused(snd_pcm_t* p, const hw_params& space, const alsa_options& o,
-                    std::span<const format_kind> formats)
+error refused(snd_pcm_t* p, const hw_params& space, const alsa_options& o)
 {
     std::string s;
     const auto add = [&s](std::string_view word) { s += fmt::format("{}{}", s.empty() ? "" : ", ", word); };
-    if (snd_pcm_hw_params_test_channels(p, space.get(), o.channels) != 0)
+    const bool has_channels = set_channels(p, copy(space), o) != 0;
+    if (!has_channels)
         add("channels");
     if (snd_pcm_hw_params_test_rate(p, space.get(), o.rate, 0) != 0)
         add("rate");
-    if (!takes_format(p, space, formats))
+    if (!takes_format(p, space, wanted_formats(o)))
         add("format");
-    return s.empty() ? "each alone would do, but not together" : fmt::format("refused: {}", s);
+    const std::string why =
+        s.empty() ? "each alone would do, but not together" : fmt::format("refused: {}", s);
+    return error(error_kind::not_available, fmt::format("PCM \"{}\"", o.pcm),
+                 fmt::format("cannot play {}; {}", asked(o), why),
+                 fmt::format("it can do {}", describe(space)))
+        .with_field(has_channels ? "" : "channels");
 }
 
+struct fixed {
+    hw_params params;
+    format_kind format;
+    unsigned channels;
+};
+
 // Channels, rate and format are tied together on some devices, so each format gets a fresh start.
-std::optional<hw_params> fix(snd_pcm_t* p, const hw_params& space, const alsa_options& o, format_kind f)
+std::optional<fixed> fix(snd_pcm_t* p, const hw_params& space, const alsa_options& o, format_kind f)
 {
     hw_params h = copy(space);
     if (snd_pcm_hw_params_set_format(p, h.get(), to_alsa(f)) < 0)
         return std::nullopt;
-    // Exactly: a stroke on fewer tactors, or at another rate, is another stimulus.
-    if (snd_pcm_hw_params_set_channels(p, h.get(), o.channels) < 0)
-        return std::nullopt;
+    // Exactly: a stroke at another rate is another stimulus.
     if (snd_pcm_hw_params_set_rate(p, h.get(), o.rate, 0) < 0)
         return std::nullopt;
-    return h;
+    const unsigned n = set_channels(p, h, o);
+    return n == 0 ? std::nullopt : std::optional(fixed{std::move(h), f, n});
+}
+
+// Of the formats that fit with the fewest channels, the first.
+std::optional<fixed> find_fit(snd_pcm_t* p, const hw_params& space, const alsa_options& o)
+{
+    std::optional<fixed> best;
+    for (const format_kind f : wanted_formats(o))
+        if (std::optional<fixed> one = fix(p, space, o, f); one && (!best || one->channels < best->channels))
+            best = std::move(one);
+    return best;
 }
 
 void set_sizes(snd_pcm_t* p, const hw_params& h, const alsa_options& o)
@@ -97,23 +128,24 @@ void set_sizes(snd_pcm_t* p, const hw_params& h, const alsa_options& o)
                                      -code);
 }
 
-stream_setup read_back(const hw_params& h, const alsa_options& o, format_kind f)
+stream_setup read_back(const hw_params& h, const alsa_options& o, const fixed& asked_for)
 {
-    stream_setup s{.name = o.pcm, .format = f};
+    stream_setup s{.name = o.pcm, .channels = o.channels, .format = asked_for.format};
     int direction = 0;
     snd_pcm_uframes_t period = 0;
     snd_pcm_uframes_t buffer = 0;
-    snd_pcm_hw_params_get_channels(h.get(), &s.channels);
+    snd_pcm_hw_params_get_channels(h.get(), &s.device_channels);
     snd_pcm_hw_params_get_rate(h.get(), &s.rate, &direction);
     snd_pcm_hw_params_get_period_size(h.get(), &period, &direction);
     snd_pcm_hw_params_get_buffer_size(h.get(), &buffer);
     s.period_frames = static_cast<unsigned>(period);
     s.buffer_frames = static_cast<unsigned>(buffer);
     s.batch = snd_pcm_hw_params_is_batch(h.get()) != 0;
-    if (s.channels != o.channels || s.rate != o.rate || period == 0 || buffer < period)
+    if (s.device_channels != asked_for.channels || s.rate != o.rate || period == 0 || buffer < period)
         throw error(error_kind::not_available, fmt::format("PCM \"{}\"", o.pcm),
                     fmt::format("asked for {}, it made {} at {} Hz with {} of {} frames of it", asked(o),
-                                counted(s.channels, "channel"), s.rate, s.period_frames, s.buffer_frames),
+                                counted(s.device_channels, "channel"), s.rate, s.period_frames,
+                                s.buffer_frames),
                     "use the PCM without plugins, e.g. hw:CARD=NAME");
     return s;
 }
@@ -152,27 +184,19 @@ hw_params configuration_space(snd_pcm_t* p, const std::string& name)
 
 std::string misfit(snd_pcm_t* p, const hw_params& space, const alsa_options& o)
 {
-    const auto formats = wanted_formats(o);
-    for (const format_kind f : formats)
-        if (fix(p, space, o, f))
-            return {};
-    return fmt::format("cannot play {}; {}", asked(o), refused(p, space, o, formats));
+    return find_fit(p, space, o) ? std::string() : std::string(refused(p, space, o).why());
 }
 
 stream_setup negotiate(snd_pcm_t* p, const alsa_options& o)
 {
     const hw_params space = configuration_space(p, o.pcm);
-    for (const format_kind f : wanted_formats(o)) {
-        const std::optional<hw_params> h = fix(p, space, o, f);
-        if (!h)
-            continue;
-        set_sizes(p, *h, o);
-        if (const int code = snd_pcm_hw_params(p, h->get()); code < 0)
-            tactor::detail::throw_caused(call_error(o.pcm, "snd_pcm_hw_params", code), -code);
-        return read_back(*h, o, f);
-    }
-    throw error(error_kind::not_available, fmt::format("PCM \"{}\"", o.pcm), misfit(p, space, o),
-                fmt::format("it can do {}", describe(space)));
+    const std::optional<fixed> best = find_fit(p, space, o);
+    if (!best)
+        throw error(refused(p, space, o));
+    set_sizes(p, best->params, o);
+    if (const int code = snd_pcm_hw_params(p, best->params.get()); code < 0)
+        tactor::detail::throw_caused(call_error(o.pcm, "snd_pcm_hw_params", code), -code);
+    return read_back(best->params, o, *best);
 }
 
 } // namespace tactor::pcm

@@ -24,9 +24,10 @@ hw_params configuration_space(snd_pcm_t* p, const std::string& name);
 /// Why the channels, rate and format asked for are not possible together; empty: they are.
 std::string misfit(snd_pcm_t* p, const hw_params& space, const alsa_options& o);
 
-/// Sets exactly the channels and the rate asked for, the first format that fits, and the nearest period and
-/// buffer; returns the set-up that the device has then.
-/// \throws error (not_available) with the set asked for and what the device can do.
+/// Sets the channels and the rate asked for, the first format that fits, and the nearest period and buffer;
+/// returns the set-up that the device has then.
+/// \throws error (not_available) with the set asked for and what the device can do; of the field "channels"
+///         where it has not that many.
 stream_setup negotiate(snd_pcm_t* p, const alsa_options& o);
 
 /// Explicit start, stop on the first missing frame, silence where nothing was written.

@@ -28,15 +28,18 @@ bool is_on_card(snd_pcm_t* p)
     return snd_pcm_info(p, info) == 0 && snd_pcm_info_get_card(info) >= 0;
 }
 
-std::unique_ptr<sink> configure(handle h, const alsa_options& o, stream_wiring wiring, bool as_card)
+std::unique_ptr<sink> configure(handle h, const alsa_options& o, bool is_defined, bool as_card)
 try {
     const library_messages silent;
     stream_setup s = negotiate(h.get(), o);
-    s.wiring = std::move(wiring);
+    if (is_defined)
+        s.wiring = find_wiring(o, s.device_channels);
     set_software(h.get(), s);
     detail::log(o.log, log_kind::info, "PCM \"{}\": {}, {} Hz, {}, {} of {} frames{}", o.pcm,
-                counted(s.channels, "channel"), s.rate, to_string(s.format),
-                s.buffer_frames / s.period_frames, s.period_frames,
+                s.device_channels == s.channels
+                    ? counted(s.channels, "channel")
+                    : fmt::format("{} of {} channels", s.channels, s.device_channels),
+                s.rate, to_string(s.format), s.buffer_frames / s.period_frames, s.period_frames,
                 s.period_frames == o.period_frames && s.buffer_frames == o.periods * s.period_frames
                     ? ""
                     : fmt::format("; {} of {} were wished", o.periods, o.period_frames));
@@ -60,7 +63,7 @@ std::unique_ptr<sink> adopt(snd_pcm_t* p, const alsa_options& o, bool as_card)
 {
     handle h(p);
     check(o);
-    return configure(std::move(h), o, {}, as_card);
+    return configure(std::move(h), o, false, as_card);
 }
 
 } // namespace tactor::pcm
@@ -72,7 +75,7 @@ std::unique_ptr<sink> open_alsa(const alsa_options& o)
 {
     pcm::check(o);
     pcm::handle h = pcm::open(o);
-    return pcm::configure(std::move(h), o, pcm::find_wiring(o), false);
+    return pcm::configure(std::move(h), o, true, false);
 }
 
 } // namespace v0

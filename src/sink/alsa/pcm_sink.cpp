@@ -14,6 +14,9 @@ namespace tactor::pcm {
 pcm_sink::pcm_sink(handle h, stream_setup s, bool on_card)
     : handle_(std::move(h)),
       setup_(std::move(s)),
+      wide_(setup_.device_channels > setup_.channels
+                ? std::size_t{setup_.buffer_frames} * setup_.device_channels * bytes_of(setup_.format)
+                : 0),
       status_(make_status()),
       pacer_(setup_.rate, setup_.buffer_frames, setup_.period_frames),
       max_descriptors_(static_cast<std::size_t>(std::max(1, snd_pcm_poll_descriptors_count(handle_.get())))),
@@ -158,16 +161,30 @@ long pcm_sink::write_paced(const std::byte* data, std::size_t frames) noexcept
     return snd_pcm_writei(handle_.get(), data, frames);
 }
 
+// The PCM's other channels have had nothing but silence since the sink was made.
+const std::byte* pcm_sink::widen(std::span<const std::byte> frames) noexcept
+{
+    if (wide_.empty())
+        return frames.data();
+    const std::size_t own = setup_.frame_bytes();
+    const std::size_t wide = std::size_t{setup_.device_channels} * bytes_of(setup_.format);
+    for (std::size_t f = 0; f < frames.size() / own; ++f)
+        std::copy_n(&frames[f * own], own, &wide_[f * wide]);
+    return wide_.data();
+}
+
 io_result pcm_sink::write(std::span<const std::byte> frames) noexcept
 {
     const quiet silent;
     std::size_t count = frames.size() / setup_.frame_bytes();
+    if (!wide_.empty())
+        count = std::min<std::size_t>(count, setup_.buffer_frames);
     if (paced_)
         count = std::min<std::size_t>(count, pacer_.available());
     if (count == 0)
         return {io_kind::again, 0, 0};
-    const long n =
-        paced_ ? write_paced(frames.data(), count) : snd_pcm_writei(handle_.get(), frames.data(), count);
+    const std::byte* const data = widen(frames.first(count * setup_.frame_bytes()));
+    const long n = paced_ ? write_paced(data, count) : snd_pcm_writei(handle_.get(), data, count);
     if (n < 0)
         return {of_error(n, state()), 0, static_cast<int>(n)};
     const auto taken = static_cast<std::size_t>(n);

@@ -3,8 +3,10 @@
 /// A configured PCM as a sink.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include <tactor/alsa.hpp>
 
@@ -39,6 +41,7 @@ public:
 
 private:
     int state() noexcept { return static_cast<int>(snd_pcm_state(handle_.get())); }
+    const std::byte* widen(std::span<const std::byte> frames) noexcept;
     long write_paced(const std::byte* data, std::size_t frames) noexcept;
     bool runs_without_clock() noexcept;
     std::int64_t ns_of(std::uint64_t frames) const noexcept;
@@ -46,6 +49,7 @@ private:
 
     handle handle_;
     stream_setup setup_;
+    std::vector<std::byte> wide_; ///< a buffer of the PCM's frames, where these have more channels
     status status_;
     detail::pacer pacer_;
     std::size_t max_descriptors_;

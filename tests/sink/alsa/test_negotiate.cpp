@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: MIT
 // What a PCM is asked for, what it makes of it, and what is said when it cannot.
 #include <cerrno>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <unistd.h>
 
@@ -105,6 +110,58 @@ TEST_CASE("a device of exactly eight channels takes eight, and says so when aske
     CHECK(e.says("PCM \"t\": cannot play 9 channels at 48000 Hz in s32 or float"));
     CHECK(e.says("refused: channels"));
     CHECK(e.says("channels 8, rates any Hz, formats s32 float"));
+}
+
+TEST_CASE("where more will do, the fewest channels that hold the stream are taken")
+{
+    alsa_options o = configured(eight_channels(), 5);
+    CHECK(failure_of_open(o).says("refused: channels"));
+    o.wider = true;
+    const auto s = open_alsa(o);
+    CHECK(s->setup().channels == 5);
+    CHECK(s->setup().device_channels == 8);
+    CHECK(s->setup().frame_bytes() == 20);
+    o.channels = 9;
+    CHECK(failure_of_open(o).says("refused: channels"));
+    o = {};
+    o.channels = 9;
+    o.wider = true;
+    CHECK(open_alsa(o)->setup().device_channels == 9);
+}
+
+TEST_CASE("a card of 2, 8 or 16 channels and no other takes 16 for nine")
+{
+    test::fake_dac dac({.channel_counts = {2, 8, 16}});
+    alsa_options o;
+    o.channels = 9;
+    o.wider = true;
+    CHECK(pcm::adopt(dac.pcm(), o)->setup().device_channels == 16);
+}
+
+TEST_CASE("the channels that a stream leaves are silent, whatever was in its memory")
+{
+    test::fake_dac dac({.least_channels = 16, .most_channels = 16});
+    alsa_options o;
+    o.channels = 3;
+    o.format = format_kind::s16;
+    o.wider = true;
+    const auto s = pcm::adopt(dac.pcm(), o);
+    REQUIRE(s->prepare() == io_kind::ok);
+    std::vector<std::int16_t> frames;
+    for (std::int16_t v = 1; v <= 3 * 288; ++v)
+        frames.push_back(v);
+    const std::span<const std::byte> bytes = std::as_bytes(std::span(frames));
+    // In two parts, of which the second begins in mid-stream.
+    REQUIRE(s->write(bytes.first(100 * 6)).frames == 100);
+    REQUIRE(s->write(bytes.subspan(100 * 6)).frames == 188);
+    const std::vector<std::byte> got = dac.captured();
+    REQUIRE(got.size() == 288 * 32);
+    for (std::size_t f = 0; f < 288; ++f) {
+        std::int16_t sample[16];
+        std::memcpy(sample, &got[f * 32], 32);
+        for (std::size_t c = 0; c < 16; ++c)
+            REQUIRE(sample[c] == (c < 3 ? static_cast<int>(3 * f + c + 1) : 0));
+    }
 }
 
 TEST_CASE("a format that the device does not have is refused by name")

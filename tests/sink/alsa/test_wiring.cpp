@@ -30,7 +30,7 @@ namespace {
 
 stream_wiring wired(const std::string& text, const std::string& name, unsigned n)
 {
-    return pcm::find_wiring({.pcm = name, .channels = n, .config_text = text});
+    return pcm::find_wiring({.pcm = name, .channels = n, .config_text = text}, n);
 }
 
 constexpr const char* definitions = R"(
@@ -272,7 +272,7 @@ TEST_CASE("what is read in the configuration is what libasound does, for chains 
         const alsa_options o{
             .pcm = "t", .channels = n, .format = format_kind::s16, .config_text = made.text()};
         INFO(o.config_text);
-        const stream_wiring w = pcm::find_wiring(o);
+        const stream_wiring w = pcm::find_wiring(o, o.channels);
         CHECK(w.hidden_by == "");
         channels expected = w.outputs;
         for (unsigned c = 0; expected.size() < n; ++c)

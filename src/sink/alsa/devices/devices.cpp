@@ -149,7 +149,7 @@ tactor::pcm_route tactor::route_of(const std::string& pcm)
 
 tactor::stream_wiring tactor::wiring_of(const std::string& pcm, unsigned channels)
 {
-    return pcm::find_wiring({.pcm = pcm, .channels = channels});
+    return pcm::find_wiring({.pcm = pcm, .channels = channels}, channels);
 }
 
 void tactor::require_device_name(const std::string& pcm)

@@ -248,7 +248,8 @@ void write_down(const outputs& all, stream_wiring& w)
 
 } // namespace
 
-stream_wiring find_wiring(snd_config_t* top, const std::string& name, unsigned channels)
+stream_wiring find_wiring(snd_config_t* top, const std::string& name, unsigned channels,
+                          unsigned device_channels)
 {
     const library_messages silent;
     stream_wiring w;
@@ -256,7 +257,7 @@ stream_wiring find_wiring(snd_config_t* top, const std::string& name, unsigned c
         return w;
     try {
         tracer t(top);
-        outputs all = t.named("pcm", name, channels, 0);
+        outputs all = t.named("pcm", name, device_channels, 0);
         all.resize(channels);
         if (!is_straight(all))
             write_down(all, w);
@@ -267,11 +268,11 @@ stream_wiring find_wiring(snd_config_t* top, const std::string& name, unsigned c
     return w;
 }
 
-stream_wiring find_wiring(const alsa_options& o)
+stream_wiring find_wiring(const alsa_options& o, unsigned device_channels)
 {
     if (o.config_text.empty())
-        return find_wiring(system_configuration().read(), o.pcm, o.channels);
-    return find_wiring(parse(o.config_text).get(), o.pcm, o.channels);
+        return find_wiring(system_configuration().read(), o.pcm, o.channels, device_channels);
+    return find_wiring(parse(o.config_text).get(), o.pcm, o.channels, device_channels);
 }
 
 } // namespace tactor::pcm

@@ -12,9 +12,11 @@
 
 namespace tactor::pcm {
 
-/// The wiring of a PCM that is opened with so many channels, none of them converted, as open() does.
-stream_wiring find_wiring(snd_config_t* top, const std::string& name, unsigned channels);
-/// By the text of the options, or the system's configuration.
-stream_wiring find_wiring(const alsa_options& o);
+/// Finds the wiring of the first `channels` of a PCM that is opened with `device_channels`, none of them
+/// converted, as open() does.
+stream_wiring find_wiring(snd_config_t* top, const std::string& name, unsigned channels,
+                          unsigned device_channels);
+/// Finds the wiring of the options' channels, by their text or the system's configuration.
+stream_wiring find_wiring(const alsa_options& o, unsigned device_channels);
 
 } // namespace tactor::pcm
