@@ -3,6 +3,7 @@
 /// Planning: from an array and a stroke to the schedule of bursts. Pure functions of their arguments.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -89,10 +90,13 @@ struct conflict {
     friend bool operator==(const conflict&, const conflict&) = default;
 };
 
-/// The frequency of a carrier at a time.
+/// The frequency of a carrier at a time, and until the next point: with u from 0 to 1 between their times,
+/// and from hz to the next one's, hz + u (next - hz) + u (1 - u) (bend[0] + bend[1] u + bend[2] u^2 + bend[3]
+/// u^3).
 struct carrier_point {
-    double t_s = 0.0; ///< from the beginning of the carrier
-    double hz = 0.0;  ///< >= 0
+    double t_s = 0.0;                ///< from the beginning of the carrier
+    double hz = 0.0;                 ///< >= 0
+    std::array<double, 4> bend = {}; ///< Hz; zeros: linear
 
     friend bool operator==(const carrier_point&, const carrier_point&) = default;
 };

@@ -2,9 +2,13 @@
 #include "plan/course.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <functional>
 #include <numeric>
 
+#include <boost/math/quadrature/gauss.hpp>
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
@@ -33,30 +37,86 @@ std::vector<carrier_point> texture_course(const trajectory& motion, double textu
 /// Below it, as a part of the frequency, a bend is the last digits.
 constexpr double last_digits = 1e-12;
 
-/// Where the target rests, its carrier stays. Between two points of its way at which it is faster or slower
-/// there is a third, with the frequency that makes the cycles until the next what they are: so nothing adds
-/// up, however long the stroke.
+/// Between two points the phase is off by at most `phase_error`, or as far as rounding lets it.
+constexpr double phase_error = 1e-11; // cycles
+constexpr double rounding = 2e-14;    // of the frequency
+/// Cycles between two points of a bent course: of more, sixteen digits do not tell 1e-10.
+constexpr double most_cycles = 4096.0;
+constexpr int most_halvings = 12;
+
+/// The frequency between two points of a way, u from 0 to 1.
+using frequency = std::function<double(double u)>;
+
+/// A course of the fifth degree through a frequency from `from` to `to`: at both ends and four places
+/// between them (Chebyshev's), and with the same mean.
+std::array<double, 4> find_bend(const frequency& hz, double from_hz, double to_hz)
+{
+    constexpr std::array<double, 4> places{0.0954915028125263, 0.3454915028125263, 0.6545084971874737,
+                                           0.9045084971874737};
+    std::array<double, 4> v{};
+    double most = 0.0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const double u = places[i];
+        const double off = hz(u) - std::lerp(from_hz, to_hz, u);
+        most = std::max(most, std::abs(off));
+        v[i] = off / (u * (1.0 - u));
+    }
+    if (!(most > last_digits * std::max(from_hz, to_hz)))
+        return {};
+    // Newton's divided differences, then the coefficients of 1, u, u^2, u^3.
+    for (std::size_t order = 1; order < 4; ++order)
+        for (std::size_t i = 3; i >= order; --i)
+            v[i] = (v[i] - v[i - 1]) / (places[i] - places[i - order]);
+    std::array<double, 4> bend{};
+    for (std::size_t i = 4; i-- > 0;) {
+        for (std::size_t k = 3; k > 0; --k)
+            bend[k] = bend[k - 1] - places[i] * bend[k];
+        bend[0] = v[i] - places[i] * bend[0];
+    }
+    const double mean = boost::math::quadrature::gauss<double, 7>::integrate(hz, 0.0, 1.0);
+    const double own =
+        std::midpoint(from_hz, to_hz) + bend[0] / 6.0 + bend[1] / 12.0 + bend[2] / 20.0 + bend[3] / 30.0;
+    bend[1] += 30.0 * (mean - own); // 30 u^2 (1 - u)^2 has the mean 1
+    bend[2] -= 30.0 * (mean - own);
+    return bend;
+}
+
+/// Adds the points after the last one up to `to`, as many as the frequency between them needs.
+void add_bent(std::vector<carrier_point>& course, const frequency& hz, carrier_point to, int halvings = 0)
+{
+    carrier_point& from = course.back();
+    from.bend = find_bend(hz, from.hz, to.hz);
+    const double time_s = to.t_s - from.t_s;
+    const double high_hz = std::max(from.hz, to.hz);
+    double off = 0.0;
+    if (from.bend != carrier_point{}.bend)
+        for (const double u : {0.03, 0.2, 0.5, 0.8, 0.97})
+            off = std::max(off, std::abs(hz(u) - hz_between(from, to, u)));
+    const bool precise = off * time_s <= phase_error || off <= rounding * high_hz;
+    const bool short_enough = from.bend == carrier_point{}.bend || time_s * high_hz <= most_cycles;
+    if ((precise && short_enough) || halvings == most_halvings) {
+        course.push_back(to);
+        return;
+    }
+    const carrier_point middle{std::midpoint(from.t_s, to.t_s), hz(0.5)};
+    add_bent(
+        course, [&hz](double u) { return hz(0.5 * u); }, middle, halvings + 1);
+    add_bent(
+        course, [&hz](double u) { return hz(0.5 + 0.5 * u); }, to, halvings + 1);
+}
+
+/// Where the target rests, its carrier stays.
 std::vector<carrier_point> profile_course(const trajectory& motion, const std::vector<carrier_part>& profile)
 {
     std::vector<double> parts;
     for (const carrier_part& p : profile)
         parts.push_back(p.part);
-    const std::vector<way_point> way = way_over_time(motion, parts);
-    const auto [lowest, highest] =
-        std::minmax_element(profile.begin(), profile.end(),
-                            [](const carrier_part& a, const carrier_part& b) { return a.hz < b.hz; });
-    std::vector<carrier_point> course{{0.0, hz_at(profile, way.front().part)}};
-    for (std::size_t i = 0; i + 1 < way.size(); ++i) {
-        const way_point& from = way[i];
-        const way_point& to = way[i + 1];
-        const double from_hz = course.back().hz;
-        const double to_hz = hz_at(profile, to.part);
-        const double straight_hz = std::midpoint(from_hz, to_hz);
-        const double mean_hz = hz_at(profile, to.mean);
-        if (std::abs(mean_hz - straight_hz) > last_digits * straight_hz)
-            course.push_back({std::midpoint(from.t_s, to.t_s),
-                              std::clamp(2.0 * mean_hz - straight_hz, lowest->hz, highest->hz)});
-        course.push_back({to.t_s, to_hz});
+    const smooth_way way = find_smooth_way(motion, parts);
+    std::vector<carrier_point> course{{0.0, hz_at(profile, way.points.front().part)}};
+    for (std::size_t i = 0; i + 1 < way.points.size(); ++i) {
+        const way_point& to = way.points[i + 1];
+        add_bent(course, [&](double u) { return hz_at(profile, way.part(i, u)); },
+                 {to.t_s, hz_at(profile, to.part)});
     }
     return course;
 }
@@ -80,14 +140,21 @@ void check_profile(const std::vector<carrier_part>& profile)
 
 double hz_at(const std::vector<carrier_part>& profile, double part)
 {
-    const auto above =
-        std::find_if(profile.begin(), profile.end(), [part](const carrier_part& p) { return p.part > part; });
+    const auto above = std::upper_bound(profile.begin(), profile.end(), part,
+                                        [](double v, const carrier_part& p) { return v < p.part; });
     if (above == profile.begin())
         return above->hz;
     const carrier_part& below = *(above - 1);
     if (above == profile.end())
         return below.hz;
     return std::lerp(below.hz, above->hz, (part - below.part) / (above->part - below.part));
+}
+
+double hz_between(const carrier_point& from, const carrier_point& to, double u)
+{
+    const std::array<double, 4>& b = from.bend;
+    const double straight = std::lerp(from.hz, to.hz, u);
+    return straight + u * (1.0 - u) * (b[0] + u * (b[1] + u * (b[2] + u * b[3])));
 }
 
 std::vector<carrier_point> course_of(const stroke& s, const waveform& w)

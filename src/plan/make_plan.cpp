@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -22,6 +24,9 @@ constexpr double longest_fitted_s = 0.160;
 // What travels less of the distance between two tactors is hardly felt to move (Remache-Vinueza,
 // Trujillo-Leon and Vidal-Verdu, Displays 2024).
 constexpr double least_travel = 0.2;
+// Of the side of a face in pitches. Along a diagonal of a grid of 20 x 20 mm gaussian is 1.2 mm RMS off, of
+// 20 x 24 mm 2.5, of 20 x 28 mm 4.2, of 20 x 40 mm 9.
+constexpr double widest_face = 1.15;
 // Durations are said to the millisecond: nearer than half of one is the law's.
 constexpr double law_tolerance_s = 0.0005;
 
@@ -68,6 +73,27 @@ void warn_of_short_travel(double pitch_mm, plan& p)
             fmt::format("its path of {:.4g} mm is shorter than a fifth of the {:.4g} mm between "
                         "tactors: it may not be felt to move",
                         p.stroke_length_mm, pitch_mm));
+}
+
+/// gaussian takes 0.6 of the pitch, the distance to the nearest tactor, whatever the direction.
+void warn_of_wide_faces(const layout& l, const phantom_model& m, plan& p)
+{
+    if (m.name() != to_string(phantom_kind::gaussian) || l.faces().empty())
+        return;
+    std::vector<double> longest_mm;
+    for (const std::vector<unsigned>& f : l.faces()) {
+        double most = 0.0;
+        for (std::size_t i = 0; i < f.size(); ++i)
+            most = std::max(most, distance_mm(l.places()[f[i]], l.places()[f[(i + 1) % f.size()]]));
+        longest_mm.push_back(most);
+    }
+    const auto middle = longest_mm.begin() + static_cast<std::ptrdiff_t>(longest_mm.size() / 2);
+    std::nth_element(longest_mm.begin(), middle, longest_mm.end());
+    if (*middle > widest_face * l.pitch_mm())
+        p.warnings.push_back(fmt::format(
+            "gaussian spreads by the {:.4g} mm between the nearest tactors, and others are {:.4g} mm apart: "
+            "between those it is felt at the nearer one (phantom = inverse-distance or barycentric)",
+            l.pitch_mm(), *middle));
 }
 
 /// Where the duration that was asked for is not the one that belongs to the SOA, or is not used.
@@ -152,6 +178,7 @@ plan planned(const array& a, const layout& l, const stroke& s, const plan_option
     p.conflicts = detail::find_conflicts(p.bursts);
     detail::pass_on(j, p);
     warn_of_short_travel(l.pitch_mm(), p);
+    warn_of_wide_faces(l, *j.model, p);
     warn_of_long_bursts(bursts, p);
     warn_of_short_bursts(bursts, p);
     warn_of_own_duration(o, bursts, p);

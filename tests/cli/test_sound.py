@@ -79,6 +79,18 @@ class Sound(ToolTest):
         self.same_from_plan("rise.toml", "--algorithm", "continuous")
         self.same_from_plan("rise.toml", "--waveform", "square")
 
+    def test_an_eased_carrier_is_bent_and_a_plan_keeps_that(self):
+        self.write("eased.toml", STROKE + 'easing = "minimum-jerk"\ncarrier_profile = [[0, 100], [1, 300]]')
+        course = self.plan("eased.toml")["stroke"]["course"]
+        self.assertEqual([(p["t_s"], p["hz"], "bend" in p) for p in course], [(0, 100, True), (0.7, 300, False)])
+        self.same_from_plan("eased.toml", "--algorithm", "continuous")
+
+    def test_gaussian_says_where_tactors_are_too_far_apart_for_it(self):
+        for pitch, told in (("20.0", False), ("[20.0, 40.0]", True)):
+            self.write("grid.toml", f'[array]\nname = "g"\ngrid = {{ rows = 3, columns = 3, pitch_mm = {pitch} }}\n')
+            said = self.ok("plan", "--path", "M 0 20 L 40 20", "--array", "grid.toml", "--phantom", "gaussian").stdout
+            self.assertEqual("gaussian spreads by the 20 mm" in said, told, said)
+
     def test_envelopes_are_rendered_and_kept_in_plans(self):
         seen = {self.rendered(*LINE).data}
         for extra in (("--envelope", "linear", "--attack", "0.01"), ("--envelope", "exponential", "--attack", "0.01", "--release", "0.02"),

@@ -74,6 +74,24 @@ TEST_CASE("a recording in its own time has its samples at its rate, and its freq
     CHECK(stray_db(x, 1e9, 300.0) < -80.0);
 }
 
+TEST_CASE("a recording at another rate keeps its level up to 0.95 of its highest frequency")
+{
+    // Whole cycles in a second; the low one gives the scale.
+    for (const double rate_hz : {8000.0, 11025.0, 44100.0})
+        for (const double part : {0.5, 0.9, 0.95}) {
+            const double high_hz = std::floor(0.5 * rate_hz * part);
+            std::vector<float> both(static_cast<std::size_t>(rate_hz));
+            for (std::size_t i = 0; i < both.size(); ++i) {
+                const double t = 2 * pi * static_cast<double>(i) / rate_hz;
+                both[i] = static_cast<float>(0.5 * std::sin(300.0 * t) + 0.5 * std::sin(high_hz * t));
+            }
+            const auto x = lines(played(tone(recorded(both, texture_kind::time, rate_hz), 250.0)));
+            CAPTURE(rate_hz);
+            CAPTURE(part);
+            CHECK(std::abs(20.0 * std::log10(strongest(x, high_hz) / strongest(x, 300.0))) < 0.1);
+        }
+}
+
 TEST_CASE("a recording along the path follows the target's speed")
 {
     // One cycle of a sine over 10 mm of a path of 40 mm: 4 cycles, in 1 s and then in 4 s.

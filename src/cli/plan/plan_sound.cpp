@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/plan/plan_sound.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -16,6 +17,8 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
+constexpr double most_bend_hz = 1e7;
+
 // Whoever plays the plan may be elsewhere.
 std::string name_of(const waveform& w)
 {
@@ -25,6 +28,15 @@ std::string name_of(const waveform& w)
     std::error_code nowhere;
     const std::filesystem::path whole = std::filesystem::absolute(text, nowhere);
     return nowhere ? text : whole.string();
+}
+
+void take_bend(const fields& c, carrier_point& into)
+{
+    const std::vector<double> bend = c.numbers("bend");
+    if (bend.size() != into.bend.size() ||
+        std::any_of(bend.begin(), bend.end(), [](double v) { return !(std::abs(v) <= most_bend_hz); }))
+        c.refuse("bend", "is not four numbers of at most 1e7 Hz");
+    std::copy(bend.begin(), bend.end(), into.bend.begin());
 }
 
 } // namespace
@@ -48,8 +60,11 @@ void put_sound(nlohmann::ordered_json& stroke, const plan& p)
     if (p.course.empty())
         return;
     stroke["course"] = json::array();
-    for (const carrier_point& c : p.course)
+    for (const carrier_point& c : p.course) {
         stroke["course"].push_back({{"t_s", c.t_s}, {"hz", c.hz}});
+        if (c.bend != carrier_point{}.bend)
+            stroke["course"].back()["bend"] = c.bend;
+    }
 }
 
 nlohmann::ordered_json envelope_json(const burst_envelope& e)
@@ -103,7 +118,9 @@ void take_sound(const fields& stroke, plan& p)
     if (!stroke.has("course"))
         return;
     for (const fields& c : stroke.list("course")) {
-        const carrier_point next{c.number("t_s"), c.number("hz")};
+        carrier_point next{c.number("t_s"), c.number("hz")};
+        if (c.has("bend"))
+            take_bend(c, next);
         const bool ascends = p.course.empty() ? next.t_s >= 0.0 : next.t_s >= p.course.back().t_s;
         if (!ascends || !(next.hz >= 0.0 && next.hz <= 384000.0))
             stroke.refuse("course", "has a point out of order, or with no frequency");

@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
+#include <utility>
 #include <variant>
-
-#include <boost/math/quadrature/gauss.hpp>
 
 #include "core/access.hpp"
 #include "core/trajectory/impl.hpp"
@@ -23,13 +21,6 @@ constexpr double last_digits = 1e-12;
 
 /// Pieces of a smooth piece are no shorter than this part of its time.
 constexpr unsigned finest = 4096;
-
-/// Mean of a smooth pace: of so short a piece to the last digits.
-double mean_part(const pace& p, double from_s, double to_s)
-{
-    return boost::math::quadrature::gauss<double, 7>::integrate(
-        [&](double u) { return p.part(std::lerp(from_s, to_s, u)); }, 0.0, 1.0);
-}
 
 /// Points as near to each other as two numbers can be are one: a frequency is a difference by a time.
 void add(std::vector<way_point>& way, way_point p)
@@ -58,20 +49,25 @@ void add_smooth(std::vector<way_point>& way, const pace& p, double from_s, doubl
     for (unsigned i = 0; i < finest;) {
         while (step > 1 && !is_straight(when(i), when(i + step)))
             step /= 2;
-        const double begin_s = when(i);
         i += step;
-        add(way, {when(i), p.part(when(i)), mean_part(p, begin_s, when(i))});
+        add(way, {when(i), p.part(when(i))});
         step = std::min(2 * step, finest - i);
     }
 }
 
-std::vector<way_point> way_of(const pace& p, std::span<const double> at)
+std::vector<double> find_bends(const pace& p, std::span<const double> at)
 {
     std::vector<double> bends = p.bends();
     for (const double part : at)
         bends.push_back(p.arrival_s(part));
     std::sort(bends.begin(), bends.end());
     bends.erase(std::unique(bends.begin(), bends.end()), bends.end());
+    return bends;
+}
+
+std::vector<way_point> way_of(const pace& p)
+{
+    const std::vector<double> bends = find_bends(p, {});
     std::vector<way_point> way{{0.0, 0.0}};
     for (std::size_t i = 0; i + 1 < bends.size(); ++i)
         add_smooth(way, p, bends[i], bends[i + 1]);
@@ -92,8 +88,6 @@ std::vector<way_point> with_points(const std::vector<way_point>& way, std::span<
         }
         add(out, to);
     }
-    for (std::size_t i = 1; i < out.size(); ++i)
-        out[i].mean = std::midpoint(out[i - 1].part, out[i].part);
     return out;
 }
 
@@ -112,23 +106,66 @@ std::vector<way_point> way_of(const std::vector<timed_point>& points)
     return way;
 }
 
-} // namespace
-
-std::vector<way_point> way_over_time(const trajectory& t, std::span<const double> at)
+/// Null for what moves at constant speeds.
+const pace* find_smooth_law(const trajectory& t)
 {
-    const trajectory::impl& d = access::of(t);
-    const auto* drawn = std::get_if<drawn_path>(&d.law);
-    if (drawn != nullptr && !drawn->moves)
-        return with_points({{0.0, 0.0}, {d.duration_s, 1.0}}, at);
-    const std::vector<way_point> own = drawn != nullptr
-                                           ? way_of(*drawn->moves, at)
-                                           : with_points(way_of(*std::get<timed_points>(d.law).points), at);
-    // Made for another duration, it is as much faster or slower everywhere.
+    const auto* drawn = std::get_if<drawn_path>(&access::of(t).law);
+    return drawn != nullptr ? drawn->moves.get() : nullptr;
+}
+
+/// Made for another duration, it is as much faster or slower everywhere.
+std::vector<way_point> scale_times(const trajectory& t, const std::vector<way_point>& own)
+{
+    const double duration_s = access::of(t).duration_s;
     const double own_s = own.back().t_s;
     std::vector<way_point> way;
     way.reserve(own.size());
     for (const way_point& w : own)
-        add(way, {own_s == d.duration_s ? w.t_s : w.t_s / own_s * d.duration_s, w.part, w.mean});
+        add(way, {own_s == duration_s ? w.t_s : w.t_s / own_s * duration_s, w.part});
+    return way;
+}
+
+std::vector<way_point> find_linear_way(const trajectory& t, std::span<const double> at)
+{
+    const trajectory::impl& d = access::of(t);
+    if (const auto* timed = std::get_if<timed_points>(&d.law))
+        return scale_times(t, with_points(way_of(*timed->points), at));
+    return with_points({{0.0, 0.0}, {d.duration_s, 1.0}}, at);
+}
+
+} // namespace
+
+std::vector<way_point> way_over_time(const trajectory& t)
+{
+    const pace* smooth = find_smooth_law(t);
+    return smooth != nullptr ? scale_times(t, way_of(*smooth)) : find_linear_way(t, {});
+}
+
+smooth_way find_smooth_way(const trajectory& t, std::span<const double> at)
+{
+    smooth_way way;
+    if (const pace* p = find_smooth_law(t)) {
+        const double duration_s = access::of(t).duration_s;
+        std::vector<double> own_s;
+        for (const double when_s : find_bends(*p, at)) {
+            const double t_s = p->total_s() == duration_s ? when_s : when_s / p->total_s() * duration_s;
+            if (own_s.empty() || t_s > way.points.back().t_s) {
+                way.points.emplace_back();
+                own_s.emplace_back();
+            }
+            way.points.back() = {t_s, p->part(when_s)};
+            own_s.back() = when_s;
+        }
+        way.points.back().part = 1.0;
+        way.part = [p, own_s = std::move(own_s)](std::size_t i, double u) {
+            return p->part(std::lerp(own_s[i], own_s[i + 1], u));
+        };
+        return way;
+    }
+    way.points = find_linear_way(t, at);
+    way.part = [points = way.points](std::size_t i, double u) {
+        return std::lerp(points[i].part, points[i + 1].part, u);
+    };
     return way;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plan/course.hpp"
 #include "synth/score/levels.hpp"
 #include "synth/score/score.hpp"
 
@@ -24,7 +25,7 @@ double hz_at(const plan& p, double t_s)
     const carrier_point& before = *(after - 1);
     if (after == p.course.end())
         return before.hz;
-    return std::lerp(before.hz, after->hz, (t_s - before.t_s) / (after->t_s - before.t_s));
+    return detail::hz_between(before, *after, (t_s - before.t_s) / (after->t_s - before.t_s));
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include "synth/tone/make_timbre.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -22,6 +23,19 @@ constexpr std::size_t most_places = 64;
 /// Of a recording at the rate of the stream: 32 MB.
 constexpr double most_loop_frames = 8388608.0;
 
+/// The integral of the frequency from a point to the next, cycles: coefficients of u, u^2, ..., u^6.
+std::array<double, 6> integrate(const carrier_point& from, const carrier_point& to)
+{
+    const double time_s = to.t_s - from.t_s;
+    const std::array<double, 4>& b = from.bend;
+    return {time_s * from.hz,
+            time_s * (to.hz - from.hz + b[0]) / 2.0,
+            time_s * (b[1] - b[0]) / 3.0,
+            time_s * (b[2] - b[1]) / 4.0,
+            time_s * (b[3] - b[2]) / 5.0,
+            time_s * -b[3] / 6.0};
+}
+
 std::vector<course_part> course_of(const std::vector<carrier_point>& points, unsigned rate)
 {
     std::vector<course_part> parts;
@@ -33,7 +47,14 @@ std::vector<course_part> course_of(const std::vector<carrier_point>& points, uns
         const double change = frames > 0.0 ? (to.hz - from.hz) / rate / frames : 0.0;
         if (frames > 0.0 || i + 1 == points.size())
             parts.push_back({from.t_s * rate, cycles, from.hz / rate, 0.5 * change});
-        cycles += 0.5 * (to.t_s - from.t_s) * (from.hz + to.hz);
+        if (frames > 0.0 && from.bend != carrier_point{}.bend) {
+            parts.back().frames = frames;
+            parts.back().bent = integrate(from, to);
+            for (const double c : parts.back().bent)
+                cycles += c;
+        } else {
+            cycles += 0.5 * (to.t_s - from.t_s) * (from.hz + to.hz);
+        }
         cycles -= std::floor(cycles);
     }
     return parts;

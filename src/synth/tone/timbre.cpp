@@ -32,6 +32,27 @@ TACTOR_CLONES void swept_turns(const course_part& p, double first, unsigned n, d
     }
 }
 
+TACTOR_CLONES void bent_turns(const course_part& p, double first, unsigned n, double* out) noexcept
+{
+    double* __restrict o = out;
+    const double cycles = p.cycles;
+    const double from = first - p.start;
+    const double unit = 1.0 / p.frames;
+    const std::array<double, 6> c = p.bent;
+    for (int j = 0; j < static_cast<int>(n); ++j) {
+        const double u = (from + j) * unit;
+        o[j] = cycles + u * (c[0] + u * (c[1] + u * (c[2] + u * (c[3] + u * (c[4] + u * c[5])))));
+    }
+}
+
+void turn(const course_part& p, double first, unsigned n, double* out) noexcept
+{
+    if (p.frames > 0.0)
+        bent_turns(p, first, n, out);
+    else
+        swept_turns(p, first, n, out);
+}
+
 TACTOR_CLONES void sines(const double* turns, unsigned n, bool cosine, double* out) noexcept
 {
     const double* __restrict in = turns;
@@ -98,9 +119,9 @@ const course_part& part_before(const course_parts& course, course_parts::const_i
 /// Turns of the carrier at a frame, but for whole ones.
 double turns_at(const course_parts& course, double frame) noexcept
 {
-    const course_part& p = part_before(course, part_after(course, frame));
-    const double k = frame - p.start;
-    return p.cycles + k * (p.cycles_per_frame + k * p.half_slope);
+    double turns = 0.0;
+    turn(part_before(course, part_after(course, frame)), frame, 1, &turns);
+    return turns;
 }
 
 /// Each frame by its own place on the carrier alone, so that blocks make no difference.
@@ -127,7 +148,7 @@ void follow(const timbre& t, std::int64_t first, std::int64_t origin, unsigned n
         if (p.rests()) {
             std::fill_n(out + done, length, 0.0); // a constant would push the tactor off its place
         } else {
-            swept_turns(p, at, length, turns.data());
+            turn(p, at, length, turns.data());
             play(t, turns.data(), length, w, out + done);
         }
         done += length;

@@ -4,6 +4,7 @@
 /// audio thread gets a pointer to it, and the side that hands over the drives keeps it until they are over.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -13,13 +14,17 @@
 
 namespace tactor::synth {
 
-/// A stretch of a carrier whose frequency is linear, in frames of the stroke.
+/// A stretch of a carrier whose frequency is linear or bent, in frames of the stroke.
 struct course_part {
     double start = 0.0;
     double cycles = 0.0;           ///< at `start`, less whole ones
     double cycles_per_frame = 0.0; ///< there
     double half_slope = 0.0;       ///< half of its change from frame to frame
-    bool rests() const noexcept { return cycles_per_frame == 0.0 && half_slope == 0.0; }
+    double frames = 0.0;           ///< of a bent one, how long it is; 0: linear
+    /// Of a bent one, cycles since its start: a polynomial in u, from 0 at its start to 1 at its end, without
+    /// the constant.
+    std::array<double, 6> bent = {};
+    bool rests() const noexcept { return frames == 0.0 && cycles_per_frame == 0.0 && half_slope == 0.0; }
 };
 
 /// Upper bound of `power` for any wave between -1 and 1.
