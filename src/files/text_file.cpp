@@ -71,7 +71,7 @@ whole_text read_text_file(const std::filesystem::path& file, std::size_t max_byt
     return read_text(in.get(), file.string(), max_bytes);
 }
 
-void refuse_other_kind(std::string_view text, const std::string& name)
+void refuse_other_kind(std::string_view text, const std::string& name, std::string_view hint)
 {
     struct other_kind {
         std::string_view begin;
@@ -92,14 +92,12 @@ void refuse_other_kind(std::string_view text, const std::string& name)
         if (text.starts_with(o.begin))
             what = o.what;
     if (!what.empty())
-        throw error(error_kind::bad_input, source_place{name}, fmt::format("is {}, not text", what),
-                    "strokes are TOML, CSV or SVG, arrays and configurations TOML; sound is for waveform = "
-                    "\"FILE.wav\"");
+        throw error(error_kind::bad_input, source_place{name}, fmt::format("is {}, not text", what), hint);
 }
 
-void refuse_no_text(std::string_view text, const std::string& name)
+void refuse_no_text(std::string_view text, const std::string& name, std::string_view hint)
 {
-    refuse_other_kind(text, name);
+    refuse_other_kind(text, name, hint);
     const std::string_view mark = text.substr(0, 2);
     const bool marked = mark == "\xFF\xFE" || mark == "\xFE\xFF";
     // Without a mark, every other byte of plain letters is 0.

@@ -39,10 +39,15 @@ whole_text read_text(int descriptor, std::string_view name, std::size_t max_byte
 whole_text read_text_file(const std::filesystem::path& file, std::size_t max_bytes,
                           owner_kind owner = owner_kind::user);
 
+/// Hint for a file that a user named for an array, a configuration or strokes.
+inline constexpr std::string_view text_kinds_hint =
+    "strokes are TOML, CSV or SVG, arrays and configurations TOML; sound is for waveform = \"FILE.wav\"";
+
 /// \throws error (bad_input) that says what it is where it begins as sound, a picture or an archive do: it
 /// would be refused anyway, and in words about bytes.
-void refuse_other_kind(std::string_view text, const std::string& name);
+void refuse_other_kind(std::string_view text, const std::string& name,
+                       std::string_view hint = text_kinds_hint);
 /// The same, and where it is UTF-16, as some editors save text.
-void refuse_no_text(std::string_view text, const std::string& name);
+void refuse_no_text(std::string_view text, const std::string& name, std::string_view hint = text_kinds_hint);
 
 } // namespace tactor::detail

@@ -60,8 +60,13 @@ class Folders(ExperimentTest):
         scans.write_text("".join(scans.read_text().splitlines(True)[:at + 2]))
         table.write_text("".join(table.read_text().splitlines(True)[:3]))
         self.valid(["01", "02"], ["INCONSISTENT_SUBJECTS"])
+        # The line that a crash cut off is kept beside the table, and a list that is gone begun anew.
+        with table.open("a") as f:
+            f.write("12.5\t0.")
+        scans.unlink()
         self.simulate("02", "--resume")
         self.assertEqual(len(self.rows("02", "howgood")), 4)
+        self.assertEqual(table.with_name(table.name + ".cut-1").read_text(), "12.5\t0.")
         self.valid(["01", "02"])
 
     def test_columns_that_somebody_fills_in(self):

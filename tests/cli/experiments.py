@@ -61,6 +61,10 @@ class ExperimentTest(ToolTest):
     def rows(self, code, task, folder="study"):
         return read_table(self.dir / folder / f"sub-{code}/beh/sub-{code}_task-{task}_beh.tsv")
 
+    def without_cut(self):
+        """What is there, but for what was cut off a table."""
+        return {n: b for n, b in contents(self.dir / "study").items() if ".cut-" not in n and n != ".bidsignore"}
+
     def session(self, code="01", folder="study"):
         return json.loads((self.dir / folder / f"sourcedata/sub-{code}/session.json").read_text())
 

@@ -80,6 +80,26 @@ class AtEveryWrite(ExperimentTest):
         self.assertGreater(refused, 30)
         self.assertGreater(kept, 10)
 
+    def test_a_disk_that_fails_while_a_line_is_cut_off(self):
+        table = next((self.dir / "study/sub-01/beh").glob("*howgood*"))
+        text = table.read_bytes()[:-20]
+        order = [line.split("\t")[0] for line in (self.dir / "study/sub-01/sub-01_scans.tsv").read_text().splitlines()[1:]]
+        for name in order[order.index(f"beh/{table.name}") + 1:]:
+            (self.dir / "study/sub-01" / name).unlink()
+        table.write_bytes(text)
+        for call in ("ftruncate", "fsync"):
+            run = subprocess.run(["strace", "-f", "-qq", "-o", self.dir / "trace", "-P", table, "-e", f"trace={call}", "-e",
+                                  f"inject={call}:error=EIO:when=1", TOOL, *self.args, "--resume"], cwd=self.dir, env=self.env,
+                                 capture_output=True, text=True, check=False)
+            self.assertEqual(run.returncode, 1, f"{call}: {run.stderr}")
+            self.assertIn(f"{table.name}: Input/output error (what was answered before is kept", run.stderr)
+            self.assertEqual(table.with_name(table.name + ".cut-1").read_bytes(), text.rpartition(b"\n")[2])
+            if call == "ftruncate":
+                self.assertEqual(table.read_bytes(), text)
+        self.ok(*self.args, "--resume")
+        self.assertEqual(contents(self.dir / "study")[str(table.relative_to(self.dir / "study"))],
+                         self.whole[str(table.relative_to(self.dir / "study"))])
+
 
 if __name__ == "__main__":
     main()

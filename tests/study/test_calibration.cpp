@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <string>
+#include <utility>
 
 #include <doctest/doctest.h>
 
@@ -49,6 +51,9 @@ calibration_settings settings()
     return s;
 }
 
+const std::string header = "trial\ttactor\tlevel_dbfs\tinterval\tresponse\tcorrect\treversal\tpractice\t"
+                           "response_time_s\tonset_frame\n";
+
 const observer_settings who{{-30.0}, 2.0, 0.0};
 const observer_settings careless{{-30.0}, 2.0, 0.1};
 
@@ -65,6 +70,7 @@ outcome run(const fs::path& log, bool resume, calibration_settings s = settings(
     calibration c(s);
     observer o(asked, s);
     replay(c, lines, &o);
+    lines.begin();
     for (std::size_t i = 0; i < most && !c.done(); ++i)
         lines.append(c.answer(o.answer(c.next())));
     return {text_of(log), calibration_text(s, c.thresholds())};
@@ -163,7 +169,7 @@ TEST_CASE("where nothing was answered a session is begun anew, on other terms to
     CHECK_FALSE(fs::exists(f / "a.tsv"));
     CHECK_FALSE(fs::exists(f / "a.json"));
     // As one that was killed leaves it.
-    put(f / "a.tsv", std::string(log_header()) + "\n");
+    put(f / "a.tsv", header);
     put(f / "a.json", settings_text(settings()));
     calibration_settings other = settings();
     other.carrier_hz = 100.0;
@@ -182,6 +188,7 @@ TEST_CASE("a person's answers and times come back from the log")
     s.simulate.clear();
     {
         calibration_log log(f / "a.tsv", false, s);
+        log.begin();
         calibration c(s);
         for (unsigned i = 0; i < 9; ++i)
             log.append(
@@ -195,6 +202,105 @@ TEST_CASE("a person's answers and times come back from the log")
     CHECK(text_of(f / "a.tsv") == before);
 }
 
+// Replaces each.
+std::string with(std::string text, const std::string& from, const std::string& to)
+{
+    for (std::size_t at = text.find(from); at != text.npos; at = text.find(from, at + to.size()))
+        text.replace(at, from.size(), to);
+    return text;
+}
+
+TEST_CASE("a log that another program saved goes on, and keeps its line ends")
+{
+    const folder f;
+    const outcome whole = run(f / "a.tsv", false);
+    const std::string began = text_of(f / "a.json");
+    const std::string some = whole.log.substr(0, whole.log.find("\n9\t") + 1);
+    const auto goes_on = [&](const std::string& saved, const std::string& end) {
+        put(f / "b.tsv", saved);
+        put(f / "b.json", began);
+        const outcome again = run(f / "b.tsv", true);
+        CHECK(again.tables == whole.tables);
+        const std::string rest = with(whole.log.substr(some.size()), "\n", end);
+        const std::string line_end = saved.ends_with("n/a") ? end : "";
+        CHECK(again.log == saved + line_end + rest);
+        CHECK_FALSE(fs::exists(f / "b.tsv.cut-1"));
+    };
+    goes_on(with(some, "\n", "\r"), "\r");
+    goes_on(with(some, "\n", "\r\n"), "\r\n");
+    goes_on("\xef\xbb\xbf" + some, "\n");
+    goes_on(some.substr(0, some.size() - 1), "\n");
+    goes_on(with(some, "\n", "\r").substr(0, some.size() - 1), "\r");
+    goes_on(with(with(some, "true", "TRUE"), "false", "False"), "\n");
+    goes_on(with(some, "true", "\"true\""), "\n");
+    goes_on(with(some, "\t-20\t", "\t-20.0\t") + "\n\t\t\n", "\n");
+}
+
+TEST_CASE("a log of columns in another order takes answers by their names")
+{
+    const folder f;
+    const outcome whole = run(f / "a.tsv", false);
+    const auto turned = [](const std::string& log) { // the last column first
+        std::string text;
+        std::istringstream in(log);
+        for (std::string line; std::getline(in, line);) {
+            const std::size_t tab = line.rfind('\t');
+            text += line.substr(tab + 1) + '\t' + line.substr(0, tab) + '\n';
+        }
+        return text;
+    };
+    put(f / "a.tsv", turned(whole.log.substr(0, whole.log.find("\n9\t") + 1)));
+    CHECK(run(f / "a.tsv", true).log == turned(whole.log));
+}
+
+TEST_CASE("what is cut off a log is kept beside it, and only when the rest is this session's")
+{
+    const folder f;
+    const outcome whole = run(f / "a.tsv", false);
+    const std::string cut = whole.log.substr(0, whole.log.size() - 20);
+    const std::string last = cut.substr(cut.rfind('\n') + 1);
+    put(f / "a.tsv", cut);
+    calibration_settings other = settings();
+    other.seed = 7;
+    CHECK(refusal(f / "a.tsv", true, other) != "no error");
+    CHECK(text_of(f / "a.tsv") == cut);
+    put(f / "a.tsv", with(cut, "true", "false"));
+    CHECK(has(refusal(f / "a.tsv", true), "a.tsv:2: this is not how the session went"));
+    CHECK(text_of(f / "a.tsv") == with(cut, "true", "false"));
+    put(f / "a.tsv", cut);
+    CHECK(run(f / "a.tsv", true).log == whole.log);
+    CHECK(text_of(f / "a.tsv.cut-1") == last);
+    put(f / "a.tsv", cut);
+    run(f / "a.tsv", true);
+    CHECK(text_of(f / "a.tsv.cut-2") == last);
+}
+
+TEST_CASE("what is no table with tabs is refused as what it is, and left as it was")
+{
+    const folder f;
+    const outcome whole = run(f / "a.tsv", false);
+    std::string wide = "\xff\xfe";
+    for (const char c : whole.log)
+        wide += std::string{c, '\0'};
+    for (const auto& [text, says] :
+         {std::pair<std::string, std::string>{with(whole.log, "\t", ","),
+                                              "a.tsv:1: commas are between the columns"},
+          {with(whole.log, "\t", ";"), "a.tsv:1: semicolons are between the columns"},
+          {wide, "a.tsv: is UTF-16, not UTF-8"}}) {
+        put(f / "a.tsv", text);
+        CHECK(has(refusal(f / "a.tsv", true), says));
+        CHECK(text_of(f / "a.tsv") == text);
+    }
+}
+
+TEST_CASE("the array file quotes what a device's name may have in it")
+{
+    calibration_settings s = settings();
+    s.masker = "white noise";
+    s.masker_pcm = "a\"b\\c\x01\x1f\x7f d";
+    CHECK(has(calibration_text(s, {}), "a\\\"b\\\\c\\u0001\\u001F\\u007F d\""));
+}
+
 TEST_CASE("what is not of the session is refused with its line")
 {
     const folder f;
@@ -203,7 +309,7 @@ TEST_CASE("what is not of the session is refused with its line")
     const std::string first = whole.log.substr(0, whole.log.find("\n2\t"));
     put(f / "a.tsv", first + "\n2\t2\t-19\t1\t1\ttrue\tfalse\ttrue\tn/a\tn/a\n");
     CHECK(has(refusal(f / "a.tsv", true), "a.tsv:3: this is not how the session went"));
-    put(f / "a.tsv", whole.log + "999\n");
+    put(f / "a.tsv", whole.log + whole.log.substr(header.size()));
     CHECK(has(refusal(f / "a.tsv", true), "the session ends before this line"));
     put(f / "a.tsv", "name\tvalue\n");
     CHECK(has(refusal(f / "a.tsv", true), "it is no log"));

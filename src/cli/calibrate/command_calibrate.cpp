@@ -174,7 +174,10 @@ int calibrate(settings& s, option_list& options, calibrate_options& o)
     if (simulated)
         observer.emplace(*simulated, begun);
     replay(c, log, observer ? &*observer : nullptr);
-    if (!log.lines().empty())
+    if (const auto kept = log.begin())
+        say(stderr, "tactor: warning: {}: its last line was cut off: what is left of it is in {}\n", o.log,
+            kept->string());
+    if (log.lines().rows() > 0)
         say(stdout, "{}\n",
             c.done() ? "all trials are answered" : fmt::format("goes on at trial {}", c.next().number));
     int signal = 0;

@@ -49,12 +49,16 @@ int hold_session(const prepared_experiment& p, const experiment_options& o, cons
         runs.push_back(&p.definition.runs[r.run]);
     store.check_tables(runs);
     if (store.resumed() && finished(p, store)) {
+        store.refuse_cut_lines(runs);
         for (const std::filesystem::path& lost : store.missing(p.stimuli.all()))
             say(stderr, "tactor: warning: {}: it is missing (put it back from a copy)\n", lost.string());
         say(stdout, "{}: the session is finished\n", who);
         return status_ok;
     }
     store.try_to_write(p.definition.runs);
+    if (store.resumed())
+        for (const std::string& what : store.mend(runs))
+            say(stderr, "tactor: warning: {}\n", what);
     stage::left why{0};
     if (o.simulate) {
         store.begin(p.stimuli.all());

@@ -179,9 +179,8 @@ void person_session::void_last()
         return;
     }
     const study::run_definition& r = p_.definition.runs[p_.runs[flow_.void_run()].run];
-    study::trial_row row = store_.rows(r).back();
-    row.is_void = true;
-    store_.replace_last(r, row);
+    store_.make_last_void(r);
+    const study::trial_row row = store_.rows(r).back();
     table_.emplace(store_, r, false);
     practice_.emplace(store_, r, true);
     say(stderr, "tactor: {}: trial {} is void: the experimenter says so\n", r.outline.name, row.trial);

@@ -19,6 +19,7 @@
 
 #include "files/output_file.hpp"
 #include "study/data/kept.hpp"
+#include "study/data/text_table.hpp"
 
 namespace tactor::study {
 namespace {
@@ -39,7 +40,7 @@ detail::owned_fd opened(const fs::path& file, int flags)
 }
 
 // 0, or an errno.
-int write_to_disk(int fd, std::string_view text)
+int write_all(int fd, std::string_view text, bool synced)
 {
     while (!text.empty()) {
         const ssize_t n = ::write(fd, text.data(), text.size());
@@ -48,7 +49,7 @@ int write_to_disk(int fd, std::string_view text)
         else if (n == 0 || errno != EINTR)
             return n == 0 ? ENOSPC : errno;
     }
-    return ::fsync(fd) == 0 ? 0 : errno;
+    return !synced || ::fsync(fd) == 0 ? 0 : errno;
 }
 
 } // namespace
@@ -62,33 +63,28 @@ void write_whole(const fs::path& file, std::string_view text)
     out.commit();
 }
 
-void append_line(const fs::path& file, std::string_view line)
+void append_text(const fs::path& file, std::string_view text, bool synced)
 {
     const detail::owned_fd d = opened(file, O_WRONLY | O_APPEND);
     struct stat before {};
     if (::fstat(d.get(), &before) != 0)
         fail_on_disk(file, errno);
-    if (const int code = write_to_disk(d.get(), std::string(line) + '\n')) {
+    if (const int code = write_all(d.get(), text, synced)) {
         [[maybe_unused]] const int ignored = ::ftruncate(d.get(), before.st_size);
         fail_on_disk(file, code);
     }
 }
 
-void cut_broken_line(const fs::path& file)
+fs::path cut_file(const fs::path& file, std::size_t at)
 {
-    const detail::owned_fd d = opened(file, O_RDWR);
-    struct stat is {};
-    if (::fstat(d.get(), &is) != 0)
+    fs::path kept;
+    for (unsigned n = 1; kept.empty() || there(kept); ++n)
+        kept = file.string() + fmt::format(".cut-{}", n);
+    write_whole(kept, read_file(file).substr(at));
+    const detail::owned_fd d = opened(file, O_WRONLY);
+    if (::ftruncate(d.get(), static_cast<off_t>(at)) != 0 || ::fsync(d.get()) != 0)
         fail_on_disk(file, errno);
-    off_t end = is.st_size;
-    for (char last = '\0'; end > 0; --end) {
-        if (::pread(d.get(), &last, 1, end - 1) != 1)
-            fail_on_disk(file, errno);
-        if (last == '\n')
-            break;
-    }
-    if (end != is.st_size && (::ftruncate(d.get(), end) != 0 || ::fsync(d.get()) != 0))
-        fail_on_disk(file, errno);
+    return kept;
 }
 
 bool there(const fs::path& p) noexcept

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Files that survive a crash at any moment: whole ones, and lines at the end of one.
+/// Files that survive a crash at any moment: whole ones, and text at the end of one.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string_view>
 
@@ -13,12 +14,13 @@ namespace tactor::study {
 /// Writes a file beside its name, dot-named, and gives it the name when it is on the disk. \throws error.
 void write_whole(const std::filesystem::path& file, std::string_view text);
 
-/// Appends a line, without its end, to a file that is there; it is on the disk when this returns. Where that
-/// fails nothing of it is left. \throws error (runtime).
-void append_line(const std::filesystem::path& file, std::string_view line);
+/// Appends text to a file that is there; if `synced` it is on the disk when this returns. Where that fails
+/// nothing of it is left. \throws error (runtime).
+void append_text(const std::filesystem::path& file, std::string_view text, bool synced = true);
 
-/// Cuts off what a crash left of a last line. \throws error (runtime).
-void cut_broken_line(const std::filesystem::path& file);
+/// Cuts a file at a byte. What follows is on the disk before, beside the file, as NAME.cut-1 or the next
+/// number that is free; returns that name. \throws error (runtime).
+std::filesystem::path cut_file(const std::filesystem::path& file, std::size_t at);
 
 /// Whether anything has this name, be it a link that leads nowhere.
 bool there(const std::filesystem::path& p) noexcept;

@@ -9,6 +9,7 @@
 
 #include <tactor/error.hpp>
 
+#include "study/data/dataset.hpp"
 #include "study/data/text_table.hpp"
 
 namespace tactor::study {
@@ -48,6 +49,27 @@ std::string brief(const ordered& j, const std::string& key)
     const std::string text = j.contains(key) ? j[key].dump() : "nothing";
     constexpr std::size_t longest = 60;
     return text.size() > longest ? std::string("another") : text;
+}
+
+std::string new_table(const named_cells& cells)
+{
+    std::string header;
+    for (const auto& [column, text] : cells)
+        header += fmt::format("{}{}", header.empty() ? "" : "\t", column);
+    return text_table("", header + "\n").with_line(cells);
+}
+
+// A table that somebody changed in the middle of a session, and that cannot be read any more, takes an answer
+// nevertheless: in the order of a new one.
+std::string text_behind(const fs::path& table, const named_cells& cells)
+{
+    try {
+        const text_table t(table, last_line::may_be_cut);
+        return t.missing_end() + t.line(cells);
+    } catch (const error&) {
+        const std::string text = new_table(cells);
+        return text.substr(text.find('\n'));
+    }
 }
 
 } // namespace
@@ -136,23 +158,15 @@ std::vector<fs::path> session_store::missing(const std::vector<const stimulus*>&
     return all;
 }
 
-void session_store::check_tables(const std::vector<const run_definition*>& runs) const
-{
-    const run_definition* lost = nullptr;
-    for (const run_definition* r : runs) {
-        if (!there(table_of(*r)))
-            lost = lost == nullptr ? r : lost;
-        else if (lost != nullptr)
-            throw error(error_kind::bad_input, table_of(*lost).string(),
-                        fmt::format("it is missing, and the run {} came after it", r->outline.name),
-                        "put it back: its trials would be asked once more");
-    }
-}
-
 fs::path session_store::table_of(const run_definition& r) const
 {
     return folder_.path() / ("sub-" + code_) / "beh" /
            fmt::format("sub-{}_task-{}_beh.tsv", code_, r.outline.file_name);
+}
+
+std::string session_store::scan_name(const run_definition& r) const
+{
+    return "beh/" + table_of(r).filename().string();
 }
 
 std::vector<trial_row> session_store::rows(const run_definition& r) const
@@ -160,8 +174,9 @@ std::vector<trial_row> session_store::rows(const run_definition& r) const
     const fs::path table = table_of(r);
     if (!there(table))
         return {};
-    cut_broken_line(table);
-    return read_rows(text_table(table));
+    const text_table t = read_trials(table);
+    read_run(t, r.outline); // refuses what the analysis would refuse
+    return read_rows(t);
 }
 
 std::vector<trial_row> session_store::practice_rows(const run_definition& r) const
@@ -169,8 +184,7 @@ std::vector<trial_row> session_store::practice_rows(const run_definition& r) con
     const fs::path table = source_ / "practice.tsv";
     if (!there(table))
         return {};
-    cut_broken_line(table);
-    const text_table t(table);
+    const text_table t = read_trials(table);
     std::vector<trial_row> all = read_rows(t);
     std::vector<trial_row> own;
     for (std::size_t i = 0; i < t.rows(); ++i)
@@ -184,41 +198,40 @@ void session_store::append(const run_definition& r, const trial_row& row, const 
     const fs::path table = table_of(r);
     keeping([&] {
         if (there(table)) {
-            append_line(table, row_line(row));
+            append_text(table, text_behind(table, cells_of(row)));
             return;
         }
         const fs::path own = folder_.path() / ("sub-" + code_);
         make_folder(own);
         make_folder(own / "beh");
         folder_.add_participant(code_);
-        folder_.add_scan(code_, "beh/" + table.filename().string(), acq_time);
-        write_whole(table, row_header() + "\n" + row_line(row) + "\n");
+        folder_.add_scan(code_, scan_name(r), acq_time);
+        write_whole(table, new_table(cells_of(row)));
     });
 }
 
 void session_store::append_practice(const run_definition& r, const trial_row& row)
 {
     const fs::path table = source_ / "practice.tsv";
-    const std::string line = r.outline.name + "\t" + row_line(row);
+    named_cells cells = cells_of(row);
+    cells.insert(cells.begin(), {"run", r.outline.name});
     keeping([&] {
         if (there(table))
-            append_line(table, line);
+            append_text(table, text_behind(table, cells));
         else
-            write_whole(table, "run\t" + row_header() + "\n" + line + "\n");
+            write_whole(table, new_table(cells));
     });
 }
 
-void session_store::replace_last(const run_definition& r, const trial_row& row)
+void session_store::make_last_void(const run_definition& r)
 {
-    const fs::path table = table_of(r);
-    std::string text = read_file(table);
-    text.erase(text.rfind('\n', text.size() - 2) + 1);
-    keeping([&] { write_whole(table, text + row_line(row) + "\n"); });
+    const text_table t(table_of(r));
+    keeping([&] { write_whole(table_of(r), t.with_cells(t.rows() - 1, {{"void", "true"}})); });
 }
 
 std::optional<std::string> session_store::acq_time(const run_definition& r) const
 {
-    return folder_.scan_time(code_, "beh/" + table_of(r).filename().string());
+    return folder_.scan_time(code_, scan_name(r));
 }
 
 void session_store::note(const std::string& key, const ordered& value)

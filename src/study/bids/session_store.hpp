@@ -40,8 +40,15 @@ public:
 
     /// What there should be of a session that has ended, and is not. Its tables apart.
     std::vector<std::filesystem::path> missing(const std::vector<const stimulus*>& stimuli) const;
-    /// \throws error (bad_input) where a run, of these in their order, has no table and a later one has.
+    /// Reads all tables, of these runs in their order, as the analysis does. \throws error (bad_input) with
+    /// file and line; or where a run has no table and a later one has.
     void check_tables(const std::vector<const run_definition*>& runs) const;
+    /// \throws error (bad_input) where a table's last line is cut off.
+    void refuse_cut_lines(const std::vector<const run_definition*>& runs) const;
+    /// Cuts off what a crash left of a last line, and keeps it beside the table; adds participant and runs to
+    /// their lists where they are missing there. Returns what it did, a sentence each. After check_tables().
+    /// \throws error (runtime).
+    std::vector<std::string> mend(const std::vector<const run_definition*>& runs);
 
     /// Whether this session goes on with one that was begun.
     bool resumed() const noexcept { return resumed_; }
@@ -58,8 +65,8 @@ public:
     void append(const run_definition& r, const trial_row& row, const std::string& acq_time);
     void append_practice(const run_definition& r, const trial_row& row);
 
-    /// The run's last line does not count: `row` in its place, whole, or not at all. \throws error (runtime).
-    void replace_last(const run_definition& r, const trial_row& row);
+    /// Makes the run's last trial void, in a file written whole. \throws error (runtime).
+    void make_last_void(const run_definition& r);
     /// What append() was told of the run's first sample; nothing before it was.
     std::optional<std::string> acq_time(const run_definition& r) const;
 
@@ -69,6 +76,7 @@ public:
 
 private:
     std::filesystem::path table_of(const run_definition& r) const;
+    std::string scan_name(const run_definition& r) const;
     void settle(bool resume);
     void reserve();
     void release() noexcept;

@@ -11,6 +11,7 @@
 
 #include "core/words.hpp"
 #include "study/bids/describe.hpp"
+#include "study/data/dataset.hpp"
 #include "study/data/session.hpp"
 #include "study/data/text_table.hpp"
 
@@ -49,45 +50,21 @@ bool made(const fs::path& folder)
     return is_new;
 }
 
-// The lines of a table, without their ends; CR LF is as good.
-std::vector<std::string> lines_of(const fs::path& file)
+constexpr const char* new_participants = "participant_id\tage\tsex\thandedness\n";
+constexpr const char* new_scans = "filename\tacq_time\n";
+
+text_table read_or_begin(const fs::path& file, const char* header)
 {
-    std::vector<std::string> lines;
-    const std::string text = read_file(file);
-    for (std::size_t at = 0; at < text.size();) {
-        const std::size_t end = std::min(text.find('\n', at), text.size());
-        lines.push_back(text.substr(at, end - at));
-        if (lines.back().ends_with('\r'))
-            lines.back().pop_back();
-        at = end + 1;
-    }
-    return lines;
+    return there(file) ? text_table(file) : text_table(file, std::string(header));
 }
 
-std::string joined(const std::vector<std::string>& lines)
+// The row with this cell, if any.
+std::optional<std::size_t> find_row(const text_table& t, std::string_view column, std::string_view text)
 {
-    std::string text;
-    for (const std::string& l : lines)
-        text += l + "\n";
-    return text;
-}
-
-bool is_first_cell(const std::string& line, const std::string& cell)
-{
-    return line == cell || line.starts_with(cell + "\t");
-}
-
-// The table with a line added, or put in the place of the one that begins alike.
-std::vector<std::string> with_line(std::vector<std::string> lines, const std::string& first,
-                                   const std::string& line)
-{
-    const auto old = std::find_if(lines.begin(), lines.end(),
-                                  [&](const std::string& l) { return is_first_cell(l, first); });
-    if (old != lines.end())
-        *old = line;
-    else
-        lines.push_back(line);
-    return lines;
+    for (std::size_t row = 0; row < t.rows(); ++row)
+        if (t.cell(row, column) == text)
+            return row;
+    return {};
 }
 
 } // namespace
@@ -213,43 +190,53 @@ fs::path study_folder::scans_of(const std::string& code) const
     return folder_ / ("sub-" + code) / fmt::format("sub-{}_scans.tsv", code);
 }
 
-void study_folder::add_participant(const std::string& code)
+void study_folder::check_lists(const std::string& code) const
+{
+    read_participants(read_or_begin(folder_ / "participants.tsv", new_participants));
+    const text_table scans = read_or_begin(scans_of(code), new_scans);
+    scans.need_column("filename");
+    scans.need_column("acq_time");
+}
+
+bool study_folder::add_participant(const std::string& code)
 {
     const fs::path file = folder_ / "participants.tsv";
-    std::vector<std::string> lines{"participant_id\tage\tsex\thandedness"};
-    if (there(file))
-        lines = lines_of(file);
+    const text_table t = read_or_begin(file, new_participants);
     const std::string id = "sub-" + code;
-    if (std::any_of(lines.begin(), lines.end(), [&](const std::string& l) { return is_first_cell(l, id); }))
-        return;
-    // Whoever added a column finds n/a in it.
-    std::string line = id;
-    for (auto tabs = std::count(lines.front().begin(), lines.front().end(), '\t'); tabs > 0; --tabs)
-        line += "\tn/a";
-    lines.push_back(line);
-    write_whole(file, joined(lines));
+    if (find_row(t, "participant_id", id))
+        return false;
+    write_whole(file, t.with_line({{"participant_id", id}}));
+    return true;
 }
 
 std::optional<std::string> study_folder::scan_time(const std::string& code,
                                                    const std::string& file_name) const
 {
-    const fs::path file = scans_of(code);
-    if (!there(file))
+    const text_table t = read_or_begin(scans_of(code), new_scans);
+    const auto row = find_row(t, "filename", file_name);
+    if (!row)
         return {};
-    for (const std::string& l : lines_of(file))
-        if (is_first_cell(l, file_name) && l != file_name)
-            return l.substr(file_name.size() + 1, l.find('\t', file_name.size() + 1) - file_name.size() - 1);
-    return {};
+    return std::string(t.cell(*row, "acq_time").value_or("n/a"));
 }
 
 void study_folder::add_scan(const std::string& code, const std::string& file_name,
                             const std::string& acq_time)
 {
     const fs::path file = scans_of(code);
-    std::vector<std::string> lines{"filename\tacq_time"};
-    if (there(file))
-        lines = lines_of(file);
-    write_whole(file, joined(with_line(std::move(lines), file_name, file_name + "\t" + acq_time)));
+    const text_table t = read_or_begin(file, new_scans);
+    const named_cells cells{{"filename", file_name}, {"acq_time", acq_time}};
+    const auto row = find_row(t, "filename", file_name);
+    write_whole(file, row ? t.with_cells(*row, cells) : t.with_line(cells));
+}
+
+void study_folder::ignore_cut_lines() const
+{
+    const fs::path file = folder_ / ".bidsignore";
+    std::string text = there(file) ? read_file(file) : std::string();
+    if (("\n" + text).find("\n*.cut-*") != text.npos)
+        return;
+    text += text.empty() || text.ends_with('\n') ? "" : "\n";
+    write_whole(file, text + "*.cut-*\n");
 }
 
 } // namespace tactor::study

@@ -35,6 +35,9 @@ public:
     /// What differs from the sessions that are there and is allowed to, a sentence each.
     const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
+    std::filesystem::path description_of(const run_definition& r) const;
+    std::filesystem::path scans_of(const std::string& code) const;
+
     /// Tries whether what is of the study, and lists a participant, can be written. \throws as
     /// study::try_to_write().
     void try_to_write(const std::string& code) const;
@@ -51,8 +54,12 @@ public:
     /// those of the whole study apart.
     std::vector<std::filesystem::path> files_of(const std::string& code) const;
 
-    /// Adds a line to participants.tsv, with n/a in what it asks besides; nothing where there is one.
-    void add_participant(const std::string& code);
+    /// Reads participants.tsv and sub-CODE_scans.tsv, where they are there. \throws error (bad_input) with
+    /// file and line: see read_participants().
+    void check_lists(const std::string& code) const;
+
+    /// Adds a line to participants.tsv, with n/a in what it asks besides. Returns false where there is one.
+    bool add_participant(const std::string& code);
 
     /// Enters a run's table, whose name counts from sub-CODE on, into sub-CODE_scans.tsv, or its time anew.
     void add_scan(const std::string& code, const std::string& file_name, const std::string& acq_time);
@@ -60,10 +67,11 @@ public:
     /// The time that add_scan() entered for a table; nothing where there is none.
     std::optional<std::string> scan_time(const std::string& code, const std::string& file_name) const;
 
+    /// Tells programs that read BIDS, by .bidsignore, to leave alone what cut_file() keeps.
+    void ignore_cut_lines() const;
+
 private:
     void refuse_others(const experiment_definition& d, bool simulated);
-    std::filesystem::path description_of(const run_definition& r) const;
-    std::filesystem::path scans_of(const std::string& code) const;
 
     std::filesystem::path folder_;
     bool is_new_;

@@ -9,6 +9,7 @@ namespace tactor::study {
 namespace {
 
 constexpr unsigned most = 1000000000;
+constexpr std::size_t sha256_digits = 64;
 
 template <class T>
 std::string cell_of(const std::optional<T>& v)
@@ -44,24 +45,51 @@ std::optional<std::uint64_t> frame_in(const text_table& t, std::size_t row, std:
 
 } // namespace
 
-std::string row_header()
+named_cells cells_of(const trial_row& r)
 {
-    return "onset\tduration\ttrial\tattempt\tmotion\tmethod_1\tmethod_2\tresponse\tresponse_"
-           "time\trating\tvoid\t"
-           "xruns\tstream\tframe_1\tframe_2\tplan_1\tplan_2";
+    return {{"onset", seconds(r.onset_s)},
+            {"duration", seconds(r.duration_s)},
+            {"trial", fmt::format("{}", r.trial)},
+            {"attempt", fmt::format("{}", r.attempt)},
+            {"motion", r.motion},
+            {"method_1", r.method_1},
+            {"method_2", cell_of(r.method_2)},
+            {"response", cell_of(r.response)},
+            {"response_time", seconds(r.response_time_s)},
+            {"rating", cell_of(r.rating)},
+            {"void", fmt::format("{}", r.is_void)},
+            {"xruns", fmt::format("{}", r.xruns)},
+            {"stream", fmt::format("{}", r.stream)},
+            {"frame_1", cell_of(r.frame_1)},
+            {"frame_2", cell_of(r.frame_2)},
+            {"plan_1", r.plan_1},
+            {"plan_2", cell_of(r.plan_2)}};
 }
 
-std::string row_line(const trial_row& r)
+bool is_cut_in_plan(const text_table& t)
 {
-    return fmt::format("{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}",
-                       seconds(r.onset_s), seconds(r.duration_s), r.trial, r.attempt, r.motion, r.method_1,
-                       cell_of(r.method_2), cell_of(r.response), seconds(r.response_time_s),
-                       cell_of(r.rating), r.is_void, r.xruns, r.stream, cell_of(r.frame_1),
-                       cell_of(r.frame_2), r.plan_1, cell_of(r.plan_2));
+    if (!t.is_open())
+        return false;
+    const std::string& column = t.columns().back();
+    const std::size_t row = t.rows() - 1;
+    const std::size_t length = t.cell(row, column).value_or("").size();
+    if (column == "plan_1")
+        return length != sha256_digits;
+    return column == "plan_2" && length != (t.cell(row, "method_2") ? sha256_digits : 0);
+}
+
+text_table read_trials(const std::filesystem::path& table)
+{
+    text_table t(table, last_line::may_be_cut);
+    if (is_cut_in_plan(t))
+        t.leave_out_last();
+    return t;
 }
 
 std::vector<trial_row> read_rows(const text_table& t)
 {
+    for (const auto& [column, cell] : cells_of({}))
+        t.need_column(column);
     std::vector<trial_row> all;
     for (std::size_t i = 0; i < t.rows(); ++i) {
         trial_row r;
@@ -75,7 +103,7 @@ std::vector<trial_row> read_rows(const text_table& t)
         r.response = text_in(t, i, "response");
         r.response_time_s = t.number(i, "response_time");
         r.rating = t.whole(i, "rating", 1, most);
-        r.is_void = t.need(i, "void") == "true";
+        r.is_void = t.truth(i, "void");
         r.xruns = t.whole(i, "xruns", 0, most).value_or(0);
         r.stream = t.whole(i, "stream", 0, most).value_or(0);
         r.frame_1 = frame_in(t, i, "frame_1");

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,9 +34,15 @@ struct trial_row {
     std::string plan_2 = {};
 };
 
-/// The names of the columns, with tabs between, without a line end.
-std::string row_header();
-std::string row_line(const trial_row& r);
+/// The cells of a row, in the order of a new table's columns.
+named_cells cells_of(const trial_row& r);
+
+/// Tests whether a crash cut the table's last line within its last cell, a plan.
+bool is_cut_in_plan(const text_table& t);
+
+/// Reads a table of trials; a last line that a crash cut off is none of its rows. \throws error (bad_input)
+/// with file and line.
+text_table read_trials(const std::filesystem::path& table);
 
 /// All lines of a table. \throws error (bad_input) with file and line.
 std::vector<trial_row> read_rows(const text_table& t);

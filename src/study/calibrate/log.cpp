@@ -16,6 +16,7 @@
 #include <tactor/error.hpp>
 
 #include "files/output_file.hpp"
+#include "files/text_file.hpp"
 #include "study/bids/disk.hpp"
 #include "study/data/kept.hpp"
 #include "study/data/text_table.hpp"
@@ -54,6 +55,20 @@ void take_beginning(const fs::path& file, calibration_settings& s)
                         "a session goes on as it was begun");
 }
 
+std::string new_log()
+{
+    std::string header;
+    for (const auto& [column, cell] : log_cells({}))
+        header += fmt::format("{}{}", header.empty() ? "" : "\t", column);
+    return header + '\n';
+}
+
+bool lacks_header(const std::string& log)
+{
+    const std::string header = new_log();
+    return log.size() + 1 < header.size() && header.starts_with(log);
+}
+
 // What a user can name wrongly; all else the system refuses.
 bool bad_name(int code)
 {
@@ -77,7 +92,7 @@ void check_beginning(const fs::path& log, calibration_settings& s)
 }
 
 calibration_log::calibration_log(fs::path file, bool resume, calibration_settings& s)
-    : file_(std::move(file)), synced_(s.simulate.empty())
+    : file_(std::move(file)), synced_(s.simulate.empty()), lines_(file_, new_log())
 {
     if (const fs::path beginning = settings_file(file_); there(beginning)) { // before anything is written
         calibration_settings tried = s;
@@ -104,16 +119,11 @@ calibration_log::~calibration_log()
 // Locked: nobody else writes them.
 void calibration_log::remove_empty() const noexcept
 {
-    if (!made_ || !lines_.empty())
+    if (!made_ || lines_.rows() > 0)
         return;
     std::error_code ignored;
     fs::remove(settings_file(file_), ignored);
     fs::remove(file_, ignored);
-}
-
-void calibration_log::fail(int code) const
-{
-    throw error(error_kind::runtime, file_.string(), std::strerror(code), what_is_kept(code));
 }
 
 // O_NONBLOCK: somebody's pipe is not waited for.
@@ -136,14 +146,14 @@ void calibration_log::settle(bool resume, calibration_settings& s)
 {
     const fs::path beginning = settings_file(file_);
     const bool begun = there(beginning);
-    const std::string text = take_whole_lines();
+    lines_ = read_lines();
     // One in which nothing was answered, as where the device was not there, is begun anew.
-    if (!resume && !lines_.empty())
+    if (!resume && lines_.rows() > 0)
         throw error(error_kind::bad_input, file_.string(), "there is such a file already",
                     "--resume goes on with the session that it is of; another needs other names");
     if (begun && resume) {
         take_beginning(beginning, s);
-    } else if (!lines_.empty()) {
+    } else if (lines_.rows() > 0) {
         throw error(error_kind::bad_input, beginning.string(),
                     "it is missing, which says how the log was begun", "begin another, with another log");
     } else {
@@ -152,51 +162,45 @@ void calibration_log::settle(bool resume, calibration_settings& s)
         out.write(said.data(), static_cast<std::int64_t>(said.size()));
         out.commit();
     }
-    if (text.empty())
-        write(fmt::format("{}\n", log_header()));
     if (synced_)
         detail::sync_folder(file_.parent_path()); // the log has a name that must last, too
 }
 
-// The file's text up to its last line end; the rest, which a crash left, is cut off.
-std::string calibration_log::take_whole_lines()
+// A log whose header is cut off has no line; nor has an empty one.
+text_table calibration_log::read_lines() const
 {
-    std::string text = read_file(file_);
-    const std::size_t whole = text.rfind('\n') == text.npos ? 0 : text.rfind('\n') + 1;
-    const std::string_view header = log_header();
-    const std::string_view begin = std::string_view(text).substr(0, header.size());
-    if (begin != header.substr(0, begin.size()) || (whole > 0 && text.find('\n') != header.size()))
-        throw error(error_kind::bad_input, file_.string(), "it is no log of a calibration",
-                    "name another log");
-    if (whole < text.size() && ::ftruncate(fd_.get(), static_cast<off_t>(whole)) != 0)
-        fail(errno);
-    text.resize(whole);
-    if (::lseek(fd_.get(), 0, SEEK_END) < 0)
-        fail(errno);
-    for (std::size_t at = std::min(header.size() + 1, text.size()); at < text.size();) {
-        const std::size_t end = text.find('\n', at);
-        lines_.push_back(text.substr(at, end - at));
-        at = end + 1;
-    }
-    return text;
+    const std::string text = read_file(file_);
+    if (lacks_header(text))
+        return {file_, new_log()};
+    detail::refuse_no_text(text, file_.string(), "name the log, with tabs between the columns");
+    for (const auto& [column, cell] : log_cells({}))
+        if (text.find(column) == text.npos)
+            throw error(error_kind::bad_input, file_.string(), "it is no log of a calibration",
+                        "name another log");
+    text_table t(file_, text, last_line::may_be_cut);
+    if (t.is_open() && t.columns().back() == "onset_frame")
+        if (const auto frame = t.cell(t.rows() - 1, "onset_frame"); frame && frame->starts_with('n'))
+            t.leave_out_last(); // n/a, cut off
+    return t;
 }
 
-void calibration_log::write(const std::string& text)
+std::optional<fs::path> calibration_log::begin()
 {
-    for (std::size_t done = 0; done < text.size();) {
-        const ssize_t n = ::write(fd_.get(), text.data() + done, text.size() - done);
-        if (n > 0)
-            done += static_cast<std::size_t>(n);
-        else if (n == 0 || errno != EINTR)
-            fail(n == 0 ? ENOSPC : errno);
-    }
-    if (synced_ && ::fdatasync(fd_.get()) != 0)
-        fail(errno);
+    std::optional<fs::path> kept;
+    const std::string text = read_file(file_);
+    const bool anew = lacks_header(text);
+    if (lines_.cut_at() || (anew && !text.empty()))
+        kept = cut_file(file_, lines_.cut_at().value_or(0));
+    else if (const std::string end = lines_.missing_end(); !end.empty())
+        append_text(file_, end, synced_);
+    if (anew)
+        append_text(file_, new_log(), synced_);
+    return kept;
 }
 
 void calibration_log::append(const calibration_record& r)
 {
-    write(log_line(r) + '\n');
+    append_text(file_, lines_.line(log_cells(r)), synced_);
     made_ = false;
 }
 

@@ -5,19 +5,18 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "core/owned.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/calibrate/observer.hpp"
+#include "study/data/text_table.hpp"
 
 namespace tactor::study {
 
-/// The first line, without its end.
-std::string_view log_header();
-std::string log_line(const calibration_record& r);
+/// The cells of a line, in the order of a new log's columns.
+named_cells log_cells(const calibration_record& r);
 
 /// What a session is begun with, as JSON.
 std::string settings_text(const calibration_settings& s);
@@ -32,7 +31,7 @@ void check_beginning(const std::filesystem::path& log, calibration_settings& s);
 class calibration_log {
 public:
     /// Opens and locks the log, and settles how the session began: a new one writes `s` beside it, one that
-    /// resumes takes its date from there. What a crash left of a line is cut off.
+    /// resumes takes its date from there.
     /// \throws error: bad_input where a log is there already (not `resume`), it is in use, it is none, or
     ///         it was begun otherwise; runtime for what the system refuses.
     calibration_log(std::filesystem::path file, bool resume, calibration_settings& s);
@@ -41,9 +40,13 @@ public:
     calibration_log(const calibration_log&) = delete;
     calibration_log& operator=(const calibration_log&) = delete;
 
-    /// The lines that were there.
-    const std::vector<std::string>& lines() const noexcept { return lines_; }
+    /// The lines that were there, but for one that a crash cut off.
+    const text_table& lines() const noexcept { return lines_; }
     const std::filesystem::path& file() const noexcept { return file_; }
+    /// Cuts off what a crash left of a last line and writes the header where there is none; to be called when
+    /// the lines are known to be this session's. Returns the file that keeps what was cut off, if any.
+    /// \throws error (runtime).
+    std::optional<std::filesystem::path> begin();
     /// Appends a line; it is on the disk when this returns, but of a simulated session, which can be had
     /// again, only written. \throws error (runtime).
     void append(const calibration_record& r);
@@ -51,16 +54,14 @@ public:
 private:
     void open();
     void remove_empty() const noexcept;
-    std::string take_whole_lines();
+    text_table read_lines() const;
     void settle(bool resume, calibration_settings& s);
-    void write(const std::string& text);
-    [[noreturn]] void fail(int code) const;
 
     std::filesystem::path file_;
     detail::owned_fd fd_;
     bool synced_;
     bool made_ = false; ///< here, and no answer is in it
-    std::vector<std::string> lines_ = {};
+    text_table lines_;
 };
 
 /// Gives the lines' answers to a session that begins; a simulated observer is asked each of them too, so that

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: MIT
 // What stands in the log, and beside it.
+#include <algorithm>
 #include <charconv>
+#include <cstdint>
 #include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <tactor/error.hpp>
-
-#include "core/split.hpp"
+#include "core/words.hpp"
 #include "study/calibrate/log.hpp"
 
 namespace tactor::study {
 namespace {
 
-constexpr std::string_view missing = "n/a";
-constexpr std::size_t columns = 10;
+const std::string missing = "n/a";
+constexpr double most_frame = 9e15; // a double counts them up to there
 
-std::string_view truth(bool b)
+std::string truth(bool b)
 {
     return b ? "true" : "false";
 }
@@ -33,36 +33,56 @@ std::optional<T> number_in(std::string_view cell)
 }
 
 // Whatever the line says: what it should say is compared afterwards.
-calibration_answer answer_in(std::string_view line)
+calibration_answer answer_in(const text_table& log, std::size_t row)
 {
-    const auto cells = detail::split(line, '\t');
-    if (cells.size() != columns)
-        return {};
+    const auto number = [&](std::string_view column) {
+        const auto cell = log.cell(row, column);
+        return cell ? number_in<double>(*cell) : std::nullopt;
+    };
     calibration_answer a;
-    a.interval = number_in<unsigned>(cells[4]).value_or(0);
-    if (cells[4] == "set")
-        a.set_dbfs = number_in<double>(cells[2]);
-    a.response_time_s = number_in<double>(cells[8]);
-    a.onset_frame = number_in<std::uint64_t>(cells[9]);
+    const double interval = number("response").value_or(0.0);
+    a.interval = interval == 1.0 ? 1 : interval == 2.0 ? 2 : 0;
+    if (log.cell(row, "response") == "set")
+        a.set_dbfs = number("level_dbfs");
+    a.response_time_s = number("response_time_s");
+    const double frame = number("onset_frame").value_or(-1.0);
+    if (frame >= 0.0 && frame < most_frame)
+        a.onset_frame = static_cast<std::uint64_t>(frame);
     return a;
+}
+
+// Other programs write numbers with more or fewer digits and truths in capitals.
+bool is_same(const std::string& expected, std::optional<std::string_view> cell)
+{
+    if (!cell)
+        return expected == missing;
+    if (expected == *cell || expected == in_small_letters(std::string(*cell)))
+        return true;
+    const auto number = number_in<double>(expected);
+    return number && number == number_in<double>(*cell);
+}
+
+bool is_same(const named_cells& expected, const text_table& log, std::size_t row)
+{
+    return std::all_of(expected.begin(), expected.end(),
+                       [&](const auto& c) { return is_same(c.second, log.cell(row, c.first)); });
 }
 
 } // namespace
 
-std::string_view log_header()
-{
-    return "trial\ttactor\tlevel_dbfs\tinterval\tresponse\tcorrect\treversal\tpractice\tresponse_time_s\t"
-           "onset_frame";
-}
-
-std::string log_line(const calibration_record& r)
+named_cells log_cells(const calibration_record& r)
 {
     const calibration_trial& t = r.trial;
-    return fmt::format("{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}", t.number, t.tactor, t.level_dbfs,
-                       t.interval != 0 ? fmt::format("{}", t.interval) : missing, r.response,
-                       r.correct ? truth(*r.correct) : missing, truth(r.reversal), truth(t.practice),
-                       r.response_time_s ? fmt::format("{:.3f}", *r.response_time_s) : missing,
-                       r.onset_frame ? fmt::format("{}", *r.onset_frame) : missing);
+    return {{"trial", fmt::format("{}", t.number)},
+            {"tactor", fmt::format("{}", t.tactor)},
+            {"level_dbfs", fmt::format("{}", t.level_dbfs)},
+            {"interval", t.interval != 0 ? fmt::format("{}", t.interval) : missing},
+            {"response", r.response},
+            {"correct", r.correct ? truth(*r.correct) : missing},
+            {"reversal", truth(r.reversal)},
+            {"practice", truth(t.practice)},
+            {"response_time_s", r.response_time_s ? fmt::format("{:.3f}", *r.response_time_s) : missing},
+            {"onset_frame", r.onset_frame ? fmt::format("{}", *r.onset_frame) : missing}};
 }
 
 std::string settings_text(const calibration_settings& s)
@@ -94,21 +114,18 @@ std::string settings_text(const calibration_settings& s)
 
 void replay(calibration& c, const calibration_log& log, observer* simulated)
 {
-    std::size_t at = 1;
-    for (const std::string& line : log.lines()) {
-        const source_place place{log.file().string(), static_cast<unsigned>(++at), 0};
+    const text_table& lines = log.lines();
+    for (std::size_t row = 0; row < lines.rows(); ++row) {
         if (c.done())
-            throw error(error_kind::bad_input, place, "the session ends before this line",
-                        "the log is not of this session; begin another, with another log");
+            lines.refuse(row, "the session ends before this line",
+                         "the log is not of this session; begin another, with another log");
         const calibration_trial trial = c.next();
-        const calibration_answer own = simulated != nullptr ? simulated->answer(trial) : answer_in(line);
+        const calibration_answer own =
+            simulated != nullptr ? simulated->answer(trial) : answer_in(lines, row);
         const bool possible = trial.interval == 0 || own.interval == 1 || own.interval == 2;
-        std::string expected = "another answer";
-        if (possible)
-            expected = log_line(c.answer(own));
-        if (expected != line)
-            throw error(error_kind::bad_input, place, "this is not how the session went",
-                        "the log was changed, or is not of this session; begin another, with another log");
+        if (!possible || !is_same(log_cells(c.answer(own)), lines, row))
+            lines.refuse(row, "this is not how the session went",
+                         "the log was changed, or is not of this session; begin another, with another log");
     }
 }
 

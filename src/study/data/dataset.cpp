@@ -27,21 +27,6 @@ std::string_view code_of(std::string_view id)
     return file_name_of(id) == id ? id : std::string_view{};
 }
 
-std::vector<std::string> read_participants(const fs::path& folder)
-{
-    const text_table t(folder / "participants.tsv");
-    std::vector<std::string> all;
-    for (std::size_t i = 0; i < t.rows(); ++i) {
-        const std::string_view code = code_of(t.need(i, "participant_id"));
-        if (code.empty())
-            t.refuse(i, "this is no participant_id", "sub- and letters and digits");
-        if (std::find(all.begin(), all.end(), code) != all.end())
-            t.refuse(i, fmt::format("sub-{} is there twice", code), "everybody has one line");
-        all.emplace_back(code);
-    }
-    return all;
-}
-
 // Data of somebody who is not in the list would be left out without a word.
 void refuse_strangers(const fs::path& folder, const std::vector<std::string>& known)
 {
@@ -110,14 +95,6 @@ std::size_t place_of(const text_table& t, std::size_t row, std::string_view colu
     return static_cast<std::size_t>(at - known.begin());
 }
 
-bool is_void(const text_table& t, std::size_t row)
-{
-    const std::string_view v = t.need(row, "void");
-    if (v != "true" && v != "false")
-        t.refuse(row, fmt::format("void is \"{}\"", v), "true or false");
-    return v == "true";
-}
-
 unsigned rating_of(const text_table& t, std::size_t row, unsigned scale)
 {
     const auto response = t.whole(row, "response", 1, scale);
@@ -156,27 +133,15 @@ trial read_trial(const text_table& t, std::size_t row, const run_outline& run)
     return r;
 }
 
-run_data read_run(const fs::path& file, const run_outline& run)
+// A session that lacks trials can go on; one that has them all never needs to.
+run_data read_whole_run(const fs::path& file, const run_outline& run)
 {
-    const text_table t(file);
-    run_data d;
-    std::set<unsigned> seen;
-    for (std::size_t i = 0; i < t.rows(); ++i) {
-        const auto place = t.whole(i, "trial", 1, 1000000);
-        if (!place)
-            t.refuse(i, "there is no trial", "its place in the sequence, from 1");
-        const unsigned attempt = t.whole(i, "attempt", 1, 1000000).value_or(1);
-        if (is_void(t, i)) {
-            ++d.voids;
-            continue;
-        }
-        if (!seen.insert(*place).second)
-            t.refuse(i, fmt::format("trial {} counts twice", *place), "all its attempts but one are void");
-        trial r = read_trial(t, i, run);
-        r.place = *place;
-        r.attempt = attempt;
-        d.trials.push_back(r);
-    }
+    const text_table t(file, last_line::may_be_cut);
+    run_data d = read_run(t, run);
+    if (t.cut_at())
+        t.refuse_cut(d.trials.size() < run.trials
+                         ? "tactor experiment --resume keeps what is left of it beside the table, and goes on"
+                         : "complete it, or delete it");
     return d;
 }
 
@@ -199,7 +164,7 @@ public:
         std::vector<run_data> runs;
         for (const run_outline& run : set_.experiment.runs) {
             const fs::path table = beh / fmt::format("{}_task-{}_beh.tsv", sub, run.file_name);
-            runs.push_back(is_there(folder_, table) ? read_run(folder_ / table, run) : run_data{});
+            runs.push_back(is_there(folder_, table) ? read_whole_run(folder_ / table, run) : run_data{});
         }
         if (has_tables)
             refuse_unknown_tables(folder_ / beh, sub);
@@ -266,6 +231,46 @@ private:
 
 } // namespace
 
+std::vector<std::string> read_participants(const text_table& t)
+{
+    t.need_column("participant_id");
+    std::vector<std::string> all;
+    for (std::size_t i = 0; i < t.rows(); ++i) {
+        const std::string_view code = code_of(t.need(i, "participant_id"));
+        if (code.empty())
+            t.refuse(i, "this is no participant_id", "sub- and letters and digits");
+        if (std::find(all.begin(), all.end(), code) != all.end())
+            t.refuse(i, fmt::format("sub-{} is there twice", code), "everybody has one line");
+        all.emplace_back(code);
+    }
+    return all;
+}
+
+run_data read_run(const text_table& t, const run_outline& run)
+{
+    for (const char* column : {"trial", "attempt", "motion", "method_1", "response", "void", "response_time"})
+        t.need_column(column);
+    run_data d;
+    std::set<unsigned> seen;
+    for (std::size_t i = 0; i < t.rows(); ++i) {
+        const auto place = t.whole(i, "trial", 1, 1000000);
+        if (!place)
+            t.refuse(i, "there is no trial", "its place in the sequence, from 1");
+        const unsigned attempt = t.whole(i, "attempt", 1, 1000000).value_or(1);
+        if (t.truth(i, "void")) {
+            ++d.voids;
+            continue;
+        }
+        if (!seen.insert(*place).second)
+            t.refuse(i, fmt::format("trial {} counts twice", *place), "all its attempts but one are void");
+        trial r = read_trial(t, i, run);
+        r.place = *place;
+        r.attempt = attempt;
+        d.trials.push_back(r);
+    }
+    return d;
+}
+
 dataset read_dataset(const fs::path& folder, const selection& who)
 {
     std::error_code failed;
@@ -273,7 +278,7 @@ dataset read_dataset(const fs::path& folder, const selection& who)
         throw error(error_kind::bad_input, folder.string(),
                     fs::exists(folder, failed) ? "it is no folder" : "No such file or directory",
                     "name the folder of a study");
-    const std::vector<std::string> known = read_participants(folder);
+    const std::vector<std::string> known = read_participants(text_table(folder / "participants.tsv"));
     if (known.empty())
         throw error(error_kind::bad_input, (folder / "participants.tsv").string(), "nobody is in it",
                     "tactor experiment adds a line for each participant");

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "study/data/outline.hpp"
+#include "study/data/text_table.hpp"
 
 namespace tactor::study {
 
@@ -58,6 +59,12 @@ struct selection {
     std::vector<std::string> without = {};
     std::map<std::string, std::string> reasons = {}; ///< why a code of `without` is there
 };
+
+/// Reads the codes in participants.tsv, without sub-. \throws error (bad_input) with file and line.
+std::vector<std::string> read_participants(const text_table& people);
+
+/// Reads the trials of a run. \throws error (bad_input) with file and line: see read_dataset().
+run_data read_run(const text_table& t, const run_outline& run);
 
 /// Reads the folder; of participants who are not selected nothing is opened.
 /// \throws error (bad_input) with file and line for what is not as above: a code that is not known, nobody

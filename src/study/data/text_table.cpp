@@ -4,14 +4,18 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <fstream>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "core/split.hpp"
+#include "core/words.hpp"
 #include "files/text_file.hpp"
 
 namespace tactor::study {
 namespace {
+
+constexpr std::string_view utf8_hint = "save it as UTF-8, or convert it: iconv -f LATIN1 -t UTF-8 OLD > NEW";
 
 [[noreturn]] void refuse_line(const std::string& file, std::size_t line, std::string_view why,
                               std::string_view hint)
@@ -19,15 +23,22 @@ namespace {
     throw error(error_kind::bad_input, source_place{file, static_cast<unsigned>(line)}, why, hint);
 }
 
-void check_cells(const std::string& file, std::size_t line, const std::vector<std::string_view>& cells,
-                 std::size_t columns)
+constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+
+// Other programs put these between the cells by default.
+void refuse_other_separators(const std::string& file, const table_line& header)
 {
-    if (cells.size() != columns)
-        refuse_line(file, line, fmt::format("it has {} columns, not {}", cells.size(), columns),
-                    "there is a tab between two of them, and n/a where there is no value");
-    for (const std::string_view c : cells)
-        if (c.empty() || c.find('\0') != std::string_view::npos)
-            refuse_line(file, line, "a cell is empty", "n/a where there is no value");
+    struct separator {
+        char sign;
+        std::string_view name;
+    };
+    constexpr separator others[] = {{',', "commas"}, {';', "semicolons"}, {' ', "spaces"}};
+    std::string_view line = header.cells.front().text;
+    for (const auto& [sign, name] : others)
+        if (header.cells.size() == 1 && line.find(sign) != line.npos)
+            refuse_line(file, header.number, fmt::format("{} are between the columns, not tabs", name),
+                        "save it with tabs: in a spreadsheet as text with {Tab} between fields, in R and "
+                        "pandas with sep = \"\\t\"");
 }
 
 } // namespace
@@ -86,37 +97,65 @@ std::vector<std::filesystem::path> list_folder(const std::filesystem::path& fold
     return all;
 }
 
-text_table::text_table(const std::filesystem::path& file) : file_(file.string()), text_(read_file(file))
+text_table::text_table(const std::filesystem::path& file, last_line end)
+    : text_table(file, read_file(file), end)
 {
-    std::string_view rest = text_;
-    if (rest.starts_with("\xef\xbb\xbf"))
-        rest.remove_prefix(3);
-    if (rest.empty())
+}
+
+text_table::text_table(const std::filesystem::path& file, std::string text, last_line end)
+    : file_(file.string()), text_(std::move(text))
+{
+    detail::refuse_no_text(text_, file_, "save it as text with tabs between the columns");
+    const std::size_t begin = text_.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
+    std::vector<table_line> lines = split_table(text_, begin);
+    if (lines.empty())
         throw error(error_kind::bad_input, file_, "it is empty", "the first line names the columns");
-    std::size_t line = 0;
-    while (!rest.empty()) {
-        ++line;
-        const std::size_t end = rest.find('\n');
-        if (end == std::string_view::npos)
-            refuse_line(file_, line, "the last line has no end",
-                        "it was cut off in the middle; tactor experiment --resume mends that");
-        std::string_view text = rest.substr(0, end);
-        rest.remove_prefix(end + 1);
-        if (text.ends_with('\r'))
-            text.remove_suffix(1);
-        std::vector<std::string_view> cells = detail::split(text, '\t');
-        check_cells(file_, line, cells, line == 1 ? cells.size() : columns_.size());
-        if (line > 1) {
-            cells_.push_back(std::move(cells));
-            continue;
-        }
-        columns_ = std::move(cells);
-        for (std::size_t i = 0; i < columns_.size(); ++i)
-            if (std::find(columns_.begin(), columns_.begin() + static_cast<std::ptrdiff_t>(i), columns_[i]) !=
-                columns_.begin() + static_cast<std::ptrdiff_t>(i))
-                refuse_line(file_, 1, fmt::format("the column {} is there twice", columns_[i]),
-                            "each has a name of its own");
+    take_header(std::move(lines.front()));
+    for (std::size_t i = 1; i < lines.size(); ++i)
+        take_row(std::move(lines[i]), end == last_line::may_be_cut);
+}
+
+void text_table::take_header(table_line line)
+{
+    refuse_other_separators(file_, line);
+    while (line.cells.back().text.empty())
+        line.cells.pop_back();
+    if (line.ended && text_[line.end()] == '\r')
+        line_end_ = text_.substr(line.end(), 2) == "\r\n" ? "\r\n" : "\r";
+    for (table_cell& c : line.cells) {
+        if (!is_plain_text(c.text))
+            refuse_line(file_, line.number, "a column's name is not UTF-8", utf8_hint);
+        if (c.text.empty())
+            refuse_line(file_, line.number, "a column has no name",
+                        "leave out the numbers of rows: index = False in pandas, row.names = FALSE in R");
+        if (has(c.text))
+            refuse_line(file_, line.number, fmt::format("the column {} is there twice", c.text),
+                        "each has a name of its own");
+        columns_.push_back(std::move(c.text));
     }
+}
+
+void text_table::take_row(table_line line, bool may_be_cut)
+{
+    while (line.cells.size() > columns_.size() && line.cells.back().text.empty())
+        line.cells.pop_back();
+    const bool plain = std::all_of(line.cells.begin(), line.cells.end(),
+                                   [](const table_cell& c) { return is_plain_text(c.text); });
+    const bool few = line.cells.size() < columns_.size();
+    if (may_be_cut && !line.ended && (few || !plain)) {
+        cut_ = std::move(line);
+        return;
+    }
+    if (!plain)
+        refuse_line(file_, line.number, "it is not UTF-8", utf8_hint);
+    if (line.cells.size() == columns_.size() + 1 && rows_.empty() && line.cells.front().text == "1")
+        refuse_line(file_, line.number, "it begins with the row's number, which has no column",
+                    "leave it out: row.names = FALSE in R");
+    if (line.cells.size() != columns_.size())
+        refuse_line(file_, line.number,
+                    fmt::format("it has {}, not {}", counted(line.cells.size(), "column"), columns_.size()),
+                    "there is a tab between two of them, and n/a where there is no value");
+    rows_.push_back(std::move(line));
 }
 
 std::optional<std::size_t> text_table::find(std::string_view column) const
@@ -126,13 +165,17 @@ std::optional<std::size_t> text_table::find(std::string_view column) const
                                 : std::optional(static_cast<std::size_t>(at - columns_.begin()));
 }
 
+void text_table::need_column(std::string_view column) const
+{
+    if (!has(column))
+        refuse_line(file_, 1, fmt::format("there is no column {}", column), "tactor-analyze(1) lists them");
+}
+
 std::optional<std::string_view> text_table::cell(std::size_t row, std::string_view column) const
 {
-    const auto at = find(column);
-    if (!at)
-        refuse_line(file_, 1, fmt::format("there is no column {}", column), "tactor-analyze(1) lists them");
-    const std::string_view text = cells_[row][*at];
-    return text == "n/a" ? std::nullopt : std::optional(text);
+    need_column(column);
+    const table_cell& c = rows_[row].cells[*find(column)];
+    return c.missing() ? std::nullopt : std::optional<std::string_view>(c.text);
 }
 
 std::string_view text_table::need(std::size_t row, std::string_view column) const
@@ -149,12 +192,13 @@ std::optional<unsigned> text_table::whole(std::size_t row, std::string_view colu
     const auto text = cell(row, column);
     if (!text)
         return {};
-    unsigned v = 0;
+    double v = 0.0; // pandas makes 3.0 of a 3 where another row has none
     const auto [end, failed] = std::from_chars(text->data(), text->data() + text->size(), v);
-    if (failed != std::errc() || end != text->data() + text->size() || v < least || v > most)
+    if (failed != std::errc() || end != text->data() + text->size() || v != std::floor(v) || v < least ||
+        v > most)
         refuse(row, fmt::format("{} is \"{}\"", column, *text),
                fmt::format("a whole number from {} to {}", least, most));
-    return v;
+    return static_cast<unsigned>(v);
 }
 
 std::optional<double> text_table::number(std::size_t row, std::string_view column) const
@@ -165,13 +209,70 @@ std::optional<double> text_table::number(std::size_t row, std::string_view colum
     double v = 0.0;
     const auto [end, failed] = std::from_chars(text->data(), text->data() + text->size(), v);
     if (failed != std::errc() || end != text->data() + text->size() || !std::isfinite(v))
-        refuse(row, fmt::format("{} is \"{}\"", column, *text), "a number, or n/a");
+        refuse(row, fmt::format("{} is \"{}\"", column, *text), "a number with a point, or n/a");
     return v;
+}
+
+bool text_table::truth(std::size_t row, std::string_view column) const
+{
+    const std::string_view text = need(row, column);
+    const std::string small = in_small_letters(std::string(text));
+    if (small != "true" && small != "false")
+        refuse(row, fmt::format("{} is \"{}\"", column, text), "true or false");
+    return small == "true";
 }
 
 void text_table::refuse(std::size_t row, std::string_view why, std::string_view hint) const
 {
-    refuse_line(file_, row + 2, why, hint);
+    refuse_line(file_, rows_[row].number, why, hint);
+}
+
+void text_table::leave_out_last()
+{
+    cut_ = std::move(rows_.back());
+    rows_.pop_back();
+}
+
+std::optional<std::size_t> text_table::cut_at() const noexcept
+{
+    return cut_ ? std::optional(cut_->begin()) : std::nullopt;
+}
+
+void text_table::refuse_cut(std::string_view hint) const
+{
+    refuse_line(file_, cut_->number, "the last line is cut off", hint);
+}
+
+std::string text_table::line(const named_cells& cells) const
+{
+    std::string text;
+    for (const std::string& column : columns_) {
+        const auto named =
+            std::find_if(cells.begin(), cells.end(), [&](const auto& c) { return c.first == column; });
+        text += named == cells.end() ? "n/a" : written_cell(named->second);
+        text += &column == &columns_.back() ? line_end_ : "\t";
+    }
+    return text;
+}
+
+std::string text_table::missing_end() const
+{
+    if (text_.ends_with('\n') || text_.ends_with('\r'))
+        return {};
+    const bool empty =
+        is_open() && rows_.back().end() == text_.size() && rows_.back().cells.back().text.empty();
+    return (empty ? "n/a" : "") + line_end_;
+}
+
+std::string text_table::with_cells(std::size_t row, const named_cells& cells) const
+{
+    std::string text = text_;
+    const std::vector<table_cell>& old = rows_[row].cells;
+    for (std::size_t i = old.size(); i-- > 0;) // from the end, so that places before it stay
+        for (const auto& [column, value] : cells)
+            if (columns_[i] == column)
+                text.replace(old[i].begin, old[i].end - old[i].begin, written_cell(value));
+    return text;
 }
 
 } // namespace tactor::study

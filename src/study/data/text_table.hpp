@@ -8,9 +8,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <tactor/error.hpp>
+
+#include "study/data/table_lines.hpp"
 
 namespace tactor::study {
 
@@ -29,36 +32,74 @@ bool is_there(const std::filesystem::path& study, const std::filesystem::path& b
 /// What is in a folder, in no order. \throws error (bad_input) where it cannot be read.
 std::vector<std::filesystem::path> list_folder(const std::filesystem::path& folder);
 
-/// A table with a header line. "n/a" is a value that is not there.
+/// Cells by the names of their columns.
+using named_cells = std::vector<std::pair<std::string_view, std::string>>;
+
+/// Says whether a table's last line may be one that a crash cut off.
+enum class last_line { whole, may_be_cut };
+
+/// A table with a header line, as tactor writes it and other programs save it: see table_lines.hpp. A byte
+/// order mark before it and empty cells after a line's last are left out.
 class text_table {
 public:
-    /// Lines may end in CR LF. \throws error (bad_input) with file and line: no header, a column that is
-    /// there twice, an empty cell, a line with too many or too few, an end without a line end.
-    explicit text_table(const std::filesystem::path& file);
+    /// \throws error (bad_input) with file and line: UTF-16 or another kind of file, commas or other
+    /// separators in place of tabs, no header, a column without a name or there twice, a line with too many
+    /// or too few cells.
+    explicit text_table(const std::filesystem::path& file, last_line end = last_line::whole);
+    /// The same of a text; `file` names it in messages.
+    text_table(const std::filesystem::path& file, std::string text, last_line end = last_line::whole);
 
-    std::size_t rows() const noexcept { return cells_.size(); }
+    std::size_t rows() const noexcept { return rows_.size(); }
+    const std::vector<std::string>& columns() const noexcept { return columns_; }
     bool has(std::string_view column) const { return find(column).has_value(); }
+    /// \throws error (bad_input) where there is no such column, with rows or without.
+    void need_column(std::string_view column) const;
     /// A cell, or nothing for n/a. \throws error (bad_input) where there is no such column.
     std::optional<std::string_view> cell(std::size_t row, std::string_view column) const;
     /// The same of what must be there.
     std::string_view need(std::size_t row, std::string_view column) const;
-    /// A whole number. \throws error (bad_input) for what is none, or below `least` or above `most`.
+    /// A whole number, also as 3.0. \throws error (bad_input) for what is none, or below `least` or above
+    /// `most`.
     std::optional<unsigned> whole(std::size_t row, std::string_view column, unsigned least,
                                   unsigned most) const;
     /// A finite number.
     std::optional<double> number(std::size_t row, std::string_view column) const;
+    /// True or false, in capitals or not; it must be there.
+    bool truth(std::size_t row, std::string_view column) const;
     /// Refuses a row, naming its line.
     [[noreturn]] void refuse(std::size_t row, std::string_view why, std::string_view hint = {}) const;
 
     const std::string& file() const noexcept { return file_; }
 
+    /// True where no line end follows the last row.
+    bool is_open() const noexcept { return !rows_.empty() && !cut_ && !rows_.back().ended; }
+    /// Takes the last row for one that is cut off.
+    void leave_out_last();
+    /// The byte at which a line begins that is cut off; it is none of the rows.
+    std::optional<std::size_t> cut_at() const noexcept;
+    /// Refuses the line that is cut off. There is one.
+    [[noreturn]] void refuse_cut(std::string_view hint) const;
+
+    /// Returns a line with its end: n/a where nothing is named, and no column that is not there.
+    std::string line(const named_cells& cells) const;
+    /// Returns what the file's last line lacks before another one can follow: mostly nothing.
+    std::string missing_end() const;
+    /// Returns the file's text with a line at its end.
+    std::string with_line(const named_cells& cells) const { return text_ + missing_end() + line(cells); }
+    /// Returns the file's text with these cells of a row changed, the others as they are.
+    std::string with_cells(std::size_t row, const named_cells& cells) const;
+
 private:
     std::optional<std::size_t> find(std::string_view column) const;
+    void take_header(table_line line);
+    void take_row(table_line line, bool may_be_cut);
 
     std::string file_;
     std::string text_;
-    std::vector<std::string_view> columns_; ///< into text_
-    std::vector<std::vector<std::string_view>> cells_;
+    std::string line_end_ = "\n"; ///< as the header has it
+    std::vector<std::string> columns_;
+    std::vector<table_line> rows_;
+    std::optional<table_line> cut_;
 };
 
 } // namespace tactor::study

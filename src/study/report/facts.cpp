@@ -107,7 +107,7 @@ void add_table(const fs::path& folder, const fs::path& table, session_facts& s)
         }
         if (const auto came = waiting.extract(t.need(i, "trial")); !came.empty())
             c.again += came.mapped();
-        if (t.need(i, "void") != "true") {
+        if (!t.truth(i, "void")) {
             if (t.has("stream"))
                 if (const auto stream = t.whole(i, "stream", 0, 1000000000))
                     streams.insert(*stream);

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// The tables of a session that goes on: whether they can be read, and what is mended in them.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "study/bids/disk.hpp"
+#include "study/bids/session_store.hpp"
+#include "study/bids/trial_row.hpp"
+#include "study/data/session.hpp"
+#include "study/data/text_table.hpp"
+
+namespace tactor::study {
+
+namespace fs = std::filesystem;
+
+void session_store::check_tables(const std::vector<const run_definition*>& runs) const
+{
+    folder_.check_lists(code_);
+    const run_definition* lost = nullptr;
+    for (const run_definition* r : runs) {
+        check_description(folder_.description_of(*r), r->outline);
+        if (!there(table_of(*r)))
+            lost = lost == nullptr ? r : lost;
+        else if (lost != nullptr)
+            throw error(error_kind::bad_input, table_of(*lost).string(),
+                        fmt::format("it is missing, and the run {} came after it", r->outline.name),
+                        "put it back: its trials would be asked once more");
+        rows(*r);
+        practice_rows(*r);
+    }
+}
+
+void session_store::refuse_cut_lines(const std::vector<const run_definition*>& runs) const
+{
+    for (const run_definition* r : runs)
+        if (there(table_of(*r)))
+            if (const text_table t = read_trials(table_of(*r)); t.cut_at())
+                t.refuse_cut("complete it, or delete it: the session is finished");
+}
+
+std::vector<std::string> session_store::mend(const std::vector<const run_definition*>& runs)
+{
+    std::vector<std::string> done;
+    const auto cut = [&](const fs::path& table) {
+        const auto at = read_trials(table).cut_at();
+        if (at)
+            done.push_back(fmt::format("{}: its last line was cut off: what is left of it is in {}",
+                                       table.string(), cut_file(table, *at).string()));
+        return at.has_value();
+    };
+    const bool lost_people = !there(folder_.path() / "participants.tsv");
+    const bool lost_scans = !there(folder_.scans_of(code_));
+    bool added = false;
+    bool entered = false;
+    for (const run_definition* r : runs) {
+        if (!there(table_of(*r)))
+            continue;
+        if (cut(table_of(*r)))
+            folder_.ignore_cut_lines();
+        added = folder_.add_participant(code_) || added;
+        if (!acq_time(*r)) {
+            folder_.add_scan(code_, scan_name(*r), "n/a");
+            entered = true;
+        }
+    }
+    const auto say_lost = [&](bool lost, const fs::path& file, const std::string& what) {
+        done.push_back(file.string() +
+                       (lost ? ": it is missing: a new one is begun (put the old one back from a copy)"
+                             : fmt::format(": {} was missing, and is there again", what)));
+    };
+    if (added)
+        say_lost(lost_people, folder_.path() / "participants.tsv", "sub-" + code_);
+    if (entered)
+        say_lost(lost_scans, folder_.scans_of(code_), "a run");
+    if (const fs::path table = source_ / "practice.tsv"; there(table))
+        cut(table);
+    return done;
+}
+
+} // namespace tactor::study

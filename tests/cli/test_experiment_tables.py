@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: MIT
+"""Tables of tactor experiment that a crash, an editor, a spreadsheet, R or pandas left: what goes on, what is refused."""
+import json
+import re
+import shutil
+
+from experiments import COLUMNS, ExperimentTest, contents, read_table
+from harness import main
+
+
+class Tables(ExperimentTest):
+    def broken_off(self, spec="seed=1,sigma=1"):
+        """A session in its second run, two trials of which are answered; the bytes of the whole one, and the tables."""
+        for folder in ("whole", "study"):
+            shutil.rmtree(self.dir / folder, ignore_errors=True)
+        self.simulate(spec=spec, folder="whole")
+        whole = contents(self.dir / "whole")
+        shutil.copytree(self.dir / "whole", self.dir / "study")
+        scans = self.dir / "study/sub-01/sub-01_scans.tsv"
+        lines = scans.read_text().splitlines(True)
+        _, _, second, third = (line.split("\t")[0] for line in lines)
+        table = self.dir / "study/sub-01" / second
+        table.write_text("".join(table.read_text().splitlines(True)[:3]))
+        (self.dir / "study/sub-01" / third).unlink()
+        scans.write_text("".join(lines[:-1]))
+        return whole, table, [p for p in (self.dir / "study").rglob("*.tsv")]
+
+    def test_tables_that_another_program_saved_go_on_and_keep_their_line_ends(self):
+        def quoted(text):
+            return re.sub(rb"[^\t\n]+", lambda m: b'"' + m[0] + b'"', text)
+        def pandas(text):
+            return text.replace(b"false", b"False").replace(b"n/a", b"").replace(b"\t1\t1\t", b"\t1.0\t1.0\t")
+        ways = {"CR LF": lambda t: t.replace(b"\n", b"\r\n"), "CR": lambda t: t.replace(b"\n", b"\r"),
+                "a byte order mark": lambda t: b"\xef\xbb\xbf" + t, "no last line end": lambda t: t[:-1],
+                "CR, no last line end": lambda t: t[:-1].replace(b"\n", b"\r"), "blank lines": lambda t: t + b"\n\t\t\n\n",
+                "tabs behind": lambda t: t.replace(b"\n", b"\t\t\n"), "capitals": lambda t: t.replace(b"false", b"FALSE"),
+                "quotes": quoted, "pandas": pandas, "R": lambda t: quoted(t.replace(b"false", b"FALSE")).replace(b'"n/a"', b"NA")}
+        for name, way in ways.items():
+            with self.subTest(name):
+                whole, _, tables = self.broken_off()
+                saved = {p: way(p.read_bytes()) for p in tables}
+                for path, data in saved.items():
+                    path.write_bytes(data)
+                told = json.loads(self.ok("analyze", "study", "--format", "json").stdout)
+                result = self.simulate("01", "--resume")
+                self.assertNotIn("cut", result.stderr)
+                after = contents(self.dir / "study")
+                self.assertEqual(set(after), set(whole))
+                for path, data in saved.items():
+                    new = path.read_bytes()
+                    self.assertTrue(new.startswith(data), path)
+                    if b"\r" in data:
+                        self.assertEqual(new.count(b"\n"), new.count(b"\r\n"))
+                self.assertEqual(self.ok("analyze", "study", "--format", "tsv").stdout, self.ok("analyze", "whole", "--format", "tsv").stdout)
+                self.ok("report", "study")
+                self.assertIn("finished", self.simulate("01", "--resume").stdout)
+                self.simulate("02")
+                self.assertTrue((self.dir / "study/participants.tsv").read_bytes().startswith(saved[self.dir / "study/participants.tsv"]))
+                self.assertEqual(json.loads(self.ok("analyze", "study", "--format", "json").stdout)["participants"], 2)
+                self.assertEqual(told["participants"], 1)
+
+    def test_tables_that_cannot_be_read_are_refused_before_the_session_and_left_as_they_are(self):
+        wide = {"UTF-16": lambda t: t.decode().encode("utf-16"), "without a mark": lambda t: t.decode().encode("utf-16-le")}
+        ways = {"commas": (lambda t: t.replace(b"\t", b","), ":1: commas are between the columns"),
+                "semicolons": (lambda t: t.replace(b"\t", b";"), ":1: semicolons are between the columns"),
+                "UTF-16": (wide["UTF-16"], ": is UTF-16, not UTF-8"), "without a mark": (wide["without a mark"], ": is UTF-16"),
+                "a short line": (lambda t: t.replace(b"\n", b"\nx\n", 1), ":2: it has 1 column, not "),
+                "numbers of rows": (lambda t: t.replace(b"\n", b"\n1\t", 1), ":2: it begins with the row's number"),
+                "pandas' index": (lambda t: b"\t" + t.replace(b"\n", b"\n0\t", 1), ":1: a column has no name"),
+                "a name twice": (lambda t: b"x\tx\t" + t.replace(b"\n", b"\n0\t0\t"), ":1: the column x is there twice")}
+        for name, (way, says) in ways.items():
+            _, _, tables = self.broken_off()
+            for path in tables:
+                good = path.read_bytes()
+                path.write_bytes(way(good))
+                before = contents(self.dir / "study")
+                with self.subTest(f"{name} {path.name}"):
+                    self.simulate("01", "--resume", run=lambda *a: self.refused(2, *a, says=(path.name + says,)))
+                    if path.name == "participants.tsv":
+                        self.simulate("02", run=lambda *a: self.refused(2, *a, says=(path.name + says,)))
+                    if not path.name.endswith("scans.tsv") and path.name != "practice.tsv":
+                        self.refused(2, "analyze", "study", says=(path.name + says,))
+                    self.assertEqual(contents(self.dir / "study"), before)
+                path.write_bytes(good)
+
+    def test_resume_refuses_what_the_analysis_refuses(self):
+        whole, _, _ = self.broken_off()
+        table = self.dir / "study/sub-01/beh/sub-01_task-whichone_beh.tsv"
+        table = table if table.exists() else self.dir / "study/sub-01/beh/sub-01_task-howgood_beh.tsv"
+        good = table.read_text()
+        lines = good.split("\n")
+        for column, value in (("response", "9"), ("void", "yes"), ("response_time", "0,5"), ("void", "n/a"), ("trial", "n/a"),
+                              ("onset", "1e"), ("plan_1", "x")):
+            cells = lines[1].split("\t")
+            cells[COLUMNS.index(column)] = value
+            table.write_text("\n".join([lines[0], "\t".join(cells), *lines[2:]]))
+            before = contents(self.dir / "study")
+            with self.subTest(f"{column} {value}"):
+                self.simulate("01", "--resume", run=lambda *a: self.refused(2, *a, says=("2",)))
+                self.assertEqual(contents(self.dir / "study"), before)
+        table.write_text(good)
+        description = self.dir / "study/task-howgood_beh.json"
+        text = description.read_text()
+        description.write_text(text.replace('"how good"', '"bad"'))
+        self.simulate("01", "--resume", run=lambda *a: self.refused(2, *a, says=("task-howgood_beh.json: its TaskName",)))
+        self.refused(2, "analyze", "study", says=("its TaskName",))
+        description.write_text(text)
+        self.simulate("01", "--resume")
+        self.assertEqual(contents(self.dir / "study"), whole)
+
+    def test_a_line_that_was_cut_off_is_kept_beside_its_table_and_told(self):
+        whole, table, _ = self.broken_off()
+        practice = self.dir / "study/sourcedata/sub-01/practice.tsv"
+        lines = practice.read_bytes().splitlines(True)
+        practice.write_bytes(b"".join(lines[:-1]) + lines[-1][:40])
+        text = table.read_bytes()
+        table.write_bytes(text[:-100])
+        cut = text[:-100].rpartition(b"\n")[2]
+        self.refused(2, "analyze", "study", says=(f"{table.name}:3: the last line is cut off (tactor experiment --resume",))
+        said = self.simulate("01", "--resume").stderr
+        for path, kept in ((table, cut), (practice, lines[-1][:40])):
+            name = path.relative_to(self.dir)
+            self.assertIn(f"tactor: warning: {name}: its last line was cut off: what is left of it is in {name}.cut-1\n", said)
+            self.assertEqual(path.with_name(path.name + ".cut-1").read_bytes(), kept)
+        self.assertEqual(self.without_cut(), whole)
+        self.assertEqual((self.dir / "study/.bidsignore").read_text(), "*.cut-*\n")
+        self.ok("analyze", "study")
+        # Once more: nothing that was kept is replaced, nothing ignored twice.
+        table.write_bytes(table.read_bytes()[:-30])
+        scans = self.dir / "study/sub-01/sub-01_scans.tsv"
+        *first, last = scans.read_text().splitlines(True)
+        (self.dir / "study/sub-01" / last.split("\t")[0]).unlink()
+        scans.write_text("".join(first))
+        (self.dir / "study/.bidsignore").write_text("mine")
+        self.simulate("01", "--resume")
+        self.assertEqual(table.with_name(table.name + ".cut-1").read_bytes(), cut)
+        self.assertTrue(table.with_name(table.name + ".cut-2").exists())
+        self.assertEqual((self.dir / "study/.bidsignore").read_text(), "mine\n*.cut-*\n")
+        self.assertEqual(self.without_cut(), whole)
+
+    def test_a_finished_session_is_never_sent_to_resume(self):
+        self.simulate()
+        table = self.dir / "study/sub-01/beh/sub-01_task-howgood_beh.tsv"
+        text = table.read_text()
+        table.write_text(text[:-1])
+        self.ok("analyze", "study")
+        before = contents(self.dir / "study")
+        self.assertIn("finished", self.simulate("01", "--resume").stdout)
+        self.assertEqual(contents(self.dir / "study"), before)
+        table.write_text(text + "0.5\t")
+        before = contents(self.dir / "study")
+        for refusal in (self.refused(2, "analyze", "study", says=("howgood_beh.tsv:6: the last line is cut off (complete it, or delete it",)),
+                        self.simulate("01", "--resume", run=lambda *a: self.refused(
+                            2, *a, says=("howgood_beh.tsv:6: the last line is cut off", "the session is finished")))):
+            self.assertNotIn("--resume", refusal.stderr)
+        self.assertEqual(contents(self.dir / "study"), before)
+
+    def test_lists_that_are_missing_are_told_and_begun_anew(self):
+        whole, _, _ = self.broken_off()
+        people, scans = self.dir / "study/participants.tsv", self.dir / "study/sub-01/sub-01_scans.tsv"
+        for name in (people, scans):
+            name.unlink()
+        said = self.simulate("01", "--resume").stderr
+        for name in (people, scans):
+            self.assertIn(f"tactor: warning: {name.relative_to(self.dir)}: it is missing: a new one is begun (put the old one back", said)
+        after = contents(self.dir / "study")
+        self.assertEqual({n for n in whole if whole[n] != after.get(n)}, {"sub-01/sub-01_scans.tsv"})
+        self.assertEqual([s["filename"] for s in read_table(scans)],
+                         [line.split("\t")[0] for line in whole["sub-01/sub-01_scans.tsv"].decode().splitlines()[1:]])
+        self.assertEqual([s["acq_time"] for s in read_table(scans)][:2], ["n/a", "n/a"])
+        self.ok("analyze", "study")
+
+    def test_somebody_who_was_taken_out_of_the_lists_is_told(self):
+        whole, _, _ = self.broken_off()
+        people = self.dir / "study/participants.tsv"
+        people.write_text(people.read_text().splitlines(True)[0])
+        said = self.simulate("01", "--resume").stderr
+        self.assertIn("study/participants.tsv: sub-01 was missing, and is there again", said)
+        self.assertEqual(contents(self.dir / "study"), whole)
+
+    def test_columns_in_another_order_take_a_session_by_their_names(self):
+        _, _, tables = self.broken_off()
+        for path in tables:
+            rows = [line.split("\t") for line in path.read_text().splitlines()]
+            path.write_text("".join("\t".join([*row[::-1], "note" if row is rows[0] else "mine"]) + "\n" for row in rows))
+        self.simulate("01", "--resume")
+        for path in tables:
+            own, first = read_table(path), read_table(self.dir / "whole" / path.relative_to(self.dir / "study"))
+            self.assertEqual([{k: v for k, v in row.items() if k != "note"} for row in own], first)
+            self.assertIn(own[-1]["note"], ("n/a", "mine"))
+        self.simulate("02")
+        self.assertEqual((self.dir / "study/participants.tsv").read_text().splitlines()[-1], "n/a\tn/a\tn/a\tsub-02\tn/a")
+        self.ok("analyze", "study")
+
+    def test_a_column_that_is_not_there_is_refused(self):
+        _, table, _ = self.broken_off()
+        good = table.read_text()
+        for column in COLUMNS:
+            table.write_text(good.replace(f"\t{column}", "\tother", 1) if column != "onset" else "other" + good[5:])
+            self.simulate("01", "--resume", run=lambda *a: self.refused(2, *a, says=(f"{table.name}:1: there is no column {column}",)))
+        table.write_text(good)
+        people = self.dir / "study/participants.tsv"
+        people.write_text(people.read_text().replace("participant_id", "id"))
+        self.simulate("02", run=lambda *a: self.refused(2, *a, says=("participants.tsv:1: there is no column participant_id",)))
+
+
+if __name__ == "__main__":
+    main()
