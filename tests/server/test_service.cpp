@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstring>
 #include <set>
+#include <thread>
 
 #include <doctest/doctest.h>
 
@@ -157,6 +158,28 @@ TEST_CASE("the reason of an end says who ended it")
     const json last = rig.ok(a, "play", armed)["stroke"];
     rig.close();
     CHECK(reason(last) == "stopped by the owner");
+}
+
+TEST_CASE(
+    "a stroke that was handed over twice, as after an xrun before it sounded, is told to have started once")
+{
+    service_rig rig;
+    fake_dac& card = rig.plug();
+    rig.start();
+    const auto c = rig.client();
+    rig.clocks.clear(); // time stands still
+    const json n = rig.ok(c, "play", with(stroke, "start", {{"delay_s", 0.4}}))["stroke"];
+    // Its first frame lies far ahead, but it has been handed over.
+    while (c.box->of_stroke(n).empty()) {
+        card.advance_queued(1);
+        rig.io.poll();
+        std::this_thread::yield();
+    }
+    card.advance(1'000'000); // an xrun
+    rig.clocks.emplace_back(card, running_clock::capture_kind::dropped);
+    CHECK(rig.end_of(c, n)["state"] == "finished");
+    CHECK(c.box->of_stroke(n).size() == 2); // that it started, and that it ended
+    CHECK(rig.ok(c, "status")["stream"]["xruns"] == 1);
 }
 
 TEST_CASE("a large message is read on another thread, and answered as a small one")
