@@ -3,6 +3,7 @@
 import importlib.util
 import re
 import subprocess
+import sys
 
 import pytest
 
@@ -59,3 +60,10 @@ def test_facts_of_the_build_have_the_libraries_own_versions():
     for name, module in (("toml++", "tomlplusplus"), ("pugixml", "pugixml"), ("fmt", "fmt")):
         version = subprocess.run(["pkg-config", "--modversion", module], capture_output=True, text=True, check=True).stdout.strip()
         assert re.search(rf"{re.escape(name)} ([\d.]+)", tactor.build_facts())[1] == version, tactor.build_facts()
+
+
+@pytest.mark.unsanitized
+def test_the_package_has_neither_study_nor_service():
+    said = subprocess.run([sys.executable, "-c", "import tactor; print(open(tactor._tactor.__file__, 'rb').read().count(b'tactor6server'))"],
+                          capture_output=True, text=True, check=True)
+    assert said.stdout == "0\n"
