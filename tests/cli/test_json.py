@@ -27,7 +27,7 @@ PAGE = (ROOT / "man/tactor-json.5").read_text(encoding="utf-8")
 
 # What an object may have or not have. All else is always there, null where there is nothing to say.
 OPTIONAL = {"tactor-plan/1": {"stroke.note", "stroke.fit", "continuous", "bursts[].tau_s", "compensation", "render.envelope", "array.tactors[].rise_s",
-                              *(f"stroke.{key}" for key in ("waveform", "noise_seed", "texture", "texture_mm", "am_hz", "am_depth", "course"))},
+                              *(f"stroke.{key}" for key in ("waveform", "noise_seed", "texture", "texture_mm", "am_hz", "am_depth", "course", "course[].bend"))},
             "tactor-compare/1": {"stroke.note"},
             "tactor-check/1": {"walk"}}
 
@@ -40,7 +40,8 @@ STROKES = ('[[stroke]]\npath = "M 0 0 L 10 0"\nduration_s = 0.5\nstart_s = 0.1\n
            '[[stroke]]\npath = "M 10 0 L 0 0"\nduration_s = 0.5\nstart_s = 0.3\n')
 GRID = '[array]\nname = "a"\ngrid = { rows = 3, columns = 4, pitch_mm = 15.0 }\n'
 SOUNDS = ('[[stroke]]\npath = "M 0 0 L 10 0"\nduration_s = 0.5\nwaveform = "grain.wav"\ntexture = "length"\ntexture_mm = 5.0\n'
-          '[[stroke]]\npath = "M 10 0 L 0 0"\nduration_s = 0.5\nwaveform = "noise:50-500"\nnoise_seed = 3\nam_hz = 20.0\n')
+          '[[stroke]]\npath = "M 10 0 L 0 0"\nduration_s = 0.5\nwaveform = "noise:50-500"\nnoise_seed = 3\nam_hz = 20.0\n'
+          '[[stroke]]\npath = "M 0 0 L 10 0"\nduration_s = 0.5\neasing = "minimum-jerk"\ncarrier_profile = [[0, 100], [1, 300]]\n')
 BRUSH = ("--array", "grid.toml", "--algorithm", "tactile-brush", "--path", "M 10 30 L 45 10")
 
 
