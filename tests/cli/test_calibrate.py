@@ -162,6 +162,15 @@ class Simulated(CalibrateTest):
         said = self.simulated("third.toml", "--tactors", 0, "--array", "me.toml", "--method", "adjustment", spec="threshold=-45,spread=1")
         self.assertIn("warning: tactor 3: the threshold is likely", said.stderr)
 
+    def test_the_observer_has_a_seed_as_that_of_an_experiment(self):
+        found = []
+        for n, seed in enumerate((1, 2, 1)):
+            self.simulated(f"{n}.toml", "--tactors", "0-2", spec=f"seed={seed},threshold=-45,spread=2")
+            found.append([t["threshold_dbfs"] for t in self.toml(f"{n}.toml")["calibration"]["tactor"]])
+        self.assertEqual(found[0], found[2])
+        self.assertNotEqual(found[0], found[1])
+        self.refused(2, "calibrate", "--participant", "P1", "-o", "me.toml", "--simulate", "seed=x,threshold=-45", says=["--simulate", "seed"])
+
     def test_who_feels_nothing_has_no_threshold_and_it_is_said(self):
         said = self.simulated("me.toml", "--tactors", "0,1", spec="threshold=-45,500,spread=2")
         self.assertIn("tactor 1 has no threshold (not felt)", said.stderr)

@@ -153,7 +153,8 @@ void add_calibrate_options(CLI::App& c, calibrate_options& o)
     add(c, "--log", "FILE.tsv", "a line for each trial (default: the output's name with .tsv)",
         [&o](const std::string& t) { o.log = t; });
     c.add_flag("--resume", o.resume, "go on with the session that the log is of");
-    add(c, "--simulate", "SPEC", "nobody and no device: an observer, as threshold=-45,spread=2,lapse=0.02",
+    add(c, "--simulate", "SPEC",
+        "nobody and no device: an observer, as seed=1,threshold=-45,spread=2,lapse=0.02",
         [&o](const std::string& t) { o.simulate = t; });
     add(c, "--seed", "N", "of the order of intervals (default: from the participant's code)",
         [&o](const std::string& t) { o.seed = whole("--seed", t, 0, most_seed); });

@@ -18,7 +18,7 @@ namespace tactor::study {
 namespace {
 
 constexpr const char* subject = "simulate";
-constexpr const char* shape = "as threshold=-45,spread=2,lapse=0.02";
+constexpr const char* shape = "as seed=1,threshold=-45,spread=2,lapse=0.02";
 
 [[noreturn]] void refuse(const std::string& why, std::string_view hint = shape)
 {
@@ -37,6 +37,14 @@ double number(std::string_view key, std::string_view text, double low, double hi
     return v;
 }
 
+std::uint64_t whole(std::string_view key, std::string_view text)
+{
+    const double v = number(key, text, 0.0, 0x1p53);
+    if (v != std::floor(v))
+        refuse(fmt::format("{} is {}", key, text), "a whole number");
+    return static_cast<std::uint64_t>(v);
+}
+
 void take(observer_settings& o, std::string_view key, std::string_view value)
 {
     if (key == "threshold")
@@ -45,6 +53,8 @@ void take(observer_settings& o, std::string_view key, std::string_view value)
         o.spread_db = number(key, value, 0.0, 100.0);
     else if (key == "lapse")
         o.lapse = number(key, value, 0.0, 0.5);
+    else if (key == "seed")
+        o.seed = whole(key, value);
     else
         refuse(fmt::format("\"{}\" is not known", key));
 }
@@ -99,7 +109,7 @@ double right_at(const observer_settings& o, double threshold_dbfs, double level_
 observer::observer(observer_settings o, const calibration_settings& s)
     : o_(std::move(o)),
       tactors_(s.tactors),
-      r_(fmt::format("{}/calibrate/{}/observer", s.seed, s.participant))
+      r_(fmt::format("{}/calibrate/{}/observer", o_.seed.value_or(s.seed), s.participant))
 {
 }
 

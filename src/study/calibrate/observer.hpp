@@ -3,6 +3,7 @@
 /// A simulated observer. It tests the chain; it says nothing about people.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,10 +18,11 @@ struct observer_settings {
     std::vector<double> thresholds_dbfs = {}; ///< one for all, or one for each tactor that is measured
     double spread_db = 2.0;                   ///< 0: a step at the threshold
     double lapse = 0.0;                       ///< 0 to 0.5
+    std::optional<std::uint64_t> seed = {};   ///< none: the session's
 };
 
-/// "threshold=-45,spread=2,lapse=0.02"; threshold=-45,-50,... is a list. `measured` are the tactors that are
-/// measured, of `all` that the array has: a list has as many entries as the one or the other.
+/// "seed=1,threshold=-45,spread=2,lapse=0.02"; threshold=-45,-50,... is a list. `measured` are the tactors
+/// that are measured, of `all` that the array has: a list has as many entries as the one or the other.
 /// \throws error (bad_input) naming simulate.
 observer_settings parse_observer(std::string_view text, const std::vector<unsigned>& measured,
                                  std::size_t all);
