@@ -48,7 +48,14 @@ def inline(code, line):
 
 def copied_lines(text, line):
     """The commands of a block as somebody copies them: whole lines, explanations and all."""
-    return [Block("command", part.rstrip(), line + i) for i, part in enumerate(text.split("\n")) if part.strip()]
+    found, open_line = [], False
+    for i, part in enumerate(text.split("\n")):
+        if open_line:
+            found[-1] = Block("command", found[-1].text.removesuffix("\\") + part.strip(), found[-1].line)
+        elif part.strip():
+            found.append(Block("command", part.rstrip(), line + i))
+        open_line = part.endswith("\\")
+    return found
 
 
 def of_block(text, line, commands=commands_in):

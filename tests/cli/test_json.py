@@ -40,8 +40,8 @@ STROKES = ('[[stroke]]\npath = "M 0 0 L 10 0"\nduration_s = 0.5\nstart_s = 0.1\n
            '[[stroke]]\npath = "M 10 0 L 0 0"\nduration_s = 0.5\nstart_s = 0.3\n')
 GRID = '[array]\nname = "a"\ngrid = { rows = 3, columns = 4, pitch_mm = 15.0 }\n'
 SOUNDS = ('[[stroke]]\npath = "M 0 0 L 10 0"\nduration_s = 0.5\nwaveform = "grain.wav"\ntexture = "length"\ntexture_mm = 5.0\n'
-          '[[stroke]]\npath = "M 10 0 L 0 0"\nduration_s = 0.5\nwaveform = "noise:50-500"\nnoise_seed = 3\nam_hz = 20.0\n'
-          '[[stroke]]\npath = "M 0 0 L 10 0"\nduration_s = 0.5\neasing = "minimum-jerk"\ncarrier_profile = [[0, 100], [1, 300]]\n')
+          '[[stroke]]\npath = "M 10 0 L 0 0"\nduration_s = 0.5\nwaveform = "noise:50-500"\nnoise_seed = 3\nam_hz = 20.0\n')
+EASED = '[stroke]\npath = "M 0 0 L 10 0"\nduration_s = 0.5\neasing = "minimum-jerk"\ncarrier_profile = [[0, 100], [1, 300]]\n'
 BRUSH = ("--array", "grid.toml", "--algorithm", "tactile-brush", "--path", "M 10 30 L 45 10")
 
 
@@ -143,6 +143,7 @@ class Schemas(ToolTest):
         self.write("strokes.toml", STROKES)
         self.write("grid.toml", GRID)
         self.write("sounds.toml", SOUNDS)
+        self.write("eased.toml", EASED)
         self.write("slow.toml", PAIR.replace("threshold_dbfs = -30", "rise_ms = 15"))
         (self.dir / "grain.wav").write_bytes(wav_bytes([0.5, 0.5, -0.5, -0.5] * 20))
 
@@ -161,7 +162,7 @@ class Schemas(ToolTest):
             ("plan", *BRUSH, "--duration", "1"), ("plan", *BRUSH, "--duration", "0.15", "--drop-points"),
             ("plan", "strokes.toml", "--array", "pair.toml", "--sl", "7"), ("plan", "--path", "M 1 1 L 9 9", "--phase", "burst"),
             ("plan", "--path", "M 0 0 L 10 0", "--array", "pair.toml", "--sl", "7"),
-            ("plan", "--path", "M 0 0 L 10 0", "--array", "slow.toml"), ("plan", "sounds.toml"), ("plan", "--path", "M 0 0 L 10 0", "--waveform", "noise:50-500", "--am", "20", "--envelope", "tukey"),
+            ("plan", "--path", "M 0 0 L 10 0", "--array", "slow.toml"), ("plan", "sounds.toml"), ("plan", "eased.toml"), ("plan", "--path", "M 0 0 L 10 0", "--waveform", "noise:50-500", "--am", "20", "--envelope", "tukey"),
             ("plan", "--path", "M 0 0 L 10 0", "--waveform", "grain.wav", "--texture", "length", "--attack", "0.01", "--release", "0.02"),
             ("compare", "park2016-1"), ("compare", "--path", "M 1 1 L 9 9"), ("compare", "strokes.toml", "--array", "o.toml"),
             ("compare", "park2016-1", "--observer", "low-speed", "--spread", "9"), ("compare", "park2016-1", "--spread", "5"),

@@ -125,9 +125,8 @@ TEST_CASE("an error of a file within a file is nested in that of the outer")
     const auto sound = here.write("s.toml", "[stroke]\npoints = [[0, 0], [9, 0]]\nduration_s = 1\n"
                                             "waveform = \"./none.wav\"\n");
     CHECK(os_code([&] { static_cast<void>(load_strokes(sound)); }) == ENOENT);
-    const std::string geometry = own_cause([] {
-        static_cast<void>(parse_strokes_toml("[stroke]\npoints = [[0, 0], [0, 0]]\nduration_s = 1\n", "s"));
-    });
+    const std::string geometry = own_cause(
+        [] { static_cast<void>(parse_strokes_toml("[stroke]\npath = \"M 0 0 X\"\nduration_s = 1\n", "s")); });
     CHECK(!geometry.empty());
 }
 
