@@ -45,6 +45,10 @@ struct recording {
     /// Finite, in any unit, and not all the same. Only their shape is played: their mean is taken out, and
     /// their peak becomes 1.
     std::vector<float> samples = {};
+    /// SHA-256 of the file's bytes, 64 lower-case hexadecimal digits; empty for samples that came from none.
+    std::string sha256 = {};
+    /// Samples that the file's header announces and the file does not have: it was cut short.
+    std::uint64_t missing = 0;
 
     friend bool operator==(const recording&, const recording&) = default;
 };
@@ -96,8 +100,9 @@ struct modulation {
 /// "HZ" or "HZ:DEPTH". \throws error (bad_input).
 [[nodiscard]] TACTOR_API modulation parse_modulation(std::string_view text);
 
-/// Reads a WAV file (RIFF or RF64) of one channel: integers of 8 to 32 bits or floats of 32 or 64.
-/// \throws error (bad_input) with its name.
+/// Reads a WAV file (RIFF, RF64 or BW64) of one channel: integers of 8 to 32 bits, A-law, u-law, or floats of
+/// 32 or 64 bits. Needs libsndfile, which is loaded by the first call.
+/// \throws error with its name: bad_input; not_available where libsndfile is missing.
 [[nodiscard]] TACTOR_API recording load_recording(const std::filesystem::path& file);
 
 /// Checks ranges; what depends on the sample rate is checked when a score is made.

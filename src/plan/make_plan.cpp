@@ -8,6 +8,7 @@
 
 #include <tactor/fit.hpp>
 
+#include "core/recording_name.hpp"
 #include "core/refused.hpp"
 #include "core/words.hpp"
 #include "plan/course.hpp"
@@ -96,6 +97,16 @@ void warn_of_wide_faces(const layout& l, const phantom_model& m, plan& p)
             l.pitch_mm(), *middle));
 }
 
+/// A recorder that was switched off leaves a file that is shorter than its header says.
+void warn_of_missing_samples(plan& p)
+{
+    const std::shared_ptr<const recording>& r = p.wave.recorded;
+    if (p.wave.kind == waveform_kind::recording && r->missing > 0)
+        p.warnings.push_back(fmt::format("{}: the recording is cut short: it has {} of {}",
+                                         detail::name_of(*r), r->samples.size(),
+                                         counted(r->samples.size() + r->missing, "sample")));
+}
+
 /// Where the duration that was asked for is not the one that belongs to the SOA, or is not used.
 void warn_of_own_duration(const plan_options& o, const detail::burst_count& c, plan& p)
 {
@@ -182,6 +193,7 @@ plan planned(const array& a, const layout& l, const stroke& s, const plan_option
     warn_of_long_bursts(bursts, p);
     warn_of_short_bursts(bursts, p);
     warn_of_own_duration(o, bursts, p);
+    warn_of_missing_samples(p);
     return p;
 }
 

@@ -123,6 +123,8 @@ void put(writer& w, const waveform& v)
         w.put(std::uint64_t{v.recorded->samples.size()});
         for (const float x : v.recorded->samples)
             w.put(x);
+        w.text(v.recorded->sha256);
+        w.put(v.recorded->missing);
     }
 }
 
@@ -147,6 +149,8 @@ waveform get_waveform(reader& r)
         samples.rate_hz = r.get<double>();
         for (std::size_t n = r.count(sizeof(float)); n > 0; --n)
             samples.samples.push_back(r.get<float>());
+        samples.sha256 = r.text();
+        samples.missing = r.get<std::uint64_t>();
         v.recorded = std::make_shared<const recording>(std::move(samples));
     }
     validate(v);

@@ -16,7 +16,7 @@ class Block:
 def kind_of(text):
     """What a block of code is; whatever it is not known to be is commands."""
     for kind, pattern in (("c++", r"^#include"), ("toml", r"^\[+\w+\]+$"), ("csv", r"^t_s,"), ("boot", r"^dtoverlay="),
-                          ("formula", r"^(?:[A-Za-z_]\w*(?:\(t\))? = |polarity \* )")):
+                          ("formula", r"^(?:[A-Za-z_]\w*(?:\(\w\))? = |polarity \* )")):
         if re.search(pattern, text, re.M):
             return kind
     return "command"

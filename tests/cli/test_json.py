@@ -27,7 +27,7 @@ PAGE = (ROOT / "man/tactor-json.5").read_text(encoding="utf-8")
 
 # What an object may have or not have. All else is always there, null where there is nothing to say.
 OPTIONAL = {"tactor-plan/1": {"stroke.note", "stroke.fit", "continuous", "bursts[].tau_s", "compensation", "render.envelope", "array.tactors[].rise_s",
-                              *(f"stroke.{key}" for key in ("waveform", "noise_seed", "texture", "texture_mm", "am_hz", "am_depth", "course", "course[].bend"))},
+                              *(f"stroke.{key}" for key in ("waveform", "recording", "noise_seed", "texture", "texture_mm", "am_hz", "am_depth", "course", "course[].bend"))},
             "tactor-compare/1": {"stroke.note"},
             "tactor-check/1": {"walk"}}
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include <tactor/config.hpp>
 #include <tactor/setup.hpp>
 #include <tactor/stroke.hpp>
 
@@ -60,7 +61,8 @@ TEST_CASE("every example stroke is read")
         CAPTURE(f.string());
         if (f.extension() == ".wav") // what vibrates in one of them
             continue;
-        CHECK(message_of([&] { CHECK_FALSE(load_strokes(f).empty()); }) == "");
+        const std::string said = message_of([&] { CHECK_FALSE(load_strokes(f).empty()); });
+        CHECK((said.empty() || (TACTOR_HAS_RECORDINGS == 0 && said.find("libsndfile") != std::string::npos)));
     }
 }
 

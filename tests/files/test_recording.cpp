@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // WAV files as waveforms.
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -9,6 +11,8 @@
 
 #include <tactor/stroke.hpp>
 #include <tactor/waveform.hpp>
+
+#include "core/sha256.hpp"
 
 #include "folder.hpp"
 #include "has.hpp"
@@ -92,10 +96,129 @@ TEST_CASE("what is no WAV file of one channel is refused by name")
     CHECK(refused("RIFF\1\2\3\4WAVE", "no samples"));
     CHECK(refused(wav(data), "before their format"));
     CHECK(refused(wav(chunk("fmt ", "short") + data), "cut off"));
-    CHECK(refused(wav(chunk("fmt ", format(1, 12)) + data), "format 1 with 12 bits"));
+    CHECK(refused(wav(chunk("fmt ", format(1, 40)) + data), "format 1 with 40 bits"));
+    CHECK(refused(wav(chunk("fmt ", format(3, 16)) + data), "format 3 with 16 bits"));
+    CHECK(refused("RIFF\1\2\3\4AVI LIST", "no WAV file"));
     CHECK(refused(wav(chunk("fmt ", format(2, 16)) + data), "format 2"));
     CHECK(refused(wav(chunk("fmt ", format(1, 16, 2)) + data), "2 channels"));
     CHECK(refused(wav(chunk("fmt ", format(1, 16)) + chunk("data", "ab")), "1 sample"));
+}
+
+namespace {
+
+std::string long_sizes(const std::string& kind, std::uint64_t data_bytes, const std::string& chunks)
+{
+    const std::string ds64 = bytes(std::uint64_t{0}) + bytes(data_bytes) + bytes(data_bytes / 2) + bytes(0);
+    return kind + bytes(0xFFFFFFFFU) + "WAVE" + chunk("ds64", ds64) + chunks;
+}
+
+std::string open_data(std::uint32_t size, const std::string& samples)
+{
+    return "data" + bytes(size) + samples;
+}
+
+std::string in_four_bytes(std::initializer_list<std::int32_t> all, std::int32_t (*as)(std::int32_t))
+{
+    std::string s;
+    for (const std::int32_t v : all)
+        s += bytes(as(v));
+    const std::string f = bytes(std::uint16_t{1}) + bytes(std::uint16_t{1}) + bytes(std::uint32_t{8000}) +
+                          bytes(std::uint32_t{32000}) + bytes(std::uint16_t{4}) + bytes(std::uint16_t{24});
+    return wav(chunk("fmt ", f) + chunk("data", s));
+}
+
+} // namespace
+
+TEST_CASE("24 bits in four bytes are found where ALSA and where others put them, however quiet")
+{
+    const folder dir;
+    const std::initializer_list<std::int32_t> loud{0, 4194304, -2097152, 8388607, -8388608};
+    const std::initializer_list<std::int32_t> quiet{0, 40, -20, 80, -81};
+    const std::initializer_list<std::int32_t> of_16_bits{0, 16384 * 256, -8192 * 256};
+    using four_bytes = std::int32_t (*)(std::int32_t);
+    const four_bytes ways[] = {
+        [](std::int32_t v) { return v; }, [](std::int32_t v) { return v & 0xFFFFFF; },
+        [](std::int32_t v) { return static_cast<std::int32_t>(static_cast<std::uint32_t>(v) << 8U); }};
+    for (const auto& all : {loud, quiet, of_16_bits}) {
+        // Only the shape is played: of quiet samples nobody can tell where they stand.
+        const auto shape = [](std::vector<float> x) {
+            float peak = 0.0F;
+            for (const float v : x)
+                peak = std::max(peak, std::abs(v));
+            for (float& v : x)
+                v /= peak;
+            return x;
+        };
+        std::vector<float> expected;
+        for (const std::int32_t v : all)
+            expected.push_back(static_cast<float>(v) / 8388608.0F);
+        for (const four_bytes as : ways)
+            CHECK(shape(load_recording(dir.write("a.wav", in_four_bytes(all, as))).samples) ==
+                  shape(expected));
+    }
+}
+
+TEST_CASE("sizes that a recorder left open end with the file")
+{
+    const folder dir;
+    const std::vector<float> expected{0.5F, -0.25F, 0.0F};
+    const std::string s = samples<std::int16_t>({16384, -8192, 0});
+    const std::string head = chunk("fmt ", format(1, 16));
+    for (const std::uint32_t size : {0U, 0xFFFFFFFFU, 0x7FFFFFFFU, 0x7FFFF000U, 0x80000000U}) {
+        CAPTURE(size);
+        const recording r = load_recording(dir.write("a.wav", wav(head + open_data(size, s))));
+        CHECK(r.samples == expected);
+        CHECK(r.missing == 0);
+    }
+    // No samples are no open size.
+    CHECK(has(message_of([&] {
+                  static_cast<void>(
+                      load_recording(dir.write("a.wav", wav(head + open_data(0, chunk("LIST", "INFO"))))));
+              }),
+              "0 samples"));
+}
+
+TEST_CASE("long files name their size elsewhere, and what stands behind the samples is none of them")
+{
+    const folder dir;
+    const std::vector<float> expected{0.5F, -0.25F, 0.0F};
+    const std::string s = samples<std::int16_t>({16384, -8192, 0});
+    const std::string behind = chunk("LIST", "INFOICMT\x04\0\0\0loud");
+    for (const char* kind : {"RF64", "BW64"}) {
+        const std::string chunks = chunk("fmt ", format(1, 16)) + open_data(0xFFFFFFFFU, s) + behind;
+        CHECK(load_recording(dir.write("a.wav", long_sizes(kind, 6, chunks))).samples == expected);
+    }
+}
+
+TEST_CASE("chunks of odd size stand anywhere, with or without the byte that makes them even")
+{
+    const folder dir;
+    const std::vector<float> expected{0.5F, -0.25F, 0.0F};
+    const std::string head = chunk("fmt ", format(1, 16));
+    const std::string data = chunk("data", samples<std::int16_t>({16384, -8192, 0}));
+    const std::string bare = "LIST" + bytes(std::uint32_t{7}) + "INFOodd";
+    for (const std::string& list : {chunk("LIST", "INFOodd"), bare})
+        for (const std::string& w : {list + head + data, head + list + data, head + data + list})
+            CHECK(load_recording(dir.write("a.wav", wav(w))).samples == expected);
+}
+
+TEST_CASE("a recording that is cut short says how much is missing")
+{
+    const folder dir;
+    const std::string s = samples<std::int16_t>({16384, -8192, 0});
+    const std::string head = chunk("fmt ", format(1, 16));
+    CHECK(load_recording(dir.write("a.wav", wav(head + open_data(16, s)))).missing == 5);
+    CHECK(load_recording(dir.write("a.wav", wav(head + open_data(6, s)))).missing == 0);
+    CHECK(load_recording(dir.write("a.wav", long_sizes("RF64", 20, head + open_data(0xFFFFFFFFU, s))))
+              .missing == 7);
+}
+
+TEST_CASE("a recording knows the hash of its file")
+{
+    const folder dir;
+    const std::string w =
+        wav(chunk("fmt ", format(1, 16)) + chunk("data", samples<std::int16_t>({1000, -1000})));
+    CHECK(load_recording(dir.write("a.wav", w)).sha256 == detail::sha256_text(w));
 }
 
 TEST_CASE("text that is no file names no file")

@@ -11,9 +11,9 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include "core/sha256.hpp"
 #include "has.hpp"
 #include "message_of.hpp"
-#include "study/random/sha256.hpp"
 
 namespace tactor::study::test_sequence {
 namespace {
@@ -195,7 +195,7 @@ TEST_CASE("the same on every machine")
     for (const run_sequence& s : make_sequence(load_definition("park2016"), "P07", 2016))
         for (const planned_trial& t : s.trials)
             text += fmt::format("{}{}{} ", t.motion, t.method_1, t.method_2.value_or(9));
-    CHECK(sha256_text(text) == "866bef5c522d737ae0444c7727c23b761f1c856c82d5569e5061dbc08b59e25e");
+    CHECK(detail::sha256_text(text) == "866bef5c522d737ae0444c7727c23b761f1c856c82d5569e5061dbc08b59e25e");
     CHECK(seed_of("abc") == 0xba7816bf);
 }
 

@@ -15,12 +15,12 @@
 #include "cli/commands.hpp"
 #include "cli/play/sound_server.hpp"
 #include "cli/say.hpp"
+#include "core/sha256.hpp"
 #include "core/words.hpp"
 #include "study/calibrate/doubtful.hpp"
 #include "study/calibrate/log.hpp"
 #include "study/calibrate/observer.hpp"
 #include "study/calibrate/result.hpp"
-#include "study/random/sha256.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -159,7 +159,7 @@ int calibrate(settings& s, option_list& options, calibrate_options& o)
     else if (!there && !names_device(s, e))
         throw error(error_kind::bad_input, "-D", "no device is configured", "-D PCM, or --simulate SPEC");
     const setup besides = said_besides(e);
-    begun.array = study::sha256_text(study::array_text(e.tactors, besides));
+    begun.array = detail::sha256_text(study::array_text(e.tactors, besides));
     if (there) {
         study::check_beginning(o.log, begun);
         study::check_finished(o.output, begun);

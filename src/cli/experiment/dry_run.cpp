@@ -12,8 +12,8 @@
 #include "cli/experiment/session_time.hpp"
 #include "cli/json_values.hpp"
 #include "cli/say.hpp"
+#include "core/sha256.hpp"
 #include "core/words.hpp"
-#include "study/random/sha256.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -81,7 +81,7 @@ void print_dry_run_json(std::FILE* out, const prepared_experiment& p)
 {
     json j{{"schema", "tactor-experiment/1"}};
     const study::experiment_definition& d = p.definition;
-    j["experiment"] = {{"name", d.name}, {"title", d.title}, {"sha256", study::sha256_text(d.text)}};
+    j["experiment"] = {{"name", d.name}, {"title", d.title}, {"sha256", detail::sha256_text(d.text)}};
     j["participant"] = p.participant;
     j["seed"] = p.seed;
     j["array"] = p.where.tactors.name;

@@ -13,10 +13,10 @@
 
 #include "cli/interrupt.hpp"
 #include "cli/say.hpp"
+#include "core/sha256.hpp"
 #include "core/split.hpp"
 #include "study/analysis/analysis.hpp"
 #include "study/experiment/power.hpp"
-#include "study/random/sha256.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -107,7 +107,7 @@ void print_power_json(const prepared_experiment& e, const std::vector<study::run
 {
     const study::experiment_definition& d = e.definition;
     json j{{"schema", "tactor-power/1"}, {"simulated", true}};
-    j["experiment"] = {{"name", d.name}, {"title", d.title}, {"sha256", study::sha256_text(d.text)}};
+    j["experiment"] = {{"name", d.name}, {"title", d.title}, {"sha256", detail::sha256_text(d.text)}};
     j["simulation"] = study::to_text(s);
     j["studies"] = studies;
     j["alpha"] = study::significant_p;

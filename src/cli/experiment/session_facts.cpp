@@ -7,7 +7,7 @@
 
 #include "cli/experiment/calibration_facts.hpp"
 #include "cli/json_values.hpp"
-#include "study/random/sha256.hpp"
+#include "core/sha256.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -31,7 +31,7 @@ json array_facts(const array& a)
 
 json experiment_facts(const study::experiment_definition& d)
 {
-    return {{"name", d.name}, {"sha256", study::sha256_text(d.text)}, {"text", d.text}};
+    return {{"name", d.name}, {"sha256", detail::sha256_text(d.text)}, {"text", d.text}};
 }
 
 json run_names(const prepared_experiment& p)

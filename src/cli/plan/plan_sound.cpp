@@ -49,6 +49,10 @@ void put_sound(nlohmann::ordered_json& stroke, const plan& p)
     if (w.kind == waveform_kind::noise)
         stroke["noise_seed"] = w.seed;
     if (w.kind == waveform_kind::recording) {
+        stroke["recording"] = {{"file", name_of(w)},
+                               {"sha256", w.recorded->sha256},
+                               {"frames", w.recorded->samples.size()},
+                               {"rate", w.recorded->rate_hz}};
         stroke["texture"] = to_string(w.texture);
         if (w.texture == texture_kind::length)
             stroke["texture_mm"] = w.texture_mm;
@@ -95,6 +99,20 @@ void take_threshold(const fields& t, tactor_spec& into)
         into.thresholds.push_back({hz, dbfs});
 }
 
+namespace {
+
+// Other samples would sound under the plan's name.
+void check_recording(const fields& said, const recording& r)
+{
+    if (said.text("sha256") != r.sha256 || said.number("frames") != static_cast<double>(r.samples.size()) ||
+        said.number("rate") != r.rate_hz)
+        throw error(error_kind::bad_input, source_place{r.file},
+                    "the recording has changed since the plan was made",
+                    "plan the stroke again, or bring the old file back");
+}
+
+} // namespace
+
 void take_sound(const fields& stroke, plan& p)
 {
     try {
@@ -103,6 +121,8 @@ void take_sound(const fields& stroke, plan& p)
     } catch (const error& e) {
         stroke.refuse("waveform", fmt::format("{}: {}", e.subject(), e.why()));
     }
+    if (p.wave.recorded && stroke.has("recording"))
+        check_recording(stroke.object("recording"), *p.wave.recorded);
     if (stroke.has("noise_seed")) {
         const double seed = stroke.number("noise_seed");
         if (!(seed >= 0.0 && seed <= 0x1p53 && seed == std::floor(seed)))

@@ -10,8 +10,8 @@
 
 #include <tactor/error.hpp>
 
+#include "core/sha256.hpp"
 #include "study/random/random.hpp"
-#include "study/random/sha256.hpp"
 
 namespace tactor::study {
 namespace {
@@ -85,7 +85,7 @@ bool too_many_in_a_row(const std::vector<planned_trial>& trials)
 
 std::uint64_t seed_of(std::string_view code)
 {
-    const sha256_digest d = sha256(code);
+    const detail::sha256_digest d = detail::sha256(code);
     return std::uint64_t{d[0]} << 24 | std::uint64_t{d[1]} << 16 | std::uint64_t{d[2]} << 8 | d[3];
 }
 

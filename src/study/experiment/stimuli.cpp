@@ -9,8 +9,8 @@
 
 #include <tactor/error.hpp>
 
+#include "core/sha256.hpp"
 #include "study/experiment/definition_words.hpp"
-#include "study/random/sha256.hpp"
 
 namespace tactor::study {
 namespace {
@@ -78,7 +78,7 @@ stimulus stimulus_set::make(const motion_definition& motion, const method_defini
         const score sounds(a, s.schedule, options_);
         s.frames = sounds.frames();
         s.text = write(drawn, s.schedule, sounds);
-        s.hash = sha256_text(s.text);
+        s.hash = detail::sha256_text(s.text);
         const std::vector<percept_sample> samples = predict_percept(a, drawn, s.schedule);
         s.felt = summarise(samples);
         s.felt_path = path_of(samples);

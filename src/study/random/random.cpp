@@ -4,13 +4,13 @@
 #include <bit>
 #include <cmath>
 
-#include "study/random/sha256.hpp"
+#include "core/sha256.hpp"
 
 namespace tactor::study {
 
 random_numbers::random_numbers(std::string_view seed) : s_{}
 {
-    const sha256_digest d = sha256(seed);
+    const detail::sha256_digest d = detail::sha256(seed);
     for (std::size_t i = 0; i < d.size(); ++i)
         s_[i / 8] = s_[i / 8] << 8 | d[i];
 }

@@ -9,8 +9,8 @@
 
 #include <tactor/error.hpp>
 
+#include "core/sha256.hpp"
 #include "study/data/text_table.hpp"
-#include "study/random/sha256.hpp"
 
 namespace tactor::study {
 namespace {
@@ -68,7 +68,7 @@ std::vector<planned_stimulus> stimuli_of(const session_facts& s, const fs::path&
         const fs::path file = plans / (fs::path(p.hash).filename().string() + ".json");
         p.file = file.string();
         const std::string text = read_file(file);
-        if (const std::string is = sha256_text(text); is != p.hash)
+        if (const std::string is = detail::sha256_text(text); is != p.hash)
             refuse_changed(p.file, p.hash, is);
         p.plan = read_json(file, text);
         all.push_back(std::move(p));
@@ -133,7 +133,7 @@ session_facts session_of(const fs::path& folder, const std::string& code, const 
     s.file = file.string();
     s.document = read_json(file, read_file(file));
     const std::string text = s.facts()["experiment"]["text"].need_text();
-    s.definition_hash = sha256_text(text);
+    s.definition_hash = detail::sha256_text(text);
     if (const auto said = s.facts()["experiment"]["sha256"].text(); said && *said != s.definition_hash)
         refuse_changed(s.file + ": experiment.text", *said, s.definition_hash);
     if (s.facts()["schema"].text() == own_schema)

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace tactor::study {
+namespace tactor::detail {
 
 using sha256_digest = std::array<std::uint8_t, 32>;
 
@@ -17,4 +17,4 @@ sha256_digest sha256(std::string_view bytes);
 /// The same as 64 lower-case hexadecimal digits.
 std::string sha256_text(std::string_view bytes);
 
-} // namespace tactor::study
+} // namespace tactor::detail

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "study/random/sha256.hpp"
+#include "core/sha256.hpp"
 
 #include <bit>
 #include <cstddef>
 
 #include <fmt/format.h>
 
-namespace tactor::study {
+namespace tactor::detail {
 namespace {
 
 constexpr std::size_t block_bytes = 64;
@@ -106,4 +106,4 @@ std::string sha256_text(std::string_view bytes)
     return s;
 }
 
-} // namespace tactor::study
+} // namespace tactor::detail

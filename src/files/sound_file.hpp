@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Samples of WAV files that are in memory.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tactor::detail {
+
+/// What a chunk of format says, checked.
+struct wav_format {
+    std::uint16_t tag = 0; ///< 1 integers, 3 floats, 6 A-law, 7 u-law
+    std::uint16_t channels = 0;
+    std::uint32_t rate = 0;
+    std::uint16_t bits = 0;  ///< of a sample
+    std::uint16_t bytes = 0; ///< of a sample with what fills it up
+};
+
+/// A WAV file whose header is settled: sizes that recorders left open, chunks in between and containers of
+/// several kinds are gone.
+struct wav_parts {
+    wav_format format;
+    std::string_view samples; ///< within the file
+    std::uint64_t announced =
+        0; ///< bytes of samples by the header; as many as there are where it leaves that open
+};
+
+/// Finds format and samples. \throws error (bad_input) with `name`.
+wav_parts find_wav_parts(std::string_view file, const std::string& name);
+
+/// The first `most` samples of one channel, integers as fractions of full scale, by libsndfile.
+/// \throws error: bad_input with `name`; not_available where libsndfile is missing.
+std::vector<float> decode_wav(const wav_parts& parts, std::size_t most, const std::string& name);
+
+} // namespace tactor::detail
