@@ -68,7 +68,7 @@ TEST_CASE("what is wrong in an SVG file is named by line and column")
         {"<svg><line x2='1' transform='scale(1,2,3)'/></svg>",
          "a.svg:1:30: transform of <line>: scale() with 3 numbers"},
         {"<svg><line x2='1' transform='matrix(1)'/></svg>",
-         "a.svg:1:30: transform of <line>: matrix() with 1 numbers"},
+         "a.svg:1:30: transform of <line>: matrix() with 1 number"},
         {"<svg><line x2='1' transform='scale(1 q)'/></svg>",
          "a.svg:1:38: transform of <line>: 'q' is not a number"},
         {"<svg><line x2='1' transform='scale 1'/></svg>",

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/suggest.hpp"
+#include "core/words.hpp"
 #include "files/stroke/text.hpp"
 #include "files/text_file.hpp"
 
@@ -30,6 +31,8 @@ svg_document::svg_document(std::string_view text, const std::string& name)
     tree_.find_node([this](pugi::xml_node n) {
         if (const std::string_view id = n.attribute("id").value(); !id.empty())
             ids_.try_emplace(id, n);
+        if (svg_tag(n) == "style")
+            sheet_.add(n);
         return false;
     });
 }
@@ -80,6 +83,48 @@ void svg_document::fail(pugi::xml_node n, pugi::xml_attribute a, const value_fau
         here ? place_of(text_, static_cast<std::size_t>(value - buffer_.data()) + f.offset, name_) : where(n);
     throw error(error_kind::bad_input, at, fmt::format("{} of {}: {}", a.name(), called(n), f.why), f.hint)
         .with_field(a.name());
+}
+
+void svg_document::fail(pugi::xml_node n, const char* property, std::string_view text, value_fault f) const
+{
+    const pugi::xml_attribute a = n.attribute(property);
+    const char* begin = a.value();
+    const char* end = begin + std::string_view(begin).size();
+    if (a && std::less_equal<>{}(begin, text.data()) && std::less_equal<>{}(text.data(), end)) {
+        f.offset += static_cast<std::size_t>(text.data() - begin);
+        fail(n, a, f);
+    }
+    fail(n, fmt::format("{} of {}: {}", property, called(n), f.why), f.hint);
+}
+
+std::string_view svg_document::property(pugi::xml_node n, std::string_view name) const
+{
+    try {
+        return sheet_.value(n, name);
+    } catch (const value_fault& f) {
+        fail(n, f.why, f.hint);
+    }
+}
+
+void svg_document::note(pugi::xml_node n, const std::string& what) const
+{
+    note_count& c = notes_[what];
+    if (c.elements++ == 0)
+        c.first = n;
+}
+
+std::vector<std::string> svg_document::warnings() const
+{
+    std::vector<std::string> all;
+    for (const auto& [what, c] : notes_)
+        all.push_back(fmt::format(
+            "{}: {} of {} is not followed{}: what it hides or moves plays as drawn", where(c.first).text(),
+            what, called(c.first),
+            c.elements == 1 ? "" : fmt::format(", nor of {} more", counted(c.elements - 1, "element"))));
+    for (const svg_style_sheet::skipped& s : sheet_.not_followed())
+        all.push_back(fmt::format("{}: the style rule {} is not followed (those of a tag, class or id are)",
+                                  where(s.style).text(), s.what));
+    return all;
 }
 
 double svg_document::length(pugi::xml_node n, const char* attribute, const svg_viewport& v, svg_extent e,

@@ -2,16 +2,19 @@
 // An SVG document whose complaints have a line and a column.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <vector>
 
 #include <pugixml.hpp>
 
 #include <tactor/error.hpp>
 
 #include "core/path/number.hpp"
+#include "files/svg/style.hpp"
 #include "files/svg/values.hpp"
 
 namespace tactor::detail {
@@ -48,6 +51,30 @@ public:
         }
     }
 
+    /// What `parse` makes of a property of svg_properties, by its attribute, style or rules; nothing where it
+    /// is not set.
+    template <class F>
+    auto read_property(pugi::xml_node n, const char* name, F parse) const
+        -> std::optional<decltype(parse(std::string_view{}))>
+    {
+        const std::string_view text = property(n, name);
+        if (text.empty())
+            return std::nullopt;
+        try {
+            return parse(text);
+        } catch (const value_fault& f) {
+            fail(n, name, text, f);
+        }
+    }
+
+    /// The text of a property of svg_properties; empty where it is not set.
+    std::string_view property(pugi::xml_node n, std::string_view name) const;
+
+    /// Remembers that something of an element is not followed: once for each `what`.
+    void note(pugi::xml_node n, const std::string& what) const;
+    /// What is not followed, with places, for people.
+    std::vector<std::string> warnings() const;
+
     /// A length in user units.
     double length(pugi::xml_node n, const char* attribute, const svg_viewport& v, svg_extent e,
                   double otherwise = 0.0) const;
@@ -56,13 +83,22 @@ public:
     std::optional<double> number(pugi::xml_node n, const char* attribute, double low, double high) const;
 
 private:
+    struct note_count {
+        pugi::xml_node first;
+        std::size_t elements = 0;
+    };
+
     [[noreturn]] void fail(pugi::xml_node n, pugi::xml_attribute a, const value_fault& f) const;
+    [[noreturn]] void fail(pugi::xml_node n, const char* property, std::string_view text,
+                           value_fault f) const;
 
     std::string_view text_;
     const std::string& name_;
     std::string buffer_; ///< the tree lives in it
     pugi::xml_document tree_;
     std::unordered_map<std::string_view, pugi::xml_node> ids_;
+    svg_style_sheet sheet_;
+    mutable std::map<std::string, note_count> notes_;
 };
 
 /// Element name without the prefix "svg:".

@@ -24,6 +24,22 @@ easing_kind easing_of(const svg_document& doc, xml_node n, std::string_view name
              "linear, in-out or minimum-jerk");
 }
 
+affine own_transform(const svg_document& doc, xml_node n, const svg_viewport& v)
+{
+    const auto own =
+        doc.read_property(n, "transform", [&v](std::string_view t) { return parse_svg_transform(t, v); });
+    if (!own)
+        return {};
+    if (const std::string_view box = doc.property(n, "transform-box"); !box.empty() && box != "view-box")
+        doc.note(n, fmt::format("transform-box: {}", quoted(box)));
+    const auto origin =
+        doc.read_property(n, "transform-origin", [&v](std::string_view t) { return parse_svg_origin(t, v); });
+    if (!origin)
+        return *own;
+    const auto moved = [](double x, double y) { return affine{1.0, 0.0, 0.0, 1.0, x, y}; };
+    return moved(origin->x_mm, origin->y_mm) * *own * moved(-origin->x_mm, -origin->y_mm);
+}
+
 } // namespace
 
 svg_scope svg_root_scope(const svg_document& doc)
@@ -72,9 +88,8 @@ void enter_svg_box(const svg_document& doc, xml_node n, svg_scope& s, const svg_
 
 void inherit_svg(const svg_document& doc, xml_node n, svg_scope& s)
 {
-    if (const auto t = doc.read(n, "transform", parse_svg_transform))
-        s.to_mm = s.to_mm * *t;
-    const std::string_view visibility = svg_property(n, "visibility");
+    s.to_mm = s.to_mm * own_transform(doc, n, s.viewport);
+    const std::string_view visibility = doc.property(n, "visibility");
     if (visibility == "visible")
         s.visible = true;
     else if (visibility == "hidden" || visibility == "collapse")
@@ -90,9 +105,9 @@ void inherit_svg(const svg_document& doc, xml_node n, svg_scope& s)
         s.carrier_hz = v;
 }
 
-bool svg_hidden(xml_node n)
+bool svg_hidden(const svg_document& doc, xml_node n)
 {
-    return svg_property(n, "display") == "none";
+    return doc.property(n, "display") == "none";
 }
 
 } // namespace tactor::detail

@@ -36,6 +36,6 @@ void enter_svg_box(const svg_document& doc, pugi::xml_node n, svg_scope& s, cons
 void inherit_svg(const svg_document& doc, pugi::xml_node n, svg_scope& s);
 
 /// display is "none".
-bool svg_hidden(pugi::xml_node n);
+bool svg_hidden(const svg_document& doc, pugi::xml_node n);
 
 } // namespace tactor::detail

@@ -14,16 +14,6 @@ namespace {
 
 constexpr double no_look = std::numeric_limits<double>::quiet_NaN();
 
-std::string_view trimmed(std::string_view text)
-{
-    std::size_t at = 0;
-    skip_blanks(text, at);
-    text.remove_prefix(at);
-    while (!text.empty() && blank(text.back()))
-        text.remove_suffix(1);
-    return text;
-}
-
 // A number from 0 to 1, or a percentage of it; beyond counts as the bound, as CSS has it.
 double read_opacity(std::string_view text)
 {
@@ -49,21 +39,6 @@ double read_width(std::string_view text, const svg_viewport& v)
 
 } // namespace
 
-std::string_view svg_property(pugi::xml_node n, const char* name)
-{
-    std::string_view value = n.attribute(name).value();
-    std::string_view style = n.attribute("style").value();
-    while (!style.empty()) {
-        const std::size_t end = std::min(style.find(';'), style.size());
-        const std::string_view item = style.substr(0, end);
-        style.remove_prefix(std::min(end + 1, style.size()));
-        const std::size_t colon = item.find(':');
-        if (colon != std::string_view::npos && trimmed(item.substr(0, colon)) == name)
-            value = item.substr(colon + 1);
-    }
-    return trimmed(value.substr(0, value.find('!'))); // without !important
-}
-
 void inherit_svg_look(const svg_document& doc, pugi::xml_node n, const svg_viewport& v, svg_look& look)
 {
     const std::string_view asked = n.attribute("data-intensity-from").value();
@@ -76,11 +51,11 @@ void inherit_svg_look(const svg_document& doc, pugi::xml_node n, const svg_viewp
     else if (n.attribute("data-intensity-from"))
         doc.fail(n, fmt::format("data-intensity-from of {}: {}", svg_document::called(n), quoted(asked)),
                  "stroke-width, opacity or none");
-    if (const auto text = svg_property(n, "stroke-width"); !text.empty() && text != "inherit")
+    if (const auto text = doc.property(n, "stroke-width"); !text.empty() && text != "inherit")
         look.width = read_width(text, v);
-    if (const auto text = svg_property(n, "opacity"); !text.empty())
+    if (const auto text = doc.property(n, "opacity"); !text.empty())
         look.opacity *= read_opacity(text);
-    if (const auto text = svg_property(n, "stroke-opacity"); !text.empty() && text != "inherit")
+    if (const auto text = doc.property(n, "stroke-opacity"); !text.empty() && text != "inherit")
         look.stroke_opacity = read_opacity(text);
 }
 

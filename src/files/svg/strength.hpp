@@ -19,9 +19,6 @@ struct svg_look {
     double shown() const noexcept { return opacity * stroke_opacity; }
 };
 
-/// A CSS property of the element's own: its style, of two declarations the last, wins over the attribute.
-std::string_view svg_property(pugi::xml_node n, const char* name);
-
 /// What the element's own attributes change.
 void inherit_svg_look(const svg_document& doc, pugi::xml_node n, const svg_viewport& v, svg_look& look);
 

@@ -48,13 +48,16 @@ public:
         const xml_node root = doc_.root();
         scope s = detail::svg_root_scope(doc_);
         inherit_svg(doc_, root, s);
-        if (svg_hidden(root))
+        note_unfollowed(root);
+        if (svg_hidden(doc_, root))
             hidden_ = root;
         else
             children(root, s);
         weigh_widths();
-        if (!strokes_.empty())
+        if (!strokes_.empty()) {
+            strokes_.front().warnings = doc_.warnings();
             return std::move(strokes_);
+        }
         if (undrawn_)
             doc_.fail(undrawn_, fmt::format("{} draws nothing", doc_.called(undrawn_)),
                       "it needs a size, or path data that draws");
@@ -82,10 +85,11 @@ private:
                       "simplify the drawing");
         const std::string_view tag = svg_tag(n);
         const bool group = tag == "g" || tag == "a" || tag == "switch";
-        if (!(group || tag == "svg" || tag == "use" || detail::is_svg_shape(tag)))
+        if (!draws(n))
             return;
-        if (svg_hidden(n))
+        if (svg_hidden(doc_, n))
             return note_hidden(n);
+        note_unfollowed(n);
         inherit_svg(doc_, n, s);
         if (group)
             children(n, s);
@@ -99,6 +103,23 @@ private:
             shape(n, s);
         else
             note_hidden(n);
+    }
+
+    // Of a switch an SVG viewer draws one child.
+    void note_unfollowed(xml_node n) const
+    {
+        for (const char* what : {"clip-path", "mask"})
+            if (const std::string_view v = doc_.property(n, what); !v.empty() && v != "none")
+                doc_.note(n, what);
+        if (svg_tag(n) == "switch" && std::count_if(n.begin(), n.end(), draws) > 1)
+            doc_.note(n, "the choice");
+    }
+
+    static bool draws(xml_node n)
+    {
+        const std::string_view tag = svg_tag(n);
+        return tag == "g" || tag == "a" || tag == "switch" || tag == "svg" || tag == "use" ||
+               detail::is_svg_shape(tag);
     }
 
     // The first: named where nothing draws.

@@ -34,6 +34,14 @@ std::string_view word_at(std::string_view text, std::size_t at)
     return text.substr(at, end - at);
 }
 
+std::size_t unit_end(std::string_view text, std::size_t at)
+{
+    while (at < text.size() &&
+           (text[at] == '%' || (text[at] >= 'a' && text[at] <= 'z') || (text[at] >= 'A' && text[at] <= 'Z')))
+        ++at;
+    return at;
+}
+
 double alignment(std::string_view name, std::string_view whole)
 {
     if (name == "Min")
@@ -57,13 +65,23 @@ double svg_number(std::string_view text)
     return v;
 }
 
-std::vector<double> svg_numbers(std::string_view text)
+std::vector<double> svg_numbers(std::string_view text, const svg_unit& unit)
 {
     std::vector<double> all;
     std::size_t at = 0;
     skip_blanks(text, at);
     while (at < text.size()) {
-        all.push_back(number_at(text, at));
+        double v = number_at(text, at);
+        if (const std::size_t end = unit_end(text, at); unit && end > at) {
+            try {
+                v = unit(v, text.substr(at, end - at), all.size());
+            } catch (value_fault& f) {
+                f.offset += at;
+                throw;
+            }
+            at = end;
+        }
+        all.push_back(v);
         skip_blanks(text, at);
         if (at < text.size() && text[at] == ',') {
             ++at;

@@ -2,6 +2,7 @@
 // Values of SVG attributes. All throw value_fault.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -49,11 +50,17 @@ struct svg_aspect {
 };
 
 double svg_number(std::string_view text);
-std::vector<double> svg_numbers(std::string_view text);
+/// What a unit behind a number makes of it. \throws value_fault.
+using svg_unit = std::function<double(double value, std::string_view unit, std::size_t index)>;
+/// Numbers with blanks or commas between; with units where `unit` takes them.
+std::vector<double> svg_numbers(std::string_view text, const svg_unit& unit = {});
 svg_length parse_svg_length(std::string_view text);
 svg_view_box parse_svg_view_box(std::string_view text);
 svg_aspect parse_svg_aspect(std::string_view text);
-affine parse_svg_transform(std::string_view text);
+/// As SVG's attribute and as CSS have it, for two dimensions. A px is a user unit, as browsers have it.
+affine parse_svg_transform(std::string_view text, const svg_viewport& v);
+/// transform-origin, in user units.
+point parse_svg_origin(std::string_view text, const svg_viewport& v);
 
 /// Maps a view box into a frame.
 affine fit(const svg_view_box& box, point corner, double width, double height, const svg_aspect& a) noexcept;

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// CSS of an SVG document, as far as drawing programs write it: rules for tags, classes and ids.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <deque>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include <pugixml.hpp>
+
+namespace tactor::detail {
+
+/// Properties that decide what plays, where and how strongly, or that would if they were followed.
+inline constexpr std::array<std::string_view, 10> svg_properties{
+    "display",   "visibility",       "opacity",       "stroke-width", "stroke-opacity",
+    "transform", "transform-origin", "transform-box", "clip-path",    "mask"};
+
+/// The rules of all <style> elements of a document, whose text must live as long.
+class svg_style_sheet {
+public:
+    /// A rule that is not followed although it has one of these properties.
+    struct skipped {
+        pugi::xml_node style;
+        std::string what; ///< a selector, or the name of an at-rule
+    };
+
+    void add(pugi::xml_node style);
+
+    /// The value of a property of svg_properties for an element: of its attribute, the sheet's rules and its
+    /// style, the one that counts by CSS; without blanks and !important, empty for none. \throws value_fault
+    /// for a sheet that matches without end.
+    std::string_view value(pugi::xml_node n, std::string_view property) const;
+
+    /// Each is named once.
+    const std::vector<skipped>& not_followed() const noexcept { return skipped_; }
+
+private:
+    struct declaration {
+        std::size_t property = 0; ///< of svg_properties
+        std::string_view value;
+        bool important = false;
+    };
+    /// "path.thin#a": all of it must fit.
+    struct selector {
+        std::string_view tag; ///< empty for any
+        std::vector<std::string_view> ids;
+        std::vector<std::string_view> classes;
+        std::size_t rank = 0;  ///< specificity
+        std::size_t first = 0; ///< of declarations_
+        std::size_t count = 0;
+    };
+
+    void add_rules(pugi::xml_node style, std::string_view css);
+    void add_rule(pugi::xml_node style, std::string_view selectors, std::string_view body);
+    void skip(pugi::xml_node style, std::string_view what);
+    static bool parse_selector(std::string_view text, selector& into);
+    static std::vector<declaration> parse_declarations(std::string_view body);
+    static bool fits(const selector& s, pugi::xml_node n);
+
+    std::deque<std::string> texts_; ///< without comments
+    std::vector<declaration> declarations_;
+    std::vector<selector> selectors_; ///< in the order of the document
+    /// Selectors by an id, class or tag that they need, with its sign: "#a", ".b", "c", or "" for none.
+    std::unordered_map<std::string, std::vector<std::size_t>> by_key_;
+    std::vector<skipped> skipped_;
+    mutable std::size_t tried_ = 0;
+};
+
+} // namespace tactor::detail

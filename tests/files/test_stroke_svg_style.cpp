@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+// Style sheets and CSS transforms, as drawing programs write them.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <tactor/stroke.hpp>
+
+#include "has.hpp"
+#include "message_of.hpp"
+
+namespace stroke_svg_style_test {
+
+using namespace tactor;
+
+namespace {
+
+std::vector<stroke> strokes(const std::string& content, const std::string& root = "")
+{
+    return parse_strokes_svg("<svg " + root + ">" + content + "</svg>", "d.svg");
+}
+
+std::vector<std::string> names(const std::string& content)
+{
+    std::vector<std::string> all;
+    for (const stroke& s : strokes(content))
+        all.push_back(s.name);
+    return all;
+}
+
+/// Where a line from (0, 0) to (10, 0) ends.
+point end(const std::string& attributes, const std::string& before = "", const std::string& root = "")
+{
+    return strokes(before + "<line x2='10' " + attributes + "/>", root).front().motion.position(1e9);
+}
+
+bool near(point a, point b)
+{
+    return std::abs(a.x_mm - b.x_mm) < 1e-9 && std::abs(a.y_mm - b.y_mm) < 1e-9;
+}
+
+using list = std::vector<std::string>;
+const std::string lines =
+    "<path id='a' class='st0' d='M 0 0 H 9'/><path id='b' class='st1 thin' d='M 0 0 H 9'/>"
+    "<line id='c' class='thin' x2='9'/>";
+
+} // namespace
+
+TEST_CASE("rules of classes, ids and tags hide, the most special one and then the last first")
+{
+    const auto left = [](const std::string& css) { return names("<style>" + css + "</style>" + lines); };
+    CHECK(left("") == list{"a", "b", "c"});
+    CHECK(left(".st0{display:none;}") == list{"b", "c"});
+    CHECK(left("  .st0 , #c { display : none }") == list{"b"});
+    CHECK(left("path{visibility:hidden}") == list{"c"});
+    CHECK(left("line,*{visibility:hidden} .thin{visibility:visible}") == list{"b", "c"});
+    CHECK(left(".thin{visibility:visible} *{visibility:hidden}") == list{"b", "c"});
+    CHECK(left("#b{display:inline} path.thin{display:none}") == list{"a", "b", "c"});
+    CHECK(left(".thin{display:none} path.st1{display:inline}") == list{"a", "b"});
+    CHECK(left(".st1{display:none} .thin{display:inline}") == list{"a", "b", "c"});
+    CHECK(left(".thin{display:inline} .st1{display:none}") == list{"a", "c"});
+    CHECK(left("path{display:none!important} #a{display:inline}") == list{"c"});
+    CHECK(left("/* .st0{display:none} */ .st1{fill:url(a;b{}.png);DISPLAY:none}") == list{"a", "c"});
+    CHECK(left("<![CDATA[.st0{display:none;}\n.st1{stroke-width:2}]]>") == list{"b", "c"});
+    CHECK(left(".st0{display:none;display:inline}") == list{"a", "b", "c"});
+    CHECK(left(".ST0{display:none} .st{display:none} #A{display:none}") == list{"a", "b", "c"});
+}
+
+TEST_CASE("a sheet counts more than an attribute and less than the element's own style")
+{
+    CHECK(
+        names(
+            "<style>.h{display:none} .v{display:inline}</style><line id='a' x2='9' display='none' class='v'/>"
+            "<line id='b' x2='9' class='h' style='display:inline'/><line id='c' x2='9' class='h' "
+            "display='inline'/>") == list{"a", "b"});
+    CHECK(names("<line id='a' x2='9'/><g class='h'><line id='b' "
+                "x2='9'/></g><defs><style>.h{display:none}</style></defs>") == list{"a"});
+    CHECK(names("<style>.h{display:none!important}</style><line id='a' x2='9'/>"
+                "<line id='b' x2='9' class='h' style='display:inline'/>"
+                "<line id='c' x2='9' class='h' style='display:inline !important'/>") == list{"a", "c"});
+}
+
+TEST_CASE("widths and opacities of a sheet are intensities")
+{
+    const auto all =
+        strokes("<style>.w4{stroke-width:4} #b{stroke-width:1px;} line{stroke-width:2}</style>"
+                "<path class='w4' d='M 0 0 H 9'/><path id='b' class='w4' d='M 0 0 H 9'/><line x2='9'/>",
+                "data-intensity-from='stroke-width'");
+    REQUIRE(all.size() == 3);
+    CHECK(all[0].motion.intensity(0.0) == 1.0);
+    CHECK(all[1].motion.intensity(0.0) == doctest::Approx(25.4 / 96.0 / 4.0));
+    CHECK(all[2].motion.intensity(0.0) == 0.5);
+    const auto faint = strokes(
+        "<style>.o{opacity:.5} .s{stroke-opacity:50%}</style><g class='o'><line class='s' x2='9'/></g>",
+        "data-intensity-from='opacity'");
+    CHECK(faint.at(0).motion.intensity(0.0) == 0.25);
+}
+
+TEST_CASE("transforms of styles and sheets have units and origins")
+{
+    CHECK(near(end("style='transform:rotate(90deg)'"), {0.0, 10.0}));
+    CHECK(near(end("style='transform: translate(5px, 3px) scale(2)'"), {25.0, 3.0}));
+    CHECK(near(end("style='transform:translateY(2mm)'"), {10.0, 2.0 * 96.0 / 25.4}));
+    CHECK(near(end("style='transform:scaleX(50%) rotate(.25turn)'"), {0.0, 10.0}));
+    CHECK(near(end("style='transform:rotate(100grad)'"), {0.0, 10.0}));
+    CHECK(near(end("style='transform:translate(50%, 10%)'", "", "viewBox='0 0 40 20'"), {30.0, 2.0}));
+    CHECK(near(end("class='r'", "<style>.r{transform:rotate(90deg)}</style>"), {0.0, 10.0}));
+    CHECK(near(end("class='r' transform='scale(3)'", "<style>.r{transform:rotate(90deg)}</style>"),
+               {0.0, 10.0}));
+    CHECK(near(end("style='transform:none' transform='scale(3)'"), {10.0, 0.0}));
+    for (const char* origin : {"10px 5px", "25% 25%", "10 5"})
+        CHECK(near(end("style='transform:rotate(180deg);transform-origin:" + std::string(origin) + "'", "",
+                       "viewBox='0 0 40 20'"),
+                   {10.0, 10.0}));
+    CHECK(near(end("transform='rotate(180)' transform-origin='center'", "", "viewBox='0 0 40 20'"),
+               {30.0, 20.0}));
+    CHECK(near(end("transform='rotate(180)' transform-origin='top right'", "", "viewBox='0 0 40 20'"),
+               {70.0, 0.0}));
+    CHECK(near(end("class='r' transform='rotate(180)'", "<style>.r{transform-origin:10px 0}</style>"),
+               {10.0, 0.0}));
+    CHECK(near(end("transform-origin='10 5'"), {10.0, 0.0}));
+}
+
+TEST_CASE("a transform that cannot be read is named with its place")
+{
+    const auto refusal = [](const std::string& svg) {
+        return message_of([&] { static_cast<void>(parse_strokes_svg(svg, "d.svg")); });
+    };
+    CHECK(has(refusal("<svg><line x2='9' style='transform:rotate(3em)'/></svg>"),
+              "d.svg:1:7: transform of <line>: 'em' is no unit of an angle (deg, grad, rad or turn)"));
+    CHECK(has(refusal("<svg><line x2='9' style='transform:translate3d(1px,2px,3px)'/></svg>"),
+              "'translate3d' is not a transform"));
+    CHECK(has(refusal("<svg><style>line{transform:matrix(1px)}</style><line x2='9'/></svg>"),
+              "transform of <line>: unit 'px' in matrix()"));
+    CHECK(has(refusal("<svg><line x2='9' transform='scale(2)' transform-origin='1 2 3 4'/></svg>"),
+              "d.svg:1:58: transform-origin of <line>: '1 2 3 4' is not an origin"));
+}
+
+TEST_CASE("what is not followed is warned of")
+{
+    const auto warned = [](const std::string& content) {
+        std::string all;
+        const auto s = strokes(content);
+        for (const std::string& w : s.front().warnings)
+            all += w + "\n";
+        for (std::size_t i = 1; i < s.size(); ++i)
+            CHECK(s[i].warnings.empty());
+        return all;
+    };
+    CHECK(warned("<style>.a{fill:red} svg .a{fill:blue} @font-face{font-family:x}</style>" + lines).empty());
+    CHECK(warned("<g clip-path='none' mask='none'>" + lines + "</g>").empty());
+    CHECK(
+        warned(
+            "<g clip-path='url(#c)'><line x2='9'/></g><line id='x' x2='9' style='clip-path:circle(3px)'/>") ==
+        "d.svg:1:8: clip-path of <g> is not followed, nor of 1 element more: what it hides or moves plays as "
+        "drawn\n");
+    CHECK(warned("<style>.m{mask:url(#m)}</style><line class='m' x2='9'/>")
+              .find("mask of <line> is not followed") != std::string::npos);
+    CHECK(warned("<switch><g><line x2='1'/></g><g><line x2='2'/></g></switch>")
+              .find("the choice of <switch> is not followed") != std::string::npos);
+    CHECK(warned("<switch><foreignObject/><g><line x2='1'/></g></switch>").empty());
+    CHECK(warned("<line x2='9' style='transform:rotate(9deg);transform-box:fill-box'/>")
+              .find("transform-box: 'fill-box' of <line>") != std::string::npos);
+    CHECK(warned("<line x2='9' style='transform-box:fill-box'/>").empty());
+    for (const char* selector :
+         {"svg line", "g>line", "line:hover", "line[id]", "line + line", "a|line", ".\\31 "}) {
+        CAPTURE(selector);
+        CHECK(warned("<style>" + std::string(selector) + "{display:none}</style><line x2='9'/>")
+                  .find("d.svg:1:8: the style rule '") == 0);
+    }
+    CHECK(warned("<style>@media screen{line{display:none}}</style><line x2='9'/>")
+              .find("the style rule '@media screen' is not followed") != std::string::npos);
+    CHECK(warned("<style media='print'>line{opacity:0}</style><line x2='9'/>").find("'@media print'") !=
+          std::string::npos);
+}
+
+TEST_CASE("sheets that do not end, or match without end, end")
+{
+    for (const char* css : {"{", "}", "a{", "a{display", "@", "@media{", "/*", "a{display:none", "a{b:\"",
+                            ".{display:none}", "*", "a{}}}b{", ",{display:none}"}) {
+        CAPTURE(css);
+        CHECK(strokes("<style>" + std::string(css) + "</style><line x2='9'/>").size() == 1);
+    }
+    std::string many = "<style>";
+    for (int i = 0; i < 20000; ++i)
+        many += ".a.b" + std::to_string(i) + "{opacity:1}";
+    many += "</style>";
+    for (int i = 0; i < 20000; ++i)
+        many += "<line class='a' x2='9'/>";
+    CHECK(has(message_of([&] { static_cast<void>(strokes(many)); }), "takes too long"));
+}
+
+} // namespace stroke_svg_style_test
