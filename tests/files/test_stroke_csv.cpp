@@ -104,17 +104,31 @@ TEST_CASE("what is wrong in a CSV file is named by line and column")
         {"# only this\n\n", "f.csv:2: is empty"},
         {"t_s,x_mm,y_mm\n", "f.csv:1: 0 of at least 2 points"},
         {"t_s,x_mm,y_mm\n0,0,0\n", "f.csv:2: 1 of at least 2 points"},
-        {"t_s,x_mm,z_mm\n", "f.csv:1:10: unknown column 'z_mm' (known columns: t_s, x_mm, y_mm, intensity)"},
-        {"t_s,x_mm,y_mm,\n", "f.csv:1:15: unknown column ''"},
-        {"0,0,0\n1,1,1\n", "f.csv:1:1: unknown column '0'"},
-        {"t_s;x_mm;y_mm\n", "f.csv:1:1: unknown column 't_s;x_mm;y_mm' (separate the columns by commas)"},
+        {"t_s,x_mm,z_mm\n", "f.csv:1:10: unknown column 'z_mm' (did you mean '"},
+        {"t_s,x_mm,y_mm,intensty\n", "f.csv:1:15: unknown column 'intensty' (did you mean 'intensity'?)"},
+        {"t_s,x_mm,y_mm,pupil\n0,0,0\n", "f.csv:2:5: 3 values where the header names 4 columns"},
+        {"time,x,y\n0,0,0\n", "f.csv:1:6: unknown column 'x' (did you mean 'x_mm'?)"},
+        {"0,0,0\n1,1,1\n", "f.csv:1:1: there is no line that names the columns (begin with: t_s,x_mm,y_mm)"},
+        {"# finger\n0,0,0\n1,1,1\n", "f.csv:2:1: there is no line that names the columns"},
+        {"\n# t_s,x_mm,y_mm\n0,0,0\n1,nan,1\n",
+         "f.csv:2:1: the line that names the columns is a comment (take its # away; numpy.savetxt()"},
+        {"t_s,x_mm,y_mm\r0,0,0\r1,1,1\r", "f.csv:1:14: its lines end in CR alone (save it"},
+        {"# a\rt_s,x_mm,y_mm\r0,0,0\r", "f.csv:1:4: its lines end in CR alone"},
+        {"t_s;x_mm;y_mm\n", "f.csv:1:1: semicolons separate its columns (separate them by commas"},
+        {"0,5;1,0;2,0\n", "f.csv:1:1: semicolons separate its columns"},
+        {"t_s\tx_mm\ty_mm\n", "f.csv:1:1: tabs separate its columns (separate them by commas: tr"},
+        {"t_s x_mm y_mm\n0 1 2\n", "f.csv:1:1: blanks separate its columns (separate them by commas: tr -s"},
+        {"  0.0  1.0  2.0\n", "f.csv:1:1: blanks separate its columns"},
+        {"# t_s x_mm y_mm\n0 1 2\n", "f.csv:2:1: blanks separate its columns"},
         {"t_s,x_mm,t_s\n", "f.csv:1:10: column t_s twice"},
         {"\nt_s,x_mm\n", "f.csv:2: no column y_mm"},
         {"t_s,x_mm,y_mm\n0,0,0\n1,1\n", "f.csv:3:3: 2 values where the header names 3 columns"},
         {"t_s,x_mm,y_mm\n0,0,0\n0,5,1,1\n", "f.csv:3:5: 4 values where the header names 3 columns"},
-        {"t_s,x_mm,y_mm\n0,0,0\n1,,1\n", "f.csv:3:3: x_mm is missing (give a number)"},
+        {"t_s,x_mm,y_mm\n0,0,0\n1,,1\n",
+         "f.csv:3:3: x_mm is missing (give a number, or nan where there is none)"},
         {"t_s,x_mm,y_mm\n0,0,0\n1, 1a,1\n", "f.csv:3:4: x_mm is not a number: '1a'"},
-        {"t_s,x_mm,y_mm\n0,0,0\n1,nan,1\n", "f.csv:3:3: x_mm is not a number: 'nan'"},
+        {"t_s,x_mm,y_mm\n0,0,0\n1,nan,1\n", "f.csv:3: 1 of at least 2 points"},
+        {"t_s,x_mm,y_mm\n0,0,0\nnan,1,1\n", "f.csv:3:1: t_s is not a number: 'nan'"},
         {"t_s,x_mm,y_mm\n0,0,0\n1,1,inf\n", "f.csv:3:5: y_mm is not a number: 'inf'"},
         {"t_s,x_mm,y_mm\n0,0,0\n1,1,-1e999\n", "f.csv:3:5: y_mm -1e999"},
         {"t_s,x_mm,y_mm\n0,0,0\n1,1000001,0\n", "f.csv:3:3: x_mm 1000001 (it is between -1e+06 and 1e+06)"},
@@ -141,6 +155,44 @@ TEST_CASE("what is wrong in a CSV file is named by line and column")
         CAPTURE(got);
         CHECK(got.find(s.message) == 0);
     }
+}
+
+TEST_CASE("columns that a tracker adds are left out, and the stroke says so")
+{
+    const stroke s = one("frame,t_s,pupil,x_mm,note,y_mm\n7,0,n/a,0,\"a, b\",10\n8,1,,40,x,30\n");
+    CHECK(s.motion.position(0.5) == point{20.0, 20.0});
+    REQUIRE(s.warnings.size() == 1);
+    CHECK(s.warnings[0] == "dir/finger.csv:1: these columns are left out: 'frame', 'pupil', 'note'");
+    const stroke trailing = one("t_s,x_mm,y_mm,\n0,0,0,\n1,1,1,\n");
+    REQUIRE(trailing.warnings.size() == 1);
+    CHECK(trailing.warnings[0] == "dir/finger.csv:1: this column is left out: ''");
+    CHECK(one("t_s,x_mm,y_mm,a,b,c,d,e,f\n0,0,0,,,,,,\n1,1,1,,,,,,\n").warnings.at(0) ==
+          "dir/finger.csv:1: these columns are left out: 'a', 'b', 'c', 'd', 'e', ...");
+}
+
+TEST_CASE("lines without a place are gaps, in which the touch is lifted")
+{
+    for (const char* nan : {"nan", "NaN", "NAN", "NA"}) {
+        const std::string lost = std::string(",") + nan + "," + nan + "\n";
+        const stroke s = one("t_s,x_mm,y_mm\n5" + lost + "6,0,0\n7,10,0\n8" + lost + "9" + lost +
+                             "10,20,10\n11,30,10\n12" + lost);
+        CHECK(s.motion.duration_s() == 5.0); // from the first place to the last
+        CHECK(s.motion.position(1.0) == point{10.0, 0.0});
+        CHECK(s.motion.position(4.0) == point{20.0, 10.0});
+        for (const double t : {0.0, 0.5, 1.0, 4.0, 4.5, 5.0})
+            CHECK(s.motion.intensity(t) == 1.0);
+        for (const double t : {1.00001, 2.0, 3.0, 3.99999})
+            CHECK(s.motion.intensity(t) == 0.0);
+        REQUIRE(s.warnings.size() == 1);
+        CHECK(s.warnings[0] ==
+              "dir/finger.csv:2: no place (nan) in 4 lines from here on: the touch is lifted there");
+    }
+    const stroke half =
+        one("t_s,x_mm,y_mm,intensity\n0,0,0,0.5\n1,1,nan,1\n2,4,0,0.5\n3,5,0,nan\n4,8,0,0.5\n");
+    CHECK(half.motion.intensity(1.0) == 0.0);
+    CHECK(half.motion.intensity(2.0) == 0.5);
+    CHECK(half.motion.intensity(3.0) == 0.0);
+    CHECK(half.motion.duration_s() == 4.0);
 }
 
 TEST_CASE("a million lines are read as they are")

@@ -39,7 +39,7 @@ TEST_CASE("the extension says what a stroke file is, in any case")
     CHECK(length(tactor::load_strokes(f.write("a.svg", svg))) == 6.0);
     CHECK(length(tactor::load_strokes(f.write("a.toml", toml))) == 6.0);
     CHECK(tactor::load_strokes(f.write("touch.csv", csv))[0].name == "touch");
-    CHECK(refusal(f.write("b.csv", svg)).find("b.csv:1:1: unknown column") != std::string::npos);
+    CHECK(refusal(f.write("b.csv", svg)).find("b.csv:1") != std::string::npos);
 }
 
 TEST_CASE("other extensions, or none, are guessed from the text")
@@ -59,7 +59,7 @@ TEST_CASE("the kind of stroke text is guessed from its first line")
     CHECK(length(tactor::parse_strokes("# t_s\n" + toml, "-")) == 6.0);
     CHECK(message_of([] {
               static_cast<void>(tactor::parse_strokes("time,x,y\n", "-"));
-          }).find("-:1:1: unknown column 'time'") == 0);
+          }).find("-:1:6: unknown column 'x' (did you mean 'x_mm'?)") == 0);
     CHECK_FALSE(message_of([] { static_cast<void>(tactor::parse_strokes("", "-")); }).empty());
     CHECK_FALSE(message_of([] { static_cast<void>(tactor::parse_strokes("\xff\xfe", "-")); }).empty());
 }

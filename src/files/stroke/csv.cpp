@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -15,6 +18,7 @@
 #include "core/suggest.hpp"
 #include "core/trajectory/limits.hpp"
 #include "core/words.hpp"
+#include "files/stroke/csv_form.hpp"
 #include "files/stroke/text.hpp"
 #include "files/text_file.hpp"
 
@@ -46,7 +50,8 @@ public:
         // Exactly: a vector that grows needs three times as much for a moment.
         points_.reserve(std::min<std::size_t>(std::count(rest_.begin(), rest_.end(), '\n') + 1, most_points));
         while (next_line())
-            add(row());
+            if (const std::optional<timed_point> p = row())
+                add_behind_gap(*p);
         if (points_.size() < 2)
             fail({},
                  fmt::format("{} of at least 2 points{}", points_.size(),
@@ -119,23 +124,37 @@ private:
     void header()
     {
         split();
+        std::array<bool, columns> seen{};
         for (const field& f : fields_) {
-            std::size_t c = 0;
-            while (c < columns && names[c] != f.text)
-                ++c;
-            if (c == columns)
-                fail(f.column, fmt::format("unknown column {}", detail::quoted(f.text)),
-                     f.text.find_first_of(";\t") != std::string_view::npos
-                         ? "separate the columns by commas"
-                         : "known columns: t_s, x_mm, y_mm, intensity");
-            if (seen_[c])
+            const auto c =
+                static_cast<std::size_t>(std::find(names.begin(), names.end(), f.text) - names.begin());
+            if (c < columns && seen[c])
                 fail(f.column, fmt::format("column {} twice", names[c]), "name each column once");
-            seen_[c] = true;
+            if (c < columns)
+                seen[c] = true;
             order_.push_back(static_cast<column>(c));
         }
-        for (const column c : {t_s, x_mm, y_mm})
-            if (!seen_[c])
-                fail({}, fmt::format("no column {}", names[c]), header_hint);
+        std::vector<std::string_view> absent;
+        for (std::size_t c = 0; c < columns; ++c)
+            if (!seen[c])
+                absent.push_back(names[c]);
+        for (std::size_t i = 0; i < order_.size(); ++i)
+            if (order_[i] == columns)
+                leave_out(fields_[i], absent);
+        if (!absent.empty() && absent.front() != names[intensity])
+            fail({}, fmt::format("no column {}", absent.front()), header_hint);
+    }
+
+    // What a tracker adds is no fault, but what is a slip of a column's name is.
+    void leave_out(const field& f, std::span<const std::string_view> absent)
+    {
+        if (const std::string_view near = detail::nearest_name(f.text, absent); !near.empty())
+            fail(f.column, fmt::format("unknown column {}", detail::quoted(f.text)),
+                 fmt::format("did you mean {}?", detail::quoted(near)));
+        constexpr std::size_t most_named = 5;
+        if (++left_out_ <= most_named)
+            left_out_names_ += fmt::format("{}{}", left_out_ == 1 ? "" : ", ", detail::quoted(f.text));
+        header_line_ = line_number_;
     }
 
     // Touch screens give several places the time of one report: the last is where the finger is.
@@ -152,20 +171,46 @@ private:
             first_repeated_ = line_number_;
     }
 
-    std::vector<std::string> warnings() const
+    // From the last place to the next one the touch is lifted.
+    void add_behind_gap(const timed_point& p)
     {
-        if (repeated_ == 0)
-            return {};
-        const source_place first{name_, first_repeated_, 0};
-        if (repeated_ == 1)
-            return {
-                fmt::format("{}: repeats the time of the line before, which does not count", first.text())};
-        return {fmt::format("{}: repeats the time of the line before, as {} lines do in all; the last of "
-                            "equal times counts",
-                            first.text(), repeated_)};
+        constexpr double at_once_s = 1e-6;
+        if (std::exchange(in_gap_, false) && !points_.empty() && p.t_s > points_.back().t_s) {
+            const timed_point last = points_.back();
+            const double edge_s = std::min(at_once_s, (p.t_s - last.t_s) / 4.0);
+            add({last.t_s + edge_s, last.position, 0.0});
+            add({p.t_s - edge_s, p.position, 0.0});
+        }
+        add(p);
     }
 
-    timed_point row()
+    std::vector<std::string> warnings() const
+    {
+        std::vector<std::string> all;
+        const auto warn = [&](unsigned line, const std::string& text) {
+            all.push_back(fmt::format("{}: {}", source_place{name_, line, 0}.text(), text));
+        };
+        if (left_out_ != 0)
+            warn(header_line_,
+                 fmt::format("{} left out: {}{}", left_out_ == 1 ? "this column is" : "these columns are",
+                             left_out_names_, left_out_ > 5 ? ", ..." : ""));
+        if (gaps_ != 0)
+            warn(first_gap_,
+                 fmt::format("no place (nan) in {}: the touch is lifted there",
+                             gaps_ == 1 ? "this line"
+                                        : fmt::format("{} from here on", counted(gaps_, "line"))));
+        if (repeated_ == 1)
+            warn(first_repeated_, "repeats the time of the line before, which does not count");
+        if (repeated_ > 1)
+            warn(first_repeated_,
+                 fmt::format("repeats the time of the line before, as {} lines do in all; the last of "
+                             "equal times counts",
+                             repeated_));
+        return all;
+    }
+
+    // None for a line in which a tracker had lost what it follows.
+    std::optional<timed_point> row()
     {
         split();
         if (fields_.size() != order_.size())
@@ -173,8 +218,17 @@ private:
                  fmt::format("{} where the header names {}", counted(fields_.size(), "value"),
                              counted(order_.size(), "column")),
                  "numbers have a decimal point, and a comma stands only between them");
+        for (std::size_t i = 0; i < order_.size(); ++i)
+            if (order_[i] != columns && order_[i] != t_s && detail::is_missing(fields_[i].text)) {
+                in_gap_ = true;
+                if (gaps_++ == 0)
+                    first_gap_ = line_number_;
+                return std::nullopt;
+            }
         timed_point p;
         for (std::size_t i = 0; i < order_.size(); ++i) {
+            if (order_[i] == columns)
+                continue;
             double v = value(fields_[i], order_[i]);
             if (order_[i] == t_s)
                 v = since_first(fields_[i], v);
@@ -206,7 +260,8 @@ private:
     double value(const field& f, column c) const
     {
         if (f.text.empty())
-            fail(f.column, fmt::format("{} is missing", names[c]), "give a number");
+            fail(f.column, fmt::format("{} is missing", names[c]),
+                 "give a number, or nan where there is none");
         std::size_t end = 0;
         const auto v = detail::scan_number(f.text, end);
         if (!v || end != f.text.size())
@@ -233,13 +288,18 @@ private:
     std::string_view line_;
     unsigned line_number_ = 0;
     std::vector<field> fields_;
-    std::array<bool, columns> seen_{};
-    std::vector<column> order_;
+    std::vector<column> order_; ///< `columns`: left out
+    std::size_t left_out_ = 0;
+    std::string left_out_names_;
+    unsigned header_line_ = 0;
     std::vector<timed_point> points_;
     double first_time_ = 0.0;
     double last_time_ = 0.0;
     std::size_t repeated_ = 0; ///< lines that replaced the one before
     unsigned first_repeated_ = 0;
+    bool in_gap_ = false;
+    std::size_t gaps_ = 0; ///< lines without a place
+    unsigned first_gap_ = 0;
 };
 
 } // namespace
@@ -248,6 +308,7 @@ std::vector<stroke> parse_strokes_csv(std::string_view text, const std::string& 
 {
     detail::check_size(text, name, detail::max_stroke_bytes, "is it the right file?");
     detail::refuse_no_text(text, name);
+    detail::refuse_other_form(detail::without_mark(text), name);
     return csv_reader(text, name).read();
 }
 
