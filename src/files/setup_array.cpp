@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/kind_names.hpp"
+#include "core/words.hpp"
 #include "files/setup_parts.hpp"
 #include "files/text_file.hpp"
 
@@ -30,7 +31,8 @@ array read_grid(const toml_table& grid)
     std::vector<double> pitch;
     if (const toml::array* xy = grid.node("pitch_mm")->as_array()) {
         if (xy->size() != 2)
-            grid.fail("pitch_mm", fmt::format("pitch_mm has {} numbers", xy->size()), "give one, or [x, y]");
+            grid.fail("pitch_mm", fmt::format("pitch_mm has {}", counted(xy->size(), "number")),
+                      "give one, or [x, y]");
         for (const toml::node& n : *xy)
             pitch.push_back(grid.number_of(n, "pitch_mm", positive));
     } else {

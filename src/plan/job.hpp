@@ -91,6 +91,8 @@ public:
 
 private:
     [[noreturn]] void refuse(double t_s) const;
+    /// The greatest distance of the target from the hull from then on, at 2000 places.
+    double farthest_outside_mm(double from_s) const;
 
     const job& job_;
     double inside_s_ = -1.0; // the last time known to be inside

@@ -208,7 +208,7 @@ TEST_CASE("grids that are none")
     CHECK(
         of("{ rows = 3, columns = 3, pitch_mm = [1, nan] }").starts_with("palm.toml:2:48: pitch_mm is nan"));
     CHECK(of("{ rows = 3, columns = 3, pitch_mm = [1] }") ==
-          "palm.toml:2:44: pitch_mm has 1 numbers (give one, or [x, y])");
+          "palm.toml:2:44: pitch_mm has 1 number (give one, or [x, y])");
     CHECK(of("3") == "palm.toml:2:8: grid is 3 (give a table, grid = { rows, columns, pitch_mm })");
     // Pitch in range, extent not.
     CHECK(of("{ rows = 1, columns = 3, pitch_mm = 1e6 }")

@@ -33,10 +33,12 @@ TEST_CASE("a path that leaves the array is refused where it does, or clamped")
         o.outside = outside_kind::error;
         const std::string why = refusal(palm, out, o);
         CAPTURE(why);
-        CHECK(why.find("leaves the array at (40.000, 20.000) mm after 0.4 s") != std::string::npos);
+        CHECK(why.find("leaves the array at (40.000, 20.000) mm after 0.4 s, and goes 60 mm outside") !=
+              std::string::npos);
         CHECK(why.find("outside = clamp") != std::string::npos);
         const std::string start = refusal(palm, along("M -3 20 L 20 20", 1.0), o);
-        CHECK(start.find("starts outside the array, at (-3.000, 20.000) mm") != std::string::npos);
+        CHECK(start.find("starts outside the array, at (-3.000, 20.000) mm, and goes 3 mm outside") !=
+              std::string::npos);
         o.outside = outside_kind::clamp;
         CHECK_NOTHROW(make_plan(palm, out, o));
     }

@@ -14,6 +14,7 @@
 #include "core/path/impl.hpp"
 #include "core/path/svg_pen.hpp"
 #include "core/suggest.hpp"
+#include "core/words.hpp"
 
 namespace tactor {
 inline namespace v0 {
@@ -129,7 +130,7 @@ private:
         const auto value = detail::scan_number(data_, at_);
         if (!value)
             fail(fmt::format("{} where {} wants a number", found(), c),
-                 fmt::format("{} takes {} numbers", c, count));
+                 fmt::format("{} takes {}", c, counted(count, "number")));
         if (!(std::abs(*value) <= limit_)) {
             at_ = begin;
             fail(fmt::format("{:g} is beyond {:g}", *value, limit_), "is it the right unit?");

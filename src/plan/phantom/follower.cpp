@@ -21,6 +21,18 @@ point follower::at(double t_s)
     return job_.faces.nearest(p);
 }
 
+double follower::farthest_outside_mm(double from_s) const
+{
+    constexpr int samples = 2000;
+    const trajectory& motion = job_.motion.motion;
+    double farthest = 0.0;
+    for (int i = 0; i <= samples; ++i) {
+        const point p = motion.position(from_s + (motion.duration_s() - from_s) * i / samples);
+        farthest = std::max(farthest, distance_mm(p, job_.faces.nearest(p)));
+    }
+    return farthest;
+}
+
 void follower::refuse(double t_s) const
 {
     const trajectory& motion = job_.motion.motion;
@@ -30,14 +42,18 @@ void follower::refuse(double t_s) const
         "fit_strokes() scales it to the array, outside = clamp plays the nearest point of the array";
     if (inside_s_ < 0.0)
         throw error(error_kind::bad_input, job_.name(),
-                    fmt::format("starts outside the array, at {}", place(motion.position(t_s))), hint);
+                    fmt::format("starts outside the array, at {}, and goes {} mm outside",
+                                place(motion.position(t_s)), plain_number(farthest_outside_mm(t_s), 3)),
+                    hint);
     double in = inside_s_;
     double out = t_s;
     // Until no double is left between, which is well within a micrometre.
     for (double middle = in + (out - in) / 2.0; in < middle && middle < out; middle = in + (out - in) / 2.0)
         (job_.faces.contains(motion.position(middle)) ? in : out) = middle;
     throw error(error_kind::bad_input, job_.name(),
-                fmt::format("leaves the array at {} after {}", place(motion.position(in)), seconds_text(in)),
+                fmt::format("leaves the array at {} after {}, and goes {} mm outside",
+                            place(motion.position(in)), seconds_text(in),
+                            plain_number(farthest_outside_mm(out), 3)),
                 hint);
 }
 

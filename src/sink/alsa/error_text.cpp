@@ -130,6 +130,10 @@ error no_pcm(const std::string& name, const std::string& detail, const surroundi
     if (defined && cards.empty() && wants_card(s))
         return {error_kind::not_available, thing(name), with_detail("there is no sound card", detail),
                 no_card_hint};
+    if (defined)
+        return {error_kind::not_available, thing(name),
+                with_detail("ALSA's configuration defines it, but not all that it refers to", detail),
+                "look at its slave in /etc/asound.conf and ~/.asoundrc; tactor devices lists all"};
     std::string hint = near(plain, s.pcms);
     if (hint.empty() && !s.pcms.empty() && s.pcms.size() <= most_names)
         hint = fmt::format("known: {}; ", fmt::join(s.pcms, ", "));

@@ -142,7 +142,7 @@ TEST_CASE("without a card that is said only of what leads to one")
     for (const std::vector<std::string>& route : {std::vector<std::string>{}, {"hw"}, {"plug", "dmix", "hw"}})
         has(s.leads(route, -ENOENT), "there is no sound card");
     const std::string text = s.leads({"plug"}, -ENOENT, "Unknown PCM palm");
-    has(text, "no such PCM: Unknown PCM palm");
+    has(text, "but not all that it refers to: Unknown PCM palm");
     CHECK(text.find("there is no sound card") == std::string::npos);
 }
 
@@ -193,6 +193,23 @@ TEST_CASE("an unknown PCM names a near one, or all when they are few")
     has(s.says("tactro", -ENOENT, {"default", "null", "tactor"}), "did you mean tactor?");
     has(s.says("xyz", -ENOENT, {"default", "null", "tactor"}), "known: default, null, tactor");
     has(s.says("xyz", -ENOENT), "cards: Headphones, DAC8x");
+}
+
+TEST_CASE("a PCM that is defined, and what it refers to is not, is no slip of its own name")
+{
+    const fake_system s;
+    s.two_cards();
+    const std::string text = s.says("soft", -ENOENT, {"default", "null", "soft"});
+    has(text, "PCM \"soft\": ALSA's configuration defines it, but not all that it refers to");
+    CHECK(text.find("did you mean") == std::string::npos);
+    try {
+        static_cast<void>(open_alsa(
+            {.pcm = "soft", .channels = 1, .config_text = "pcm.soft { type plug slave.pcm nobodys }"}));
+        FAIL("it opened");
+    } catch (const error& e) {
+        CHECK(std::string(e.what()).find("did you mean") == std::string::npos);
+        has(e.what(), "nobodys");
+    }
 }
 
 TEST_CASE("twelve names are all proposed, and more are too many")
