@@ -8,7 +8,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
-#include "cli/parse_number.hpp"
+#include "cli/picture_options.hpp"
 #include "cli/pipes.hpp"
 #include "cli/say.hpp"
 #include "cli/warnings.hpp"
@@ -21,10 +21,8 @@ namespace {
 using plot::figure_view;
 
 struct plot_settings {
-    std::string file;
-    plot::figure_options figure;
-    unsigned dpi = 300;
-    bool force = false;
+    picture_options picture;
+    figure_view view = figure_view::both;
 };
 
 figure_view parse_view(const std::string& text)
@@ -41,28 +39,16 @@ figure_view parse_view(const std::string& text)
                 "one of array, timing, wave, both");
 }
 
-void add_picture_options(CLI::App& c, plot_settings& p)
+void add_plot_options(CLI::App& c, plot_settings& p)
 {
-    c.add_option("-o,--output", p.file, "the file to write")->type_name("FILE.svg|.png|.pdf")->required();
-    add_force_option(c, p.force);
+    c.add_option("-o,--output", p.picture.file, "the file to write")
+        ->type_name("FILE.svg|.png|.pdf")
+        ->required();
     c.add_option_function<std::string>(
-         "--view", [&p](const std::string& t) { p.figure.view = parse_view(t); },
+         "--view", [&p](const std::string& t) { p.view = parse_view(t); },
          "what is shown: the array, who plays when, the samples, or the first two (default both)")
         ->type_name("array|timing|wave|both");
-    c.add_option_function<std::string>(
-         "--width",
-         [&p](const std::string& t) {
-             p.figure.width_mm = parse_number("--width", t, plot::least_width_mm, plot::most_width_mm, "mm");
-         },
-         "width of the picture (default 85, one print column)")
-        ->type_name("MM");
-    c.add_option_function<std::string>(
-         "--dpi",
-         [&p](const std::string& t) {
-             p.dpi = static_cast<unsigned>(parse_number("--dpi", t, plot::least_dpi, plot::most_dpi, "dpi"));
-         },
-         "resolution of a PNG (default 300)")
-        ->type_name("N");
+    add_picture_options(c, p.picture, "85, one print column");
 }
 
 // Of what is drawn: a stroke's own name, or that of the file that holds several.
@@ -75,20 +61,22 @@ std::string name_of(const piece& p)
 
 int draw(settings& s, option_list& options, const plot_settings& p)
 {
-    plot::format_of(p.file); // before the work
+    const picture_options& o = p.picture;
+    plot::format_of(o.file); // before the work
     const environment e = read_environment(s, options);
     const piece q = plan_one_piece(s, e);
-    plot::check_output(p.file, p.force);
+    plot::check_output(o.file, o.force);
     // Only the samples have levels: a picture of a plan needs none that a card could play.
     std::optional<score> sound;
-    if (p.figure.view == figure_view::wave)
+    if (p.view == figure_view::wave)
         sound = make_score(q, e, settle_render(s, e));
     const plot::canvas picture = plot::draw_figure(
-        {e.tactors, name_of(q), q.strokes, q.plans, sound ? &*sound : nullptr, q.moved}, p.figure);
-    tell_of_pipe_to_write(p.file);
-    plot::save(picture, p.file, p.dpi, p.force);
+        {e.tactors, o.choose_title(name_of(q)), q.strokes, q.plans, sound ? &*sound : nullptr, q.moved},
+        {p.view, o.width_mm, o.has_title()});
+    tell_of_pipe_to_write(o.file);
+    plot::save(picture, o.file, o.dpi, o.force);
     say_warnings(collect_warnings(q.plans));
-    say(stdout, "{}: {:.4g} x {:.4g} mm\n", p.file, picture.width / plot::pt_per_mm,
+    say(stdout, "{}: {:.4g} x {:.4g} mm\n", o.file, picture.width / plot::pt_per_mm,
         picture.height / plot::pt_per_mm);
     return status_ok;
 }
@@ -103,7 +91,7 @@ command add_plot(CLI::App& app)
     auto p = std::make_shared<plot_settings>();
     options->add_stroke_options();
     options->add_sound_options();
-    add_picture_options(*c, *p);
+    add_plot_options(*c, *p);
     c->footer("Example: tactor plot park2016-3 -o park2016-3.pdf");
     return [s, options, p] { return options->run([&] { return draw(*s, *options, *p); }); };
 }

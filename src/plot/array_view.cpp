@@ -22,6 +22,7 @@ constexpr double least_spacing = 3.6; // of bursts on the page, pt
 constexpr std::size_t always_shown = 24;
 constexpr double close_pitch = 24.0; // of tactors on the page, pt
 constexpr double taller = 0.3;       // of the width
+constexpr std::size_t few_paths = 20;
 
 // How fine the marks are: the more bursts, the finer.
 struct fineness {
@@ -71,13 +72,13 @@ public:
         draw_tactors(canvas_, frame_, scene_.tactors, looks, taken_);
         draw_dots();
         draw_felt();
-        draw_path_marks(canvas_, scene_, frame_, fine_.dot, taken_);
+        draw_path_marks(canvas_, scene_, time_, frame_, fine_.dot, taken_);
         add_note(draw_tactor_labels(canvas_, frame_, scene_.tactors, looks, taken_));
         if (time_.several())
-            add_note("rings with numbers in bold: starts; squares: ends");
+            add_note("rings with coloured numbers: starts; squares: ends");
         if (!scene_.moved.empty())
             add_notes_of_observer(scene_.moved.front().observer);
-        add_note(label_strokes(canvas_, scene_, frame_, fine_.dot, taken_));
+        add_note(label_strokes(canvas_, scene_, time_, frame_, fine_.dot, taken_));
         const double y = frame_.area.bottom() + legend_height / 2.0;
         draw_scale_bar(canvas_, frame_, {where_.x, y});
         draw_amplitude_legend(y);
@@ -185,6 +186,36 @@ private:
             draw(time_.bursts[i], frame_(time_.bursts[i].what->position), colour_of(time_, time_.bursts[i]));
     }
 
+    // Colours of strokes that lie on each other would mix to those of none.
+    colour join_colour(colour of_burst) const { return time_.several() ? grey : of_burst; }
+
+    // Whether most of a stroke's path lies on that of another look that is drawn before.
+    bool lies_on_another(std::size_t stroke) const
+    {
+        constexpr double beside = 0.6; // pt
+        constexpr int places = 24;
+        const trajectory& motion = scene_.strokes[stroke].motion;
+        for (std::size_t i = 0; i < stroke; ++i) {
+            if (time_.looks[i] == time_.looks[stroke])
+                continue;
+            int on = 0;
+            for (int k = 0; k <= places; ++k)
+                on += is_near(frame_(motion.position(motion.duration_s() * k / places)), paths_[i], beside);
+            if (on > places / 2)
+                return true;
+        }
+        return false;
+    }
+
+    static bool is_near(spot at, const std::vector<std::vector<spot>>& parts, double reach)
+    {
+        for (const std::vector<spot>& part : parts)
+            for (std::size_t i = 1; i < part.size(); ++i)
+                if (distance(at, part[i - 1], part[i]) < reach)
+                    return true;
+        return false;
+    }
+
     void draw_joins()
     {
         const group all(canvas_, {.id = "joins"});
@@ -193,10 +224,12 @@ private:
             for (const drive& d : b.what->drives) {
                 const spot to = frame_(scene_.tactors.tactors[d.tactor].position);
                 taken_.block_line({at, to}, 2.0, 0.1);
-                canvas_.line(at, to, {.stroke = with_alpha(c, fine_.alpha), .width = width_of(d.amplitude)},
-                             {.kind = "join",
-                              .data = {{"tactor", fmt::format("{}", d.tactor)},
-                                       {"amplitude", fmt::format("{:.6g}", d.amplitude)}}});
+                canvas_.line(
+                    at, to,
+                    {.stroke = with_alpha(join_colour(c), fine_.alpha), .width = width_of(d.amplitude)},
+                    {.kind = "join",
+                     .data = {{"tactor", fmt::format("{}", d.tactor)},
+                              {"amplitude", fmt::format("{:.6g}", d.amplitude)}}});
             }
         });
     }
@@ -204,12 +237,18 @@ private:
     void draw_paths()
     {
         const group all(canvas_, {.id = "paths"});
-        const double width = paths_.size() == 1 ? 0.7 : paths_.size() <= 20 ? 1.2 : 0.5;
-        for (std::size_t i = 0; i < paths_.size(); ++i)
-            for (std::vector<spot>& part : paths_[i])
-                canvas_.poly(std::move(part), false,
-                             {.stroke = time_.several() ? of_stroke(i) : ink, .width = width},
-                             {.kind = "path", .title = scene_.strokes[i].name});
+        const double width = paths_.size() == 1 ? 0.7 : paths_.size() <= few_paths ? 1.2 : 0.5;
+        std::size_t next = 0; // repeats lie on what is drawn already
+        for (std::size_t i = 0; i < paths_.size(); ++i) {
+            if (time_.looks[i] != next)
+                continue;
+            ++next;
+            style look{.stroke = time_.several() ? of_stroke(time_.looks[i]) : ink, .width = width};
+            if (paths_.size() <= few_paths && lies_on_another(i))
+                look.dash = 3.0; // the other shows through
+            for (const std::vector<spot>& part : paths_[i])
+                canvas_.poly(part, false, look, {.kind = "path", .title = scene_.strokes[i].name});
+        }
     }
 
     void draw_dots()

@@ -6,16 +6,21 @@
 
 #include <fmt/format.h>
 
+#include <tactor/error.hpp>
+
+#include "plot/compare_panel.hpp"
 #include "plot/draw/axes.hpp"
+#include "plot/figure.hpp"
 #include "plot/paint/text.hpp"
 
 namespace tactor::plot {
 namespace {
 
-constexpr double figure_width = 170.0 * pt_per_mm;
+constexpr double two_columns = 120.0 * pt_per_mm; // of panels, from this width on
 constexpr double panel_height = 150.0;
 constexpr double labels_height = 24.0; // names of the groups, and the legend
 constexpr double between = 14.0;
+constexpr double bars_share = 0.72; // of a group's width
 
 // Of methods, in order: a few differ in lightness too; more of them are told apart as strokes are.
 constexpr std::array<colour, 4> fills{light_grey, blue, orange, dark_grey};
@@ -37,27 +42,72 @@ void draw_error(canvas& c, const bar& b, const scale& y, double x, double cap)
     c.line({x - cap, low}, {x + cap, low}, s);
 }
 
-void draw_group(canvas& c, const bar_panel& p, std::size_t g, const scale& y, double left, double width)
+// Beside each other in their order, so that equal ones are seen.
+void draw_values(canvas& c, const bar& b, const scale& y, double x, double width)
 {
-    const double space = 0.72 * width;
-    const double each = space / static_cast<double>(p.series.size());
-    for (std::size_t i = 0; i < p.series.size(); ++i) {
-        const bar& b = p.series[i].bars[g];
-        if (!b.height)
-            continue;
-        const double x = left + (width - space) / 2.0 + each * static_cast<double>(i);
-        const double top = y(std::clamp(*b.height, p.y_from, p.y_to));
-        c.rect({x, top, each, y(p.y_from) - top},
+    const double step = 0.7 * width / static_cast<double>(b.values.size());
+    for (std::size_t i = 0; i < b.values.size(); ++i)
+        c.circle({x + 0.15 * width + step * (static_cast<double>(i) + 0.5), y(b.values[i])},
+                 std::min(1.1, 0.45 * step + 0.3),
+                 {.fill = with_alpha(white, 0.7), .stroke = ink, .width = 0.3}, {.kind = "value"});
+}
+
+// The bars of a panel by group and series, each with its place.
+template <class Draw>
+void for_each_bar(const bar_panel& p, box inside, Draw&& draw)
+{
+    const double width = inside.width / static_cast<double>(p.groups.size());
+    const double each = bars_share * width / static_cast<double>(p.series.size());
+    for (std::size_t g = 0; g < p.groups.size(); ++g)
+        for (std::size_t i = 0; i < p.series.size(); ++i) {
+            const double left = inside.x + width * (static_cast<double>(g) + (1.0 - bars_share) / 2.0);
+            if (p.series[i].bars[g].height)
+                draw(g, i, left + each * static_cast<double>(i), each);
+        }
+}
+
+void draw_bars(canvas& c, const bar_panel& p, const scale& y, box inside)
+{
+    for_each_bar(p, inside, [&](std::size_t g, std::size_t i, double x, double width) {
+        const double height = *p.series[i].bars[g].height;
+        const double top = y(std::clamp(height, p.y_from, p.y_to));
+        c.rect({x, top, width, y(p.y_from) - top},
                {.fill = fill_of(i, p.series.size()), .stroke = ink, .width = 0.5},
                {.kind = "bar",
-                .title = fmt::format("{}: {}", clean(p.groups[g]), number(*b.height)),
+                .title = fmt::format("{}: {}", clean(p.groups[g]), number(height)),
                 .data = {{"group", clean(p.groups[g])}, {"series", clean(p.series[i].name)}}});
+    });
+}
+
+// Over whatever is written across.
+void draw_spread(canvas& c, const bar_panel& p, const scale& y, box inside)
+{
+    for_each_bar(p, inside, [&](std::size_t g, std::size_t i, double x, double width) {
+        const bar& b = p.series[i].bars[g];
+        draw_values(c, b, y, x, width);
         if (b.error)
-            draw_error(c, b, y, x + each / 2.0, std::min(3.0, each / 4.0));
-    }
-    c.text({left + width / 2.0, y(p.y_from) + 3.0 + cap_height(small_text)},
-           shorten(clean(p.groups[g]), small_text, width - 2.0),
-           {.size = small_text, .anchor = align::middle}, {.kind = "group"});
+            draw_error(c, b, y, x + width / 2.0, std::min(3.0, width / 4.0));
+    });
+}
+
+void draw_group_names(canvas& c, const bar_panel& p, box inside)
+{
+    const double width = inside.width / static_cast<double>(p.groups.size());
+    for (std::size_t g = 0; g < p.groups.size(); ++g)
+        c.text({inside.x + width * (static_cast<double>(g) + 0.5),
+                inside.bottom() + 3.0 + cap_height(small_text)},
+               shorten(clean(p.groups[g]), small_text, width - 2.0),
+               {.size = small_text, .anchor = align::middle}, {.kind = "group"});
+}
+
+void write_across(canvas& c, const std::string& text, box inside)
+{
+    if (text.empty())
+        return;
+    const double size = 0.9 * inside.width / text_width(text, 1.0, true);
+    c.text({inside.x + inside.width / 2.0, inside.y + inside.height / 2.0 + cap_height(size) / 2.0}, text,
+           {.size = size, .bold = true, .anchor = align::middle, .ink = with_alpha(vermilion, 0.4)},
+           {.kind = "across"});
 }
 
 void draw_legend(canvas& c, const bar_panel& p, double x, double y, double width)
@@ -88,47 +138,50 @@ void draw_panel_of(canvas& c, const bar_panel& p, const std::string& across, box
     draw_vertical_axis(c, y, nice_ticks(p.y_from, p.y_to, 11), inside,
                        shorten(clean(p.y_title), label_text, inside.height),
                        inside.x - 24.0 + cap_height(label_text));
-    const double width = inside.width / static_cast<double>(p.groups.size());
-    for (std::size_t g = 0; g < p.groups.size(); ++g)
-        draw_group(c, p, g, y, inside.x + width * static_cast<double>(g), width);
+    draw_group_names(c, p, inside);
+    draw_bars(c, p, y, inside);
     if (p.level)
         c.line({inside.x, y(*p.level)}, {inside.right(), y(*p.level)},
                {.stroke = ink, .width = 0.6, .dash = 2.5}, {.kind = "level"});
     c.line({inside.x, inside.bottom()}, {inside.right(), inside.bottom()}, {.stroke = ink, .width = 0.6});
+    write_across(c, across, inside);
+    draw_spread(c, p, y, inside);
     draw_legend(c, p, inside.x, where.bottom() - 2.0, inside.width);
-    if (across.empty())
-        return;
-    const double size = 0.9 * inside.width / text_width(across, 1.0, true);
-    c.text({inside.x + inside.width / 2.0, inside.y + inside.height / 2.0 + cap_height(size) / 2.0}, across,
-           {.size = size, .bold = true, .anchor = align::middle, .ink = with_alpha(vermilion, 0.6)},
-           {.kind = "across"});
 }
 
 } // namespace
 
 canvas draw_bars_of(const bar_figure& f)
 {
+    if (!(f.width_mm >= least_width_mm && f.width_mm <= most_width_mm))
+        throw error(error_kind::bad_input, "picture", fmt::format("{} mm wide", f.width_mm),
+                    fmt::format("{} to {} mm", least_width_mm, most_width_mm));
     canvas c;
-    c.width = figure_width;
+    c.width = f.width_mm * pt_per_mm;
     c.title = clean(f.title);
     c.description = f.note;
-    double y = margin + cap_height(title_size);
+    double y = margin;
     const std::string across = clean(f.across);
-    c.text({margin, y},
-           shorten(clean(f.title) + (across.empty() ? "" : " (" + across + ")"), title_size,
-                   c.width - 2.0 * margin, true),
-           {.size = title_size, .bold = true});
-    y += 8.0;
-    const double width = (c.width - 2.0 * margin - between) / 2.0;
+    if (f.heading) {
+        y += cap_height(title_size);
+        c.text({margin, y},
+               shorten(clean(f.title) + (across.empty() ? "" : " (" + across + ")"), title_size,
+                       c.width - 2.0 * margin, true),
+               {.size = title_size, .bold = true});
+        y += 8.0;
+    }
+    const std::size_t columns = c.width >= two_columns ? 2 : 1;
+    const double width =
+        (c.width - 2.0 * margin - between * static_cast<double>(columns - 1)) / static_cast<double>(columns);
     for (std::size_t i = 0; i < f.panels.size(); ++i) {
-        const double x = margin + (i % 2 == 0 ? 0.0 : width + between);
+        const double x = margin + (width + between) * static_cast<double>(i % columns);
         draw_panel_of(c, f.panels[i], across, {x, y, width, panel_height});
-        if (i % 2 == 1 || i + 1 == f.panels.size())
+        if ((i + 1) % columns == 0 || i + 1 == f.panels.size())
             y += panel_height + 8.0;
     }
-    c.text({margin, y + cap_height(small_text)}, f.note, {.size = small_text, .ink = dark_grey},
-           {.kind = "note"});
-    c.height = y + line_pitch + margin;
+    y += draw_words(c, f.note, {margin, y - line_pitch + cap_height(small_text), c.width - 2.0 * margin, 0.0},
+                    3, "note");
+    c.height = y + margin;
     return c;
 }
 

@@ -15,6 +15,7 @@ namespace tactor::plot {
 struct bar {
     std::optional<double> height = {};
     std::optional<double> error = {}; ///< half the length of the error bar
+    std::vector<double> values = {};  ///< of which the height is the mean: a dot each
 };
 
 /// Bars of one look, one in each group.
@@ -35,14 +36,16 @@ struct bar_panel {
 
 struct bar_figure {
     std::string title = {};
+    bool heading = true; ///< the title stands over the picture
+    double width_mm = 170.0;
     std::string note = {};   ///< under the picture
     std::string across = {}; ///< written across each panel, as "simulated"
     std::vector<bar_panel> panels = {};
 };
 
-/// 170 mm wide, two panels beside each other. Each panel is an SVG group of kind "bars" with data-title,
-/// data-y0 and data-y-scale: page = y0 + scale * value; each bar is of kind "bar", its error bar of kind
-/// "error".
+/// Draws the panels, two beside each other from 120 mm width on. Each panel is an SVG group of kind "bars"
+/// with data-title, data-y0 and data-y-scale: page = y0 + scale * value; each bar is of kind "bar", its error
+/// bar of kind "error", a dot of kind "value".
 canvas draw_bars_of(const bar_figure& f);
 
 } // namespace tactor::plot

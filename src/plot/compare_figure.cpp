@@ -86,10 +86,10 @@ double largest(const std::vector<series>& lines)
     return v > 0.0 ? 1.05 * v : 1.0;
 }
 
-double draw_heading(canvas& c, const array& a, const stroke& target, box where)
+double draw_heading(canvas& c, const std::string& title, const array& a, const stroke& target, box where)
 {
     double y = where.y + cap_height(title_size);
-    c.text({where.x, y}, shorten(clean(target.name), title_size, where.width, true),
+    c.text({where.x, y}, shorten(clean(title), title_size, where.width, true),
            {.size = title_size, .bold = true});
     y += line_pitch;
     const trajectory& m = target.motion;
@@ -170,7 +170,7 @@ double draw_row(canvas& c, const panel_ground& g, const std::vector<prediction>&
 } // namespace
 
 canvas draw_comparison(const array& a, const stroke& target, const std::vector<prediction>& all,
-                       const std::string& note, double width_mm)
+                       const std::string& title, const std::string& note, double width_mm)
 {
     if (!(width_mm >= least_width_mm && width_mm <= most_width_mm))
         throw error(error_kind::bad_input, "picture", fmt::format("{} mm wide", width_mm),
@@ -182,7 +182,8 @@ canvas draw_comparison(const array& a, const stroke& target, const std::vector<p
     const panel_ground g{a, target, shown_extent(a, {target})};
     const std::vector<std::string> algorithms = names(all, &prediction::algorithm);
     box rest{margin, margin, c.width - 2.0 * margin, 0.0};
-    rest.y += draw_heading(c, a, target, rest);
+    if (!title.empty())
+        rest.y += draw_heading(c, title, a, target, rest);
     const std::vector<std::string> phantoms = names(all, &prediction::phantom);
     for (const std::string& phantom : phantoms)
         rest.y += draw_row(c, g, all, algorithms, phantom, phantom == phantoms.front(), rest);

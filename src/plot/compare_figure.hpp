@@ -40,8 +40,9 @@ struct prediction {
 };
 
 /// For each phantom model a row of panels, one for each algorithm, and under it all their speeds over time.
-/// `note` stands under the picture. \throws error (bad_input) for a width out of bounds (figure.hpp).
+/// `title` stands over the picture, with the target's length and time; empty: neither. `note` stands under
+/// it. \throws error (bad_input) for a width out of bounds (figure.hpp).
 canvas draw_comparison(const array& a, const stroke& target, const std::vector<prediction>& all,
-                       const std::string& note, double width_mm);
+                       const std::string& title, const std::string& note, double width_mm);
 
 } // namespace tactor::plot

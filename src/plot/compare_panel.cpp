@@ -13,6 +13,8 @@
 namespace tactor::plot {
 namespace {
 
+constexpr double number_size = 5.2; // of tactors, pt
+constexpr double most_radius = 5.5; // panels lie close together
 constexpr std::size_t most_dots = 400;
 constexpr std::size_t most_points = 20000;
 
@@ -80,10 +82,18 @@ void draw_track(canvas& c, const track& t, const style& look)
 
 void draw_ground(canvas& c, const panel_ground& g, const array_frame& f)
 {
-    const double radius = std::min(0.55 * f.radius, 3.0);
-    for (const tactor_spec& t : g.tactors.tactors)
-        c.circle(f(t.position), radius, {.fill = white, .stroke = grey, .width = std::min(0.5, 0.3 * radius)},
+    const std::string longest(fmt::format("{}", g.tactors.tactors.size() - 1).size(), '8');
+    const double need = std::hypot(text_width(longest, number_size), cap_height(number_size)) / 2.0 + 0.4;
+    const bool numbered = need < std::min(most_radius, 0.4 * f.pitch);
+    const double radius = numbered ? need : std::min(0.55 * f.radius, 3.0);
+    for (std::size_t i = 0; i < g.tactors.tactors.size(); ++i) {
+        const spot at = f(g.tactors.tactors[i].position);
+        c.circle(at, radius, {.fill = white, .stroke = grey, .width = std::min(0.5, 0.3 * radius)},
                  {.kind = "tactor"});
+        if (numbered)
+            c.text({at.x, at.y + cap_height(number_size) / 2.0}, fmt::format("{}", i),
+                   {.size = number_size, .anchor = align::middle, .ink = dark_grey}, {.kind = "number"});
+    }
     for (std::vector<spot>& part : path_on_page(f, g.target.motion))
         c.poly(std::move(part), false, target_look, {.kind = "target"});
     c.circle(f(g.target.motion.position(0.0)), 2.2, {.fill = white, .stroke = ink, .width = 0.7},

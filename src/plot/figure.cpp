@@ -110,7 +110,7 @@ drawn draw_within(const scene& s, const timeline& t, const figure_options& o, co
     c.title = fmt::format("{} on {}", clean(s.name), clean(s.tactors.name));
     c.description = describe(parts);
     box rest{margin, margin, c.width - 2.0 * margin, 0.0};
-    rest.y += draw_heading(c, s, parts, rest);
+    rest.y += o.heading ? draw_heading(c, s, parts, rest) : 0.0;
     if (with_array) {
         rest.height = 0.8 * c.width;
         d.array_height = draw_array_view(c, s, t, rest, most.array);
@@ -118,7 +118,7 @@ drawn draw_within(const scene& s, const timeline& t, const figure_options& o, co
     }
     if (o.view == figure_view::timing)
         rest.y += 4.0;
-    rest.y += draw_stroke_legend(c, s, rest, o.view != figure_view::wave);
+    rest.y += draw_stroke_legend(c, s, t, rest, o.view != figure_view::wave);
     rest.height = most.picture - margin - rest.y;
     if (o.view == figure_view::array && !t.several())
         rest.y += draw_time_key(c, t, rest);

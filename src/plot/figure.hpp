@@ -13,6 +13,7 @@ enum class figure_view { array, timing, wave, both };
 struct figure_options {
     figure_view view = figure_view::both;
     double width_mm = 85.0; ///< one print column
+    bool heading = true;    ///< the name and the facts above the picture
 };
 
 inline constexpr double least_width_mm = 60.0;

@@ -77,6 +77,7 @@ public:
         draw_sound();
         conflicts_ = draw_conflicts(canvas_, scene_, time_, frame_);
         draw_dimensions();
+        number_stroke_starts(canvas_, starts_, frame_.top);
         const double legend_y = bottom + axis_gap + axis_height + timing_legend_height / 2.0;
         draw_legend(legend_y);
         const double end = legend_y + timing_legend_height / 2.0;

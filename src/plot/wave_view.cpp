@@ -83,6 +83,7 @@ public:
         draw_stroke_starts(canvas_, starts_, top_, bottom);
         for (std::size_t i = 0; i < lanes_.rows.size(); ++i)
             draw_row(i);
+        number_stroke_starts(canvas_, starts_, top_);
         const double y = bottom + axis_gap + axis_height + wave_legend_height / 2.0;
         if (peak_ > 0.0)
             canvas_.text({where_.x, y + cap_height(small_text) / 2.0},

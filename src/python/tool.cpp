@@ -57,7 +57,7 @@ compared compare(const std::shared_ptr<array_handle>& on, const stroke& s, const
 std::string svg_of_comparison(const compared& c, double width_mm)
 {
     const without_lock free;
-    return plot::to_svg(cli::picture_of(c.result, c.on->value(), width_mm));
+    return plot::to_svg(cli::picture_of(c.result, c.on->value(), {.width_mm = width_mm}));
 }
 
 void check_dpi(unsigned dpi)
@@ -125,12 +125,12 @@ void bind_tool(py::module_& m)
                  return written([&](std::FILE* out) { cli::print_json(out, {c.result}, c.on->value()); });
              })
         .def("svg", &svg_of_comparison)
-        .def("save",
-             [](const compared& c, const std::string& file, double width_mm, unsigned dpi, bool force) {
-                 const without_lock free;
-                 check_dpi(dpi);
-                 plot::save(cli::picture_of(c.result, c.on->value(), width_mm), file, dpi, force);
-             });
+        .def("save", [](const compared& c, const std::string& file, double width_mm, unsigned dpi,
+                        bool force) {
+            const without_lock free;
+            check_dpi(dpi);
+            plot::save(cli::picture_of(c.result, c.on->value(), {.width_mm = width_mm}), file, dpi, force);
+        });
     m.def("svg", [](const array_handle& on, const plans& all, const std::string& name, const score* sound,
                     const std::string& view, double width_mm) {
         const without_lock free;

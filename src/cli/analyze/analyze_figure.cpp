@@ -10,9 +10,9 @@ namespace {
 plot::bar_series bars_of(const std::string& name, const study::by_motion& b)
 {
     plot::bar_series s{name};
-    for (const study::t_test& t : b.motion)
-        s.bars.push_back({t.mean, t.se});
-    s.bars.push_back({b.all.mean, b.all.se});
+    for (std::size_t m = 0; m < b.motion.size(); ++m)
+        s.bars.push_back({b.motion[m].mean, b.motion[m].se, b.motion_values[m]});
+    s.bars.push_back({b.all.mean, b.all.se, b.all_values});
     return s;
 }
 
@@ -47,11 +47,13 @@ plot::bar_panel panel_of(const study::run_analysis& r)
 
 } // namespace
 
-plot::canvas draw_analysis(const study::analysis& a)
+plot::canvas draw_analysis(const study::analysis& a, const picture_options& o)
 {
     plot::bar_figure f;
-    f.title = a.experiment;
-    f.note = "Means over participants; error bars are standard errors.";
+    f.title = o.choose_title(a.experiment);
+    f.heading = o.has_title();
+    f.width_mm = o.width_mm;
+    f.note = "Means over participants; error bars: standard errors; dots: participants.";
     f.across = a.simulated ? "simulated" : "";
     for (const study::run_analysis& r : a.runs)
         if (r.n != 0)

@@ -9,6 +9,7 @@
 #include "cli/analyze/analyze_output.hpp"
 #include "cli/analyze/study_options.hpp"
 #include "cli/commands.hpp"
+#include "cli/picture_options.hpp"
 #include "cli/pipes.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
@@ -20,8 +21,7 @@ namespace {
 struct analyze_options {
     std::string folder;
     std::string format = "text";
-    std::string picture; // empty: none
-    bool force = false;
+    picture_options picture{.width_mm = 170.0};
     study::selection who;
 };
 
@@ -30,18 +30,17 @@ void draw(const analyze_options& o, const study::analysis& a)
     if (std::all_of(a.runs.begin(), a.runs.end(), [](const study::run_analysis& r) { return r.n == 0; }))
         throw error(error_kind::bad_input, "-o", "there is nothing to draw",
                     "no run has a participant with a trial in each cell");
-    plot::check_output(o.picture, o.force);
-    make_derivatives(o.folder, o.picture);
-    constexpr unsigned dpi = 300;
-    tell_of_pipe_to_write(o.picture);
-    plot::save(draw_analysis(a), o.picture, dpi, o.force);
+    plot::check_output(o.picture.file, o.picture.force);
+    make_derivatives(o.folder, o.picture.file);
+    tell_of_pipe_to_write(o.picture.file);
+    plot::save(draw_analysis(a, o.picture), o.picture.file, o.picture.dpi, o.picture.force);
 }
 
 int run(const analyze_options& o)
 {
     const study::dataset d = study::read_dataset(o.folder, o.who);
     const study::analysis a = study::analyse(d);
-    if (!o.picture.empty())
+    if (!o.picture.file.empty())
         draw(o, a);
     for (const std::string& w : a.warnings)
         say(stderr, "tactor: warning: {}\n", w);
@@ -67,11 +66,11 @@ command add_analyze(CLI::App& app)
          "-o,--output",
          [o](const std::string& t) {
              plot::format_of(t);
-             o->picture = t;
+             o->picture.file = t;
          },
-         "draw it too: means with standard errors")
+         "draw it too: means with standard errors, and each participant")
         ->type_name("FILE.svg|.png|.pdf");
-    add_force_option(*c, o->force);
+    add_picture_options(*c, o->picture, "170, the width of a page");
     c->footer("Example: tactor analyze study --format json -o study.pdf");
     return [o] { return run(*o); };
 }

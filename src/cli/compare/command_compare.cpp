@@ -13,6 +13,7 @@
 #include "cli/compare/compare_rows.hpp"
 #include "cli/input.hpp"
 #include "cli/parse_number.hpp"
+#include "cli/picture_options.hpp"
 #include "cli/pipes.hpp"
 #include "cli/say.hpp"
 #include "core/split.hpp"
@@ -60,10 +61,7 @@ std::vector<Enum> parse_list(const char* option, std::string_view text, const st
 struct compare_options {
     comparison_choice choice;
     std::string format = "text";
-    std::string picture; // empty: none
-    double width_mm = plot::figure_options{}.width_mm;
-    unsigned dpi = 300;
-    bool force = false;
+    picture_options picture;
 };
 
 void add_lists(CLI::App& c, const std::shared_ptr<compare_options>& o)
@@ -87,32 +85,18 @@ void add_lists(CLI::App& c, const std::shared_ptr<compare_options>& o)
     add_format_option(c, o->format, {"text", "json", "csv"}, "how to print it (default text)");
 }
 
-void add_picture_options(CLI::App& c, const std::shared_ptr<compare_options>& o)
+void add_output_options(CLI::App& c, const std::shared_ptr<compare_options>& o)
 {
     c.add_option_function<std::string>(
          "-o,--output",
          [o](const std::string& t) {
              plot::format_of(t);
-             o->picture = t;
+             o->picture.file = t;
              o->choice.keep_samples = true;
          },
          "draw it too: target and prediction on the array, speed over time")
         ->type_name("FILE.svg|.png|.pdf");
-    add_force_option(c, o->force);
-    c.add_option_function<std::string>(
-         "--width",
-         [o](const std::string& t) {
-             o->width_mm = parse_number("--width", t, plot::least_width_mm, plot::most_width_mm, "mm");
-         },
-         "width of the picture (default 85, one print column)")
-        ->type_name("MM");
-    c.add_option_function<std::string>(
-         "--dpi",
-         [o](const std::string& t) {
-             o->dpi = static_cast<unsigned>(parse_number("--dpi", t, plot::least_dpi, plot::most_dpi, "dpi"));
-         },
-         "resolution of a PNG (default 300)")
-        ->type_name("N");
+    add_picture_options(c, o->picture, "85, one print column");
 }
 
 void add_spread_options(CLI::App& c, const std::shared_ptr<compare_options>& o)
@@ -175,11 +159,11 @@ int run(settings& s, option_list& options, const compare_options& asked, bool on
     static_cast<void>(burst_duration_s(s.plan));
     const layout faces(e.tactors);
     const piece p = read_one_piece(s, e, faces);
-    if (!asked.picture.empty() && p.strokes.size() > 1)
+    if (!asked.picture.file.empty() && p.strokes.size() > 1)
         throw error(error_kind::bad_input, "-o", fmt::format("there are {} strokes", p.strokes.size()),
                     "a picture shows one");
-    if (!asked.picture.empty())
-        plot::check_output(asked.picture, asked.force);
+    if (!asked.picture.file.empty())
+        plot::check_output(asked.picture.file, asked.picture.force);
     std::vector<comparison> all;
     std::vector<std::string> titles;
     for (const stroke& k : p.strokes) {
@@ -189,9 +173,10 @@ int run(settings& s, option_list& options, const compare_options& asked, bool on
     const auto playable = std::count_if(all.begin(), all.end(), [](const auto& c) { return c.playable(); });
     if (playable == 0)
         throw why_refused(all, p);
-    if (!asked.picture.empty()) {
-        tell_of_pipe_to_write(asked.picture);
-        plot::save(picture_of(all[0], e.tactors, asked.width_mm), asked.picture, asked.dpi, asked.force);
+    if (!asked.picture.file.empty()) {
+        tell_of_pipe_to_write(asked.picture.file);
+        plot::save(picture_of(all[0], e.tactors, asked.picture), asked.picture.file, asked.picture.dpi,
+                   asked.picture.force);
     }
     if (asked.format == "json")
         print_json(stdout, all, e.tactors);
@@ -221,7 +206,7 @@ command add_compare(CLI::App& app)
     options->add_observer_options();
     add_lists(*c, asked);
     add_spread_options(*c, asked);
-    add_picture_options(*c, asked);
+    add_output_options(*c, asked);
     c->footer("Example: tactor compare park2016-3 --phantoms inverse-distance,barycentric");
     const CLI::Option* algorithm = c->get_option("--algorithm");
     return [s, options, asked, algorithm] {

@@ -22,7 +22,7 @@ plot::people_bands bands_of(const comparison_row& r)
 
 } // namespace
 
-plot::canvas picture_of(const comparison& c, const array& a, double width_mm)
+plot::canvas picture_of(const comparison& c, const array& a, const picture_options& o)
 {
     std::vector<plot::prediction> rows;
     for (const comparison_row& r : c.rows)
@@ -30,7 +30,7 @@ plot::canvas picture_of(const comparison& c, const array& a, double width_mm)
                         r.felt, r.refused ? std::string(r.refused->why()) : "", r.taps, r.unpredicted,
                         bands_of(r)});
     return plot::draw_comparison(
-        a, c.target, rows,
+        a, c.target, rows, o.has_title() ? o.choose_title(c.target.name) : "",
         "The ring is the start; dots are where " +
             std::string(c.observer.kind == observer_kind::low_speed ? "each burst is felt"
                                                                     : "the felt position rests") +
@@ -39,7 +39,7 @@ plot::canvas picture_of(const comparison& c, const array& a, double width_mm)
                                         spread_note(c.spread, c.observer.kind == observer_kind::low_speed)) +
             ". This is " + prediction_note(c.observer) + "." +
             (c.compensated ? " Bursts are moved for " + describe(c.observer.low_speed) + "." : std::string()),
-        width_mm);
+        o.width_mm);
 }
 
 } // namespace tactor::cli

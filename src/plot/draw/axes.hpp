@@ -98,4 +98,7 @@ std::vector<std::vector<spot>> clip(const std::vector<spot>& line, box b);
 /// The line with fewer points, nowhere more than `tolerance` pt away (Douglas and Peucker).
 std::vector<spot> simplify(const std::vector<spot>& line, double tolerance);
 
+/// Returns the distance of a point from the segment between two others, pt.
+double distance(spot p, spot a, spot b) noexcept;
+
 } // namespace tactor::plot

@@ -37,7 +37,10 @@ void draw_dimension(canvas& c, double x0, double x1, double y, double below, con
     const bool heads_inside = x1 - x0 >= 2.0 * head_length + 1.0;
     const bool label_inside = x1 - x0 >= width + 2.0 * head_length + 8.0;
     if (heads_inside) {
-        c.line({x0, y}, {x1, y}, thin);
+        const double middle = (x0 + x1) / 2.0;
+        const double half = label_inside ? width / 2.0 + 2.0 : 0.0;
+        c.line({x0, y}, {middle - half, y}, thin);
+        c.line({middle + half, y}, {x1, y}, thin);
         draw_head(c, x0, y, -1.0);
         draw_head(c, x1, y, 1.0);
     } else {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/words.hpp"
 #include "plot/draw/axes.hpp"
@@ -24,8 +25,9 @@ constexpr std::size_t most_marked = 60; // strokes whose ends are marked
 
 class marker {
 public:
-    marker(canvas& c, const scene& s, const array_frame& f, double dot, label_placer& taken)
-        : canvas_(c), scene_(s), frame_(f), dot_(dot), taken_(taken)
+    marker(canvas& c, const scene& s, const timeline& t, const array_frame& f, double dot,
+           label_placer& taken)
+        : canvas_(c), scene_(s), time_(t), frame_(f), dot_(dot), taken_(taken)
     {
     }
 
@@ -47,7 +49,7 @@ public:
             return start && end ? "" : "the ring is the start, the square the end";
         }
         std::vector<spot> starts;
-        std::vector<std::string> numbers; // of all strokes that start there
+        std::vector<std::vector<std::size_t>> strokes; // that start there
         std::size_t left_out = 0;
         for (std::size_t i = 0; i < scene_.strokes.size(); ++i) {
             const spot at = frame_(scene_.strokes[i].motion.position(0.0));
@@ -57,26 +59,46 @@ public:
             if (!on_page(at) || i >= most_marked) {
                 ++left_out;
             } else if (same != starts.end()) {
-                numbers[static_cast<std::size_t>(same - starts.begin())] += fmt::format(", {}", i + 1);
+                strokes[static_cast<std::size_t>(same - starts.begin())].push_back(i);
             } else {
                 starts.push_back(at);
-                numbers.push_back(fmt::format("{}", i + 1));
+                strokes.push_back({i});
             }
         }
-        for (std::size_t k = 0; k < starts.size(); ++k) {
-            const auto place =
-                taken_.place_at(numbers[k], label_text, starts, k, radius() + 1.0, farthest_number);
-            if (place)
-                canvas_.text(*place, numbers[k], {.size = label_text, .bold = true, .halo = true},
-                             {.kind = "start-label"});
-            else
-                left_out +=
-                    1 + static_cast<std::size_t>(std::count(numbers[k].begin(), numbers[k].end(), ','));
-        }
+        for (std::size_t k = 0; k < starts.size(); ++k)
+            left_out += number_start(starts, k, strokes[k]) ? 0 : strokes[k].size();
         return left_out == 0 ? "" : "no space for the number of " + counted(left_out, "stroke");
     }
 
 private:
+    // In a box of the stroke's colour: plain numbers are tactors. False where there is no space.
+    bool number_start(const std::vector<spot>& starts, std::size_t k, const std::vector<std::size_t>& strokes)
+    {
+        std::vector<std::size_t> numbers;
+        for (const std::size_t i : strokes)
+            numbers.push_back(i + 1);
+        const std::string text = fmt::format("{}", fmt::join(numbers, ", "));
+        const auto place =
+            taken_.place_at(" " + text + " ", small_text, starts, k, radius() + 1.5, farthest_number);
+        if (!place)
+            return false;
+        const bool one_look = std::all_of(strokes.begin(), strokes.end(), [&](std::size_t i) {
+            return time_.looks[i] == time_.looks[strokes.front()];
+        });
+        const colour fill = one_look ? of_stroke(time_.looks[strokes.front()]) : dark_grey;
+        const double height = cap_height(small_text);
+        const double pad = text_width(" ", small_text);
+        const double air = 1.3;
+        canvas_.rect(
+            {place->x, place->y - height - air, text_width(text, small_text) + 2.0 * pad, height + 2.0 * air},
+            {.fill = fill, .stroke = white, .width = 0.5}, {.kind = "start-box"});
+        canvas_.text({place->x + pad, place->y}, text,
+                     {.size = small_text, .ink = is_dark(fill) ? white : black}, {.kind = "start-label"});
+        return true;
+    }
+
+    static bool is_dark(colour c) { return 0.299 * c.r + 0.587 * c.g + 0.114 * c.b < 140.0; }
+
     bool on_page(spot s) const
     {
         return s.x >= frame_.area.x && s.x <= frame_.area.right() && s.y >= frame_.area.y &&
@@ -169,6 +191,7 @@ private:
 
     canvas& canvas_;
     const scene& scene_;
+    const timeline& time_;
     const array_frame& frame_;
     double dot_;
     label_placer& taken_;
@@ -176,14 +199,16 @@ private:
 
 } // namespace
 
-void draw_path_marks(canvas& c, const scene& s, const array_frame& f, double dot, label_placer& taken)
+void draw_path_marks(canvas& c, const scene& s, const timeline& t, const array_frame& f, double dot,
+                     label_placer& taken)
 {
-    marker(c, s, f, dot, taken).draw();
+    marker(c, s, t, f, dot, taken).draw();
 }
 
-std::string label_strokes(canvas& c, const scene& s, const array_frame& f, double dot, label_placer& taken)
+std::string label_strokes(canvas& c, const scene& s, const timeline& t, const array_frame& f, double dot,
+                          label_placer& taken)
 {
-    return marker(c, s, f, dot, taken).label();
+    return marker(c, s, t, f, dot, taken).label();
 }
 
 } // namespace tactor::plot

@@ -8,6 +8,7 @@
 
 #include "core/words.hpp"
 #include "plot/draw/axes.hpp"
+#include "plot/draw/stroke_starts.hpp"
 #include "plot/paint/text.hpp"
 
 namespace tactor::plot {
@@ -20,12 +21,32 @@ constexpr double column_gap = 10.0;   // at least, between columns
 constexpr double most_of_width = 0.5; // for one entry, where there are several
 constexpr std::size_t most_rows = 12;
 
-std::vector<std::string> entries(const scene& s)
+// What one line of the legend is of: a stroke, or the repeats of one.
+struct entry {
+    std::vector<std::size_t> numbers = {};
+    std::string name = {};
+};
+
+std::vector<entry> find_entries(const scene& s, const timeline& t)
+{
+    std::vector<entry> all;
+    for (std::size_t i = 0; i < s.strokes.size(); ++i) {
+        if (t.looks[i] == all.size())
+            all.push_back({{}, clean(s.strokes[i].name)});
+        all[t.looks[i]].numbers.push_back(i + 1);
+    }
+    for (entry& e : all)
+        if (e.numbers.size() > 1)
+            e.name = find_repeated_name(e.name);
+    return all;
+}
+
+std::vector<std::string> write_entries(const std::vector<entry>& entries)
 {
     std::vector<std::string> all;
-    for (std::size_t i = 0; i < s.strokes.size(); ++i)
-        all.push_back(s.strokes[i].name.empty() ? fmt::format("{}", i + 1)
-                                                : fmt::format("{} {}", i + 1, clean(s.strokes[i].name)));
+    for (const entry& e : entries)
+        all.push_back(e.name.empty() ? join_runs(e.numbers)
+                                     : fmt::format("{} {}", join_runs(e.numbers), e.name));
     return all;
 }
 
@@ -47,15 +68,16 @@ std::vector<std::string> shortened(const std::vector<std::string>& all, double w
 
 } // namespace
 
-double draw_stroke_legend(canvas& c, const scene& s, box where, bool colours)
+double draw_stroke_legend(canvas& c, const scene& s, const timeline& t, box where, bool colours)
 {
     if (s.strokes.size() < 2)
         return 0.0;
     const group g(c, {.id = "strokes"});
     const double lead = colours ? swatch + gap : 0.0;
     double widest = 0.0;
+    const std::vector<entry> entries = find_entries(s, t);
     const std::vector<std::string> names =
-        shortened(entries(s), most_of_width * where.width - lead - column_gap);
+        shortened(write_entries(entries), most_of_width * where.width - lead - column_gap);
     for (const std::string& n : names)
         widest = std::max(widest, text_width(n, small_text));
     const double entry_width = lead + widest + column_gap;
@@ -70,8 +92,9 @@ double draw_stroke_legend(canvas& c, const scene& s, box where, bool colours)
         if (colours)
             c.rect({x, middle - 2.5, swatch, 5.0}, {.fill = of_stroke(i), .stroke = ink, .width = 0.3},
                    {.kind = "stroke-colour"});
-        c.text({x + lead, middle + cap_height(small_text) / 2.0}, names[i], {.size = small_text},
-               {.kind = "stroke-name", .data = {{"stroke", fmt::format("{}", i)}}});
+        c.text(
+            {x + lead, middle + cap_height(small_text) / 2.0}, names[i], {.size = small_text},
+            {.kind = "stroke-name", .data = {{"stroke", fmt::format("{}", entries[i].numbers.front() - 1)}}});
     }
     double height = row_height * static_cast<double>(rows);
     std::vector<std::string> notes;

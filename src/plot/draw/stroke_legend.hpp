@@ -9,8 +9,9 @@
 
 namespace tactor::plot {
 
-/// For a scene of several strokes the number, colour and name of each, in columns from the upper edge of a
-/// box. Returns the height taken; 0 for one stroke. `colours`: whether the picture has these.
-double draw_stroke_legend(canvas& c, const scene& s, box where, bool colours);
+/// For a scene of several strokes the number, colour and name of each, repeats of one together, in columns
+/// from the upper edge of a box. Returns the height taken; 0 for one stroke. `colours`: whether the picture
+/// has these.
+double draw_stroke_legend(canvas& c, const scene& s, const timeline& t, box where, bool colours);
 
 } // namespace tactor::plot

@@ -26,8 +26,9 @@ constexpr double aside = 2.0; // of a number, behind its start
 
 using numbers_at = std::map<double, std::vector<std::size_t>>; // by x
 
-// "1-4, 6": numbers in order, with those that follow each other together.
-std::string in_runs(const std::vector<std::size_t>& numbers)
+} // namespace
+
+std::string join_runs(const std::vector<std::size_t>& numbers)
 {
     std::vector<std::string> runs;
     for (std::size_t i = 0; i < numbers.size();) {
@@ -39,8 +40,6 @@ std::string in_runs(const std::vector<std::size_t>& numbers)
     }
     return fmt::format("{}", fmt::join(runs, ", "));
 }
-
-} // namespace
 
 stroke_starts look_at_starts(const timeline& t, const scale& x)
 {
@@ -63,7 +62,7 @@ stroke_starts look_at_starts(const timeline& t, const scale& x)
         const double next = std::next(i) != numbers.end() ? std::next(i)->first : x.page_to;
         std::string label = fmt::format("{}", fmt::join(i->second, ", "));
         if (from + text_width(label, small_text) > x.page_to)
-            label = in_runs(i->second);
+            label = join_runs(i->second);
         if (from + text_width(word + label, small_text) < next)
             label = word + label;
         word.clear();
@@ -86,23 +85,20 @@ stroke_starts look_at_starts(const timeline& t, const scale& x)
 
 void draw_stroke_starts(canvas& c, const stroke_starts& s, double top, double bottom)
 {
+    for (const stroke_starts::start& m : s.marks)
+        c.line({m.at, top - 8.0 - line_height * static_cast<double>(m.line)}, {m.at, bottom},
+               {.stroke = dark_grey, .width = 0.5, .dash = 2.0}, {.kind = "stroke-start"});
+}
+
+void number_stroke_starts(canvas& c, const stroke_starts& s, double top)
+{
     if (s.marks.empty())
         return;
     const group g(c, {.id = "stroke-starts"});
-    const auto number = [&](const stroke_starts::start& m) {
+    for (const stroke_starts::start& m : s.marks)
         if (!m.label.empty())
             c.text({m.at + aside, top - 3.0 - line_height * static_cast<double>(m.line)}, m.label,
                    {.size = small_text, .ink = dark_grey, .halo = true});
-    };
-    const bool crossed = s.height > line_height; // by the lines of starts whose numbers are higher
-    for (const stroke_starts::start& m : s.marks) {
-        c.line({m.at, top - 8.0 - line_height * static_cast<double>(m.line)}, {m.at, bottom},
-               {.stroke = dark_grey, .width = 0.5, .dash = 2.0}, {.kind = "stroke-start"});
-        if (!crossed)
-            number(m);
-    }
-    if (crossed)
-        std::for_each(s.marks.begin(), s.marks.end(), number);
 }
 
 } // namespace tactor::plot

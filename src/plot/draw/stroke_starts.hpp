@@ -28,8 +28,13 @@ struct stroke_starts {
 
 stroke_starts look_at_starts(const timeline& t, const scale& x);
 
-/// A line at each start, from over the diagram's top to its bottom, with the numbers of the strokes that
-/// start there.
+/// Draws a line at each start, from over the diagram's top to its bottom.
 void draw_stroke_starts(canvas& c, const stroke_starts& s, double top, double bottom);
+
+/// Writes the numbers of the strokes at their starts, over whatever lies there.
+void number_stroke_starts(canvas& c, const stroke_starts& s, double top);
+
+/// Returns ascending numbers as text, "1-4, 6": those that follow each other together.
+std::string join_runs(const std::vector<std::size_t>& numbers);
 
 } // namespace tactor::plot

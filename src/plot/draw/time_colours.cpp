@@ -5,7 +5,8 @@ namespace tactor::plot {
 
 colour colour_of(const timeline& t, const shown_burst& b) noexcept
 {
-    return t.several() ? of_stroke(b.stroke) : ordered(t.total_s > 0.0 ? b.target_s / t.total_s : 0.0);
+    return t.several() ? of_stroke(t.looks[b.stroke])
+                       : ordered(t.total_s > 0.0 ? b.target_s / t.total_s : 0.0);
 }
 
 void draw_time_strip(canvas& c, const timeline&, box where)

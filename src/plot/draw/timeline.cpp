@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string_view>
 
 #include "plot/draw/axes.hpp"
 
@@ -19,6 +21,7 @@ public:
     timeline make()
     {
         place();
+        find_looks();
         for (std::size_t i = 0; i < scene_.plans.size(); ++i) {
             const plan& p = scene_.plans[i].schedule;
             if (p.curve)
@@ -42,6 +45,19 @@ private:
             t_.sampled = t_.sampled || p.curve.has_value();
         }
         t_.sample_s = nice_ticks(0.0, std::max(t_.total_s, 1e-6), most_instants + 1).step;
+    }
+
+    void find_looks()
+    {
+        std::map<std::string, std::size_t> repeated;
+        std::size_t next = 0;
+        for (const stroke& s : scene_.strokes) {
+            const std::string name = find_repeated_name(s.name);
+            const auto known = name.empty() ? repeated.end() : repeated.find(name);
+            t_.looks.push_back(known == repeated.end() ? next++ : known->second);
+            if (!name.empty())
+                repeated.emplace(name, t_.looks.back());
+        }
     }
 
     void note(const burst& b)
@@ -86,6 +102,17 @@ private:
 };
 
 } // namespace
+
+std::string find_repeated_name(const std::string& name)
+{
+    constexpr std::string_view digits = "0123456789";
+    const std::size_t open = name.rfind(" (");
+    const std::size_t number = open == std::string::npos ? open : name.find_first_not_of(digits, open + 2);
+    if (number == std::string::npos || number == open + 2 || name.compare(number, 4, " of ") != 0)
+        return {};
+    const std::size_t end = name.find_first_not_of(digits, number + 4);
+    return end + 1 == name.size() && name[end] == ')' && end > number + 4 ? name.substr(0, open) : "";
+}
 
 timeline make_timeline(const scene& s)
 {

@@ -39,7 +39,8 @@ struct shown_burst {
 
 /// All bursts of a scene in one time. It refers to the scene's plans.
 struct timeline {
-    std::vector<double> starts_s = {}; ///< of each stroke
+    std::vector<double> starts_s = {};   ///< of each stroke
+    std::vector<std::size_t> looks = {}; ///< of each stroke, from 0; repeats of a stroke share one
     double total_s = 0.0;
     std::vector<shown_burst> bursts = {};
     std::vector<unsigned> playing = {}; ///< tactors that play, ascending
@@ -57,5 +58,8 @@ struct timeline {
 };
 
 timeline make_timeline(const scene& s);
+
+/// Returns a stroke's name without " (2 of 3)", which repeats have in files; empty for what is no repeat.
+std::string find_repeated_name(const std::string& name);
 
 } // namespace tactor::plot

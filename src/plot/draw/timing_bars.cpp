@@ -174,7 +174,7 @@ void draw_columns(canvas& c, const scene& s, const timeline& t, const timing_fra
                            : style{.fill = dark_grey, .stroke = ink, .width = 0.1};
     for (std::size_t stroke = 0; stroke < profiles.size(); ++stroke) {
         if (by_stroke)
-            look.fill = of_stroke(stroke);
+            look.fill = of_stroke(t.looks[stroke]);
         for (std::size_t i = 0; i < f.rows.rows.size(); ++i)
             for (std::vector<spot>& shape :
                  profiles[stroke][i].outlines(f.base_of(i, stroke), f.bar_height(1.0), t.sampled))

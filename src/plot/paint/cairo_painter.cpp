@@ -52,7 +52,7 @@ public:
     void operator()(const item::text& t) const
     {
         const std::string s = clean(t.string);
-        cairo_select_font_face(cr_, "sans-serif", CAIRO_FONT_SLANT_NORMAL,
+        cairo_select_font_face(cr_, typeface, CAIRO_FONT_SLANT_NORMAL,
                                t.s.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
         cairo_set_font_size(cr_, t.s.size);
         cairo_text_extents_t e;

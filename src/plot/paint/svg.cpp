@@ -10,8 +10,8 @@
 namespace tactor::plot {
 namespace {
 
-// Readers fall back to their own font; ours was only measured.
-constexpr std::string_view fonts = "Helvetica, Arial, 'DejaVu Sans', sans-serif";
+// Verdana is as wide, for readers without the typeface.
+constexpr std::string_view other_fonts = "Verdana, sans-serif";
 
 std::string escaped(std::string_view text)
 {
@@ -53,9 +53,9 @@ public:
     {
         add("<?xml version=\"1.0\" encoding=\"UTF-8\"{}xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" "
             "height=\"{}mm\" viewBox=\"0 0 {} {}\" "
-            "role=\"img\" aria-labelledby=\"title desc\" font-family=\"{}\">\n",
+            "role=\"img\" aria-labelledby=\"title desc\" font-family=\"'{}', {}\">\n",
             svg_mark, coordinate(c.width / pt_per_mm), coordinate(c.height / pt_per_mm), coordinate(c.width),
-            coordinate(c.height), fonts);
+            coordinate(c.height), typeface, other_fonts);
         add("<title id=\"title\">{}</title>\n<desc id=\"desc\">{}</desc>\n", escaped(c.title),
             escaped(c.description));
         add("<rect width=\"{}\" height=\"{}\" fill=\"#fff\"/>\n", coordinate(c.width), coordinate(c.height));

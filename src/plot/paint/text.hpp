@@ -9,8 +9,10 @@
 
 namespace tactor::plot {
 
-/// Width in pt, from a table of DejaVu Sans, the widest of the usual fonts without serifs: layout must not
-/// depend on the fonts of one machine.
+/// Of all pictures, in every format.
+inline constexpr const char* typeface = "DejaVu Sans";
+
+/// Width in pt, from a table of that typeface: layout must not depend on the fonts of one machine.
 double text_width(std::string_view utf8, double size, bool bold = false) noexcept;
 
 /// Of every figure, pt.

@@ -19,6 +19,7 @@ by_motion test_row(const std::vector<cell_values>& all, std::size_t row, std::si
     for (const cell_values& v : all)
         means.push_back(average_of(v[row]));
     b.all = test_mean(means, against);
+    b.all_values = means;
     std::vector<std::optional<double>> p;
     for (std::size_t m = 0; m < motions; ++m) {
         std::vector<double> one;
@@ -26,6 +27,7 @@ by_motion test_row(const std::vector<cell_values>& all, std::size_t row, std::si
             one.push_back(v[row][m]);
         b.motion.push_back(test_mean(one, against));
         p.push_back(b.motion.back().p);
+        b.motion_values.push_back(std::move(one));
     }
     b.p_holm = holm(p);
     return b;

@@ -19,7 +19,9 @@ namespace tactor::study {
 struct by_motion {
     t_test all = {};
     std::vector<t_test> motion = {};
-    std::vector<std::optional<double>> p_holm = {}; ///< of the motions' p
+    std::vector<double> all_values = {};                 ///< of each participant
+    std::vector<std::vector<double>> motion_values = {}; ///< the same, by motion
+    std::vector<std::optional<double>> p_holm = {};      ///< of the motions' p
 };
 
 struct run_analysis {

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#include "cli/picture_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "cli/parse_number.hpp"
+#include "cli/settings.hpp"
+#include "plot/paint/output.hpp"
+
+namespace tactor::cli {
+
+void add_picture_options(CLI::App& command, picture_options& into, const std::string& usual_width)
+{
+    command
+        .add_option_function<std::string>(
+            "--width",
+            [&into](const std::string& t) {
+                into.width_mm = parse_number("--width", t, plot::least_width_mm, plot::most_width_mm, "mm");
+            },
+            fmt::format("width of the picture (default {})", usual_width))
+        ->type_name("MM");
+    command
+        .add_option_function<std::string>(
+            "--dpi",
+            [&into](const std::string& t) {
+                into.dpi =
+                    static_cast<unsigned>(parse_number("--dpi", t, plot::least_dpi, plot::most_dpi, "dpi"));
+            },
+            "resolution of a PNG (default 300)")
+        ->type_name("N");
+    command.add_option("--title", into.title, "title of the picture, or none to leave the heading out")
+        ->type_name("TEXT|none");
+    add_force_option(command, into.force);
+}
+
+} // namespace tactor::cli
