@@ -218,10 +218,13 @@ TEST_CASE("a handler may throw anything; what on_end() calls at once throws to i
     fake_dac dac;
     const running_clock clock(dac);
     player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
-    const stroke_id id = p.submit(tone(0.001));
     std::atomic<bool> ended{false};
+    std::atomic<bool> told{false};
+    p.on_report([&](const stroke_report&) { raise_flag(told); });
+    const stroke_id id = p.submit(tone(0.001));
     CHECK(p.on_end(id, [&](const stroke_report&) { raise_flag(ended); }));
     wait_for(ended);
+    wait_for(told); // or the handler below could get this stroke's report, too
     CHECK_THROWS_AS(p.on_end(id, [](const stroke_report&) { throw 17; }), int);
     CHECK_FALSE(p.ended());
     p.on_report([](const stroke_report&) { throw 17; });
