@@ -26,7 +26,7 @@ struct stream_wiring {
     /// count from 1024). A channel with none is lost. Empty: each channel reaches the one of its own number.
     std::vector<std::vector<unsigned>> outputs = {};
     /// The factor on the samples of each of `outputs`, in the same order; below 0 the polarity is reversed.
-    /// What is below 0.001 (-60 dB) counts as not reached. Empty: all are 1.
+    /// A gain below 0.001 (-60 dB) counts as not reached. Empty: all are 1.
     std::vector<std::vector<double>> gains = {};
     /// The part in between that sets a level which cannot be known: "type softvol". Empty: none does.
     std::string level_by = {};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// How long strokes take that may say so themselves.
+/// Duration or speed of a stroke: its own first, then the usual one.
 #pragma once
 
 #include <optional>

@@ -10,7 +10,7 @@
 
 namespace tactor::detail {
 
-/// What a chunk of format says, checked.
+/// A format chunk, checked.
 struct wav_format {
     std::uint16_t tag = 0; ///< 1 integers, 3 floats, 6 A-law, 7 u-law
     std::uint16_t channels = 0;

@@ -108,7 +108,7 @@ std::string lower_bytes(std::string_view samples)
     return s;
 }
 
-/// Whether samples of 24 bits are the upper three bytes of four, as Microsoft has it: ALSA (S24_LE) and what
+/// Returns true if 24 bits are the upper three bytes of four (Microsoft); those of ALSA (S24_LE) and of what
 /// records with it have the lower three and, above, their sign, zeros or anything.
 bool is_in_upper_bytes(std::string_view samples)
 {

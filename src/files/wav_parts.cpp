@@ -74,14 +74,14 @@ bool is_id(std::string_view bytes, std::size_t at)
     return id.size() == 4 && std::all_of(id.begin(), id.end(), [](char c) { return c >= ' ' && c <= '~'; });
 }
 
-/// Where the chunk behind this one begins: some programs forget the byte that makes the size even.
+/// Returns the place of the next chunk: some programs forget the byte that makes the size even.
 std::size_t after(std::string_view file, std::size_t at, std::size_t size)
 {
     const std::size_t end = at + head_bytes + size;
     return size % 2 == 0 || (is_id(file, end) && !is_id(file, end + 1)) ? end : end + 1;
 }
 
-/// Whether the file goes on in whole chunks until it ends.
+/// Returns true if only whole chunks follow until the file's end.
 bool goes_on_in_chunks(std::string_view file, std::size_t at)
 {
     while (is_id(file, at) && file.size() - at >= head_bytes) {

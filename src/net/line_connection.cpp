@@ -41,7 +41,7 @@ void line_connection::start(handlers h)
     read();
 }
 
-// What one peer sends may take more memory than there is: then it goes, and the others stay.
+// Closes this connection if its input needs more memory than there is; the others stay.
 template <typename F>
 void line_connection::within_memory(F f)
 {
@@ -103,7 +103,7 @@ void line_connection::all_read()
     next_line();
 }
 
-// One line, then others have their turn.
+// Handles one line, then lets others have their turn.
 void line_connection::next_line()
 {
     if (closed_ || !reading_)
@@ -185,7 +185,7 @@ void line_connection::handled(std::size_t size, bool go_on)
                       [self = shared_from_this()] { self->within_memory([&] { self->next_line(); }); });
 }
 
-// What is left is the beginning of a line, or nothing.
+// Keeps the beginning of a line, if any.
 void line_connection::no_line()
 {
     partial_.erase(0, std::exchange(begin_, 0));

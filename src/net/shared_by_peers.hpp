@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What all peers of a server share: memory, and turns. One thread: the context's.
+/// Memory and turns that all peers of a server share. One thread: the context's.
 #pragma once
 
 #include <cstddef>

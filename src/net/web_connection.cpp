@@ -24,7 +24,7 @@ constexpr std::chrono::seconds to_hang_up{1};
 
 } // namespace
 
-// As line_connection::within_memory().
+// See line_connection::within_memory().
 template <typename F>
 void web_connection::session::within_memory(F f)
 {

@@ -44,7 +44,7 @@ public:
         std::function<void()> closed;
         /// Whether what came was the first message that is owed; none: any that is not empty is.
         std::function<bool()> met = {};
-        /// As line_connection::handlers::large.
+        /// See line_connection::handlers::large.
         std::function<void(std::string text, std::function<void(bool)> done)> large = {};
     };
 

@@ -105,7 +105,7 @@ void add_bent(std::vector<carrier_point>& course, const frequency& hz, carrier_p
         course, [&hz](double u) { return hz(0.5 + 0.5 * u); }, to, halvings + 1);
 }
 
-/// Where the target rests, its carrier stays.
+/// Keeps the carrier while the target rests.
 std::vector<carrier_point> profile_course(const trajectory& motion, const std::vector<carrier_part>& profile)
 {
     std::vector<double> parts;

@@ -25,8 +25,8 @@ constexpr double longest_fitted_s = 0.160;
 // What travels less of the distance between two tactors is hardly felt to move (Remache-Vinueza,
 // Trujillo-Leon and Vidal-Verdu, Displays 2024).
 constexpr double least_travel = 0.2;
-// Of the side of a face in pitches. Along a diagonal of a grid of 20 x 20 mm gaussian is 1.2 mm RMS off, of
-// 20 x 24 mm 2.5, of 20 x 28 mm 4.2, of 20 x 40 mm 9.
+// The longest side of a face without a warning, in pitches. Along a diagonal of a grid of 20 x 20 mm gaussian
+// is 1.2 mm RMS off, of 20 x 24 mm 2.5, of 20 x 28 mm 4.2, of 20 x 40 mm 9.
 constexpr double widest_face = 1.15;
 // Durations are said to the millisecond: nearer than half of one is the law's.
 constexpr double law_tolerance_s = 0.0005;

@@ -189,7 +189,7 @@ private:
     // Colours of strokes that lie on each other would mix to those of none.
     colour join_colour(colour of_burst) const { return time_.several() ? grey : of_burst; }
 
-    // Whether most of a stroke's path lies on that of another look that is drawn before.
+    // Returns true if most of a stroke's path lies on an earlier one that looks different.
     bool lies_on_another(std::size_t stroke) const
     {
         constexpr double beside = 0.6; // pt

@@ -60,7 +60,7 @@ public:
         return std::forward<F>(f)(*open_->stream);
     }
 
-    /// As the player's; once it is closed, as they were at the end. \throws error in a forked process.
+    /// The player's; once it is closed, those of its end. \throws error in a forked process.
     player_stats stats() const;
     std::optional<std::string> ended() const;
     drive_history history() const;
@@ -74,7 +74,7 @@ public:
     void refuse_child() const;
 
 private:
-    /// All that is left of a player.
+    /// Remains of a closed player.
     struct last_words {
         player_stats stats = {};
         std::optional<std::string> ended = {};

@@ -99,7 +99,7 @@ render_options joined(std::span<const render_options> sounds)
     return all;
 }
 
-// All that decides on samples beside plans and array.
+// Collects everything but plans and array that changes samples.
 py::tuple recipe(const render_options& o)
 {
     const py::object limits =

@@ -182,7 +182,7 @@ void service::receive_large(client_number number, std::string text, std::functio
     });
 }
 
-// What large messages took in small parts stays in the heap otherwise. It keeps all others from the heap
+// Small blocks of large messages stay in the heap otherwise. Trimming keeps all others from the heap
 // meanwhile: not before nothing large came for a while.
 void service::give_memory_back_when_quiet()
 {

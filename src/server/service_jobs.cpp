@@ -24,7 +24,7 @@ std::string on_one_line(std::string json_text)
     return json_text;
 }
 
-// Of the text or the list that says what to draw, about as it came.
+// Estimates the size of the text or list that says what to draw, bytes.
 std::size_t size_of_source(const json& source)
 {
     constexpr std::size_t point_bytes = 16;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How a stream rests for want of strokes, is given up, and closes.
+// Ends of a stream: it rests without strokes, is given up, or closes.
 #include <utility>
 
 #include <boost/asio/post.hpp>
@@ -43,7 +43,7 @@ void stream::busy(bool is)
     });
 }
 
-// As `play` does: with an amplifier that may be on, nothing is opened again.
+// Opens nothing again while an amplifier may be on, as `play` does.
 void stream::give_up()
 {
     left_on_ = true;
@@ -67,7 +67,7 @@ void stream::close(std::function<void()> done)
         closed_ = std::move(done);
         return;
     }
-    // What is being retired comes before this in the worker.
+    // The worker retires players before it comes to this.
     boost::asio::post(worker_, [this, done = std::move(done)] { boost::asio::post(io_, done); });
 }
 

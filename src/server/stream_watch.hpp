@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// How a stream's players reach the thread of its context.
+/// Carries news of a stream's players to the context's thread.
 #pragma once
 
 #include <atomic>
@@ -16,7 +16,7 @@
 
 namespace tactor::server {
 
-/// What the player's threads tell the context's: that something happened. Outlives both.
+/// Tells the context's thread that something happened to a player. Outlives both.
 struct stream::watch : std::enable_shared_from_this<stream::watch> {
     explicit watch(boost::asio::io_context& c) : io(c) {}
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a player keeps: reports that nobody takes, and the set-up of its stream.
+// Keeping of a player: reports that nobody takes, and the set-up of its stream.
 #include <memory>
 #include <utility>
 

@@ -30,7 +30,7 @@ std::vector<std::string> names(const std::string& content)
     return all;
 }
 
-/// Where a line from (0, 0) to (10, 0) ends.
+/// Returns the end of a line from (0, 0) to (10, 0).
 point end(const std::string& attributes, const std::string& before = "", const std::string& root = "")
 {
     return strokes(before + "<line x2='10' " + attributes + "/>", root).front().motion.position(1e9);

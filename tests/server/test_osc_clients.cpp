@@ -412,7 +412,7 @@ TEST_CASE("places are for those of whom something goes on")
         rig.say(osc_rig::at(port), "/tactor/begin", endless(1));
     rig.say(me, "/tactor/begin", endless(1));
     CHECK(has(rig.next(me), "/tactor/error /tactor/begin max_clients: "));
-    // Those of sockets are not among them, and the senders' not among those of sockets.
+    // Sockets and OSC senders do not take each other's places.
     std::vector<service_rig::connected> sockets;
     for (int i = 0; i < 12; ++i) {
         REQUIRE(rig.all->has_place(server::client_kind::network));

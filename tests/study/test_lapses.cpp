@@ -74,7 +74,7 @@ errors measure(double spread_db, double lapse)
     return e;
 }
 
-// What they came to when this was written, and a little more: seeds are fixed, so only a change of the rules
+// A little more than they came to when this was written: seeds are fixed, so only a change of the rules
 // moves them. With the rule from the first trial on and no check below, 2.3 % of tactors were more than 5 dB
 // off at lapses of 5 % and spreads of 1 and 2 dB, and 17 % at 6 dB.
 struct bounds {

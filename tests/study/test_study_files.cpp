@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What lies in a study's folder, as it is written.
+// Files of a study's folder, as they are written.
 #include <filesystem>
 #include <optional>
 #include <string>

@@ -138,7 +138,7 @@ TEST_CASE("lines are counted as an editor counts them")
     CHECK(refusal("a\tb\r\r1\t2\r3").find("t.tsv:4: ") == 0);
 }
 
-// What is written to a table when a line with a 7 in column a comes behind it.
+// Returns the text that is written when a line with a 7 in column a comes behind a table.
 std::string added(const std::string& text, std::string seven = "7")
 {
     const text_table t("t.tsv", text);

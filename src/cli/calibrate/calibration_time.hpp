@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// How long a calibration takes.
+/// Estimates the duration of a calibration.
 #pragma once
 
 #include <string>

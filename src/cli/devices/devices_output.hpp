@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What there is to play on, and what `devices` prints of it.
+/// Lists the devices to play on, and prints them for `devices`.
 #pragma once
 
 #include <string>

@@ -27,7 +27,7 @@ struct session_devices {
     sound_servers between = {};
 };
 
-/// Who ends a session with q, for messages.
+/// Name, in messages, of the person who ends a session with q.
 inline constexpr std::string_view experimenter = "the experimenter (q)";
 
 class person_session {

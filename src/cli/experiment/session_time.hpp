@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// How long the runs of a session last.
+/// Estimates the duration of a session's runs.
 #pragma once
 
 #include <cstddef>

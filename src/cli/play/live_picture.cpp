@@ -25,7 +25,7 @@ void ask_to_stop(int) noexcept
     stop_asked = 1;
 }
 
-// Of another terminal, or none that it controls, nothing is known.
+// A terminal that does not control this process tells no foreground group.
 bool is_in_background() noexcept
 {
     const pid_t front = ::tcgetpgrp(STDOUT_FILENO);

@@ -80,7 +80,7 @@ private:
     void start(std::unique_ptr<sink> s, double proof_s = 0.0);
     void close_player();
     bool try_again(const std::function<bool(double)>& pause);
-    /// Whether the amplifier may be on although its line is switched off: there is nothing to wait for then.
+    /// True if the amplifier may be on although its line was switched off: do not open again then.
     bool may_be_on() const { return player_ != nullptr && player_->stats().left_on; }
     /// False when a signal has come.
     bool sleep(int fd, int timeout_ms, int also = -1);

@@ -32,7 +32,7 @@ struct device_note {
 /// that are not known (but not those through a server, of which server_note() tells).
 std::vector<device_note> wiring_notes(const array& a, const stream_setup& s);
 
-/// What to do about a server.
+/// Hint for a sound server in the way.
 inline constexpr const char* server_cure =
     "-D hw:CARD=NAME plays on the card itself; tactor devices lists them";
 

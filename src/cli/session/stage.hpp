@@ -34,7 +34,7 @@ struct given_stimulus {
 /// One thread.
 class stage {
 public:
-    /// Why somebody left.
+    /// The reason for leaving a session.
     struct left {
         int signal;                       ///< 0: nobody left
         std::string_view by = "a signal"; ///< for messages: who ended it

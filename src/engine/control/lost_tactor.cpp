@@ -51,7 +51,7 @@ std::string gain_text(double gain)
                        gain < 0.0 ? " with its polarity reversed" : "");
 }
 
-// What a plan's levels do not know; empty: nothing.
+// Describes gains that a plan's levels do not know; empty if there are none.
 std::string remark(std::span<const double> gains)
 {
     const auto is_one = [](double g) { return std::abs(g - 1.0) <= rounding; };

@@ -57,7 +57,7 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     void keep(const stroke_report& r);
 
     std::unique_ptr<sink> out;
-    /// As the stream started: the sink's own may change while the audio thread uses it.
+    /// Set-up at the stream's start: the audio thread may change the sink's own.
     stream_setup made;
     const std::string stream; ///< as messages call it
     player_lines lines;

@@ -145,7 +145,7 @@ private:
             fail({}, fmt::format("no column {}", absent.front()), header_hint);
     }
 
-    // What a tracker adds is no fault, but what is a slip of a column's name is.
+    // Ignores columns that a tracker adds; refuses one whose name is a slip of a known name.
     void leave_out(const field& f, std::span<const std::string_view> absent)
     {
         if (const std::string_view near = detail::nearest_name(f.text, absent); !near.empty())

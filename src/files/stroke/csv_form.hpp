@@ -11,7 +11,7 @@ namespace tactor::detail {
 /// with a message that says so. \throws error (bad_input) with `name`, line and column.
 void refuse_other_form(std::string_view text, const std::string& name);
 
-/// Whether a value says that there is none: nan in any case, or NA.
+/// Returns true for nan in any case and for NA.
 bool is_missing(std::string_view value) noexcept;
 
 } // namespace tactor::detail

@@ -51,7 +51,7 @@ public:
         }
     }
 
-    /// What `parse` makes of a property of svg_properties, by its attribute, style or rules; nothing where it
+    /// Returns `parse` of a property of svg_properties, by its attribute, style or rules; nothing where it
     /// is not set.
     template <class F>
     auto read_property(pugi::xml_node n, const char* name, F parse) const
@@ -72,7 +72,7 @@ public:
 
     /// Remembers that something of an element is not followed: once for each `what`.
     void note(pugi::xml_node n, const std::string& what) const;
-    /// What is not followed, with places, for people.
+    /// Names features that are not followed, with places.
     std::vector<std::string> warnings() const;
 
     /// A length in user units.

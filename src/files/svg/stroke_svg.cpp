@@ -105,7 +105,7 @@ private:
             note_hidden(n);
     }
 
-    // Of a switch an SVG viewer draws one child.
+    // SVG viewers draw one child of a switch.
     void note_unfollowed(xml_node n) const
     {
         for (const char* what : {"clip-path", "mask"})

@@ -50,14 +50,14 @@ struct svg_aspect {
 };
 
 double svg_number(std::string_view text);
-/// What a unit behind a number makes of it. \throws value_fault.
+/// Converts a number with its unit. \throws value_fault.
 using svg_unit = std::function<double(double value, std::string_view unit, std::size_t index)>;
 /// Numbers with blanks or commas between; with units where `unit` takes them.
 std::vector<double> svg_numbers(std::string_view text, const svg_unit& unit = {});
 svg_length parse_svg_length(std::string_view text);
 svg_view_box parse_svg_view_box(std::string_view text);
 svg_aspect parse_svg_aspect(std::string_view text);
-/// As SVG's attribute and as CSS have it, for two dimensions. A px is a user unit, as browsers have it.
+/// Reads a two-dimensional transform in SVG's or CSS's syntax. A px is a user unit, as in browsers.
 affine parse_svg_transform(std::string_view text, const svg_viewport& v);
 /// transform-origin, in user units.
 point parse_svg_origin(std::string_view text, const svg_viewport& v);

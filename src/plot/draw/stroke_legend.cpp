@@ -21,7 +21,7 @@ constexpr double column_gap = 10.0;   // at least, between columns
 constexpr double most_of_width = 0.5; // for one entry, where there are several
 constexpr std::size_t most_rows = 12;
 
-// What one line of the legend is of: a stroke, or the repeats of one.
+// A line of the legend: a stroke, or all repeats of one.
 struct entry {
     std::vector<std::size_t> numbers = {};
     std::string name = {};

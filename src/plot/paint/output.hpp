@@ -17,7 +17,7 @@ enum class file_format { svg, png, pdf };
 /// By the extension, in upper or lower case. \throws error (bad_input) that lists the three.
 file_format format_of(const std::filesystem::path& file);
 
-/// What only pictures of tactor have: at the beginning, a PDF at its end.
+/// Marks of tactor's own pictures: near the beginning, in a PDF at the end.
 inline constexpr std::string_view svg_mark = "?>\n<!-- Drawn by tactor -->\n<svg ";
 inline constexpr std::string_view png_mark = std::string_view("tEXtSoftware\0tactor", 19);
 inline constexpr std::string_view pdf_mark = "\n% Drawn by tactor\nstartxref";

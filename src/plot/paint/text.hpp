@@ -9,7 +9,7 @@
 
 namespace tactor::plot {
 
-/// Of all pictures, in every format.
+/// The typeface of all pictures, in every format.
 inline constexpr const char* typeface = "DejaVu Sans";
 
 /// Width in pt, from a table of that typeface: layout must not depend on the fonts of one machine.

@@ -71,7 +71,7 @@ void osc_endpoint::stop()
     clients_.drop_held();
 }
 
-// One packet, then others have their turn.
+// Handles one packet, then lets others have their turn.
 void osc_endpoint::take()
 {
     boost::system::error_code failed;

@@ -99,7 +99,7 @@ std::optional<fixed> fix(snd_pcm_t* p, const hw_params& space, const alsa_option
     return n == 0 ? std::nullopt : std::optional(fixed{std::move(h), f, n});
 }
 
-// Of the formats that fit with the fewest channels, the first.
+// Returns the first format that fits with the fewest channels.
 std::optional<fixed> find_fit(snd_pcm_t* p, const hw_params& space, const alsa_options& o)
 {
     std::optional<fixed> best;

@@ -23,7 +23,7 @@ std::string p_clause(std::optional<double> p);
 /// "1.20 ... 3.40"
 std::string interval_text(const std::optional<interval>& i);
 
-/// What a mean of per cents can be, and one of a run's values: a per cent, or a rating.
+/// Limits of a mean of per cents, and of a run's values: per cents or ratings.
 inline constexpr interval per_cents{0.0, 100.0};
 interval possible_values(const run_outline& run);
 

@@ -52,7 +52,7 @@ public:
 
     /// Whether this session goes on with one that was begun.
     bool resumed() const noexcept { return resumed_; }
-    /// Whether anything of the session is on the disk.
+    /// Returns true if anything of the session is on the disk.
     bool begun() const { return resumed_ || begun_; }
 
     /// The lines of a run's table so far; and those of the practice before it.

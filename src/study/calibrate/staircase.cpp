@@ -60,8 +60,8 @@ bool staircase::answer(bool right)
     return turned;
 }
 
-// One right answer until the first reversal: three for each step would take so long to come down from the
-// start that a lapse on the way is likely, and would end the large steps far above the threshold.
+// Steps down at each right answer until the first reversal. Three for a step would take so many trials that
+// a lapse on the way is likely; it would end the large steps far above the threshold.
 bool staircase::step(bool right)
 {
     const unsigned for_down = run_.reversals.empty() ? 1 : o_.right_for_down;

@@ -94,7 +94,7 @@ bool needs_thresholds(const session_facts& s)
     return !s.facts()["level"]["dbfs"].there();
 }
 
-// Whether a session lists thresholds that say anything.
+// Returns true if a session has a threshold.
 bool has_thresholds(const session_facts& s)
 {
     const std::vector<json_fact> all = s.facts()["thresholds_dbfs"].list();

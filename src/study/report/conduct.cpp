@@ -27,7 +27,7 @@ bool is_simulated(const session_facts& s)
     return s.facts()["simulated"].truth().value_or(false);
 }
 
-// What `say` says of each opening of the device in which a trial of these runs counts; of all openings where
+// Says `say` of each opening of the device in which a trial of these runs counts; of all openings where
 // none does. Which openings, where they differ.
 template <class F>
 std::string over_streams(const session_facts& s, const std::set<unsigned>& used, const F& say)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// How a session was held, as session.json recorded it while it went on, in words. An empty text: not
+/// Describes the course of a session from the records that session.json kept while it went on. Empty: not
 /// recorded.
 #pragma once
 

@@ -21,7 +21,7 @@ struct course_part {
     double cycles_per_frame = 0.0; ///< there
     double half_slope = 0.0;       ///< half of its change from frame to frame
     double frames = 0.0;           ///< of a bent one, how long it is; 0: linear
-    /// Of a bent one, cycles since its start: a polynomial in u, from 0 at its start to 1 at its end, without
+    /// Cycles of a bent one since its start: a polynomial in u, from 0 at its start to 1 at its end, without
     /// the constant.
     std::array<double, 6> bent = {};
     bool rests() const noexcept { return frames == 0.0 && cycles_per_frame == 0.0 && half_slope == 0.0; }

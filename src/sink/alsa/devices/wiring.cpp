@@ -34,7 +34,7 @@ constexpr std::array binding{"dmix", "dshare", "share"};
 constexpr double least_gain = 1e-3; // -60 dB: less is not felt
 constexpr double rounding = 1e-6;
 
-// Of each channel: the device's channels that it reaches, and the factor on its samples there.
+// For each channel: the device's channels that it reaches, and the factor on its samples there.
 using outputs = std::vector<std::map<unsigned, double>>;
 
 snd_config_t* member(snd_config_t* compound, const char* id)
