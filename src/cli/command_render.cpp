@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <array>
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -15,6 +14,7 @@
 #include "cli/input.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/pipes.hpp"
+#include "cli/progress.hpp"
 #include "cli/say.hpp"
 #include "cli/threshold_carrier.hpp"
 #include "cli/warnings.hpp"
@@ -24,39 +24,6 @@ namespace tactor::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-// A line that counts up on a terminal, from the second half second of work on.
-class progress_line {
-public:
-    explicit progress_line(const std::string& name)
-        : name_(shown(name)), terminal_(isatty(STDERR_FILENO) != 0)
-    {
-    }
-
-    ~progress_line()
-    {
-        if (shown_)
-            std::fputs("\r\033[K", stderr);
-    }
-
-    void update(std::uint64_t done, std::uint64_t all)
-    {
-        const auto now = std::chrono::steady_clock::now();
-        if (!terminal_ || now - last_ < std::chrono::milliseconds(500))
-            return;
-        last_ = now;
-        shown_ = true;
-        const double percent = 100.0 * static_cast<double>(done) / static_cast<double>(all);
-        std::fputs(fmt::format("\r\033[K{}: {:.1f} %", name_, percent).c_str(), stderr);
-        std::fflush(stderr);
-    }
-
-private:
-    std::string name_;
-    bool terminal_;
-    bool shown_ = false;
-    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 bool ends_in_wav(const fs::path& file)
 {

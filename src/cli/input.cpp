@@ -9,6 +9,7 @@
 
 #include "cli/option_words.hpp"
 #include "cli/pipes.hpp"
+#include "cli/progress.hpp"
 #include "core/asked_pace.hpp"
 #include "core/start_times.hpp"
 
@@ -145,7 +146,9 @@ bool has_own_carrier(const stroke& s)
 template <class F>
 void for_each_stroke(const piece& p, F f)
 {
+    progress_line line(shown_name(p.name));
     for (std::size_t i = 0; i < p.strokes.size(); ++i) {
+        line.update(i, p.strokes.size());
         try {
             f(p.strokes[i]);
         } catch (const error& x) {

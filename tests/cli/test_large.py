@@ -58,6 +58,20 @@ class Large(ToolTest):
         self.assertEqual((status, said), (0, ""))
         self.assertLess(mb, path.stat().st_size / MB + 32 + 32)  # points of 32 bytes; the tool itself
 
+    def test_two_lists_along_a_path_cost_what_they_have(self):
+        def seconds(points):
+            parts = [i / (points - 1) for i in range(points)]
+            speeds = ", ".join(f"[{p:.9f}, {20 + 80 * (i * 7919 % points) / points:.3f}]" for i, p in enumerate(parts))
+            carriers = ", ".join(f"[{p:.9f}, {100 + 200 * (i * 104729 % points) / points:.3f}]" for i, p in enumerate(parts))
+            self.write("two.toml", f'[[stroke]]\npath = "M 0 20 L 40 20"\neasing = "minimum-jerk"\n'
+                                   f"speed_mm_s = [{speeds}]\ncarrier_profile = [{carriers}]\n")
+            status, said, _, used = self.cost("render", "two.toml", "-o", "two.wav")
+            self.assertEqual((status, said), (0, ""))
+            return used
+
+        # Eight times as many: with the square it would be 64.
+        self.assertLess(seconds(80_000), 24 * seconds(10_000))
+
     @unittest.skipIf(SANITIZED, "a sanitizer's own memory is not bounded")
     def test_a_burst_of_an_hour_needs_a_tenth_of_a_kilobyte(self):
         def peak_kb(seconds):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Where `render` writes: pipes, standard output, files of others; and what people read of names that strangers chose."""
+import contextlib
 import os
 import pathlib
 import pty
@@ -257,6 +258,25 @@ class People(Output):
             process.send_signal(signal.SIGINT)
             self.assertEqual(process.wait(timeout=PATIENCE_S), 130)
         self.assertIn(b"l\\x1b[31m.wav: ", said)
+
+    def test_long_work_shows_its_progress(self):
+        self.write("s.toml", "".join(f'[[stroke]]\npath = "M 0 {i % 40} L 40 20"\n' for i in range(100_000)))
+        for args, name in ((("compare", "park2016-1", "--spread", "100000"), b"compare: "),
+                           (("experiment", "park2016", "--power", "1000", "--studies", "100000", "--simulate", "seed=1,sigma=1"), b"--power: "),
+                           (("plan", "s.toml"), b"s.toml: ")):
+            with self.subTest(args):
+                terminal, side = pty.openpty()
+                self.addCleanup(os.close, terminal)
+                process = subprocess.Popen([TOOL, *args], cwd=self.dir, env=self.env, stdout=subprocess.DEVNULL, stderr=side)
+                os.close(side)
+                said = b""
+                with contextlib.suppress(OSError): # it has ended
+                    while not said.endswith(b" %"):
+                        self.assertTrue(select.select([terminal], [], [], PATIENCE_S)[0], said)
+                        said += os.read(terminal, 4096)
+                process.kill()
+                process.wait()
+                self.assertRegex(said, rb"\r\x1b\[K" + name + rb"\d+\.\d %$")
 
 
 if __name__ == "__main__":

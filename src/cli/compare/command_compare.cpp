@@ -4,6 +4,7 @@
 #include <memory>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 #include "cli/parse_number.hpp"
 #include "cli/picture_options.hpp"
 #include "cli/pipes.hpp"
+#include "cli/progress.hpp"
 #include "cli/say.hpp"
 #include "core/split.hpp"
 #include "plot/figure.hpp"
@@ -144,6 +146,19 @@ error why_refused(const std::vector<comparison>& all, const piece& p)
     return reasons.back();
 }
 
+std::vector<comparison> compare_all(const piece& p, const environment& e, const layout& faces,
+                                    const plan_options& options, comparison_choice choice)
+{
+    progress_line line("compare");
+    const std::size_t rows = p.strokes.size() * choice.algorithms.size() * choice.phantoms.size();
+    std::size_t predicted = 0;
+    choice.after_person = [&] { line.update(++predicted, rows * choice.spread.people); };
+    std::vector<comparison> all;
+    for (const stroke& k : p.strokes)
+        all.push_back(compare(k, e.tactors, faces, options, choice));
+    return all;
+}
+
 int run(settings& s, option_list& options, const compare_options& asked, bool one_algorithm)
 {
     const environment e = read_environment(s, options);
@@ -164,12 +179,10 @@ int run(settings& s, option_list& options, const compare_options& asked, bool on
                     "a picture shows one");
     if (!asked.picture.file.empty())
         plot::check_output(asked.picture.file, asked.picture.force);
-    std::vector<comparison> all;
+    const std::vector<comparison> all = compare_all(p, e, faces, s.plan, std::move(choice));
     std::vector<std::string> titles;
-    for (const stroke& k : p.strokes) {
-        titles.push_back(name_stroke(p, all.size()));
-        all.push_back(compare(k, e.tactors, faces, s.plan, choice));
-    }
+    for (std::size_t i = 0; i < all.size(); ++i)
+        titles.push_back(name_stroke(p, i));
     const auto playable = std::count_if(all.begin(), all.end(), [](const auto& c) { return c.playable(); });
     if (playable == 0)
         throw why_refused(all, p);

@@ -32,7 +32,7 @@ void predict_people(comparison_row& row, const stroke& s, const array& a, const 
     std::optional<low_speed_observer> taps;
     if (choice.observer.kind == observer_kind::low_speed)
         taps = choice.observer.low_speed;
-    row.spread = spread_of(people, a, s, *row.schedule, taps, choice.keep_samples);
+    row.spread = spread_of(people, a, s, *row.schedule, taps, choice.keep_samples, choice.after_person);
 }
 
 // All rows at once, since they have the target in common.

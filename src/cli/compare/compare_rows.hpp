@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdio>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -57,6 +58,7 @@ struct comparison_choice {
     bool compensate = false; ///< for observer.low_speed
     bool keep_samples = false;
     spread_choice spread = {};
+    std::function<void()> after_person = [] {}; ///< called after each person whose percept is predicted
 };
 
 /// Every algorithm with every model, in this order. An algorithm that cannot play the stroke becomes a row

@@ -152,7 +152,8 @@ std::optional<interval> interval_of(std::vector<std::optional<double>> values)
 }
 
 row_spread spread_of(const std::vector<drawn_person>& people, const array& a, const stroke& s, const plan& p,
-                     const std::optional<low_speed_observer>& low_speed, bool for_picture)
+                     const std::optional<low_speed_observer>& low_speed, bool for_picture,
+                     const std::function<void()>& after_person)
 {
     const double kept =
         low_speed ? static_cast<double>(p.bursts.size()) : s.motion.duration_s() / percept_step_s;
@@ -175,6 +176,7 @@ row_spread spread_of(const std::vector<drawn_person>& people, const array& a, co
         } else {
             keep_summary(g, summarise(a, s, p, x.who));
         }
+        after_person();
     }
     r.rms_error_mm = interval_of(std::move(g.rms));
     r.largest_error_mm = interval_of(std::move(g.largest));

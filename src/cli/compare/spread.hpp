@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -64,8 +65,10 @@ struct row_spread {
     std::vector<std::vector<point>> tracks = {}; ///< of the first people, the same
 };
 
-/// Of a plan that the low-speed observer feels, or with none the centroid.
+/// Predicts what each person feels of a plan: as the low-speed observer, or without one by the centroid.
+/// Calls `after_person` after each.
 row_spread spread_of(const std::vector<drawn_person>& people, const array& a, const stroke& s, const plan& p,
-                     const std::optional<low_speed_observer>& low_speed, bool for_picture);
+                     const std::optional<low_speed_observer>& low_speed, bool for_picture,
+                     const std::function<void()>& after_person);
 
 } // namespace tactor::cli

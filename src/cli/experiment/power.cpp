@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <optional>
 #include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -12,6 +14,7 @@
 #include <tactor/error.hpp>
 
 #include "cli/interrupt.hpp"
+#include "cli/progress.hpp"
 #include "cli/say.hpp"
 #include "core/sha256.hpp"
 #include "core/split.hpp"
@@ -118,6 +121,20 @@ void print_power_json(const prepared_experiment& e, const std::vector<study::run
     fmt::print("{}\n", j.dump(2, ' ', false, json::error_handler_t::replace));
 }
 
+// Returns nothing where a signal ends it.
+std::optional<std::vector<study::run_power>> simulate(const prepared_experiment& e,
+                                                      const study::power_request& asked, int& signal)
+{
+    interrupt stop;
+    progress_line line("--power");
+    std::size_t begun = 0;
+    return study::simulate_power(e.definition, e.stimuli, asked, [&] {
+        line.update(begun++, asked.studies);
+        signal = stop.poll();
+        return signal == 0;
+    });
+}
+
 } // namespace
 
 void add_power_options(CLI::App& command, power_options& p)
@@ -157,13 +174,8 @@ void check_power_options(const power_options& p, const experiment_options& o)
 int tell_power(const prepared_experiment& e, const power_options& p, const experiment_options& o)
 {
     const std::size_t studies = p.studies.value_or(default_studies);
-    interrupt stop;
     int signal = 0;
-    const auto told =
-        study::simulate_power(e.definition, e.stimuli, {*o.simulate, p.participants, studies, o.seed}, [&] {
-            signal = stop.poll();
-            return signal == 0;
-        });
+    const auto told = simulate(e, {*o.simulate, p.participants, studies, o.seed}, signal);
     if (!told) {
         say(stderr, "tactor: ended by a signal, before there was a result\n");
         return interrupt::status(signal);
