@@ -20,7 +20,7 @@ namespace {
 using json = nlohmann::ordered_json;
 using study::step_kind;
 
-constexpr const char* go_on = "what was answered is kept; --resume goes on";
+constexpr const char* resume_hint = "what was answered is kept; --resume goes on";
 
 // Where the session is, for the flow.
 study::session_flow flow_of(const prepared_experiment& p, const study::session_store& store)
@@ -136,7 +136,7 @@ void person_session::find_device()
         return;
     on_page(idle_screen(p_, "wait"));
     if (!stage_.reopen())
-        throw error(error_kind::runtime, devices_.pcm, "it did not come back", go_on);
+        throw error(error_kind::runtime, devices_.pcm, "it did not come back", resume_hint);
     note_stream();
 }
 

@@ -7,6 +7,7 @@
 
 #include "cli/experiment/calibration_facts.hpp"
 #include "cli/json_values.hpp"
+#include "cli/plan/plan_sound.hpp"
 #include "core/sha256.hpp"
 
 namespace tactor::cli {
