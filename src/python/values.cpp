@@ -346,6 +346,7 @@ void bind_stroke(py::module_& m)
         .def("meets_x", [](const stroke& s, double x) { return s.motion.meets_x(x); })
         .def("meets_y", [](const stroke& s, double y) { return s.motion.meets_y(y); });
     m.def("stroke_presets", [] { return stroke_presets(); });
+    m.def("stroke_shapes", [] { return stroke_shapes(); });
     m.def("fit_strokes", [](const std::vector<stroke>& strokes, const array_handle& on, double margin_mm) {
         const fitted_strokes f = fit_strokes(strokes, on.faces(), margin_mm);
         return py::make_tuple(f.strokes, pair(f.placed.from), pair(f.placed.to), f.placed.scale);

@@ -36,7 +36,8 @@ def test_strokes_are_written_and_read_again(tmp_path, stroke):
 def test_what_is_no_number_of_the_file_itself_is_written_closely(tmp_path):
     for stroke in (tactor.Stroke.along(tactor.Path.svg(PATH), speed=[(0, 20), (1, 80)], pauses=[(0.5, 0.2)]),
                    tactor.Stroke.along(tactor.Path.arc((20, 20), 8, 0, 300), 1.0, easing="in-out"),
-                   tactor.Stroke.along(tactor.Path.svg(PATH), 3.0, speed=[(0, 20), (0.5, 80)]).with_duration(1.5)):
+                   tactor.Stroke.along(tactor.Path.svg(PATH), 3.0, speed=[(0, 20), (0.5, 80)]).with_duration(1.5),
+                   *map(tactor.Stroke.shape, tactor.stroke_shapes())):
         stroke.write(tmp_path / "s.toml")
         (again,) = tactor.load(tmp_path / "s.toml")
         t = np.linspace(0, stroke.duration, 100)

@@ -113,10 +113,13 @@ stream_setup: Player.setup
 stream_wiring: Player
 lost_tactor: Player
 wiring_of: Player
+wiring_warnings: Player
 stroke: Stroke
 stroke_choices: Stroke.choices
 stroke_id: Ticket.id
 stroke_presets: stroke_presets
+stroke_shapes: stroke_shapes
+shape_stroke: Stroke.shape
 stroke_report: Report
 stroke_waiter: Ticket.__await__
 summarise: Plan.percept_summary

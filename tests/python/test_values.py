@@ -189,17 +189,39 @@ def test_pickles_that_were_damaged_are_refused(stroke):
 
 
 @pytest.mark.parametrize("make", [
-    lambda: tactor.Path.svg("M 0 0"), lambda: tactor.Path.polyline([(0, 0)]), lambda: tactor.Path.polyline([("a", "b"), (0, 0)]),
+    lambda: tactor.Path.svg("M"), lambda: tactor.Path.polyline([]), lambda: tactor.Path.polyline([("a", "b"), (0, 0)]),
     lambda: tactor.Path.arc((0, 0), -1, 0, 90),
     lambda: tactor.Stroke.along(tactor.Path.svg("M 0 0 L 1 1"), duration=0), lambda: tactor.Stroke.along(tactor.Path.svg("M 0 0 L 1 1"), speed=0),
     lambda: tactor.Stroke.along(tactor.Path.svg("M 0 0 L 1 1"), duration=1, speed=1),
     lambda: tactor.Stroke.timed([0, 1], [0, 1], [0]), lambda: tactor.Stroke.timed([0], [0], [0]),
     lambda: tactor.Stroke.timed([1, 2], [0, 1], [0, 1]), lambda: tactor.Stroke.timed([0, 1], [0, 1], [0, 1], [1, 2, 3]),
-    lambda: tactor.Stroke.preset("park"),
+    lambda: tactor.Stroke.preset("park"), lambda: tactor.Stroke.shape("square"),
 ])
 def test_paths_and_strokes_that_cannot_be_are_refused(make):
     with pytest.raises(tactor.InputError):
         make()
+
+
+@pytest.mark.parametrize("place", [tactor.Path.svg("M 20 10"), tactor.Path.polyline([(20, 10)]), tactor.Path.svg("M 20 10 L 20 10")])
+def test_a_path_of_one_place_is_a_tap_of_the_duration_that_is_given(palm, place):
+    tap = tactor.Stroke.along(place, duration=0.3)
+    assert place.length_mm == tap.length_mm == 0 and tap.duration == 0.3
+    assert tap.position(0) == tap.position(0.3) == (20, 10)
+    assert {b.position for b in tactor.plan(palm, tap).bursts} == {(20, 10)}
+    for options in ({}, {"speed": 60}):
+        with pytest.raises(tactor.InputError) as e:
+            tactor.Stroke.along(place, **options)
+        assert "duration" in str(e.value)
+
+
+@pytest.mark.parametrize("name", tactor.stroke_shapes())
+def test_shapes_are_as_large_as_the_array(palm, name):
+    for array in (palm, tactor.Array.grid("wide", 2, 5, 30)):
+        plan = tactor.plan(array, tactor.Stroke.shape(name))
+        x, y = np.ptp(plan.stroke.position(np.linspace(0, plan.stroke.duration, 500)), axis=0)
+        width, height = np.ptp(array.positions, axis=0)
+        assert x <= width + 1e-9 and y <= height + 1e-9
+        assert name == "tap" or np.isclose(x, width, rtol=1e-3) or np.isclose(y, height, rtol=1e-3)
 
 
 def test_files_are_loaded_as_the_tool_does(root):

@@ -19,7 +19,7 @@ from tactor._path import Path
 from tactor._plan import Plan, load_plan
 from tactor._planning import burst_duration, plan
 from tactor._score import Score
-from tactor._stroke import Stroke, load, parse, stroke_presets
+from tactor._stroke import Stroke, load, parse, stroke_presets, stroke_shapes
 
 if _t.TYPE_CHECKING:
     from tactor import lsl as lsl
@@ -35,7 +35,7 @@ __all__ = [
     "Meeting", "Path", "Percept", "PerceptMap", "PerceptSample", "PhantomModel", "Plan", "Player", "Point", "RemoteLive",
     "RemoteStroke", "Reply", "Report", "Score", "StreamError", "Stroke", "Tactor", "Ticket",
     "array_presets", "build_facts", "burst_duration", "compare", "devices", "fit_as_asked", "fit_strokes", "load", "load_plan", "parse", "plan", "plot",
-    "stroke_presets",
+    "stroke_presets", "stroke_shapes",
 ]
 
 

@@ -161,7 +161,7 @@ class Stroke(_Value):
 
     @classmethod
     def shape(cls, name: str) -> Stroke:
-        """A "tap", "line", "circle", "eight" or "spiral", as large as the array for which it is planned."""
+        """A "tap", "line", "circle", "eight" or "spiral", as large as the array for which it is planned (`stroke_shapes`)."""
         _need(name, str, "name")
         return cls._of(_tactor.Stroke.shape(name))
 
@@ -341,3 +341,8 @@ def parse(text: str, name: str = "text") -> list[Stroke]:
 def stroke_presets() -> list[str]:
     """Names of the built-in strokes."""
     return _tactor.stroke_presets()  # type: ignore[no-any-return]
+
+
+def stroke_shapes() -> list[str]:
+    """Names for `Stroke.shape`."""
+    return _tactor.stroke_shapes()  # type: ignore[no-any-return]
