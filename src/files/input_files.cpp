@@ -2,6 +2,7 @@
 #include "files/input_files.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <system_error>
@@ -17,6 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t least_room = 64;
 constexpr std::size_t most_inputs = 65536;
 
 struct input {
@@ -25,17 +27,54 @@ struct input {
     owner_kind owner = owner_kind::user;
 
     bool is(const struct stat& s) const noexcept { return device == s.st_dev && inode == s.st_ino; }
+
+    /// False for a file that is gone: a file system gives its number to the next one.
+    bool is_still(const fs::path& name) const noexcept
+    {
+        struct stat now {};
+        return ::stat(name.c_str(), &now) == 0 && is(now);
+    }
 };
 
 struct inputs {
     std::mutex guard;
     std::map<fs::path, input> all; ///< by absolute name
+    std::size_t room = least_room;
+
+    /// Forgets what is gone whenever the room is full: a process may live long.
+    void make_room()
+    {
+        if (all.size() < room)
+            return;
+        std::erase_if(all, [](const auto& e) { return !e.second.is_still(e.first); });
+        if (all.size() == most_inputs)
+            all.erase(all.begin(), std::next(all.begin(), most_inputs / 2));
+        room = std::clamp(2 * all.size(), least_room, most_inputs);
+    }
 };
 
 inputs& known()
 {
     static inputs i;
     return i;
+}
+
+bool may_replace(owner_kind writer, owner_kind read) noexcept
+{
+    return writer == owner_kind::caller || (writer == owner_kind::program && read == owner_kind::program);
+}
+
+// Returns the name under which a file was read that this writer may not replace, or an empty one.
+fs::path find_input(const struct stat& file, owner_kind writer)
+{
+    if (!S_ISREG(file.st_mode))
+        return {};
+    inputs& i = known();
+    const std::lock_guard locked(i.guard);
+    const auto kept = std::find_if(i.all.begin(), i.all.end(), [&](const auto& e) {
+        return e.second.is(file) && !may_replace(writer, e.second.owner) && e.second.is_still(e.first);
+    });
+    return kept == i.all.end() ? fs::path() : kept->first;
 }
 
 } // namespace
@@ -52,26 +91,9 @@ void note_input(const fs::path& file, owner_kind owner)
     const auto old = i.all.find(whole);
     if (old != i.all.end())
         owner = std::min(owner, old->second.owner); // once the user's, always the user's
-    else if (i.all.size() == most_inputs)
-        i.all.erase(i.all.begin());
+    else
+        i.make_room();
     i.all[std::move(whole)] = {s.st_dev, s.st_ino, owner};
-}
-
-fs::path find_input(const struct stat& file, owner_kind writer)
-{
-    if (!S_ISREG(file.st_mode))
-        return {};
-    inputs& i = known();
-    const std::lock_guard locked(i.guard);
-    for (const auto& [name, read] : i.all) {
-        if (!read.is(file) || (read.owner == owner_kind::program && writer == owner_kind::program))
-            continue;
-        // A file system gives the number of a deleted file to the next one.
-        struct stat now {};
-        if (::stat(name.c_str(), &now) == 0 && read.is(now))
-            return name;
-    }
-    return {};
 }
 
 void refuse_input(const struct stat& file, const fs::path& output, owner_kind writer)

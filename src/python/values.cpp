@@ -74,7 +74,7 @@ py::tuple pair(point p)
 void write_text(const std::string& file, const std::string& text)
 {
     const without_lock free;
-    detail::output_file out{std::filesystem::path(file)};
+    detail::output_file out(file, {}, detail::owner_kind::caller);
     out.write(text.data(), static_cast<std::int64_t>(text.size()));
     out.commit();
 }

@@ -185,6 +185,31 @@ TEST_CASE("a file that got the number of a deleted input is none")
     CHECK(dir.bytes("b") == "new");
 }
 
+TEST_CASE("text of the library's caller replaces what was read, and sound still does not")
+{
+    const folder dir;
+    for (const auto owner : {detail::owner_kind::program, detail::owner_kind::user}) {
+        std::ofstream(dir / "stroke") << "old";
+        static_cast<void>(detail::read_text_file(dir / "stroke", 100, owner));
+        CHECK_THROWS_AS(detail::output_file(dir / "stroke"), error);
+        CHECK_NOTHROW(detail::output_file(dir / "stroke", {}, detail::owner_kind::caller));
+    }
+}
+
+TEST_CASE("an input is remembered beside many that are gone")
+{
+    const folder dir;
+    std::ofstream(dir / "kept") << "mine";
+    static_cast<void>(detail::read_text_file(dir / "kept", 100));
+    for (int i = 0; i < 300; ++i) {
+        const std::string name = std::to_string(i);
+        std::ofstream(dir / name) << "another";
+        static_cast<void>(detail::read_text_file(dir / name, 100));
+        fs::remove(dir / name);
+    }
+    CHECK_THROWS_AS(detail::output_file(dir / "kept"), error);
+}
+
 TEST_CASE("the program brings its own records up to date, and no file of the user's")
 {
     const folder dir;

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Plans, strokes and records as files."""
 import json
+import os
+import wave
 
 import numpy as np
 import pytest
@@ -43,6 +45,37 @@ def test_what_is_no_number_of_the_file_itself_is_written_closely(tmp_path):
         t = np.linspace(0, stroke.duration, 100)
         assert again.duration == pytest.approx(stroke.duration, rel=1e-12)
         assert np.allclose(again.position(t), stroke.position(t), rtol=0, atol=1e-8)
+
+
+def test_what_was_read_is_changed_and_written_again(tmp_path, palm, stroke):
+    stroke.write(tmp_path / "s.toml")
+    palm.write(tmp_path / "a.toml")
+    tactor.plan(palm, stroke).write(tmp_path / "p.json")
+    for _ in range(2):
+        (again,) = tactor.load(tmp_path / "s.toml")
+        again.with_duration(again.duration / 2).write(tmp_path / "s.toml")
+        array = tactor.Array.from_file(tmp_path / "a.toml")
+        array.replace(gains=array[0].gain_db - 1).write(tmp_path / "a.toml")
+        tactor.load_plan(tmp_path / "p.json").write(tmp_path / "p.json")
+    assert tactor.load(tmp_path / "s.toml")[0].duration == pytest.approx(stroke.duration / 4)
+    assert tactor.Array.from_file(tmp_path / "a.toml")[0].gain_db == palm[0].gain_db - 2
+
+
+def test_sound_does_not_replace_what_was_read(tmp_path, palm, stroke):
+    score = tactor.Score(palm, tactor.plan(palm, stroke))
+    score.write(tmp_path / "tone.wav")
+    score.write(tmp_path / "tone.wav")  # not an input yet
+    with wave.open(str(tmp_path / "tone.wav"), "wb") as tone:
+        tone.setparams((1, 2, 48000, 0, "NONE", ""))
+        tone.writeframes(bytes(range(128)))
+    stroke.write(tmp_path / "s.toml")
+    textured = tactor.plan(palm, tactor.load(tmp_path / "s.toml")[0], waveform=str(tmp_path / "tone.wav"))
+    os.link(tmp_path / "s.toml", tmp_path / "link.wav")
+    before = (tmp_path / "tone.wav").read_bytes(), (tmp_path / "s.toml").read_bytes()
+    for name in ("tone.wav", "link.wav"):
+        with pytest.raises(tactor.InputError, match="read as input"):
+            tactor.Score(palm, textured).write(tmp_path / name)
+    assert before == ((tmp_path / "tone.wav").read_bytes(), (tmp_path / "s.toml").read_bytes())
 
 
 def test_what_no_stroke_file_can_say_is_refused(tmp_path, stroke):

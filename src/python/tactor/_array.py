@@ -309,7 +309,7 @@ class Array(_Value):
     def write(self, file: str | os.PathLike[str]) -> None:
         """Writes an array file that `from_file` and the tool read, with all that `replace` keeps. It needs no other file.
 
-        Complete or not at all: an existing file is replaced at the end.
+        Complete or not at all: an existing file, also one that was read, is replaced at the end.
 
         Parameters
         ----------

@@ -80,7 +80,7 @@ class Plan(_Value):
     def write(self, file: str | os.PathLike[str]) -> None:
         """Writes the plan as `tactor plan --format json` does: a record of every sample, for `load_plan` and the tool.
 
-        Complete or not at all: an existing file is replaced at the end.
+        Complete or not at all: an existing file, also one that was read, is replaced at the end.
 
         Parameters
         ----------

@@ -252,7 +252,7 @@ class Score(_Value):
         Raises
         ------
         InputError
-            For a folder that does not exist.
+            For a folder that does not exist, and a file that was read as input.
         StreamError
             For what the file system refuses.
         """

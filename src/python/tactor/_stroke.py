@@ -267,7 +267,7 @@ class Stroke(_Value):
     def write(self, file: str | os.PathLike[str]) -> None:
         """Writes a stroke file in TOML that `load` and the tool read.
 
-        Warnings, and a start that counts from another stroke, are lost. Complete or not at all: an existing file is replaced at the end.
+        Warnings, and a start that counts from another stroke, are lost. Complete or not at all: an existing file, also one that was read, is replaced at the end.
 
         Parameters
         ----------
