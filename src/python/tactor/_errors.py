@@ -132,5 +132,7 @@ def made(kind: str, what: str, why: str, hint: str, field: str = "", file: str =
     """Makes the exception of a library's error; called by the extension. About a file it speaks in the file's own words."""
     if not (file or line):
         what, hint, field = _in_python(what), _in_python(hint), _FIELDS.get(field, _in_python(field))
+    elif field == "force":  # no word of a file, but an argument
+        hint = _in_python(hint)
     return _of_system(_KINDS[kind], errno)(what, why, hint, file=file or None, line=line or None, column=column or None, field=field or None,
                                            errno=errno)
