@@ -272,7 +272,7 @@ class Player(_Unique):
             shared.core.close()
         _open.discard(self)
         if threading.current_thread() is not shared.thread:
-            shared.thread.join()
+            shared.wait_told()
             shared.held = weakref.ref(held)
 
     def _history(self) -> _t.Any:

@@ -274,13 +274,17 @@ class _Gate:
     """Is opened once. Those who wait may be interrupted by a signal's handler that waits, too, which threading.Event does not allow."""
 
     def __init__(self) -> None:
+        self._open = False
         self._lock = threading.Lock()
         self._lock.acquire()
 
     def open(self) -> None:
+        self._open = True
         self._lock.release()
 
     def wait(self, timeout: float) -> bool:
+        if self._open:  # whom the handler interrupts may have the lock
+            return True
         there = self._lock.acquire(timeout=timeout)
         if there:
             self._lock.release()
@@ -305,6 +309,8 @@ class _Shared:
         self.closing = threading.RLock()
         self.held: _t.Callable[[], _Held | None] = weakref.ref(held)
         self.events: collections.deque[tuple[_t.Any, ...]] = collections.deque()
+        self.told = _Gate()
+        self.joined = False
         self.thread = threading.Thread(target=self._run, name="tactor", daemon=True)
         self.thread.start()
 
@@ -313,6 +319,16 @@ class _Shared:
             self.events.append(event)
             self._tell()
         self._tell()
+        self.told.open()
+
+    def wait_told(self) -> None:
+        """Waits until all has been told and the thread has ended."""
+        while not self.told.wait(_LOOK_S):
+            pass
+        # A handler that interrupts join() must not join, too: it would wait for a lock that the interrupted one has.
+        if not self.joined:
+            self.joined = True
+            self.thread.join()
 
     def _tell(self) -> None:
         held = self.held()
