@@ -82,7 +82,7 @@ void check_array(const array& a)
 
 void check_path(const path& p)
 {
-    HOLDS(p.length_mm() > 0.0 && std::isfinite(p.length_mm()));
+    HOLDS(p.length_mm() >= 0.0 && std::isfinite(p.length_mm()));
     for (int i = 0; i <= 8; ++i) {
         const point at = p.at(p.length_mm() * i / 8.0);
         check_place(at);

@@ -15,13 +15,15 @@ SOURCES = {
     "config_toml": (["examples/tactor.toml"], ["files/test_setup.cpp", "files/test_setup_file.cpp"]),
     "stroke_toml": (["examples/strokes/*.toml"], ["files/test_stroke_toml.cpp", "files/test_stroke_movement.cpp", "files/test_stroke_order.cpp"]),
     "stroke_csv": (["examples/strokes/*.csv"], ["files/test_stroke_csv.cpp"]),
-    "stroke_svg": (["examples/strokes/*.svg"], ["files/test_stroke_svg.cpp", "files/test_stroke_svg_errors.cpp", "files/test_stroke_svg_strength.cpp"]),
+    "stroke_svg": (["examples/strokes/*.svg"], ["files/test_stroke_svg.cpp", "files/test_stroke_svg_errors.cpp", "files/test_stroke_svg_strength.cpp",
+                                                 "files/test_stroke_svg_style.cpp"]),
     "path_data": ([], ["core/test_path_svg.cpp", "core/test_path.cpp", "core/test_path_length.cpp", "core/test_path_meets.cpp"]),
+    "study_table": ([], ["study/test_text_table.cpp"]),
     "pcm_name": ([], ["sink/alsa/test_pcm_names.cpp"]),
 }
 
 def wav_files():
-    """A few samples in each format, plain and behind other chunks; and the greatest and least floats."""
+    """A few samples in each format, plain and behind other chunks; the greatest and least floats; and what recorders leave unsaid."""
     for tag, bits in ((1, 8), (1, 16), (1, 24), (1, 32), (3, 32), (3, 64), (0xFFFE, 16)):
         size = bits // 8
         form = struct.pack("<HHIIHH", tag, 1, 8000, 8000 * size, size, bits) + (struct.pack("<HHIHH", 22, bits, 4, 1, 0) if tag == 0xFFFE else b"")
@@ -31,6 +33,10 @@ def wav_files():
             for before in (b"", b"LIST" + struct.pack("<I", 4) + b"INFO"):
                 chunks = before + b"fmt " + struct.pack("<I", len(form)) + form + b"data" + struct.pack("<I", len(data)) + data
                 yield b"RIFF" + struct.pack("<I", 4 + len(chunks)) + b"WAVE" + chunks
+    in_four_bytes = struct.pack("<HHIIHH", 1, 1, 8000, 32000, 4, 24)
+    for kind, size, before in ((b"RF64", 0xFFFFFFFF, b"ds64" + struct.pack("<IQQQI", 28, 0, 64, 16, 0)), (b"BW64", 0, b""), (b"RIFF", 0x7FFFF000, b""),
+                               (b"RIFF", 64, b"note" + struct.pack("<I", 3) + b"odd")):
+        yield kind + b"\xff\xff\xff\xffWAVE" + before + b"fmt " + struct.pack("<I", 16) + in_four_bytes + b"data" + struct.pack("<I", size) + bytes(range(64))
 
 
 # What tests make of parts: a line of each is a seed of its own.
