@@ -315,11 +315,13 @@ class _Shared:
         self.thread.start()
 
     def _run(self) -> None:
-        while (event := self.core.next()) is not None:
-            self.events.append(event)
+        try:
+            while (event := self.core.next()) is not None:
+                self.events.append(event)
+                self._tell()
             self._tell()
-        self._tell()
-        self.told.open()
+        finally:
+            self.told.open()
 
     def wait_told(self) -> None:
         """Waits until all has been told and the thread has ended."""
