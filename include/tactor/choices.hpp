@@ -37,6 +37,18 @@ TACTOR_API phantom_kind from_string<phantom_kind>(std::string_view name);
 template <>
 TACTOR_API std::span<const phantom_kind> values_of<phantom_kind>() noexcept;
 
+/// Which three tactors inverse_distance takes.
+enum class faces_kind {
+    delaunay, ///< those of the Delaunay face round the point, whose triangle holds it
+    nearest,  ///< the three closest of the whole array, as Park et al. 2016 say; their triangle may miss it
+};
+
+TACTOR_API std::string_view to_string(faces_kind k) noexcept;
+template <>
+TACTOR_API faces_kind from_string<faces_kind>(std::string_view name);
+template <>
+TACTOR_API std::span<const faces_kind> values_of<faces_kind>() noexcept;
+
 /// The SOA as it is given, or shortened so that the last burst ends with the path.
 enum class timing_kind { fixed, fit };
 
@@ -107,6 +119,7 @@ struct stroke_choices {
     std::optional<double> soa_s = {};
     std::optional<double> burst_s = {};
     double level_db = 0.0; ///< of its amplitudes, whatever plan_options::scale makes of its intensity
+    std::optional<faces_kind> faces = {};
 
     friend bool operator==(const stroke_choices&, const stroke_choices&) = default;
 };

@@ -18,8 +18,9 @@ inline namespace v0 {
 
 struct live_options {
     /// These members count: `algorithm` (continuous: the carrier runs and the phantom's weights follow the
-    /// points; park2016: a burst each SOA, at the newest position), `phantom` or `custom_phantom`,
-    /// `carrier_hz`, `outside`; for bursts `soa_s` and `profile`, which give their duration.
+    /// points; park2016: a burst each SOA, at the newest position), `phantom` and `faces`, or
+    /// `custom_phantom`, `carrier_hz`, `outside`; for bursts `soa_s` and `profile`, which give their
+    /// duration.
     plan_options plan{.algorithm = algorithm_kind::continuous, .outside = outside_kind::clamp};
     /// Levels, phase and the bursts' ramp; rate and channels are the stream's.
     render_options render = {};

@@ -78,8 +78,9 @@ public:
 /// A built-in model on a layout. O(log n) in the tactors for each point, and O(k log k) in those of the face,
 /// which matters only where hundreds lie on one circle. A point outside the hull is taken for the nearest
 /// point of it. \throws error (bad_input), from weights(), for a point or an intensity that is not finite,
-/// and for an intensity below 0.
-[[nodiscard]] TACTOR_API std::shared_ptr<const phantom_model> make_phantom(phantom_kind k, const layout& l);
+/// and for an intensity below 0; here, for faces_kind::nearest with another model than inverse_distance.
+[[nodiscard]] TACTOR_API std::shared_ptr<const phantom_model>
+make_phantom(phantom_kind k, const layout& l, faces_kind f = faces_kind::delaunay);
 
 } // namespace v0
 } // namespace tactor

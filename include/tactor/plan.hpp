@@ -50,6 +50,9 @@ struct intensity_scale {
 struct plan_options {
     algorithm_kind algorithm = algorithm_kind::park2016;
     phantom_kind phantom = phantom_kind::inverse_distance;
+    /// `nearest` goes with phantom_kind::inverse_distance alone, and the plan warns where the triangle of the
+    /// three misses the point. Tactile Brush plays on grid lines and warns that it does not use it.
+    faces_kind faces = faces_kind::delaunay;
     /// A model of your own instead of `phantom`; kept as long as it is asked for drives.
     std::shared_ptr<const phantom_model> custom_phantom = {};
     timing_profile profile = {};
@@ -106,6 +109,7 @@ struct carrier_point {
 struct plan {
     std::string algorithm = {}; ///< the planner's name: of an algorithm_kind, or your own
     std::string phantom = {};
+    faces_kind faces = faces_kind::delaunay;
     double stroke_duration_s = 0.0;
     double stroke_length_mm = 0.0;
     double carrier_hz = 250.0;

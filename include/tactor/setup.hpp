@@ -85,6 +85,7 @@ struct default_settings {
     // plan_options
     std::optional<algorithm_kind> algorithm = {};
     std::optional<phantom_kind> phantom = {};
+    std::optional<faces_kind> faces = {};
     std::optional<double> soa_s = {};
     std::optional<double> burst_s = {};
     std::optional<timing_kind> timing = {};

@@ -15,7 +15,7 @@ struct translation {
 };
 
 // What can only mean a field, in advice too.
-constexpr std::array<translation, 26> in_advice{{{"measure its detection threshold", "run tactor calibrate"},
+constexpr std::array<translation, 28> in_advice{{{"measure its detection threshold", "run tactor calibrate"},
                                                  {"soa_s", "--soa"},
                                                  {"duration_s", "--duration"},
                                                  {"burst_s", "--burst"},
@@ -28,6 +28,8 @@ constexpr std::array<translation, 26> in_advice{{{"measure its detection thresho
                                                  {"timing = ", "--timing "},
                                                  {"outside = ", "--outside "},
                                                  {"algorithm = ", "--algorithm "},
+                                                 {"faces = ", "--faces "},
+                                                 {"phantom = ", "--phantom "},
                                                  {"force = true", "--force"},
                                                  {"snap = true", "--snap"},
                                                  {"drop_points = true", "--drop-points"},
@@ -43,17 +45,18 @@ constexpr std::array<translation, 26> in_advice{{{"measure its detection thresho
                                                  {"sigma_v_mm_s", "--sigma-v-mm-s"}}};
 
 // Words of every day.
-constexpr std::array<translation, 7> as_subject{{{"rate", "--rate"},
+constexpr std::array<translation, 8> as_subject{{{"rate", "--rate"},
                                                  {"shape", "--shape"},
                                                  {"channels", "--channels"},
                                                  {"phantom", "--phantom"},
+                                                 {"faces", "--faces"},
                                                  {"simulate", "--simulate"},
                                                  {"waveform", "--waveform"},
                                                  {"am", "--am"}}};
 
 // Those that files have as keys, too.
-constexpr std::array<std::string_view, 6> keys{"duration_s", "soa_s",      "burst_s",
-                                               "carrier_hz", "texture_mm", "algorithm = "};
+constexpr std::array<std::string_view, 8> keys{"duration_s", "soa_s",        "burst_s",  "carrier_hz",
+                                               "texture_mm", "algorithm = ", "faces = ", "phantom = "};
 
 bool is_key(std::string_view field)
 {

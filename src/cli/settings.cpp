@@ -42,6 +42,7 @@ struct choice {
 
 constexpr choice<algorithm_kind> algorithms;
 constexpr choice<phantom_kind> phantoms;
+constexpr choice<faces_kind> all_faces;
 constexpr choice<timing_kind> timings;
 constexpr choice<outside_kind> outsides;
 constexpr choice<overlap_kind> overlaps;
@@ -145,6 +146,9 @@ void option_list::add_stroke_options()
     add_timing_options();
     value("--phantom", phantoms.names("|"), "how strongly (default inverse-distance)",
           [&s](const std::string& t) { s.plan.phantom = phantoms.parse("--phantom", t); });
+    value("--faces", all_faces.names("|"),
+          "inverse-distance: three tactors round the point, or the closest three (default delaunay)",
+          [&s](const std::string& t) { s.plan.faces = all_faces.parse("--faces", t); });
     auto* duration = value(
         "--duration", "S", "time of each stroke; default: the file's or preset's",
         [&s](const std::string& t) { s.duration_s = parse_number("--duration", t, 0.001, 86400, "s"); });

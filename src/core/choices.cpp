@@ -23,6 +23,8 @@ constexpr detail::kind_table<phantom_kind, 5> phantoms("phantom",
                                                         {phantom_kind::linear, "linear"},
                                                         {phantom_kind::log, "log"},
                                                         {phantom_kind::gaussian, "gaussian"}});
+constexpr detail::kind_table<faces_kind, 2> all_faces("faces", {{faces_kind::delaunay, "delaunay"},
+                                                                {faces_kind::nearest, "nearest"}});
 constexpr detail::kind_table<timing_kind, 2> timings("timing", {{timing_kind::fixed, "fixed"},
                                                                 {timing_kind::fit, "fit"}});
 constexpr detail::kind_table<outside_kind, 2> outsides("outside", {{outside_kind::error, "error"},
@@ -45,6 +47,7 @@ constexpr detail::kind_table<start_from_kind, 3> start_froms("start_from", {{sta
 
 TACTOR_KIND_FUNCTIONS(algorithm_kind, algorithms)
 TACTOR_KIND_FUNCTIONS(phantom_kind, phantoms)
+TACTOR_KIND_FUNCTIONS(faces_kind, all_faces)
 TACTOR_KIND_FUNCTIONS(timing_kind, timings)
 TACTOR_KIND_FUNCTIONS(outside_kind, outsides)
 TACTOR_KIND_FUNCTIONS(overlap_kind, overlaps)

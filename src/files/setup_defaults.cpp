@@ -38,11 +38,12 @@ struct waveform_name {   // a waveform's name or file
     member<std::string> text;
 };
 
-using field = std::variant<member<double>, member<unsigned>, member<std::uint64_t>, member<bool>,
-                           member<algorithm_kind>, member<phantom_kind>, member<timing_kind>,
-                           member<outside_kind>, member<overlap_kind>, member<texture_kind>,
-                           member<scale_kind>, member<phase_kind>, member<format_kind>, member<observer_kind>,
-                           member<modulation>, milliseconds, yes_or_none, envelope_name, waveform_name>;
+using field =
+    std::variant<member<double>, member<unsigned>, member<std::uint64_t>, member<bool>,
+                 member<algorithm_kind>, member<phantom_kind>, member<faces_kind>, member<timing_kind>,
+                 member<outside_kind>, member<overlap_kind>, member<texture_kind>, member<scale_kind>,
+                 member<phase_kind>, member<format_kind>, member<observer_kind>, member<modulation>,
+                 milliseconds, yes_or_none, envelope_name, waveform_name>;
 
 struct key {
     std::string_view name;
@@ -56,6 +57,7 @@ using d = default_settings;
 constexpr std::array keys{
     key{"algorithm", &d::algorithm},
     key{"phantom", &d::phantom},
+    key{"faces", &d::faces},
     key{"speed", &d::speed_mm_s, of::speed},
     key{"soa", &d::soa_s, {0.0, 10.0, true}},
     key{"burst", &d::burst_s, of::burst},

@@ -17,6 +17,7 @@
 #include "plan/faces/layout_impl.hpp"
 #include "plan/faces/sides.hpp"
 #include "plan/job.hpp"
+#include "plan/missed_places.hpp"
 #include "plan/options.hpp"
 
 namespace tactor {
@@ -112,6 +113,16 @@ std::string notice(const compensated_plan& p)
     return text;
 }
 
+// The plan's warning of bursts that their three tactors do not surround; empty if there is none.
+std::string missed_warning(const layout& l, const plan& p)
+{
+    detail::missed_places missed;
+    if (p.faces == faces_kind::nearest)
+        for (const burst& b : p.bursts)
+            missed.add(l, b);
+    return missed.warning("burst");
+}
+
 } // namespace
 
 compensated_places compensate(const layout& l, const low_speed_observer& o, std::span<const double> onsets_s,
@@ -154,12 +165,15 @@ compensated_plan make_compensated_plan(const array& a, const layout& l, const st
             targets.push_back(s.motion.position(b.onset_s));
         }
     const compensated_places places = compensate(l, m, onsets_s, targets);
+    std::erase(r.schedule.warnings, missed_warning(l, r.schedule)); // counted anew where they are moved to
     const std::shared_ptr<const phantom_model> model = detail::model_of(l, chosen);
     for (std::size_t i = 0; i < felt.size(); ++i) {
         burst& b = *felt[i];
         b.position = places.played[i];
         detail::drives_at(*model, l, b.position, b.intensity, b.drives);
     }
+    if (std::string text = missed_warning(l, r.schedule); !text.empty())
+        r.schedule.warnings.push_back(std::move(text));
     r.schedule.conflicts = detail::find_conflicts(r.schedule.bursts);
     r.taps = predict_taps(a, s, r.schedule, m);
     r.at_edge = places.at_edge;

@@ -12,6 +12,8 @@
 
 #include <tactor/plan.hpp>
 
+#include "plan/missed_places.hpp"
+
 namespace tactor::detail {
 
 /// Counts over all bursts of a plan, for its warnings.
@@ -22,6 +24,7 @@ struct burst_count {
     double longest_s = 0.0;
     double shortest_s = 0.0; ///< of the too short ones
     double first_s = 0.0;    ///< duration of the first
+    missed_places missed = {};
 };
 
 /// Takes the next bursts of a plan; at their end nothing sounds. `so_far` has what else is known of the plan
@@ -64,8 +67,11 @@ inline constexpr double most_bursts = 10e6;
 /// \throws error (bad_input) when there are too many.
 void check_burst_count(const job& j, double bursts);
 
-/// The user's own model, or the one that is named.
+/// The user's own model, or the one that is named. \throws error (bad_input) where it does not go with
+/// `faces`.
 std::shared_ptr<const phantom_model> model_of(const layout& l, const plan_options& o);
+/// The faces that the algorithm takes.
+faces_kind faces_used(const plan_options& o);
 
 /// \throws error (bad_input) for what is no amplitude of a phantom.
 void check_intensity(double a_v);

@@ -14,6 +14,7 @@
 #include "plan/course.hpp"
 #include "plan/job.hpp"
 #include "plan/options.hpp"
+#include "plan/phantom/phantom_models.hpp"
 #include "plan/rounded.hpp"
 
 namespace tactor {
@@ -31,12 +32,14 @@ constexpr double widest_face = 1.15;
 // Durations are said to the millisecond: nearer than half of one is the law's.
 constexpr double law_tolerance_s = 0.0005;
 
-void count(const plan& p, detail::burst_count& c)
+void count(const layout& l, const plan& p, detail::burst_count& c)
 {
     if (c.all == 0 && !p.bursts.empty())
         c.first_s = p.bursts.front().duration_s;
     c.all += p.bursts.size();
     for (const burst& b : p.bursts) {
+        if (p.faces == faces_kind::nearest)
+            c.missed.add(l, b);
         c.longest_s = std::max(c.longest_s, b.duration_s);
         c.too_long += b.duration_s > longest_fitted_s + 1e-9 ? 1 : 0;
         if (b.duration_s * p.carrier_hz < 1.0 - 1e-9) {
@@ -165,6 +168,7 @@ plan planned(const array& a, const layout& l, const stroke& s, const plan_option
     p.warnings = s.warnings;
     p.algorithm = to_string(o.algorithm);
     p.phantom = j.model->name();
+    p.faces = detail::faces_used(o);
     p.stroke_duration_s = s.motion.duration_s();
     p.stroke_length_mm = s.motion.length_mm();
     p.carrier_hz = detail::check_carrier(s.carrier_profile.empty() ? s.carrier_hz.value_or(o.carrier_hz)
@@ -190,6 +194,7 @@ plan planned(const array& a, const layout& l, const stroke& s, const plan_option
     detail::pass_on(j, p);
     warn_of_short_travel(l.pitch_mm(), p);
     warn_of_wide_faces(l, *j.model, p);
+    detail::warn_of_faces(l, o, bursts.missed, p);
     warn_of_long_bursts(bursts, p);
     warn_of_short_bursts(bursts, p);
     warn_of_own_duration(o, bursts, p);
@@ -222,7 +227,7 @@ plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan
 
 void pass_on(const job& j, plan& p)
 {
-    count(p, j.counted);
+    count(j.faces, p, j.counted);
     if (j.take) {
         j.take(p, p.bursts);
         p.bursts.clear();
@@ -231,7 +236,20 @@ void pass_on(const job& j, plan& p)
 
 std::shared_ptr<const phantom_model> model_of(const layout& l, const plan_options& o)
 {
-    return o.custom_phantom ? o.custom_phantom : make_phantom(o.phantom, l);
+    if (!o.custom_phantom) {
+        check_faces(o.phantom, o.faces); // where the algorithm does not use them, too
+        return make_phantom(o.phantom, l, faces_used(o));
+    }
+    if (o.faces != faces_kind::delaunay)
+        throw bad_field("faces",
+                        "nearest goes with inverse-distance only, not with a phantom model of your own",
+                        "use faces = delaunay or phantom = inverse-distance");
+    return o.custom_phantom;
+}
+
+faces_kind faces_used(const plan_options& o)
+{
+    return o.algorithm == algorithm_kind::tactile_brush ? faces_kind::delaunay : o.faces;
 }
 
 std::string job::name() const

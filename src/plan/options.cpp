@@ -127,6 +127,7 @@ plan_options chosen(plan_options common, const stroke_choices& c)
     common.soa_s = c.soa_s.value_or(common.soa_s);
     common.burst_s = c.burst_s ? c.burst_s : common.burst_s;
     common.scale.level_db += c.level_db;
+    common.faces = c.faces.value_or(common.faces);
     if (c.phantom) {
         common.phantom = *c.phantom;
         common.custom_phantom.reset();

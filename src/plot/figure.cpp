@@ -46,7 +46,7 @@ std::vector<std::string> details(const scene& s, const timeline& t)
         length += p.schedule.stroke_length_mm;
     std::vector<std::string> d{clean(s.tactors.name)};
     d.push_back(common(s, [](const plan& p) { return p.algorithm; }));
-    d.push_back(common(s, [](const plan& p) { return p.phantom; }));
+    d.push_back(common(s, describe_phantom));
     if (s.plans.size() > 1)
         d.push_back(fmt::format("{} strokes", s.plans.size()));
     if (!t.sampled)

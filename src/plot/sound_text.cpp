@@ -57,6 +57,12 @@ std::string describe_waveform(const plan& p)
 
 } // namespace
 
+std::string describe_phantom(const plan& p)
+{
+    return p.faces == faces_kind::delaunay ? p.phantom
+                                           : fmt::format("{} (faces {})", p.phantom, to_string(p.faces));
+}
+
 std::string describe_sound(const plan& p)
 {
     std::string text = describe_waveform(p);

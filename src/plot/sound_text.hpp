@@ -13,4 +13,8 @@ namespace tactor::plot {
 /// 60 to 400 Hz", "brush.wav along the path"; with ", AM of 30 Hz" where it is modulated.
 std::string describe_sound(const plan& p);
 
+/// Returns the phantom model, and its faces where they are not Delaunay's: "inverse-distance (faces
+/// nearest)".
+std::string describe_phantom(const plan& p);
+
 } // namespace tactor::plot

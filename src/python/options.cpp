@@ -147,6 +147,7 @@ std::map<std::string, setter> planning()
     using W = wishes&;
     return {
         {"algorithm", [](W w, auto& n, py::handle v) { w.plan.algorithm = one_of<algorithm_kind>(n, v); }},
+        {"faces", [](W w, auto& n, py::handle v) { w.plan.faces = one_of<faces_kind>(n, v); }},
         {"soa", numbers({-1e9, 1e9}, [](W w, double d) { w.plan.soa_s = d; })},
         {"burst", numbers(of::burst, [](W w, double d) { w.plan.burst_s = d; })},
         {"slope", numbers(of::slope, [](W w, double d) { w.slope = d; })},

@@ -148,12 +148,13 @@ py::tuple felt(const plan_handle& p)
 }
 
 // Amplitudes of all tactors for a phantom at each of the places.
-py::array_t<double> weights(const std::string& kind, const array_handle& on,
+py::array_t<double> weights(const std::string& kind, const std::string& of_faces, const array_handle& on,
                             const py::array_t<double, py::array::c_style | py::array::forcecast>& places,
                             double intensity)
 {
     const layout& faces = on.faces();
-    const auto model = make_phantom(from_string<phantom_kind>(kind), faces);
+    const auto model =
+        make_phantom(from_string<phantom_kind>(kind), faces, from_string<faces_kind>(of_faces));
     const std::size_t tactors = on.value().tactors.size();
     const auto at = places.unchecked<2>();
     std::vector<double> all(static_cast<std::size_t>(places.shape(0)) * tactors);
@@ -244,6 +245,8 @@ void bind_plan(py::module_& m)
         .def_property_readonly("stroke", [](const plan_handle& p) { return p.drawn; })
         .def_property_readonly("algorithm", [](const plan_handle& p) { return p.schedule().algorithm; })
         .def_property_readonly("phantom", [](const plan_handle& p) { return p.schedule().phantom; })
+        .def_property_readonly(
+            "faces", [](const plan_handle& p) { return std::string(to_string(p.schedule().faces)); })
         .def_property_readonly(
             "overlap", [](const plan_handle& p) { return std::string(to_string(p.schedule().overlap)); })
         .def_property_readonly("start_s", [](const plan_handle& p) { return p.placed.start_s; })

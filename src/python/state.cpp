@@ -286,6 +286,7 @@ std::string state_of(const stroke& s)
     w.put(s.anchor.back);
     w.text(s.choices.algorithm ? to_string(*s.choices.algorithm) : "");
     w.text(s.choices.phantom ? to_string(*s.choices.phantom) : "");
+    w.text(s.choices.faces ? to_string(*s.choices.faces) : "");
     w.maybe(s.choices.soa_s);
     w.maybe(s.choices.burst_s);
     w.put(s.choices.level_db);
@@ -329,6 +330,8 @@ stroke stroke_from(std::string_view state)
         s.choices.algorithm = from_string<algorithm_kind>(name);
     if (const std::string name = r.text(); !name.empty())
         s.choices.phantom = from_string<phantom_kind>(name);
+    if (const std::string name = r.text(); !name.empty())
+        s.choices.faces = from_string<faces_kind>(name);
     s.choices.soa_s = r.maybe();
     s.choices.burst_s = r.maybe();
     s.choices.level_db = r.get<double>();

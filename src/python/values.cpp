@@ -253,6 +253,8 @@ py::dict choices_of(const stroke& s)
         d["algorithm"] = std::string(to_string(*s.choices.algorithm));
     if (s.choices.phantom)
         d["phantom"] = std::string(to_string(*s.choices.phantom));
+    if (s.choices.faces)
+        d["faces"] = std::string(to_string(*s.choices.faces));
     if (s.choices.soa_s)
         d["soa"] = *s.choices.soa_s;
     if (s.choices.burst_s)

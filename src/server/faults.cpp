@@ -23,7 +23,7 @@ struct translation {
 };
 
 // What the library calls its fields, in advice.
-constexpr std::array<translation, 17> in_advice{{{"fit_strokes() scales it to the array, ", ""},
+constexpr std::array<translation, 19> in_advice{{{"fit_strokes() scales it to the array, ", ""},
                                                  {"soa_s", "options.soa"},
                                                  {"burst_s", "options.burst"},
                                                  {"carrier_hz", "options.carrier"},
@@ -33,6 +33,8 @@ constexpr std::array<translation, 17> in_advice{{{"fit_strokes() scales it to th
                                                  {"timing = ", "options.timing "},
                                                  {"outside = ", "options.outside "},
                                                  {"algorithm = ", "options.algorithm "},
+                                                 {"faces = ", "options.faces "},
+                                                 {"phantom = ", "options.phantom "},
                                                  {"snap = true", "options.snap true"},
                                                  {"drop_points = true", "options.drop_points true"},
                                                  {"sigma_mm", "options.sigma_mm"},
@@ -42,7 +44,7 @@ constexpr std::array<translation, 17> in_advice{{{"fit_strokes() scales it to th
                                                  {"array = palm", "palm"}}};
 
 // What it is about, by how it begins.
-constexpr std::array<translation, 24> subjects{{{"soa_s", "options.soa"},
+constexpr std::array<translation, 25> subjects{{{"soa_s", "options.soa"},
                                                 {"burst_s", "options.burst"},
                                                 {"duration of a burst", "options.burst"},
                                                 {"carrier_hz", "options.carrier"},
@@ -52,6 +54,7 @@ constexpr std::array<translation, 24> subjects{{{"soa_s", "options.soa"},
                                                 {"timing profile", "options.slope"},
                                                 {"timing = ", "options.timing"},
                                                 {"phantom", "options.phantom"},
+                                                {"faces", "options.faces"},
                                                 {"array ", "options.algorithm"},
                                                 {"tactor ", "options.level_dbfs"},
                                                 {"waveform", "options.waveform"},

@@ -91,6 +91,8 @@ constexpr std::array options{
         [](set& s, const json& v, const std::string& w) { s.plan.algorithm = word<algorithm_kind>(v, w); }},
     option{"phantom", true,
            [](set& s, const json& v, const std::string& w) { s.plan.phantom = word<phantom_kind>(v, w); }},
+    option{"faces", true,
+           [](set& s, const json& v, const std::string& w) { s.plan.faces = word<faces_kind>(v, w); }},
     option{"duration", false,
            [](set& s, const json& v, const std::string& w) {
                s.duration_s = number(v, w, 0.001, 86400);

@@ -45,11 +45,11 @@ BENCHMARK_CAPTURE(plan_burst, cubic,
     ->UseManualTime();
 
 /// The drives of random points on a square array.
-void locate(benchmark::State& state)
+void locate(benchmark::State& state, faces_kind faces)
 {
     const auto side = static_cast<unsigned>(state.range(0));
     const layout l(make_grid("square", side, side, 20.0, 20.0));
-    const auto model = make_phantom(phantom_kind::inverse_distance, l);
+    const auto model = make_phantom(phantom_kind::inverse_distance, l, faces);
     std::mt19937_64 random(1);
     std::uniform_real_distribution<double> place(0.0, 20.0 * (side - 1));
     std::vector<point> points(1024);
@@ -63,6 +63,15 @@ void locate(benchmark::State& state)
     }
     state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()));
 }
-BENCHMARK(locate)->Name("phantom/tactors_side")->Arg(3)->Arg(8)->Arg(32)->Arg(128);
+BENCHMARK_CAPTURE(locate, faces, faces_kind::delaunay)
+    ->Name("phantom/tactors_side")
+    ->Arg(3)
+    ->Arg(8)
+    ->Arg(32)
+    ->Arg(128);
+BENCHMARK_CAPTURE(locate, nearest, faces_kind::nearest)
+    ->Name("phantom/nearest/tactors_side")
+    ->Arg(3)
+    ->Arg(128);
 
 } // namespace

@@ -393,6 +393,22 @@ class Pictures(CompareTest):
         self.assertFalse((self.dir / "c.svg").exists())
 
 
+class Faces(CompareTest):
+    def test_a_comparison_says_with_which_faces(self):
+        asked = ("park2016-1", "--faces", "nearest", "--phantoms", "inverse-distance,log")
+        told = self.compare(*asked)
+        self.assertEqual(told["faces"], "nearest")
+        self.assertEqual([r["refused"] is None for r in told["results"]], [True, False] * 3)
+        self.assertIn("--faces: nearest goes with inverse-distance only", told["results"][1]["refused"])
+        self.assertIn("is not used", told["results"][2]["warnings"][0])
+        self.assertNotIn("faces", self.compare("park2016-1"))
+        self.assertIn(", faces nearest\n", self.ok("compare", *asked).stdout)
+        lines = list(csv.DictReader(io.StringIO(self.ok("compare", *asked, "--format", "csv").stdout)))
+        self.assertEqual([line["faces"] for line in lines], ["nearest"] * 6)
+        self.ok("compare", "park2016-1", "--faces", "nearest", "-o", "c.svg")
+        self.assertIn("faces nearest", " ".join(ElementTree.parse(self.dir / "c.svg").getroot().itertext()))
+
+
 class Refusals(CompareTest):
     OFF_GRID = ("--path", "M 3 3 L 37 30", "--duration", "1")
 

@@ -73,7 +73,7 @@ class Completion(ToolTest):
             self.assertEqual(set(self.offered(command, "-")), of_help(command)[0], command)
 
     def test_each_value_that_is_offered_is_taken(self):
-        for option in ("--phantom", "--algorithm", "--overlap", "--timing", "--outside", "--array", "--phase",
+        for option in ("--phantom", "--faces", "--algorithm", "--overlap", "--timing", "--outside", "--array", "--phase",
                        "--sample-format", "--format"):
             values = [v for v in self.offered("plan", option, "") if not v.startswith(":")]
             self.assertGreaterEqual(len(values), 2, option)

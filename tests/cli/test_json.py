@@ -26,9 +26,9 @@ SAMPLES = pathlib.Path(sys.argv[4]).resolve()
 PAGE = (ROOT / "man/tactor-json.5").read_text(encoding="utf-8")
 
 # What an object may have or not have. All else is always there, null where there is nothing to say.
-OPTIONAL = {"tactor-plan/1": {"stroke.note", "stroke.fit", "continuous", "bursts[].tau_s", "compensation", "render.envelope", "array.tactors[].rise_s",
+OPTIONAL = {"tactor-plan/1": {"faces", "stroke.note", "stroke.fit", "continuous", "bursts[].tau_s", "compensation", "render.envelope", "array.tactors[].rise_s",
                               *(f"stroke.{key}" for key in ("waveform", "recording", "noise_seed", "texture", "texture_mm", "am_hz", "am_depth", "course", "course[].bend"))},
-            "tactor-compare/1": {"stroke.note"},
+            "tactor-compare/1": {"faces", "stroke.note"},
             "tactor-check/1": {"walk"}}
 
 PAIR = ('[array]\nname = "pair"\n'
@@ -159,12 +159,12 @@ class Schemas(ToolTest):
         texts = [self.ok(*args, "--format", "json").stdout for args in (
             ("plan", "park2016-3"), ("plan", "strokes.toml", "--fit", "--fit-margin", "1"), ("plan", "wave-2x4", "--fit"),
             ("plan", "park2016-1", "--algorithm", "continuous", "--ramp", "0.01"),
-            ("plan", *BRUSH, "--duration", "1"), ("plan", *BRUSH, "--duration", "0.15", "--drop-points"),
+            ("plan", *BRUSH, "--duration", "1"), ("plan", "park2016-1", "--faces", "nearest"), ("plan", *BRUSH, "--duration", "0.15", "--drop-points"),
             ("plan", "strokes.toml", "--array", "pair.toml", "--sl", "7"), ("plan", "--path", "M 1 1 L 9 9", "--phase", "burst"),
             ("plan", "--path", "M 0 0 L 10 0", "--array", "pair.toml", "--sl", "7"),
             ("plan", "--path", "M 0 0 L 10 0", "--array", "slow.toml"), ("plan", "sounds.toml"), ("plan", "eased.toml"), ("plan", "--path", "M 0 0 L 10 0", "--waveform", "noise:50-500", "--am", "20", "--envelope", "tukey"),
             ("plan", "--path", "M 0 0 L 10 0", "--waveform", "grain.wav", "--texture", "length", "--attack", "0.01", "--release", "0.02"),
-            ("compare", "park2016-1"), ("compare", "--path", "M 1 1 L 9 9"), ("compare", "strokes.toml", "--array", "o.toml"),
+            ("compare", "park2016-1"), ("compare", "park2016-1", "--faces", "nearest"), ("compare", "--path", "M 1 1 L 9 9"), ("compare", "strokes.toml", "--array", "o.toml"),
             ("compare", "park2016-1", "--observer", "low-speed", "--spread", "9"), ("compare", "park2016-1", "--spread", "5"),
             ("compare", "park2016-1", "--observer", "low-speed"), ("compare", "park2016-1", "--compensate", "low-speed"),
             ("plan", "park2016-1", "--compensate", "low-speed"),

@@ -77,6 +77,49 @@ class Presets(ToolTest):
         self.assertIn("reconstructed", self.plan("park2016-1")["stroke"]["note"])
 
 
+class Faces(ToolTest):
+    def test_the_three_closest_are_warned_of_where_they_miss_the_point(self):
+        self.write("wide.toml", '[array]\nname = "wide"\ngrid = { rows = 3, columns = 3, pitch_mm = [20.0, 40.0] }\n')
+        drawn = ("--path", "M 0 10 L 40 10", "--duration", "1", "--array", "wide.toml")
+        run = self.ok("plan", *drawn, "--faces", "nearest", "--format", "json")
+        plan = json.loads(run.stdout)
+        places = [(t["x_mm"], t["y_mm"]) for t in plan["array"]["tactors"]]
+        in_line = 0
+        for burst in plan["bursts"]:
+            p = (burst["x_mm"], burst["y_mm"])
+            three = sorted(range(9), key=lambda i: (round(math.dist(p, places[i]), 6), i))[:3]
+            d = {i: math.dist(p, places[i]) for i in three}
+            ys = {places[i][1] for i in three}
+            if len(burst["drives"]) == 3:
+                self.assertEqual({x["tactor"] for x in burst["drives"]}, set(three))
+                in_line += len(ys) == 1
+                total = sum(1 / v for v in d.values())
+                for x in burst["drives"]:
+                    self.assertAlmostEqual(x["amplitude"], math.sqrt(1 / d[x["tactor"]] / total), 12)
+        self.assertGreater(in_line, 0)
+        self.assertIn(f"for {in_line} of them the three are in one line", plan["warnings"][0])
+        self.assertEqual(self.ok("plan", *drawn, "--faces", "nearest").stdout.count("warning"), 1)
+        usual = json.loads(self.ok("plan", *drawn, "--format", "json").stdout)
+        self.assertNotIn("faces", usual)
+        self.assertEqual(usual, json.loads(self.ok("plan", *drawn, "--faces", "delaunay", "--format", "json").stdout))
+
+    def test_where_they_come_from_is_said_in_files_too_and_the_command_line_wins(self):
+        array = '[array]\nname = "p"\ngrid = { rows = 2, columns = 3, pitch_mm = 20.0 }\n[defaults]\nfaces = "nearest"\n'
+        self.write("p.toml", array)
+        drawn = ("--path", "M 1 2 L 30 15", "--array", "p.toml", "--format", "json")
+        self.assertEqual(json.loads(self.ok("plan", *drawn).stdout)["faces"], "nearest")
+        self.assertNotIn("faces", json.loads(self.ok("plan", *drawn, "--faces", "delaunay").stdout))
+        self.write("s.toml", '[stroke]\npath = "M 1 2 L 30 15"\nfaces = "nearest"\n')
+        self.assertEqual(self.plan("s.toml")["faces"], "nearest")
+
+    def test_other_models_refuse_them(self):
+        for phantom in ("barycentric", "linear", "log", "gaussian"):
+            self.refused(2, "plan", "park2016-1", "--faces", "nearest", "--phantom", phantom,
+                         says=[f"--faces: nearest goes with inverse-distance only, not with {phantom}",
+                               "(use --faces delaunay or --phantom inverse-distance)"])
+        self.refused(2, "plan", "park2016-1", "--faces", "neerest", says=["--faces", "delaunay"])
+
+
 class TactileBrush(ToolTest):
     ARRAY = '[array]\nname = "a"\ngrid = { rows = 3, columns = 4, pitch_mm = 15.0 }\n'
 

@@ -83,6 +83,22 @@ class PlanFile(ToolTest):
         self.write("heard.toml", HEARD)
         self.same("--path", "M 0 10 L 30 12", "--array", "heard.toml", "--sl", "7.7")
 
+    def test_the_faces_are_in_it(self):
+        self.write("wide.toml", '[array]\nname = "wide"\ngrid = { rows = 3, columns = 3, pitch_mm = [20.0, 40.0] }\n')
+        drawn = ("--path", "M 0 10 L 40 10", "--array", "wide.toml", "--faces", "nearest")
+        for algorithm in ("park2016", "continuous"):
+            self.same(*drawn, "--algorithm", algorithm)
+            self.assertEqual(json.loads((self.dir / "plan.json").read_text())["faces"], "nearest")
+        file = self.stored(*drawn)
+        self.assertIn("inverse-distance (faces nearest)", self.ok("plan", file).stdout)
+        self.ok("plot", file, "-o", "plan.svg")
+        self.assertIn("(faces nearest)", (self.dir / "plan.svg").read_text())
+        plan = json.loads((self.dir / file).read_text())
+        plan["faces"] = "neerest"
+        self.write("changed.json", json.dumps(plan))
+        self.refused(2, "plan", "changed.json", says=["faces", "neerest"])
+        self.refused(2, "render", file, "--faces", "delaunay", "-o", "x.wav", says=["--faces: plan.json is planned"])
+
     def test_several_strokes_begin_at_their_frames(self):
         self.write("three.toml", THREE)
         for algorithm in ("park2016", "continuous"):

@@ -49,6 +49,8 @@ call_table plan_calls(const call_things& t)
              return t.l.nearest({-1.0, 2.0});
          }},
         {"make_phantom", [&t] { return make_phantom(phantom_kind::barycentric, t.l); }},
+        {"make_phantom, of no such faces",
+         [&t] { return make_phantom(phantom_kind::barycentric, t.l, faces_kind::nearest); }},
         {"phantom_model::weights",
          [model] {
              std::vector<drive> out;

@@ -199,7 +199,7 @@ TEST_CASE("[defaults] takes the options it lists, checked")
 {
     for (const std::string_view name : detail::default_names())
         CHECK_FALSE(complaint(fmt::format("[defaults]\n{} = []\n", name)).empty());
-    CHECK(detail::default_names().size() == 34);
+    CHECK(detail::default_names().size() == 35);
     CHECK(complaint("[defaults]\nphantoms = \"log\"\n") ==
           "t.toml:2:1: unknown key 'phantoms' in [defaults] (did you mean 'phantom'?)");
     CHECK(complaint("[defaults]\nlevel_dbfs = -6\n") ==
@@ -248,6 +248,7 @@ TEST_CASE("each key of [defaults] has a field, and comes out as it may be typed"
 {
     const std::map<std::string, std::string> all{{"algorithm", "continuous"},
                                                  {"phantom", "log"},
+                                                 {"faces", "nearest"},
                                                  {"speed", "70"},
                                                  {"soa", "0.06"},
                                                  {"burst", "0.07"},

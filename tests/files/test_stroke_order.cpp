@@ -11,6 +11,8 @@
 
 #include <tactor/stroke.hpp>
 
+#include "files/stroke/stroke_text.hpp"
+#include "has.hpp"
 #include "message_of.hpp"
 
 namespace stroke_order_test {
@@ -60,6 +62,16 @@ const std::string one = "[[stroke]]\n";
 const std::string inside = "[[stroke.stroke]]\n";
 
 } // namespace
+
+TEST_CASE("a stroke says which faces its tactors come from")
+{
+    const std::string text = "[stroke]\npath = \"M 0 0 L 40 0\"\nfaces = ";
+    const stroke s = parse_strokes_toml(text + "\"nearest\"\n", "t").front();
+    CHECK(s.choices == stroke_choices{.faces = faces_kind::nearest});
+    CHECK(parse_strokes_toml(detail::stroke_text(s), "t").front().choices == s.choices);
+    CHECK(has(message_of([&] { static_cast<void>(parse_strokes_toml(text + "\"neerest\"\n", "t")); }),
+              "t:3:9: faces"));
+}
 
 TEST_CASE("starts count from the piece, from the start of the one before, or from its end")
 {

@@ -97,6 +97,8 @@ plan_options any_options(FuzzedDataProvider& in)
         {algorithm_kind::park2016, algorithm_kind::tactile_brush, algorithm_kind::continuous});
     o.phantom = in.PickValueInArray({phantom_kind::inverse_distance, phantom_kind::barycentric,
                                      phantom_kind::linear, phantom_kind::log, phantom_kind::gaussian});
+    if (o.phantom == phantom_kind::inverse_distance)
+        o.faces = in.PickValueInArray({faces_kind::delaunay, faces_kind::nearest});
     o.timing = in.PickValueInArray({timing_kind::fixed, timing_kind::fit});
     o.outside = in.PickValueInArray({outside_kind::error, outside_kind::clamp});
     o.overlap = in.PickValueInArray({overlap_kind::energy, overlap_kind::max, overlap_kind::sum});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -307,6 +308,32 @@ TEST_CASE("what is moved has the phantom and the scale of its plan")
             CHECK(distance_mm(energy_centroid(layout(palm), b.drives), b.position) < 1e-9);
         }
     }
+}
+
+TEST_CASE("where the three closest miss the point is counted at the places that bursts are moved to")
+{
+    const array wide = make_grid("wide", 3, 3, 20.0, 40.0);
+    const layout l(wide);
+    const stroke s{"s", trajectory::along(path::from_svg("M 2 8 L 38 16"), 0.5)};
+    const plan_options o{.faces = faces_kind::nearest};
+    const auto model = make_phantom(phantom_kind::inverse_distance, l, o.faces);
+    const plan still = make_plan(wide, l, s, o);
+    const compensated_plan p = make_compensated_plan(wide, l, s, o, {.sigma_mm = 10.0});
+    std::vector<drive> d;
+    for (const burst& b : p.schedule.bursts) {
+        model->weights(b.position, b.intensity, d);
+        CHECK(b.drives == d);
+    }
+    const auto missed = [](const plan& of) {
+        std::vector<std::string> all;
+        std::copy_if(of.warnings.begin(), of.warnings.end(), std::back_inserter(all), [](const auto& w) {
+            return w.find("outside the triangle of the three closest") != std::string::npos;
+        });
+        return all;
+    };
+    REQUIRE(missed(still).size() == 1);
+    REQUIRE(missed(p.schedule).size() == 1);
+    CHECK(missed(still) != missed(p.schedule));
 }
 
 TEST_CASE("what is fitted to the array is moved where it was fitted")

@@ -24,7 +24,7 @@ def drawn():
     yield tactor.Stroke.preset("park2016-3")
     yield tactor.Stroke.preset("wave-2x4")
     yield tactor.parse(f'[stroke]\nname = "all"\npath = "{PATH}"\nduration_s = 1.0\nam_hz = 30.0\nam_depth = 0.5\nwaveform = "noise:60-400"\nnoise_seed = 7\n'
-                       'algorithm = "continuous"\nphantom = "barycentric"\nsoa_s = 0.06\nburst_s = 0.05\nlevel_db = -3.0\nfit = true\nfit_margin_mm = 2.0\n')[0]
+                       'algorithm = "continuous"\nphantom = "barycentric"\nsoa_s = 0.06\nburst_s = 0.05\nfaces = "nearest"\nlevel_db = -3.0\nfit = true\nfit_margin_mm = 2.0\n')[0]
     yield tactor.parse(f'[stroke]\npath = "{PATH}"\nduration_s = 1.0\ncarrier_profile = [[0.0, 100.0], [1.0, 300.0]]\n', "p")[0]
 
 

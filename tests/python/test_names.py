@@ -23,6 +23,7 @@ drive_limits: Score
 easing_kind: Stroke.along
 error: Error
 error_kind: InputError
+faces_kind: Plan.faces
 find_grid: Array.grid_lines
 fit_as_asked: fit_as_asked
 fit_strokes: fit_strokes

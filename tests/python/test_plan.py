@@ -61,6 +61,7 @@ CASES = [
     (["wave-2x4", "--fit", "--fit-margin", "1.5", "--phase", "burst", "--ramp", "0.003", "--level-dbfs", "-20", "--rate", "44100"],
      dict(fit=True, fit_margin=1.5, phase="burst", ramp=0.003, level_dbfs=-20, rate=44100)),
     (["round-2x4", "--outside", "clamp"], dict(outside="clamp")),
+    (["park2016-3", "--faces", "nearest"], dict(faces="nearest")),
     (["park2016-3", "--compensate", "low-speed", "--sigma-mm", "2"], dict(compensate="low-speed", sigma_mm=2)),
 ]
 

@@ -15,6 +15,7 @@ import tactor
     ([], {}),
     (["--phantoms", "linear,log"], dict(phantoms=["linear", "log"])),
     (["--algorithms", "continuous", "--phantom", "gaussian", "--duration", "2"], dict(algorithms="continuous", phantom="gaussian", duration=2)),
+    (["--faces", "nearest"], dict(faces="nearest")),
     (["--observer", "low-speed", "--sigma-v-mm-s", "80"], dict(observer="low-speed", sigma_v_mm_s=80)),
     (["--algorithm", "park2016", "--soa", "0.06", "--fit"], dict(algorithm="park2016", soa=0.06, fit=True)),
     (["--spread", "20"], dict(spread=20)),

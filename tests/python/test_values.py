@@ -151,14 +151,15 @@ path = "M 0 10 L 40 10"
 duration_s = 0.7
 start_s = 0.05
 start_from = "start"
-phantom = "gaussian"
+phantom = "inverse-distance"
+faces = "nearest"
 soa_s = 0.06
 """)
     first, again, last = tactor.load(drawn)
     assert (first.start, first.start_from) == (None, "piece") and (again.start, again.start_from) == (0.1, "end")
-    assert last.choices == {"phantom": "gaussian", "soa": 0.06} and first.choices == {}
+    assert last.choices == {"phantom": "inverse-distance", "faces": "nearest", "soa": 0.06} and first.choices == {}
     plans = [tactor.plan(palm, s) for s in (first, again, last)]
-    assert plans[2].phantom == "gaussian" and plans[0].phantom == "inverse-distance"
+    assert plans[2].faces == "nearest" and plans[0].faces == "delaunay"
     starts = tactor.Score(palm, plans).starts
     total = plans[0].to_dict()["total_s"]
     assert [round(s / 48000, 3) for s in starts] == [0.0, round(total + 0.1, 3), 0.05]

@@ -169,6 +169,23 @@ TEST_CASE("bursts are moved for the low-speed observer where it is asked for")
           }).what == "options.compensate");
 }
 
+TEST_CASE("faces are those that are asked for, and go with inverse-distance alone")
+{
+    const planning p = palm();
+    const layout l(p.tactors);
+    const auto with_faces = [](const char* phantom) {
+        return json{{"stroke", "park2016-1"}, {"options", {{"faces", "nearest"}, {"phantom", phantom}}}};
+    };
+    const planned made = make_planned(p, l, with_faces("inverse-distance"));
+    const plan_options o{.faces = faces_kind::nearest};
+    CHECK(made.plans.front().schedule == make_plan(p.tactors, preset_stroke("park2016-1"), o));
+    CHECK(what_of(with_faces("log")) == "options.faces");
+    CHECK(what_of({{"stroke", "park2016-1"}, {"options", {{"faces", "neerest"}}}}) == "options.faces");
+    const auto f = fault_from([&] { make_planned(p, l, with_faces("log")); });
+    CHECK(f.hint == "use options.faces delaunay or options.phantom inverse-distance");
+    CHECK(with_options({}, {{"faces", "nearest"}}, options_for::live).plan.faces == faces_kind::nearest);
+}
+
 TEST_CASE("messages speak the protocol's words")
 {
     const planning p = palm();

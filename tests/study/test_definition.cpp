@@ -83,7 +83,7 @@ TEST_CASE("a method says what options of a plan may say")
         read(head + motion +
              "[[method]]\nname = \"a\"\nalgorithm = \"continuous\"\nphantom = \"gaussian\"\ncarrier = 200\n"
              "[[method]]\nname = \"b\"\nsoa = 0.06\nslope = 0.3\nintercept = 0.04\ndrop-points = true\nsnap "
-             "= true\n" +
+             "= true\nfaces = \"nearest\"\n" +
              run);
     CHECK(d.methods[0].options.phantom == phantom_kind::gaussian);
     CHECK(d.methods[0].options.carrier_hz == 200.0);
@@ -91,6 +91,7 @@ TEST_CASE("a method says what options of a plan may say")
     CHECK(d.methods[1].options.profile.max_soa_s == doctest::Approx(0.04 / 0.7));
     CHECK(d.methods[1].options.drop_points);
     CHECK(d.methods[1].options.snap);
+    CHECK(d.methods[1].options.faces == faces_kind::nearest);
 }
 
 TEST_CASE("what is wrong is said with its line")

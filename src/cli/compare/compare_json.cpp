@@ -98,6 +98,8 @@ json comparison_json(const comparison& c, const array& a)
     j["compensated_for"] =
         c.compensated ? observer_json({observer_kind::low_speed, c.observer.low_speed}) : json(nullptr);
     j["spread"] = people_json(c);
+    if (c.faces != faces_kind::delaunay)
+        j["faces"] = to_string(c.faces);
     j["stroke"] = {{"name", c.target.name}, {"duration_s", m.duration_s()}, {"length_mm", m.length_mm()}};
     if (c.target.note != note_kind::none)
         j["stroke"]["note"] = note_text(c.target.note);

@@ -38,7 +38,11 @@ plot::canvas picture_of(const comparison& c, const array& a, const picture_optio
                                   : "; light lines and bands: " +
                                         spread_note(c.spread, c.observer.kind == observer_kind::low_speed)) +
             ". This is " + prediction_note(c.observer) + "." +
-            (c.compensated ? " Bursts are moved for " + describe(c.observer.low_speed) + "." : std::string()),
+            (c.compensated ? " Bursts are moved for " + describe(c.observer.low_speed) + "."
+                           : std::string()) +
+            (c.faces == faces_kind::nearest
+                 ? " Of inverse-distance the three closest tactors play (faces nearest)."
+                 : ""),
         o.width_mm);
 }
 

@@ -86,7 +86,8 @@ comparison compare(const stroke& given, const array& a, const layout& faces, con
     stroke s = given;
     s.choices.algorithm.reset();
     s.choices.phantom.reset();
-    comparison c{s, choice.observer, choice.compensate, choice.spread};
+    s.choices.faces.reset();
+    comparison c{s, choice.observer, choice.compensate, choice.spread, options.faces};
     const std::vector<drawn_person> people = draw_people(choice.spread, a.tactors.size());
     for (const algorithm_kind algorithm : choice.algorithms)
         for (const phantom_kind phantom : choice.phantoms) {

@@ -44,6 +44,7 @@ struct comparison {
     observer_choice observer = {};
     bool compensated = false;
     spread_choice spread = {};
+    faces_kind faces = faces_kind::delaunay; ///< of inverse-distance, but for tactile-brush
     std::vector<comparison_row> rows = {};
 
     /// Whether any algorithm can play it.

@@ -100,8 +100,10 @@ void print_heading(std::FILE* out, bool by_taps)
 void print_one(std::FILE* out, const comparison& c, const std::string& title, const array& a)
 {
     const trajectory& m = c.target.motion;
-    say(out, "{} on {}: {} mm in {}\n", title, a.name, plain_number(m.length_mm()),
-        seconds_text(m.duration_s()));
+    const std::string faces =
+        c.faces == faces_kind::delaunay ? "" : fmt::format(", faces {}", to_string(c.faces));
+    say(out, "{} on {}: {} mm in {}{}\n", title, a.name, plain_number(m.length_mm()),
+        seconds_text(m.duration_s()), faces);
     if (c.target.note != note_kind::none)
         say(out, "note: {}\n", note_text(c.target.note));
     const bool by_taps = c.observer.kind == observer_kind::low_speed;
@@ -150,14 +152,16 @@ void print_text(std::FILE* out, const std::vector<comparison>& all, const std::v
 
 namespace {
 
-// Columns after all others, of a table with people drawn, and of one of bursts that are moved.
+// Columns after all others, of a table with people drawn, of one of bursts that are moved, and
+// of one with other faces.
 std::string heading_of_choices(const comparison& of, std::initializer_list<const char*> figures)
 {
     const spread_choice& c = of.spread;
     std::string text = c.people == 0 ? "" : ",people,seed,sigma_factor,threshold_db,place_mm";
     for (const char* f : figures)
         text += c.people == 0 ? "" : fmt::format(",{0}_05,{0}_95", f);
-    return text + (of.compensated ? ",compensated_for,compensated_sigma_mm,compensated_sigma_v_mm_s" : "");
+    text += of.compensated ? ",compensated_for,compensated_sigma_mm,compensated_sigma_v_mm_s" : "";
+    return text + (of.faces == faces_kind::delaunay ? "" : ",faces");
 }
 
 std::string fields_of_spread(const spread_choice& c, const comparison_row& r,
@@ -179,7 +183,8 @@ std::string fields_of_choices(const comparison& of, const comparison_row& r,
 {
     const low_speed_observer& o = of.observer.low_speed;
     return fields_of_spread(of.spread, r, figures) +
-           (of.compensated ? fmt::format(",low-speed,{},{}", o.sigma_mm, o.sigma_v_mm_s) : "");
+           (of.compensated ? fmt::format(",low-speed,{},{}", o.sigma_mm, o.sigma_v_mm_s) : "") +
+           (of.faces == faces_kind::delaunay ? "" : fmt::format(",{}", to_string(of.faces)));
 }
 
 // The low-speed observer's table: each line says whose it is.

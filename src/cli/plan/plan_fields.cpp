@@ -273,6 +273,8 @@ placed_plan plan_of(const fields& f, const array& a, std::vector<burst> bursts, 
     const fields drawn = f.object("stroke");
     p.algorithm = f.text("algorithm");
     p.phantom = f.text("phantom");
+    if (f.has("faces"))
+        p.faces = f.kind<faces_kind>("faces");
     p.stroke_duration_s = drawn.number("duration_s");
     p.stroke_length_mm = drawn.number("length_mm");
     p.carrier_hz = drawn.number("carrier_hz");

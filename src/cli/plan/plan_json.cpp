@@ -80,6 +80,8 @@ json head_json(const record& r)
     j["schema"] = "tactor-plan/1";
     j["algorithm"] = p.algorithm;
     j["phantom"] = p.phantom;
+    if (p.faces != faces_kind::delaunay)
+        j["faces"] = to_string(p.faces);
     j["start_s"] = r.start_s;
     j["start_frame"] = r.start_frame;
     j["follows"] = r.follows;

@@ -34,12 +34,12 @@ std::string heading(const std::string& title, const stroke& s, const plan& p, do
 {
     const std::string soa = p.soa_s ? ", SOA " + seconds_text(*p.soa_s) : "";
     const std::string bursts = p.curve ? "continuous" : counted(p.bursts.size(), "burst");
-    return fmt::format("{} on {}: {} with {}, {}{}\nstarts at {}, {} mm in {}, {} of sound\n"
-                       "vibration: {}{}, level {}\n",
-                       title, a.name, p.algorithm, p.phantom, bursts, soa, seconds_text(start_s, 9),
-                       plain_number(p.stroke_length_mm), seconds_text(p.stroke_duration_s),
-                       seconds_text(p.total_s), p.wave.kind == waveform_kind::sine ? "sine of " : "",
-                       plot::describe_sound(p), level_text(sound, s));
+    return fmt::format(
+        "{} on {}: {} with {}, {}{}\nstarts at {}, {} mm in {}, {} of sound\n"
+        "vibration: {}{}, level {}\n",
+        title, a.name, p.algorithm, plot::describe_phantom(p), bursts, soa, seconds_text(start_s, 9),
+        plain_number(p.stroke_length_mm), seconds_text(p.stroke_duration_s), seconds_text(p.total_s),
+        p.wave.kind == waveform_kind::sine ? "sine of " : "", plot::describe_sound(p), level_text(sound, s));
 }
 
 void print_one(std::FILE* out, const std::string& title, const stroke& s, const plan& p, double start_s,

@@ -108,6 +108,7 @@ net::json options_of(const settings& s, const option_list& options)
     };
     put("algorithm", "algorithm", to_string(s.plan.algorithm));
     put("phantom", "phantom", to_string(s.plan.phantom));
+    put("faces", "faces", to_string(s.plan.faces));
     put("duration", "duration", s.duration_s.value_or(0.0));
     put("speed", "speed", s.speed_mm_s.value_or(0.0));
     put("soa", "soa", s.plan.soa_s);

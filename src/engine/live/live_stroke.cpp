@@ -134,7 +134,7 @@ live_stroke::impl::impl(stroke_id number, const array& a, const layout& l, const
                         const live_options& o)
     : id(number),
       faces(l),
-      model(o.plan.custom_phantom ? o.plan.custom_phantom : make_phantom(o.plan.phantom, l)),
+      model(detail::model_of(l, o.plan)),
       outside(o.plan.outside),
       scale(o.plan.scale),
       levels(live_levels(a, o.render)),

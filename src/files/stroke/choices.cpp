@@ -16,6 +16,7 @@ stroke chosen(const toml_table& t, stroke s)
 {
     s.choices.algorithm = t.kind<algorithm_kind>("algorithm");
     s.choices.phantom = t.kind<phantom_kind>("phantom");
+    s.choices.faces = t.kind<faces_kind>("faces");
     s.choices.soa_s = t.number("soa_s", {0.0, longest_soa_s, true});
     s.choices.burst_s = t.number("burst_s", {shortest_burst_s, longest_soa_s});
     if (s.choices.soa_s && s.choices.burst_s && *s.choices.burst_s > *s.choices.soa_s)

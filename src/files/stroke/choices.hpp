@@ -11,10 +11,10 @@
 
 namespace tactor::detail {
 
-inline constexpr std::array<std::string_view, 7> choice_keys{
-    "algorithm", "phantom", "soa_s", "burst_s", "level_db", "fit", "fit_margin_mm"};
+inline constexpr std::array<std::string_view, 8> choice_keys{
+    "algorithm", "phantom", "faces", "soa_s", "burst_s", "level_db", "fit", "fit_margin_mm"};
 
-/// The stroke with algorithm, phantom, soa_s, burst_s, fit and fit_margin_mm as the file says.
+/// The stroke with algorithm, phantom, faces, soa_s, burst_s, fit and fit_margin_mm as the file says.
 /// \throws error with file, line and column, as all here.
 stroke chosen(const toml_table& t, stroke s);
 

@@ -148,6 +148,8 @@ void add_choices(lines& out, const stroke& s)
         out.add("algorithm", to_string(*s.choices.algorithm));
     if (s.choices.phantom)
         out.add("phantom", to_string(*s.choices.phantom));
+    if (s.choices.faces)
+        out.add("faces", to_string(*s.choices.faces));
     out.maybe("soa_s", s.choices.soa_s);
     out.maybe("burst_s", s.choices.burst_s);
     if (s.choices.level_db != 0.0)

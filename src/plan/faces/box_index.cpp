@@ -7,9 +7,13 @@
 
 // Boost 1.74 includes a header of its own that it deprecates.
 #define BOOST_ALLOW_DEPRECATED_HEADERS
+// With much in one unit gcc 12 sees an overflow in the list of branches of a query, which is none.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Warray-bounds"
 #include <boost/geometry.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
 #include <boost/geometry/index/rtree.hpp>
+#pragma GCC diagnostic pop
 
 namespace tactor::detail {
 namespace {

@@ -59,7 +59,7 @@ public:
 
     std::array<double, 3> amplitudes(const rank_triple& three, point p, double a_v) const override
     {
-        return at_distances({distance(three[0], p), distance(three[1], p), distance(three[2], p)}, a_v);
+        return share_of_three({distance(three[0], p), distance(three[1], p), distance(three[2], p)}, a_v);
     }
 
     unsigned taken_along(const std::vector<unsigned>& faces, rank_pair on, point,
@@ -75,23 +75,10 @@ public:
 
     std::array<double, 2> amplitudes_of_two(const rank_pair& two, point p, double a_v) const override
     {
-        const double d1 = distance(two.first, p);
-        const double d2 = distance(two.second, p);
-        return {std::sqrt(d2 / (d1 + d2)) * a_v, std::sqrt(d1 / (d1 + d2)) * a_v};
+        return share_of_two(distance(two.first, p), distance(two.second, p), a_v);
     }
 
 private:
-    static std::array<double, 3> at_distances(const std::array<double, 3>& distances, double a_v)
-    {
-        std::array<double, 3> parts{};
-        double sum = 0.0;
-        for (std::size_t i = 0; i < 3; ++i)
-            sum += parts[i] = 1.0 / distances[i];
-        for (double& part : parts)
-            part = std::sqrt(part / sum) * a_v;
-        return parts;
-    }
-
     double distance(unsigned rank, point p) const
     {
         return length_mm(p, detail::access::of(layout_).points[rank]);
@@ -109,7 +96,7 @@ private:
         const auto three = triangle_at(detail::access::of(layout_), face, p);
         if (!three)
             return false;
-        const std::array<double, 3> a = at_distances(three->distances, a_v);
+        const std::array<double, 3> a = share_of_three(three->distances, a_v);
         for (std::size_t i = 0; i < 3; ++i)
             add_drive(layout_, three->tactors[i], a[i], out);
         return true;
@@ -128,6 +115,22 @@ private:
 };
 
 } // namespace
+
+std::array<double, 2> share_of_two(double d1_mm, double d2_mm, double a_v) noexcept
+{
+    return {std::sqrt(d2_mm / (d1_mm + d2_mm)) * a_v, std::sqrt(d1_mm / (d1_mm + d2_mm)) * a_v};
+}
+
+std::array<double, 3> share_of_three(const std::array<double, 3>& distances_mm, double a_v) noexcept
+{
+    std::array<double, 3> parts{};
+    double sum = 0.0;
+    for (std::size_t i = 0; i < 3; ++i)
+        sum += parts[i] = 1.0 / distances_mm[i];
+    for (double& part : parts)
+        part = std::sqrt(part / sum) * a_v;
+    return parts;
+}
 
 std::shared_ptr<const phantom_model> make_inverse_distance(const layout& l)
 {

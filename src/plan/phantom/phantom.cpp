@@ -14,14 +14,14 @@
 
 namespace tactor {
 inline namespace v0 {
-namespace {
-
-} // namespace
 
 phantom_model::~phantom_model() = default;
 
-std::shared_ptr<const phantom_model> make_phantom(phantom_kind k, const layout& l)
+std::shared_ptr<const phantom_model> make_phantom(phantom_kind k, const layout& l, faces_kind f)
 {
+    detail::check_faces(k, f);
+    if (f == faces_kind::nearest)
+        return detail::make_nearest_three(l);
     switch (k) {
     case phantom_kind::inverse_distance:
         return detail::make_inverse_distance(l);
@@ -39,6 +39,14 @@ std::shared_ptr<const phantom_model> make_phantom(phantom_kind k, const layout& 
 } // namespace tactor
 
 namespace tactor::detail {
+
+void check_faces(phantom_kind k, faces_kind f)
+{
+    if (f == faces_kind::nearest && k != phantom_kind::inverse_distance)
+        throw bad_field("faces",
+                        fmt::format("nearest goes with inverse-distance only, not with {}", to_string(k)),
+                        "use faces = delaunay or phantom = inverse-distance");
+}
 
 point check_request(const layout& l, point p, double a_v)
 {

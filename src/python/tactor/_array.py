@@ -193,11 +193,12 @@ class Array(_Value):
         return Point(*self._core.nearest(*_place("point", point)))
 
     @_t.overload
-    def weights(self, point: tuple[float, float], phantom: str = "inverse-distance", intensity: float = 1.0) -> dict[int, float]: ...
+    def weights(self, point: tuple[float, float], phantom: str = "inverse-distance", intensity: float = 1.0, *,
+                faces: str = "delaunay") -> dict[int, float]: ...
     @_t.overload
     def weights(self, point: _NDArray[_np.float64] | _t.Sequence[_t.Sequence[float]], phantom: str = "inverse-distance",
-                intensity: float = 1.0) -> _NDArray[_np.float64]: ...
-    def weights(self, point: _t.Any, phantom: str = "inverse-distance", intensity: float = 1.0) -> _t.Any:
+                intensity: float = 1.0, *, faces: str = "delaunay") -> _NDArray[_np.float64]: ...
+    def weights(self, point: _t.Any, phantom: str = "inverse-distance", intensity: float = 1.0, *, faces: str = "delaunay") -> _t.Any:
         """Which tactors make a phantom at a place, and how strongly.
 
         Parameters
@@ -208,6 +209,8 @@ class Array(_Value):
             Name of a built-in model, see `plan`.
         intensity : float
             Linear.
+        faces : str
+            As in `plan`.
 
         Returns
         -------
@@ -217,17 +220,18 @@ class Array(_Value):
         Raises
         ------
         InputError
-            For a place outside the array, as `plan` has it.
+            For a place outside the array, as `plan` has it; for faces that do not go with the model.
         """
         import numpy as np
         _need(phantom, str, "phantom")
+        _need(faces, str, "faces")
         strength = _number("intensity", intensity, 0.0)
         if np.ndim(point) == 2:
-            return _tactor.phantom_weights(phantom, self._core, _places("point", point), strength)
-        (row,) = _tactor.phantom_weights(phantom, self._core, np.array([_place("point", point)]), strength).tolist()
+            return _tactor.phantom_weights(phantom, faces, self._core, _places("point", point), strength)
+        (row,) = _tactor.phantom_weights(phantom, faces, self._core, np.array([_place("point", point)]), strength).tolist()
         return {i: amplitude for i, amplitude in enumerate(row) if amplitude > 0.0}
 
-    def percept_map(self, step_mm: float = 1.0, phantom: str = "inverse-distance") -> _PerceptMap:
+    def percept_map(self, step_mm: float = 1.0, phantom: str = "inverse-distance", *, faces: str = "delaunay") -> _PerceptMap:
         """What is predicted to be felt of phantoms all over the array.
 
         Parameters
@@ -236,6 +240,8 @@ class Array(_Value):
             Distance of the places, from 0.01 mm; at most a million places.
         phantom : str
             Name of a built-in model, see `plan`.
+        faces : str
+            As in `plan`.
 
         Returns
         -------
@@ -244,7 +250,7 @@ class Array(_Value):
         Raises
         ------
         InputError
-            For a step that gives more places.
+            For a step that gives more places; for faces that do not go with the model.
         """
         import numpy as np
         from tactor._parts import PerceptMap
@@ -256,7 +262,7 @@ class Array(_Value):
         x, y = (low[axis] + step * np.arange(counts[axis]) for axis in (0, 1))
         asked = np.stack(np.meshgrid(x, y), axis=-1)
         inside = np.array([self.contains(place) for place in asked.reshape(-1, 2)]).reshape(asked.shape[:2])
-        energy = self.weights(asked[inside].reshape(-1, 2), phantom) ** 2
+        energy = self.weights(asked[inside].reshape(-1, 2), phantom, faces=faces) ** 2
         felt, intensity = np.full(asked.shape, np.nan), np.full(asked.shape[:2], np.nan)
         total = energy.sum(axis=1)
         felt[inside] = energy @ self.positions / total[:, None]

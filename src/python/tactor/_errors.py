@@ -14,7 +14,7 @@ _NAMES = {
     "or name a file": "or Array.from_file() reads one", "sample format": "sample_format", "leave array out: the plan has its own": "give its own, plan.array",
 }
 _FIELDS = {"wave": "waveform"}  # words that stand elsewhere, too
-_CHOICE = r"(?<![\w.-])(timing|outside|algorithm) = ([\w-]+)"
+_CHOICE = r"(?<![\w.-])(timing|outside|algorithm|phantom|faces) = ([\w-]+)"
 
 
 class Error(Exception):

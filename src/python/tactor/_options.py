@@ -10,6 +10,7 @@ from tactor._errors import InputError
 if _t.TYPE_CHECKING:
     _Algorithm = _t.Literal["park2016", "tactile-brush", "continuous"]
     _Phantom = _t.Literal["inverse-distance", "barycentric", "linear", "log", "gaussian"]
+    _Faces = _t.Literal["delaunay", "nearest"]
     _Timing = _t.Literal["fixed", "fit"]
     _Outside = _t.Literal["error", "clamp"]
     _Overlap = _t.Literal["energy", "max", "sum"]
@@ -21,14 +22,14 @@ if _t.TYPE_CHECKING:
 
 
 # What a plan asks for beside how it sounds; the rest is a score's.
-_PLANNING = frozenset(("algorithm", "phantom", "soa", "burst", "slope", "intercept", "duration", "speed", "timing", "outside", "fit",
-                       "fit_margin", "snap", "drop_points", "overlap", "carrier", "compensate", "sigma_mm", "sigma_v_mm_s",
+_PLANNING = frozenset(("algorithm", "phantom", "faces", "soa", "burst", "slope", "intercept", "duration", "speed", "timing", "outside",
+                       "fit", "fit_margin", "snap", "drop_points", "overlap", "carrier", "compensate", "sigma_mm", "sigma_v_mm_s",
                        "waveform", "am", "noise_seed", "texture", "texture_mm", "intensity_scale", "stevens_exponent"))
 _SOUNDING = frozenset(("phase", "ramp", "envelope", "attack", "release", "tukey_part", "level_dbfs", "sl", "rate"))
 _PLANNING_AND_SOUNDING = _PLANNING | _SOUNDING
 # A live stroke's; which algorithm, and what is done outside, no file says of it, as in the tool.
-_LIVE = frozenset(("phantom", "soa", "burst", "slope", "intercept", "carrier", "waveform", "am", "noise_seed", "texture", "texture_mm",
-                   "intensity_scale", "stevens_exponent", "phase", "ramp", "envelope", "attack", "release", "tukey_part", "level_dbfs", "sl"))
+_LIVE = frozenset(("phantom", "faces", "soa", "burst", "slope", "intercept", "carrier", "waveform", "am", "noise_seed", "texture",
+                   "texture_mm", "intensity_scale", "stevens_exponent", "phase", "ramp", "envelope", "attack", "release", "tukey_part", "level_dbfs", "sl"))
 
 
 _NOTHING: _t.Mapping[str, _t.Any] = {}

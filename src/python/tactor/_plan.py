@@ -18,7 +18,7 @@ from tactor._stroke import Stroke
 if _t.TYPE_CHECKING:
     import numpy as _np
     from numpy.typing import NDArray as _NDArray
-    from tactor._options import _Overlap
+    from tactor._options import _Faces, _Overlap
 
 
 class Plan(_Value):
@@ -129,6 +129,11 @@ class Plan(_Value):
     def phantom(self) -> str:
         """Name of the phantom model."""
         return self._core.phantom  # type: ignore[no-any-return]
+
+    @property
+    def faces(self) -> _Faces:
+        """Which three tactors "inverse-distance" took."""
+        return self._core.faces  # type: ignore[no-any-return]
 
     @property
     def overlap(self) -> _Overlap:

@@ -13,11 +13,11 @@ from tactor._plan import Plan
 from tactor._stroke import Stroke
 
 if _t.TYPE_CHECKING:
-    from tactor._options import _Algorithm, _Compensate, _Envelope, _Outside, _Overlap, _Phantom, _Phase, _Scale, _Texture, _Timing
+    from tactor._options import _Algorithm, _Compensate, _Envelope, _Faces, _Outside, _Overlap, _Phantom, _Phase, _Scale, _Texture, _Timing
 
 
 def plan(array: Array, stroke: Stroke, *, algorithm: _Algorithm | None = None, phantom: _t.Union[_Phantom, PhantomModel, None] = None,
-         soa: float | None = None, burst: float | None = None, slope: float | None = None, intercept: float | None = None,
+         faces: _Faces | None = None, soa: float | None = None, burst: float | None = None, slope: float | None = None, intercept: float | None = None,
          duration: float | None = None, speed: float | None = None, timing: _Timing | None = None, outside: _Outside | None = None,
          fit: bool | None = None, fit_margin: float | None = None, snap: bool | None = None, drop_points: bool | None = None,
          overlap: _Overlap | None = None, carrier: float | None = None, compensate: _Compensate | None = None,
@@ -38,6 +38,9 @@ def plan(array: Array, stroke: Stroke, *, algorithm: _Algorithm | None = None, p
     phantom : str or PhantomModel
         How strongly: "inverse-distance" (default; Park et al. 2016, Eq. 10), "barycentric", "linear", "log", "gaussian", or a model
         of your own.
+    faces : str
+        Which three tactors "inverse-distance" takes: those whose triangle holds the point ("delaunay", default), or the closest three
+        of all ("nearest", Park et al. 2016 to the letter); a warning counts the bursts that their triangle misses.
     soa : float
         Onset to onset of two bursts, s (0.07).
     burst : float
@@ -98,7 +101,7 @@ def plan(array: Array, stroke: Stroke, *, algorithm: _Algorithm | None = None, p
     _need(array, Array, "array")
     _need(stroke, Stroke, "stroke")
     options = {
-        "algorithm": algorithm, "phantom": phantom, "soa": soa, "burst": burst, "slope": slope, "intercept": intercept,
+        "algorithm": algorithm, "phantom": phantom, "faces": faces, "soa": soa, "burst": burst, "slope": slope, "intercept": intercept,
         "duration": duration, "speed": speed, "timing": timing, "outside": outside, "fit": fit, "fit_margin": fit_margin, "snap": snap,
         "drop_points": drop_points, "overlap": overlap, "carrier": carrier, "compensate": compensate, "sigma_mm": sigma_mm,
         "sigma_v_mm_s": sigma_v_mm_s, "waveform": waveform, "am": am, "noise_seed": noise_seed, "texture": texture,

@@ -22,7 +22,7 @@ from tactor._ticket import LiveStroke, Report, Ticket, _call, _Held, _Shared
 
 if _t.TYPE_CHECKING:
     from types import TracebackType as _TracebackType
-    from tactor._options import _Algorithm, _Envelope, _Outside, _Phantom, _Phase
+    from tactor._options import _Algorithm, _Envelope, _Faces, _Outside, _Phantom, _Phase
     from tactor._score import _SampleFormat
     from tactor._ticket import _LogKind
     _At = _t.Literal["now", "armed"]
@@ -193,7 +193,7 @@ class Player(_Unique):
             return Score._of(score._array, score._plans, {**score._options, "channels": self.channels})._core
         return score._core
 
-    def live(self, *, algorithm: _Algorithm | None = None, phantom: _t.Union[_Phantom, PhantomModel, None] = None, soa: float | None = None,
+    def live(self, *, algorithm: _Algorithm | None = None, phantom: _t.Union[_Phantom, PhantomModel, None] = None, faces: _Faces | None = None, soa: float | None = None,
              slope: float | None = None, intercept: float | None = None, outside: _Outside | None = None, carrier: float | None = None,
              waveform: str | None = None, am: _t.Union[float, str, None] = None, noise_seed: int | None = None, phase: _Phase | None = None,
              ramp: float | None = None, envelope: _Envelope | None = None, attack: float | None = None, release: float | None = None,
@@ -205,7 +205,7 @@ class Player(_Unique):
         ----------
         algorithm : str
             "continuous" (default), or "park2016": bursts, each SOA one at the newest position.
-        phantom, soa, slope, intercept, carrier, waveform, am, noise_seed, phase, ramp, envelope, attack, release, level_dbfs, sl
+        phantom, faces, soa, slope, intercept, carrier, waveform, am, noise_seed, phase, ramp, envelope, attack, release, level_dbfs, sl
             As in `plan`.
         outside : str
             "clamp" (default) or "error".
@@ -233,7 +233,7 @@ class Player(_Unique):
         times = (_number("timeout", timeout, 0.001, 86400.0), None if longest is None else _number("longest", longest, 0.001, 86400.0),
                  _number("smooth", smooth, 0.0, 1.0))
         options = settled(self._array, dict(
-            algorithm=algorithm, phantom=phantom, soa=soa, slope=slope, intercept=intercept, outside=outside, carrier=carrier,
+            algorithm=algorithm, phantom=phantom, faces=faces, soa=soa, slope=slope, intercept=intercept, outside=outside, carrier=carrier,
             waveform=waveform, am=am, noise_seed=noise_seed, phase=phase, ramp=ramp, envelope=envelope, attack=attack, release=release,
             level_dbfs=level_dbfs, sl=sl), _LIVE)
         with shared.lock:

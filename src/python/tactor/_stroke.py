@@ -192,7 +192,7 @@ class Stroke(_Value):
 
     @property
     def choices(self) -> dict[str, str | float]:
-        """Options of `plan` that a file gives this stroke (algorithm, phantom, soa, burst), which win over those of the call."""
+        """Options of `plan` that a file gives this stroke (algorithm, phantom, faces, soa, burst), which win over those of the call."""
         return self._core.choices  # type: ignore[no-any-return]
 
     @property

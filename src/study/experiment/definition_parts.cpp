@@ -121,13 +121,14 @@ motion_definition read_motion(const toml_table& t, const std::filesystem::path& 
 
 method_definition read_method(const toml_table& t)
 {
-    t.only({"name", "algorithm", "phantom", "soa", "soa_s", "burst", "burst_s", "slope", "intercept",
+    t.only({"name", "algorithm", "phantom", "faces", "soa", "soa_s", "burst", "burst_s", "slope", "intercept",
             "intercept_s", "timing", "outside", "snap", "drop-points", "drop_points", "overlap", "carrier",
             "carrier_hz"});
     method_definition m{name_in(t, "name"), {}, t.where()};
     plan_options& o = m.options;
     read_kind(t, "algorithm", o.algorithm);
     read_kind(t, "phantom", o.phantom);
+    read_kind(t, "faces", o.faces);
     read_kind(t, "timing", o.timing);
     read_kind(t, "outside", o.outside);
     read_kind(t, "overlap", o.overlap);

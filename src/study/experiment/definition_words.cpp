@@ -17,6 +17,7 @@ constexpr std::array wordings{
     wording{"fit_strokes() scales it to the array, ", ""},
     wording{"outside = clamp", "the method's outside, \"clamp\","},
     wording{"drop_points = true", "the method's drop-points, true,"},
+    wording{"faces = delaunay", "the method's faces, \"delaunay\","},
     wording{"snap = true", "the method's snap, true,"},
 };
 

@@ -84,6 +84,9 @@ std::string method_options(const plan_options& o)
         if (o.drop_points)
             add(all, "crossings left out where there is no time for them");
     }
+    if (o.faces == faces_kind::nearest && o.algorithm != algorithm_kind::tactile_brush)
+        add(all,
+            "faces nearest: the three closest of all tactors, whether or not their triangle holds the place");
     const timing_profile usual;
     if (o.profile.slope != usual.slope || o.profile.intercept_s != usual.intercept_s)
         add(all, timing_law(o.profile));
