@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A socket below a WebSocket, all of whose bytes that come are seen.
+/// A socket below a WebSocket, all of whose bytes that come are seen, and whose close frame may be corrected.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -22,9 +23,14 @@ public:
     using next_layer_type = boost::asio::ip::tcp::socket;
     using executor_type = next_layer_type::executor_type;
     using sight = std::function<void(std::span<const std::byte>)>;
+    using test = std::function<bool()>;
 
-    /// The socket must outlive it. `seen` is called before whoever reads has the bytes.
-    watched_socket(next_layer_type& s, sight seen) : socket_(s), seen_(std::move(seen)) {}
+    /// The socket must outlive it. `seen` is called before whoever reads has the bytes. `bad_reason` tests
+    /// whether the peer's close frame has a reason that is no UTF-8.
+    watched_socket(next_layer_type& s, sight seen, test bad_reason)
+        : socket_(s), seen_(std::move(seen)), bad_reason_(std::move(bad_reason))
+    {
+    }
 
     executor_type get_executor() noexcept { return socket_.get_executor(); }
     next_layer_type& next_layer() noexcept { return socket_; }
@@ -46,10 +52,25 @@ public:
     template <class Buffers, class Token>
     auto async_write_some(const Buffers& from, Token&& token)
     {
+        if (is_protocol_error(from) && bad_reason_())
+            return socket_.async_write_some(boost::asio::buffer(bad_payload), std::forward<Token>(token));
         return socket_.async_write_some(from, std::forward<Token>(token));
     }
 
 private:
+    // Close frames, unmasked. Beast (1.74 to 1.83) answers a reason that is no UTF-8 with 1002; RFC 6455,
+    // section 8.1, asks for 1007.
+    static constexpr std::array<unsigned char, 4> protocol_error{0x88, 2, 0x03, 0xea};
+    static constexpr std::array<unsigned char, 4> bad_payload{0x88, 2, 0x03, 0xef};
+
+    template <class Buffers>
+    static bool is_protocol_error(const Buffers& from)
+    {
+        std::array<unsigned char, protocol_error.size() + 1> begin{};
+        return boost::asio::buffer_copy(boost::asio::buffer(begin), from) == protocol_error.size() &&
+               std::equal(protocol_error.begin(), protocol_error.end(), begin.begin());
+    }
+
     template <class Buffers>
     void see(const Buffers& into, std::size_t n)
     {
@@ -64,6 +85,7 @@ private:
 
     next_layer_type& socket_;
     sight seen_;
+    test bad_reason_;
 };
 
 template <class Handler>

@@ -2,6 +2,9 @@
 #include "net/web_frames.hpp"
 
 #include <algorithm>
+#include <string_view>
+
+#include "net/rpc.hpp"
 
 namespace tactor::net {
 namespace {
@@ -10,6 +13,8 @@ constexpr std::byte final_bit{0x80};
 constexpr std::byte control_bit{0x08};
 constexpr std::byte mask_bit{0x80};
 constexpr std::byte length_bits{0x7f};
+constexpr std::byte kind_bits{0x0f};
+constexpr std::byte close_kind{0x08};
 
 // Bytes of the length behind the two that each head has.
 std::size_t more_length(std::byte second) noexcept
@@ -25,6 +30,7 @@ void web_frames::take(std::span<const std::byte> bytes) noexcept
     while (!bytes.empty()) {
         if (in_payload_) {
             const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(left_, bytes.size()));
+            take_farewell(bytes.first(n));
             left_ -= n;
             bytes = bytes.subspan(n);
         } else {
@@ -65,6 +71,37 @@ void web_frames::end_frame() noexcept
     }
     within_ = in_payload_ = false;
     have_ = 0;
+}
+
+bool web_frames::is_close() const noexcept
+{
+    return (head_[0] & kind_bits) == close_kind;
+}
+
+// Beast refuses a close frame that is longer.
+void web_frames::take_farewell(std::span<const std::byte> bytes) noexcept
+{
+    if (!is_close())
+        return;
+    const bool masked = (head_[1] & mask_bit) != std::byte{};
+    for (const std::byte b : bytes.first(std::min(bytes.size(), farewell_.size() - farewell_size_))) {
+        const std::byte mask = masked ? head_[have_ - 4 + farewell_size_ % 4] : std::byte{};
+        farewell_[farewell_size_++] = static_cast<char>(b ^ mask);
+    }
+}
+
+bool web_frames::has_bad_reason() const
+{
+    constexpr std::size_t code_bytes = 2;
+    if (farewell_size_ <= code_bytes)
+        return false;
+    try {
+        const std::string_view all(farewell_.data(), farewell_size_);
+        static_cast<void>(json(all.substr(code_bytes)).dump());
+        return false;
+    } catch (const json::exception&) {
+        return true;
+    }
 }
 
 } // namespace tactor::net

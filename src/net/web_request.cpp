@@ -124,10 +124,13 @@ void web_connection::session::upgrade()
     if (!calls.upgrade())
         return respond({503, "text/plain", "there is no place, try again later\n", ""});
     accepted = true;
-    ws.emplace(socket, [this](std::span<const std::byte> bytes) {
-        frames.take(bytes);
-        watch();
-    });
+    ws.emplace(
+        socket,
+        [this](std::span<const std::byte> bytes) {
+            frames.take(bytes);
+            watch();
+        },
+        [this] { return frames.has_bad_reason(); });
     websocket::stream_base::timeout t{};
     t.handshake_timeout = steady_seconds(limits.message_s);
     // A browser that is gone without a word is found by pings.

@@ -249,6 +249,28 @@ class Web(ToolTest):
             self.assertEqual(p.end(), code)
         self.websocket(s).call("hello")
 
+    def test_a_reason_that_is_no_utf8_is_1007(self):
+        s = self.serve()
+        bye = struct.pack("!H", 1000)
+        for code, reason in ((1007, b"\xff"), (1007, b"good \xc3"), (1007, b"\xed\xa0\x80"), (1007, b"\xc0\xaf"), (1007, b"a" * 122 + b"\xe2"),
+                             (1000, "bis sp\u00e4ter".encode()), (1000, b"a" * 123), (1000, b'"\x00\\'), (1000, b"")):
+            for step in (1, 5, 200):
+                p = self.websocket(s)
+                whole = framed(CLOSE, bye + reason)
+                for i in range(0, len(whole), step):
+                    p.send(whole[i:i + step])
+                    if step == 5:
+                        time.sleep(0.001)
+                self.assertEqual(p.end(), code, (reason, step))
+        for payload in (b"\x03", struct.pack("!H", 1005), struct.pack("!H", 1)):
+            p = self.websocket(s)
+            p.frame(CLOSE, payload)
+            self.assertEqual(p.end(), 1002, payload)
+        p = self.websocket(s)
+        p.frame(TEXT, b'{"jsonrpc":"2.0","id":1,"method":"stop"}')
+        p.frame(CLOSE, bye + b"\xff")
+        self.assertEqual(p.end(), 1007)
+
     def test_a_message_that_never_ends_and_a_silent_client(self):
         s = self.serve(config="[serve]\nmax_message_s = 1\n")
         silent = self.in_time(s)

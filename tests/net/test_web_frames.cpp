@@ -2,7 +2,10 @@
 // Where messages end in the bytes of a WebSocket.
 #include "net/web_frames.hpp"
 
+#include <algorithm>
 #include <random>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -83,6 +86,34 @@ TEST_CASE("a message in fragments is open between them, whatever control frames 
     take(two);
     CHECK(f.open());
     CHECK(f.whole() == 2);
+}
+
+TEST_CASE("a close frame's reason is UTF-8 or not, in any pieces, masked or not")
+{
+    const auto closing = [](std::string reason, bool masked) {
+        bytes b{std::byte{0x88}, std::byte((masked ? 0x80U : 0U) | (2 + reason.size()))};
+        const std::string mask = masked ? "abcd" : std::string(4, '\0');
+        for (std::size_t i = 0; masked && i < 4; ++i)
+            b.push_back(std::byte(mask[i]));
+        reason.insert(0, "\x03\xe8");
+        for (std::size_t i = 0; i < reason.size(); ++i)
+            b.push_back(std::byte(reason[i]) ^ std::byte(mask[i % 4]));
+        return b;
+    };
+    const std::vector<std::pair<const char*, bool>> reasons{
+        {"", false},    {"bye", false},     {"sp\xc3\xa4ter", false},
+        {"\xff", true}, {"cut \xc3", true}, {"\xed\xa0\x80", true}};
+    for (const auto& [reason, bad] : reasons)
+        for (const bool masked : {true, false})
+            for (const std::size_t step : {1U, 3U, 200U}) {
+                CAPTURE(reason);
+                web_frames f;
+                f.take(framed(text, 5));
+                const bytes all = closing(reason, masked);
+                for (std::size_t i = 0; i < all.size(); i += step)
+                    f.take({&all[i], std::min(step, all.size() - i)});
+                CHECK(f.has_bad_reason() == bad);
+            }
 }
 
 } // namespace web_frames_test
