@@ -122,9 +122,81 @@ rpc_message alone(rpc_refusal r)
     return m;
 }
 
+// Looks for a request with this method where a message is refused; builds nothing of what it reads, and reads
+// no further than the first error.
+class method_finder final : public nlohmann::json_sax<json> {
+public:
+    explicit method_finder(std::string_view method) : method_(method) {}
+
+    bool found() const noexcept { return found_; }
+
+    bool null() override { return value(); }
+    bool boolean(bool) override { return value(); }
+    bool number_integer(number_integer_t) override { return value(); }
+    bool number_unsigned(number_unsigned_t) override { return value(); }
+    bool number_float(number_float_t, const string_t&) override { return value(); }
+    bool binary(binary_t&) override { return value(); }
+    bool string(string_t& text) override
+    {
+        found_ = found_ || (names_method_ && text == method_);
+        return value();
+    }
+    bool key(string_t& name) override
+    {
+        names_method_ = depth_ == (batch_ ? 2 : 1) && name == "method";
+        return true;
+    }
+    bool start_object(std::size_t) override { return begin(); }
+    bool end_object() override { return end(); }
+    bool start_array(std::size_t) override
+    {
+        batch_ = batch_ || depth_ == 0;
+        return begin();
+    }
+    bool end_array() override { return end(); }
+    bool parse_error(std::size_t, const std::string&, const json::exception&) override { return false; }
+
+private:
+    bool value() noexcept
+    {
+        names_method_ = false;
+        return true;
+    }
+    bool begin() noexcept
+    {
+        ++depth_;
+        return value();
+    }
+    bool end() noexcept
+    {
+        --depth_;
+        return true;
+    }
+
+    std::string_view method_;
+    std::size_t depth_ = 0;
+    bool batch_ = false;
+    bool names_method_ = false; ///< the value that comes next
+    bool found_ = false;
+};
+
+bool has_method(std::string_view text, std::string_view method)
+{
+    method_finder f(method);
+    static_cast<void>(json::sax_parse(without_overflows(text), &f));
+    return f.found();
+}
+
 rpc_refusal over(std::string what, std::string why, std::string hint)
 {
     return {{code_limit, "limit", std::move(what), std::move(why), std::move(hint)}, nullptr};
+}
+
+rpc_message refused(rpc_refusal why, std::string_view text, std::string_view any_form)
+{
+    rpc_message m = alone(std::move(why));
+    m.refused_any_form = !any_form.empty() && has_method(text, any_form);
+    return m;
 }
 
 } // namespace
@@ -132,8 +204,9 @@ rpc_refusal over(std::string what, std::string why, std::string hint)
 rpc_message parse_rpc(std::string_view text, const rpc_limits& l)
 {
     if (nests_deeper(text, l.nesting))
-        return alone(
-            over("max_nesting", fmt::format("a message nests deeper than {} levels", l.nesting), ""));
+        return refused(
+            over("max_nesting", fmt::format("a message nests deeper than {} levels", l.nesting), ""), text,
+            l.any_form);
     json j;
     try {
         j = parsed(text);
@@ -155,8 +228,9 @@ rpc_message parse_rpc(std::string_view text, const rpc_limits& l)
     if (j.empty())
         return alone(invalid(nullptr, "the batch is empty"));
     if (j.size() > l.batch)
-        return alone(over("batch", fmt::format("{} requests in a batch of at most {}", j.size(), l.batch),
-                          "send several"));
+        return refused(over("batch", fmt::format("{} requests in a batch of at most {}", j.size(), l.batch),
+                            "send several"),
+                       text, l.any_form);
     rpc_message m;
     m.batch = true;
     for (json& one : j)

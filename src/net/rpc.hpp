@@ -57,6 +57,8 @@ struct rpc_refusal {
 struct rpc_message {
     std::vector<std::variant<rpc_request, rpc_refusal>> parts;
     bool batch = false;
+    /// It is refused as a whole, but a request in it has the method that is accepted in any form.
+    bool refused_any_form = false;
 };
 
 struct rpc_limits {

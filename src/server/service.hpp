@@ -3,10 +3,12 @@
 /// The service without its sockets: clients, their strokes, who is told what.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -120,18 +122,27 @@ private:
         void fault(const net::rpc_fault& f) const;
     };
 
+    /// How often stop, and cancel of all by one client, had been asked for when a stroke was.
+    struct stop_mark {
+        std::uint64_t stops = 0;
+        std::shared_ptr<const std::uint64_t> cancels = {};
+        std::uint64_t own = 0;
+    };
+
     struct plan_job {
         answer to;
         net::json params; ///< of play and plan; freed when it is planned
         net::json start = "now";
         std::size_t bytes = 0;
         bool play = false;
-        std::uint64_t stops = 0; ///< how often stop had been asked for when it came
+        stop_mark asked = {};
+        double steps = 0.0; ///< see planning_work; 0 until its text was read
     };
 
-    /// Requests that wait to be planned, and the thread that plans them: small ones have their own, so that
-    /// they pass large ones.
+    /// Requests that wait to be planned, and the thread that plans them.
     struct planner_lane {
+        std::size_t most_bytes; ///< of a request
+        double most_steps;
         std::map<client_number, std::deque<plan_job>> queued = {};
         std::deque<client_number> turns = {}; ///< whose turn it is, of those that have some
         std::optional<answer> planning = {};  ///< where the result of the one that is being planned goes
@@ -160,7 +171,9 @@ private:
 
     // service_jobs.cpp
     void plan_or_play(client& c, net::json&& params, const answer& to, bool play, std::size_t bytes);
-    planner_lane& lane_for(std::size_t bytes) noexcept;
+    planner_lane& lane_for(const plan_job& j) noexcept;
+    bool weigh(plan_job& j, const planner_lane& in, const planning_work& w);
+    void move_up(planner_lane& from, plan_job&& j);
     void queue_job(client_number number, plan_job j);
     void next_job(planner_lane& lane);
     void keep_jobs(client_number gone);
@@ -173,16 +186,19 @@ private:
     // service_strokes.cpp
     void drive(client& c, const net::json& params, const answer& to);
     std::vector<std::uint32_t> submit(client_number owner, const net::json& start, const planned& p,
-                                      const std::vector<score>& scores, bool stopped);
+                                      const std::vector<score>& scores, const char* ended_by);
     void check_free_place(const client& c) const;
     void cancel(client& c, const net::json& params, const answer& to);
-    void stop(client_number by, const answer& to);
+    void cancel_all(client& c);
+    void cancel(stroke_record& r, const char* why);
+    void stop(client& c, const answer& to);
+    void stop_all(client_number by);
     void fire(const net::json& params, const answer& to);
     void release(const std::vector<std::uint32_t>& numbers);
 
     // service_live.cpp
     void begin(client& c, const net::json& params, const answer& to);
-    void begin_now(client& c, const live_options& o, const answer& to, bool stopped);
+    void begin_now(client& c, const live_options& o, const answer& to, const char* ended_by);
     void to(client& c, const net::json& params, const answer& to);
     void end(client& c, const net::json& params, const answer& to);
     bool take_point(client& c);
@@ -198,6 +214,8 @@ private:
     void send_to_listeners(const stroke_record& r, const net::reply_json& message);
     std::string reason(const stroke_record& r, const stroke_report& how) const;
     const char* stopped_for(client_number owner) const;
+    stop_mark mark(const client& c) const;
+    const char* stopped_since(const stop_mark& m, client_number owner) const;
     void note_busy();
 
     boost::asio::io_context& io_;
@@ -218,8 +236,10 @@ private:
     std::atomic<bool> ending_{false}; ///< the planner looks at it between strokes
     std::function<void(client_number)> told_all_;
     std::function<void()> stopped_;
-    planner_lane small_;
-    planner_lane large_;
+    /// Small requests have threads of their own, so that they pass large ones: strokes of 4 s and 65 s, where
+    /// they are continuous.
+    std::array<planner_lane, 3> lanes_{
+        {{16U << 10, 4096.0}, {128U << 10, 65536.0}, {SIZE_MAX, std::numeric_limits<double>::infinity()}}};
     boost::asio::thread_pool reader_{1}; ///< parses large messages, and frees what is large
 };
 

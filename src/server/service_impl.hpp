@@ -3,6 +3,8 @@
 /// What the service keeps of clients, strokes and answers.
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <set>
 #include <string>
 #include <utility>
@@ -34,6 +36,8 @@ struct service::client {
     std::size_t unanswered = 0;
     std::set<std::uint32_t> strokes; ///< that have not ended
     std::size_t live = 0;
+    /// How often it has cancelled all; outlives it in what it asked for.
+    std::shared_ptr<std::uint64_t> cancels = std::make_shared<std::uint64_t>(0);
     double points = 0.0; ///< that it may give at once
     std::int64_t points_ns = 0;
 };

@@ -32,6 +32,12 @@ std::size_t size_of_source(const json& source)
     return text != nullptr ? text->size() : source.size() * point_bytes;
 }
 
+net::rpc_fault too_large_to_send()
+{
+    return {net::code_limit, "limit", "plan", "it is too large to be sent",
+            "draw less, or plan it with the tool"};
+}
+
 net::rpc_fault server_ends()
 {
     return {net::code_no_stream, "not-available", "stream", "the server ends", ""};
@@ -39,10 +45,11 @@ net::rpc_fault server_ends()
 
 } // namespace
 
-service::planner_lane& service::lane_for(std::size_t bytes) noexcept
+service::planner_lane& service::lane_for(const plan_job& j) noexcept
 {
-    constexpr std::size_t most_small = 16U << 10;
-    return bytes <= most_small ? small_ : large_;
+    return *std::find_if(lanes_.begin(), lanes_.end() - 1, [&j](const planner_lane& l) {
+        return j.bytes <= l.most_bytes && j.steps <= l.most_steps;
+    });
 }
 
 void service::plan_or_play(client& c, json&& params, const answer& to, bool play, std::size_t bytes)
@@ -63,20 +70,20 @@ void service::plan_or_play(client& c, json&& params, const answer& to, bool play
     ++jobs_;
     ++c.coming;
     const json* start = member(params, "start");
-    plan_job job{to, {}, start == nullptr ? json("now") : *start, bytes, play, stops_};
+    plan_job job{to, {}, start == nullptr ? json("now") : *start, bytes, play, mark(c)};
     job.params = std::move(params);
-    queue_job(c.number, std::move(job));
     note_busy();
-    next_job(lane_for(bytes));
+    queue_job(c.number, std::move(job));
 }
 
 void service::queue_job(client_number number, plan_job j)
 {
-    planner_lane& lane = lane_for(j.bytes);
+    planner_lane& lane = lane_for(j);
     std::deque<plan_job>& own = lane.queued[number];
     if (own.empty())
         lane.turns.push_back(number);
     own.push_back(std::move(j));
+    next_job(lane);
 }
 
 // One after the other, and one of each client in turn: who has many does not keep the others waiting.
@@ -100,11 +107,11 @@ void service::next_job(planner_lane& lane)
 // What a client asked for that has gone is played, whoever hears of it.
 void service::keep_jobs(client_number gone)
 {
-    for (planner_lane* lane : {&small_, &large_}) {
-        auto own = lane->queued.extract(gone);
+    for (planner_lane& lane : lanes_) {
+        auto own = lane.queued.extract(gone);
         if (own.empty())
             continue;
-        std::erase(lane->turns, gone);
+        std::erase(lane.turns, gone);
         for (plan_job& j : own.mapped())
             queue_job(nobody, std::move(j));
     }
@@ -114,17 +121,45 @@ void service::keep_jobs(client_number gone)
 void service::refuse_jobs()
 {
     ending_ = true;
-    for (planner_lane* lane : {&small_, &large_}) {
-        lane->turns.clear();
-        for (const auto& [number, jobs] : std::exchange(lane->queued, {}))
+    for (planner_lane& lane : lanes_) {
+        lane.turns.clear();
+        for (const auto& [number, jobs] : std::exchange(lane.queued, {}))
             for (const plan_job& j : jobs) {
                 planning_bytes_ -= j.bytes;
                 --jobs_;
                 j.to.fault(server_ends());
             }
-        if (lane->planning)
-            lane->planning->fault(server_ends());
+        if (lane.planning)
+            lane.planning->fault(server_ends());
     }
+}
+
+// Called by a planner, between reading the text and the work. Returns false where it is too much for this
+// lane.
+bool service::weigh(plan_job& j, const planner_lane& in, const planning_work& w)
+{
+    constexpr double text_bytes = 64.0; // at least, of a burst or a sample in tactor-plan/1
+    constexpr double burst_bytes = 256.0;
+    const service_limits& l = options_.limits;
+    j.steps = w.steps;
+    if (!j.play && (w.bursts + w.samples) * text_bytes > static_cast<double>(l.max_unread_bytes / 2))
+        throw fault_error(too_large_to_send());
+    if (w.bursts * burst_bytes > static_cast<double>(l.max_all_unread_bytes))
+        limit_reached("max_all_unread_bytes",
+                      fmt::format("its {:.0f} bursts take more memory than all requests may", w.bursts),
+                      "make it shorter, or the SOA longer");
+    return &lane_for(j) == &in;
+}
+
+// A short text may ask for much: it goes to the end of the queue for that.
+void service::move_up(planner_lane& from, plan_job&& j)
+{
+    if (ending_)
+        return job_done(from, j, {}, {}, {}, server_ends());
+    from.planning.reset();
+    const client_number number = j.to.all->to;
+    queue_job(find(number) != nullptr ? number : nobody, std::move(j));
+    next_job(from);
 }
 
 void service::post_job(planner_lane& lane, plan_job j)
@@ -140,7 +175,11 @@ void service::post_job(planner_lane& lane, plan_job j)
                 throw fault_error(server_ends());
         };
         try {
-            p = std::make_shared<planned>(make_planned(options_.plans, faces_, job->params, go_on));
+            p = std::make_shared<planned>(
+                make_planned(options_.plans, faces_, job->params,
+                             {go_on, [&](const planning_work& w) { return weigh(*job, lane, w); }}));
+            if (p->plans.empty())
+                return boost::asio::post(io_, [this, &lane, job] { move_up(lane, std::move(*job)); });
             for (std::size_t i = 0; job->play && i < p->plans.size(); ++i) {
                 go_on();
                 scores.push_back(p->score_of(options_.plans.tactors, i));
@@ -148,8 +187,7 @@ void service::post_job(planner_lane& lane, plan_job j)
             if (!job->play)
                 text = on_one_line(options_.plan_text(*p, options_.limits.max_unread_bytes / 2));
         } catch (const std::bad_alloc&) {
-            fault = net::rpc_fault{net::code_limit, "limit", "plan", "it is too large to be sent",
-                                   "draw less, or plan it with the tool"};
+            fault = too_large_to_send();
         } catch (...) {
             fault = current_fault("params");
         }
@@ -203,7 +241,7 @@ void service::submit_all(const plan_job& job, const std::shared_ptr<planned>& p,
                           fmt::format("{} strokes are more than the {} that a client may have at once",
                                       scores.size(), options_.limits.max_strokes),
                           "send fewer");
-        const auto numbers = submit(number, job.start, *p, scores, job.stops != stops_);
+        const auto numbers = submit(number, job.start, *p, scores, stopped_since(job.asked, number));
         auto warnings = p->warnings();
         for (std::string& w : warnings)
             w = net::cut_echo(w);

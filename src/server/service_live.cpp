@@ -47,14 +47,14 @@ void service::begin(client& c, const json& params, const answer& to)
     ++c.coming;
     ++c.live;
     note_busy();
-    stream_.when_ready([this, number = c.number, o, to, stops = stops_] {
+    stream_.when_ready([this, number = c.number, o, to, asked = mark(c)] {
         client* then = find(number);
         if (then == nullptr)
             return note_busy();
         --then->coming;
         --then->live;
         try {
-            begin_now(*then, o, to, stops != stops_);
+            begin_now(*then, o, to, stopped_since(asked, number));
         } catch (...) {
             to.fault(current_fault("options", o.render));
         }
@@ -62,15 +62,15 @@ void service::begin(client& c, const json& params, const answer& to)
     });
 }
 
-void service::begin_now(client& c, const live_options& o, const answer& to, bool stopped)
+void service::begin_now(client& c, const live_options& o, const answer& to, const char* ended_by)
 {
     player* out = stream_.current();
     if (closing_ || out == nullptr || out->ended())
         no_stream(closing_ ? "the server ends" : stream_.reason());
-    if (stopped) {
+    if (ended_by != nullptr) {
         // While the stream was being started: as with what was being planned then.
         stroke_record& r = add_record(c.number);
-        r.ended_by = stopped_for(c.number);
+        r.ended_by = ended_by;
         finish(r, {.state = state_kind::cancelled});
         to.result({{"stroke", r.number}}, {r.number});
         return;

@@ -31,7 +31,7 @@ void service::check_free_place(const client& c) const
 }
 
 std::vector<std::uint32_t> service::submit(client_number owner, const json& start, const planned& p,
-                                           const std::vector<score>& scores, bool stopped)
+                                           const std::vector<score>& scores, const char* ended_by)
 {
     if (closing_)
         no_stream("the server ends");
@@ -55,8 +55,8 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
         numbers.push_back(r.number);
         records.push_back(&r);
         r.player = stream_.number();
-        if (stopped) {
-            r.ended_by = stopped_for(owner);
+        if (ended_by != nullptr) {
+            r.ended_by = ended_by;
             continue;
         }
         if (wish.armed && i != first) {
@@ -88,10 +88,11 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
     const auto end = out->ended();
     for (std::size_t i = 0; i < records.size(); ++i)
         if (records[i]->id == stroke_id{} && !records[i]->music)
-            finish(*records[i], stopped ? stroke_report{.state = state_kind::cancelled}
-                                        : stroke_report{.state = state_kind::interrupted,
-                                                        .reason = end ? end->reason : reason_kind::failed,
-                                                        .why = end ? end->why : refused[i]});
+            finish(*records[i], ended_by != nullptr
+                                    ? stroke_report{.state = state_kind::cancelled}
+                                    : stroke_report{.state = state_kind::interrupted,
+                                                    .reason = end ? end->reason : reason_kind::failed,
+                                                    .why = end ? end->why : refused[i]});
     return numbers;
 }
 
@@ -106,11 +107,11 @@ void service::drive(client& c, const json& params, const answer& to)
     ++c.coming;
     note_busy();
     const std::vector<score> scores{p->score_of(options_.plans.tactors, 0)};
-    stream_.when_ready([this, number = c.number, to, p, scores, start, stops = stops_] {
+    stream_.when_ready([this, number = c.number, to, p, scores, start, asked = mark(c)] {
         if (client* then = find(number))
             --then->coming;
         try {
-            const auto numbers = submit(number, start, *p, scores, stops != stops_);
+            const auto numbers = submit(number, start, *p, scores, stopped_since(asked, number));
             to.result({{"stroke", numbers.front()}}, numbers);
         } catch (...) {
             to.fault(current_fault("stream"));
@@ -125,48 +126,72 @@ const char* service::stopped_for(client_number owner) const
     return owner == stopped_by_ ? cancelled_by_client : "stopped by another client";
 }
 
+service::stop_mark service::mark(const client& c) const
+{
+    return {stops_, c.cancels, *c.cancels};
+}
+
+// The reason of a stroke that must not begin; none: it may.
+const char* service::stopped_since(const stop_mark& m, client_number owner) const
+{
+    if (*m.cancels != m.own)
+        return cancelled_by_client;
+    return m.stops != stops_ ? stopped_for(owner) : nullptr;
+}
+
 void service::cancel(client& c, const json& params, const answer& to)
 {
-    only(params, {"stroke"});
+    only(params, {"stroke", "all"});
+    if (const json* all = member(params, "all")) {
+        if (!all->is_boolean() || !all->get<bool>() || params.contains("stroke"))
+            bad_param("all", "it is true, and stands alone", R"({"stroke":N} or {"all":true})");
+        cancel_all(c);
+        return to.result(reply_json::object());
+    }
     const std::uint32_t n = need_stroke(params);
     if (!c.strokes.contains(n))
         no_such_stroke(n);
-    stroke_record& r = *strokes_.at(n);
-    if (r.ended_by == nullptr)
-        r.ended_by = cancelled_by_client;
     to.result(reply_json::object());
-    if (r.music) {
-        // It waits for another to begin.
-        finish(r, {.state = state_kind::cancelled});
-        return;
-    }
+    cancel(*strokes_.at(n), cancelled_by_client);
+}
+
+// What is being planned, or waits for the stream to start, looks at the count.
+void service::cancel_all(client& c)
+{
+    ++*c.cancels;
+    for (const std::uint32_t n : std::set(c.strokes))
+        if (const auto found = strokes_.find(n); found != strokes_.end())
+            cancel(*found->second, cancelled_by_client);
+}
+
+void service::cancel(stroke_record& r, const char* why)
+{
+    if (r.ended_by == nullptr)
+        r.ended_by = why;
+    if (r.music) // it waits for another to begin
+        return finish(r, {.state = state_kind::cancelled});
     if (player* p = stream_.current(); p != nullptr && r.player == stream_.number())
         p->cancel(r.id);
 }
 
-void service::stop(client_number by, const answer& to)
+void service::stop(client& c, const answer& to)
+{
+    stop_all(c.number);
+    to.result(reply_json::object());
+}
+
+void service::stop_all(client_number by)
 {
     ++stops_;
     stopped_by_ = by;
-    player* p = stream_.current();
     std::vector<std::uint32_t> all;
     for (const auto& [number, r] : strokes_)
         all.push_back(number);
-    for (const std::uint32_t n : all) {
-        const auto found = strokes_.find(n);
-        if (found == strokes_.end())
-            continue;
-        stroke_record& r = *found->second;
-        if (r.ended_by == nullptr)
-            r.ended_by = stopped_for(r.owner);
-        if (r.music)
-            finish(r, {.state = state_kind::cancelled});
-        else if (p != nullptr && r.player == stream_.number())
-            p->cancel(r.id);
-    }
+    for (const std::uint32_t n : all)
+        if (const auto found = strokes_.find(n); found != strokes_.end())
+            cancel(*found->second, stopped_for(found->second->owner));
     if (stopped_)
         stopped_();
-    to.result(reply_json::object());
 }
 
 void service::fire(const json& params, const answer& to)

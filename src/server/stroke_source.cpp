@@ -14,6 +14,7 @@
 #include "core/start_times.hpp"
 #include "core/words.hpp"
 #include "server/faults.hpp"
+#include "server/planning_work.hpp"
 
 namespace tactor::server {
 namespace {
@@ -198,7 +199,7 @@ score planned::score_of(const array& a, std::size_t i) const
 }
 
 planned make_planned(const planning& with, const layout& faces, const json& params,
-                     const std::function<void()>& go_on)
+                     const planning_checks& checks)
 {
     const std::string source = source_of(params);
     const json* options = member(params, "options");
@@ -212,9 +213,11 @@ planned make_planned(const planning& with, const layout& faces, const json& para
         p.strokes = fit_as_asked(std::move(p.strokes), faces);
         place_strokes(with, s, p.strokes);
         const auto between = [&] {
-            if (go_on)
-                go_on();
+            if (checks.go_on)
+                checks.go_on();
         };
+        if (checks.weigh && !checks.weigh(estimate_work(p.strokes, s, faces)))
+            return p;
         for (const stroke& k : p.strokes) {
             between();
             if (s.compensate) {

@@ -17,6 +17,7 @@
 #include <tactor/stroke.hpp>
 
 #include "net/rpc.hpp"
+#include "server/planning_work.hpp"
 #include "server/stroke_options.hpp"
 
 namespace tactor::server {
@@ -51,9 +52,16 @@ struct planned {
 /// \throws fault_error for none or several.
 const char* source_of(const net::json& params);
 
-/// Reads and plans. \throws fault_error, and what `go_on` throws, which is called between strokes.
+/// Calls from within make_planned(); each may throw.
+struct planning_checks {
+    std::function<void()> go_on = {}; ///< called between strokes
+    /// Called before the work, when the text was read. False: nothing is planned.
+    std::function<bool(const planning_work&)> weigh = {};
+};
+
+/// Reads and plans. Returns no plans where `weigh` returns false. \throws fault_error, and what checks throw.
 planned make_planned(const planning& with, const layout& faces, const net::json& params,
-                     const std::function<void()>& go_on = {});
+                     const planning_checks& checks = {});
 
 /// One tactor for a while. \throws fault_error.
 planned make_drive(const planning& with, const net::json& params);

@@ -123,6 +123,23 @@ class Remote(ToolTest):
                         p.communicate(timeout=PATIENCE_S)
                     self.assertEqual(p.returncode, status, command)
 
+    def test_nothing_begins_that_was_still_planned_at_ctrl_c(self):
+        s = self.serve()
+        watcher = s.client()
+        watcher.ok("subscribe", events=["strokes"])
+        much = ("--path", "M 0 0 L 40 40", "--duration", "250", "--soa", "0.001", "--burst", "0.001", "--level-dbfs", "-60")
+        for signals in ((signal.SIGINT,), (signal.SIGINT, signal.SIGTERM)):
+            p = self.begun("play", *much, "--socket", s.where["socket"])
+            self.assertIn("through", p.stdout.readline()) # it asks next
+            time.sleep(0.1)
+            for sent in signals:
+                p.send_signal(sent)
+                time.sleep(0.05)
+            p.communicate(timeout=PATIENCE_S)
+            self.assertIn(p.returncode, (130, 143))
+            end = self.started(watcher, ("started", "finished", "cancelled", "interrupted"))
+            self.assertEqual((end["state"], end["frames"], end["reason"]), ("cancelled", 0, "cancelled by its client"))
+
     def test_a_second_signal_does_not_wait_for_the_fade(self):
         s = self.serve()
         watcher = s.client()

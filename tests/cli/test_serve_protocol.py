@@ -70,6 +70,13 @@ class Protocol(ServeTest):
             if answered:
                 self.assertEqual(b.reply()["result"], {}, raw)
             self.assertEqual(a.end_of(mine)["state"], "cancelled", raw)
+        quiet = b'{"jsonrpc":"2.0","method":"status"},'
+        for raw in (b"[" + quiet * 70 + b'{"jsonrpc":"2.0","method":"stop"}]', b'{"jsonrpc":"2.0","method":"stop","params":' + b"[" * 99 + b"]" * 99 + b"}",
+                    b"[" + quiet * 9000 + b'{"jsonrpc":"2.0","method":"stop"}]'):
+            mine = a.ok("play", **LONG)["stroke"]
+            b.raw(raw + b"\n")
+            self.assertEqual(b.reply()["error"]["code"], -32001)
+            self.assertEqual(a.end_of(mine)["state"], "cancelled")
 
     def test_play_in_all_forms(self):
         c = self.serve().client()

@@ -84,6 +84,28 @@ TEST_CASE("a method that is accepted in any form is a request, whatever is besid
     CHECK(code_of(R"({"method":""})") == code_invalid_request); // as without such a method
 }
 
+TEST_CASE(
+    "a message that is refused as a whole says whether the method that is accepted in any form is in it")
+{
+    const auto acts = [](const std::string& text) {
+        const rpc_message m = parse_rpc(text, {.batch = 3, .any_form = "halt"});
+        CHECK(std::holds_alternative<rpc_refusal>(m.parts.front()));
+        return m.refused_any_form;
+    };
+    const std::string deep = std::string(99, '[') + std::string(99, ']');
+    CHECK(acts(R"([1,{"method":"x"},3,{"id":[1,{}],"method":"halt"}])"));
+    CHECK_FALSE(acts(R"([1,{"method":"x"},3,{"params":{"method":"halt"}}])"));
+    CHECK_FALSE(acts(R"([1,[{"method":"halt"}],3,4])"));
+    CHECK_FALSE(acts(R"([1,"method","halt",{"x":"halt"}])"));
+    CHECK(acts(R"({"params":)" + deep + R"(,"method":"halt"})"));
+    CHECK(acts(R"({"method":"halt","params":)" + deep + "}"));
+    CHECK(acts(R"([{"params":[1e400,-1e999,)" + deep + R"(]},{"method":"halt"}])"));
+    CHECK_FALSE(acts(R"({"method":"x","params":{"x":)" + deep + R"(,"method":"halt"}})"));
+    CHECK_FALSE(acts(R"({"method":["halt"],"params":)" + deep + "}"));
+    CHECK(acts(R"({"method":"halt","params":)" + std::string(500'000, '[')));
+    CHECK_FALSE(parse_rpc("[1,2,3,4]", {.batch = 3}).refused_any_form);
+}
+
 TEST_CASE("a number that no double holds is no number, and its message is answered")
 {
     const rpc_message m = parse_rpc(

@@ -103,7 +103,22 @@ TEST_CASE("a stop stops in whatever form it comes, but a button's release does n
         CHECK(rig.next(me) == "/tactor/stroke 1 cancelled");
         CHECK(rig.silent(you));
     }
+    // Bundles that are refused as a whole.
+    const std::vector<std::string> many(300, packet(",T\0\0"s, ""));
+    std::string deep = many.front();
+    for (int i = 0; i < 100; ++i)
+        deep = osc_rig::bundle(1, {deep});
+    for (const std::string& stop :
+         {osc_rig::bundle(1, many), deep, osc_rig::bundle(1, {many.front(), "/x"s})}) {
+        rig.say(me, "/tactor/begin", endless(1));
+        rig.osc.receive(stop, you);
+        CHECK(rig.next(me) == "/tactor/stroke 1 cancelled");
+        CHECK(rig.next(you).starts_with("/tactor/error"));
+    }
     rig.say(me, "/tactor/begin", endless(1));
+    rig.osc.receive(osc_rig::bundle(1, std::vector(300, packet(",F\0\0"s, ""))), you);
+    CHECK(rig.next(you).starts_with("/tactor/error"));
+    CHECK(rig.silent(me));
     rig.osc.receive(packet(",F\0\0"s, ""), you);
     rig.say(you, "/tactor/stop", {0_i});
     rig.say(you, "/tactor/stop", {0.0});

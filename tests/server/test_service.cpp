@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <set>
@@ -249,6 +250,115 @@ TEST_CASE("stop holds for what is being planned, too")
     const json end = rig.end_of(c, n);
     CHECK(end["state"] == "cancelled");
     CHECK(end["frames"] == 0);
+}
+
+TEST_CASE("a stop in a message that is refused as a whole stops all the same")
+{
+    service_rig rig;
+    rig.plug();
+    rig.start();
+    const auto a = rig.client();
+    const auto b = rig.client();
+    json batch = json::array();
+    for (int i = 0; i < 100; ++i)
+        batch.push_back({{"jsonrpc", "2.0"}, {"method", "status"}});
+    batch[70] = {{"method", "stop"}};
+    json deep = 1;
+    for (int i = 0; i < 99; ++i)
+        deep = json::array({deep});
+    for (const json& message : {batch, json{{"method", "stop"}, {"params", deep}}}) {
+        const json n = rig.ok(a, "play", with(stroke, "start", "armed"))["stroke"];
+        b.box->all.clear();
+        rig.send(b, message);
+        CHECK(rig.end_of(a, n)["reason"] == "stopped by another client");
+        CHECK(b.box->all.front()["error"]["code"] == -32001);
+    }
+    // As any request: not before the token.
+    service_rig locked([](server::service_options& o, server::stream_options&) { o.token = "secret"; });
+    locked.plug();
+    locked.start();
+    const auto owner = locked.client();
+    const auto stranger = locked.client(server::client_kind::web);
+    const json n = locked.ok(owner, "play", with(stroke, "start", "armed"))["stroke"];
+    locked.send(stranger, batch);
+    CHECK(stranger.box->all.size() == 1);
+    CHECK(locked.ok(owner, "status")["strokes"].size() == 1);
+    CHECK(locked.ok(owner, "cancel", {{"stroke", n}}).empty());
+}
+
+TEST_CASE(
+    "cancel of all takes along what is being planned, also of a client that has gone, and nobody else's")
+{
+    service_rig rig;
+    rig.plug();
+    rig.start();
+    const auto me = rig.client();
+    const auto you = rig.client();
+    rig.ok(you, "subscribe", {{"events", {"strokes"}}});
+    const json yours = rig.ok(you, "play", with(stroke, "start", "armed"))["stroke"];
+    const json armed = rig.ok(me, "play", with(stroke, "start", "armed"))["stroke"];
+    const json live = rig.ok(me, "begin", {{"timeout_s", 86400}})["stroke"];
+    const json cancel{{"jsonrpc", "2.0"}, {"id", 1001}, {"method", "cancel"}, {"params", {{"all", true}}}};
+    rig.send(me, {{"jsonrpc", "2.0"}, {"id", 1000}, {"method", "play"}, {"params", stroke}});
+    rig.send(me, cancel);
+    for (const json& n : {armed, live})
+        CHECK(rig.end_of(me, n)["reason"] == "cancelled by its client");
+    rig.until([&] { return me.box->reply(1000).has_value(); });
+    CHECK((*me.box->reply(1001))["result"] == json::object());
+    const json end = rig.end_of(me, (*me.box->reply(1000))["result"]["stroke"]);
+    CHECK(end["state"] == "cancelled");
+    CHECK(end["reason"] == "cancelled by its client");
+    CHECK(end["frames"] == 0);
+    // What comes afterwards plays.
+    const json next = rig.ok(me, "play", stroke)["stroke"];
+    CHECK(rig.end_of(me, next)["state"] == "finished");
+    you.box->all.clear();
+    rig.send(me, {{"jsonrpc", "2.0"}, {"id", 1002}, {"method", "play"}, {"params", stroke}});
+    rig.send(me, cancel);
+    rig.all->disconnect(me.number);
+    const auto ended = [&] {
+        return std::any_of(you.box->all.begin(), you.box->all.end(),
+                           [](const json& m) { return m.contains("method"); });
+    };
+    rig.until(ended);
+    CHECK(you.box->all.front()["params"]["state"] == "cancelled");
+    CHECK(rig.ok(you, "cancel", {{"stroke", yours}}).empty());
+    for (const json& params :
+         {json{{"all", false}}, json{{"all", 1}}, json{{"all", true}, {"stroke", 1}}, json::object()})
+        CHECK(rig.code(you, "cancel", params) == -32602);
+}
+
+TEST_CASE("what is too large by its durations and options is refused before it is planned")
+{
+    service_rig rig([](server::service_options& o, server::stream_options&) {
+        o.plan_text = [](const server::planned&, std::size_t) -> std::string {
+            throw std::logic_error("planned");
+        };
+    });
+    rig.plug();
+    rig.start();
+    const auto c = rig.client();
+    const auto refused = [&](const char* method, const json& options) {
+        const json e = rig.call(c, method, {{"path", "M 0 0 L 40 40"}, {"options", options}})["error"];
+        CHECK(e["code"] == -32001);
+        return e["data"]["what"].get<std::string>();
+    };
+    const json bursts{{"duration", 600}, {"soa", 0.001}, {"burst", 0.001}};
+    CHECK(refused("play", bursts) == "max_all_unread_bytes");
+    CHECK(refused("plan", bursts) == "plan");
+    CHECK(refused("plan", {{"duration", 60}, {"algorithm", "continuous"}}) == "plan");
+    CHECK(rig.code(c, "plan",
+                   {{"path", "M 0 0 L 40 40"},
+                    {"options", {{"duration", 10}, {"algorithm", "continuous"}}}}) == -32603); // planned
+    CHECK(rig.ok(c, "status")["strokes"].empty());
+    // A continuous stroke takes no memory by its length, and a large request that is cancelled leaves
+    // nothing.
+    const json n = rig.ok(c, "play",
+                          {{"path", "M 0 0 L 40 40"},
+                           {"start", "armed"},
+                           {"options", {{"duration", 600}, {"algorithm", "continuous"}}}})["stroke"];
+    rig.ok(c, "cancel", {{"all", true}});
+    CHECK(rig.end_of(c, n)["state"] == "cancelled");
 }
 
 TEST_CASE("a client that goes: its played strokes play on, also those that were not planned yet")

@@ -124,8 +124,9 @@ void rpc_client::wait(int also)
 
 void rpc_client::receive()
 {
-    while (!poll(POLLIN, -1)) {
-    }
+    while (!poll(POLLIN, -1))
+        if (signal_ != 0 && !std::exchange(cancelled_, true))
+            tell("cancel", {{"all", true}});
     char bytes[65536];
     const ssize_t n = ::recv(fd_.get(), bytes, sizeof bytes, MSG_DONTWAIT);
     if (n < 0 && (errno == EINTR || errno == EAGAIN))

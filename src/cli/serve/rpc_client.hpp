@@ -41,7 +41,8 @@ public:
     /// Waits until something has come from the server or at `also`, or a signal. \throws interrupted.
     void wait(int also = -1);
     /// From now on a first signal is only told by signal(), and the server has so long for what is asked of
-    /// it then.
+    /// it then. Where it comes while a reply is awaited, the server is told to cancel all that this client
+    /// asked for: also what it is still planning, and would play though nobody were left to cancel it.
     void let_finish(std::chrono::milliseconds grace) { grace_ = grace; }
     /// That has come, or 0.
     int signal() const noexcept { return signal_; }
@@ -64,6 +65,7 @@ private:
     std::deque<net::json> told_;
     int last_ = 0;
     int signal_ = 0;
+    bool cancelled_ = false;
     std::chrono::milliseconds grace_{0};
     std::chrono::steady_clock::time_point deadline_ = {};
 };

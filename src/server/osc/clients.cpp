@@ -24,6 +24,30 @@ namespace {
 // Less is what lies between two readings.
 constexpr std::int64_t clocks_differ_ns = 50'000;
 
+// Tests for a stop in a packet that cannot be read as a whole: alone, or behind its size in a bundle.
+bool has_stop(std::string_view packet)
+{
+    constexpr std::size_t size_bytes = 4;
+    const std::string address = std::string(osc_stop) + '\0';
+    if (packet.substr(0, packet.find('\0')) == osc_stop)
+        return true;
+    for (std::size_t at = packet.find(address); at != std::string_view::npos;
+         at = packet.find(address, at + 1)) {
+        if (at < size_bytes || at % size_bytes != 0)
+            continue;
+        std::size_t size = 0;
+        for (const char c : packet.substr(at - size_bytes, size_bytes))
+            size = size << 8U | static_cast<unsigned char>(c);
+        try {
+            if (!read_osc(net::parse_osc_message(packet.substr(at, size))).method.empty())
+                return true;
+        } catch (const error&) {
+            return true;
+        }
+    }
+    return false;
+}
+
 } // namespace
 
 osc_clients::osc_clients(boost::asio::io_context& io, service& s, outside o)
@@ -49,10 +73,11 @@ void osc_clients::receive(std::string_view packet, const endpoint& from)
         for (const osc_message& m : net::parse_osc(packet))
             take(m, from);
     } catch (const error& e) {
-        // A stop whose values cannot be read is one all the same.
-        if (packet.substr(0, packet.find('\0')) == osc_stop)
+        // A stop whose values cannot be read is one all the same, and so is one in a bundle that is refused.
+        const bool stops = has_stop(packet);
+        if (stops)
             stop(from);
-        else
+        if (!stops || packet.starts_with('#'))
             refuse(from, "", e.what());
     }
     act();

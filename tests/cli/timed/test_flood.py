@@ -126,6 +126,26 @@ class Planning(ServeTest):
                 one.buffer += one.socket.recv(1 << 20)
             self.assertIn(b'"result"', one.buffer[:100])
 
+    def test_small_plays_pass_short_requests_for_much(self):
+        s = self.serve()
+        much = [("plan", {"algorithm": "continuous", "duration": 10}),
+                ("plan", {"soa": 0.01, "burst": 0.01, "duration": 60, "phantom": "barycentric", "compensate": "low-speed"}),
+                ("play", {"soa": 0.0025, "burst": 0.0025, "duration": 600, "level_dbfs": -60}),
+                ("play", {"algorithm": "continuous", "duration": 600, "level_dbfs": -60})]
+        many = [s.client() for _ in range(20)]
+        for c in many:
+            for i, (method, options) in enumerate(much):
+                c.send({"jsonrpc": "2.0", "id": i, "method": method, "params": {"path": "M 0 0 L 40 40", "options": options}})
+        c = s.client()
+        waits = []
+        for _ in range(20):
+            began = time.monotonic()
+            c.ok("plan", path="M 0 0 L 40 40", options={"algorithm": "continuous", "duration": 0.1})
+            waits.append(time.monotonic() - began)
+        print(f"plan beside 80 short requests for much: longest {max(waits):.3f} s")
+        self.assertLess(max(waits), 0.25)
+        c.ok("stop")
+
 
 if __name__ == "__main__":
     main()
