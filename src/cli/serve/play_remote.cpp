@@ -155,6 +155,7 @@ private:
         } catch (const error& e) {
             throw in_words_of_the_tool(e, shown_name(out.name));
         }
+        signal_ = server_.signal(); // the end may have come with the reply
         say_warnings(r["warnings"].get<std::vector<std::string>>());
         out.length_frames =
             static_cast<std::uint64_t>(std::llround(r.value("total_s", 0.0) * report_.device.rate));
