@@ -26,6 +26,7 @@ line_connection::line_connection(socket_type s, const line_limits& l, shared_by_
       unread_(all.unread, [this] { give_up_soon(line_fault::unread); }),
       unfinished_(all.unfinished, [this] { give_up_soon(line_fault::crowded); }),
       turns_(all.turns),
+      small_(all.small),
       deadline_(socket_.get_executor()),
       linger_(socket_.get_executor()),
       chunk_(chunk_bytes)
@@ -123,9 +124,20 @@ void line_connection::next_line()
         armed_ = false;
         deadline_.cancel();
     }
-    if (size <= small_message || !handlers_.large)
+    if (size == 0 || is_urgent(size))
         return handle_line(size);
+    if (size <= small_message || !handlers_.large)
+        return small_.join([self = shared_from_this(), size] {
+            if (!self->closed_ && self->reading_)
+                self->within_memory([&] { self->handle_line(size); });
+        });
     turns_.join([self = shared_from_this(), size] { self->handle_large(size); });
+}
+
+bool line_connection::is_urgent(std::size_t size) const
+{
+    return size <= small_message && blocks_.empty() && handlers_.urgent &&
+           handlers_.urgent({partial_.data() + begin_, size});
 }
 
 void line_connection::handle_line(std::size_t size)

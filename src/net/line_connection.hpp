@@ -64,6 +64,8 @@ public:
         /// A line above `small_message`, on its turn; the next one is handled when `done` is called, with
         /// what `line` would return. None: `line` has them all.
         std::function<void(std::string text, std::function<void(bool)> done)> large = {};
+        /// Tests for a small line that is handled at once, before those of others. None: none is.
+        std::function<bool(std::string_view)> urgent = {};
     };
 
     line_connection(socket_type s, const line_limits& l, shared_by_peers& all);
@@ -85,6 +87,7 @@ private:
     void watch();
     void received(std::size_t n);
     void next_line();
+    bool is_urgent(std::size_t size) const;
     void handle_line(std::size_t size);
     void handle_large(std::size_t size);
     void handled(std::size_t size, bool go_on);
@@ -106,6 +109,7 @@ private:
     byte_budget::share unread_;
     byte_budget::share unfinished_;
     message_turns& turns_;
+    short_turns& small_;
     handlers handlers_;
     boost::asio::steady_timer deadline_;
     boost::asio::steady_timer linger_;

@@ -76,16 +76,34 @@ private:
     bool busy_ = false;
 };
 
+/// Turns of small messages: a few at a time, then sockets are looked at again, so that what is urgent waits
+/// for no more than these, however many peers have messages there.
+class short_turns {
+public:
+    explicit short_turns(boost::asio::io_context& io) : io_(io) {}
+
+    /// Calls `on_turn`, not from within, behind those who joined before.
+    void join(std::function<void()> on_turn);
+
+private:
+    void run();
+
+    boost::asio::io_context& io_;
+    std::deque<std::function<void()>> waiting_;
+    bool posted_ = false;
+};
+
 struct shared_by_peers {
     explicit shared_by_peers(boost::asio::io_context& io, std::size_t most_unread = 64U << 20,
                              std::size_t most_unfinished = 32U << 20)
-        : unread(most_unread), unfinished(most_unfinished), turns(io)
+        : unread(most_unread), unfinished(most_unfinished), turns(io), small(io)
     {
     }
 
     byte_budget unread;     ///< answers that peers have not read
     byte_budget unfinished; ///< messages that have not come whole, or wait for their turn
-    message_turns turns;
+    message_turns turns;    ///< of large ones
+    short_turns small;
 };
 
 } // namespace tactor::net

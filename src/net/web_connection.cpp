@@ -69,7 +69,12 @@ void web_connection::session::received()
             });
         return;
     }
-    handled(text.empty(), text.empty() || calls.text(text));
+    if (text.empty() || (calls.urgent && calls.urgent(text)))
+        return handled(text.empty(), text.empty() || calls.text(text));
+    small.join([self = shared_from_this(), text = std::move(text)] {
+        if (!self->closed && !self->finishing)
+            self->within_memory([&] { self->handled(false, self->calls.text(text)); });
+    });
 }
 
 void web_connection::session::handle_large(std::string text)

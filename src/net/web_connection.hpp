@@ -46,6 +46,8 @@ public:
         std::function<bool()> met = {};
         /// See line_connection::handlers::large.
         std::function<void(std::string text, std::function<void(bool)> done)> large = {};
+        /// See line_connection::handlers::urgent.
+        std::function<bool(std::string_view)> urgent = {};
     };
 
     web_connection(socket_type s, const line_limits& l, shared_by_peers& all,

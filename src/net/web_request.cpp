@@ -34,6 +34,7 @@ web_connection::session::session(socket_type s, const line_limits& l, shared_by_
       unread(all.unread, [this] { give_up(); }),
       unfinished(all.unfinished, [this] { give_up_crowded(); }),
       turns(all.turns),
+      small(all.small),
       allowed(std::move(hosts)),
       local(local_address(s.native_handle())),
       socket(std::move(s)),

@@ -56,6 +56,7 @@ struct web_connection::session : std::enable_shared_from_this<session> {
     byte_budget::share unread;
     byte_budget::share unfinished;
     message_turns& turns;
+    short_turns& small;
     std::vector<std::string> allowed;
     std::string local;
     handlers calls;

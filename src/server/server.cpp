@@ -18,6 +18,7 @@
 #include <boost/asio/socket_base.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -42,6 +43,11 @@ using socket_type = line_connection::socket_type;
 
 constexpr auto farewell = std::chrono::seconds(2); // for what the last words take
 constexpr std::size_t short_visits = 32;           // of browsers at once, beside those that stay as clients
+
+bool may_stop(std::string_view message)
+{
+    return message.find("\"stop\"") != std::string_view::npos;
+}
 
 class server {
 public:
@@ -154,7 +160,8 @@ private:
                               self->finish();
                           done(go_on);
                       });
-                  }});
+                  },
+                  may_stop});
     }
 
     std::string no_place(client_kind kind) const
@@ -205,7 +212,8 @@ private:
                   [this, n] { return service_.is_admitted(*n); },
                   [this, n](std::string text, std::function<void(bool)> done) {
                       service_.receive_large(*n, std::move(text), std::move(done));
-                  }});
+                  },
+                  may_stop});
     }
 
     net::web_reply page(std::string_view path, std::string_view host, std::string_view token)
@@ -274,6 +282,10 @@ void serve(const endpoints& at, service_options o, stream_options s, network_opt
         io.stop();
     };
     server all(io, at, std::move(o), std::move(s), std::move(w));
+    // Where it may, this thread goes before the programs that send to it, and before those that plan, which
+    // it has started. Linux holds this by thread.
+    constexpr int before_others = -10;
+    ::setpriority(PRIO_PROCESS, 0, before_others);
     asio::posix::stream_descriptor told(io, ::dup(signals));
     told.async_wait(asio::posix::descriptor_base::wait_read, [&](const boost::system::error_code& e) {
         if (!e)

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include <malloc.h>
-#include <sys/resource.h>
 
 #include <boost/asio/post.hpp>
 #include <fmt/format.h>
@@ -89,12 +88,6 @@ service::service(boost::asio::io_context& io, service_options o, stream_options 
                [this](std::uint64_t p, const stroke_report& r) { ended(p, r); },
                [this](stream_state state, const std::string& why) { tell_stream(state, why); }})
 {
-    // The thread of the sockets goes first, whatever there is to plan. Linux holds this by thread.
-    constexpr int behind = 10;
-    const auto yield = [] { ::setpriority(PRIO_PROCESS, 0, behind); };
-    for (planner_lane& lane : lanes_)
-        boost::asio::post(lane.thread, yield);
-    boost::asio::post(reader_, yield);
 }
 
 service::~service()
