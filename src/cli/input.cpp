@@ -107,7 +107,7 @@ bool is_option(const std::string& argument)
 std::string default_name(const std::string& argument)
 {
     if (is_option(argument))
-        return argument.substr(argument.find_first_not_of("-", argument.rfind(' ') + 1));
+        return argument.substr(argument.find_first_not_of('-', argument.rfind(' ') + 1));
     const bool file = argument != "-" && !is_preset(stroke_presets(), argument);
     return file ? fs::path(argument).stem().string() : shown_name(argument);
 }

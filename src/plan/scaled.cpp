@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <optional>
-#include <utility>
 
 #include "plan/curve_impl.hpp"
 
@@ -19,7 +18,7 @@ void scale(burst& b, double factor)
 
 class scaled_curve final : public curve::impl {
 public:
-    scaled_curve(curve from, double factor) : impl(from.duration_s()), from_(std::move(from)), factor_(factor)
+    scaled_curve(const curve& from, double factor) : impl(from.duration_s()), from_(from), factor_(factor)
     {
         if (const trajectory* b = curve_access::of(from_).bounds())
             bounds_ = b->with_intensity(factor);
@@ -45,7 +44,7 @@ plan scaled(plan p, double factor)
     for (burst& b : p.bursts)
         scale(b, factor);
     if (p.curve)
-        p.curve = curve_access::make(std::make_shared<scaled_curve>(*std::move(p.curve), factor));
+        p.curve = curve_access::make(std::make_shared<scaled_curve>(*p.curve, factor));
     return p;
 }
 

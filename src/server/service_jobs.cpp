@@ -142,7 +142,7 @@ bool service::weigh(plan_job& j, const planner_lane& in, const planning_work& w)
     constexpr double burst_bytes = 256.0;
     const service_limits& l = options_.limits;
     j.steps = w.steps;
-    if (!j.play && (w.bursts + w.samples) * text_bytes > static_cast<double>(l.max_unread_bytes / 2))
+    if (!j.play && (w.bursts + w.samples) * text_bytes > static_cast<double>(l.max_unread_bytes) / 2.0)
         throw fault_error(too_large_to_send());
     if (w.bursts * burst_bytes > static_cast<double>(l.max_all_unread_bytes))
         limit_reached("max_all_unread_bytes",

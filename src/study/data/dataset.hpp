@@ -61,7 +61,7 @@ struct selection {
 };
 
 /// Reads the codes in participants.tsv, without sub-. \throws error (bad_input) with file and line.
-std::vector<std::string> read_participants(const text_table& people);
+std::vector<std::string> read_participants(const text_table& t);
 
 /// Reads the trials of a run. \throws error (bad_input) with file and line: see read_dataset().
 run_data read_run(const text_table& t, const run_outline& run);
