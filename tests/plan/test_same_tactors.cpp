@@ -87,7 +87,7 @@ TEST_CASE("in arrays of all kinds, a target that goes from tactor to tactor has 
             walk(*model, l, {from.x_mm + beside, from.y_mm - beside}, {to.x_mm + beside, to.y_mm - beside},
                  pick(g, 1, 2000), all);
         }
-        CHECK(all.on_segments > all.places / 10);
+        CHECK(all.on_segments > all.places / 20);
     }
 }
 
