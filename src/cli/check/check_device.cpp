@@ -61,8 +61,8 @@ finding check_device(const alsa_options& device, const play_options& o, const en
     }
     try {
         return told_open(device, o, e, named);
-    } catch (const error& e) {
-        return failure("device", e);
+    } catch (const error& failed) {
+        return failure("device", failed);
     }
 }
 
