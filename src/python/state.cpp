@@ -318,8 +318,7 @@ path path_from(std::string_view state)
 stroke stroke_from(std::string_view state)
 {
     reader r(state);
-    std::string name = r.text();
-    stroke s{std::move(name), get_trajectory(r)};
+    stroke s{r.text(), get_trajectory(r)}; // braces: in this order
     s.start_s = r.maybe();
     s.carrier_hz = r.maybe();
     s.speed_mm_s = r.maybe();
