@@ -56,7 +56,7 @@ def setUpModule():
     pathlib.Path("/etc/udev/rules.d/70-tactor.rules").write_text(ours)
     run("udevadm", "control", "--reload")
     Units.gpio = GpioSim()
-    pathlib.Path("/etc/tactor").mkdir()
+    pathlib.Path("/etc/tactor").mkdir(exist_ok=True)  # it may be tried again
     # An emulated machine has little time to spare: few frames.
     pathlib.Path("/etc/tactor/tactor.toml").write_text(f"""
 [array]
@@ -72,7 +72,7 @@ line = {{ chip = "{Units.gpio.label}", offset = {LINE} }}
 """)
     # The emulated machine stands still at times, and what does not come to rest in that time would be ended for it.
     own = pathlib.Path("/etc/systemd/system/tactor.service.d")
-    own.mkdir()
+    own.mkdir(exist_ok=True)
     (own / "slow.conf").write_text("[Service]\nLimitRTTIME=infinity\n")
     systemctl("daemon-reload")
 
@@ -213,8 +213,9 @@ class Units(unittest.TestCase):
     def test_9_one_users_own(self):
         systemctl("stop", "tactor.service", "tactor.socket")
         run("useradd", "--groups", "audio,gpio", "--create-home", "maker")
-        place = "/run/maker"
-        run("systemd-run", "--unit=maker", "-p", "User=maker", "-p", "Delegate=yes", "-p", "RuntimeDirectory=maker", "-p", "Type=notify",
+        uid = run("id", "-u", "maker").strip()
+        place = f"/run/user/{uid}"  # systemd takes what it mounts over files from there
+        run("systemd-run", "--unit=maker", "-p", "User=maker", "-p", "Delegate=yes", "-p", f"RuntimeDirectory=user/{uid}", "-p", "Type=notify",
             "-E", f"XDG_RUNTIME_DIR={place}", "/usr/lib/systemd/systemd", "--user", "--unit=sockets.target")
 
         def own(*args):
