@@ -26,11 +26,9 @@ bool in_one_line(point a, point b, point c)
 // Its edge included, which rounding may make either side.
 bool holds(point a, point b, point c, point p)
 {
-    const bool left = turn(a, b, p) >= 0.0;
-    if (left == (turn(b, c, p) >= 0.0) && left == (turn(c, a, p) >= 0.0))
-        return true;
-    return std::min({segment_distance_mm(a, b, p), segment_distance_mm(b, c, p),
-                     segment_distance_mm(c, a, p)}) <= 2.0 * same_place_mm;
+    if (turn(a, b, c) < 0.0)
+        std::swap(b, c);
+    return triangle_distance_mm(a, b, c, p) <= 2.0 * same_place_mm;
 }
 
 } // namespace

@@ -16,6 +16,32 @@ struct found_segment {
     rank_pair ends;
 };
 
+/// Returns false where p is not on the segment between the two.
+bool take_segment(const layout::impl& l, unsigned u, unsigned v, point p, std::vector<found_segment>& out)
+{
+    const point a = l.points[u];
+    const point b = l.points[v];
+    if (segment_distance_mm(a, b, p) > same_place_mm)
+        return false;
+    out.push_back({distance_mm(a, b), std::minmax(u, v)});
+    return true;
+}
+
+/// Returns the shortest, of ties the one of lowest rank.
+std::optional<rank_pair> shortest(const std::vector<found_segment>& found)
+{
+    if (found.empty())
+        return std::nullopt;
+    const double least = std::min_element(found.begin(), found.end(), [](const auto& a, const auto& b) {
+                             return a.length_mm < b.length_mm;
+                         })->length_mm;
+    rank_pair best{std::numeric_limits<unsigned>::max(), 0};
+    for (const found_segment& s : found)
+        if (s.length_mm <= least + same_place_mm)
+            best = std::min(best, s.ends);
+    return best;
+}
+
 /// From a corner of a convex ring, the other corners are in order of direction. So the segments from that
 /// corner that pass p are neighbours, and bisection finds the first.
 void segments_through(const layout::impl& l, const std::vector<unsigned>& ring, point p,
@@ -34,13 +60,7 @@ void segments_through(const layout::impl& l, const std::vector<unsigned>& ring, 
             else
                 high = middle;
         }
-        const auto take = [&](std::size_t step) {
-            const point b = l.points[other(step)];
-            if (segment_distance_mm(a, b, p) > same_place_mm)
-                return false;
-            out.push_back({distance_mm(a, b), std::minmax(ring[i], other(step))});
-            return true;
-        };
+        const auto take = [&](std::size_t step) { return take_segment(l, ring[i], other(step), p, out); };
         for (std::size_t step = low; step < k && take(step);)
             ++step;
         for (std::size_t step = low; step > 1 && take(step - 1);)
@@ -55,7 +75,7 @@ struct seen_tactor {
     double side = 0.0; ///< of the line from the closest one through p; > 0: left
 };
 
-/// The ring as seen from p, without an allocation where it is small.
+/// Tactors of a ring, or others, as seen from p, without an allocation where they are few.
 class seen_ring {
 public:
     seen_ring(const layout::impl& l, const std::vector<unsigned>& ring, point p) : size_(ring.size())
@@ -112,16 +132,16 @@ std::optional<rank_pair> segment_at(const layout::impl& l, const std::vector<uns
     std::vector<found_segment> found;
     for (const unsigned f : faces)
         segments_through(l, l.faces[f], p, found);
-    if (found.empty())
-        return std::nullopt;
-    const double shortest = std::min_element(found.begin(), found.end(), [](const auto& a, const auto& b) {
-                                return a.length_mm < b.length_mm;
-                            })->length_mm;
-    rank_pair best{std::numeric_limits<unsigned>::max(), 0};
-    for (const found_segment& s : found)
-        if (s.length_mm <= shortest + same_place_mm)
-            best = std::min(best, s.ends);
-    return best;
+    return shortest(found);
+}
+
+std::optional<rank_pair> segment_at(const layout::impl& l, const rank_triple& three, point p)
+{
+    std::vector<found_segment> found;
+    take_segment(l, three[0], three[1], p, found);
+    take_segment(l, three[0], three[2], p, found);
+    take_segment(l, three[1], three[2], p, found);
+    return shortest(found);
 }
 
 std::optional<near_triple> triangle_at(const layout::impl& l, unsigned face, point p)
@@ -163,6 +183,15 @@ std::optional<near_triple> triangle_at(const layout::impl& l, unsigned face, poi
                        {first->far_mm, second->far_mm, third->far_mm}};
 }
 
+near_triple closest_three(const layout::impl& l, const std::vector<unsigned>& ranks, point p)
+{
+    seen_ring all(l, ranks, p);
+    const seen_tactor* first = all.closest([](const seen_tactor&) { return true; });
+    const seen_tactor* second = all.closest([&](const seen_tactor& v) { return &v != first; });
+    const seen_tactor* third = all.closest([&](const seen_tactor& v) { return &v != first && &v != second; });
+    return {{first->rank, second->rank, third->rank}, {first->far_mm, second->far_mm, third->far_mm}};
+}
+
 rank_pair nearest_edge(const layout::impl& l, unsigned face, point p)
 {
     const std::vector<unsigned>& ring = l.faces[face];
@@ -188,11 +217,8 @@ rank_triple fan_triangle(const layout::impl& l, unsigned face, point p)
         const point a = l.points[ring[0]];
         const point b = l.points[ring[i - 1]];
         const point c = l.points[ring[i]];
-        const bool inside = turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
         // No bisection: in very thin faces rounding breaks the order of directions.
-        const double off = inside ? 0.0
-                                  : std::min({segment_distance_mm(a, b, p), segment_distance_mm(b, c, p),
-                                              segment_distance_mm(c, a, p)});
+        const double off = triangle_distance_mm(a, b, c, p);
         if (off < least) {
             least = off;
             best = {ring[0], ring[i - 1], ring[i]};

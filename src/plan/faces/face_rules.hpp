@@ -28,9 +28,16 @@ std::optional<unsigned> tactor_at(const layout::impl& l, const std::vector<unsig
 /// one of lowest rank. p is on no tactor. O(k log k) in a face's tactors.
 std::optional<rank_pair> segment_at(const layout::impl& l, const std::vector<unsigned>& faces, point p);
 
+/// Rule 2 among three tactors, wherever they lie.
+std::optional<rank_pair> segment_at(const layout::impl& l, const rank_triple& three, point p);
+
 /// Rule 3: of all triangles of the face's tactors that hold p, the first by the distances of its
 /// tactors: the closest, then the second, then the third. p is on no segment of the face. O(k).
 std::optional<near_triple> triangle_at(const layout::impl& l, unsigned face, point p);
+
+/// Returns the three of these tactors that are closest to p, in this order, of ties the lowest. There are
+/// three or more. O(k).
+near_triple closest_three(const layout::impl& l, const std::vector<unsigned>& ranks, point p);
 
 /// The segment between neighbours on the face's ring that is nearest to p.
 rank_pair nearest_edge(const layout::impl& l, unsigned face, point p);

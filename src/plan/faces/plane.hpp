@@ -39,6 +39,15 @@ inline double segment_distance_mm(point a, point b, point p) noexcept
     return length_mm(p, nearest_on_segment(a, b, p));
 }
 
+/// Distance of p from the triangle a, b, c, where turn(a, b, c) >= 0; 0 inside.
+inline double triangle_distance_mm(point a, point b, point c, point p) noexcept
+{
+    if (turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0)
+        return 0.0;
+    return std::min(
+        {segment_distance_mm(a, b, p), segment_distance_mm(b, c, p), segment_distance_mm(c, a, p)});
+}
+
 inline bool finite(point p) noexcept
 {
     return std::isfinite(p.x_mm) && std::isfinite(p.y_mm);

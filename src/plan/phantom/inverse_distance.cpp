@@ -15,6 +15,31 @@ namespace {
 // Segments of so few tactors are looked at one by one.
 constexpr std::size_t few = 8;
 
+double distance(const layout& l, unsigned rank, point p)
+{
+    return length_mm(p, access::of(l).points[rank]);
+}
+
+/// Eq. (2).
+std::array<double, 2> share_of_two(const layout& l, const rank_pair& two, point p, double a_v)
+{
+    const double d1 = distance(l, two.first, p);
+    const double d2 = distance(l, two.second, p);
+    return {std::sqrt(d2 / (d1 + d2)) * a_v, std::sqrt(d1 / (d1 + d2)) * a_v};
+}
+
+/// Eq. (10).
+std::array<double, 3> share_of_three(const std::array<double, 3>& distances_mm, double a_v)
+{
+    std::array<double, 3> parts{};
+    double sum = 0.0;
+    for (std::size_t i = 0; i < 3; ++i)
+        sum += parts[i] = 1.0 / distances_mm[i];
+    for (double& part : parts)
+        part = std::sqrt(part / sum) * a_v;
+    return parts;
+}
+
 /// Park et al. 2016: Eq. (2) on a segment, Eq. (10) in a triangle.
 class inverse_distance final : public model_of_three {
 public:
@@ -38,7 +63,7 @@ public:
         if (const auto on = tactor_at(l, faces, p))
             add_drive(layout_, *on, a_v, out);
         else if (const auto segment = segment_at(l, faces, p))
-            on_segment(*segment, p, a_v, out);
+            add_two(layout_, *segment, p, a_v, out);
         else
             in_faces(faces, p, a_v, out);
         sort_drives(out);
@@ -59,7 +84,9 @@ public:
 
     std::array<double, 3> amplitudes(const rank_triple& three, point p, double a_v) const override
     {
-        return share_of_three({distance(three[0], p), distance(three[1], p), distance(three[2], p)}, a_v);
+        return share_of_three(
+            {distance(layout_, three[0], p), distance(layout_, three[1], p), distance(layout_, three[2], p)},
+            a_v);
     }
 
     unsigned taken_along(const std::vector<unsigned>& faces, rank_pair on, point,
@@ -75,30 +102,16 @@ public:
 
     std::array<double, 2> amplitudes_of_two(const rank_pair& two, point p, double a_v) const override
     {
-        return share_of_two(distance(two.first, p), distance(two.second, p), a_v);
+        return share_of_two(layout_, two, p, a_v);
     }
 
 private:
-    double distance(unsigned rank, point p) const
-    {
-        return length_mm(p, detail::access::of(layout_).points[rank]);
-    }
-
-    void on_segment(rank_pair ends, point p, double a_v, std::vector<drive>& out) const
-    {
-        const std::array<double, 2> a = amplitudes_of_two(ends, p, a_v);
-        add_drive(layout_, ends.first, a[0], out);
-        add_drive(layout_, ends.second, a[1], out);
-    }
-
     bool in_face(unsigned face, point p, double a_v, std::vector<drive>& out) const
     {
         const auto three = triangle_at(detail::access::of(layout_), face, p);
         if (!three)
             return false;
-        const std::array<double, 3> a = share_of_three(three->distances, a_v);
-        for (std::size_t i = 0; i < 3; ++i)
-            add_drive(layout_, three->tactors[i], a[i], out);
+        add_three(layout_, *three, a_v, out);
         return true;
     }
 
@@ -108,7 +121,7 @@ private:
             if (in_face(f, p, a_v, out))
                 return;
         // Beside a face by more than the tolerance, where rounding opened a gap.
-        on_segment(nearest_edge(detail::access::of(layout_), faces.front(), p), p, a_v, out);
+        add_two(layout_, nearest_edge(detail::access::of(layout_), faces.front(), p), p, a_v, out);
     }
 
     layout layout_;
@@ -116,20 +129,18 @@ private:
 
 } // namespace
 
-std::array<double, 2> share_of_two(double d1_mm, double d2_mm, double a_v) noexcept
+void add_two(const layout& l, const rank_pair& two, point p, double a_v, std::vector<drive>& out)
 {
-    return {std::sqrt(d2_mm / (d1_mm + d2_mm)) * a_v, std::sqrt(d1_mm / (d1_mm + d2_mm)) * a_v};
+    const std::array<double, 2> a = share_of_two(l, two, p, a_v);
+    add_drive(l, two.first, a[0], out);
+    add_drive(l, two.second, a[1], out);
 }
 
-std::array<double, 3> share_of_three(const std::array<double, 3>& distances_mm, double a_v) noexcept
+void add_three(const layout& l, const near_triple& three, double a_v, std::vector<drive>& out)
 {
-    std::array<double, 3> parts{};
-    double sum = 0.0;
+    const std::array<double, 3> a = share_of_three(three.distances, a_v);
     for (std::size_t i = 0; i < 3; ++i)
-        sum += parts[i] = 1.0 / distances_mm[i];
-    for (double& part : parts)
-        part = std::sqrt(part / sum) * a_v;
-    return parts;
+        add_drive(l, three.tactors[i], a[i], out);
 }
 
 std::shared_ptr<const phantom_model> make_inverse_distance(const layout& l)

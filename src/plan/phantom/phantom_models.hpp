@@ -3,10 +3,12 @@
 /// The built-in phantom models, one factory each.
 #pragma once
 
-#include <array>
 #include <memory>
+#include <vector>
 
 #include <tactor/phantom.hpp>
+
+#include "plan/faces/face_rules.hpp"
 
 namespace tactor::detail {
 
@@ -27,10 +29,10 @@ point check_request(const layout& l, point p, double a_v);
 /// Adds a drive for the tactor of that rank if its amplitude is above 0.
 void add_drive(const layout& l, unsigned rank, double amplitude, std::vector<drive>& out);
 
-/// Eq. (2) of Park et al. 2016: amplitudes of two tactors at these distances from a point between them.
-std::array<double, 2> share_of_two(double d1_mm, double d2_mm, double a_v) noexcept;
-/// Eq. (10): amplitudes of three tactors at these distances.
-std::array<double, 3> share_of_three(const std::array<double, 3>& distances_mm, double a_v) noexcept;
+/// Adds what two tactors play for a point between them: Eq. (2) of Park et al. 2016.
+void add_two(const layout& l, const rank_pair& two, point p, double a_v, std::vector<drive>& out);
+/// Adds what three tactors play: Eq. (10).
+void add_three(const layout& l, const near_triple& three, double a_v, std::vector<drive>& out);
 
 /// Brings drives into the order of tactor.
 void sort_drives(std::vector<drive>& out);
