@@ -205,28 +205,22 @@ class Remote(ToolTest):
         self.assertIn("standard input:2:", p.stderr.read())
         self.assertIn(watcher.end_of(n)["state"], ("cancelled", "finished"))
 
-    def test_points_that_a_limit_refuses_come_later_and_none_is_left_out(self):
-        taken = []
-        path = str(self.dir / "strict.sock")
+    def played_at_a_door(self, points, answer):
+        """Plays live points at a server that this test is; `answer(params)` gives its reply to each of them, None: that it is taken."""
+        path = str(self.dir / "door.sock")
         with socket.socket(socket.AF_UNIX) as door:
             door.bind(path)
             door.listen()
             p = self.begun("play", "--live", "-", "--socket", path)
-            p.stdin.write("".join(f"{i} {i}\n" for i in range(40)))
+            p.stdin.write(points)
             p.stdin.close()
             p.stdin = None
             with door.accept()[0] as peer, peer.makefile("rw", encoding="utf-8") as lines:
-                refused = set()
                 for line in lines:
                     m = json.loads(line)
                     reply = {"result": {"stream": {"format": None, "state": "running"}, "stroke": 1}}
                     if m["method"] == "to":
-                        x = m["params"]["x_mm"]
-                        if x % 10 == 9 and x not in refused:  # the last one is among them
-                            refused.add(x)
-                            reply = {"error": {"code": -32001, "message": "too many"}}
-                        else:
-                            taken.append(x)
+                        reply = answer(m["params"]) or reply
                     if m["method"] == "end":
                         reply = {"method": "stroke", "params": {"stroke": 1, "state": "finished"} |
                                  {"reason": "", "frames": 1, "started_s": None, "late_s": 0}}
@@ -234,6 +228,18 @@ class Remote(ToolTest):
                     lines.flush()
         out, err = p.communicate(timeout=PATIENCE_S)
         self.assertEqual((p.returncode, err), (0, ""), out)
+
+    def test_points_that_a_limit_refuses_come_later_and_none_is_left_out(self):
+        taken, refused = [], set()
+
+        def answer(params):
+            x = params["x_mm"]
+            if x % 10 == 9 and x not in refused:  # the last one is among them
+                refused.add(x)
+                return {"error": {"code": -32001, "message": "too many"}}
+            return taken.append(x)
+
+        self.played_at_a_door("".join(f"{i} {i}\n" for i in range(40)), answer)
         self.assertEqual(taken, list(range(40)))
 
     def test_a_stroke_that_the_server_interrupts_is_a_failure(self):
@@ -281,27 +287,8 @@ class Remote(ToolTest):
 
     def test_nan_lifts_the_touch_until_the_next_point(self):
         taken = []
-        path = str(self.dir / "records.sock")
-        with socket.socket(socket.AF_UNIX) as door:
-            door.bind(path)
-            door.listen()
-            p = self.begun("play", "--live", "-", "--socket", path)
-            p.stdin.write("nan nan\n10 10\n20\t15 0.5\nNaN nan\n nan -nan nan\n20 nan 1\nnan\n30, 30\n")
-            p.stdin.close()
-            p.stdin = None
-            with door.accept()[0] as peer, peer.makefile("rw", encoding="utf-8") as lines:
-                for line in lines:
-                    m = json.loads(line)
-                    reply = {"result": {"stream": {"format": None, "state": "running"}, "stroke": 1}}
-                    if m["method"] == "to":
-                        taken.append([m["params"][name] for name in ("x_mm", "y_mm", "intensity")])
-                    if m["method"] == "end":
-                        reply = {"method": "stroke", "params": {"stroke": 1, "state": "finished"} |
-                                 {"reason": "", "frames": 1, "started_s": None, "late_s": 0}}
-                    lines.write(json.dumps({"jsonrpc": "2.0"} | ({"id": m["id"]} if "id" in m else {}) | reply) + "\n")
-                    lines.flush()
-        out, err = p.communicate(timeout=PATIENCE_S)
-        self.assertEqual((p.returncode, err), (0, ""), out)
+        self.played_at_a_door("nan nan\n10 10\n20\t15 0.5\nNaN nan\n nan -nan nan\n20 nan 1\nnan\n30, 30\n",
+                              lambda params: taken.append([params[name] for name in ("x_mm", "y_mm", "intensity")]))
         self.assertEqual(taken, [[10, 10, 1], [20, 15, 0.5], *[[20, 15, 0]] * 4, [30, 30, 1]])
         self.ok("play", "--live", "-", "-D", "null", stdin="nan nan\n")
 
