@@ -1,24 +1,39 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The chips of this machine.
+/// The chips of this machine, and which line of which chip a user means.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <tactor/gpio.hpp>
+#include <tactor/lines.hpp>
 
-#include "amplifier/find.hpp"
+#include "amplifier/line.hpp"
 
 namespace tactor::gpio {
+
+/// A line that exists: chips[chip].info.lines[offset].
+struct line_place {
+    std::size_t chip = 0;
+    unsigned offset = 0;
+};
+
+/// Finds the line that a user means. Pure: the chips are values. A chip is named by path or by label, a line
+/// by name or by offset; without a chip the name is looked for on all.
+/// \throws error: not_available, with what there is instead; bad_input without a name and without chip and
+///         offset.
+line_place find_line(std::span<const chip> chips, const gpio_line_name& wanted);
 
 /// Device nodes gpiochipN in a folder, by number. Links are left out: Raspberry Pi kernels keep gpiochip4
 /// as a second name of gpiochip0.
 std::vector<std::string> chip_paths(const std::filesystem::path& folder = "/dev");
 
-/// Why a path is no GPIO chip, as an errno; 0: it is one. Opens nothing: a pipe would wait, and a watchdog
-/// would start.
+/// Returns why a path is no GPIO chip, as an errno; 0: it is one. Opens nothing: a pipe would wait, and a
+/// watchdog would start.
 int not_a_chip(const std::string& path);
 
 /// Name of the group that owns a file, "gpio" where that cannot be found out.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "amplifier/find.hpp"
+#include "amplifier/chips.hpp"
 
 #include <algorithm>
 #include <string>

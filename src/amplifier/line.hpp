@@ -5,7 +5,9 @@
 #pragma once
 
 #include <cerrno>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <tactor/gpio.hpp>
@@ -75,5 +77,24 @@ chip read_chip(const std::string& path);
 requested<output> request_output(const output_request& r);
 /// Every edge that the kernel saw, not debounced.
 requested<edge_input> request_input(const input_request& r);
+
+/// A filter of contact bounce by the edges' own time stamps. Drops every edge that follows another, dropped
+/// or not, within the window: the first edge of a burst passes at its own time and the rest of the burst does
+/// not, however long it lasts.
+class debounce {
+public:
+    explicit debounce(std::int64_t window_ns) : window_ns_(window_ns) {}
+
+    bool accepts(std::int64_t time_ns) noexcept
+    {
+        const bool apart = !last_ns_ || time_ns - *last_ns_ >= window_ns_;
+        last_ns_ = time_ns;
+        return apart;
+    }
+
+private:
+    std::int64_t window_ns_;
+    std::optional<std::int64_t> last_ns_ = {};
+};
 
 } // namespace tactor::gpio

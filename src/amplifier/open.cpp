@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "amplifier/chips.hpp"
-#include "amplifier/debounce.hpp"
 #include "amplifier/errors.hpp"
 #include "amplifier/holder.hpp"
 #include "amplifier/line.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "amplifier/debounce.hpp"
+#include "amplifier/line.hpp"
 
 #include <random>
 #include <vector>

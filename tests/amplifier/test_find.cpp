@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Which line a user means, on chips that are but values.
-#include "amplifier/find.hpp"
+#include "amplifier/chips.hpp"
 
 #include <cerrno>
 #include <string>
