@@ -4,6 +4,7 @@
 #include <tactor/lines.hpp>
 #include <tactor/log.hpp>
 #include <tactor/movement.hpp>
+#include <tactor/sample_format.hpp>
 #include <tactor/sink.hpp>
 #include <tactor/stroke.hpp>
 
@@ -46,6 +47,12 @@ constexpr detail::kind_table<log_kind, 4> log_kinds("kind of log line", {{log_ki
                                                                          {log_kind::warning, "warning"},
                                                                          {log_kind::error, "error"}});
 
+constexpr detail::kind_table<format_kind, 5> formats("sample format", {{format_kind::float32, "float"},
+                                                                       {format_kind::s16, "s16"},
+                                                                       {format_kind::s24_3, "s24"},
+                                                                       {format_kind::s24_4, "s24-4"},
+                                                                       {format_kind::s32, "s32"}});
+
 } // namespace
 
 TACTOR_KIND_FUNCTIONS(error_kind, errors)
@@ -56,6 +63,23 @@ TACTOR_KIND_FUNCTIONS(edge_kind, edges)
 TACTOR_KIND_FUNCTIONS(pull_kind, pulls)
 TACTOR_KIND_FUNCTIONS(io_kind, states)
 TACTOR_KIND_FUNCTIONS(log_kind, log_kinds)
+
+std::size_t bytes_of(format_kind f) noexcept
+{
+    switch (f) {
+    case format_kind::s16:
+        return 2;
+    case format_kind::s24_3:
+        return 3;
+    case format_kind::float32:
+    case format_kind::s24_4:
+    case format_kind::s32:
+        break;
+    }
+    return 4;
+}
+
+TACTOR_KIND_FUNCTIONS(format_kind, formats)
 
 } // namespace v0
 } // namespace tactor

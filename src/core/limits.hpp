@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What no array exceeds: beyond it there is a slip of the pen.
+// Limits of arrays and strokes: a number beyond them is a slip of the pen.
 #pragma once
 
 namespace tactor::detail {
@@ -23,5 +23,13 @@ constexpr unsigned least_period_frames(unsigned rate)
 
 inline constexpr double min_db = -200.0; ///< below the noise of any converter
 inline constexpr double max_gain_db = 60.0;
+
+inline constexpr double longest_stroke_s = 86400.0;
+
+/// Least speed of a profile: its slowest place takes no longer than somebody can wait for it.
+inline constexpr double least_speed_mm_s = 1e-6;
+
+/// Intensity is a factor near 1; more than this is a slip.
+inline constexpr double max_intensity = 1000.0;
 
 } // namespace tactor::detail

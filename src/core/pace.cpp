@@ -12,7 +12,6 @@
 #include "core/limits.hpp"
 #include "core/profile.hpp"
 #include "core/refused.hpp"
-#include "core/trajectory/limits.hpp"
 
 namespace tactor::detail {
 namespace {

@@ -14,7 +14,7 @@
 #include <tactor/error.hpp>
 
 #include "core/refused.hpp"
-#include "core/trajectory/way.hpp"
+#include "core/trajectory/spans.hpp"
 
 namespace tactor::detail {
 

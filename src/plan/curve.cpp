@@ -9,7 +9,7 @@
 
 #include <tactor/error.hpp>
 
-#include "core/trajectory/limits.hpp"
+#include "core/limits.hpp"
 #include "core/words.hpp"
 #include "plan/curve_impl.hpp"
 #include "plan/rounded.hpp"

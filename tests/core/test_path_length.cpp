@@ -14,7 +14,7 @@
 #include <tactor/error.hpp>
 #include <tactor/path.hpp>
 
-#include "core/path/cubic_length.hpp"
+#include "core/path/shape.hpp"
 #include "rounds.hpp"
 
 namespace path_length_test {

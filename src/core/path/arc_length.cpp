@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/path/arc_length.hpp"
+#include "core/path/impl.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/path/cubic_length.hpp"
+#include "core/path/shape.hpp"
 
 #include <array>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is inside a path.
+// The contents of a path: its vertices and curves, and the arc length of each piece with its inverse.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,31 @@
 
 #include <tactor/path.hpp>
 
-#include "core/path/arc_length.hpp"
 #include "core/path/outline.hpp"
+#include "core/path/shape.hpp"
+
+namespace tactor::detail {
+
+/// A table of (parameter, arc length) so fine that Gauss quadrature from one entry towards the next is good
+/// to about a nanometre, cusps included.
+class arc_length {
+public:
+    explicit arc_length(const shape& c);
+
+    double total() const noexcept { return s_.back(); }
+    /// Returns the arc length at a parameter from 0 to 1. `c` is the shape that the table was made of.
+    double at(const shape& c, double t) const noexcept;
+    /// Returns the parameter at an arc length, clamped to 0 ... 1.
+    double parameter(const shape& c, double s_mm) const noexcept;
+
+private:
+    bool even_; ///< the parameter goes with the length
+    std::vector<double> t_;
+    std::vector<double> s_;
+    std::vector<double> speed_; ///< at those; none where the parameter goes with the length
+};
+
+} // namespace tactor::detail
 
 namespace tactor {
 inline namespace v0 {

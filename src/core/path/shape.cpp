@@ -11,7 +11,6 @@
 #include <boost/math/tools/toms748_solve.hpp>
 
 #include "core/distance.hpp"
-#include "core/path/cubic_length.hpp"
 
 namespace tactor::detail {
 namespace {

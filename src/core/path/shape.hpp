@@ -69,6 +69,9 @@ speed_change speed_and_rate(const shape& c, double t) noexcept;
 /// Length of the piece from one parameter to another, by Gauss-Legendre quadrature on fifteen nodes.
 double length_between(const shape& c, double from, double to) noexcept;
 
+/// Returns length_between() of a cubic, from < to, to the last bit: the same fifteen nodes, several at once.
+double cubic_length(const cubic& c, double from, double to) noexcept;
+
 /// Whether the speed is the same everywhere, but for rounding: an arc of a circle.
 bool is_even(const shape& c) noexcept;
 

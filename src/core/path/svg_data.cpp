@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The grammar of path data; what its commands draw: path_svg_pen.cpp.
-#include "core/path/svg_data.hpp"
+// The grammar of path data; what its commands draw: svg_pen.cpp.
 
 #include <cmath>
 #include <cstddef>

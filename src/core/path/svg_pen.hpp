@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What the commands of path data draw.
+// SVG path data, the d attribute (https://www.w3.org/TR/SVG2/paths.html), and what its commands draw.
 #pragma once
 
 #include <array>
-#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "core/path/outline.hpp"
@@ -52,11 +52,12 @@ private:
     point quadratic_handle_;
 };
 
-/// The arc of A: the ellipse with radii rx and ry (signs do not matter) whose x axis is turned by `turn_deg`,
-/// from point to point, the longer or the shorter way round. Radii that do not reach grow together until they
-/// do. Nothing where it is a straight line, which it is with a radius of 0.
-/// https://www.w3.org/TR/SVG2/implnote.html#ArcImplementationNotes
-std::optional<elliptic> svg_arc(point from, double rx, double ry, double turn_deg, bool longer,
-                                bool clockwise, point to);
+/// A limit on the subpaths of path data: with `one`, a second is a fault.
+enum class subpaths { one, any };
+
+/// Returns the subpaths that draw something, in user units. Moves that nothing follows are left out. A number
+/// beyond `limit` is a fault.
+/// \throws value_fault at the first thing that is not path data.
+std::vector<outline> parse_path_data(std::string_view data, double limit, subpaths wanted);
 
 } // namespace tactor::detail

@@ -11,11 +11,11 @@
 #include <tactor/error.hpp>
 
 #include "core/access.hpp"
+#include "core/limits.hpp"
 #include "core/path/impl.hpp"
 #include "core/path/meets.hpp"
 #include "core/path/outline.hpp"
 #include "core/trajectory/impl.hpp"
-#include "core/trajectory/limits.hpp"
 
 namespace tactor {
 inline namespace v0 {

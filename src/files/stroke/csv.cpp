@@ -16,7 +16,6 @@
 #include "core/limits.hpp"
 #include "core/path/number.hpp"
 #include "core/suggest.hpp"
-#include "core/trajectory/limits.hpp"
 #include "core/words.hpp"
 #include "files/stroke/csv_form.hpp"
 #include "files/stroke/text.hpp"

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "core/limits.hpp"
 #include "core/pace.hpp"
-#include "core/trajectory/limits.hpp"
 
 namespace tactor::detail {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "core/trajectory/limits.hpp"
+#include "core/limits.hpp"
 
 namespace tactor::detail {
 namespace {

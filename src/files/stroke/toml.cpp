@@ -13,10 +13,10 @@
 #include <tactor/stroke.hpp>
 
 #include "core/access.hpp"
+#include "core/limits.hpp"
 #include "core/profile.hpp"
 #include "core/suggest.hpp"
 #include "core/trajectory/impl.hpp"
-#include "core/trajectory/limits.hpp"
 #include "files/stroke/choices.hpp"
 #include "files/stroke/movement.hpp"
 #include "files/stroke/order.hpp"

@@ -6,7 +6,6 @@
 #include "core/kind_names.hpp"
 #include "core/limits.hpp"
 #include "core/suggest.hpp"
-#include "core/trajectory/limits.hpp"
 
 namespace tactor::detail {
 

@@ -12,7 +12,6 @@
 
 #include "core/limits.hpp"
 #include "core/path/impl.hpp"
-#include "core/trajectory/limits.hpp"
 #include "files/stroke/text.hpp"
 #include "files/svg/document.hpp"
 #include "files/svg/scope.hpp"
