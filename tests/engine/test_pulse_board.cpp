@@ -12,7 +12,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/control/pulses.hpp"
+#include "engine/control/trigger_thread.hpp"
 
 namespace pulse_board_test {
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Sync pulses: which, when, and what is counted; on virtual time, and once with the real thread.
-#include "engine/control/pulses.hpp"
 
 #include <algorithm>
 #include <condition_variable>

@@ -4,6 +4,10 @@
 #include <algorithm>
 #include <utility>
 
+#include <poll.h>
+
+#include "rt/clock.hpp"
+
 namespace tactor::engine {
 
 amplifier_driver::amplifier_driver(link& l, enable_line& line, const driver_options& o,
@@ -186,6 +190,40 @@ std::int64_t amplifier_driver::next_ns() const noexcept
     // One that had passed when it last looked waits for something else than time.
     return due && *due > updated_ns_ ? std::clamp<std::int64_t>(*due - now, 0, options_.beat_ns)
                                      : options_.beat_ns;
+}
+
+amplifier_thread::amplifier_thread(link& l, enable_line& line, const driver_options& o,
+                                   const rt::thread_options& t)
+    : link_(l), driver_(l, line, o, rt::monotonic_ns), thread_(t, [this] { run(); })
+{
+}
+
+amplifier_thread::~amplifier_thread()
+{
+    over_.store(true, std::memory_order_release);
+    link_.amplifier.wake.signal();
+    thread_.join();
+}
+
+void amplifier_thread::run() noexcept
+{
+    while (!over_.load(std::memory_order_acquire)) {
+        driver_.update();
+        sleep();
+    }
+    driver_.close();
+    while (driver_.trying()) {
+        sleep();
+        driver_.update();
+    }
+}
+
+void amplifier_thread::sleep() noexcept
+{
+    const timespec timeout = rt::to_timespec(driver_.next_ns());
+    pollfd fd{.fd = link_.amplifier.wake.fd(), .events = POLLIN, .revents = 0};
+    if (::ppoll(&fd, 1, &timeout, nullptr) > 0)
+        link_.amplifier.wake.consume();
 }
 
 } // namespace tactor::engine

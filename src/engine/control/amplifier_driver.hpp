@@ -3,6 +3,7 @@
 /// Drives the amplifier's line by what the audio thread says of the stream, and watches that thread.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 
@@ -10,6 +11,7 @@
 
 #include "amplifier/amplifier.hpp"
 #include "engine/link.hpp"
+#include "rt/thread.hpp"
 
 namespace tactor::engine {
 
@@ -69,6 +71,26 @@ private:
     bool stalled_ = false;
     bool told_ready_ = false;
     std::uint64_t told_events_ = 0;
+};
+
+/// The thread of an amplifier_driver. The audio thread and time wake it.
+class amplifier_thread {
+public:
+    /// \throws std::system_error when no thread can be started.
+    amplifier_thread(link& l, enable_line& line, const driver_options& o, const rt::thread_options& t);
+    /// Switches off, unless it is off already. Blocks while the line refuses and is tried again.
+    ~amplifier_thread();
+    amplifier_thread(const amplifier_thread&) = delete;
+    amplifier_thread& operator=(const amplifier_thread&) = delete;
+
+private:
+    void run() noexcept;
+    void sleep() noexcept;
+
+    link& link_;
+    amplifier_driver driver_;
+    std::atomic<bool> over_{false};
+    rt::thread thread_;
 };
 
 } // namespace tactor::engine

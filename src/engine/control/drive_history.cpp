@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/control/drive_history.hpp"
+#include "engine/control/player_impl.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -11,6 +11,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,17 +21,42 @@
 
 #include "engine/audio/audio_loop.hpp"
 #include "engine/audio/audio_thread.hpp"
-#include "engine/control/amplifier_thread.hpp"
+#include "engine/control/amplifier_driver.hpp"
 #include "engine/control/control_thread.hpp"
-#include "engine/control/drive_history.hpp"
 #include "engine/control/feeder.hpp"
-#include "engine/control/fitting.hpp"
 #include "engine/control/stream_log.hpp"
 #include "engine/control/trigger_thread.hpp"
 #include "engine/link.hpp"
+#include "synth/guard/drive_history.hpp"
+
+namespace tactor::engine {
+
+/// Returns the array if it fits the stream; otherwise some drives would reach no tactor.
+/// \throws error: bad_input for a tactor on a channel that the stream does not have, not_available for one
+///         that has no channel of the device to itself.
+const array& fitting(const array& a, const stream_setup& s);
+
+/// Checks that a score fits the player. `limits`: of its array, by channel of the stream; 0: no tactor.
+/// \throws error (bad_input) for a score that has another rate or number of channels, drives a channel
+///         without a tactor, drives a tactor beyond its limit, or has its marker on a tactor's channel.
+void check_fits(const score& s, const stream_setup& stream, std::span<const double> limits);
+
+} // namespace tactor::engine
 
 namespace tactor {
 inline namespace v0 {
+
+/// The time that each channel was driven, as of one moment.
+struct drive_history::impl {
+    synth::drive_history channels;
+    std::int64_t taken_ns = 0; ///< CLOCK_MONOTONIC
+
+    /// Returns the history as of `now_ns`: the time since `taken_ns` counts as silence, but for drives that
+    /// were still to come.
+    synth::drive_history as_of(std::int64_t now_ns) const;
+    /// Returns the history as of now, without the drives that are still to come.
+    synth::drive_history until_now() const;
+};
 
 /// Shared with the control thread while that is at work, so that a handler can destroy the player.
 struct player::impl : std::enable_shared_from_this<player::impl> {
