@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "build_facts_config.hpp"
-#include "synth/mix/vector_path.hpp"
+#include "synth/mix/converter.hpp"
 
 namespace tactor {
 inline namespace v0 {

@@ -8,7 +8,7 @@
 #include <tactor/error.hpp>
 
 #include "pieces.hpp"
-#include "synth/guard/limiter.hpp"
+#include "synth/guard/guard.hpp"
 #include "synth/mix/converter.hpp"
 #include "synth/mix/oscillator.hpp"
 

@@ -12,7 +12,7 @@
 
 #include "pieces.hpp"
 #include "synth/score/score.hpp"
-#include "synth/tone/fourier.hpp"
+#include "synth/tone/waves.hpp"
 
 namespace tones {
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// drive_limits in the units of power_guard and drive_guard.
+/// The last guard of a tactor, and drive_limits in the units of power_guard and drive_guard.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 
@@ -25,5 +26,21 @@ struct guard_settings {
 void check_limits(const drive_limits& l);
 /// Limits at a sample rate. Throws like check_limits.
 guard_settings guards_of(const drive_limits& l, unsigned rate);
+
+/// Holds n samples within -limit ... limit; what is not a number becomes 0. Returns how many it changed, not
+/// counting an excess of rounding noise.
+std::uint64_t limit_block(double* x, unsigned n, double limit) noexcept;
+
+/// Returns true where limit_block() cannot change samples of at most `peak`; false for what is not a number.
+inline bool within_limit(double peak, double limit) noexcept
+{
+    return peak <= limit * (1.0 - 1e-12);
+}
+
+/// Returns the limit as given, but nothing outside 0 ... 1.
+inline double clean_limit(double l) noexcept
+{
+    return l > 0.0 ? std::min(l, 1.0) : 0.0;
+}
 
 } // namespace tactor::synth

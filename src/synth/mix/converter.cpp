@@ -8,13 +8,69 @@
 #include <cstring>
 
 #include "core/clones.hpp"
-#include "synth/mix/abreast.hpp"
 #include "synth/mix/oscillator.hpp"
 #include "synth/mix/sincos.hpp"
 
 namespace tactor::synth {
-
 namespace {
+
+/// Samples of one channel, as their bits.
+struct alignas(64) lane : std::array<std::uint32_t, block_frames> {};
+
+/// Channels that are written together.
+constexpr std::size_t abreast = 4;
+
+using lane_pointers = std::array<const lane*, abreast>;
+using quad = std::uint32_t __attribute__((vector_size(16)));
+using short_quad = std::uint16_t __attribute__((vector_size(8)));
+
+/// A frame, each sample cut to the element of Row.
+template <class Row>
+void store(quad frame, std::byte* out) noexcept
+{
+    const Row cut = __builtin_convertvector(frame, Row);
+    std::memcpy(out, &cut, sizeof cut);
+}
+
+quad load(const lane& v, unsigned i) noexcept
+{
+    quad q;
+    std::memcpy(&q, &v[i], sizeof q);
+    return q;
+}
+
+template <class Row>
+void write(const lane_pointers& from, unsigned n, std::byte* out, std::size_t stride) noexcept
+{
+    unsigned i = 0;
+    for (; i + 4 <= n; i += 4, out += 4 * stride) {
+        const quad a = load(*from[0], i);
+        const quad b = load(*from[1], i);
+        const quad c = load(*from[2], i);
+        const quad d = load(*from[3], i);
+        const quad ab = __builtin_shufflevector(a, b, 0, 4, 1, 5);
+        const quad cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+        const quad ab_next = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+        const quad cd_next = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+        store<Row>(__builtin_shufflevector(ab, cd, 0, 1, 4, 5), out);
+        store<Row>(__builtin_shufflevector(ab, cd, 2, 3, 6, 7), out + stride);
+        store<Row>(__builtin_shufflevector(ab_next, cd_next, 0, 1, 4, 5), out + 2 * stride);
+        store<Row>(__builtin_shufflevector(ab_next, cd_next, 2, 3, 6, 7), out + 3 * stride);
+    }
+    for (; i < n; ++i, out += stride)
+        store<Row>(quad{(*from[0])[i], (*from[1])[i], (*from[2])[i], (*from[3])[i]}, out);
+}
+
+/// Writes, for each of n frames, `stride` bytes apart, the low `bytes` (2 or 4) of the lanes' samples, side
+/// by side.
+void write_abreast(const lane_pointers& from, std::size_t bytes, unsigned n, std::byte* out,
+                   std::size_t stride) noexcept
+{
+    if (bytes == 2)
+        write<short_quad>(from, n, out, stride);
+    else
+        write<quad>(from, n, out, stride);
+}
 
 static_assert(std::endian::native == std::endian::little, "the formats are little-endian");
 
@@ -75,6 +131,29 @@ void scatter(const lane& v, std::size_t bytes, unsigned n, std::byte* out, std::
 
 constexpr lane silent{};
 
+// Its own clones say which one the loader took for all the others.
+#ifdef TACTOR_HAS_CLONES
+__attribute__((target("arch=x86-64-v4"))) const char* taken()
+{
+    return "avx-512";
+}
+
+__attribute__((target("avx2"))) const char* taken()
+{
+    return "avx2";
+}
+
+__attribute__((target("default"))) const char* taken()
+{
+    return "baseline";
+}
+#else
+const char* taken()
+{
+    return "baseline";
+}
+#endif
+
 } // namespace
 
 void interleave(format_kind f, std::span<const channel_samples> sounding, std::size_t channels, unsigned n,
@@ -101,7 +180,7 @@ void interleave(format_kind f, std::span<const channel_samples> sounding, std::s
             written = next + 1;
             continue;
         }
-        std::array<const lane*, abreast> from{&silent, &silent, &silent, &silent};
+        lane_pointers from{&silent, &silent, &silent, &silent};
         for (const channel_samples& c : sounding.first(count)) {
             const std::size_t i = c.channel - first;
             to_bits(f, c, n, lanes[i]);
@@ -111,6 +190,11 @@ void interleave(format_kind f, std::span<const channel_samples> sounding, std::s
         sounding = sounding.subspan(count);
         written = first + abreast;
     }
+}
+
+const char* vector_path() noexcept
+{
+    return taken();
 }
 
 } // namespace tactor::synth

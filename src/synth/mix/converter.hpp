@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Doubles to the sample formats.
+/// Doubles to the sample formats, four neighbouring channels at a time.
 #pragma once
 
 #include <cstddef>
@@ -25,5 +25,9 @@ struct channel_samples {
 /// Float is the nearest float. Never a negative zero.
 void interleave(format_kind f, std::span<const channel_samples> sounding, std::size_t channels, unsigned n,
                 std::byte* out) noexcept;
+
+/// Returns which of the loops that clones.hpp compiles runs on this processor: "avx-512", "avx2" or
+/// "baseline".
+const char* vector_path() noexcept;
 
 } // namespace tactor::synth

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "synth/guard/drive_guard.hpp"
-#include "synth/guard/limiter.hpp"
+#include "synth/guard/guard.hpp"
 #include "synth/guard/power_guard.hpp"
 #include "synth/mix/carrier.hpp"
 #include "synth/mix/converter.hpp"

@@ -22,7 +22,7 @@ public:
     /// Upper bounds of peaks(), linear, by tactor: the greatest intensity at the gain of each. For a plan
     /// whose intensity is not known to be a bound, the peaks themselves.
     std::vector<double> bounds(std::size_t number);
-    /// Greatest level of each tactor, linear; see continuous_peaks(). Harmless parts of a stroke are not
+    /// Greatest level of each tactor, linear, over its control points. Harmless parts of a stroke are not
     /// looked at if no other stroke overlaps it.
     /// \throws error (bad_input) for plans that cannot be rendered.
     std::vector<double> peaks(std::size_t number);

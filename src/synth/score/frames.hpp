@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 
+#include <tactor/plan.hpp>
 #include <tactor/render.hpp>
 
 namespace tactor::synth {
@@ -44,6 +45,9 @@ inline double ramp_seconds(std::optional<double> ramp_s, double carrier_s, doubl
         between_zeros(2.0 * carrier_s * carrier_hz, 2.0 * (carrier_s + duration_s) * carrier_hz);
     return smooth ? 0.0 : default_ramp_s;
 }
+
+/// Returns the ramp with which a burst, or a continuous stroke, rises where its envelope does not give one.
+double plain_ramp_s(double onset_s, double duration_s, const plan& p, const render_options& o) noexcept;
 
 /// Frames of the raised cosine at each end of a burst of `length` frames: at most half of it.
 inline std::uint32_t ramp_frames(double ramp_s, double rate, std::uint64_t length) noexcept

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "synth/score/place.hpp"
+#include "synth/score/score.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,6 @@
 
 #include "core/words.hpp"
 #include "synth/score/frames.hpp"
-#include "synth/score/ramps.hpp"
 
 namespace tactor::synth {
 

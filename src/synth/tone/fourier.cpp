@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "synth/tone/fourier.hpp"
+#include "synth/tone/waves.hpp"
 
 #include <algorithm>
 #include <bit>

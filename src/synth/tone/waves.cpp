@@ -11,7 +11,6 @@
 
 #include "core/recording_name.hpp"
 #include "synth/mix/sincos.hpp"
-#include "synth/tone/fourier.hpp"
 
 namespace tactor::synth {
 

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The samples behind a timbre.
+/// The samples behind a timbre, and the Fourier sums for them: when a score is made, never in the audio
+/// thread.
 #pragma once
 
+#include <complex>
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include <tactor/waveform.hpp>
 
@@ -32,5 +36,15 @@ wave_samples recorded_loop(const recording& r, unsigned rate);
 
 /// Twice the mean square, but at least 1.
 double power_of(const wave_samples& x) noexcept;
+
+using spectrum = std::vector<std::complex<double>>;
+
+/// Makes x[n] = sum over k of x[k] exp(2 pi i k n / size), in place; the size is a power of 2. The
+/// same bits on every machine.
+void fourier_sum(spectrum& x);
+
+/// Returns the first `count` coefficients c[k] = sum over n of x[n] exp(-2 pi i k n / size) / size of any
+/// number of samples.
+spectrum fourier_coefficients(std::span<const float> x, std::size_t count);
 
 } // namespace tactor::synth
