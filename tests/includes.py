@@ -39,11 +39,11 @@ PUBLIC = {
 USES_ALL_PUBLIC = {"cli", "plot", "python", "server", "study"}
 # What those may know of the library's inside, which is in the tool: no program that embeds it needs these.
 INSIDE = {
-    "cli": {"core/asked_pace.hpp", "core/kind_names.hpp", "core/option_bounds.hpp", "core/owned.hpp", "core/sha256.hpp", "core/split.hpp", "core/start_times.hpp", "core/suggest.hpp", "core/words.hpp", "files/channel_map.hpp", "files/input_files.hpp", "files/output_file.hpp", "files/setup_defaults.hpp", "files/stroke/text.hpp", "files/text_file.hpp", "percept/summaries.hpp", "rt/advice.hpp", "rt/clock.hpp", "rt/event_fd.hpp", "synth/score/drive_room.hpp", "synth/score/sounding_now.hpp"},
+    "cli": {"core/asked_pace.hpp", "core/kind_names.hpp", "core/option_bounds.hpp", "core/owned.hpp", "core/sha256.hpp", "core/split.hpp", "core/start_times.hpp", "core/suggest.hpp", "core/words.hpp", "files/channel_map.hpp", "files/input_files.hpp", "files/output_file.hpp", "files/setup_defaults.hpp", "files/text_file.hpp", "percept/summaries.hpp", "rt/advice.hpp", "rt/clock.hpp", "rt/event_fd.hpp", "synth/score/drive_room.hpp", "synth/score/sounding_now.hpp"},
     "study": {"core/kind_names.hpp", "core/owned.hpp", "core/sha256.hpp", "core/split.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_text.hpp", "files/text_file.hpp", "files/toml_reader.hpp", "rt/event_fd.hpp", "rt/thread.hpp", "synth/mix/converter.hpp"},
     "plot": {"core/split.hpp", "core/words.hpp", "files/output_file.hpp", "synth/mix/sample_ranges.hpp"},
     "server": {"core/asked_pace.hpp", "core/kind_names.hpp", "core/option_bounds.hpp", "core/start_times.hpp", "core/words.hpp"},
-    "python": {"core/access.hpp", "core/asked_pace.hpp", "core/kind_names.hpp", "core/option_bounds.hpp", "core/path/impl.hpp", "core/path/outline.hpp", "core/profile.hpp", "core/trajectory/impl.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_defaults.hpp", "files/setup_text.hpp", "files/stroke/stroke_text.hpp", "files/text_file.hpp", "plan/scaled.hpp"},
+    "python": {"core/access.hpp", "core/asked_pace.hpp", "core/kind_names.hpp", "core/option_bounds.hpp", "core/path/impl.hpp", "core/path/outline.hpp", "core/profile.hpp", "core/trajectory/impl.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_defaults.hpp", "files/setup_text.hpp", "files/text_file.hpp", "plan/scaled.hpp"},
 }
 # Header prefix: the only places that may include it.
 ONLY_IN = {

@@ -14,7 +14,6 @@
 #include "cli/variable.hpp"
 #include "core/words.hpp"
 #include "files/input_files.hpp"
-#include "files/stroke/text.hpp"
 #include "files/text_file.hpp"
 
 namespace tactor::cli {

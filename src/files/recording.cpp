@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // WAV files as waveforms, and the words for all of these.
-#include "files/recording.hpp"
 
 #include <memory>
 #include <optional>

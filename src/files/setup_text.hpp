@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Arrays and what their files say, as TOML that load_setup() reads again.
+/// Arrays, what their files say, and strokes, as TOML that load_setup() and load_strokes() read again.
 #pragma once
 
 #include <string>
 #include <string_view>
 
 #include <tactor/setup.hpp>
+#include <tactor/stroke.hpp>
 
 namespace tactor::detail {
 
@@ -25,5 +26,11 @@ std::string array_text(const array& a, const setup& besides);
 
 /// The tables [calibration] and [[calibration.tactor]].
 std::string origin_text(const calibration_origin& o);
+
+/// Writes the table [stroke]. It has no place for warnings, the note and a start that counts from another
+/// stroke.
+/// \throws error (bad_input) for what no file can say: an intensity above 1 along a path, a stroke of a
+///         group that is fitted as one picture.
+std::string stroke_text(const stroke& s);
 
 } // namespace tactor::detail

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Samples of WAV files that are in memory.
+/// WAV files that are in memory: their parts, samples and recordings.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <tactor/waveform.hpp>
 
 namespace tactor::detail {
 
@@ -34,5 +36,8 @@ wav_parts find_wav_parts(std::string_view file, const std::string& name);
 /// The first `most` samples of one channel, integers as fractions of full scale, by libsndfile.
 /// \throws error: bad_input with `name`; not_available where libsndfile is missing.
 std::vector<float> decode_wav(const wav_parts& parts, std::size_t most, const std::string& name);
+
+/// Reads the bytes of a WAV file; `name` stands for it in messages. \throws error (bad_input).
+recording parse_recording(std::string_view bytes, const std::string& name);
 
 } // namespace tactor::detail

@@ -107,4 +107,32 @@ void refuse_no_text(std::string_view text, const std::string& name, std::string_
                     "save it as UTF-8 in the editor, or convert it: iconv -f UTF-16 -t UTF-8 OLD > NEW");
 }
 
+void check_size(std::string_view text, const std::string& name, std::size_t max_bytes, std::string_view hint)
+{
+    if (text.size() > max_bytes)
+        throw error(error_kind::bad_input, source_place{name},
+                    fmt::format("longer than {} MB", max_bytes >> 20), hint);
+}
+
+std::string_view without_mark(std::string_view text) noexcept
+{
+    constexpr std::string_view mark = "\xEF\xBB\xBF";
+    if (text.substr(0, mark.size()) == mark)
+        text.remove_prefix(mark.size());
+    return text;
+}
+
+std::string stem(const std::string& name)
+{
+    return std::filesystem::path(name).stem().string();
+}
+
+source_place place_of(std::string_view text, std::size_t offset, const std::string& name)
+{
+    const std::string_view before = text.substr(0, std::min(offset, text.size()));
+    const std::size_t line_start = before.rfind('\n') + 1; // 0 where there is none
+    return {name, static_cast<unsigned>(1 + std::count(before.begin(), before.end(), '\n')),
+            static_cast<unsigned>(before.size() - line_start + 1)};
+}
+
 } // namespace tactor::detail

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reading a whole text that a user named.
+// Reading a whole text that a user named, and places in it.
 #pragma once
 
 #include <cstddef>
@@ -8,6 +8,8 @@
 #include <memory>
 #include <string>
 #include <string_view>
+
+#include <tactor/error.hpp>
 
 #include "core/owned.hpp"
 #include "files/input_files.hpp"
@@ -49,5 +51,24 @@ void refuse_other_kind(std::string_view text, const std::string& name,
                        std::string_view hint = text_kinds_hint);
 /// The same, and where it is UTF-16, as some editors save text.
 void refuse_no_text(std::string_view text, const std::string& name, std::string_view hint = text_kinds_hint);
+
+/// Longest stroke file: ten million timed points with all their digits; more is the wrong file.
+inline constexpr std::size_t max_stroke_bytes = std::size_t{512} << 20;
+
+/// Longest text that is kept as a tree while it is read: TOML takes some 40 bytes of memory for one of text,
+/// so a million timed points fit, and 2 GB are not exceeded.
+inline constexpr std::size_t max_tree_bytes = std::size_t{48} << 20;
+
+/// Checks the length. \throws error (bad_input) for text longer than `max_bytes`.
+void check_size(std::string_view text, const std::string& name, std::size_t max_bytes, std::string_view hint);
+
+/// Returns the text without a byte order mark.
+std::string_view without_mark(std::string_view text) noexcept;
+
+/// Returns "stroke" for "dir/stroke.csv".
+std::string stem(const std::string& name);
+
+/// Returns line and column of an offset.
+source_place place_of(std::string_view text, std::size_t offset, const std::string& name);
 
 } // namespace tactor::detail

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "files/stroke/text.hpp"
 #include "files/text_file.hpp"
 
 namespace tactor::detail {

@@ -13,7 +13,6 @@
 #include "files/output_file.hpp"
 #include "files/setup_defaults.hpp"
 #include "files/setup_text.hpp"
-#include "files/stroke/stroke_text.hpp"
 #include "files/text_file.hpp"
 #include "python/binding.hpp"
 #include "python/state.hpp"

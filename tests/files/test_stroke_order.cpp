@@ -11,7 +11,7 @@
 
 #include <tactor/stroke.hpp>
 
-#include "files/stroke/stroke_text.hpp"
+#include "files/setup_text.hpp"
 #include "has.hpp"
 #include "message_of.hpp"
 

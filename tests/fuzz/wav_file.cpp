@@ -5,7 +5,7 @@
 
 #include <tactor/plan.hpp>
 
-#include "files/recording.hpp"
+#include "files/sound_file.hpp"
 #include "holds.hpp"
 #include "synth/tone/make_timbre.hpp"
 

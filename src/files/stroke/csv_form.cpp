@@ -9,7 +9,7 @@
 
 #include "core/path/number.hpp"
 #include "core/split.hpp"
-#include "files/stroke/text.hpp"
+#include "files/text_file.hpp"
 
 namespace tactor::detail {
 namespace {

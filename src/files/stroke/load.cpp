@@ -8,8 +8,7 @@
 #include "core/path/number.hpp"
 #include "core/words.hpp"
 #include "files/input_files.hpp"
-#include "files/stroke/sound.hpp"
-#include "files/stroke/text.hpp"
+#include "files/stroke/parts.hpp"
 #include "files/text_file.hpp"
 
 namespace tactor {
@@ -40,44 +39,6 @@ bool looks_like_csv(std::string_view line)
 }
 
 } // namespace
-
-} // namespace v0
-} // namespace tactor
-
-namespace tactor::detail {
-
-void check_size(std::string_view text, const std::string& name, std::size_t max_bytes, std::string_view hint)
-{
-    if (text.size() > max_bytes)
-        throw error(error_kind::bad_input, source_place{name},
-                    fmt::format("longer than {} MB", max_bytes >> 20), hint);
-}
-
-std::string_view without_mark(std::string_view text) noexcept
-{
-    constexpr std::string_view mark = "\xEF\xBB\xBF";
-    if (text.substr(0, mark.size()) == mark)
-        text.remove_prefix(mark.size());
-    return text;
-}
-
-std::string stem(const std::string& name)
-{
-    return std::filesystem::path(name).stem().string();
-}
-
-source_place place_of(std::string_view text, std::size_t offset, const std::string& name)
-{
-    const std::string_view before = text.substr(0, std::min(offset, text.size()));
-    const std::size_t line_start = before.rfind('\n') + 1; // 0 where there is none
-    return {name, static_cast<unsigned>(1 + std::count(before.begin(), before.end(), '\n')),
-            static_cast<unsigned>(before.size() - line_start + 1)};
-}
-
-} // namespace tactor::detail
-
-namespace tactor {
-inline namespace v0 {
 
 std::vector<stroke> parse_strokes(std::string_view text, const std::string& name)
 {

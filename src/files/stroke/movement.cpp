@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "files/stroke/movement.hpp"
+#include "files/stroke/parts.hpp"
 
 #include <cmath>
 #include <utility>

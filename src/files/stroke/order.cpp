@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "files/stroke/order.hpp"
+#include "files/stroke/parts.hpp"
 
 #include <iterator>
 #include <utility>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "files/stroke/stroke_text.hpp"
 
 #include <algorithm>
 #include <filesystem>

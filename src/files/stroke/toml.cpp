@@ -17,12 +17,8 @@
 #include "core/profile.hpp"
 #include "core/suggest.hpp"
 #include "core/trajectory/impl.hpp"
-#include "files/stroke/choices.hpp"
-#include "files/stroke/movement.hpp"
-#include "files/stroke/order.hpp"
-#include "files/stroke/placing.hpp"
-#include "files/stroke/sound.hpp"
-#include "files/stroke/text.hpp"
+#include "files/stroke/parts.hpp"
+#include "files/text_file.hpp"
 #include "files/toml_reader.hpp"
 
 namespace tactor {

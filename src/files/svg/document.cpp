@@ -8,7 +8,6 @@
 
 #include "core/suggest.hpp"
 #include "core/words.hpp"
-#include "files/stroke/text.hpp"
 #include "files/text_file.hpp"
 
 namespace tactor::detail {

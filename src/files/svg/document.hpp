@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// An SVG document whose complaints have a line and a column.
+// An SVG document whose complaints have a line and a column, and its shapes.
 #pragma once
 
 #include <map>
@@ -14,6 +14,7 @@
 #include <tactor/error.hpp>
 
 #include "core/path/number.hpp"
+#include "core/path/outline.hpp"
 #include "files/svg/style.hpp"
 #include "files/svg/values.hpp"
 
@@ -103,5 +104,12 @@ private:
 
 /// Element name without the prefix "svg:".
 std::string_view svg_tag(pugi::xml_node n);
+
+/// Returns true for the tags that svg_shape() takes.
+bool is_svg_shape(std::string_view tag) noexcept;
+
+/// Returns the subpaths of a shape in user units; none for a shape that SVG does not draw (no data, a radius
+/// or a side of 0). \throws error (bad_input)
+std::vector<outline> svg_shape(const svg_document& doc, pugi::xml_node n, const svg_viewport& v);
 
 } // namespace tactor::detail

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What an SVG element inherits from those round it.
+// What an SVG element inherits from those round it; the look of a line as its intensity, where the drawing
+// asks.
 #pragma once
 
 #include <optional>
@@ -7,9 +8,27 @@
 #include <tactor/movement.hpp>
 
 #include "files/svg/document.hpp"
-#include "files/svg/strength.hpp"
 
 namespace tactor::detail {
+
+enum class svg_strength { none, stroke_width, opacity };
+
+/// The part of a look that elements inherit. Looks may be written in ways that are not read here, which
+/// matters only to those who ask: then the value is no number.
+struct svg_look {
+    svg_strength asked = svg_strength::none;
+    double width = 1.0;          ///< user units
+    double opacity = 1.0;        ///< product of those round the element
+    double stroke_opacity = 1.0; ///< of the nearest
+
+    double shown() const noexcept { return opacity * stroke_opacity; }
+};
+
+/// Applies the element's own attributes to the look.
+void inherit_svg_look(const svg_document& doc, pugi::xml_node n, const svg_viewport& v, svg_look& look);
+
+/// Checks a look. \throws error (bad_input) naming the shape, where its look does not give what it asks for.
+void check_svg_look(const svg_document& doc, pugi::xml_node n, const svg_look& look);
 
 struct svg_scope {
     affine to_mm;

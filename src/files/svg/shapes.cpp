@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "files/svg/shapes.hpp"
+#include "files/svg/document.hpp"
 
 #include <algorithm>
 #include <array>

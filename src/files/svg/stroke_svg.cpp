@@ -12,10 +12,9 @@
 
 #include "core/limits.hpp"
 #include "core/path/impl.hpp"
-#include "files/stroke/text.hpp"
 #include "files/svg/document.hpp"
 #include "files/svg/scope.hpp"
-#include "files/svg/shapes.hpp"
+#include "files/text_file.hpp"
 
 namespace tactor {
 inline namespace v0 {

@@ -2,6 +2,7 @@
 // The four target motions of Park et al. 2016 on its palm-3x3: the figure that shows them is not in the text;
 // these agree with all that the text says of them. And two for palm-2x4, which is too low for the paper's
 // circles.
+#include <tactor/array.hpp>
 #include <tactor/stroke.hpp>
 
 #include <array>
@@ -68,6 +69,18 @@ double duration_s(const motion& m)
     return (m.sweep_deg < 0.0 ? -m.sweep_deg : m.sweep_deg) / 90.0 * quarter_turn_s;
 }
 
+struct preset {
+    std::string_view name;
+    unsigned rows;
+    unsigned columns;
+    double pitch_mm;
+};
+
+constexpr preset presets[] = {
+    {"palm-3x3", 3, 3, 20.0}, // Park et al. 2016, section 3
+    {"palm-2x4", 2, 4, 20.0}, // as many tactors as an eight-channel card drives
+};
+
 } // namespace
 
 const std::vector<std::string>& stroke_presets()
@@ -128,6 +141,26 @@ stroke shape_stroke(std::string_view name)
     }
     throw error(error_kind::bad_input, "shape", fmt::format("{} is not known", detail::quoted(name)),
                 fmt::format("one of {}", fmt::join(stroke_shapes(), ", ")));
+}
+
+const std::vector<std::string>& array_presets()
+{
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all;
+        for (const preset& p : presets)
+            all.emplace_back(p.name);
+        return all;
+    }();
+    return names;
+}
+
+array preset_array(std::string_view name)
+{
+    for (const preset& p : presets)
+        if (p.name == name)
+            return make_grid(std::string(name), p.rows, p.columns, p.pitch_mm, p.pitch_mm);
+    throw error(error_kind::bad_input, "array", fmt::format("there is no preset {}", detail::quoted(name)),
+                detail::preset_hint(name, array_presets()) + "; or name a file");
 }
 
 } // namespace v0

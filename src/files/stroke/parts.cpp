@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: MIT
-#include "files/stroke/sound.hpp"
+#include "files/stroke/parts.hpp"
 
+#include <array>
+#include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "core/moved.hpp"
 
 namespace tactor::detail {
 namespace {
@@ -91,6 +100,32 @@ std::vector<carrier_part> read_profile(const toml_table& t)
     return profile;
 }
 
+constexpr double longest_soa_s = 10.0;
+constexpr double shortest_burst_s = 0.0001;
+constexpr bounds levels_db{-120.0, 60.0};
+
+constexpr double largest_scale = 1e6;
+constexpr double most_degrees = 3600.0;
+constexpr std::array<std::string_view, 4> placing_keys{"scale", "rotate_deg", "translate_mm", "mirror"};
+
+struct turned {
+    double cosine = 1.0;
+    double sine = 0.0;
+};
+
+// Quarter turns are exact.
+turned turn_of(double degrees)
+{
+    const double quarters = degrees / 90.0;
+    if (quarters == std::floor(quarters)) {
+        constexpr std::array<turned, 4> exact{{{1.0, 0.0}, {0.0, 1.0}, {-1.0, 0.0}, {0.0, -1.0}}};
+        const double rest = std::fmod(quarters, 4.0);
+        return exact[static_cast<std::size_t>(rest < 0.0 ? rest + 4.0 : rest)];
+    }
+    const double angle = degrees * std::numbers::pi / 180.0;
+    return {std::cos(angle), std::sin(angle)};
+}
+
 } // namespace
 
 void read_sound(const toml_table& t, const std::filesystem::path* folder, stroke& s)
@@ -102,6 +137,73 @@ void read_sound(const toml_table& t, const std::filesystem::path* folder, stroke
         s.wave_at = t.where("waveform");
     if (!s.carrier_profile.empty())
         s.carrier_at = t.where("carrier_profile");
+}
+
+stroke chosen(const toml_table& t, stroke s)
+{
+    s.choices.algorithm = t.kind<algorithm_kind>("algorithm");
+    s.choices.phantom = t.kind<phantom_kind>("phantom");
+    s.choices.faces = t.kind<faces_kind>("faces");
+    s.choices.soa_s = t.number("soa_s", {0.0, longest_soa_s, true});
+    s.choices.burst_s = t.number("burst_s", {shortest_burst_s, longest_soa_s});
+    if (s.choices.soa_s && s.choices.burst_s && *s.choices.burst_s > *s.choices.soa_s)
+        t.fail("burst_s",
+               fmt::format("burst_s is {}, longer than soa_s of {}", *s.choices.burst_s, *s.choices.soa_s),
+               "bursts must not overlap: at most soa_s");
+    for (const char* key : {"burst_s", "soa_s"})
+        if (t.has(key))
+            s.choices_at = t.where(key);
+    s.fit_margin_mm = read_fit(t);
+    return s;
+}
+
+std::optional<double> read_fit(const toml_table& t)
+{
+    const bool fit = t.boolean("fit").value_or(false);
+    const auto margin = t.number("fit_margin_mm", {0.0, max_mm});
+    if (margin && !fit)
+        t.fail("fit_margin_mm", "nothing is fitted", "add fit = true, or leave it out");
+    if (!fit)
+        return {};
+    return margin.value_or(0.0);
+}
+
+stroke levelled(const toml_table& t, stroke s)
+{
+    s.choices.level_db += t.number("level_db", levels_db).value_or(0.0);
+    return s;
+}
+
+stroke placed(const toml_table& t, stroke s)
+{
+    std::string_view first;
+    for (const std::string_view key : placing_keys)
+        if (first.empty() && t.has(key))
+            first = key;
+    const auto about = t.place("about_mm");
+    if (first.empty()) {
+        if (about)
+            t.fail("about_mm", "nothing is scaled, turned or mirrored about it",
+                   "add scale, rotate_deg or mirror, or leave it out");
+        return s;
+    }
+    const double scale = t.number("scale", {0.0, largest_scale, true}).value_or(1.0);
+    const turned turn = turn_of(t.number("rotate_deg", {-most_degrees, most_degrees}).value_or(0.0));
+    const std::string mirror = t.choice("mirror", {"x", "y"}).value_or("");
+    const point by = t.place("translate_mm").value_or(point{});
+    const point from = about.value_or(point{});
+    const double x = mirror == "x" ? -scale : scale;
+    const double y = mirror == "y" ? -scale : scale;
+    const affine m{x * turn.cosine, x * turn.sine,       -y * turn.sine,
+                   y * turn.cosine, from.x_mm + by.x_mm, from.y_mm + by.y_mm};
+    try {
+        s.motion = moved(s.motion, from, m, {}, [&] { return std::string(first); });
+        if (s.speed_mm_s && s.motion.length_mm() > 0.0)
+            s.motion = s.motion.with_speed(*s.speed_mm_s);
+    } catch (const error& e) {
+        t.fail(first, e.what(), {});
+    }
+    return s;
 }
 
 } // namespace tactor::detail
