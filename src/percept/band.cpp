@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "percept/band.hpp"
+#include "percept/hull_fit.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -11,9 +11,7 @@
 
 #include <tactor/error.hpp>
 
-#include "percept/band.hpp"
 #include "percept/low_speed.hpp"
-#include "percept/tap_frame.hpp"
 
 namespace tactor::detail {
 namespace {
