@@ -43,7 +43,7 @@ INSIDE = {
     "study": {"core/kind_names.hpp", "core/owned.hpp", "core/sha256.hpp", "core/split.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_text.hpp", "files/text_file.hpp", "files/toml_reader.hpp", "rt/event_fd.hpp", "rt/thread.hpp", "synth/mix/converter.hpp"},
     "plot": {"core/split.hpp", "core/words.hpp", "files/output_file.hpp", "synth/mix/sample_ranges.hpp"},
     "server": {"core/asked_pace.hpp", "core/kind_names.hpp", "core/option_bounds.hpp", "core/start_times.hpp", "core/words.hpp"},
-    "python": {"core/access.hpp", "core/asked_pace.hpp", "core/kind_names.hpp", "core/option_bounds.hpp", "core/path/impl.hpp", "core/path/outline.hpp", "core/profile.hpp", "core/trajectory/impl.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_defaults.hpp", "files/setup_text.hpp", "files/text_file.hpp", "plan/scaled.hpp"},
+    "python": {"core/access.hpp", "core/asked_pace.hpp", "core/kind_names.hpp", "core/option_bounds.hpp", "core/path/impl.hpp", "core/path/outline.hpp", "core/profile.hpp", "core/trajectory/impl.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_defaults.hpp", "files/setup_text.hpp", "files/text_file.hpp", "plan/curve_impl.hpp"},
 }
 # Header prefix: the only places that may include it.
 ONLY_IN = {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cmath>
+#include <set>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "core/words.hpp"
-#include "plan/brush_points.hpp"
-#include "plan/brush_timing.hpp"
+#include "plan/brush.hpp"
 #include "plan/job.hpp"
 #include "plan/rounded.hpp"
 
@@ -60,6 +62,64 @@ std::vector<meeting> drop_points(const job& j, const std::vector<meeting>& point
     return left;
 }
 
+// A part that is negative by a rounding error is none.
+constexpr double slack_s = 1e-10;
+
+bool possible(double part_s)
+{
+    return part_s >= -slack_s;
+}
+
+/// Interior virtual tactors in the order in which they go: the one with the smallest gap, the first of
+/// equals.
+std::vector<std::size_t> order_of_going(const std::vector<double>& tau_s)
+{
+    const std::size_t n = tau_s.size();
+    std::vector<std::size_t> before(n);
+    std::vector<std::size_t> after(n);
+    std::set<std::pair<long long, std::size_t>> by_gap;
+    // Whole nanoseconds, so that equal gaps tie.
+    const auto gap = [&](std::size_t i) {
+        return std::llround(std::min(tau_s[i] - tau_s[before[i]], tau_s[after[i]] - tau_s[i]) * 1e9);
+    };
+    const auto interior = [n](std::size_t i) { return i > 0 && i + 1 < n; };
+    for (std::size_t i = 0; i < n; ++i) {
+        before[i] = i - 1;
+        after[i] = i + 1;
+        if (interior(i))
+            by_gap.insert({gap(i), i});
+    }
+    std::vector<std::size_t> order;
+    while (!by_gap.empty()) {
+        const std::size_t i = by_gap.begin()->second;
+        const std::size_t a = before[i];
+        const std::size_t b = after[i];
+        for (const std::size_t k : {a, i, b})
+            if (interior(k))
+                by_gap.erase({gap(k), k});
+        after[a] = b;
+        before[b] = a;
+        for (const std::size_t k : {a, b})
+            if (interior(k))
+                by_gap.insert({gap(k), k});
+        order.push_back(i);
+    }
+    return order;
+}
+
+/// What is left, ascending, of n places when the first `gone` of `order` have gone.
+std::vector<std::size_t> left_of(std::size_t n, const std::vector<std::size_t>& order, std::size_t gone)
+{
+    std::vector<bool> out(n, false);
+    for (std::size_t k = 0; k < gone; ++k)
+        out[order[k]] = true;
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < n; ++i)
+        if (!out[i])
+            places.push_back(i);
+    return places;
+}
+
 } // namespace
 
 void plan_brush(const job& j, plan& out)
@@ -84,6 +144,62 @@ void plan_brush(const job& j, plan& out)
         out.total_s = std::max(out.total_s, b.onset_s + b.duration_s);
         out.bursts.push_back(std::move(b));
     }
+}
+
+double next_part_s(const timing_profile& p, double gap_s, double part_s)
+{
+    return (gap_s - p.intercept_s + (1.0 - p.slope) * part_s) / (1.0 + p.slope);
+}
+
+std::vector<double> parts_s(const timing_profile& p, const std::vector<double>& tau_s)
+{
+    std::vector<double> parts{0.0};
+    for (std::size_t i = 1; i < tau_s.size(); ++i) {
+        const double part = next_part_s(p, tau_s[i] - tau_s[i - 1], parts.back());
+        if (!possible(part))
+            return {};
+        parts.push_back(std::max(part, 0.0));
+    }
+    return parts;
+}
+
+double shortest_duration_s(const timing_profile& p, const std::vector<double>& tau_s)
+{
+    // part = grow * T + fixed, with tau_i = share_i * T.
+    double grow = 0.0;
+    double fixed = 0.0;
+    double shortest = 0.0;
+    for (std::size_t i = 1; i < tau_s.size(); ++i) {
+        const double share = (tau_s[i] - tau_s[i - 1]) / tau_s.back();
+        grow = (share + (1.0 - p.slope) * grow) / (1.0 + p.slope);
+        fixed = (-p.intercept_s + (1.0 - p.slope) * fixed) / (1.0 + p.slope);
+        shortest = std::max(shortest, -fixed / grow);
+    }
+    return shortest;
+}
+
+std::vector<std::size_t> thin_out(const timing_profile& p, const std::vector<double>& tau_s)
+{
+    const std::vector<std::size_t> order = order_of_going(tau_s);
+    const auto works = [&](std::size_t gone) {
+        std::vector<double> tau;
+        for (const std::size_t i : left_of(tau_s.size(), order, gone))
+            tau.push_back(tau_s[i]);
+        return !parts_s(p, tau).empty();
+    };
+    // When a place goes, the part of the next grows by (2 slope part + intercept) / (1 + slope), with the
+    // part of the one that went. No part is below -intercept / (2 slope), so that is never negative: what
+    // works with some gone works with more gone.
+    std::size_t few = 0;
+    std::size_t many = order.size();
+    while (few < many) {
+        const std::size_t half = few + (many - few) / 2;
+        if (works(half))
+            many = half;
+        else
+            few = half + 1;
+    }
+    return left_of(tau_s.size(), order, many);
 }
 
 } // namespace tactor::detail

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "plan/brush_points.hpp"
+#include "plan/brush.hpp"
 
 #include <algorithm>
 #include <cmath>

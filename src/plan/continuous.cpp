@@ -1,17 +1,66 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "core/access.hpp"
+#include "core/path/shape.hpp"
+#include "core/trajectory/spans.hpp"
 #include "plan/curve_impl.hpp"
+#include "plan/faces/layout_impl.hpp"
+#include "plan/faces/sides.hpp"
 #include "plan/job.hpp"
-#include "plan/leaving.hpp"
 #include "plan/phantom/same_tactors.hpp"
 
 namespace tactor::detail {
 namespace {
+
+/// Parameters, ascending, at which a curve turns round as seen from the sides that it may cross.
+void turns_seen(const shape& form, const std::vector<beyond>& sides, std::vector<double>& turns_at)
+{
+    turns_at.clear();
+    const std::array<point, 4> frame = frame_of(form);
+    for (const beyond& s : sides) {
+        const bool within =
+            std::all_of(frame.begin(), frame.end(), [&](point p) { return dot(s.out, p) <= s.reach; });
+        if (within)
+            continue;
+        const std::vector<double> t = turns_towards(form, s.out);
+        turns_at.insert(turns_at.end(), t.begin(), t.end());
+    }
+    std::sort(turns_at.begin(), turns_at.end());
+}
+
+/// Checks that a movement stays in the array at all times. Looks only at the corners of the path and at the
+/// turns of its curves. This is enough, because the hull is convex: between two corners only a curve can
+/// leave it, and it is farthest out where it turns, seen from an edge of the hull. \throws error (bad_input)
+/// that says where the path leaves the array first.
+void check_inside(const job& j)
+{
+    const std::vector<beyond> sides = sides_of(detail::access::of(j.faces));
+    std::vector<double> turns_at;
+    follower target(j);
+    target.at(0.0);
+    double latest_s = 0.0;
+    const auto look = [&](double t_s) {
+        latest_s = std::max(latest_s, t_s); // rounding may put the turn of a curve beside its end
+        target.at(latest_s);
+    };
+    for_each_span(j.motion.motion, [&](const trajectory_span& span) {
+        if (span.curve != nullptr) {
+            turns_seen(*span.curve, sides, turns_at);
+            for (const double t : turns_at)
+                look(span.time_at(t));
+        }
+        look(span.to_s);
+        return true;
+    });
+}
 
 // A stroke of so many samples is computed once, when it is planned: 76 bytes a sample with three drives.
 // A longer one is computed whenever it is read.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "plan/course.hpp"
+#include "plan/job.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -127,6 +129,37 @@ void curve::impl::sample(std::uint64_t k, detail::same_tactors& seen, burst& out
 } // namespace tactor
 
 namespace tactor::detail {
+namespace {
+
+void scale(burst& b, double factor)
+{
+    b.intensity *= factor;
+    for (drive& d : b.drives)
+        d.amplitude *= factor;
+}
+
+class scaled_curve final : public curve::impl {
+public:
+    scaled_curve(const curve& from, double factor) : impl(from.duration_s()), from_(from), factor_(factor)
+    {
+        if (const trajectory* b = curve_access::of(from_).bounds())
+            bounds_ = b->with_intensity(factor);
+    }
+
+    void fill(std::uint64_t k, same_tactors& seen, burst& out) const override
+    {
+        curve_access::of(from_).fill(k, seen, out);
+        scale(out, factor_);
+    }
+    const trajectory* bounds() const noexcept override { return bounds_ ? &*bounds_ : nullptr; }
+
+private:
+    curve from_;
+    double factor_;
+    std::optional<trajectory> bounds_;
+};
+
+} // namespace
 
 std::uint64_t samples_of(double duration_s) noexcept
 {
@@ -144,6 +177,15 @@ void read(const curve_samples& all, std::size_t i, burst& out)
     out.position = all.positions[i];
     out.intensity = all.intensities[i];
     out.drives.assign(first, all.drives.data() + all.ends[i]);
+}
+
+plan scaled(plan p, double factor)
+{
+    for (burst& b : p.bursts)
+        scale(b, factor);
+    if (p.curve)
+        p.curve = curve_access::make(std::make_shared<scaled_curve>(*p.curve, factor));
+    return p;
 }
 
 } // namespace tactor::detail

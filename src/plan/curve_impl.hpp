@@ -53,4 +53,8 @@ double sample_time_s(std::uint64_t k, double duration_s) noexcept;
 /// Position, intensity and drives of one of them.
 void read(const curve_samples& all, std::size_t i, burst& out);
 
+/// Returns the plan with all its amplitudes and intensities times a factor, above 0. Samples of a curve are
+/// scaled when they are read.
+plan scaled(plan p, double factor);
+
 } // namespace tactor::detail

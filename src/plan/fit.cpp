@@ -17,7 +17,6 @@
 #include "core/access.hpp"
 #include "core/moved.hpp"
 #include "core/refused.hpp"
-#include "plan/faces/hull.hpp"
 #include "plan/faces/layout_impl.hpp"
 #include "plan/faces/plane.hpp"
 #include "plan/faces/sides.hpp"

@@ -104,4 +104,13 @@ private:
     double inside_s_ = -1.0; // the last time known to be inside
 };
 
+/// Returns plan::course of a stroke that is played with a waveform.
+std::vector<carrier_point> course_of(const stroke& s, const waveform& w);
+
+/// Returns the frequency at a part of the time, 0 to 1, from a point of a course to the next.
+double hz_between(const carrier_point& from, const carrier_point& to, double u);
+
+/// Returns the carrier at a part of the path; the profile has points. O(log n).
+double hz_at(const std::vector<carrier_part>& profile, double part);
+
 } // namespace tactor::detail

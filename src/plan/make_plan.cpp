@@ -11,7 +11,6 @@
 #include "core/recording_name.hpp"
 #include "core/refused.hpp"
 #include "core/words.hpp"
-#include "plan/course.hpp"
 #include "plan/job.hpp"
 #include "plan/options.hpp"
 #include "plan/phantom/phantom_models.hpp"

@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 
 #include "core/words.hpp"
-#include "plan/scaled.hpp"
+#include "plan/curve_impl.hpp"
 #include "python/plan_handle.hpp"
 
 namespace tactor::python {

@@ -9,7 +9,7 @@
 #include <tactor/plan.hpp>
 
 #include "arrays.hpp"
-#include "plan/brush_timing.hpp"
+#include "plan/brush.hpp"
 #include "strokes.hpp"
 
 namespace brush_refusals_test {

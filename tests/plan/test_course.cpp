@@ -9,7 +9,7 @@
 
 #include <doctest/doctest.h>
 
-#include "plan/course.hpp"
+#include "plan/job.hpp"
 #include "strokes.hpp"
 
 namespace course_test {

@@ -5,9 +5,9 @@
 #include <tuple>
 
 #include "plan/faces/delaunay.hpp"
-#include "plan/faces/hull.hpp"
 #include "plan/faces/layout_impl.hpp"
 #include "plan/faces/plane.hpp"
+#include "plan/faces/sides.hpp"
 
 namespace tactor {
 inline namespace v0 {

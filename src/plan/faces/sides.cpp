@@ -2,7 +2,11 @@
 #include "plan/faces/sides.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <tuple>
 #include <variant>
+
+#include "plan/faces/plane.hpp"
 
 namespace tactor::detail {
 namespace {
@@ -57,6 +61,26 @@ std::vector<double> turns_towards(const shape& form, point out)
 {
     const affine outwards_is_x{out.x_mm, -out.y_mm, out.y_mm, out.x_mm, 0.0, 0.0};
     return turns(mapped(form, outwards_is_x), axis::x);
+}
+
+// Andrew's monotone chain.
+std::vector<point> convex_hull(std::vector<point> points)
+{
+    std::sort(points.begin(), points.end(),
+              [](point a, point b) { return std::tie(a.x_mm, a.y_mm) < std::tie(b.x_mm, b.y_mm); });
+    std::vector<point> hull;
+    const auto half = [&hull](auto first, auto last) {
+        const std::size_t start = hull.size();
+        for (auto it = first; it != last; ++it) {
+            while (hull.size() >= start + 2 && turn(hull[hull.size() - 2], hull.back(), *it) <= 0.0)
+                hull.pop_back();
+            hull.push_back(*it);
+        }
+        hull.pop_back();
+    };
+    half(points.begin(), points.end());
+    half(points.rbegin(), points.rend());
+    return hull;
 }
 
 } // namespace tactor::detail

@@ -6,6 +6,8 @@
 #include <array>
 #include <vector>
 
+#include <tactor/geometry.hpp>
+
 #include "core/path/shape.hpp"
 #include "plan/faces/layout_impl.hpp"
 
@@ -34,5 +36,9 @@ std::array<point, 4> frame_of(const shape& form);
 
 /// Parameters, ascending, at which a curve turns round as seen from a side.
 std::vector<double> turns_towards(const shape& form, point out);
+
+/// Returns the corners of the convex hull, with positive turn; two for points in one line, none for a single
+/// one.
+std::vector<point> convex_hull(std::vector<point> points);
 
 } // namespace tactor::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plan/course.hpp"
+#include "plan/job.hpp"
 #include "synth/score/levels.hpp"
 #include "synth/score/score.hpp"
 
