@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "plot/array_view.hpp"
+#include "plot/views.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,7 @@
 #include "plot/draw/array_frame.hpp"
 #include "plot/draw/axes.hpp"
 #include "plot/draw/notes.hpp"
-#include "plot/draw/path_marks.hpp"
-#include "plot/draw/time_colours.hpp"
+#include "plot/draw/timeline.hpp"
 #include "plot/paint/text.hpp"
 
 namespace tactor::plot {

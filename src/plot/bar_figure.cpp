@@ -8,7 +8,7 @@
 
 #include <tactor/error.hpp>
 
-#include "plot/compare_panel.hpp"
+#include "plot/compare_figure.hpp"
 #include "plot/draw/axes.hpp"
 #include "plot/figure.hpp"
 #include "plot/paint/text.hpp"

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "core/words.hpp"
-#include "plot/compare_panel.hpp"
 #include "plot/draw/axes.hpp"
 #include "plot/figure.hpp"
 #include "plot/paint/text.hpp"

@@ -11,6 +11,7 @@
 #include <tactor/percept.hpp>
 #include <tactor/stroke.hpp>
 
+#include "plot/draw/array_frame.hpp"
 #include "plot/paint/canvas.hpp"
 
 namespace tactor::plot {
@@ -44,5 +45,25 @@ struct prediction {
 /// it. \throws error (bad_input) for a width out of bounds (figure.hpp).
 canvas draw_comparison(const array& a, const stroke& target, const std::vector<prediction>& all,
                        const std::string& title, const std::string& note, double width_mm);
+
+/// The array, target and part of the page that all panels show.
+struct panel_ground {
+    const array& tactors;
+    const stroke& target;
+    extent shown;
+};
+
+/// Returns where the array is in a panel; the scale is the same in all of one size.
+array_frame panel_frame(const panel_ground& g, box where);
+
+/// The target's line, in panels and charts alike.
+inline constexpr style target_look{.stroke = light_grey, .width = 2.6};
+
+/// Draws a text in small lines, as many as it takes and no more than that; returns the height taken.
+double draw_words(canvas& c, const std::string& text, box where, std::size_t most_lines, const char* kind);
+
+/// Draws a panel, the target and what is felt instead, into the upper part of a box, in the look of its
+/// algorithm; returns the height taken.
+double draw_panel(canvas& c, const panel_ground& g, const prediction& p, const style& look, box where);
 
 } // namespace tactor::plot

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "plot/compare_panel.hpp"
+#include "plot/compare_figure.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -8,16 +8,14 @@
 #include <fmt/format.h>
 
 #include "core/words.hpp"
-#include "plot/array_view.hpp"
 #include "plot/draw/array_frame.hpp"
 #include "plot/draw/axes.hpp"
 #include "plot/draw/notes.hpp"
-#include "plot/draw/stroke_legend.hpp"
-#include "plot/draw/time_colours.hpp"
+#include "plot/draw/stroke_starts.hpp"
+#include "plot/draw/timeline.hpp"
 #include "plot/paint/text.hpp"
 #include "plot/sound_text.hpp"
-#include "plot/timing_view.hpp"
-#include "plot/wave_view.hpp"
+#include "plot/views.hpp"
 
 namespace tactor::plot {
 namespace {

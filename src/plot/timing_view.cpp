@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "plot/timing_view.hpp"
+#include "plot/views.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 #include "plot/draw/dimensions.hpp"
 #include "plot/draw/notes.hpp"
 #include "plot/draw/stroke_starts.hpp"
-#include "plot/draw/time_colours.hpp"
+#include "plot/draw/timeline.hpp"
 #include "plot/draw/timing_bars.hpp"
 #include "plot/paint/text.hpp"
 

@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include "plot/paint/colours.hpp"
+#include "plot/paint/canvas.hpp"
 
 namespace colours_test {
 

@@ -10,6 +10,7 @@
 #include <tactor/stroke.hpp>
 
 #include "plot/draw/label_placer.hpp"
+#include "plot/draw/timeline.hpp"
 #include "plot/paint/canvas.hpp"
 
 namespace tactor::plot {
@@ -71,5 +72,21 @@ std::string draw_tactor_labels(canvas& c, const array_frame& f, const array& a, 
 
 /// A bar of a round number of mm with its label, left end at `at`.
 void draw_scale_bar(canvas& c, const array_frame& f, spot at);
+
+/// Draws arrowheads on the path where they cover least, a ring at the start and a square at the end. `dot`:
+/// radius of the bursts' dots, pt.
+void draw_path_marks(canvas& c, const scene& s, const timeline& t, const array_frame& f, double dot,
+                     label_placer& taken);
+
+/// Returns the radius of the ring at a start, and half a side of the square at an end, pt.
+constexpr double end_mark_radius(double dot) noexcept
+{
+    return dot + 1.7;
+}
+
+/// Writes start and end beside those marks; of several strokes, the number of each at its start. Returns what
+/// had no space, in words; empty: all has.
+std::string label_strokes(canvas& c, const scene& s, const timeline& t, const array_frame& f, double dot,
+                          label_placer& taken);
 
 } // namespace tactor::plot

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "plot/draw/path_marks.hpp"
+#include "plot/draw/array_frame.hpp"
 
 #include <algorithm>
 #include <cmath>

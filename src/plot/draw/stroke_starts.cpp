@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include <fmt/ranges.h>
 
 #include "core/words.hpp"
+#include "plot/draw/axes.hpp"
 #include "plot/paint/text.hpp"
 
 namespace tactor::plot {
@@ -25,6 +27,58 @@ constexpr double line_height = 7.0;
 constexpr double aside = 2.0; // of a number, behind its start
 
 using numbers_at = std::map<double, std::vector<std::size_t>>; // by x
+
+constexpr double row_height = 8.5;
+constexpr double swatch = 8.0;
+constexpr double gap = 3.0;           // between swatch and name
+constexpr double column_gap = 10.0;   // at least, between columns
+constexpr double most_of_width = 0.5; // for one entry, where there are several
+constexpr std::size_t most_rows = 12;
+
+// A line of the legend: a stroke, or all repeats of one.
+struct entry {
+    std::vector<std::size_t> numbers = {};
+    std::string name = {};
+};
+
+std::vector<entry> find_entries(const scene& s, const timeline& t)
+{
+    std::vector<entry> all;
+    for (std::size_t i = 0; i < s.strokes.size(); ++i) {
+        if (t.looks[i] == all.size())
+            all.push_back({{}, clean(s.strokes[i].name)});
+        all[t.looks[i]].numbers.push_back(i + 1);
+    }
+    for (entry& e : all)
+        if (e.numbers.size() > 1)
+            e.name = find_repeated_name(e.name);
+    return all;
+}
+
+std::vector<std::string> write_entries(const std::vector<entry>& entries)
+{
+    std::vector<std::string> all;
+    for (const entry& e : entries)
+        all.push_back(e.name.empty() ? join_runs(e.numbers)
+                                     : fmt::format("{} {}", join_runs(e.numbers), e.name));
+    return all;
+}
+
+// Where names are cut to the same letters, their ends tell them apart.
+std::vector<std::string> shortened(const std::vector<std::string>& all, double width)
+{
+    std::vector<std::string> cut;
+    std::set<std::string> seen;
+    bool alike = false;
+    for (const std::string& n : all) {
+        cut.push_back(shorten(n, small_text, width));
+        const bool first = seen.insert(cut.back().substr(cut.back().find(' ') + 1)).second;
+        alike = alike || (!first && cut.back() != n);
+    }
+    for (std::size_t i = 0; alike && i < all.size(); ++i)
+        cut[i] = shorten_middle(all[i], small_text, width);
+    return cut;
+}
 
 } // namespace
 
@@ -99,6 +153,48 @@ void number_stroke_starts(canvas& c, const stroke_starts& s, double top)
         if (!m.label.empty())
             c.text({m.at + aside, top - 3.0 - line_height * static_cast<double>(m.line)}, m.label,
                    {.size = small_text, .ink = dark_grey, .halo = true});
+}
+
+double draw_stroke_legend(canvas& c, const scene& s, const timeline& t, box where, bool colours)
+{
+    if (s.strokes.size() < 2)
+        return 0.0;
+    const group g(c, {.id = "strokes"});
+    const double lead = colours ? swatch + gap : 0.0;
+    double widest = 0.0;
+    const std::vector<entry> entries = find_entries(s, t);
+    const std::vector<std::string> names =
+        shortened(write_entries(entries), most_of_width * where.width - lead - column_gap);
+    for (const std::string& n : names)
+        widest = std::max(widest, text_width(n, small_text));
+    const double entry_width = lead + widest + column_gap;
+    const auto columns =
+        std::max<std::size_t>(1, static_cast<std::size_t>((where.width + column_gap) / entry_width));
+    const std::size_t shown = std::min(names.size(), columns * most_rows);
+    const std::size_t rows = (shown + columns - 1) / columns;
+    for (std::size_t i = 0; i < shown; ++i) {
+        const std::size_t in_column = i / rows;
+        const double x = where.x + entry_width * static_cast<double>(in_column);
+        const double middle = where.y + row_height * (static_cast<double>(i % rows) + 0.5);
+        if (colours)
+            c.rect({x, middle - 2.5, swatch, 5.0}, {.fill = of_stroke(i), .stroke = ink, .width = 0.3},
+                   {.kind = "stroke-colour"});
+        c.text(
+            {x + lead, middle + cap_height(small_text) / 2.0}, names[i], {.size = small_text},
+            {.kind = "stroke-name", .data = {{"stroke", fmt::format("{}", entries[i].numbers.front() - 1)}}});
+    }
+    double height = row_height * static_cast<double>(rows);
+    std::vector<std::string> notes;
+    if (shown < names.size())
+        notes.push_back("and " + counted(names.size() - shown, "stroke more", "strokes more"));
+    if (colours && names.size() > stroke_colours)
+        notes.push_back(fmt::format("colours repeat after {} strokes", stroke_colours));
+    for (const std::string& line : wrap(notes, "; ", small_text, where.width, 2)) {
+        c.text({where.x, where.y + height + cap_height(small_text) + 1.0}, line,
+               {.size = small_text, .ink = dark_grey}, {.kind = "note"});
+        height += row_height;
+    }
+    return height + 2.0;
 }
 
 } // namespace tactor::plot

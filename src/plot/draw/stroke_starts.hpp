@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// When each of several strokes starts, over a diagram in time.
+/// When each of several strokes starts, over a diagram in time, and which colour is which stroke.
 #pragma once
 
 #include <string>
@@ -36,5 +36,10 @@ void number_stroke_starts(canvas& c, const stroke_starts& s, double top);
 
 /// Returns ascending numbers as text, "1-4, 6": those that follow each other together.
 std::string join_runs(const std::vector<std::size_t>& numbers);
+
+/// Draws, for a scene of several strokes, the number, colour and name of each, repeats of one together, in
+/// columns from the upper edge of a box. Returns the height taken; 0 for one stroke. `colours`: whether the
+/// picture has these.
+double draw_stroke_legend(canvas& c, const scene& s, const timeline& t, box where, bool colours);
 
 } // namespace tactor::plot

@@ -14,6 +14,8 @@
 #include <tactor/render.hpp>
 #include <tactor/stroke.hpp>
 
+#include "plot/paint/canvas.hpp"
+
 namespace tactor::plot {
 
 /// The matter of a picture. It refers to what it is made of.
@@ -61,5 +63,12 @@ timeline make_timeline(const scene& s);
 
 /// Returns a stroke's name without " (2 of 3)", which repeats have in files; empty for what is no repeat.
 std::string find_repeated_name(const std::string& name);
+
+/// Draws a strip of the colours of time, over x.
+void draw_time_strip(canvas& c, const timeline& t, box where);
+
+/// Returns the colour of a burst: of its time in the piece where there is one stroke, of its stroke where
+/// there are several.
+colour colour_of(const timeline& t, const shown_burst& b) noexcept;
 
 } // namespace tactor::plot

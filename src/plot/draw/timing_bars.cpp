@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "plot/draw/dimensions.hpp"
-#include "plot/draw/time_colours.hpp"
+#include "plot/draw/timeline.hpp"
 
 namespace tactor::plot {
 namespace {

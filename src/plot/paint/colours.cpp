@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "plot/paint/colours.hpp"
+#include "plot/paint/canvas.hpp"
 
 #include <algorithm>
 #include <array>
