@@ -50,6 +50,14 @@ try {
 
 } // namespace
 
+// Here rather than in alsa/ or engine/: both stand on rt/.
+sink::~sink() = default;
+
+std::int64_t sink::xrun_ns() noexcept
+{
+    return 0;
+}
+
 struct paced_sink::impl {
     explicit impl(stream_setup s)
         : setup(checked(std::move(s))), frame_bytes(setup.frame_bytes()), pacer(make_pacer(setup))

@@ -2,6 +2,8 @@
 #include "sink/alsa/negotiate.hpp"
 
 #include <cerrno>
+#include <memory>
+#include <new>
 #include <optional>
 #include <span>
 
@@ -13,10 +15,51 @@
 #include "sink/alsa/error_text.hpp"
 #include "sink/alsa/format.hpp"
 #include "sink/alsa/handle.hpp"
-#include "sink/alsa/ranges.hpp"
 
 namespace tactor::pcm {
 namespace {
+
+// Software PCMs say 1073741823 channels or 4294967295 Hz, which means that they do not care.
+std::string range(unsigned least, unsigned most, unsigned beyond)
+{
+    if (least == most)
+        return fmt::format("{}", least);
+    if (most >= beyond)
+        return least <= 1 ? "any" : fmt::format("{} or more", least);
+    return fmt::format("{} to {}", least, most);
+}
+
+std::string formats(const hw_params& p)
+{
+    snd_pcm_format_mask_t* raw = nullptr;
+    if (snd_pcm_format_mask_malloc(&raw) < 0)
+        throw std::bad_alloc();
+    const std::unique_ptr<snd_pcm_format_mask_t, deleter<snd_pcm_format_mask_free>> mask(raw);
+    snd_pcm_hw_params_get_format_mask(p.get(), mask.get());
+    std::string names;
+    for (const format_kind f : format_preference)
+        if (snd_pcm_format_mask_test(mask.get(), to_alsa(f)) != 0)
+            names += fmt::format(" {}", to_string(f));
+    return names.empty() ? " none that tactor plays" : names;
+}
+
+/// Returns "channels 1 to 8, rates 44100 to 192000 Hz, formats s32 s16" of a configuration space.
+std::string describe(const hw_params& p)
+{
+    unsigned first_channels = 0;
+    unsigned last_channels = 0;
+    snd_pcm_hw_params_get_channels_min(p.get(), &first_channels);
+    snd_pcm_hw_params_get_channels_max(p.get(), &last_channels);
+    unsigned least_hz = 0;
+    unsigned most_hz = 0;
+    int direction = 0;
+    snd_pcm_hw_params_get_rate_min(p.get(), &least_hz, &direction);
+    snd_pcm_hw_params_get_rate_max(p.get(), &most_hz, &direction);
+    if (direction < 0)
+        --most_hz; // the bound itself is not in the range
+    return fmt::format("channels {}, rates {} Hz, formats{}", range(first_channels, last_channels, 10000),
+                       range(least_hz, most_hz, 10'000'000), formats(p));
+}
 
 // What a device can have at most without a mistake in the request: alsa-lib's own arithmetic is 32 bit.
 constexpr unsigned most_rate = 768'000;
@@ -197,6 +240,34 @@ stream_setup negotiate(snd_pcm_t* p, const alsa_options& o)
     if (const int code = snd_pcm_hw_params(p, best->params.get()); code < 0)
         tactor::detail::throw_caused(call_error(o.pcm, "snd_pcm_hw_params", code), -code);
     return read_back(best->params, o, *best);
+}
+
+void set_software(snd_pcm_t* p, const stream_setup& s)
+{
+    const sw_params w = make_sw_params();
+    const auto must = [&s](int code, const char* call) {
+        if (code < 0)
+            tactor::detail::throw_caused(call_error(s.name, call, code), -code);
+    };
+    must(snd_pcm_sw_params_current(p, w.get()), "snd_pcm_sw_params_current");
+    snd_pcm_uframes_t boundary = 0;
+    must(snd_pcm_sw_params_get_boundary(w.get(), &boundary), "snd_pcm_sw_params_get_boundary");
+
+    // Only snd_pcm_start() starts: the instant is known, and the amplifier can follow it.
+    must(snd_pcm_sw_params_set_start_threshold(p, w.get(), boundary),
+         "snd_pcm_sw_params_set_start_threshold");
+    // An underrun stops the DAC. A threshold beyond the buffer would replay old frames for ever.
+    must(snd_pcm_sw_params_set_stop_threshold(p, w.get(), s.buffer_frames),
+         "snd_pcm_sw_params_set_stop_threshold");
+    must(snd_pcm_sw_params_set_avail_min(p, w.get(), s.period_frames), "snd_pcm_sw_params_set_avail_min");
+    must(snd_pcm_sw_params_set_tstamp_mode(p, w.get(), SND_PCM_TSTAMP_ENABLE),
+         "snd_pcm_sw_params_set_tstamp_mode");
+    must(snd_pcm_sw_params_set_tstamp_type(p, w.get(), SND_PCM_TSTAMP_TYPE_MONOTONIC),
+         "snd_pcm_sw_params_set_tstamp_type");
+    // What has been played is overwritten by silence, for a device that runs on past the last frame.
+    must(snd_pcm_sw_params_set_silence_threshold(p, w.get(), 0), "snd_pcm_sw_params_set_silence_threshold");
+    must(snd_pcm_sw_params_set_silence_size(p, w.get(), boundary), "snd_pcm_sw_params_set_silence_size");
+    must(snd_pcm_sw_params(p, w.get()), "snd_pcm_sw_params");
 }
 
 } // namespace tactor::pcm

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <tactor/alsa.hpp>
 
+#include <algorithm>
 #include <system_error>
 #include <utility>
 
@@ -76,6 +77,27 @@ std::unique_ptr<sink> open_alsa(const alsa_options& o)
     pcm::check(o);
     pcm::handle h = pcm::open(o);
     return pcm::configure(std::move(h), o, true, false);
+}
+
+std::unique_ptr<sink> reopen_alsa(const alsa_options& o, const std::function<bool(double)>& pause)
+{
+    constexpr double longest_s = 5.0;
+    if (!pause)
+        throw error(error_kind::bad_input, "reopen_alsa", "there is nothing that waits", "give a function");
+    detail::log(o.log, log_kind::info, "waiting for PCM \"{}\" to come back", o.pcm);
+    for (double wait_s = 0.1; pause(wait_s); wait_s = std::min(2.0 * wait_s, longest_s)) {
+        try {
+            std::unique_ptr<sink> s = open_alsa(o);
+            detail::log(o.log, log_kind::info, "PCM \"{}\" is back", o.pcm);
+            return s;
+        } catch (const error& e) {
+            // Not there yet, or udev has not given it to its group yet.
+            if (e.kind() != error_kind::not_available)
+                throw;
+            detail::log(o.log, log_kind::debug, "not back yet: {}", e.what());
+        }
+    }
+    return nullptr;
 }
 
 } // namespace v0

@@ -8,7 +8,10 @@
 #include <span>
 #include <vector>
 
+#include <alsa/asoundlib.h>
+
 #include <tactor/alsa.hpp>
+#include <tactor/sink.hpp>
 
 #include "sink/alsa/handle.hpp"
 #include "sink/pacer.hpp"
@@ -64,5 +67,12 @@ private:
     bool paced_ = false;
     int poll_error_ = 0; ///< of the latest descriptors()
 };
+
+/// Returns what a state alone means for the stream; a negative value is an error number (a device that is
+/// gone).
+io_kind of_state(int state) noexcept;
+
+/// Returns what a negative return value in a state means for the stream.
+io_kind of_error(long code, int state) noexcept;
 
 } // namespace tactor::pcm

@@ -1,22 +1,84 @@
 // SPDX-License-Identifier: MIT
-#include "sink/wav/write.hpp"
 
 #include <algorithm>
 #include <span>
+#include <string_view>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include <tactor/error.hpp>
 
+#include "core/refused.hpp"
 #include "files/output_file.hpp"
-#include "sink/wav/header.hpp"
+#include "sink/wav/wav.hpp"
 
 namespace tactor::wav {
-
 namespace {
 
 /// Between two calls of `progress`: short to wait for, long to write.
 constexpr std::size_t block_bytes = std::size_t{1} << 20;
 constexpr std::uint64_t most_block_frames = 65536;
+
+constexpr std::uint64_t elsewhere = 0xFFFFFFFFU;  ///< a size that ds64 has
+constexpr std::size_t most_frame_bytes = 0xFFFFU; ///< the header has two bytes for them
+constexpr unsigned integer_tag = 1;
+constexpr unsigned float_tag = 3;
+
+bool is_float(format_kind f)
+{
+    return f == format_kind::float32;
+}
+
+// Of the formats that a WAV file has, the best that holds them.
+std::string fewer_bytes(format_kind f, unsigned channels)
+{
+    for (const format_kind other : {format_kind::s24_3, format_kind::s16})
+        if (bytes_of(other) < bytes_of(f) && channels * bytes_of(other) <= most_frame_bytes)
+            return fmt::format("sample_format = {} holds them", to_string(other));
+    return "use fewer";
+}
+
+void check_format(format_kind f, unsigned channels)
+{
+    if (f == format_kind::s24_4) {
+        throw detail::bad_field("sample_format", fmt::format("a WAV file cannot hold {}", to_string(f)),
+                                "use float, s16, s24 or s32");
+    }
+    const std::size_t most = most_frame_bytes / bytes_of(f);
+    if (channels > most) {
+        throw detail::bad_field(
+            "channels",
+            fmt::format("a WAV file, RF64 too, has at most 65535 bytes a frame, {} channels in {}, not {}",
+                        most, to_string(f), channels),
+            fewer_bytes(f, channels));
+    }
+}
+
+/// Little end first, on any machine.
+std::string number(std::uint64_t value, unsigned bytes)
+{
+    std::string s;
+    for (unsigned i = 0; i < bytes; ++i)
+        s += static_cast<char>(value >> (8 * i) & 0xFFU);
+    return s;
+}
+
+std::string chunk(std::string_view name, const std::string& content)
+{
+    return std::string(name) + number(content.size(), 4) + content;
+}
+
+std::string format_chunk(format_kind f, unsigned channels, unsigned rate)
+{
+    const auto bytes = static_cast<unsigned>(bytes_of(f));
+    const std::uint64_t frame = std::uint64_t{channels} * bytes;
+    std::string s = number(is_float(f) ? float_tag : integer_tag, 2) + number(channels, 2) + number(rate, 4) +
+                    number(rate * frame, 4) + number(frame, 2) + number(8ULL * bytes, 2);
+    if (is_float(f))
+        s += number(0, 2); // bytes of extension
+    return chunk("fmt ", s);
+}
 
 } // namespace
 
@@ -47,6 +109,22 @@ bool write(const score& s, format_kind f, const std::filesystem::path& file, con
         return false;
     to.commit();
     return true;
+}
+
+std::string header(format_kind f, container c, unsigned channels, unsigned rate, std::uint64_t frames)
+{
+    check_format(f, channels);
+    const bool large = c == container::rf64;
+    const std::uint64_t data = frames * channels * bytes_of(f);
+    std::string chunks = format_chunk(f, channels, rate);
+    if (is_float(f))
+        chunks += chunk("fact", number(large ? elsewhere : frames, 4));
+    constexpr std::uint64_t ds64_bytes = 8 + 28;
+    const std::uint64_t riff = 4 + (large ? ds64_bytes : 0) + chunks.size() + 8 + data + padding(data);
+    std::string s = (large ? "RF64" : "RIFF") + number(large ? elsewhere : riff, 4) + "WAVE";
+    if (large)
+        s += chunk("ds64", number(riff, 8) + number(data, 8) + number(frames, 8) + number(0, 4));
+    return s + chunks + "data" + number(large ? elsewhere : data, 4);
 }
 
 } // namespace tactor::wav

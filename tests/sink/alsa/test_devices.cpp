@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The list of PCMs on a system made of files, and what a PCM can do on the fake DAC.
-#include "sink/alsa/devices/devices.hpp"
+#include "sink/alsa/devices/cards.hpp"
 
 #include <algorithm>
 

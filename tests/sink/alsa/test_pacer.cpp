@@ -10,7 +10,6 @@
 #include <tactor/alsa.hpp>
 
 #include "sink/pacer.hpp"
-#include "sink/virtual_queue.hpp"
 
 namespace pacer_test {
 

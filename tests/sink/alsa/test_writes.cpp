@@ -12,7 +12,7 @@
 
 #include "fake_dac.hpp"
 #include "sink/alsa/adopt.hpp"
-#include "sink/alsa/classify.hpp"
+#include "sink/alsa/pcm_sink.hpp"
 
 namespace writes_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sink/wav/header.hpp"
+#include "sink/wav/wav.hpp"
 
 #include <array>
 

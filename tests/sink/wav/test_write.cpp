@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sink/wav/write.hpp"
+#include "sink/wav/wav.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The sound cards that there are and who plays on them, as the kernel tells in files.
+/// The sound cards that there are and who plays on them, as the kernel tells in files, and the list of PCMs;
+/// tests give it a system that is made of files.
 #pragma once
 
 #include <filesystem>
@@ -8,6 +9,10 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <alsa/asoundlib.h>
+
+#include <tactor/devices.hpp>
 
 namespace tactor::pcm {
 
@@ -56,5 +61,14 @@ std::vector<holder> playback_holders(const system_root& root, const which_device
 
 /// The group whose members may open the playback devices; empty where that cannot be told.
 std::string playback_group(const system_root& root);
+
+/// Lists the PCMs as list_pcms() does, with the cards of `root`.
+std::vector<pcm_info> list(const system_root& root, const std::optional<alsa_options>& wanted);
+
+/// Returns the processes that hold a device, as values of the interface.
+std::vector<process_info> processes(const std::vector<holder>& holders);
+
+/// Fills in the abilities of an open PCM, and whether they fit.
+void look_at(snd_pcm_t* p, const std::optional<alsa_options>& wanted, pcm_info& into);
 
 } // namespace tactor::pcm
