@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "study/statistics/anova.hpp"
 
 #include <cmath>
 
 #include <doctest/doctest.h>
 
-#include "study/statistics/sphericity.hpp"
-#include "study/statistics/t_test.hpp"
+#include "study/statistics/tests.hpp"
 
 namespace tactor::study::test_anova {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/calibrate/doubtful.hpp"
+#include "study/calibrate/result.hpp"
 
 #include <vector>
 

@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "felt_array.hpp"
-#include "study/statistics/binomial.hpp"
+#include "study/statistics/tests.hpp"
 
 namespace tactor::study::test_power {
 namespace {

@@ -7,10 +7,9 @@
 
 #include "has.hpp"
 #include "message_of.hpp"
-#include "study/report/equations.hpp"
 #include "study/report/json_fact.hpp"
 #include "study/report/markdown.hpp"
-#include "study/report/sound_text.hpp"
+#include "study/report/sections.hpp"
 
 namespace tactor::study::test_report {
 namespace {

@@ -9,8 +9,8 @@
 #include <tactor/error.hpp>
 
 #include "folder.hpp"
-#include "study/bids/describe.hpp"
 #include "study/bids/disk.hpp"
+#include "study/bids/study_folder.hpp"
 #include "study/bids/trial_row.hpp"
 
 namespace tactor::study::test_study_files {

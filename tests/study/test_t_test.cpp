@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "study/statistics/t_test.hpp"
+#include "study/statistics/tests.hpp"
 
 #include <cmath>
 
 #include <doctest/doctest.h>
-
-#include "study/statistics/sign_flip.hpp"
 
 namespace tactor::study::test_t_test {
 namespace {

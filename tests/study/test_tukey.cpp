@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "study/statistics/tukey.hpp"
 
 #include <cmath>
 #include <numbers>
 
 #include <doctest/doctest.h>
 
-#include "study/statistics/t_test.hpp"
+#include "study/statistics/tests.hpp"
 
 namespace tactor::study::test_tukey {
 namespace {

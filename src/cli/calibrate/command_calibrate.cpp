@@ -17,7 +17,6 @@
 #include "cli/say.hpp"
 #include "core/sha256.hpp"
 #include "core/words.hpp"
-#include "study/calibrate/doubtful.hpp"
 #include "study/calibrate/log.hpp"
 #include "study/calibrate/observer.hpp"
 #include "study/calibrate/result.hpp"

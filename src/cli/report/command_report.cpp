@@ -8,7 +8,7 @@
 #include "cli/pipes.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
-#include "study/report/methods.hpp"
+#include "study/report/sections.hpp"
 
 namespace tactor::cli {
 namespace {

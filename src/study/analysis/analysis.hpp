@@ -9,9 +9,7 @@
 #include <vector>
 
 #include "study/data/dataset.hpp"
-#include "study/statistics/anova.hpp"
-#include "study/statistics/t_test.hpp"
-#include "study/statistics/tukey.hpp"
+#include "study/statistics/tests.hpp"
 
 namespace tactor::study {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "study/statistics/t_test.hpp"
+#include "study/statistics/tests.hpp"
 
 namespace tactor::study {
 namespace {

@@ -7,8 +7,7 @@
 #include <string>
 
 #include "study/data/outline.hpp"
-#include "study/statistics/anova.hpp"
-#include "study/statistics/t_test.hpp"
+#include "study/statistics/tests.hpp"
 
 namespace tactor::study {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/bids/describe.hpp"
+#include "study/bids/study_folder.hpp"
 
 #include <array>
 #include <string_view>

@@ -10,7 +10,6 @@
 #include <tactor/error.hpp>
 
 #include "core/words.hpp"
-#include "study/bids/describe.hpp"
 #include "study/data/dataset.hpp"
 #include "study/data/session.hpp"
 #include "study/data/text_table.hpp"

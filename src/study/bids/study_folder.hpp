@@ -81,4 +81,18 @@ private:
     std::vector<std::string> warnings_ = {};
 };
 
+// The texts of the files that describe a study. Each says so where nobody was asked.
+
+/// Returns dataset_description.json.
+std::string dataset_text(const experiment_definition& d, bool simulated);
+/// Reads from a dataset_description.json whether the study is simulated; nothing where tactor experiment did
+/// not write it.
+std::optional<bool> says_simulated(const std::string& dataset_description);
+/// Returns README.
+std::string readme_text(const experiment_definition& d, bool simulated);
+/// Returns participants.json.
+std::string participants_text(bool simulated);
+/// Returns task-NAME_beh.json.
+std::string task_text(const run_definition& r, bool simulated);
+
 } // namespace tactor::study

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <tactor/array.hpp>
 #include <tactor/setup.hpp>
 
 #include "files/setup_text.hpp"
@@ -40,5 +41,15 @@ bool of_others(const calibration_origin& earlier, const calibration_settings& s)
 /// that is measured here gives way. Of a tactor that was not felt there is none at this carrier.
 array with_thresholds(array a, const std::optional<calibration_origin>& earlier,
                       const calibration_settings& s, const std::vector<tactor_threshold>& thresholds);
+
+struct doubtful_threshold {
+    unsigned tactor = 0;
+    std::string why = {}; ///< a clause: "it is 20.4 dB above the median of the array's (-44.8 dBFS)"
+};
+
+/// Returns the array's thresholds at the session's carrier that are more than 12 dB above their median, and
+/// those below which the check trials were still right after the second staircase.
+std::vector<doubtful_threshold> find_doubtful(const array& a, const calibration_settings& s,
+                                              const std::vector<tactor_threshold>& measured);
 
 } // namespace tactor::study

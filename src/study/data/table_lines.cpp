@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/data/table_lines.hpp"
+#include "study/data/text_table.hpp"
 
 #include <algorithm>
 #include <optional>

@@ -11,9 +11,8 @@
 
 #include "core/words.hpp"
 #include "files/text_file.hpp"
-#include "study/experiment/definition_parts.hpp"
+#include "files/toml_reader.hpp"
 #include "study/experiment/noise_options.hpp"
-#include "study/experiment/shipped.hpp"
 
 namespace tactor::study {
 namespace {

@@ -16,6 +16,10 @@
 #include "study/data/outline.hpp"
 #include "study/experiment/page_words.hpp"
 
+namespace tactor::detail {
+class toml_table;
+}
+
 namespace tactor::study {
 
 enum class noise_kind { none, white, pink };
@@ -96,5 +100,17 @@ std::string_view shipped_experiment(std::string_view name);
 
 /// One that is built in, or a file. \throws error (bad_input).
 experiment_definition load_definition(const std::string& name_or_file);
+
+/// Reads a text of one line that can stand in a table. \throws error (bad_input).
+std::string name_in(const detail::toml_table& t, std::string_view key);
+
+/// Reads [[motion]]: a stroke from a preset, path data or a file, in the time that is asked for.
+motion_definition read_motion(const detail::toml_table& t, const std::filesystem::path& folder);
+
+/// Reads [[method]]: options of a plan.
+method_definition read_method(const detail::toml_table& t);
+
+/// Returns the experiment that is built in, as it stands among the examples.
+std::string_view park2016_text() noexcept;
 
 } // namespace tactor::study

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/experiment/definition_parts.hpp"
+#include "study/experiment/definition.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -10,6 +10,7 @@
 #include <tactor/error.hpp>
 
 #include "core/kind_names.hpp"
+#include "files/toml_reader.hpp"
 
 namespace tactor::study {
 namespace {

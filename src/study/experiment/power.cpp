@@ -9,7 +9,7 @@
 #include "study/analysis/analysis.hpp"
 #include "study/analysis/cells.hpp"
 #include "study/experiment/sequence.hpp"
-#include "study/statistics/binomial.hpp"
+#include "study/statistics/tests.hpp"
 
 namespace tactor::study {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "study/experiment/simulated.hpp"
-#include "study/statistics/t_test.hpp"
+#include "study/statistics/tests.hpp"
 
 namespace tactor::study {
 

@@ -3,17 +3,46 @@
 /// Noise on a device of its own, faded in and out, one wake-up at a time: no thread and no clock.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <tactor/sink.hpp>
 
-#include "study/masking/noise.hpp"
+#include "study/random/random.hpp"
 
 namespace tactor::study {
+
+enum class noise_color {
+    white, ///< the same power in every Hz
+    pink,  ///< the same power in every octave
+};
+
+/// The greatest level, dBFS, at which it is not cut: white noise is uniform, pink noise has peaks, which
+/// above full scale (15 dB above this level, once in minutes) are cut there.
+double greatest_noise_dbfs(noise_color c) noexcept;
+
+/// Levels are roots of the mean square, in dB below that of a full-scale square.
+class noise {
+public:
+    noise(noise_color c, double level_dbfs, std::string_view seed);
+
+    /// The next sample, -1 to 1. Does not block or allocate.
+    double next() noexcept;
+
+private:
+    double shaped(double white) noexcept;
+
+    noise_color color_;
+    double gain_;
+    random_numbers r_;
+    std::array<double, 6> poles_{};
+    double late_ = 0.0;
+};
 
 struct masking_options {
     noise_color color = noise_color::white;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "study/report/methods.hpp"
 
 #include <cstdint>
 #include <string_view>

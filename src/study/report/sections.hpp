@@ -1,28 +1,66 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The sections of a methods section, each with its heading.
+/// What a paper's methods section must say of a study, as Markdown: its sections, each with its heading, and
+/// the words and equations (TeX between dollar signs) of stimuli with their sources.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 
+#include <tactor/plan.hpp>
+
 #include "study/analysis/analysis.hpp"
 #include "study/report/facts.hpp"
+#include "study/report/json_fact.hpp"
 
 namespace tactor::study {
 
+/// Describes who took part.
 std::string participants_section(const study_facts& f, const analysis& a);
-/// Array, carrier, levels, thresholds, the sound device.
+/// Describes array, carrier, levels, thresholds, the sound device.
 std::string apparatus_section(const study_facts& f);
-/// Timing law, algorithms, phantom models, motions.
+/// Describes timing law, algorithms, phantom models, motions.
 std::string stimuli_section(const study_facts& f);
-/// Runs, trials, order, masking, breaks.
+/// Describes runs, trials, order, masking, breaks.
 std::string procedure_section(const study_facts& f, const dataset& d);
-/// Void trials, versions, hashes.
+/// Describes void trials, versions, hashes.
 std::string data_section(const study_facts& f, const dataset& d);
-/// As tactor analyze computes them; each is marked where the study is simulated.
+/// Gives the results as tactor analyze computes them; each is marked where the study is simulated.
 std::string results_section(const analysis& a);
-/// The papers that `named` names.
+/// Lists the papers that `named` names.
 std::string references_section(std::string_view named);
+
+/// Returns "SOA = 0.32 d + 0.0473".
+std::string timing_law(const timing_profile& p);
+
+/// Returns the options that are not the default, in words; "the defaults".
+std::string method_options(const plan_options& o);
+
+/// Describes an algorithm or a phantom model by its name in a plan. One that is not known is called the
+/// user's own.
+std::string algorithm_text(std::string_view name);
+std::string phantom_text(std::string_view name);
+
+/// Returns "a sine of 250 Hz, amplitude-modulated at ..." for a plan (schema tactor-plan/1).
+std::string carrier_of(const json_fact& plan);
+
+/// Returns the shape of its bursts but for the ramps' length: "raised-cosine ramps".
+std::string envelope_of(const json_fact& plan);
+
+/// Says how long actuators take to move and what is done about it; empty where none takes time.
+std::string rise_of(const json_fact& plan);
+
+/// Writes the whole text. `a` is of `d`, and `f` of the folder that `d` was read from. Every number is from
+/// its files.
+std::string methods_text(const study_facts& f, const dataset& d, const analysis& a);
+
+/// Checks that a name is one for a text in Markdown: it ends in .md. \throws error (bad_input).
+void check_report_name(const std::filesystem::path& file);
+
+/// Writes it whole, or nothing. \throws error: bad_input for the name, a folder that does not exist, a file
+/// that was read as input or, without `force`, one that is no report of tactor; runtime for what the system
+/// refuses.
+void write_report(const std::filesystem::path& file, const std::string& text, bool force);
 
 } // namespace tactor::study

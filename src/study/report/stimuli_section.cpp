@@ -5,10 +5,8 @@
 #include <fmt/format.h>
 
 #include "core/words.hpp"
-#include "study/report/equations.hpp"
 #include "study/report/markdown.hpp"
 #include "study/report/sections.hpp"
-#include "study/report/sound_text.hpp"
 
 namespace tactor::study {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/statistics/tukey.hpp"
+#include "study/statistics/tests.hpp"
 
 #include <algorithm>
 #include <cmath>
