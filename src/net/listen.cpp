@@ -20,7 +20,6 @@
 #include <tactor/error.hpp>
 
 #include "core/refused.hpp"
-#include "net/port_holder.hpp"
 
 namespace tactor::net {
 namespace {

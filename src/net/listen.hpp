@@ -61,4 +61,11 @@ std::vector<std::pair<std::string, owned_fd>> inherited_sockets();
 /// Sends one datagram such as "READY=1" to NOTIFY_SOCKET; nothing where there is none.
 void notify_manager(std::string_view text) noexcept;
 
+/// Returns "tactor, process 1234"; the number alone where the process has no name.
+std::string process_name(pid_t pid);
+
+/// Returns the name of the process that listens at a port of TCP (`stream`) or is bound to one of UDP;
+/// "another user's process" where the system does not show it; empty where no socket has that port.
+std::string find_port_holder(std::uint16_t port, bool stream);
+
 } // namespace tactor::net

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "net/port_holder.hpp"
+#include "net/listen.hpp"
 
 #include <charconv>
 #include <filesystem>

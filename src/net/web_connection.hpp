@@ -72,4 +72,14 @@ private:
     std::shared_ptr<session> session_;
 };
 
+/// Makes a document for a browser that calls this server `host`: it may run its own script and style, which
+/// carry nonce="NONCE", and talk to that host only.
+web_reply make_page(std::string_view document, std::string_view host);
+
+/// Tells a browser on this socket that there is no place, as far as it takes it.
+void turn_away(int socket);
+
+/// Returns the whole reply to a browser for which no descriptor is left.
+std::string no_descriptors_for_browsers();
+
 } // namespace tactor::net

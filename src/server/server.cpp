@@ -27,7 +27,6 @@
 #include "net/line_connection.hpp"
 #include "net/listener.hpp"
 #include "net/web_connection.hpp"
-#include "net/web_page.hpp"
 #include "server/osc/endpoint.hpp"
 #include "server/page/drawing_page.hpp"
 #include "server/way_back.hpp"

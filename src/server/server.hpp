@@ -11,8 +11,8 @@
 
 #include <sys/types.h>
 
+#include "net/access.hpp"
 #include "net/listen.hpp"
-#include "net/peers.hpp"
 #include "server/service.hpp"
 
 namespace tactor::server {

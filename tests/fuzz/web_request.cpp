@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "holds.hpp"
-#include "net/web_access.hpp"
+#include "net/access.hpp"
 #include "net/web_connection.hpp"
 
 using namespace tactor;

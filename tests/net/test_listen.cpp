@@ -15,7 +15,6 @@
 
 #include "folder.hpp"
 #include "has.hpp"
-#include "net/port_holder.hpp"
 
 namespace listen_test {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Whose datagrams are heard.
-#include "net/peers.hpp"
+#include "net/access.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Which browsers' requests are meant for this server.
-#include "net/web_access.hpp"
+#include "net/access.hpp"
 
 #include <doctest/doctest.h>
 

@@ -11,7 +11,7 @@
 #include <boost/asio/ip/udp.hpp>
 #include <boost/asio/steady_timer.hpp>
 
-#include "net/peers.hpp"
+#include "net/access.hpp"
 #include "server/osc/clients.hpp"
 
 namespace tactor::server {

@@ -12,7 +12,6 @@
 
 #include "net/listener.hpp"
 #include "net/web_connection.hpp"
-#include "net/web_page.hpp"
 
 namespace tactor::server {
 namespace {
