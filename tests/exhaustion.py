@@ -6,7 +6,7 @@ overload in a row of its own: under its name, with that of its class before it (
 row. Further rows for the same have more to say after a comma ("path::from_svg, no path"). from_string() has one row for
 all, which names each enumeration. UNTRIED has the others, with the reason.
 
-The headers are taken apart by their braces, not as C++. It does not see what macros declare, functions whose type of
+The headers are taken apart by their braces, not as C++. It does not see what macros declare other than TACTOR_KIND, functions whose type of
 result has parentheses in it, defaulted functions (those of plain values, which throw what their members do), and what a
 function of the user's throws. That a row calls this overload, and not another of the same name, is for its author to say.
 
@@ -26,6 +26,7 @@ ACCESS = re.compile(r"^\s*(public|protected|private)\s*:(?!:)")
 TYPE = re.compile(r"^(?:template\s*<.*>\s*)?(class|struct|enum)\b(?:\s+class)?(?:\s+TACTOR_API)?\s+([\w:]+)", re.S)
 NAME = re.compile(r"(operator\s*(?:\(\)|[^\s\w(]+)|~?\w+(?:<[\w:]+>)?)\s*\(")
 VALUE = re.compile(r"(?:(?!operator)[^(=])*=")  # of a constant or a member
+KIND = re.compile(r"\bTACTOR_KIND\((\w+)\)")  # declares from_string(), which throws
 ROW = re.compile(r'\{"([\w:]+(?:operator[^\w",]+)?)(,[^"]*)?",')
 
 
@@ -113,7 +114,7 @@ def main():
     root = pathlib.Path(sys.argv[1]).resolve()
     declared = collections.Counter()
     for header in sorted((root / "include" / "tactor").glob("*.hpp")):
-        declared.update(throwing(IGNORED.sub("", header.read_text(encoding="utf-8"))))
+        declared.update(throwing(KIND.sub(r"\1 from_string<\1>()", IGNORED.sub("", header.read_text(encoding="utf-8")))))
     rows = collections.defaultdict(list)
     for table in sorted((root / "tests" / "engine").glob("exhaustion_*.cpp")):
         parts = ROW.split(table.read_text(encoding="utf-8"))

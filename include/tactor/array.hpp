@@ -25,12 +25,7 @@ enum class actuator_kind {
     lra, ///< linear resonant
     erm, ///< eccentric rotating mass
 };
-
-TACTOR_API std::string_view to_string(actuator_kind k) noexcept;
-template <>
-TACTOR_API actuator_kind from_string<actuator_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const actuator_kind> values_of<actuator_kind>() noexcept;
+TACTOR_KIND(actuator_kind);
 
 /// A detection threshold at a frequency.
 struct threshold_point {

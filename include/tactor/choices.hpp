@@ -15,12 +15,7 @@ namespace tactor {
 inline namespace v0 {
 
 enum class algorithm_kind { park2016, tactile_brush, continuous };
-
-TACTOR_API std::string_view to_string(algorithm_kind k) noexcept;
-template <>
-TACTOR_API algorithm_kind from_string<algorithm_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const algorithm_kind> values_of<algorithm_kind>() noexcept;
+TACTOR_KIND(algorithm_kind);
 
 /// Built-in phantom models.
 enum class phantom_kind {
@@ -30,61 +25,31 @@ enum class phantom_kind {
     log,              ///< log2(1 + b)
     gaussian,         ///< all tactors near, exp(-d^2 / (2 (0.6 pitch)^2)), equal energy
 };
-
-TACTOR_API std::string_view to_string(phantom_kind k) noexcept;
-template <>
-TACTOR_API phantom_kind from_string<phantom_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const phantom_kind> values_of<phantom_kind>() noexcept;
+TACTOR_KIND(phantom_kind);
 
 /// Which three tactors inverse_distance takes.
 enum class faces_kind {
     delaunay, ///< those of the Delaunay face round the point, whose triangle holds it
     nearest,  ///< the three closest of the whole array, as Park et al. 2016 say; their triangle may miss it
 };
-
-TACTOR_API std::string_view to_string(faces_kind k) noexcept;
-template <>
-TACTOR_API faces_kind from_string<faces_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const faces_kind> values_of<faces_kind>() noexcept;
+TACTOR_KIND(faces_kind);
 
 /// The SOA as it is given, or shortened so that the last burst ends with the path.
 enum class timing_kind { fixed, fit };
-
-TACTOR_API std::string_view to_string(timing_kind k) noexcept;
-template <>
-TACTOR_API timing_kind from_string<timing_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const timing_kind> values_of<timing_kind>() noexcept;
+TACTOR_KIND(timing_kind);
 
 /// A path that leaves the array: refused, or moved to the edge.
 enum class outside_kind { error, clamp };
-
-TACTOR_API std::string_view to_string(outside_kind k) noexcept;
-template <>
-TACTOR_API outside_kind from_string<outside_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const outside_kind> values_of<outside_kind>() noexcept;
+TACTOR_KIND(outside_kind);
 
 /// How bursts that overlap on one tactor are joined into one carrier's amplitude.
 enum class overlap_kind { energy, max, sum };
-
-TACTOR_API std::string_view to_string(overlap_kind k) noexcept;
-template <>
-TACTOR_API overlap_kind from_string<overlap_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const overlap_kind> values_of<overlap_kind>() noexcept;
+TACTOR_KIND(overlap_kind);
 
 /// What an intensity of one half means: half of the amplitude; half of the sensation level in dB; or half as
 /// strong as it is felt, by Stevens's law.
 enum class scale_kind { linear, sl, stevens };
-
-TACTOR_API std::string_view to_string(scale_kind k) noexcept;
-template <>
-TACTOR_API scale_kind from_string<scale_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const scale_kind> values_of<scale_kind>() noexcept;
+TACTOR_KIND(scale_kind);
 
 /// Where the carrier's phase starts. With `stroke` one carrier runs from the stroke's first frame on, and
 /// bursts open and close it: a tactor that plays several in a row goes on without a break. With `burst` it
@@ -92,24 +57,14 @@ TACTOR_API std::span<const scale_kind> values_of<scale_kind>() noexcept;
 /// cycles, so there the sign flips from burst to burst: the spectrum has lines at 242.9 and 257.1 Hz in place
 /// of 250, and the mean is above 0.
 enum class phase_kind { stroke, burst };
-
-TACTOR_API std::string_view to_string(phase_kind k) noexcept;
-template <>
-TACTOR_API phase_kind from_string<phase_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const phase_kind> values_of<phase_kind>() noexcept;
+TACTOR_KIND(phase_kind);
 
 /// Who is predicted to feel a plan.
 enum class observer_kind {
     centroid,  ///< feels the centre of energy of what sounds: tactor/percept.hpp
     low_speed, ///< expects low speeds: tactor/observer.hpp
 };
-
-TACTOR_API std::string_view to_string(observer_kind k) noexcept;
-template <>
-TACTOR_API observer_kind from_string<observer_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const observer_kind> values_of<observer_kind>() noexcept;
+TACTOR_KIND(observer_kind);
 
 /// One stroke's own values in place of those in plan_options. `phantom` also replaces a model of your own
 /// (plan_options::custom_phantom).
@@ -130,12 +85,7 @@ enum class start_from_kind {
     start, ///< from the start of a stroke before
     end,   ///< from the end of strokes before
 };
-
-TACTOR_API std::string_view to_string(start_from_kind k) noexcept;
-template <>
-TACTOR_API start_from_kind from_string<start_from_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const start_from_kind> values_of<start_from_kind>() noexcept;
+TACTOR_KIND(start_from_kind);
 
 /// What the start of a stroke counts from. Where there are fewer strokes before it, from the start of the
 /// piece.

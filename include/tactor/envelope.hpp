@@ -17,12 +17,7 @@ inline namespace v0 {
 /// How a burst rises and falls: like half a cycle of a cosine, by a straight line, or by an exponential that
 /// ends after five of its time constants. `tukey` is raised_cosine with ramps that are a part of the burst.
 enum class envelope_kind { raised_cosine, linear, exponential, tukey };
-
-TACTOR_API std::string_view to_string(envelope_kind k) noexcept;
-template <>
-TACTOR_API envelope_kind from_string<envelope_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const envelope_kind> values_of<envelope_kind>() noexcept;
+TACTOR_KIND(envelope_kind);
 
 /// The envelope of every burst, and of a continuous stroke as a whole. Where both ramps do not fit, they are
 /// shortened in the same ratio.

@@ -20,12 +20,7 @@ enum class error_kind {
     runtime = 2,       ///< failed while running (disk full, stream broken)
     not_available = 3, ///< a device is missing, busy or cannot do what is asked
 };
-
-TACTOR_API std::string_view to_string(error_kind k) noexcept;
-template <>
-TACTOR_API error_kind from_string<error_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const error_kind> values_of<error_kind>() noexcept;
+TACTOR_KIND(error_kind);
 
 [[nodiscard]] TACTOR_API const std::error_category& error_category() noexcept;
 [[nodiscard]] TACTOR_API std::error_code make_error_code(error_kind e) noexcept;

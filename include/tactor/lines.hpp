@@ -20,12 +20,7 @@ inline namespace v0 {
 
 /// Which changes of an input count.
 enum class edge_kind { rising, falling, both };
-
-TACTOR_API std::string_view to_string(edge_kind k) noexcept;
-template <>
-TACTOR_API edge_kind from_string<edge_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const edge_kind> values_of<edge_kind>() noexcept;
+TACTOR_KIND(edge_kind);
 
 /// The resistor at an input.
 enum class pull_kind {
@@ -34,12 +29,7 @@ enum class pull_kind {
     up,
     down,
 };
-
-TACTOR_API std::string_view to_string(pull_kind k) noexcept;
-template <>
-TACTOR_API pull_kind from_string<pull_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const pull_kind> values_of<pull_kind>() noexcept;
+TACTOR_KIND(pull_kind);
 
 /// A GPIO line: either chip (label or path) and offset, or a line name.
 struct gpio_line_name {

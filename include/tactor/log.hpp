@@ -20,12 +20,7 @@ enum class log_kind {
     warning, ///< what was felt wrongly, or may be: xruns, mutes, limits that acted
     error,   ///< what ended the stream
 };
-
-TACTOR_API std::string_view to_string(log_kind k) noexcept;
-template <>
-TACTOR_API log_kind from_string<log_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const log_kind> values_of<log_kind>() noexcept;
+TACTOR_KIND(log_kind);
 
 /// Takes one line without a line end, UTF-8, for people: its words may change with each version. An empty
 /// function turns it off. Called by the thread that opens a device or a player, then by the player's control

@@ -20,12 +20,7 @@ enum class easing_kind {
     in_out,       ///< u^2 (3 - 2 u): its speed is a parabola, at most 1.5 times the mean
     minimum_jerk, ///< u^3 (10 - 15 u + 6 u^2), as hands reach (Flash and Hogan 1985): at most 1.875 times
 };
-
-TACTOR_API std::string_view to_string(easing_kind k) noexcept;
-template <>
-TACTOR_API easing_kind from_string<easing_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const easing_kind> values_of<easing_kind>() noexcept;
+TACTOR_KIND(easing_kind);
 
 /// A value at a part of the path's length, 0 at its start and 1 at its end.
 struct profile_point {

@@ -34,12 +34,7 @@ enum class state_kind {
     interrupted, ///< an xrun, the loss of the device, a failure, a live stroke's silent producer or its
                  ///< longest_s
 };
-
-TACTOR_API std::string_view to_string(state_kind k) noexcept;
-template <>
-TACTOR_API state_kind from_string<state_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const state_kind> values_of<state_kind>() noexcept;
+TACTOR_KIND(state_kind);
 
 /// Why a stroke was interrupted, or why a stream ended.
 enum class reason_kind {
@@ -59,12 +54,7 @@ enum class reason_kind {
     plan,      ///< the plan or a model of one's own failed, or gave more than was promised
     handler,   ///< one of the program's handlers threw
 };
-
-TACTOR_API std::string_view to_string(reason_kind k) noexcept;
-template <>
-TACTOR_API reason_kind from_string<reason_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const reason_kind> values_of<reason_kind>() noexcept;
+TACTOR_KIND(reason_kind);
 
 /// How long points of a live stroke took, from their time stamps until the first frame that they changed was
 /// at the DAC. For the first point of a stroke this time is stroke_report::started_ns; for the others, the
@@ -107,12 +97,7 @@ enum class wait_kind {
     taken,   ///< it has ended, but its report was given before, or dropped for 4096 newer ones
     unknown, ///< this player never had such a stroke
 };
-
-TACTOR_API std::string_view to_string(wait_kind k) noexcept;
-template <>
-TACTOR_API wait_kind from_string<wait_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const wait_kind> values_of<wait_kind>() noexcept;
+TACTOR_KIND(wait_kind);
 
 /// What wait() gives: the report, or why there is none.
 class wait_result {

@@ -24,11 +24,7 @@ enum class format_kind {
 [[nodiscard]] TACTOR_API std::size_t bytes_of(format_kind f) noexcept;
 
 /// "float", "s16", "s24" (s24_3), "s24-4", "s32".
-TACTOR_API std::string_view to_string(format_kind k) noexcept;
-template <>
-TACTOR_API format_kind from_string<format_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const format_kind> values_of<format_kind>() noexcept;
+TACTOR_KIND(format_kind);
 
 } // namespace v0
 } // namespace tactor

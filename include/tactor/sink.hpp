@@ -61,12 +61,7 @@ enum class io_kind {
     lost,      ///< unplugged, or its position stands still
     failed,    ///< anything else; final
 };
-
-TACTOR_API std::string_view to_string(io_kind k) noexcept;
-template <>
-TACTOR_API io_kind from_string<io_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const io_kind> values_of<io_kind>() noexcept;
+TACTOR_KIND(io_kind);
 
 struct io_result {
     io_kind status = io_kind::ok;

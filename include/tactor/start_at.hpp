@@ -26,12 +26,7 @@ inline namespace v0 {
 
 /// What a stroke's start waits for.
 enum class start_kind { frame, time, trigger };
-
-TACTOR_API std::string_view to_string(start_kind k) noexcept;
-template <>
-TACTOR_API start_kind from_string<start_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const start_kind> values_of<start_kind>() noexcept;
+TACTOR_KIND(start_kind);
 
 /// When a stroke starts. A plain value.
 class start_at {

@@ -108,12 +108,7 @@ enum class note_kind {
     none,
     reconstructed, ///< a preset whose original is not in print
 };
-
-TACTOR_API std::string_view to_string(note_kind k) noexcept;
-template <>
-TACTOR_API note_kind from_string<note_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const note_kind> values_of<note_kind>() noexcept;
+TACTOR_KIND(note_kind);
 
 /// The carrier at a part of the path.
 struct carrier_part {

@@ -21,22 +21,12 @@ inline namespace v0 {
 /// begins where it crosses zero upwards. Noise lies between two frequencies. The peak of each is the
 /// amplitude that is asked for: a square has up to 1.6 times a sine's power, and noise a tenth of it.
 enum class waveform_kind { sine, square, triangle, sawtooth, noise, recording };
+TACTOR_KIND(waveform_kind);
 
 /// How recorded samples are laid along a stroke: as the carrier's cycle; in their own time, from the stroke's
 /// first frame on; or along the path, by its length. Samples that are shorter than the stroke are repeated.
 enum class texture_kind { cycle, time, length };
-
-TACTOR_API std::string_view to_string(waveform_kind k) noexcept;
-template <>
-TACTOR_API waveform_kind from_string<waveform_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const waveform_kind> values_of<waveform_kind>() noexcept;
-
-TACTOR_API std::string_view to_string(texture_kind k) noexcept;
-template <>
-TACTOR_API texture_kind from_string<texture_kind>(std::string_view name);
-template <>
-TACTOR_API std::span<const texture_kind> values_of<texture_kind>() noexcept;
+TACTOR_KIND(texture_kind);
 
 /// Samples of one channel.
 struct recording {

@@ -11,50 +11,19 @@
 
 namespace tactor {
 inline namespace v0 {
-namespace {
 
-constexpr detail::kind_table<algorithm_kind, 3> algorithms("algorithm",
-                                                           {{algorithm_kind::park2016, "park2016"},
-                                                            {algorithm_kind::tactile_brush, "tactile-brush"},
-                                                            {algorithm_kind::continuous, "continuous"}});
-constexpr detail::kind_table<phantom_kind, 5> phantoms("phantom",
-                                                       {{phantom_kind::inverse_distance, "inverse-distance"},
-                                                        {phantom_kind::barycentric, "barycentric"},
-                                                        {phantom_kind::linear, "linear"},
-                                                        {phantom_kind::log, "log"},
-                                                        {phantom_kind::gaussian, "gaussian"}});
-constexpr detail::kind_table<faces_kind, 2> all_faces("faces", {{faces_kind::delaunay, "delaunay"},
-                                                                {faces_kind::nearest, "nearest"}});
-constexpr detail::kind_table<timing_kind, 2> timings("timing", {{timing_kind::fixed, "fixed"},
-                                                                {timing_kind::fit, "fit"}});
-constexpr detail::kind_table<outside_kind, 2> outsides("outside", {{outside_kind::error, "error"},
-                                                                   {outside_kind::clamp, "clamp"}});
-constexpr detail::kind_table<overlap_kind, 3> overlaps("overlap", {{overlap_kind::energy, "energy"},
-                                                                   {overlap_kind::max, "max"},
-                                                                   {overlap_kind::sum, "sum"}});
-constexpr detail::kind_table<scale_kind, 3> scales("intensity scale", {{scale_kind::linear, "linear"},
-                                                                       {scale_kind::sl, "sl"},
-                                                                       {scale_kind::stevens, "stevens"}});
-constexpr detail::kind_table<phase_kind, 2> phases("phase", {{phase_kind::stroke, "stroke"},
-                                                             {phase_kind::burst, "burst"}});
-constexpr detail::kind_table<observer_kind, 2>
-    observers("observer", {{observer_kind::centroid, "centroid"}, {observer_kind::low_speed, "low-speed"}});
-constexpr detail::kind_table<start_from_kind, 3> start_froms("start_from", {{start_from_kind::piece, "piece"},
-                                                                            {start_from_kind::start, "start"},
-                                                                            {start_from_kind::end, "end"}});
-
-} // namespace
-
-TACTOR_KIND_FUNCTIONS(algorithm_kind, algorithms)
-TACTOR_KIND_FUNCTIONS(phantom_kind, phantoms)
-TACTOR_KIND_FUNCTIONS(faces_kind, all_faces)
-TACTOR_KIND_FUNCTIONS(timing_kind, timings)
-TACTOR_KIND_FUNCTIONS(outside_kind, outsides)
-TACTOR_KIND_FUNCTIONS(overlap_kind, overlaps)
-TACTOR_KIND_FUNCTIONS(scale_kind, scales)
-TACTOR_KIND_FUNCTIONS(phase_kind, phases)
-TACTOR_KIND_FUNCTIONS(observer_kind, observers)
-TACTOR_KIND_FUNCTIONS(start_from_kind, start_froms)
+TACTOR_KIND_NAMES(algorithm_kind, "algorithm", {park2016, "park2016"}, {tactile_brush, "tactile-brush"},
+                  {continuous, "continuous"});
+TACTOR_KIND_NAMES(phantom_kind, "phantom", {inverse_distance, "inverse-distance"},
+                  {barycentric, "barycentric"}, {linear, "linear"}, {log, "log"}, {gaussian, "gaussian"});
+TACTOR_KIND_NAMES(faces_kind, "faces", {delaunay, "delaunay"}, {nearest, "nearest"});
+TACTOR_KIND_NAMES(timing_kind, "timing", {fixed, "fixed"}, {fit, "fit"});
+TACTOR_KIND_NAMES(outside_kind, "outside", {error, "error"}, {clamp, "clamp"});
+TACTOR_KIND_NAMES(overlap_kind, "overlap", {energy, "energy"}, {max, "max"}, {sum, "sum"});
+TACTOR_KIND_NAMES(scale_kind, "intensity scale", {linear, "linear"}, {sl, "sl"}, {stevens, "stevens"});
+TACTOR_KIND_NAMES(phase_kind, "phase", {stroke, "stroke"}, {burst, "burst"});
+TACTOR_KIND_NAMES(observer_kind, "observer", {centroid, "centroid"}, {low_speed, "low-speed"});
+TACTOR_KIND_NAMES(start_from_kind, "start_from", {piece, "piece"}, {start, "start"}, {end, "end"});
 
 double resolve_start_s(std::optional<double> start_s, const start_anchor& anchor,
                        std::span<const double> starts_s, std::span<const double> ends_s)

@@ -12,17 +12,8 @@
 namespace tactor {
 inline namespace v0 {
 
-namespace {
-
-constexpr detail::kind_table<envelope_kind, 4> envelopes("envelope",
-                                                         {{envelope_kind::raised_cosine, "raised-cosine"},
-                                                          {envelope_kind::linear, "linear"},
-                                                          {envelope_kind::exponential, "exponential"},
-                                                          {envelope_kind::tukey, "tukey"}});
-
-} // namespace
-
-TACTOR_KIND_FUNCTIONS(envelope_kind, envelopes)
+TACTOR_KIND_NAMES(envelope_kind, "envelope", {raised_cosine, "raised-cosine"}, {linear, "linear"},
+                  {exponential, "exponential"}, {tukey, "tukey"});
 
 burst_envelope parse_envelope(std::string_view text)
 {

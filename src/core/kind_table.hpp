@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The names of an enumeration's values, once.
+/// The definition of an enumeration's words, once.
 #pragma once
 
 #include <array>
@@ -21,11 +21,12 @@ struct kind_name {
     std::string_view name;
 };
 
-/// `what` stands for it in messages. Names in the order of declaration.
+/// The names of an enumeration, in the order of declaration. `what` stands for it in messages.
 template <typename Kind, std::size_t N>
 class kind_table {
 public:
-    constexpr kind_table(std::string_view what, const kind_name<Kind> (&all)[N]) noexcept : what_(what)
+    constexpr kind_table(std::string_view what, const std::array<kind_name<Kind>, N>& all) noexcept
+        : what_(what)
     {
         for (std::size_t i = 0; i < N; ++i) {
             kinds_[i] = all[i].kind;
@@ -62,19 +63,27 @@ private:
 
 } // namespace tactor::detail
 
-/// Defines to_string(), from_string() and values_of() of a kind, inside namespace tactor::v0, by its table.
-#define TACTOR_KIND_FUNCTIONS(Kind, table)                                                                   \
+/// Defines what TACTOR_KIND declares, inside namespace tactor::v0. `what` stands for the enumeration in
+/// messages; then each value with its name, in the order of declaration.
+#define TACTOR_KIND_NAMES(Kind, what, ...)                                                                   \
+    namespace {                                                                                              \
+    constexpr auto Kind##_names = [] {                                                                       \
+        using enum Kind;                                                                                     \
+        return detail::kind_table(what, std::to_array<detail::kind_name<Kind>>({__VA_ARGS__}));              \
+    }();                                                                                                     \
+    }                                                                                                        \
     std::string_view to_string(Kind k) noexcept                                                              \
     {                                                                                                        \
-        return (table).name(k);                                                                              \
+        return Kind##_names.name(k);                                                                         \
     }                                                                                                        \
     template <>                                                                                              \
     Kind from_string<Kind>(std::string_view name)                                                            \
     {                                                                                                        \
-        return (table).kind(name);                                                                           \
+        return Kind##_names.kind(name);                                                                      \
     }                                                                                                        \
     template <>                                                                                              \
     std::span<const Kind> values_of<Kind>() noexcept                                                         \
     {                                                                                                        \
-        return (table).kinds();                                                                              \
-    }
+        return Kind##_names.kinds();                                                                         \
+    }                                                                                                        \
+    static_assert(true)

@@ -12,57 +12,20 @@
 
 namespace tactor {
 inline namespace v0 {
-namespace {
 
-constexpr detail::kind_table<error_kind, 3> errors("kind of error",
-                                                   {{error_kind::bad_input, "bad-input"},
-                                                    {error_kind::runtime, "runtime"},
-                                                    {error_kind::not_available, "not-available"}});
-constexpr detail::kind_table<actuator_kind, 5> actuators("actuator",
-                                                         {{actuator_kind::unknown, "unknown"},
-                                                          {actuator_kind::piezo, "piezo"},
-                                                          {actuator_kind::voice_coil, "voice-coil"},
-                                                          {actuator_kind::lra, "lra"},
-                                                          {actuator_kind::erm, "erm"}});
-constexpr detail::kind_table<note_kind, 2> notes("note", {{note_kind::none, "none"},
-                                                          {note_kind::reconstructed, "reconstructed"}});
-constexpr detail::kind_table<easing_kind, 3> easings("easing", {{easing_kind::linear, "linear"},
-                                                                {easing_kind::in_out, "in-out"},
-                                                                {easing_kind::minimum_jerk, "minimum-jerk"}});
-constexpr detail::kind_table<edge_kind, 3> edges("edge", {{edge_kind::rising, "rising"},
-                                                          {edge_kind::falling, "falling"},
-                                                          {edge_kind::both, "both"}});
-constexpr detail::kind_table<pull_kind, 4> pulls("pull", {{pull_kind::as_is, "as-is"},
-                                                          {pull_kind::none, "none"},
-                                                          {pull_kind::up, "up"},
-                                                          {pull_kind::down, "down"}});
-constexpr detail::kind_table<io_kind, 6> states("state of a sink", {{io_kind::ok, "ok"},
-                                                                    {io_kind::again, "again"},
-                                                                    {io_kind::xrun, "xrun"},
-                                                                    {io_kind::suspended, "suspended"},
-                                                                    {io_kind::lost, "lost"},
-                                                                    {io_kind::failed, "failed"}});
-constexpr detail::kind_table<log_kind, 4> log_kinds("kind of log line", {{log_kind::debug, "debug"},
-                                                                         {log_kind::info, "info"},
-                                                                         {log_kind::warning, "warning"},
-                                                                         {log_kind::error, "error"}});
-
-constexpr detail::kind_table<format_kind, 5> formats("sample format", {{format_kind::float32, "float"},
-                                                                       {format_kind::s16, "s16"},
-                                                                       {format_kind::s24_3, "s24"},
-                                                                       {format_kind::s24_4, "s24-4"},
-                                                                       {format_kind::s32, "s32"}});
-
-} // namespace
-
-TACTOR_KIND_FUNCTIONS(error_kind, errors)
-TACTOR_KIND_FUNCTIONS(actuator_kind, actuators)
-TACTOR_KIND_FUNCTIONS(note_kind, notes)
-TACTOR_KIND_FUNCTIONS(easing_kind, easings)
-TACTOR_KIND_FUNCTIONS(edge_kind, edges)
-TACTOR_KIND_FUNCTIONS(pull_kind, pulls)
-TACTOR_KIND_FUNCTIONS(io_kind, states)
-TACTOR_KIND_FUNCTIONS(log_kind, log_kinds)
+TACTOR_KIND_NAMES(error_kind, "kind of error", {bad_input, "bad-input"}, {runtime, "runtime"},
+                  {not_available, "not-available"});
+TACTOR_KIND_NAMES(actuator_kind, "actuator", {unknown, "unknown"}, {piezo, "piezo"},
+                  {voice_coil, "voice-coil"}, {lra, "lra"}, {erm, "erm"});
+TACTOR_KIND_NAMES(note_kind, "note", {none, "none"}, {reconstructed, "reconstructed"});
+TACTOR_KIND_NAMES(easing_kind, "easing", {linear, "linear"}, {in_out, "in-out"},
+                  {minimum_jerk, "minimum-jerk"});
+TACTOR_KIND_NAMES(edge_kind, "edge", {rising, "rising"}, {falling, "falling"}, {both, "both"});
+TACTOR_KIND_NAMES(pull_kind, "pull", {as_is, "as-is"}, {none, "none"}, {up, "up"}, {down, "down"});
+TACTOR_KIND_NAMES(io_kind, "state of a sink", {ok, "ok"}, {again, "again"}, {xrun, "xrun"},
+                  {suspended, "suspended"}, {lost, "lost"}, {failed, "failed"});
+TACTOR_KIND_NAMES(log_kind, "kind of log line", {debug, "debug"}, {info, "info"}, {warning, "warning"},
+                  {error, "error"});
 
 std::size_t bytes_of(format_kind f) noexcept
 {
@@ -79,7 +42,8 @@ std::size_t bytes_of(format_kind f) noexcept
     return 4;
 }
 
-TACTOR_KIND_FUNCTIONS(format_kind, formats)
+TACTOR_KIND_NAMES(format_kind, "sample format", {float32, "float"}, {s16, "s16"}, {s24_3, "s24"},
+                  {s24_4, "s24-4"}, {s32, "s32"});
 
 } // namespace v0
 } // namespace tactor

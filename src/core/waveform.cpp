@@ -21,18 +21,6 @@ namespace tactor {
 inline namespace v0 {
 namespace {
 
-constexpr detail::kind_table<waveform_kind, 6> waveforms("waveform",
-                                                         {{waveform_kind::sine, "sine"},
-                                                          {waveform_kind::square, "square"},
-                                                          {waveform_kind::triangle, "triangle"},
-                                                          {waveform_kind::sawtooth, "sawtooth"},
-                                                          {waveform_kind::noise, "noise"},
-                                                          {waveform_kind::recording, "recording"}});
-
-constexpr detail::kind_table<texture_kind, 3> textures("texture", {{texture_kind::cycle, "cycle"},
-                                                                   {texture_kind::time, "time"},
-                                                                   {texture_kind::length, "length"}});
-
 constexpr double highest_hz = 384000.0;
 constexpr double highest_modulation_hz = 20000.0;
 constexpr double longest_texture_mm = 1e6;
@@ -90,8 +78,9 @@ std::optional<double> number_until(std::string_view text, std::size_t& at, char 
 
 } // namespace
 
-TACTOR_KIND_FUNCTIONS(waveform_kind, waveforms)
-TACTOR_KIND_FUNCTIONS(texture_kind, textures)
+TACTOR_KIND_NAMES(waveform_kind, "waveform", {sine, "sine"}, {square, "square"}, {triangle, "triangle"},
+                  {sawtooth, "sawtooth"}, {noise, "noise"}, {recording, "recording"});
+TACTOR_KIND_NAMES(texture_kind, "texture", {cycle, "cycle"}, {time, "time"}, {length, "length"});
 
 bool operator==(const waveform& a, const waveform& b)
 {
