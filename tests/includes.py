@@ -11,6 +11,7 @@ import sys
 MAY_INCLUDE = {
     "core": set(),
     "files": {"core"},
+    "files/plan": {"core", "files", "plan", "percept", "synth"},
     "plan": {"core"},
     "percept": {"core", "plan"},
     "synth": {"core", "plan"},
@@ -24,8 +25,8 @@ MAY_INCLUDE = {
     "study": set(),
     "net": {"core"},
     "server": {"net"},
-    "cli": {"plot", "study", "net", "server"},
-    "python": {"cli", "plot"},
+    "cli": {"files/plan", "plot", "study", "net", "server"},
+    "python": {"cli", "files/plan", "plot"},
 }
 # The folder that a public header belongs to; a folder may use the public headers of the folders it may include.
 PUBLIC = {
@@ -36,14 +37,14 @@ PUBLIC = {
     "gpio": "amplifier", "realtime": "rt", "sink": None, "alsa": "sink/alsa", "devices": "sink/alsa", "player": "engine", "live": "engine",
     "asio": "engine", "report": "engine",
 }
-USES_ALL_PUBLIC = {"cli", "plot", "python", "server", "study"}
+USES_ALL_PUBLIC = {"cli", "files/plan", "plot", "python", "server", "study"}
 # What those may know of the library's inside, which is in the tool: no program that embeds it needs these.
 INSIDE = {
-    "cli": {"core/asked_pace.hpp", "core/kind_names.hpp", "core/option_bounds.hpp", "core/owned.hpp", "core/sha256.hpp", "core/split.hpp", "core/start_times.hpp", "core/suggest.hpp", "core/words.hpp", "files/channel_map.hpp", "files/input_files.hpp", "files/output_file.hpp", "files/setup_defaults.hpp", "files/text_file.hpp", "percept/summaries.hpp", "rt/advice.hpp", "rt/clock.hpp", "rt/event_fd.hpp", "synth/score/drive_room.hpp", "synth/score/sounding_now.hpp"},
+    "cli": {"core/asked_pace.hpp", "core/kind_names.hpp", "core/option_bounds.hpp", "core/owned.hpp", "core/sha256.hpp", "core/split.hpp", "core/start_times.hpp", "core/suggest.hpp", "core/words.hpp", "files/channel_map.hpp", "files/input_files.hpp", "files/output_file.hpp", "files/setup_defaults.hpp", "files/text_file.hpp", "percept/compare.hpp", "rt/advice.hpp", "rt/clock.hpp", "rt/event_fd.hpp", "synth/score/drive_room.hpp", "synth/score/sounding_now.hpp"},
     "study": {"core/kind_names.hpp", "core/owned.hpp", "core/sha256.hpp", "core/split.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_text.hpp", "files/text_file.hpp", "files/toml_reader.hpp", "rt/event_fd.hpp", "rt/thread.hpp", "synth/mix/converter.hpp"},
-    "plot": {"core/split.hpp", "core/words.hpp", "files/output_file.hpp", "synth/mix/sample_ranges.hpp"},
+    "plot": {"core/split.hpp", "core/words.hpp", "files/output_file.hpp", "percept/compare.hpp", "synth/mix/sample_ranges.hpp"},
     "server": {"core/asked_pace.hpp", "core/kind_names.hpp", "core/option_bounds.hpp", "core/start_times.hpp", "core/words.hpp"},
-    "python": {"core/access.hpp", "core/asked_pace.hpp", "core/kind_names.hpp", "core/option_bounds.hpp", "core/path/impl.hpp", "core/path/outline.hpp", "core/profile.hpp", "core/trajectory/impl.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_defaults.hpp", "files/setup_text.hpp", "files/text_file.hpp", "plan/curve_impl.hpp"},
+    "python": {"core/access.hpp", "core/asked_pace.hpp", "core/kind_names.hpp", "core/option_bounds.hpp", "core/path/impl.hpp", "core/path/outline.hpp", "core/profile.hpp", "core/trajectory/impl.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_defaults.hpp", "files/setup_text.hpp", "files/text_file.hpp", "percept/compare.hpp", "percept/spread.hpp", "plan/curve_impl.hpp"},
 }
 # Header prefix: the only places that may include it.
 ONLY_IN = {
@@ -58,7 +59,7 @@ ONLY_IN = {
     "pybind11/": ["src/python/"],
     "cairo": ["src/plot/"],
     "lo/": ["src/net/osc_lo.cpp"],
-    "nlohmann/": ["src/cli/", "src/net/", "src/server/", "src/study/"],
+    "nlohmann/": ["src/cli/", "src/files/plan/", "src/net/", "src/server/", "src/study/"],
 }
 # Standard headers of threads and clocks that the pure folders must not see.
 PURE = {"core", "files", "plan", "percept", "synth"}

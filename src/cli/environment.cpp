@@ -96,12 +96,12 @@ void read_standard_input(const option_list& options, environment& e)
     constexpr const char* name = "standard input";
     detail::note_input("/dev/fd/0");
     const detail::whole_text text = detail::read_text(STDIN_FILENO, name, detail::max_stroke_bytes);
-    if (!holds_plans(text)) {
+    if (!files::holds_plans(text)) {
         e.standard_input = parse_strokes(text, name);
         return;
     }
     refuse_planning(name, options);
-    e.plans.emplace("-", read_plans(text, name));
+    e.plans.emplace("-", files::read_plans(text, name));
 }
 
 // The plans among the STROKE arguments, and what is given on standard input.
@@ -110,15 +110,16 @@ void read_given(const settings& s, const option_list& options, environment& e)
     if (std::find(s.strokes.begin(), s.strokes.end(), "-") != s.strokes.end())
         read_standard_input(options, e);
     for (const std::string& argument : s.strokes) {
-        if (!is_plan_file(argument) || e.plans.contains(argument))
+        if (!files::is_plan_file(argument) || e.plans.contains(argument))
             continue;
         refuse_planning(argument, options);
-        e.plans.emplace(argument, load_plans(argument));
+        check_readable(argument);
+        e.plans.emplace(argument, files::load_plans(argument));
     }
 }
 
 // The first plan among the STROKE arguments; null for none.
-const plan_file* first_plan(const settings& s, const environment& e)
+const files::plan_file* first_plan(const settings& s, const environment& e)
 {
     const auto planned = std::find_if(s.strokes.begin(), s.strokes.end(), [&](const std::string& argument) {
         return e.plans.contains(argument);
@@ -127,7 +128,7 @@ const plan_file* first_plan(const settings& s, const environment& e)
 }
 
 // How a plan was rendered is how it is, where no option says otherwise: no [defaults] does.
-void use_sound_of(const plan_file& f, settings& s, const option_list& options)
+void use_sound_of(const files::plan_file& f, settings& s, const option_list& options)
 {
     if (!options.given("phase"))
         s.render.phase = f.render.phase;
@@ -152,7 +153,7 @@ void use_sound_of(const plan_file& f, settings& s, const option_list& options)
 }
 
 // What the array file of the plan said when it was made counts with its array.
-array use_array_of(const plan_file& f, environment& e)
+array use_array_of(const files::plan_file& f, environment& e)
 {
     e.plan_channels = f.render.channels;
     return f.tactors;
@@ -163,7 +164,7 @@ array find_array(const settings& s, option_list& options, environment& e)
     setup& config = e.config;
     if (!s.array_name) {
         e.array_file = config.array ? e.config_name : "";
-        if (const plan_file* f = first_plan(s, e); f != nullptr && !config.array)
+        if (const files::plan_file* f = first_plan(s, e); f != nullptr && !config.array)
             return use_array_of(*f, e);
         return config.array ? *config.array : preset_array("palm-3x3");
     }
@@ -218,7 +219,7 @@ environment read_environment(settings& s, option_list& options)
     }
     read_given(s, options, e);
     e.tactors = find_array(s, options, e);
-    if (const plan_file* f = first_plan(s, e))
+    if (const files::plan_file* f = first_plan(s, e))
         use_sound_of(*f, s, options);
     check_sound(s, options);
     settle_scale(s, options);

@@ -10,8 +10,8 @@
 
 #include <tactor/tactor.hpp>
 
-#include "cli/plan/plan_file.hpp"
 #include "cli/settings.hpp"
+#include "files/plan/plan_file.hpp"
 
 namespace tactor::cli {
 
@@ -22,9 +22,9 @@ struct environment {
     array tactors;
     std::string array_file;               ///< that the array came from; empty: it is a preset of its name
     std::optional<double> latency_s = {}; ///< that [defaults] say
-    std::optional<unsigned> plan_channels = {};  ///< of the plan that the array came from
-    std::map<std::string, plan_file> plans = {}; ///< STROKE arguments that are planned already
-    std::vector<stroke> standard_input = {};     ///< strokes of the STROKE "-", unless it is a plan
+    std::optional<unsigned> plan_channels = {};         ///< of the plan that the array came from
+    std::map<std::string, files::plan_file> plans = {}; ///< STROKE arguments that are planned already
+    std::vector<stroke> standard_input = {};            ///< strokes of the STROKE "-", unless it is a plan
 };
 
 /// Reads the configuration (--config, $TACTOR_CONFIG, the user's, the system's: the first that exists),

@@ -132,8 +132,8 @@ piece open_argument(const settings& s, const environment& e, const layout& faces
     const auto planned = e.plans.find(argument);
     if (planned == e.plans.end())
         return read_piece(s, e, faces, argument);
-    const plan_file& f = planned->second;
-    check_same_array(argument, f.tactors, e.tactors);
+    const files::plan_file& f = planned->second;
+    files::check_same_array(argument, f.tactors, e.tactors);
     return {argument, f.strokes, f.plans, f.fit, f.moved, true};
 }
 
@@ -276,15 +276,10 @@ score plan_and_score(piece& p, const settings& s, const environment& e, const la
     return made.take();
 }
 
-std::string note_text(note_kind n)
+files::plan_record record_plans(const piece& p, const environment& e, const score& samples,
+                                const render_options& options)
 {
-    switch (n) {
-    case note_kind::none:
-        break;
-    case note_kind::reconstructed:
-        return "reconstructed: the figure that shows it is not in the paper's text";
-    }
-    return "";
+    return {p.strokes, p.plans, p.moved, p.fit ? &*p.fit : nullptr, e.tactors, samples, options};
 }
 
 score make_score(const piece& p, const environment& e, const render_options& render)

@@ -10,6 +10,7 @@
 #include <tactor/tactor.hpp>
 
 #include "cli/environment.hpp"
+#include "files/plan/plan_json.hpp"
 
 namespace tactor::cli {
 
@@ -51,13 +52,14 @@ piece read_one_piece(const settings& s, const environment& e, const layout& face
 /// Reads and plans where only one STROKE is taken.
 piece plan_one_piece(const settings& s, const environment& e);
 
+/// Returns the piece as its JSON is written from; `samples` is made of it with `options`. Refers to all four.
+files::plan_record record_plans(const piece& p, const environment& e, const score& samples,
+                                const render_options& options);
+
 /// Makes the score of what was opened, with `render.rate` and channels settled. Nobody keeps any bursts: what
 /// is planned here is never there as a whole, and plans that were there leave the piece. \throws error.
 score plan_and_score(piece& p, const settings& s, const environment& e, const layout& faces,
                      const render_options& render);
-
-/// What a stroke's note means, for people; empty for none.
-std::string note_text(note_kind n);
 
 /// The score of a piece that keeps its plans. \throws error.
 score make_score(const piece& p, const environment& e, const render_options& render);

@@ -45,14 +45,15 @@ constexpr std::array<translation, 28> in_advice{{{"measure its detection thresho
                                                  {"sigma_v_mm_s", "--sigma-v-mm-s"}}};
 
 // Words of every day.
-constexpr std::array<translation, 8> as_subject{{{"rate", "--rate"},
+constexpr std::array<translation, 9> as_subject{{{"rate", "--rate"},
                                                  {"shape", "--shape"},
                                                  {"channels", "--channels"},
                                                  {"phantom", "--phantom"},
                                                  {"faces", "--faces"},
                                                  {"simulate", "--simulate"},
                                                  {"waveform", "--waveform"},
-                                                 {"am", "--am"}}};
+                                                 {"am", "--am"},
+                                                 {"spread", "--spread"}}};
 
 // Those that files have as keys, too.
 constexpr std::array<std::string_view, 8> keys{"duration_s", "soa_s",        "burst_s",  "carrier_hz",

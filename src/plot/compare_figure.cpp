@@ -16,6 +16,8 @@
 namespace tactor::plot {
 namespace {
 
+using detail::comparison_row;
+
 constexpr double chart_height = 105.0;
 constexpr double scale_height = 12.0;
 
@@ -24,18 +26,20 @@ constexpr std::array<style, 3> looks{style{.stroke = blue, .width = 0.9},
                                      style{.stroke = vermilion, .width = 0.9, .dash = 3.0},
                                      style{.stroke = ink, .width = 0.9, .dash = 1.1}};
 
-std::vector<std::string> names(const std::vector<prediction>& all, std::string prediction::*name)
+// The different values of a member, in order of appearance.
+template <class Kind>
+std::vector<Kind> different(const std::vector<comparison_row>& all, Kind comparison_row::*member)
 {
-    std::vector<std::string> list;
-    for (const prediction& p : all)
-        if (std::find(list.begin(), list.end(), p.*name) == list.end())
-            list.push_back(p.*name);
+    std::vector<Kind> list;
+    for (const comparison_row& r : all)
+        if (std::find(list.begin(), list.end(), r.*member) == list.end())
+            list.push_back(r.*member);
     return list;
 }
 
-series felt_speed(const prediction& p, const style& look)
+series felt_speed(const comparison_row& p, const style& look)
 {
-    series s{p.algorithm, {}, look};
+    series s{std::string(to_string(p.algorithm)), {}, look};
     s.values.reserve(p.samples.size());
     for (const percept_sample& x : p.samples)
         s.values.push_back({x.t_s, x.speed_mm_s.value_or(std::numeric_limits<double>::quiet_NaN())});
@@ -65,15 +69,16 @@ series chain_speed(const std::string& name, const std::vector<tap>& taps, point 
 }
 
 // One prediction's line, after the target's where it is the first.
-void add_speeds(std::vector<series>& lines, const prediction& p, const style& look)
+void add_speeds(std::vector<series>& lines, const comparison_row& p, const style& look)
 {
     const bool by_taps = !p.taps.empty();
-    if (!p.refused.empty() || !p.unpredicted.empty())
+    if (p.refused || !p.unpredicted.empty())
         return;
     if (lines.empty())
         lines.push_back(by_taps ? chain_speed("target", p.taps, &tap::target, target_look)
                                 : target_speed(p.samples));
-    lines.push_back(by_taps ? chain_speed(p.algorithm, p.taps, &tap::felt, look) : felt_speed(p, look));
+    lines.push_back(by_taps ? chain_speed(std::string(to_string(p.algorithm)), p.taps, &tap::felt, look)
+                            : felt_speed(p, look));
 }
 
 double largest(const std::vector<series>& lines)
@@ -98,10 +103,11 @@ double draw_heading(canvas& c, const std::string& title, const array& a, const s
     return y + 6.0 - where.y;
 }
 
-chart_band band_of(const prediction& p, const style& look)
+chart_band make_band(const comparison_row& p, const style& look)
 {
-    chart_band b{p.algorithm, {}, {}, {.fill = with_alpha(look.stroke.value_or(ink), 0.18)}};
-    for (const people_bands::range& r : p.people.speeds) {
+    chart_band b{
+        std::string(to_string(p.algorithm)), {}, {}, {.fill = with_alpha(look.stroke.value_or(ink), 0.18)}};
+    for (const detail::speed_range& r : p.spread->speeds) {
         b.low.push_back({r.t_s, r.low});
         b.high.push_back({r.t_s, r.high});
     }
@@ -135,17 +141,17 @@ double draw_scale(canvas& c, const panel_ground& g, box cell)
 }
 
 // The panels of one phantom model and their speeds.
-double draw_row(canvas& c, const panel_ground& g, const std::vector<prediction>& all,
-                const std::vector<std::string>& algorithms, const std::string& phantom, bool first, box where)
+double draw_row(canvas& c, const panel_ground& g, const std::vector<comparison_row>& all,
+                const std::vector<algorithm_kind>& algorithms, phantom_kind phantom, bool first, box where)
 {
     double y = where.y + cap_height(title_text);
-    c.text({where.x, y}, "phantom: " + phantom, {.size = title_text, .bold = true});
+    c.text({where.x, y}, fmt::format("phantom: {}", to_string(phantom)), {.size = title_text, .bold = true});
     y += 5.0;
     const double width = where.width / static_cast<double>(algorithms.size());
     double tallest = 0.0;
     std::vector<series> lines;
     std::vector<chart_band> bands;
-    for (const prediction& p : all) {
+    for (const comparison_row& p : all) {
         if (p.phantom != phantom)
             continue;
         const auto column = static_cast<std::size_t>(
@@ -154,39 +160,54 @@ double draw_row(canvas& c, const panel_ground& g, const std::vector<prediction>&
         const box cell{where.x + width * static_cast<double>(column), y, width, std::min(width, 260.0)};
         tallest = std::max(tallest, draw_panel(c, g, p, look, cell));
         add_speeds(lines, p, look);
-        if (!p.people.speeds.empty())
-            bands.push_back(band_of(p, look));
+        if (p.spread && !p.spread->speeds.empty())
+            bands.push_back(make_band(p, look));
     }
     y += tallest;
     if (first)
         y += draw_scale(c, g, {where.x, y, width, std::min(width, 260.0)});
     if (!lines.empty())
-        y += draw_speeds(c, phantom, std::move(lines), std::move(bands), g.target.motion.duration_s(),
-                         {where.x, y + 2.0, where.width, 0.0});
+        y += draw_speeds(c, std::string(to_string(phantom)), std::move(lines), std::move(bands),
+                         g.target.motion.duration_s(), {where.x, y + 2.0, where.width, 0.0});
     return y + 8.0 - where.y;
+}
+
+std::string note(const detail::comparison& c)
+{
+    const bool taps = c.observer.kind == observer_kind::low_speed;
+    std::string text = fmt::format("The ring is the start; dots are where {}",
+                                   taps ? "each burst is felt" : "the felt position rests");
+    if (c.spread.people != 0)
+        text += "; light lines and bands: " + spread_note(c.spread, taps);
+    text += ". This is " + prediction_note(c.observer) + ".";
+    if (c.compensated)
+        text += " Bursts are moved for " + describe(c.observer.low_speed) + ".";
+    if (c.faces == faces_kind::nearest)
+        text += " Of inverse-distance the three closest tactors play (faces nearest).";
+    return text;
 }
 
 } // namespace
 
-canvas draw_comparison(const array& a, const stroke& target, const std::vector<prediction>& all,
-                       const std::string& title, const std::string& note, double width_mm)
+canvas draw_comparison(const array& a, const detail::comparison& of, const std::string& title,
+                       double width_mm)
 {
     if (!(width_mm >= least_width_mm && width_mm <= most_width_mm))
         throw error(error_kind::bad_input, "picture", fmt::format("{} mm wide", width_mm),
                     fmt::format("{} to {} mm", least_width_mm, most_width_mm));
     canvas c;
     c.width = width_mm * pt_per_mm;
-    c.title = fmt::format("{} on {}: predicted percepts", clean(target.name), clean(a.name));
-    c.description = note;
-    const panel_ground g{a, target, shown_extent(a, {target})};
-    const std::vector<std::string> algorithms = names(all, &prediction::algorithm);
+    c.title = fmt::format("{} on {}: predicted percepts", clean(of.target.name), clean(a.name));
+    c.description = note(of);
+    const panel_ground g{a, of.target, shown_extent(a, {of.target})};
+    const std::vector<algorithm_kind> algorithms = different(of.rows, &comparison_row::algorithm);
     box rest{margin, margin, c.width - 2.0 * margin, 0.0};
     if (!title.empty())
-        rest.y += draw_heading(c, title, a, target, rest);
-    const std::vector<std::string> phantoms = names(all, &prediction::phantom);
-    for (const std::string& phantom : phantoms)
-        rest.y += draw_row(c, g, all, algorithms, phantom, phantom == phantoms.front(), rest);
-    rest.y += draw_words(c, note, rest, 9, "note");
+        rest.y += draw_heading(c, title, a, of.target, rest);
+    const std::vector<phantom_kind> phantoms = different(of.rows, &comparison_row::phantom);
+    for (const phantom_kind phantom : phantoms)
+        rest.y += draw_row(c, g, of.rows, algorithms, phantom, phantom == phantoms.front(), rest);
+    rest.y += draw_words(c, c.description, rest, 9, "note");
     c.height = rest.y + margin;
     return c;
 }

@@ -4,47 +4,20 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include <tactor/array.hpp>
-#include <tactor/observer.hpp>
-#include <tactor/percept.hpp>
-#include <tactor/stroke.hpp>
 
+#include "percept/compare.hpp"
 #include "plot/draw/array_frame.hpp"
 #include "plot/paint/canvas.hpp"
 
 namespace tactor::plot {
 
-/// What many people feel: part of them at each time, and the ways that some of them feel.
-struct people_bands {
-    struct range {
-        double t_s = 0.0;
-        double low = 0.0;
-        double high = 0.0;
-    };
-    std::vector<range> speeds = {}; ///< mm/s
-    std::vector<std::vector<point>> tracks = {};
-};
-
-/// One algorithm with one phantom model.
-struct prediction {
-    std::string algorithm;
-    std::string phantom;
-    const std::vector<percept_sample>& samples; ///< empty where refused
-    percept_summary felt;
-    std::string refused; ///< why there is no plan; empty where there is
-    /// What the low-speed observer feels instead of samples.
-    const std::vector<tap>& taps;
-    std::string unpredicted; ///< why that one has no prediction; empty where it has
-    people_bands people = {};
-};
-
-/// For each phantom model a row of panels, one for each algorithm, and under it all their speeds over time.
-/// `title` stands over the picture, with the target's length and time; empty: neither. `note` stands under
-/// it. \throws error (bad_input) for a width out of bounds (figure.hpp).
-canvas draw_comparison(const array& a, const stroke& target, const std::vector<prediction>& all,
-                       const std::string& title, const std::string& note, double width_mm);
+/// Draws for each phantom model a row of panels, one for each algorithm, and under it all their speeds over
+/// time; of rows that kept their samples. `title` stands over the picture, with the target's length and time;
+/// empty: neither. \throws error (bad_input) for a width out of bounds (figure.hpp).
+canvas draw_comparison(const array& a, const detail::comparison& c, const std::string& title,
+                       double width_mm);
 
 /// The array, target and part of the page that all panels show.
 struct panel_ground {
@@ -64,6 +37,7 @@ double draw_words(canvas& c, const std::string& text, box where, std::size_t mos
 
 /// Draws a panel, the target and what is felt instead, into the upper part of a box, in the look of its
 /// algorithm; returns the height taken.
-double draw_panel(canvas& c, const panel_ground& g, const prediction& p, const style& look, box where);
+double draw_panel(canvas& c, const panel_ground& g, const detail::comparison_row& p, const style& look,
+                  box where);
 
 } // namespace tactor::plot

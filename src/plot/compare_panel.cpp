@@ -110,13 +110,25 @@ std::string figures(const percept_summary& s, bool error, double width)
     return text_width(full, small_text) < width ? full : fmt::format("RMS {} mm", text);
 }
 
+void draw_people(canvas& c, const std::vector<std::vector<point>>& tracks, const array_frame& f,
+                 const style& look)
+{
+    const style light{.stroke = with_alpha(look.stroke.value_or(ink), 0.12), .width = 0.5};
+    for (const std::vector<point>& felt : tracks) {
+        std::vector<spot> line;
+        for (const point& at : felt)
+            line.push_back(f(at));
+        c.poly(simplify(line, 0.1), false, light, {.kind = "person"});
+    }
+}
+
 // Under the panel's name, of the low-speed observer: error and length.
-std::string tap_figures(const prediction& p, bool error, double width)
+std::string tap_figures(const detail::comparison_row& p, bool error, double width)
 {
     if (error)
         return figures(p.felt, true, width);
-    const tap_summary s = summarise(p.taps);
-    return fmt::format("length {} of target", s.length_ratio ? fmt::format("{:.2f}", *s.length_ratio) : "-");
+    const std::optional<double>& ratio = p.tapped.length_ratio;
+    return fmt::format("length {} of target", ratio ? fmt::format("{:.2f}", *ratio) : "-");
 }
 
 } // namespace
@@ -139,15 +151,19 @@ double draw_words(canvas& c, const std::string& text, box where, std::size_t mos
     return y - where.y;
 }
 
-double draw_panel(canvas& c, const panel_ground& g, const prediction& p, const style& look, box where)
+double draw_panel(canvas& c, const panel_ground& g, const detail::comparison_row& p, const style& look,
+                  box where)
 {
-    const group one(c, {.id = fmt::format("panel-{}-{}", p.algorithm, p.phantom),
+    const std::string algorithm(to_string(p.algorithm));
+    const std::string phantom(to_string(p.phantom));
+    const group one(c, {.id = fmt::format("panel-{}-{}", algorithm, phantom),
                         .kind = "panel",
-                        .data = {{"algorithm", p.algorithm}, {"phantom", p.phantom}}});
+                        .data = {{"algorithm", algorithm}, {"phantom", phantom}}});
     double y = where.y + cap_height(label_text);
-    c.text({where.x, y}, p.algorithm, {.size = label_text, .bold = true});
-    if (!p.refused.empty()) {
-        y += draw_words(c, "refused: " + p.refused, {where.x, y, where.width - 6.0, 0.0}, 12, "refused");
+    c.text({where.x, y}, algorithm, {.size = label_text, .bold = true});
+    if (p.refused) {
+        y += draw_words(c, fmt::format("refused: {}", p.refused->why()), {where.x, y, where.width - 6.0, 0.0},
+                        12, "refused");
         return y - where.y;
     }
     if (!p.unpredicted.empty()) {
@@ -165,13 +181,8 @@ double draw_panel(canvas& c, const panel_ground& g, const prediction& p, const s
     y += 2.0;
     const array_frame f = panel_frame(g, {where.x, y, where.width, where.height});
     draw_ground(c, g, f);
-    for (const std::vector<point>& felt : p.people.tracks) {
-        std::vector<spot> line;
-        for (const point& at : felt)
-            line.push_back(f(at));
-        c.poly(simplify(line, 0.1), false,
-               {.stroke = with_alpha(look.stroke.value_or(ink), 0.12), .width = 0.5}, {.kind = "person"});
-    }
+    if (p.spread)
+        draw_people(c, p.spread->tracks, f, look);
     draw_track(c, by_taps ? follow(f, p.taps) : follow(f, p.samples), look);
     return f.area.bottom() - where.y;
 }

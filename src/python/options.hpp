@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/compare/spread.hpp"
+#include "percept/spread.hpp"
 #include "python/binding.hpp"
 
 namespace tactor::python {
@@ -26,7 +26,7 @@ struct wishes {
     bool compensate = false; ///< for low_speed
     observer_kind observer = observer_kind::centroid;
     low_speed_observer low_speed = {};
-    cli::spread_choice spread = {};
+    detail::spread_choice spread = {};
 };
 
 /// Takes what `given` says; None is as good as nothing. `tactors` is how many an own phantom model may name.

@@ -4,15 +4,15 @@
 #include <string>
 #include <utility>
 
-#include "cli/compare/compare_picture.hpp"
-#include "cli/compare/compare_rows.hpp"
 #include "cli/devices/devices_output.hpp"
 #include "core/words.hpp"
+#include "files/plan/compare_json.hpp"
+#include "percept/compare.hpp"
+#include "plot/compare_figure.hpp"
 #include "plot/figure.hpp"
 #include "plot/paint/output.hpp"
 #include "python/plan_handle.hpp"
 #include "python/player_handle.hpp"
-#include "python/written.hpp"
 
 namespace tactor::python {
 namespace {
@@ -21,11 +21,11 @@ using plans = std::vector<std::pair<std::optional<double>, const plan_handle*>>;
 
 struct compared {
     std::shared_ptr<array_handle> on;
-    cli::comparison result;
+    detail::comparison result;
 };
 
 template <class Enum>
-std::vector<Enum> kinds_of(const std::vector<std::string>& names, Enum only)
+std::vector<Enum> parse_kinds(const std::vector<std::string>& names, Enum only)
 {
     std::vector<Enum> kinds;
     for (const std::string& n : names)
@@ -42,22 +42,21 @@ compared compare(const std::shared_ptr<array_handle>& on, const stroke& s, const
     const stroke target = stroke_as_asked(s, faces, w).drawn;
     const without_lock free;
     static_cast<void>(burst_duration_s(w.plan)); // what nobody may ask for is no row
-    const cli::comparison_choice choice{kinds_of(algorithms, w.plan.algorithm),
-                                        kinds_of(phantoms, w.plan.phantom),
-                                        {w.observer, w.low_speed},
-                                        w.compensate,
-                                        true,
-                                        w.spread};
-    compared c{on, cli::compare(target, on->value(), faces, w.plan, choice)};
+    const detail::comparison_choice choice{parse_kinds(algorithms, w.plan.algorithm),
+                                           parse_kinds(phantoms, w.plan.phantom),
+                                           {w.observer, w.low_speed},
+                                           w.compensate,
+                                           true,
+                                           w.spread};
+    compared c{on, detail::compare(target, on->value(), faces, w.plan, choice)};
     if (!c.result.playable())
         throw error(*c.result.rows.back().refused);
     return c;
 }
 
-std::string svg_of_comparison(const compared& c, double width_mm)
+plot::canvas draw(const compared& c, double width_mm)
 {
-    const without_lock free;
-    return plot::to_svg(cli::picture_of(c.result, c.on->value(), {.width_mm = width_mm}));
+    return plot::draw_comparison(c.on->value(), c.result, c.result.target.name, width_mm);
 }
 
 void check_dpi(unsigned dpi)
@@ -122,15 +121,19 @@ void bind_tool(py::module_& m)
         .def("json",
              [](const compared& c) {
                  const without_lock free;
-                 return written([&](std::FILE* out) { cli::print_json(out, {c.result}, c.on->value()); });
+                 return files::comparisons_text({c.result}, c.on->value());
              })
-        .def("svg", &svg_of_comparison)
-        .def("save", [](const compared& c, const std::string& file, double width_mm, unsigned dpi,
-                        bool force) {
-            const without_lock free;
-            check_dpi(dpi);
-            plot::save(cli::picture_of(c.result, c.on->value(), {.width_mm = width_mm}), file, dpi, force);
-        });
+        .def("svg",
+             [](const compared& c, double width_mm) {
+                 const without_lock free;
+                 return plot::to_svg(draw(c, width_mm));
+             })
+        .def("save",
+             [](const compared& c, const std::string& file, double width_mm, unsigned dpi, bool force) {
+                 const without_lock free;
+                 check_dpi(dpi);
+                 plot::save(draw(c, width_mm), file, dpi, force);
+             });
     m.def("svg", [](const array_handle& on, const plans& all, const std::string& name, const score* sound,
                     const std::string& view, double width_mm) {
         const without_lock free;

@@ -5,11 +5,12 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/analyze/analyze_output.hpp"
-#include "cli/json_values.hpp"
+#include "files/plan/json_values.hpp"
 
 namespace tactor::cli {
 namespace {
 
+using files::or_null;
 using json = nlohmann::ordered_json;
 
 json ends(const std::optional<study::interval>& i)

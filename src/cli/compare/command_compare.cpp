@@ -10,20 +10,25 @@
 #include <fmt/format.h>
 
 #include "cli/commands.hpp"
-#include "cli/compare/compare_picture.hpp"
-#include "cli/compare/compare_rows.hpp"
+#include "cli/compare/compare_output.hpp"
 #include "cli/input.hpp"
+#include "cli/option_words.hpp"
 #include "cli/parse_number.hpp"
 #include "cli/picture_options.hpp"
 #include "cli/pipes.hpp"
 #include "cli/progress.hpp"
 #include "cli/say.hpp"
 #include "core/split.hpp"
-#include "plot/figure.hpp"
+#include "files/plan/compare_json.hpp"
+#include "plot/compare_figure.hpp"
 #include "plot/paint/output.hpp"
 
 namespace tactor::cli {
 namespace {
+
+using detail::comparison;
+using detail::comparison_choice;
+using detail::comparison_row;
 
 template <class Enum>
 std::vector<Enum> all_of()
@@ -103,7 +108,7 @@ void add_output_options(CLI::App& c, const std::shared_ptr<compare_options>& o)
 
 void add_spread_options(CLI::App& c, const std::shared_ptr<compare_options>& o)
 {
-    spread_choice& s = o->choice.spread;
+    detail::spread_choice& s = o->choice.spread;
     auto* people = c.add_option_function<std::string>(
         "--spread",
         [&s](const std::string& t) {
@@ -155,7 +160,11 @@ std::vector<comparison> compare_all(const piece& p, const environment& e, const 
     choice.after_person = [&] { line.update(++predicted, rows * choice.spread.people); };
     std::vector<comparison> all;
     for (const stroke& k : p.strokes)
-        all.push_back(compare(k, e.tactors, faces, options, choice));
+        all.push_back(detail::compare(k, e.tactors, faces, options, choice));
+    for (comparison& c : all)
+        for (comparison_row& r : c.rows)
+            if (r.refused)
+                r.refused = in_options(*r.refused);
     return all;
 }
 
@@ -188,13 +197,15 @@ int run(settings& s, option_list& options, const compare_options& asked, bool on
         throw why_refused(all, p);
     if (!asked.picture.file.empty()) {
         tell_of_pipe_to_write(asked.picture.file);
-        plot::save(picture_of(all[0], e.tactors, asked.picture), asked.picture.file, asked.picture.dpi,
-                   asked.picture.force);
+        const std::string title =
+            asked.picture.has_title() ? asked.picture.choose_title(all[0].target.name) : "";
+        plot::save(plot::draw_comparison(e.tactors, all[0], title, asked.picture.width_mm),
+                   asked.picture.file, asked.picture.dpi, asked.picture.force);
     }
     if (asked.format == "json")
-        print_json(stdout, all, e.tactors);
+        fmt::print("{}", files::comparisons_text(all, e.tactors));
     else if (asked.format == "csv")
-        print_csv(stdout, all, e.tactors);
+        print_csv(stdout, all);
     else
         print_text(stdout, all, titles, e.tactors);
     if (static_cast<std::size_t>(playable) < all.size())

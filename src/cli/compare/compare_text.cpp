@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "cli/compare/compare_output.hpp"
+
 #include <initializer_list>
 #include <set>
 #include <string_view>
@@ -6,11 +8,18 @@
 
 #include <fmt/format.h>
 
-#include "cli/compare/compare_rows.hpp"
 #include "cli/say.hpp"
 #include "core/words.hpp"
+#include "files/plan/plan_json.hpp"
 
 namespace tactor::cli {
+
+using detail::comparison;
+using detail::comparison_row;
+using detail::interval;
+using detail::row_spread;
+using detail::spread_choice;
+
 namespace {
 
 // A figure of the table, or a dash where there is none.
@@ -24,7 +33,7 @@ std::string names(const comparison_row& r)
     return fmt::format("{:<13} {:<16}", to_string(r.algorithm), to_string(r.phantom));
 }
 
-std::string end_of(const std::optional<interval>& v, double interval::*end)
+std::string one_end(const std::optional<interval>& v, double interval::*end)
 {
     return figure(v ? std::optional(*v.*end) : std::nullopt);
 }
@@ -36,13 +45,13 @@ void print_spread(std::FILE* out, const comparison_row& r, bool by_taps)
         return;
     const row_spread& s = *r.spread;
     for (const auto& [name, end] : {std::pair{"5 %", &interval::low}, std::pair{"95 %", &interval::high}}) {
-        fmt::print(out, "{:>30} {:>6} {:>6} {:>6} ", name, "", end_of(s.rms_error_mm, end),
-                   end_of(s.largest_error_mm, end));
+        fmt::print(out, "{:>30} {:>6} {:>6} {:>6} ", name, "", one_end(s.rms_error_mm, end),
+                   one_end(s.largest_error_mm, end));
         if (by_taps)
-            fmt::print(out, "{:>8} {:>8} {:>6}\n", end_of(s.felt_length_mm, end), "",
-                       end_of(s.length_ratio, end));
+            fmt::print(out, "{:>8} {:>8} {:>6}\n", one_end(s.felt_length_mm, end), "",
+                       one_end(s.length_ratio, end));
         else
-            fmt::print(out, "{:>6} {:>7}\n", end_of(s.speed_cv, end), end_of(s.intensity_cv, end));
+            fmt::print(out, "{:>6} {:>7}\n", one_end(s.speed_cv, end), one_end(s.intensity_cv, end));
     }
 }
 
@@ -105,7 +114,7 @@ void print_one(std::FILE* out, const comparison& c, const std::string& title, co
     say(out, "{} on {}: {} mm in {}{}\n", title, a.name, plain_number(m.length_mm()),
         seconds_text(m.duration_s()), faces);
     if (c.target.note != note_kind::none)
-        say(out, "note: {}\n", note_text(c.target.note));
+        say(out, "note: {}\n", files::note_text(c.target.note));
     const bool by_taps = c.observer.kind == observer_kind::low_speed;
     print_heading(out, by_taps);
     for (const comparison_row& r : c.rows) {
@@ -140,21 +149,21 @@ void print_text(std::FILE* out, const std::vector<comparison>& all, const std::v
         print_one(out, all[i], titles[i], a);
         fmt::print(out, "\n");
     }
-    const observer_choice& o = all.front().observer;
+    const detail::observer_choice& o = all.front().observer;
     if (all.front().spread.people != 0)
-        say(out, "{}.\n", spread_note(all.front().spread, o.kind == observer_kind::low_speed));
+        say(out, "{}.\n", detail::spread_note(all.front().spread, o.kind == observer_kind::low_speed));
     say(out, "{}\nThis is {}.\n",
         o.kind == observer_kind::low_speed
             ? "Errors count at the onsets of the bursts; length: of the chain of bursts."
             : "CV: standard deviation / mean; shared: a tactor serves two bursts.",
-        prediction_note(o));
+        detail::prediction_note(o));
 }
 
 namespace {
 
 // Columns after all others, of a table with people drawn, of one of bursts that are moved, and
 // of one with other faces.
-std::string heading_of_choices(const comparison& of, std::initializer_list<const char*> figures)
+std::string choices_heading(const comparison& of, std::initializer_list<const char*> figures)
 {
     const spread_choice& c = of.spread;
     std::string text = c.people == 0 ? "" : ",people,seed,sigma_factor,threshold_db,place_mm";
@@ -164,8 +173,8 @@ std::string heading_of_choices(const comparison& of, std::initializer_list<const
     return text + (of.faces == faces_kind::delaunay ? "" : ",faces");
 }
 
-std::string fields_of_spread(const spread_choice& c, const comparison_row& r,
-                             std::initializer_list<std::optional<interval> row_spread::*> figures)
+std::string spread_fields(const spread_choice& c, const comparison_row& r,
+                          std::initializer_list<std::optional<interval> row_spread::*> figures)
 {
     if (c.people == 0)
         return {};
@@ -178,23 +187,23 @@ std::string fields_of_spread(const spread_choice& c, const comparison_row& r,
     return text;
 }
 
-std::string fields_of_choices(const comparison& of, const comparison_row& r,
-                              std::initializer_list<std::optional<interval> row_spread::*> figures)
+std::string choices_fields(const comparison& of, const comparison_row& r,
+                           std::initializer_list<std::optional<interval> row_spread::*> figures)
 {
     const low_speed_observer& o = of.observer.low_speed;
-    return fields_of_spread(of.spread, r, figures) +
+    return spread_fields(of.spread, r, figures) +
            (of.compensated ? fmt::format(",low-speed,{},{}", o.sigma_mm, o.sigma_v_mm_s) : "") +
            (of.faces == faces_kind::delaunay ? "" : fmt::format(",{}", to_string(of.faces)));
 }
 
 // The low-speed observer's table: each line says whose it is.
-void print_csv_of_taps(std::FILE* out, const std::vector<comparison>& all)
+void print_taps_csv(std::FILE* out, const std::vector<comparison>& all)
 {
-    fmt::print(out,
-               "stroke,name,algorithm,phantom,observer,sigma_mm,sigma_v_mm_s,built_for,bursts,rms_error_mm,"
-               "largest_error_mm,felt_length_mm,target_length_mm,length_ratio,unpredicted,refused{}\n",
-               heading_of_choices(all.front(),
-                                  {"rms_error_mm", "largest_error_mm", "felt_length_mm", "length_ratio"}));
+    fmt::print(
+        out,
+        "stroke,name,algorithm,phantom,observer,sigma_mm,sigma_v_mm_s,built_for,bursts,rms_error_mm,"
+        "largest_error_mm,felt_length_mm,target_length_mm,length_ratio,unpredicted,refused{}\n",
+        choices_heading(all.front(), {"rms_error_mm", "largest_error_mm", "felt_length_mm", "length_ratio"}));
     for (std::size_t i = 0; i < all.size(); ++i)
         for (const comparison_row& r : all[i].rows) {
             const low_speed_observer& o = all[i].observer.low_speed;
@@ -207,19 +216,19 @@ void print_csv_of_taps(std::FILE* out, const std::vector<comparison>& all)
                        field(if_predicted(r.tapped.felt_length_mm)),
                        field(if_predicted(r.tapped.target_length_mm)), field(r.tapped.length_ratio),
                        field(r.unpredicted), r.refused ? field(std::string(r.refused->what())) : "",
-                       fields_of_choices(all[i], r,
-                                         {&row_spread::rms_error_mm, &row_spread::largest_error_mm,
-                                          &row_spread::felt_length_mm, &row_spread::length_ratio}));
+                       choices_fields(all[i], r,
+                                      {&row_spread::rms_error_mm, &row_spread::largest_error_mm,
+                                       &row_spread::felt_length_mm, &row_spread::length_ratio}));
         }
 }
 
-void print_csv_of_samples(std::FILE* out, const std::vector<comparison>& all)
+void print_samples_csv(std::FILE* out, const std::vector<comparison>& all)
 {
     fmt::print(
         out,
         "stroke,name,algorithm,phantom,bursts,rms_error_mm,largest_error_mm,speed_cv,intensity_cv,"
         "silent_share,shared_share,refused{}\n",
-        heading_of_choices(all.front(), {"rms_error_mm", "largest_error_mm", "speed_cv", "intensity_cv"}));
+        choices_heading(all.front(), {"rms_error_mm", "largest_error_mm", "speed_cv", "intensity_cv"}));
     for (std::size_t i = 0; i < all.size(); ++i)
         for (const comparison_row& r : all[i].rows) {
             fmt::print(out, "{},{},{},{},", i, field(all[i].target.name), to_string(r.algorithm),
@@ -232,20 +241,20 @@ void print_csv_of_samples(std::FILE* out, const std::vector<comparison>& all)
                            field(r.felt.rms_error_mm), field(r.felt.largest_error_mm), field(r.felt.speed_cv),
                            field(r.felt.intensity_cv), r.felt.silent_share, r.felt.shared_share);
             fmt::print(out, "{}\n",
-                       fields_of_choices(all[i], r,
-                                         {&row_spread::rms_error_mm, &row_spread::largest_error_mm,
-                                          &row_spread::speed_cv, &row_spread::intensity_cv}));
+                       choices_fields(all[i], r,
+                                      {&row_spread::rms_error_mm, &row_spread::largest_error_mm,
+                                       &row_spread::speed_cv, &row_spread::intensity_cv}));
         }
 }
 
 } // namespace
 
-void print_csv(std::FILE* out, const std::vector<comparison>& all, const array&)
+void print_csv(std::FILE* out, const std::vector<comparison>& all)
 {
     if (all.front().observer.kind == observer_kind::low_speed)
-        print_csv_of_taps(out, all);
+        print_taps_csv(out, all);
     else
-        print_csv_of_samples(out, all);
+        print_samples_csv(out, all);
     for (const comparison& c : all)
         print_warnings(stderr, "tactor: ", c); // there is no place for them in a table
 }

@@ -2,11 +2,12 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/devices/devices_output.hpp"
-#include "cli/json_values.hpp"
+#include "files/plan/json_values.hpp"
 
 namespace tactor::cli {
 namespace {
 
+using files::or_null;
 using json = nlohmann::ordered_json;
 
 json to_json(const count_range& r)

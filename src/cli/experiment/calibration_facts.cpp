@@ -3,12 +3,13 @@
 
 #include <fmt/format.h>
 
-#include "cli/json_values.hpp"
 #include "cli/threshold_carrier.hpp"
+#include "files/plan/json_values.hpp"
 
 namespace tactor::cli {
 namespace {
 
+using files::or_null;
 using json = nlohmann::ordered_json;
 
 json tactor_facts(const calibrated_tactor& t)

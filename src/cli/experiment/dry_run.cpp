@@ -10,10 +10,10 @@
 
 #include "cli/experiment/session_facts.hpp"
 #include "cli/experiment/session_time.hpp"
-#include "cli/json_values.hpp"
 #include "cli/say.hpp"
 #include "core/sha256.hpp"
 #include "core/words.hpp"
+#include "files/plan/json_values.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -56,7 +56,7 @@ json run_json(const prepared_experiment& p, const study::run_sequence& s, const 
     json j{{"name", r.outline.name},
            {"file_name", r.outline.file_name},
            {"task", std::string(to_string(r.outline.task))}};
-    j["attribute"] = or_null(r.attribute);
+    j["attribute"] = files::or_null(r.attribute);
     j["question"] = r.question;
     j["animation"] = r.animation;
     j["scale"] = r.outline.task == study::task_kind::rate ? json(r.outline.scale) : json(nullptr);

@@ -9,9 +9,9 @@
 #include "cli/experiment/participant_screen.hpp"
 #include "cli/experiment/session_facts.hpp"
 #include "cli/experiment/trials.hpp"
-#include "cli/json_values.hpp"
 #include "cli/play/terminal.hpp"
 #include "cli/say.hpp"
+#include "files/plan/json_values.hpp"
 #include "study/bids/acq_time.hpp"
 
 namespace tactor::cli {
@@ -117,7 +117,7 @@ void person_session::note_stream()
         {{"stream", stream_},
          {"opened", study::acq_time_text(study::utc_now_ns())},
          {"device", devices_.pcm},
-         {"masker", or_null(devices_.masker)},
+         {"masker", files::or_null(devices_.masker)},
          {"masking", devices_.masker.empty() ? json(nullptr) : masking_facts(p_.definition.masking)},
          {"display", page_ != nullptr ? "page"
                      : can_draw()     ? "terminal with animation"

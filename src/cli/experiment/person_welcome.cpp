@@ -8,8 +8,8 @@
 #include "cli/experiment/array_walk.hpp"
 #include "cli/experiment/participant_screen.hpp"
 #include "cli/experiment/person_session.hpp"
-#include "cli/json_values.hpp"
 #include "cli/say.hpp"
+#include "files/plan/json_values.hpp"
 #include "study/bids/acq_time.hpp"
 
 namespace tactor::cli {
@@ -91,8 +91,8 @@ void person_session::begin_store()
     for (const json& one : walked_)
         walks.push_back(one);
     store_.note("walk", walks);
-    store_.note("sound_server", or_null(devices_.between.array));
-    store_.note("masker_sound_server", or_null(devices_.between.masker));
+    store_.note("sound_server", files::or_null(devices_.between.array));
+    store_.note("masker_sound_server", files::or_null(devices_.between.masker));
     note_stream();
 }
 

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/experiment/prepared.hpp"
 
-#include <cstdio>
-#include <cstdlib>
-#include <memory>
-#include <new>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,29 +9,18 @@
 #include "cli/experiment/array_walk.hpp"
 #include "cli/experiment/calibration_facts.hpp"
 #include "cli/experiment/limit_check.hpp"
-#include "cli/plan/plan_output.hpp"
-#include "cli/plan/plan_sound.hpp"
 #include "cli/play/play_options.hpp"
+#include "files/plan/plan_json.hpp"
 
 namespace tactor::cli {
 namespace {
 
-// What `tactor plan --format json` prints of a stroke.
+// Returns what `tactor plan --format json` prints of a stroke.
 std::string plan_text(const environment& e, const render_options& o, const stroke& s, const plan& p,
                       const score& sounds)
 {
-    char* bytes = nullptr;
-    std::size_t size = 0;
-    std::FILE* f = ::open_memstream(&bytes, &size);
-    if (f == nullptr)
-        throw std::bad_alloc();
-    const piece one{s.name, {s}, {{p, std::nullopt}}};
-    print_json(f, one, e, sounds, o);
-    const bool written = std::fclose(f) == 0;
-    const std::unique_ptr<char, decltype(&std::free)> owner(bytes, &std::free);
-    if (!written)
-        throw std::bad_alloc();
-    return {bytes, size};
+    const placed_plan one{p, std::nullopt};
+    return files::plans_text({{&s, 1}, {&one, 1}, {}, nullptr, e.tactors, sounds, o});
 }
 
 // -40 dBFS where nobody measured, at no frequency, and nobody feels it. A real session needs what was

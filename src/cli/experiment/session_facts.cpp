@@ -6,9 +6,9 @@
 #include <tactor/version.hpp>
 
 #include "cli/experiment/calibration_facts.hpp"
-#include "cli/json_values.hpp"
-#include "cli/plan/plan_sound.hpp"
 #include "core/sha256.hpp"
+#include "files/plan/json_values.hpp"
+#include "files/plan/plan_sound.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -25,7 +25,7 @@ json array_facts(const array& a)
                            {"polarity", t.polarity},
                            {"gain_db", t.gain_db},
                            {"max_dbfs", t.max_dbfs},
-                           {"threshold_dbfs", threshold_json(t)},
+                           {"threshold_dbfs", files::threshold_json(t)},
                            {"actuator", std::string(to_string(t.actuator))}});
     return {{"name", a.name}, {"tactors", tactors}};
 }
@@ -47,7 +47,7 @@ json run_names(const prepared_experiment& p)
 
 json level_facts(const study::experiment_definition& d)
 {
-    return {{"sl_db", d.level_dbfs ? json(nullptr) : json(d.sl_db)}, {"dbfs", or_null(d.level_dbfs)}};
+    return {{"sl_db", d.level_dbfs ? json(nullptr) : json(d.sl_db)}, {"dbfs", files::or_null(d.level_dbfs)}};
 }
 
 json masking_facts(const study::masking_definition& m)
@@ -79,7 +79,7 @@ json session_facts(const prepared_experiment& p, const experiment_options& o)
 {
     json thresholds = json::array();
     for (const tactor_spec& t : p.where.tactors.tactors)
-        thresholds.push_back(threshold_json(t));
+        thresholds.push_back(files::threshold_json(t));
     json j{{"schema", "tactor-session/1"}, {"participant", p.participant}};
     j["simulated"] = o.simulate.has_value();
     j["simulation"] = o.simulate ? json(study::to_text(*o.simulate)) : json(nullptr);

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include <cerrno>
+#include <cstdio>
 #include <memory>
 #include <span>
+#include <string_view>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -10,10 +14,17 @@
 #include "cli/plan/plan_output.hpp"
 #include "cli/threshold_carrier.hpp"
 #include "cli/warnings.hpp"
+#include "files/plan/plan_json.hpp"
 
 namespace tactor::cli {
-
 namespace {
+
+// A plan of an hour ends where its reader does.
+void write_part(std::string_view part)
+{
+    if (std::fwrite(part.data(), 1, part.size(), stdout) != part.size())
+        throw std::system_error(errno, std::generic_category(), "cannot write a plan");
+}
 
 int print_plan(settings& s, option_list& options, const std::string& format)
 {
@@ -23,7 +34,7 @@ int print_plan(settings& s, option_list& options, const std::string& format)
     const score samples = make_score(p, e, sound); // levels and carrier are checked when planned
     tell_of_other_carrier(e, sound, std::span(&samples, 1));
     if (format == "json")
-        print_json(stdout, p, e, samples, sound);
+        files::write_plans(record_plans(p, e, samples, sound), write_part);
     else if (format == "csv") {
         say_warnings(collect_warnings(p.plans)); // there is no place for them in a table
         print_csv(stdout, p, e);

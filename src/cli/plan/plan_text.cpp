@@ -2,10 +2,11 @@
 #include <fmt/format.h>
 
 #include "cli/plan/plan_output.hpp"
-#include "cli/plan/plan_rows.hpp"
 #include "cli/say.hpp"
 #include "cli/wrapped.hpp"
 #include "core/words.hpp"
+#include "files/plan/plan_json.hpp"
+#include "files/plan/plan_rows.hpp"
 #include "plot/sound_text.hpp"
 
 namespace tactor::cli {
@@ -47,10 +48,10 @@ void print_one(std::FILE* out, const std::string& title, const stroke& s, const 
 {
     say(out, "{}", heading(title, s, p, start_s, a, sound));
     if (s.note != note_kind::none)
-        say(out, "note: {}\n", note_text(s.note));
+        say(out, "note: {}\n", files::note_text(s.note));
     say(out, "\n{:>10} {:>10} {:>9} {:>9}  {}\n", p.curve ? "t_s" : "onset_s", "duration_s", "x_mm", "y_mm",
         "tactor:amplitude");
-    for_each_row(p, [&](const burst& b) {
+    files::for_each_row(p, [&](const burst& b) {
         std::string drives;
         for (const drive& d : b.drives)
             drives += fmt::format(" {}:{:.4f}", d.tactor, d.amplitude);
@@ -87,7 +88,7 @@ void print_csv(std::FILE* out, const piece& p, const environment& e)
     fmt::print(out, "stroke,start_s,onset_s,duration_s,tau_s,x_mm,y_mm,tactor,channel,amplitude\n");
     const auto starts = starts_of(p.plans);
     for (std::size_t i = 0; i < p.plans.size(); ++i) {
-        for_each_row(p.plans[i].schedule, [&](const burst& b) {
+        files::for_each_row(p.plans[i].schedule, [&](const burst& b) {
             const std::string tau = b.tau_s ? fmt::format("{}", *b.tau_s) : "";
             for (const drive& d : b.drives)
                 fmt::print(out, "{},{},{},{},{},{},{},{},{},{}\n", i, starts[i], b.onset_s, b.duration_s, tau,

@@ -16,9 +16,7 @@
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
 #include "cli/interrupt.hpp"
-#include "cli/json_values.hpp"
 #include "cli/parse_number.hpp"
-#include "cli/plan/plan_output.hpp"
 #include "cli/play/open_device.hpp"
 #include "cli/play/own_memory.hpp"
 #include "cli/play/play_lines.hpp"
@@ -27,9 +25,10 @@
 #include "cli/play/sound_server.hpp"
 #include "cli/say.hpp"
 #include "cli/serve/owner.hpp"
-#include "cli/serve/plan_record.hpp"
 #include "cli/session/kept_drive.hpp"
 #include "core/words.hpp"
+#include "files/plan/json_values.hpp"
+#include "files/plan/plan_json.hpp"
 #include "rt/advice.hpp"
 #include "rt/clock.hpp"
 #include "server/server.hpp"
@@ -37,6 +36,7 @@
 namespace tactor::cli {
 namespace {
 
+using files::or_null;
 // Options that clients may give too: here they are the configuration's alone.
 struct owners_defaults {
     explicit owners_defaults(settings& s) : options(app, s)
@@ -193,9 +193,9 @@ int serve(settings& s, owners_defaults& defaults, const play_options& play, cons
     provide_descriptors(service.limits);
     service.token = read_token(serve);
     service.version = version();
-    service.array = array_json(e.tactors);
+    service.array = files::array_json(e.tactors);
     service.plans = planning_of(s, e, serve, service.limits);
-    service.plan_text = [&e](const server::planned& p, std::size_t most) { return plan_record(p, e, most); };
+    service.plan_text = [&e](const server::planned& p, std::size_t most) { return plan_text(p, e, most); };
     service.now_ns = rt::monotonic_ns;
     server::endpoints at = server::open_endpoints(where);
     const std::shared_ptr<void> removed(nullptr, [&at](void*) { server::remove_socket(at); });

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <new>
+#include <string_view>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -15,6 +17,7 @@
 #include "cli/say.hpp"
 #include "cli/session/runtime_folder.hpp"
 #include "cli/variable.hpp"
+#include "files/plan/plan_json.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -117,6 +120,19 @@ void provide_descriptors(const server::service_limits& l)
             "refused "
             "(raise ulimit -n, or LimitNOFILE= of the unit)\n",
             now.rlim_cur, l.max_clients, wanted);
+}
+
+std::string plan_text(const server::planned& p, const environment& e, std::size_t most_bytes)
+{
+    const piece one{p.name, p.strokes, p.plans, {}, p.moved};
+    std::string text;
+    files::write_plans(record_plans(one, e, make_score(one, e, p.render), p.render),
+                       [&](std::string_view part) {
+                           if (text.size() + part.size() > most_bytes)
+                               throw std::bad_alloc();
+                           text += part;
+                       });
+    return text;
 }
 
 std::string read_token(const serve_settings& s)

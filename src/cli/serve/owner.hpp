@@ -3,11 +3,13 @@
 /// What the owner of the array allows: [serve], and the options of `tactor serve`.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 
 #include "cli/input.hpp"
 #include "server/server.hpp"
+#include "server/stroke_source.hpp"
 
 namespace tactor::cli {
 
@@ -34,6 +36,10 @@ server::service_limits settle_service_limits(const serve_settings& s);
 
 /// Raises how many files may be open to what so many clients need; warns where that is not allowed.
 void provide_descriptors(const server::service_limits& l);
+
+/// Returns what `tactor plan --format json` prints, for the service's answers. \throws std::bad_alloc above
+/// `most_bytes`.
+std::string plan_text(const server::planned& p, const environment& e, std::size_t most_bytes);
 
 /// The text of token_file without its line end; empty for none. \throws error (bad_input) for a file that
 /// others may read, and for an empty one.

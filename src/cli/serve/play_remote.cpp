@@ -19,7 +19,6 @@
 #include "cli/input.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/pipes.hpp"
-#include "cli/plan/plan_file.hpp"
 #include "cli/play/live_lines.hpp"
 #include "cli/play/play_report.hpp"
 #include "cli/say.hpp"

@@ -15,7 +15,7 @@
 
 #include "cli/input.hpp"
 #include "cli/pipes.hpp"
-#include "cli/plan/plan_file.hpp"
+#include "files/plan/plan_file.hpp"
 #include "net/listen.hpp"
 
 namespace tactor::cli {
@@ -63,14 +63,14 @@ net::json params_of(const std::string& argument)
     const bool is_preset = std::find(presets.begin(), presets.end(), argument) != presets.end();
     if (argument == "-") {
         const std::string text = read_all(STDIN_FILENO, "standard input");
-        if (holds_plans(text))
+        if (files::holds_plans(text))
             refuse_plan("standard input");
         return {{kind_of(text), text}};
     }
     if (is_preset ||
         (!std::filesystem::exists(argument, ignored) && argument.find_first_of("./") == std::string::npos))
         return {{"stroke", preset_stroke(argument).name}}; // its error lists the presets
-    if (is_plan_file(argument))
+    if (files::is_plan_file(argument))
         refuse_plan(argument);
     check_readable(argument);
     const net::owned_fd fd(::open(argument.c_str(), O_RDONLY | O_CLOEXEC));

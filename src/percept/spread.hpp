@@ -9,9 +9,14 @@
 #include <string>
 #include <vector>
 
-#include <tactor/tactor.hpp>
+#include <tactor/array.hpp>
+#include <tactor/observer.hpp>
+#include <tactor/percept.hpp>
+#include <tactor/phantom.hpp>
+#include <tactor/plan.hpp>
+#include <tactor/stroke.hpp>
 
-namespace tactor::cli {
+namespace tactor::detail {
 
 /// How many are drawn, and how far they may differ; all evenly within these ranges.
 struct spread_choice {
@@ -67,8 +72,8 @@ struct row_spread {
 
 /// Predicts what each person feels of a plan: as the low-speed observer, or without one by the centroid.
 /// Calls `after_person` after each.
-row_spread spread_of(const std::vector<drawn_person>& people, const array& a, const stroke& s, const plan& p,
-                     const std::optional<low_speed_observer>& low_speed, bool for_picture,
-                     const std::function<void()>& after_person);
+row_spread predict_spread(const std::vector<drawn_person>& people, const array& a, const stroke& s,
+                          const plan& p, const std::optional<low_speed_observer>& low_speed, bool for_picture,
+                          const std::function<void()>& after_person);
 
-} // namespace tactor::cli
+} // namespace tactor::detail

@@ -13,7 +13,7 @@
 
 #include "core/kind_names.hpp"
 
-namespace tactor::cli {
+namespace tactor::files {
 
 /// The members of an object; what is missing or of another kind is an error (bad_input) that names it.
 class fields {
@@ -56,15 +56,15 @@ private:
     const nlohmann::json& object_;
 };
 
-burst burst_of(const fields& f);
+burst read_burst(const fields& f);
 /// A point of a continuous stroke.
-burst sample_of(const fields& f);
-array array_of(const fields& plan);
-render_options render_of(const fields& plan);
-placed_plan plan_of(const fields& f, const array& a, std::vector<burst> bursts, curve_samples samples);
+burst read_sample(const fields& f);
+array read_array(const fields& plan);
+render_options read_render(const fields& plan);
+placed_plan read_plan(const fields& f, const array& a, std::vector<burst> bursts, curve_samples samples);
 /// What --compensate did, without the schedule; none where it was not asked for.
-std::optional<compensated_plan> compensation_of(const fields& plan);
+std::optional<compensated_plan> read_compensation(const fields& plan);
 /// The way of a plan's bursts or samples, or of what moved ones are to be felt as, for pictures.
-stroke stroke_of(const fields& f, const plan& p, const std::optional<compensated_plan>& moved);
+stroke read_stroke(const fields& f, const plan& p, const std::optional<compensated_plan>& moved);
 
-} // namespace tactor::cli
+} // namespace tactor::files

@@ -10,7 +10,7 @@
 
 #include <tactor/observer.hpp>
 
-namespace tactor::cli {
+namespace tactor::files {
 
 template <class T>
 nlohmann::ordered_json or_null(const std::optional<T>& v)
@@ -31,4 +31,4 @@ inline nlohmann::ordered_json tap_json(const tap& t)
             {"felt_y_mm", t.felt.y_mm}};
 }
 
-} // namespace tactor::cli
+} // namespace tactor::files

@@ -3,18 +3,21 @@
 /// One stroke by several algorithms and phantom models: what each is predicted to feel like.
 #pragma once
 
-#include <cstdio>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include <tactor/tactor.hpp>
+#include <tactor/array.hpp>
+#include <tactor/observer.hpp>
+#include <tactor/percept.hpp>
+#include <tactor/phantom.hpp>
+#include <tactor/plan.hpp>
+#include <tactor/stroke.hpp>
 
-#include "cli/compare/spread.hpp"
-#include "cli/input.hpp"
+#include "percept/spread.hpp"
 
-namespace tactor::cli {
+namespace tactor::detail {
 
 /// Who feels it.
 struct observer_choice {
@@ -22,7 +25,7 @@ struct observer_choice {
     low_speed_observer low_speed = {};
 };
 
-/// What the prediction is, in a sentence that goes with its numbers.
+/// Says in a sentence, to go with the numbers, what the prediction is.
 std::string prediction_note(const observer_choice& o);
 
 /// One algorithm with one phantom model. Either a plan, or why there is none.
@@ -36,7 +39,7 @@ struct comparison_row {
     std::vector<tap> taps = {};               ///< the same
     std::string unpredicted = {};             ///< why low-speed has no prediction; empty where it has
     std::optional<row_spread> spread = {};    ///< with people drawn, where there is a prediction
-    std::optional<error> refused = {};
+    std::optional<error> refused = {};        ///< in the words of the library
 };
 
 struct comparison {
@@ -62,16 +65,9 @@ struct comparison_choice {
     std::function<void()> after_person = [] {}; ///< called after each person whose percept is predicted
 };
 
-/// Every algorithm with every model, in this order. An algorithm that cannot play the stroke becomes a row
-/// that says why. \throws what is not bad input.
+/// Plans and predicts with every algorithm and every model, in this order. An algorithm that cannot play the
+/// stroke becomes a row that says why. \throws what is not bad input.
 comparison compare(const stroke& given, const array& a, const layout& faces, const plan_options& options,
                    const comparison_choice& choice);
 
-/// All write to `out`.
-/// `titles`: names of the strokes.
-void print_text(std::FILE* out, const std::vector<comparison>& all, const std::vector<std::string>& titles,
-                const array& a);
-void print_json(std::FILE* out, const std::vector<comparison>& all, const array& a);
-void print_csv(std::FILE* out, const std::vector<comparison>& all, const array& a);
-
-} // namespace tactor::cli
+} // namespace tactor::detail

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: MIT
-#include "cli/compare/compare_rows.hpp"
+#include "percept/compare.hpp"
 
 #include <algorithm>
 #include <utility>
 #include <vector>
 
-#include "cli/option_words.hpp"
 #include "percept/summaries.hpp"
 
-namespace tactor::cli {
+namespace tactor::detail {
 
 namespace {
 
-void predict_taps_of(comparison_row& row, const stroke& s, const array& a, const low_speed_observer& o)
+void add_taps(comparison_row& row, const stroke& s, const array& a, const low_speed_observer& o)
 {
     if (row.schedule->curve) {
         row.unpredicted = "continuous has no bursts, and this observer feels taps";
@@ -32,7 +31,7 @@ void predict_people(comparison_row& row, const stroke& s, const array& a, const 
     std::optional<low_speed_observer> taps;
     if (choice.observer.kind == observer_kind::low_speed)
         taps = choice.observer.low_speed;
-    row.spread = spread_of(people, a, s, *row.schedule, taps, choice.keep_samples, choice.after_person);
+    row.spread = predict_spread(people, a, s, *row.schedule, taps, choice.keep_samples, choice.after_person);
 }
 
 // All rows at once, since they have the target in common.
@@ -46,7 +45,7 @@ void predict_centroids(comparison& c, const array& a, bool keep_samples)
             plans.push_back(&*row.schedule);
         }
     try {
-        const std::vector<percept_summary> felt = detail::predict_summaries(a, c.target, plans);
+        const std::vector<percept_summary> felt = predict_summaries(a, c.target, plans);
         for (std::size_t i = 0; i < rows.size(); ++i) {
             rows[i]->felt = felt[i];
             if (keep_samples)
@@ -58,7 +57,7 @@ void predict_centroids(comparison& c, const array& a, bool keep_samples)
             throw;
         for (comparison_row* row : rows) {
             row->schedule.reset();
-            row->refused = in_options(e);
+            row->refused = e;
         }
     }
 }
@@ -82,7 +81,7 @@ bool comparison::playable() const
 comparison compare(const stroke& given, const array& a, const layout& faces, const plan_options& options,
                    const comparison_choice& choice)
 {
-    // Side by side: here the command line chooses.
+    // Side by side: the caller chooses, not the stroke.
     stroke s = given;
     s.choices.algorithm.reset();
     s.choices.phantom.reset();
@@ -100,13 +99,13 @@ comparison compare(const stroke& given, const array& a, const layout& faces, con
                                    ? make_compensated_plan(a, faces, s, o, choice.observer.low_speed).schedule
                                    : make_plan(a, faces, s, o);
                 if (choice.observer.kind == observer_kind::low_speed)
-                    predict_taps_of(row, s, a, choice.observer.low_speed);
+                    add_taps(row, s, a, choice.observer.low_speed);
                 predict_people(row, s, a, choice, people);
             } catch (const error& e) {
                 if (e.kind() != error_kind::bad_input)
                     throw;
                 row.schedule.reset();
-                row.refused = in_options(e);
+                row.refused = e;
             }
             c.rows.push_back(std::move(row));
         }
@@ -115,4 +114,4 @@ comparison compare(const stroke& given, const array& a, const layout& faces, con
     return c;
 }
 
-} // namespace tactor::cli
+} // namespace tactor::detail

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/plan/plan_sound.hpp"
+#include "files/plan/plan_sound.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +10,9 @@
 
 #include <fmt/format.h>
 
-#include "cli/json_values.hpp"
+#include "files/plan/json_values.hpp"
 
-namespace tactor::cli {
+namespace tactor::files {
 namespace {
 
 using json = nlohmann::ordered_json;
@@ -20,7 +20,7 @@ using json = nlohmann::ordered_json;
 constexpr double most_bend_hz = 1e7;
 
 // Whoever plays the plan may be elsewhere.
-std::string name_of(const waveform& w)
+std::string name_waveform(const waveform& w)
 {
     std::string text = waveform_text(w);
     if (w.kind != waveform_kind::recording)
@@ -45,11 +45,11 @@ void put_sound(nlohmann::ordered_json& stroke, const plan& p)
 {
     const waveform& w = p.wave;
     if (w.kind != waveform_kind::sine)
-        stroke["waveform"] = name_of(w);
+        stroke["waveform"] = name_waveform(w);
     if (w.kind == waveform_kind::noise)
         stroke["noise_seed"] = w.seed;
     if (w.kind == waveform_kind::recording) {
-        stroke["recording"] = {{"file", name_of(w)},
+        stroke["recording"] = {{"file", name_waveform(w)},
                                {"sha256", w.recorded->sha256},
                                {"frames", w.recorded->samples.size()},
                                {"rate", w.recorded->rate_hz}};
@@ -148,7 +148,7 @@ void take_sound(const fields& stroke, plan& p)
     }
 }
 
-burst_envelope envelope_of(const fields& render)
+burst_envelope read_envelope(const fields& render)
 {
     burst_envelope e;
     if (!render.has("envelope"))
@@ -161,4 +161,4 @@ burst_envelope envelope_of(const fields& render)
     return e;
 }
 
-} // namespace tactor::cli
+} // namespace tactor::files

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/compare/spread.hpp"
+#include "percept/spread.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #include "core/words.hpp"
 
-namespace tactor::cli {
+namespace tactor::detail {
 namespace {
 
 constexpr double low_part = 0.05;
@@ -151,17 +151,18 @@ std::optional<interval> interval_of(std::vector<std::optional<double>> values)
     return interval{quantile(sorted, low_part), quantile(sorted, high_part)};
 }
 
-row_spread spread_of(const std::vector<drawn_person>& people, const array& a, const stroke& s, const plan& p,
-                     const std::optional<low_speed_observer>& low_speed, bool for_picture,
-                     const std::function<void()>& after_person)
+row_spread predict_spread(const std::vector<drawn_person>& people, const array& a, const stroke& s,
+                          const plan& p, const std::optional<low_speed_observer>& low_speed, bool for_picture,
+                          const std::function<void()>& after_person)
 {
     const double kept =
         low_speed ? static_cast<double>(p.bursts.size()) : s.motion.duration_s() / percept_step_s;
     if (for_picture && kept * static_cast<double>(people.size()) > static_cast<double>(most_kept))
-        throw error(error_kind::bad_input, "--spread",
+        throw error(error_kind::bad_input, "spread",
                     fmt::format("{} people are too many for a picture of a stroke of {}", people.size(),
                                 seconds_text(s.motion.duration_s())),
-                    "fewer, or no -o");
+                    "ask for fewer people, or draw no picture")
+            .with_field("spread");
     gathered g;
     row_spread r;
     for (const drawn_person& x : people) {
@@ -190,4 +191,4 @@ row_spread spread_of(const std::vector<drawn_person>& people, const array& a, co
     return r;
 }
 
-} // namespace tactor::cli
+} // namespace tactor::detail

@@ -1,28 +1,25 @@
 // SPDX-License-Identifier: MIT
-#include <cerrno>
+#include "files/plan/plan_json.hpp"
+
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <string>
-#include <string_view>
-#include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "cli/json_values.hpp"
-#include "cli/plan/plan_fit.hpp"
-#include "cli/plan/plan_output.hpp"
-#include "cli/plan/plan_rows.hpp"
-#include "cli/plan/plan_sound.hpp"
-#include "cli/plan/row_json.hpp"
+#include "files/plan/json_values.hpp"
+#include "files/plan/plan_fit.hpp"
+#include "files/plan/plan_rows.hpp"
+#include "files/plan/plan_sound.hpp"
+#include "files/plan/row_json.hpp"
 
-namespace tactor::cli {
+namespace tactor::files {
 namespace {
 
 using json = nlohmann::ordered_json;
 
-// One stroke of a piece, and all that its samples depend on.
+// One plan of a record.
 struct record {
     const stroke& drawn;
     const plan& schedule;
@@ -30,9 +27,9 @@ struct record {
     bool follows; // the stroke before it, from the frame at which that ends
     std::uint64_t start_frame;
     const array& tactors;
-    const score& samples; // of the whole piece
-    const std::optional<fitting>& fit;
-    const compensated_plan* moved; // null without --compensate
+    const score& samples; // of all plans
+    const fitting* fit;
+    const compensated_plan* moved; // null without compensation
     const render_options& options;
 };
 
@@ -148,17 +145,17 @@ std::string members(const json& j)
     return text.substr(1, text.size() - 2);
 }
 
-void print_plan(std::FILE* out, const record& r)
+void write_plan(const text_sink& out, const record& r)
 {
     const plan& p = r.schedule;
-    fmt::print(out, "{{{},\n", members(head_json(r)));
+    out(fmt::format("{{{},\n", members(head_json(r))));
     const bool sampled = p.curve.has_value();
     if (sampled)
-        fmt::print(out, "\"bursts\":[],\n\"continuous\":{{{},\"points\":[",
-                   members({{"step_s", continuous_step_s},
-                            {"ramp_s", burst_ramp_s(0.0, p.stroke_duration_s, p, r.options)}}));
+        out(fmt::format("\"bursts\":[],\n\"continuous\":{{{},\"points\":[",
+                        members({{"step_s", continuous_step_s},
+                                 {"ramp_s", burst_ramp_s(0.0, p.stroke_duration_s, p, r.options)}})));
     else
-        fmt::print(out, "\"bursts\":[");
+        out("\"bursts\":[");
     row_json rows(r.tactors);
     std::string row = "\n  ";
     for_each_row(p, [&](const burst& b) {
@@ -166,11 +163,10 @@ void print_plan(std::FILE* out, const record& r)
             rows.append_sample(row, b);
         else
             rows.append(row, b, burst_ramp_s(b.onset_s, b.duration_s, p, r.options));
-        if (std::fwrite(row.data(), 1, row.size(), out) != row.size())
-            throw std::system_error(errno, std::generic_category(), "cannot write a plan");
+        out(row);
         row = ",\n  ";
     });
-    fmt::print(out, "]{},\n{}}}", sampled ? "}" : "", members(tail_json(r)));
+    out(fmt::format("]{},\n{}}}", sampled ? "}" : "", members(tail_json(r))));
 }
 
 } // namespace
@@ -194,26 +190,43 @@ json array_json(const array& a)
     return {{"name", a.name}, {"tactors", tactors}};
 }
 
-void print_json(std::FILE* out, const piece& p, const environment& e, const score& samples,
-                const render_options& options)
+void write_plans(const plan_record& r, const text_sink& out)
 {
-    const auto starts = starts_of(p.plans);
-    const auto print = [&](std::size_t i) {
-        print_plan(out,
-                   {p.strokes[i], p.plans[i].schedule, starts[i], !p.plans[i].start_s, samples.starts()[i],
-                    e.tactors, samples, p.fit, p.moved.empty() ? nullptr : &p.moved[i], options});
+    const auto starts = starts_of(r.plans);
+    const auto write = [&](std::size_t i) {
+        write_plan(out,
+                   {r.strokes[i], r.plans[i].schedule, starts[i], !r.plans[i].start_s, r.samples.starts()[i],
+                    r.tactors, r.samples, r.fit, r.moved.empty() ? nullptr : &r.moved[i], r.options});
     };
-    if (p.plans.size() == 1) {
-        print(0);
-        fmt::print(out, "\n");
+    if (r.plans.size() == 1) {
+        write(0);
+        out("\n");
         return;
     }
-    fmt::print(out, "{{\"schema\":\"tactor-plans/1\",\"plans\":[\n");
-    for (std::size_t i = 0; i < p.plans.size(); ++i) {
-        print(i);
-        fmt::print(out, "{}\n", i + 1 < p.plans.size() ? "," : "");
+    out("{\"schema\":\"tactor-plans/1\",\"plans\":[\n");
+    for (std::size_t i = 0; i < r.plans.size(); ++i) {
+        write(i);
+        out(i + 1 < r.plans.size() ? ",\n" : "\n");
     }
-    fmt::print(out, "]}}\n");
+    out("]}\n");
 }
 
-} // namespace tactor::cli
+std::string plans_text(const plan_record& r)
+{
+    std::string text;
+    write_plans(r, [&text](std::string_view part) { text += part; });
+    return text;
+}
+
+std::string note_text(note_kind n)
+{
+    switch (n) {
+    case note_kind::none:
+        break;
+    case note_kind::reconstructed:
+        return "reconstructed: the figure that shows it is not in the paper's text";
+    }
+    return "";
+}
+
+} // namespace tactor::files

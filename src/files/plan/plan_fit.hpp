@@ -8,14 +8,14 @@
 #include <nlohmann/json.hpp>
 #include <tactor/fit.hpp>
 
-#include "cli/plan/plan_fields.hpp"
+#include "files/plan/plan_values.hpp"
 
-namespace tactor::cli {
+namespace tactor::files {
 
 /// x' = a x + c y + e, y' = b x + d y + f, as in SVG.
 nlohmann::ordered_json fit_json(const fitting& f);
 
 /// None where the plan's stroke was not fitted. \throws error (bad_input).
-std::optional<fitting> fitting_of(const fields& plan);
+std::optional<fitting> read_fitting(const fields& plan);
 
-} // namespace tactor::cli
+} // namespace tactor::files

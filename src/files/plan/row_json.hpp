@@ -13,7 +13,7 @@
 #include <tactor/array.hpp>
 #include <tactor/plan.hpp>
 
-namespace tactor::cli {
+namespace tactor::files {
 
 /// A member of an object, with what stands before it; kept, for many say the same in each row.
 class number_member {
@@ -47,4 +47,4 @@ private:
         intensity_{",\"intensity\":"};
 };
 
-} // namespace tactor::cli
+} // namespace tactor::files

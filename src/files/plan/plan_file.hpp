@@ -10,7 +10,7 @@
 
 #include <tactor/tactor.hpp>
 
-namespace tactor::cli {
+namespace tactor::files {
 
 /// What a file with one plan or several says (schemas tactor-plan/1 and tactor-plans/1).
 struct plan_file {
@@ -37,4 +37,4 @@ bool holds_plans(std::string_view text) noexcept;
 /// \throws error (bad_input) where places, channels or polarities differ from those that the plans are for.
 void check_same_array(const std::string& file, const array& made_for, const array& in_use);
 
-} // namespace tactor::cli
+} // namespace tactor::files

@@ -8,9 +8,9 @@
 
 #include <tactor/tactor.hpp>
 
-#include "cli/plan/plan_fields.hpp"
+#include "files/plan/plan_values.hpp"
 
-namespace tactor::cli {
+namespace tactor::files {
 
 /// Into the member "stroke".
 void put_sound(nlohmann::ordered_json& stroke, const plan& p);
@@ -24,6 +24,6 @@ void take_threshold(const fields& t, tactor_spec& into);
 /// Back from "stroke". Reads the WAV file that it names. \throws error (bad_input).
 void take_sound(const fields& stroke, plan& p);
 /// Back from "render".
-burst_envelope envelope_of(const fields& render);
+burst_envelope read_envelope(const fields& render);
 
-} // namespace tactor::cli
+} // namespace tactor::files

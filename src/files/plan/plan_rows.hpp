@@ -9,7 +9,7 @@
 #include <tactor/curve.hpp>
 #include <tactor/plan.hpp>
 
-namespace tactor::cli {
+namespace tactor::files {
 
 /// Calls row(burst) for each burst; for `continuous`, for each point at which the phantom is
 /// evaluated (each lasts until the next).
@@ -26,4 +26,4 @@ void for_each_row(const plan& p, Row&& row)
     }
 }
 
-} // namespace tactor::cli
+} // namespace tactor::files

@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/format.h>
+#include "files/plan/compare_json.hpp"
+
 #include <nlohmann/json.hpp>
 
-#include "cli/compare/compare_rows.hpp"
-#include "cli/json_values.hpp"
+#include "files/plan/json_values.hpp"
+#include "files/plan/plan_json.hpp"
 
-namespace tactor::cli {
+namespace tactor::files {
 namespace {
+
+using detail::comparison;
+using detail::comparison_row;
+using detail::interval;
+using detail::observer_choice;
+using detail::row_spread;
+using detail::spread_choice;
 
 using json = nlohmann::ordered_json;
 
@@ -93,7 +101,7 @@ json comparison_json(const comparison& c, const array& a)
     const trajectory& m = c.target.motion;
     json j;
     j["schema"] = "tactor-compare/1";
-    j["note"] = prediction_note(c.observer);
+    j["note"] = detail::prediction_note(c.observer);
     j["observer"] = observer_json(c.observer);
     j["compensated_for"] =
         c.compensated ? observer_json({observer_kind::low_speed, c.observer.low_speed}) : json(nullptr);
@@ -118,19 +126,17 @@ json comparison_json(const comparison& c, const array& a)
 
 } // namespace
 
-void print_json(std::FILE* out, const std::vector<comparison>& all, const array& a)
+std::string comparisons_text(const std::vector<comparison>& all, const array& a)
 {
+    json whole;
     if (all.size() == 1) {
-        fmt::print(out, "{}\n",
-                   comparison_json(all[0], a).dump(2, ' ', false, json::error_handler_t::replace));
-        return;
+        whole = comparison_json(all[0], a);
+    } else {
+        whole = {{"schema", "tactor-compares/1"}, {"comparisons", json::array()}};
+        for (const comparison& c : all)
+            whole["comparisons"].push_back(comparison_json(c, a));
     }
-    json list = json::array();
-    for (const comparison& c : all)
-        list.push_back(comparison_json(c, a));
-    fmt::print(out, "{}\n",
-               json{{"schema", "tactor-compares/1"}, {"comparisons", list}}.dump(
-                   2, ' ', false, json::error_handler_t::replace));
+    return whole.dump(2, ' ', false, json::error_handler_t::replace) + '\n';
 }
 
-} // namespace tactor::cli
+} // namespace tactor::files

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "cli/plan/plan_fit.hpp"
+#include "files/plan/plan_fit.hpp"
 
 #include <cmath>
 #include <vector>
 
-namespace tactor::cli {
+namespace tactor::files {
 
 nlohmann::ordered_json fit_json(const fitting& f)
 {
@@ -19,7 +19,7 @@ nlohmann::ordered_json fit_json(const fitting& f)
     return matrix(f.scale * x * x, f.scale * x * y, f.scale * y * y);
 }
 
-std::optional<fitting> fitting_of(const fields& plan)
+std::optional<fitting> read_fitting(const fields& plan)
 {
     const fields stroke = plan.object("stroke");
     if (!stroke.has("fit"))
@@ -36,4 +36,4 @@ std::optional<fitting> fitting_of(const fields& plan)
     return f;
 }
 
-} // namespace tactor::cli
+} // namespace tactor::files

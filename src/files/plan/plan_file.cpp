@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/plan/plan_file.hpp"
+#include "files/plan/plan_file.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -11,13 +11,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "cli/pipes.hpp"
-#include "cli/plan/plan_fields.hpp"
-#include "cli/plan/plan_fit.hpp"
 #include "core/words.hpp"
 #include "files/input_files.hpp"
+#include "files/plan/plan_fit.hpp"
+#include "files/plan/plan_values.hpp"
 
-namespace tactor::cli {
+namespace tactor::files {
 namespace {
 
 constexpr const char* how_to_make = "tactor plan STROKE --format json makes one";
@@ -58,9 +57,9 @@ private:
         const bool is_burst = deep == 2 && key(top + 1) == "bursts";
         const bool is_sample = deep == 3 && key(top + 1) == "continuous" && key(top + 2) == "points";
         if (is_burst)
-            bursts_.push_back(burst_of({file_, fmt::format("bursts[{}]", bursts_.size()), j}));
+            bursts_.push_back(read_burst({file_, fmt::format("bursts[{}]", bursts_.size()), j}));
         if (is_sample)
-            samples_.add(sample_of({file_, fmt::format("points[{}]", samples_.ends.size()), j}));
+            samples_.add(read_sample({file_, fmt::format("points[{}]", samples_.ends.size()), j}));
         return is_burst || is_sample;
     }
 
@@ -74,18 +73,18 @@ private:
         if (schema != "tactor-plan/1")
             throw error(error_kind::bad_input, file_,
                         fmt::format("its schema is {}, not tactor-plan/1", schema), how_to_make);
-        array tactors = array_of(all);
+        array tactors = read_array(all);
         if (read_.plans.empty()) {
             read_.tactors = std::move(tactors);
-            read_.render = render_of(all);
-            read_.fit = fitting_of(all);
+            read_.render = read_render(all);
+            read_.fit = read_fitting(all);
         } else {
             check_same_array(file_, tactors, read_.tactors);
         }
         read_.plans.push_back(
-            plan_of(all, read_.tactors, std::exchange(bursts_, {}), std::exchange(samples_, {})));
-        std::optional<compensated_plan> moved = compensation_of(all);
-        read_.strokes.push_back(stroke_of(all, read_.plans.back().schedule, moved));
+            read_plan(all, read_.tactors, std::exchange(bursts_, {}), std::exchange(samples_, {})));
+        std::optional<compensated_plan> moved = read_compensation(all);
+        read_.strokes.push_back(read_stroke(all, read_.plans.back().schedule, moved));
         if (moved)
             read_.moved.push_back(*std::move(moved));
         if (!read_.moved.empty() && read_.moved.size() != read_.plans.size())
@@ -133,7 +132,6 @@ bool is_plan_file(const std::string& argument)
 
 plan_file load_plans(const std::string& file)
 {
-    check_readable(file);
     std::ifstream in(file, std::ios::binary);
     in.peek(); // a folder opens, and cannot be read
     const int code = errno;
@@ -180,4 +178,4 @@ void check_same_array(const std::string& file, const array& made_for, const arra
     }
 }
 
-} // namespace tactor::cli
+} // namespace tactor::files

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/plan/plan_fields.hpp"
-#include "cli/input.hpp"
-#include "cli/plan/plan_sound.hpp"
+#include "files/plan/plan_values.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,13 +9,15 @@
 #include <fmt/format.h>
 
 #include "core/kind_names.hpp"
+#include "files/plan/plan_json.hpp"
+#include "files/plan/plan_sound.hpp"
 
-namespace tactor::cli {
+namespace tactor::files {
 namespace {
 
 constexpr double most_amplitude = 1000.0; // as the intensity of a stroke
 
-std::vector<drive> drives_of(const fields& f)
+std::vector<drive> read_drives(const fields& f)
 {
     std::vector<drive> drives;
     for (const fields& d : f.list("drives")) {
@@ -29,12 +29,12 @@ std::vector<drive> drives_of(const fields& f)
     return drives;
 }
 
-burst place_of(const fields& f)
+burst read_place(const fields& f)
 {
     burst b;
     b.position = {f.number("x_mm"), f.number("y_mm")};
     b.intensity = f.number("intensity");
-    b.drives = drives_of(f);
+    b.drives = read_drives(f);
     return b;
 }
 
@@ -210,9 +210,9 @@ std::vector<std::string> fields::texts(const char* name) const
     return j.get<std::vector<std::string>>();
 }
 
-burst burst_of(const fields& f)
+burst read_burst(const fields& f)
 {
-    burst b = place_of(f);
+    burst b = read_place(f);
     b.onset_s = f.number("onset_s");
     b.duration_s = f.number("duration_s");
     if (f.has("tau_s"))
@@ -220,12 +220,12 @@ burst burst_of(const fields& f)
     return b;
 }
 
-burst sample_of(const fields& f)
+burst read_sample(const fields& f)
 {
-    return place_of(f);
+    return read_place(f);
 }
 
-array array_of(const fields& plan)
+array read_array(const fields& plan)
 {
     const fields f = plan.object("array");
     array a;
@@ -246,7 +246,7 @@ array array_of(const fields& plan)
     return a;
 }
 
-render_options render_of(const fields& plan)
+render_options read_render(const fields& plan)
 {
     const fields f = plan.object("render");
     render_options o;
@@ -258,7 +258,7 @@ render_options render_of(const fields& plan)
         o.sl_db = f.number("sl_db");
     else
         o.level_dbfs = f.number("level_dbfs");
-    o.envelope = envelope_of(f);
+    o.envelope = read_envelope(f);
     if (!f.is_null("marker")) {
         const fields marker = f.object("marker");
         o.marker_channel = marker.count("channel");
@@ -267,7 +267,7 @@ render_options render_of(const fields& plan)
     return o;
 }
 
-placed_plan plan_of(const fields& f, const array& a, std::vector<burst> bursts, curve_samples samples)
+placed_plan read_plan(const fields& f, const array& a, std::vector<burst> bursts, curve_samples samples)
 {
     plan p;
     const fields drawn = f.object("stroke");
@@ -306,7 +306,7 @@ placed_plan plan_of(const fields& f, const array& a, std::vector<burst> bursts, 
     return {std::move(p), f.flag("follows") ? std::nullopt : std::optional(start_s)};
 }
 
-std::optional<compensated_plan> compensation_of(const fields& plan)
+std::optional<compensated_plan> read_compensation(const fields& plan)
 {
     if (!plan.has("compensation"))
         return {};
@@ -324,7 +324,7 @@ std::optional<compensated_plan> compensation_of(const fields& plan)
     return c;
 }
 
-stroke stroke_of(const fields& f, const plan& p, const std::optional<compensated_plan>& moved)
+stroke read_stroke(const fields& f, const plan& p, const std::optional<compensated_plan>& moved)
 {
     const fields drawn = f.object("stroke");
     std::vector<timed_point> way;
@@ -368,4 +368,4 @@ stroke stroke_of(const fields& f, const plan& p, const std::optional<compensated
     return s;
 }
 
-} // namespace tactor::cli
+} // namespace tactor::files

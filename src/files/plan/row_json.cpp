@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/plan/row_json.hpp"
+#include "files/plan/row_json.hpp"
 
 #include <array>
 #include <bit>
@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace tactor::cli {
+namespace tactor::files {
 namespace {
 
 // Numbers as nlohmann-json writes them, so that rows read like heads: 1.0, not 1.
@@ -74,4 +74,4 @@ void row_json::append_rest(std::string& out, const burst& b)
     out += "]}";
 }
 
-} // namespace tactor::cli
+} // namespace tactor::files
