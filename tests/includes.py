@@ -21,12 +21,13 @@ MAY_INCLUDE = {
     "sink/wav": {"core", "files", "plan", "synth", "sink"},
     "amplifier": {"core", "rt"},
     "engine": {"core", "plan", "synth", "rt", "sink", "amplifier"},
+    "session": {"core", "files", "files/plan", "rt"},
     "plot": set(),
-    "study": set(),
     "net": {"core"},
+    "study": {"files/plan", "session", "net"},
     "server": {"net"},
-    "cli": {"files/plan", "plot", "study", "net", "server"},
-    "python": {"cli", "files/plan", "plot"},
+    "cli": {"files/plan", "session", "plot", "study", "net", "server"},
+    "python": {"files/plan", "session", "plot"},
 }
 # The folder that a public header belongs to; a folder may use the public headers of the folders it may include.
 PUBLIC = {
@@ -37,11 +38,11 @@ PUBLIC = {
     "gpio": "amplifier", "realtime": "rt", "sink": None, "alsa": "sink/alsa", "devices": "sink/alsa", "player": "engine", "live": "engine",
     "asio": "engine", "report": "engine",
 }
-USES_ALL_PUBLIC = {"cli", "files/plan", "plot", "python", "server", "study"}
+USES_ALL_PUBLIC = {"cli", "files/plan", "plot", "python", "server", "session", "study"}
 # What those may know of the library's inside, which is in the tool: no program that embeds it needs these.
 INSIDE = {
-    "cli": {"core/asked_pace.hpp", "core/kind_names.hpp", "core/option_bounds.hpp", "core/owned.hpp", "core/sha256.hpp", "core/split.hpp", "core/start_times.hpp", "core/suggest.hpp", "core/words.hpp", "files/channel_map.hpp", "files/input_files.hpp", "files/output_file.hpp", "files/setup_defaults.hpp", "files/text_file.hpp", "percept/compare.hpp", "rt/advice.hpp", "rt/clock.hpp", "rt/event_fd.hpp", "synth/score/drive_room.hpp", "synth/score/sounding_now.hpp"},
-    "study": {"core/kind_names.hpp", "core/owned.hpp", "core/sha256.hpp", "core/split.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_text.hpp", "files/text_file.hpp", "files/toml_reader.hpp", "rt/event_fd.hpp", "rt/thread.hpp", "synth/mix/converter.hpp"},
+    "cli": {"core/asked_pace.hpp", "core/kind_names.hpp", "core/option_bounds.hpp", "core/sha256.hpp", "core/split.hpp", "core/start_times.hpp", "core/suggest.hpp", "core/words.hpp", "files/channel_map.hpp", "files/setup_defaults.hpp", "percept/compare.hpp", "rt/advice.hpp", "rt/clock.hpp", "synth/score/sounding_now.hpp"},
+    "study": {"core/kind_names.hpp", "core/owned.hpp", "core/sha256.hpp", "core/split.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_text.hpp", "files/text_file.hpp", "files/toml_reader.hpp", "rt/clock.hpp", "rt/event_fd.hpp", "rt/thread.hpp", "synth/mix/converter.hpp", "synth/score/drive_room.hpp"},
     "plot": {"core/split.hpp", "core/words.hpp", "files/output_file.hpp", "percept/compare.hpp", "synth/mix/sample_ranges.hpp"},
     "server": {"core/asked_pace.hpp", "core/kind_names.hpp", "core/option_bounds.hpp", "core/start_times.hpp", "core/words.hpp"},
     "python": {"core/access.hpp", "core/asked_pace.hpp", "core/kind_names.hpp", "core/option_bounds.hpp", "core/path/impl.hpp", "core/path/outline.hpp", "core/profile.hpp", "core/trajectory/impl.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_defaults.hpp", "files/setup_text.hpp", "files/text_file.hpp", "percept/compare.hpp", "percept/spread.hpp", "plan/curve_impl.hpp"},
@@ -55,11 +56,11 @@ ONLY_IN = {
     "boost/polygon": ["src/plan/"],
     "boost/asio": ["src/engine/", "src/net/", "src/server/", "include/tactor/asio.hpp"],
     "sndfile": ["src/files/sound_file_sndfile.cpp"],
-    "CLI/": ["src/cli/", "src/python/"],
+    "CLI/": ["src/cli/"],
     "pybind11/": ["src/python/"],
     "cairo": ["src/plot/"],
     "lo/": ["src/net/osc_lo.cpp"],
-    "nlohmann/": ["src/cli/", "src/files/plan/", "src/net/", "src/server/", "src/study/"],
+    "nlohmann/": ["src/cli/", "src/files/plan/", "src/net/", "src/server/", "src/session/", "src/study/"],
 }
 # Standard headers of threads and clocks that the pure folders must not see.
 PURE = {"core", "files", "plan", "percept", "synth"}

@@ -42,7 +42,7 @@ std::string searched(const environment& e)
 
 int switch_off(settings& s, option_list& options)
 {
-    const environment e = read_environment(s, options);
+    const environment e = session::read_environment(s, options);
     if (!e.config.amplifier)
         throw error(error_kind::bad_input, "amplifier", fmt::format("no [amplifier] in {}", searched(e)),
                     "say its line there, see tactor.toml(5), or name the file that does with --array");

@@ -9,11 +9,11 @@
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
 #include "cli/picture_options.hpp"
-#include "cli/pipes.hpp"
 #include "cli/say.hpp"
 #include "cli/warnings.hpp"
 #include "plot/figure.hpp"
 #include "plot/paint/output.hpp"
+#include "session/pipes.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -63,17 +63,17 @@ int draw(settings& s, option_list& options, const plot_settings& p)
 {
     const picture_options& o = p.picture;
     plot::format_of(o.file); // before the work
-    const environment e = read_environment(s, options);
+    const environment e = session::read_environment(s, options);
     const piece q = plan_one_piece(s, e);
     plot::check_output(o.file, o.force);
     // Only the samples have levels: a picture of a plan needs none that a card could play.
     std::optional<score> sound;
     if (p.view == figure_view::wave)
-        sound = make_score(q, e, settle_render(s, e));
+        sound = make_score(q, e, session::settle_render(s, e));
     const plot::canvas picture = plot::draw_figure(
         {e.tactors, o.choose_title(name_of(q)), q.strokes, q.plans, sound ? &*sound : nullptr, q.moved},
         {p.view, o.width_mm, o.has_title()});
-    tell_of_pipe_to_write(o.file);
+    session::tell_of_pipe_to_write(o.file);
     plot::save(picture, o.file, o.dpi, o.force);
     say_warnings(collect_warnings(q.plans));
     say(stdout, "{}: {:.4g} x {:.4g} mm\n", o.file, picture.width / plot::pt_per_mm,

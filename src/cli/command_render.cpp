@@ -12,13 +12,13 @@
 
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
-#include "cli/interrupt.hpp"
-#include "cli/pipes.hpp"
 #include "cli/progress.hpp"
 #include "cli/say.hpp"
-#include "cli/threshold_carrier.hpp"
 #include "cli/warnings.hpp"
 #include "core/words.hpp"
+#include "session/interrupt.hpp"
+#include "session/pipes.hpp"
+#include "session/threshold_carrier.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -69,16 +69,16 @@ fs::path checked_output(const std::string& name)
 int render(settings& s, option_list& options, const std::string& name)
 {
     const fs::path file = checked_output(name); // before the work
-    const environment e = read_environment(s, options);
+    const environment e = session::read_environment(s, options);
     const layout faces(e.tactors);
     piece p = open_one_piece(s, e, faces);
-    const render_options how = settle_render(s, e);
+    const render_options how = session::settle_render(s, e);
     const score sc = plan_and_score(p, s, e, faces, how);
     const format_kind format = s.format.value_or(format_kind::float32);
     say_warnings(collect_warnings(sc.plans()));
-    tell_of_other_carrier(e, how, std::span(&sc, 1));
-    tell_of_pipe_to_write(file.string());
-    interrupt stop;
+    session::tell_of_other_carrier(e, how, std::span(&sc, 1));
+    session::tell_of_pipe_to_write(file.string());
+    session::interrupt stop;
     int signal = 0;
     {
         progress_line line(name);
@@ -89,7 +89,7 @@ int render(settings& s, option_list& options, const std::string& name)
         });
     }
     if (signal != 0)
-        return interrupt::status(signal);
+        return session::interrupt::status(signal);
     say(file == "/dev/stdout" ? stderr : stdout, "{}: {}, {} Hz, {}, {} ({:.3f} s)\n", name,
         counted(sc.channels(), "channel"), sc.rate(), to_string(format), counted(sc.frames(), "frame"),
         static_cast<double>(sc.frames()) / sc.rate());

@@ -8,10 +8,10 @@
 #include <fmt/format.h>
 
 #include "cli/option_words.hpp"
-#include "cli/pipes.hpp"
 #include "cli/progress.hpp"
 #include "core/asked_pace.hpp"
 #include "core/start_times.hpp"
+#include "session/pipes.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -23,14 +23,14 @@ std::vector<stroke> read_one(const environment& e, const std::string& argument)
     if (e.plans.contains(argument))
         throw error(error_kind::bad_input, shown_name(argument), "it is a plan",
                     "give the stroke, which is planned here");
-    if (is_preset(stroke_presets(), argument))
+    if (session::is_preset(stroke_presets(), argument))
         return {preset_stroke(argument)};
     if (argument == "-")
         return e.standard_input;
     std::error_code ignored;
     if (!fs::exists(argument, ignored) && argument.find_first_of("./") == std::string::npos)
         return {preset_stroke(argument)}; // its error lists the presets
-    check_readable(argument);
+    session::check_readable(argument);
     return load_strokes(argument);
 }
 
@@ -108,7 +108,7 @@ std::string default_name(const std::string& argument)
 {
     if (is_option(argument))
         return argument.substr(argument.find_first_not_of('-', argument.rfind(' ') + 1));
-    const bool file = argument != "-" && !is_preset(stroke_presets(), argument);
+    const bool file = argument != "-" && !session::is_preset(stroke_presets(), argument);
     return file ? fs::path(argument).stem().string() : shown_name(argument);
 }
 
@@ -117,7 +117,7 @@ std::string default_name(const std::string& argument)
 error in_file(const error& x, const std::string& argument)
 {
     const bool about_it = x.subject() == "stroke" || x.subject().starts_with("stroke \"");
-    const bool file = !is_option(argument) && !is_preset(stroke_presets(), argument);
+    const bool file = !is_option(argument) && !session::is_preset(stroke_presets(), argument);
     if (!about_it || !file)
         return x;
     const std::string from = shown_name(argument);

@@ -9,7 +9,7 @@
 
 #include <tactor/tactor.hpp>
 
-#include "cli/environment.hpp"
+#include "cli/settings.hpp"
 #include "files/plan/plan_json.hpp"
 
 namespace tactor::cli {

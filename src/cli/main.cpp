@@ -25,9 +25,9 @@
 #include "cli/commands.hpp"
 #include "cli/completion/complete.hpp"
 #include "cli/option_words.hpp"
-#include "cli/pipes.hpp"
 #include "cli/say.hpp"
 #include "cli/usage.hpp"
+#include "session/pipes.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -148,7 +148,7 @@ int unprinted(int code)
 // What was written to standard output as to a file (-o -) has no other reader.
 bool is_unread(const tactor::error& e)
 {
-    return e.os_code() == EPIPE && is_standard_output(std::string(e.subject()));
+    return e.os_code() == EPIPE && session::is_standard_output(std::string(e.subject()));
 }
 
 int flushed(int status)

@@ -1,52 +1,23 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What people read: text that cannot steer their terminal.
+/// The tool prints by the names of session/say.hpp and session/wrapped.hpp.
 #pragma once
 
-#include <cstdio>
-#include <string>
-#include <string_view>
-#include <utility>
-
-#include <fmt/format.h>
-
-#include <tactor/log.hpp>
+#include "session/say.hpp"
+#include "session/wrapped.hpp"
 
 namespace tactor::cli {
 
-/// A name from a file or the command line as a terminal may get it: control characters, which could move its
-/// cursor or worse, become escapes such as \x1b or \n.
-std::string shown(std::string_view name);
-
-/// Prints text, escaped as above but for line ends, and on a terminal wrapped at words to its width. Never
-/// throws for what cannot be written: standard error that is gone (2>&-, a full disk) does not decide whether
-/// the work was done, and main() looks after standard output. To the journal each line goes with its level:
-/// `kind`, or a warning's where it begins "tactor: warning: ".
-void say_text(std::FILE* to, std::string_view text, log_kind kind = log_kind::info);
-
-/// Hands what was printed on standard output to its reader, and never throws, like say_text().
-void flush_output();
-
-/// Returns the errno of the first write to standard output by these that failed, else 0.
-int output_error();
-
-/// Whether systemd reads what is written there, for its journal.
-bool goes_to_journal(std::FILE* to);
-
-/// The same on standard output, and at once: somebody sits before it.
-void show(std::string_view text);
-
-template <typename... T>
-void say(std::FILE* to, fmt::format_string<T...> format, T&&... values)
-{
-    say_text(to, fmt::format(format, std::forward<T>(values)...));
-}
-
-/// On standard error, what ends the program.
-template <typename... T>
-void say_error(fmt::format_string<T...> format, T&&... values)
-{
-    say_text(stderr, fmt::format(format, std::forward<T>(values)...), log_kind::error);
-}
+using session::fit_lines;
+using session::flush_output;
+using session::line_width;
+using session::output_error;
+using session::say;
+using session::say_error;
+using session::say_text;
+using session::show;
+using session::shown;
+using session::wrap_lines;
+using session::wrapped;
 
 } // namespace tactor::cli

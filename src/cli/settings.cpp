@@ -2,6 +2,7 @@
 #include "cli/settings.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -48,6 +49,22 @@ constexpr choice<outside_kind> outsides;
 constexpr choice<overlap_kind> overlaps;
 constexpr choice<phase_kind> phases;
 constexpr choice<observer_kind> observers;
+
+// Options that only planning uses.
+constexpr std::array planning_options{"duration",        "speed",
+                                      "algorithm",       "phantom",
+                                      "faces",           "soa",
+                                      "burst",           "slope",
+                                      "intercept",       "timing",
+                                      "outside",         "fit",
+                                      "fit-margin",      "snap",
+                                      "drop-points",     "overlap",
+                                      "carrier",         "compensate",
+                                      "sigma-mm",        "sigma-v-mm-s",
+                                      "waveform",        "am",
+                                      "noise-seed",      "texture",
+                                      "texture-mm",      "intensity-scale",
+                                      "stevens-exponent"};
 
 bool parse_flag(const std::string& what, const std::string& text)
 {
@@ -313,6 +330,26 @@ void option_list::apply_defaults(const setup& says)
             settings_.usual_speed_mm_s = std::exchange(settings_.speed_mm_s, std::nullopt);
         from_files_.insert_or_assign(name, at);
     }
+}
+
+void option_list::refuse_planning(const std::string& what) const
+{
+    for (const char* option : planning_options)
+        if (given(option))
+            throw error(error_kind::bad_input, fmt::format("--{}", option),
+                        fmt::format("{} is planned already", what),
+                        "plan the stroke anew with it, or leave it out");
+}
+
+void option_list::settle()
+{
+    check_sound();
+    settle_scale();
+    for (const char* option : {"sigma-mm", "sigma-v-mm-s"})
+        if (!settings_.compensate && settings_.observer != observer_kind::low_speed && given(option))
+            throw error(error_kind::bad_input, fmt::format("--{}", option), "nothing here uses it",
+                        has("observer") ? "add --observer low-speed or --compensate low-speed"
+                                        : "add --compensate low-speed");
 }
 
 int option_list::run(const std::function<int()>& act) const

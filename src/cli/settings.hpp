@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What the command line and the configuration ask for, and the options that say it.
+/// The options of the command line that fill the settings.
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <tactor/tactor.hpp>
+
+#include "session/environment.hpp"
 
 namespace CLI {
 class App;
@@ -19,33 +19,11 @@ class Option;
 
 namespace tactor::cli {
 
-/// Everything that one command was asked for. Options not given hold the built-in default.
-struct settings {
-    std::vector<std::string> strokes;       ///< STROKE arguments
-    std::optional<std::string> path_data;   ///< --path
-    std::optional<std::string> shape;       ///< --shape
-    std::optional<std::string> array_name;  ///< --array
-    std::optional<std::string> config_file; ///< --config
-    std::optional<std::string> pcm;         ///< -D
-    std::optional<double> duration_s;
-    std::optional<double> speed_mm_s;
-    std::optional<double> usual_speed_mm_s; ///< of strokes that say neither a time nor a speed
-    bool fit = false;                       ///< --fit
-    double fit_margin_mm = 0.0;
-    std::optional<unsigned> rate;
-    std::optional<unsigned> channels; ///< --channels
-    std::optional<format_kind> format;
-    std::optional<double> slope;
-    std::optional<double> intercept_s;
-    bool compensate = false;                          ///< --compensate low-speed
-    observer_kind observer = observer_kind::centroid; ///< --observer
-    low_speed_observer low_speed;                     ///< --sigma-mm and --sigma-v-mm-s
-    plan_options plan;
-    render_options render;
-};
+using session::environment;
+using session::settings;
 
 /// The options of one command, in a form that the configuration's [defaults] can feed too.
-class option_list {
+class option_list : public session::option_source {
 public:
     option_list(CLI::App& command, settings& into);
 
@@ -74,15 +52,14 @@ public:
     /// -D and --channels.
     void add_device_options(const char* otherwise = "else null");
 
-    /// Fills options that the command line does not give from what [defaults] says.
-    /// \throws error (bad_input).
-    void apply_defaults(const setup& says);
+    void apply_defaults(const setup& says) override;
+    void refuse_planning(const std::string& what) const override;
+    void settle() override;
 
     /// Runs the command: what it throws about a value of [defaults] is said of its place there.
     int run(const std::function<int()>& act) const;
 
-    /// Whether the command line gives an option of that name (without dashes).
-    bool given(const std::string& name) const;
+    bool given(const std::string& name) const override;
     /// Whether the command has an option of that name.
     bool has(const std::string& name) const;
 
@@ -90,6 +67,10 @@ private:
     using setter = std::function<void(const std::string&)>;
     /// --compensate, --sigma-mm and --sigma-v-mm-s.
     void add_compensation_options();
+    /// Refuses options of the sound that nothing uses.
+    void check_sound() const;
+    /// Gives the scale of intensities the level that it needs.
+    void settle_scale();
     CLI::Option* value(const std::string& names, const std::string& type, const std::string& help,
                        setter set);
     CLI::Option* flag(const std::string& name, const std::string& help, bool& into);
@@ -99,12 +80,6 @@ private:
     std::map<std::string, std::pair<CLI::Option*, setter>> by_name_;
     std::map<std::string, source_place> from_files_; ///< options that [defaults] said
 };
-
-/// What the scale of intensities needs of the level. \throws error (bad_input).
-void settle_scale(settings& s, const option_list& options);
-
-/// Refuses options of the sound that nothing uses. \throws error (bad_input).
-void check_sound(const settings& s, const option_list& options);
 
 /// --format: one of `names`, of which the first is the default. `into` must live as long as the command.
 void add_format_option(CLI::App& command, std::string& into, const std::vector<std::string>& names,

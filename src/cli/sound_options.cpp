@@ -112,12 +112,13 @@ void option_list::add_scale_options()
           });
 }
 
-void settle_scale(settings& s, const option_list& options)
+void option_list::settle_scale()
 {
-    if (options.given("stevens-exponent") && s.plan.scale.kind != scale_kind::stevens)
+    settings& s = settings_;
+    if (given("stevens-exponent") && s.plan.scale.kind != scale_kind::stevens)
         throw error(error_kind::bad_input, "--stevens-exponent", "nothing here uses it",
                     "add --intensity-scale stevens");
-    if (s.plan.scale.kind != scale_kind::sl || !options.has("sl"))
+    if (s.plan.scale.kind != scale_kind::sl || !has("sl"))
         return;
     if (!(s.render.sl_db.value_or(0.0) > 0.0))
         throw error(error_kind::bad_input, "--intensity-scale",
@@ -125,10 +126,11 @@ void settle_scale(settings& s, const option_list& options)
     s.plan.scale.sl_db = *s.render.sl_db;
 }
 
-void check_sound(const settings& s, const option_list& options)
+void option_list::check_sound() const
 {
+    const settings& s = settings_;
     const auto unused = [&](const char* option, bool used, const char* hint) {
-        if (options.given(option) && !used)
+        if (given(option) && !used)
             throw error(error_kind::bad_input, fmt::format("--{}", option), "nothing here uses it", hint);
     };
     const waveform& w = s.plan.wave;
@@ -139,7 +141,7 @@ void check_sound(const settings& s, const option_list& options)
            "add --waveform FILE.wav --texture length");
     const bool own = s.render.envelope.kind == envelope_kind::tukey;
     for (const char* ramp : {"attack", "release", "ramp"})
-        if (own && options.given(ramp))
+        if (own && given(ramp))
             throw error(error_kind::bad_input, fmt::format("--{}", ramp),
                         "--envelope tukey has its own ramps", "leave one of them out");
 }

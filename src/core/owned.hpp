@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include <sys/file.h>
 #include <unistd.h>
 
 namespace tactor::detail {
@@ -42,5 +43,14 @@ public:
 private:
     int fd_ = -1;
 };
+
+/// Locks a folder against others and waits for them, 5 ms at a time. Goes on without the lock where somebody
+/// holds it for longer: that one is at fault.
+inline void lock_folder(const owned_fd& folder, int tries) noexcept
+{
+    constexpr useconds_t pause_us = 5000;
+    for (int i = 0; ::flock(folder.get(), LOCK_EX | LOCK_NB) != 0 && i < tries; ++i)
+        ::usleep(pause_us);
+}
 
 } // namespace tactor::detail

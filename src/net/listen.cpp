@@ -161,12 +161,6 @@ host_and_port parse_host(std::string_view text, const std::string& what)
     return at;
 }
 
-void lock_within(const owned_fd& folder, int tries) noexcept
-{
-    for (int i = 0; ::flock(folder.get(), LOCK_EX | LOCK_NB) != 0 && i < tries; ++i)
-        ::poll(nullptr, 0, 5);
-}
-
 owned_fd listen_unix(const std::string& path, mode_t mode, std::optional<gid_t> group)
 {
     const std::string what = "socket " + path;
@@ -181,7 +175,7 @@ owned_fd listen_unix(const std::string& path, mode_t mode, std::optional<gid_t> 
             error(error_kind::bad_input, what, std::strerror(code), "its folder must be there"), code);
     }
     constexpr int tries = 200;
-    lock_within(lock, tries);
+    detail::lock_folder(lock, tries);
     make_free(path);
     owned_fd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     // The name gets the socket's own mode, less what the umask takes: never more than this, not for a moment.

@@ -26,10 +26,6 @@ struct host_and_port {
 /// "[HOST:]PORT", the HOST of IPv6 in brackets. \throws error (bad_input) that names `what`.
 host_and_port parse_host(std::string_view text, const std::string& what);
 
-/// Locks a folder against others, who are waited for 5 ms at a time. Whoever holds it for longer is at fault,
-/// and is not waited for.
-void lock_within(const owned_fd& folder, int tries) noexcept;
-
 /// A socket that listens at `path`, which only its user (and with `group` that group, where it exists) can
 /// connect to from the first moment on, under any umask. What a process that is gone left there is replaced.
 /// \throws error: not_available when somebody listens there (who), bad_input for what is no socket and for

@@ -4,18 +4,17 @@
 #include <mutex>
 #include <utility>
 
-#include <CLI/CLI.hpp>
 #include <unistd.h>
 
-#include "cli/play/open_device.hpp"
-#include "cli/play/sound_server.hpp"
+#include "session/device.hpp"
+#include "session/sound_server.hpp"
 
 namespace tactor::python {
 namespace {
 
-cli::settings settings_of(const player_wishes& w)
+session::settings make_settings(const player_wishes& w)
 {
-    cli::settings s;
+    session::settings s;
     s.pcm = w.pcm;
     s.config_file = w.config;
     s.array_name = w.array_file;
@@ -36,19 +35,36 @@ bool same_map(const array& a, const array& b)
     return true;
 }
 
+// The caller gave what the settings hold; [defaults] fill in the rest.
+class given_settings final : public session::option_source {
+public:
+    explicit given_settings(session::settings& s) : settings_(s), rate_(s.rate), format_(s.format) {}
+
+    bool given(const std::string&) const override { return false; } // of what the command line plans with
+    void apply_defaults(const setup& says) override
+    {
+        const auto fill = [](auto& into, const auto& by_caller, const auto& by_default) {
+            if (!by_caller && by_default)
+                into = by_default;
+        };
+        fill(settings_.rate, rate_, says.defaults.rate);
+        fill(settings_.format, format_, says.defaults.sample_format);
+    }
+    void refuse_planning(const std::string&) const override {}
+    void settle() override {}
+
+private:
+    session::settings& settings_;
+    std::optional<unsigned> rate_;
+    std::optional<format_kind> format_;
+};
+
 } // namespace
 
-cli::environment environment_of(cli::settings& s, const array* a)
+session::environment read_environment(session::settings& s, const array* a)
 {
-    CLI::App none;
-    cli::option_list options(none, s);
-    options.add_rate_options();
-    const cli::settings given = s;
-    cli::environment e = cli::read_environment(s, options);
-    if (given.rate) // wins over [defaults]
-        s.rate = given.rate;
-    if (given.format)
-        s.format = given.format;
+    given_settings options(s);
+    session::environment e = session::read_environment(s, options);
     if (a == nullptr)
         return e;
     // A channel count belongs to its map.
@@ -61,26 +77,26 @@ cli::environment environment_of(cli::settings& s, const array* a)
 player_handle::player_handle(const array& a, const player_wishes& w)
     : owner_(::getpid()), events_(std::make_shared<event_queue>()), open_(std::make_unique<open_state>())
 {
-    cli::settings s = settings_of(w);
-    const cli::environment e = environment_of(s, &a);
-    const render_options sound = cli::settle_render(s, e);
-    alsa_options device = cli::device_options(s, w.play, e, sound.channels, sound.rate);
+    session::settings s = make_settings(w);
+    const session::environment e = read_environment(s, &a);
+    const render_options sound = session::settle_render(s, e);
+    alsa_options device = session::device_options(s, w.play, e, sound.channels, sound.rate);
     const auto events = events_;
     if (w.wants_log)
         device.log = [events](log_kind k, std::string_view text) {
             events->put(log_line{std::string(to_string(k)), std::string(text)});
         };
-    cli::settle_server(device.pcm);
+    session::settle_server(device.pcm);
     const bool waits_for_edges = !w.play.no_gpio && e.config.sync && e.config.sync->in;
     // Before threads: it forks the holder of the amplifier's line.
     open_->lines =
-        cli::play_lines(w.play.no_gpio ? tactor::setup{} : e.config, waits_for_edges, w.sync_delay_s);
+        session::lent_lines(w.play.no_gpio ? tactor::setup{} : e.config, waits_for_edges, w.sync_delay_s);
     player_options o;
-    o.limits = cli::limits_of(w.play, e);
+    o.limits = session::settle_limits(w.play, e);
     o.require_realtime = w.play.require_realtime;
     o.driven = w.driven;
     o.log = device.log;
-    open_->stream = std::make_unique<player>(cli::open_device(device), a, o, open_->lines.lend());
+    open_->stream = std::make_unique<player>(session::open_device(device), a, o, open_->lines.lend());
     open_->stream->on_report([events](const stroke_report& r) { events->put(r); });
     setup_ = open_->stream->setup();
 }
@@ -172,7 +188,7 @@ void player_handle::close()
     ended.reset();
     {
         const std::unique_lock lock(open_->mutex);
-        open_->lines = cli::play_lines();
+        open_->lines = session::lent_lines();
     }
     events_->close();
 }

@@ -10,11 +10,10 @@
 
 #include <sys/types.h>
 
-#include "cli/input.hpp"
-#include "cli/play/play_lines.hpp"
-#include "cli/play/play_options.hpp"
 #include "python/binding.hpp"
 #include "python/events.hpp"
+#include "session/device.hpp"
+#include "session/lines.hpp"
 
 namespace tactor::python {
 
@@ -26,14 +25,15 @@ struct player_wishes {
     std::optional<unsigned> rate = {};
     std::optional<unsigned> channels = {};
     std::optional<std::string> format = {};
-    cli::play_options play = {};
+    session::stream_options play = {};
     double sync_delay_s = 0.05;
     drive_history driven = {};
     bool wants_log = false;
 };
 
-/// The configuration that applies, for this array instead of its own; none: for its own. \throws error.
-cli::environment environment_of(cli::settings& s, const array* a);
+/// Returns the configuration that applies, for this array instead of its own; null: for its own. Fills in
+/// rate and format from [defaults] where `s` has none. \throws error.
+session::environment read_environment(session::settings& s, const array* a);
 
 /// Calls may come from any thread, but not from a process that was forked: there they are errors, and nothing
 /// of the parent's is touched when it ends.
@@ -85,7 +85,7 @@ private:
     // All that a forked process must not touch, not even to destroy it.
     struct open_state {
         mutable std::shared_mutex mutex;
-        cli::play_lines lines;
+        session::lent_lines lines;
         std::unique_ptr<player> stream;
         last_words last; ///< without a stream
     };

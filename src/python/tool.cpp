@@ -4,7 +4,6 @@
 #include <string>
 #include <utility>
 
-#include "cli/devices/devices_output.hpp"
 #include "core/words.hpp"
 #include "files/plan/compare_json.hpp"
 #include "percept/compare.hpp"
@@ -13,6 +12,7 @@
 #include "plot/paint/output.hpp"
 #include "python/plan_handle.hpp"
 #include "python/player_handle.hpp"
+#include "session/device_list.hpp"
 
 namespace tactor::python {
 namespace {
@@ -103,13 +103,13 @@ std::string devices(const array_handle* on, const std::optional<std::string>& ar
                     const std::optional<std::string>& config)
 {
     const without_lock free;
-    cli::settings s;
+    session::settings s;
     s.pcm = pcm;
     s.rate = rate;
     s.config_file = config;
     s.array_name = array_file;
-    const cli::environment e = environment_of(s, on != nullptr ? &on->value() : nullptr);
-    return cli::devices_json(cli::look_for_devices(s, e));
+    const session::environment e = read_environment(s, on != nullptr ? &on->value() : nullptr);
+    return session::devices_json(session::look_for_devices(s, e));
 }
 
 } // namespace

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "cli/check/check_output.hpp"
-#include "cli/devices/devices_output.hpp"
+#include "cli/devices/devices_text.hpp"
 #include "cli/play/play_report.hpp"
 
 namespace {
@@ -15,9 +15,9 @@ namespace {
 using namespace tactor;
 using namespace tactor::cli;
 
-device_list studio()
+session::device_list studio()
 {
-    device_list d;
+    session::device_list d;
     d.array_name = "palm-2x4";
     d.wanted = {.pcm = "hw:DAC8x", .channels = 8};
     d.wanted.format = format_kind::s16;
@@ -68,8 +68,8 @@ run_report troubled_run()
 std::string walked()
 {
     const array pair = make_grid("pair", 1, 2, 20.0, 20.0);
-    const walk_answers felt{1U, std::nullopt};
-    const walk_verdict verdict = judge(pair, felt);
+    const session::walk_answers felt{1U, std::nullopt};
+    const session::walk_verdict verdict = session::judge(pair, felt);
     return check_json({warning("kernel", "not preemptible", "boot another")}, walk_told{pair, felt, verdict});
 }
 
@@ -77,7 +77,7 @@ std::string walked()
 
 int main()
 {
-    fmt::print("[{},\n{},\n", devices_json(studio()), walked());
+    fmt::print("[{},\n{},\n", session::devices_json(studio()), walked());
     print_json(stdout, troubled_run());
     fmt::print("]\n");
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What `check` says of arrays, levels and actuators.
 #include "cli/check/check_array.hpp"
+#include "session/device.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -27,7 +28,7 @@ finding array_finding(const array& a, const std::string& check, const settings& 
 {
     environment e;
     e.tactors = a;
-    return named(check_array(s, e, settle_limits(e)), check);
+    return named(check_array(s, e, session::settle_limits({}, e)), check);
 }
 
 finding limits_finding(const limit_settings& l, array a = preset_array("palm-3x3"))
@@ -35,7 +36,7 @@ finding limits_finding(const limit_settings& l, array a = preset_array("palm-3x3
     environment e;
     e.tactors = std::move(a);
     e.config.limits = l;
-    return named(check_array({}, e, settle_limits(e)), "limits");
+    return named(check_array({}, e, session::settle_limits({}, e)), "limits");
 }
 
 array with_actuator(actuator_kind kind)
@@ -96,13 +97,13 @@ TEST_CASE("channels and the marker are told")
 {
     environment e;
     e.tactors = preset_array("palm-3x3");
-    CHECK(named(check_array({}, e, settle_limits(e)), "channels").found ==
+    CHECK(named(check_array({}, e, session::settle_limits({}, e)), "channels").found ==
           "9 of 9 channels drive tactors: 0 to 8");
     e.tactors.tactors[8].channel = 12;
     e.config.output.channels = 16;
     e.config.sync.emplace();
     e.config.sync->channel = 15;
-    CHECK(named(check_array({}, e, settle_limits(e)), "channels").found ==
+    CHECK(named(check_array({}, e, session::settle_limits({}, e)), "channels").found ==
           "9 of 16 channels drive tactors: 0, 1, 2, 3, 4, 5, 6, 7, 12; 15 marks strokes");
 }
 

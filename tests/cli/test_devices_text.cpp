@@ -2,8 +2,8 @@
 // What `devices` prints for machines with cards and chips.
 #include <doctest/doctest.h>
 
-#include "cli/devices/devices_output.hpp"
-#include "cli/wrapped.hpp"
+#include "cli/devices/devices_text.hpp"
+#include "cli/say.hpp"
 
 namespace devices_text_test {
 
@@ -22,9 +22,9 @@ gpio_chip_info header_chip()
     return c;
 }
 
-device_list studio()
+session::device_list studio()
 {
-    device_list d;
+    session::device_list d;
     d.array_name = "palm-2x4";
     d.wanted = {.pcm = "hw:DAC8x", .channels = 8};
     d.pcm_is_configured = true;
@@ -93,7 +93,7 @@ GPIO chips
 
 TEST_CASE("rates between the usual ones are a range")
 {
-    device_list d = studio();
+    session::device_list d = studio();
     d.pcms[0].can->usual_rates_hz = {};
     d.pcms[0].can->rates_hz = {12345, 12346};
     CHECK(devices_text(d).find("rates     12345 to 12346 Hz\n") != std::string::npos);
@@ -103,9 +103,9 @@ TEST_CASE("rates between the usual ones are a range")
 
 TEST_CASE("JSON has the numbers, and names that are no UTF-8 do not break it")
 {
-    device_list d = studio();
+    session::device_list d = studio();
     d.pcms[0].description = "K\xfcnstler";
-    const std::string json = devices_json(d);
+    const std::string json = session::devices_json(d);
     for (const char* part : {"\"schema\": \"tactor-devices/1\"", "\"fits\": true", "\"fits\": null",
                              "\"pid\": 812", "\"consumer\": \"tactor\"", "\"label\": \"pinctrl-rp1\""})
         CHECK_MESSAGE(json.find(part) != std::string::npos, part);

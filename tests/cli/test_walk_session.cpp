@@ -76,7 +76,7 @@ walk_result stumble(bool ask)
     device.channels = 2;
     render_options r;
     r.channels = 2;
-    stream_source source{[&](const alsa_options& o) { return pcm::adopt(dac.pcm(), o); }, patient()};
+    session::stream_source source{[&](const alsa_options& o) { return pcm::adopt(dac.pcm(), o); }, patient()};
     source.player.realtime = false;
     const running_clock clock(dac, running_clock::capture_kind::kept, stumble_once(dac));
     walk_options o;
@@ -96,7 +96,7 @@ TEST_CASE("a walk on which a tactor was not driven to its end fails in the end")
 TEST_CASE("one that was driven again, to its end, does not")
 {
     const answers a("r\n0\n1\n");
-    CHECK(stumble(true).felt == walk_answers{0, 1});
+    CHECK(stumble(true).felt == session::walk_answers{0, 1});
 }
 
 } // namespace walk_session_test

@@ -256,7 +256,7 @@ TEST_CASE("what the second staircase does not find is not felt")
     CHECK(!s.check_right());
 }
 
-calibration_settings session(unsigned right_for_down, std::uint32_t seed)
+calibration_settings make_settings(unsigned right_for_down, std::uint32_t seed)
 {
     calibration_settings s;
     s.participant = "sim";
@@ -269,7 +269,7 @@ calibration_settings session(unsigned right_for_down, std::uint32_t seed)
 
 tactor_threshold measured(unsigned right_for_down, std::uint32_t seed, const observer_settings& who)
 {
-    calibration c(session(right_for_down, seed));
+    calibration c(make_settings(right_for_down, seed));
     observer o(who, c.settings());
     while (!c.done())
         c.answer(o.answer(c.next()));

@@ -6,7 +6,6 @@
 
 #include "cli/analyze/analyze_output.hpp"
 #include "cli/say.hpp"
-#include "cli/wrapped.hpp"
 #include "core/words.hpp"
 #include "study/analysis/number_text.hpp"
 

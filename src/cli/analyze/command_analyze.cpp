@@ -10,10 +10,10 @@
 #include "cli/analyze/study_options.hpp"
 #include "cli/commands.hpp"
 #include "cli/picture_options.hpp"
-#include "cli/pipes.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
 #include "plot/paint/output.hpp"
+#include "session/pipes.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -32,7 +32,7 @@ void draw(const analyze_options& o, const study::analysis& a)
                     "no run has a participant with a trial in each cell");
     plot::check_output(o.picture.file, o.picture.force);
     make_derivatives(o.folder, o.picture.file);
-    tell_of_pipe_to_write(o.picture.file);
+    session::tell_of_pipe_to_write(o.picture.file);
     plot::save(draw_analysis(a, o.picture), o.picture.file, o.picture.dpi, o.picture.force);
 }
 

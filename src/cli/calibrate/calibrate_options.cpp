@@ -12,7 +12,8 @@
 #include <fmt/format.h>
 
 #include "cli/parse_number.hpp"
-#include "cli/session/key_input.hpp"
+#include "cli/play/play_options.hpp"
+#include "cli/session/page_options.hpp"
 #include "core/split.hpp"
 
 namespace tactor::cli {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "cli/input.hpp"
-#include "cli/play/play_options.hpp"
 #include "cli/session/page_options.hpp"
+#include "session/device.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/masking/masking_stream.hpp"
 
@@ -29,8 +29,8 @@ struct calibrate_options {
     std::optional<std::uint32_t> seed;
     std::vector<std::string> keypads; ///< input devices of the participant's
     page_options page;
-    play_options stream; ///< what is told of it
-    std::string masker;  ///< PCM of the masking noise; empty: none
+    session::stream_options stream; ///< what is told of it
+    std::string masker;             ///< PCM of the masking noise; empty: none
     study::masking_options masking;
     std::vector<std::string> of_masker;    ///< options given that only a masker has
     std::vector<std::string> of_staircase; ///< options given that an adjustment does not have

@@ -10,15 +10,15 @@
 #include <fmt/ranges.h>
 
 #include "cli/calibrate/calibrate_options.hpp"
-#include "cli/calibrate/calibration_time.hpp"
-#include "cli/calibrate/person.hpp"
 #include "cli/commands.hpp"
-#include "cli/play/sound_server.hpp"
 #include "cli/say.hpp"
 #include "core/sha256.hpp"
 #include "core/words.hpp"
+#include "session/sound_server.hpp"
+#include "study/calibrate/calibration_time.hpp"
 #include "study/calibrate/log.hpp"
 #include "study/calibrate/observer.hpp"
+#include "study/calibrate/person.hpp"
 #include "study/calibrate/result.hpp"
 
 namespace tactor::cli {
@@ -85,20 +85,20 @@ void ask(study::calibration& c, study::calibration_log& log, Who& who, const Tol
 int ask_person(study::calibration& c, study::calibration_log& log, const settings& s, const environment& e,
                const calibrate_options& asked)
 {
-    const render_options render = settle_render(s, e);
-    const play_options& o = asked.stream;
-    const alsa_options device = device_options(s, o, e, render.channels, render.rate);
-    const std::string server = settle_server(device.pcm);
-    person who(device, o, e, render, c.settings(), asked.keypads, open_page(asked.page));
+    const render_options render = session::settle_render(s, e);
+    const session::stream_options& o = asked.stream;
+    const alsa_options device = session::device_options(s, o, e, render.channels, render.rate);
+    const std::string server = session::settle_server(device.pcm);
+    study::person who(device, o, e, render, c.settings(), asked.keypads, open_page(asked.page));
     if (!server.empty())
-        say(stderr, "tactor: warning: {} ({})\n", server_note(server), server_cure);
+        say(stderr, "tactor: warning: {} ({})\n", session::server_note(server), session::server_cure);
     if (!asked.masker.empty()) {
         study::masking_options noise = asked.masking;
         noise.seed = fmt::format("{}/calibrate/{}/noise", c.settings().seed, c.settings().participant);
         who.mask(asked.masker, noise);
     }
-    show(time_text(c) + ".\n");
-    const stage::left why = until_left(who, [&] {
+    show(study::time_text(c) + ".\n");
+    const study::stage::left why = study::until_left(who, [&] {
         ask(c, log, who, [&](const study::calibration_record& r) { who.tell(r); });
         who.thank();
     });
@@ -150,12 +150,12 @@ int calibrate(settings& s, option_list& options, calibrate_options& o)
     const bool there = o.resume && std::filesystem::exists(o.output, ignored);
     if (!there)
         study::check_new_output(o.output);
-    const environment e = read_environment(s, options);
+    const environment e = session::read_environment(s, options);
     study::calibration_settings begun = settle_calibration(o, s, e);
     std::optional<study::observer_settings> simulated;
     if (o.simulate)
         simulated = study::parse_observer(*o.simulate, begun.tactors, e.tactors.tactors.size());
-    else if (!there && !names_device(s, e))
+    else if (!there && !session::names_device(s, e))
         throw error(error_kind::bad_input, "-D", "no device is configured", "-D PCM, or --simulate SPEC");
     const setup besides = said_besides(e);
     begun.array = detail::sha256_text(study::array_text(e.tactors, besides));
@@ -190,7 +190,7 @@ int calibrate(settings& s, option_list& options, calibrate_options& o)
         else
             say(stderr, "tactor: ended before trial {}: what was answered is in {}, and --resume goes on\n",
                 c.next().number, o.log);
-        return interrupt::status(signal);
+        return session::interrupt::status(signal);
     }
     return write_result(o, e, besides, c);
 }

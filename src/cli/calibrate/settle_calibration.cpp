@@ -151,7 +151,7 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
 {
     study::calibration_settings c = o.settings;
     const array& a = e.tactors;
-    const drive_limits limits = settle_limits(e);
+    const drive_limits limits = session::settle_limits({}, e);
     if (c.method == study::calibration_method::adjustment && !o.of_staircase.empty())
         refuse_setting(o.of_staircase.front(), "an adjustment does not have that",
                        "leave it out, or use --method staircase");
@@ -165,7 +165,7 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
     c.masker = masker_text(o);
     c.masker_pcm = o.masker;
     c.carrier_hz = s.plan.carrier_hz;
-    check_carrier(c.carrier_hz, settle_render(s, e).rate);
+    check_carrier(c.carrier_hz, session::settle_render(s, e).rate);
     check_drive_time(c, limits);
     if (o.tactors) {
         c.tactors = tactors_in(*o.tactors, a.tactors.size());

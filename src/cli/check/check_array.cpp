@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cli/check/walk.hpp"
-#include "cli/threshold_carrier.hpp"
 #include "core/words.hpp"
+#include "session/threshold_carrier.hpp"
+#include "session/walk.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -150,8 +150,7 @@ finding check_levels(const render_options& r, const array& a, const plan_options
 {
     try {
         // What play would refuse, in its words. The carrier is looked at by itself.
-        const piece all = walk_piece(a, std::min(p.carrier_hz, r.rate / 4.0));
-        score(a, all.plans, r);
+        score(a, session::walk_plans(a, std::min(p.carrier_hz, r.rate / 4.0)), r);
     } catch (const error& e) {
         return failure("levels", e);
     }
@@ -183,7 +182,8 @@ finding check_carrier_of_thresholds(finding levels, const environment& e, const 
     plan usual;
     usual.carrier_hz = p.carrier_hz;
     const plan* const played[] = {&usual};
-    const std::string other = r.sl_db && levels.how == level::ok ? other_carrier(e, played) : std::string();
+    const std::string other =
+        r.sl_db && levels.how == level::ok ? session::other_carrier(e, played) : std::string();
     return other.empty() ? levels
                          : warning("levels", fmt::format("{}; {}", levels.found, other),
                                    "--array FILE with thresholds at this carrier, or another --carrier");
@@ -228,7 +228,7 @@ finding check_limits(const drive_limits& l, std::size_t tactors)
 
 std::vector<finding> check_array(const settings& s, const environment& e, const drive_limits& l)
 {
-    const render_options r = settle_render(s, e);
+    const render_options r = session::settle_render(s, e);
     std::vector<finding> all{check_places(e.tactors), check_channels(r, e.tactors),
                              check_carrier_of_thresholds(check_levels(r, e.tactors, s.plan), e, r, s.plan)};
     for (finding& f : check_bursts(s.plan, e.tactors, r.rate))

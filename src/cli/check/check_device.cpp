@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "cli/play/open_device.hpp"
 #include "cli/play/play_report.hpp"
-#include "cli/play/sound_server.hpp"
+#include "session/device.hpp"
+#include "session/sound_server.hpp"
 
 namespace tactor::cli {
 
@@ -22,24 +22,25 @@ finding told_lost(const alsa_options& device, const std::string& lost)
                     "bindings), or play on the card itself: -D hw:CARD=NAME"});
 }
 
-finding told_open(const alsa_options& device, const play_options& o, const environment& e, bool named)
+finding told_open(const alsa_options& device, const session::stream_options& o, const environment& e,
+                  bool named)
 {
-    const std::string server = settle_server(device.pcm);
-    const stream_setup made = open_device(device)->setup();
+    const std::string server = session::settle_server(device.pcm);
+    const stream_setup made = session::open_device(device)->setup();
     if (const std::string lost = lost_tactor(e.tactors, made.wiring); !lost.empty())
         return told_lost(device, lost);
-    const std::string found = describe(made) + (server.empty() ? "" : "; " + server_note(server));
+    const std::string found = describe(made) + (server.empty() ? "" : "; " + session::server_note(server));
     if (!named)
         return warning("device", "none is named, so play goes to " + found,
                        "-D PCM, or pcm under [output]; tactor devices lists them");
-    const std::string late = latency_warning(asked_latency_ms(o, e), made);
+    const std::string late = session::latency_warning(session::asked_latency_ms(o, e), made);
     if (!late.empty())
         return warning("device", found + "; " + late, "a device with shorter periods, or more latency");
     if (!server.empty())
-        return warning("device", found, server_cure);
-    const std::vector<device_note> notes = wiring_notes(e.tactors, made);
+        return warning("device", found, session::server_cure);
+    const std::vector<session::device_note> notes = session::wiring_notes(e.tactors, made);
     std::string told = found;
-    for (const device_note& n : notes)
+    for (const session::device_note& n : notes)
         told += "; " + n.text;
     if (!notes.empty())
         return warning("device", told, notes.front().cure);
@@ -48,7 +49,8 @@ finding told_open(const alsa_options& device, const play_options& o, const envir
 
 } // namespace
 
-finding check_device(const alsa_options& device, const play_options& o, const environment& e, bool named)
+finding check_device(const alsa_options& device, const session::stream_options& o, const environment& e,
+                     bool named)
 {
     if (route_of(device.pcm).writes) {
         const std::string lost = lost_tactor(e.tactors, wiring_of(device.pcm, device.channels));

@@ -41,8 +41,8 @@ json to_json(const std::vector<finding>& all)
 
 json to_json(const walk_told& w)
 {
-    const walk_answers& felt = w.felt;
-    const walk_verdict& v = w.verdict;
+    const session::walk_answers& felt = w.felt;
+    const session::walk_verdict& v = w.verdict;
     json answers = json::array();
     for (std::size_t i = 0; i < felt.size(); ++i)
         answers.push_back({{"tactor", i},

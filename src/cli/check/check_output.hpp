@@ -8,15 +8,15 @@
 #include <vector>
 
 #include "cli/check/finding.hpp"
-#include "cli/check/walk.hpp"
+#include "session/walk.hpp"
 
 namespace tactor::cli {
 
 /// What a walk with answers came to.
 struct walk_told {
     const array& tactors;
-    const walk_answers& felt;
-    const walk_verdict& verdict;
+    const session::walk_answers& felt;
+    const session::walk_verdict& verdict;
 };
 
 /// For people. `brief`: a walk follows, which leaves out what is as it should be.

@@ -14,10 +14,10 @@
 #include "cli/check/check_system.hpp"
 #include "cli/check/walk_session.hpp"
 #include "cli/commands.hpp"
-#include "cli/interrupt.hpp"
-#include "cli/play/sound_server.hpp"
 #include "cli/say.hpp"
 #include "cli/serve/owner.hpp"
+#include "session/interrupt.hpp"
+#include "session/sound_server.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -30,7 +30,7 @@ struct check_options {
 };
 
 // Adds what needs no array, so that a file that cannot be read hides nothing else.
-void check_machine(const setup& config, const alsa_options& device, const play_options& o,
+void check_machine(const setup& config, const alsa_options& device, const session::stream_options& o,
                    std::vector<finding>& all)
 {
     system_needs n;
@@ -49,22 +49,22 @@ void check_machine(const setup& config, const alsa_options& device, const play_o
 
 alsa_options device_for(const settings& s, const check_options& o, const environment& e)
 {
-    const render_options r = settle_render(s, e);
-    return device_options(s, o.play, e, r.channels, r.rate);
+    const render_options r = session::settle_render(s, e);
+    return session::device_options(s, o.play, e, r.channels, r.rate);
 }
 
 std::vector<finding> check_all(const settings& s, const check_options& o, const environment& e)
 {
-    std::vector<finding> all = check_array(s, e, limits_of(o.play, e));
+    std::vector<finding> all = check_array(s, e, session::settle_limits(o.play, e));
     alsa_options device;
     try {
         device = device_for(s, o, e);
-        all.push_back(check_device(device, o.play, e, names_device(s, e)));
+        all.push_back(check_device(device, o.play, e, session::names_device(s, e)));
     } catch (const error& x) {
         all.push_back(failure("device", x));
     }
     if (!o.play.no_gpio)
-        for (finding& f : check_lines(e.config, is_felt(device.pcm), find_gpio_line))
+        for (finding& f : check_lines(e.config, session::is_felt(device.pcm), find_gpio_line))
             all.push_back(std::move(f));
     if (e.config.serve) {
         try {
@@ -79,13 +79,13 @@ std::vector<finding> check_all(const settings& s, const check_options& o, const 
     return all;
 }
 
-error no_map(const walk_verdict& v)
+error no_map(const session::walk_verdict& v)
 {
     return {error_kind::runtime, "channel map", fmt::format("{}", fmt::join(v.problems, "; ")),
             "look after wires and amplifier channels, then walk again; no map is written"};
 }
 
-void conclude(const check_options& o, const environment& e, const walk_verdict& v)
+void conclude(const check_options& o, const environment& e, const session::walk_verdict& v)
 {
     if (!v.problems.empty())
         throw no_map(v);
@@ -106,15 +106,15 @@ void conclude(const check_options& o, const environment& e, const walk_verdict& 
 int run_walk(const settings& s, const check_options& o, const environment& e, const std::vector<finding>& all)
 {
     const walk_options how{o.play, s.plan.carrier_hz, !o.no_questions, o.output};
-    const walk_result w = walk(device_for(s, o, e), e, settle_render(s, e), how);
+    const walk_result w = walk(device_for(s, o, e), e, session::settle_render(s, e), how);
     if (w.signal != 0)
-        return interrupt::status(w.signal);
+        return session::interrupt::status(w.signal);
     if (o.no_questions) {
         if (o.play.json())
             fmt::print("{}", check_json(all, {}));
         return status_ok;
     }
-    const walk_verdict v = judge(e.tactors, w.felt);
+    const session::walk_verdict v = session::judge(e.tactors, w.felt);
     if (o.play.json())
         fmt::print("{}", check_json(all, walk_told{e.tactors, w.felt, v}));
     conclude(o, e, v);
@@ -151,7 +151,7 @@ int check(settings& s, option_list& options, const check_options& o)
     std::vector<finding> all;
     std::optional<environment> e;
     try {
-        e = read_environment(s, options);
+        e = session::read_environment(s, options);
         all = check_all(s, o, *e);
     } catch (const error& x) {
         all = {failure("array", x)};

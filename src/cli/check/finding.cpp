@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "cli/commands.hpp"
-#include "cli/wrapped.hpp"
+#include "cli/say.hpp"
 
 namespace tactor::cli {
 

@@ -17,7 +17,7 @@
 #include <fmt/format.h>
 
 #include "cli/check/proc_files.hpp"
-#include "cli/play/own_memory.hpp"
+#include "session/own_memory.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -146,7 +146,7 @@ own_facts read_own()
     for (const gid_t id : ids)
         f.groups.push_back(group_name(id));
     f.rights = probe_realtime_rights();
-    f.memory_bytes = memory_to_lock();
+    f.memory_bytes = session::memory_to_lock();
     utsname u{};
     if (::uname(&u) == 0)
         f.kernel = u.version;

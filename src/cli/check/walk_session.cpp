@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "cli/play/live_picture.hpp"
 #include "cli/say.hpp"
 
 namespace tactor::cli {
@@ -20,7 +21,7 @@ struct interrupted {};
 // Lines of standard input, waited for together with the signals.
 class line_reader {
 public:
-    explicit line_reader(play_session& s) : session_(s) {}
+    explicit line_reader(session::play_session& s) : session_(s) {}
 
     /// Nothing at the end of the input. \throws interrupted when a signal comes.
     std::optional<std::string> next()
@@ -45,7 +46,7 @@ public:
     }
 
 private:
-    play_session& session_;
+    session::play_session& session_;
     std::string buffer_;
 };
 
@@ -57,7 +58,7 @@ std::string without_blanks(std::string s)
 
 class walker {
 public:
-    walker(play_session& s, const environment& e, const render_options& r, const walk_options& o)
+    walker(session::play_session& s, const environment& e, const render_options& r, const walk_options& o)
         : session_(s),
           environment_(e),
           render_(r),
@@ -67,12 +68,12 @@ public:
     {
     }
 
-    walk_answers all()
+    session::walk_answers all()
     {
         const std::size_t n = tactors().size();
         if (n > 1)
-            say(fmt::format("\n{}\n", numbered_map(environment_.tactors)));
-        walk_answers felt;
+            say(fmt::format("\n{}\n", session::numbered_map(environment_.tactors)));
+        session::walk_answers felt;
         unfinished_.resize(n);
         while (felt.size() < n) {
             const auto i = static_cast<unsigned>(felt.size());
@@ -112,7 +113,9 @@ private:
     void sound(unsigned i)
     {
         const piece p = walk_one(environment_.tactors, i, options_.carrier_hz);
-        const stroke_report r = session_.play(p, make_score(p, environment_, render_));
+        const stroke_report r =
+            play_drawn(session_, environment_.tactors, p, make_score(p, environment_, render_),
+                       !options_.play.json() && !options_.play.verbose);
         if (session_.signal() != 0)
             throw interrupted{};
         if (r.state == state_kind::interrupted && session_.lost())
@@ -160,7 +163,7 @@ private:
         }
     }
 
-    play_session& session_;
+    session::play_session& session_;
     const environment& environment_;
     const render_options& render_;
     const walk_options& options_;
@@ -171,27 +174,28 @@ private:
 
 } // namespace
 
-walk_result walk(const alsa_options& device, const environment& e, const render_options& render,
-                 const walk_options& o, stream_source source)
+piece walk_one(const array& a, unsigned tactor, double carrier_hz)
 {
-    play_session session(device, o.play, e, std::move(source));
-    const auto finish = [&] {
-        run_report r;
-        session.finish(r);
-        warn_of_cuts(limits_of(o.play, e), r.stats);
-        if (const auto on = left_on(r.stats))
-            throw error(*on);
-    };
+    plan p = session::walk_plan(a, tactor, carrier_hz);
+    const point there = a.tactors[tactor].position;
+    stroke stays{"", trajectory::timed({{0.0, there}, {p.total_s, there}})};
+    return {fmt::format("tactor {}", tactor), {std::move(stays)}, {{std::move(p)}}};
+}
+
+walk_result walk(const alsa_options& device, const environment& e, const render_options& render,
+                 const walk_options& o, session::stream_source source)
+{
+    session::play_session session(device, o.play, e, std::move(source));
     walk_result result;
     try {
         result.felt = walker(session, e, render, o).all();
     } catch (const interrupted&) {
         result.signal = session.signal();
     } catch (const error&) {
-        finish();
+        session.end();
         throw;
     }
-    finish();
+    session.end();
     return result;
 }
 

@@ -5,9 +5,10 @@
 
 #include <string>
 
-#include "cli/check/walk.hpp"
+#include "cli/input.hpp"
 #include "cli/play/play_options.hpp"
-#include "cli/play/play_session.hpp"
+#include "session/play_session.hpp"
+#include "session/walk.hpp"
 
 namespace tactor::cli {
 
@@ -20,14 +21,17 @@ struct walk_options {
 
 struct walk_result {
     int signal = 0; ///< that ended it, or 0
-    walk_answers felt;
+    session::walk_answers felt;
 };
+
+/// Returns three bursts on one tactor.
+piece walk_one(const array& a, unsigned tactor, double carrier_hz);
 
 /// Drives each tactor and asks where it was felt, on standard input. Questions go to standard output, or to
 /// standard error where that is JSON.
 /// \throws error: what play throws; runtime when the walk is left before its end, and in the end where a
 /// tactor was not driven to its end and not again.
 walk_result walk(const alsa_options& device, const environment& e, const render_options& render,
-                 const walk_options& o, stream_source source = {});
+                 const walk_options& o, session::stream_source source = {});
 
 } // namespace tactor::cli

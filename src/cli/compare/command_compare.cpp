@@ -15,13 +15,13 @@
 #include "cli/option_words.hpp"
 #include "cli/parse_number.hpp"
 #include "cli/picture_options.hpp"
-#include "cli/pipes.hpp"
 #include "cli/progress.hpp"
 #include "cli/say.hpp"
 #include "core/split.hpp"
 #include "files/plan/compare_json.hpp"
 #include "plot/compare_figure.hpp"
 #include "plot/paint/output.hpp"
+#include "session/pipes.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -170,7 +170,7 @@ std::vector<comparison> compare_all(const piece& p, const environment& e, const 
 
 int run(settings& s, option_list& options, const compare_options& asked, bool one_algorithm)
 {
-    const environment e = read_environment(s, options);
+    const environment e = session::read_environment(s, options);
     comparison_choice choice = asked.choice;
     if (choice.algorithms.empty())
         choice.algorithms = one_algorithm ? std::vector{s.plan.algorithm} : all_of<algorithm_kind>();
@@ -196,7 +196,7 @@ int run(settings& s, option_list& options, const compare_options& asked, bool on
     if (playable == 0)
         throw why_refused(all, p);
     if (!asked.picture.file.empty()) {
-        tell_of_pipe_to_write(asked.picture.file);
+        session::tell_of_pipe_to_write(asked.picture.file);
         const std::string title =
             asked.picture.has_title() ? asked.picture.choose_title(all[0].target.name) : "";
         plot::save(plot::draw_comparison(e.tactors, all[0], title, asked.picture.width_mm),

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "cli/commands.hpp"
-#include "cli/devices/devices_output.hpp"
+#include "cli/devices/devices_text.hpp"
 #include "cli/input.hpp"
 #include "cli/say.hpp"
 
@@ -14,9 +14,9 @@ namespace {
 
 int list_devices(settings& s, option_list& options, bool as_json)
 {
-    const device_list d = look_for_devices(s, read_environment(s, options));
+    const session::device_list d = session::look_for_devices(s, session::read_environment(s, options));
     if (as_json)
-        fmt::print("{}", devices_json(d));
+        fmt::print("{}", session::devices_json(d));
     else
         say_text(stdout, devices_text(d));
     return status_ok;

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cli/devices/devices_output.hpp"
-#include "cli/wrapped.hpp"
+#include "cli/devices/devices_text.hpp"
+#include "cli/say.hpp"
 #include "core/words.hpp"
 
 namespace tactor::cli {
@@ -69,7 +69,7 @@ std::string holders_text(const std::vector<process_info>& holders)
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string pcm_text(const pcm_info& p, const device_list& d)
+std::string pcm_text(const pcm_info& p, const session::device_list& d)
 {
     std::string s = fmt::format("\n  {}{}\n", p.name,
                                 p.wanted && d.pcm_is_configured ? "   <- the one that is configured" : "");
@@ -85,7 +85,7 @@ std::string pcm_text(const pcm_info& p, const device_list& d)
     return s + row("period", sizes_text(*p.can));
 }
 
-std::string pcms_text(const device_list& d)
+std::string pcms_text(const session::device_list& d)
 {
     const auto is_card = [](const pcm_info& p) { return p.hardware; };
     std::string s = "Sound cards\n";
@@ -157,7 +157,7 @@ std::string chips_text(const std::vector<gpio_chip_info>& chips)
 
 } // namespace
 
-std::string devices_text(const device_list& d)
+std::string devices_text(const session::device_list& d)
 {
     return fmt::format("{} needs {} channel{} at {} Hz.\n\n", d.array_name, d.wanted.channels,
                        d.wanted.channels == 1 ? "" : "s", d.wanted.rate) +

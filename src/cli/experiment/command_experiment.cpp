@@ -13,20 +13,20 @@
 #include "cli/experiment/experiment_options.hpp"
 #include "cli/experiment/noise_check.hpp"
 #include "cli/experiment/power.hpp"
-#include "cli/experiment/prepared.hpp"
 #include "cli/experiment/real_session.hpp"
-#include "cli/experiment/session_facts.hpp"
-#include "cli/experiment/simulated_session.hpp"
-#include "cli/experiment/trials.hpp"
-#include "cli/interrupt.hpp"
 #include "cli/say.hpp"
 #include "cli/warnings.hpp"
 #include "core/words.hpp"
+#include "session/interrupt.hpp"
+#include "study/session/prepared.hpp"
+#include "study/session/session_facts.hpp"
+#include "study/session/simulated_session.hpp"
+#include "study/session/trials.hpp"
 
 namespace tactor::cli {
 namespace {
 
-std::size_t trials_of(const prepared_experiment& p)
+std::size_t trials_of(const study::prepared_experiment& p)
 {
     std::size_t n = 0;
     for (const study::run_sequence& s : p.runs)
@@ -34,21 +34,22 @@ std::size_t trials_of(const prepared_experiment& p)
     return n;
 }
 
-int hold_session(const prepared_experiment& p, const experiment_options& o, const settings& s)
+int hold_session(const study::prepared_experiment& p, const experiment_options& o, const settings& s)
 {
-    const sound_servers between = o.simulate ? sound_servers{} : check_real_session(p, o, s);
+    const study::sound_servers between = o.simulate ? study::sound_servers{} : check_real_session(p, o, s);
     net::owned_fd listening = o.simulate ? net::owned_fd() : open_page(o.page);
     study::study_folder folder(o.folder, p.definition, o.simulate.has_value());
     for (const std::string& w : folder.warnings())
         say(stderr, "tactor: warning: {}: {}\n", o.folder, w);
-    study::session_store store(folder, p.participant, session_facts(p, o), o.resume);
+    study::session_store store(folder, p.participant, study::describe_session(p, o.simulate, o.masker),
+                               o.resume);
     const std::string who =
         fmt::format("sub-{}{}", p.participant, o.simulate ? ": SIMULATED, nobody was asked" : "");
     std::vector<const study::run_definition*> runs;
     for (const study::run_sequence& r : p.runs)
         runs.push_back(&p.definition.runs[r.run]);
     store.check_tables(runs);
-    if (store.resumed() && finished(p, store)) {
+    if (store.resumed() && study::finished(p, store)) {
         store.refuse_cut_lines(runs);
         for (const std::filesystem::path& lost : store.missing(p.stimuli.all()))
             say(stderr, "tactor: warning: {}: it is missing (put it back from a copy)\n", lost.string());
@@ -59,10 +60,10 @@ int hold_session(const prepared_experiment& p, const experiment_options& o, cons
     if (store.resumed())
         for (const std::string& what : store.mend(runs))
             say(stderr, "tactor: warning: {}\n", what);
-    stage::left why{0};
+    study::stage::left why{0};
     if (o.simulate) {
         store.begin(p.stimuli.all());
-        why.signal = simulate_session(p, *o.simulate, store);
+        why.signal = study::simulate_session(p, *o.simulate, store);
     } else {
         why = hold_real_session(p, o, s, between, std::move(listening), store);
     }
@@ -72,7 +73,7 @@ int hold_session(const prepared_experiment& p, const experiment_options& o, cons
         else
             say(stderr, "tactor: ended by {}: what was answered is in {}, and --resume goes on\n", why.by,
                 o.folder);
-        return interrupt::status(why.signal);
+        return session::interrupt::status(why.signal);
     }
     say(stdout, "{}: {} in {}, in {}\n", who, counted(trials_of(p), "trial"), counted(p.runs.size(), "run"),
         o.folder);
@@ -88,7 +89,11 @@ int run(const experiment_options& o, const power_options& power, settings& s, op
         fmt::print("{}", study::load_definition(o.definition).text);
         return status_ok;
     }
-    const prepared_experiment p = prepare(o, s, options);
+    const auto who = o.dry_run    ? study::audience::nobody
+                     : o.simulate ? study::audience::observer
+                                  : study::audience::person;
+    const study::prepared_experiment p =
+        study::prepare({o.definition, o.participant, o.seed, who}, s, options);
     say_warnings(p.warnings);
     if (!power.participants.empty())
         return tell_power(p, power, o);

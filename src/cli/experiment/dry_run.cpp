@@ -8,19 +8,19 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "cli/experiment/session_facts.hpp"
-#include "cli/experiment/session_time.hpp"
 #include "cli/say.hpp"
 #include "core/sha256.hpp"
 #include "core/words.hpp"
 #include "files/plan/json_values.hpp"
+#include "study/session/session_facts.hpp"
+#include "study/session/session_time.hpp"
 
 namespace tactor::cli {
 namespace {
 
 using json = nlohmann::ordered_json;
 
-json trial_json(const prepared_experiment& p, const study::planned_trial& t, std::size_t place)
+json trial_json(const study::prepared_experiment& p, const study::planned_trial& t, std::size_t place)
 {
     const study::experiment_definition& d = p.definition;
     json j{{"trial", place},
@@ -37,7 +37,7 @@ json trial_json(const prepared_experiment& p, const study::planned_trial& t, std
     return j;
 }
 
-json trials_json(const prepared_experiment& p, const std::vector<study::planned_trial>& trials)
+json trials_json(const study::prepared_experiment& p, const std::vector<study::planned_trial>& trials)
 {
     json all = json::array();
     for (const study::planned_trial& t : trials)
@@ -45,12 +45,12 @@ json trials_json(const prepared_experiment& p, const std::vector<study::planned_
     return all;
 }
 
-json time_json(const run_time& t)
+json time_json(const study::run_time& t)
 {
     return {{"duration_s", t.total_s}, {"waits", t.waits}, {"waits_s", t.waits_s}};
 }
 
-json run_json(const prepared_experiment& p, const study::run_sequence& s, const run_time& t)
+json run_json(const study::prepared_experiment& p, const study::run_sequence& s, const study::run_time& t)
 {
     const study::run_definition& r = p.definition.runs[s.run];
     json j{{"name", r.outline.name},
@@ -67,7 +67,7 @@ json run_json(const prepared_experiment& p, const study::run_sequence& s, const 
     return j;
 }
 
-std::string time_text(const run_time& t)
+std::string time_text(const study::run_time& t)
 {
     std::string text = fmt::format("{:.0f} s without the answers", t.total_s);
     if (t.waits != 0)
@@ -77,7 +77,7 @@ std::string time_text(const run_time& t)
 
 } // namespace
 
-void print_dry_run_json(std::FILE* out, const prepared_experiment& p)
+void print_dry_run_json(std::FILE* out, const study::prepared_experiment& p)
 {
     json j{{"schema", "tactor-experiment/1"}};
     const study::experiment_definition& d = p.definition;
@@ -85,22 +85,22 @@ void print_dry_run_json(std::FILE* out, const prepared_experiment& p)
     j["participant"] = p.participant;
     j["seed"] = p.seed;
     j["array"] = p.where.tactors.name;
-    j["level"] = level_facts(d);
+    j["level"] = study::level_facts(d);
     j["thresholds_assumed"] = p.assumed;
     j["rate"] = p.render.rate;
     j["gap_s"] = d.gap_s;
     j["rest_s"] = d.rest_s;
-    j["masking"] = masking_facts(d.masking);
+    j["masking"] = study::masking_facts(d.masking);
     j["runs"] = json::array();
-    const std::vector<run_time> times = session_times(p, 0.0);
+    const std::vector<study::run_time> times = study::session_times(p, 0.0);
     for (std::size_t i = 0; i < p.runs.size(); ++i)
         j["runs"].push_back(run_json(p, p.runs[i], times[i]));
-    j["stimuli"] = stimulus_facts(p);
+    j["stimuli"] = study::stimulus_facts(p);
     j["warnings"] = p.warnings;
     fmt::print(out, "{}\n", j.dump(1, ' ', false, json::error_handler_t::replace));
 }
 
-void print_dry_run_text(std::FILE* out, const prepared_experiment& p)
+void print_dry_run_text(std::FILE* out, const study::prepared_experiment& p)
 {
     const study::experiment_definition& d = p.definition;
     say_text(out, fmt::format("{}: {}\nparticipant {}, seed {}, array {}, level {}\n", d.name, d.title,
@@ -112,7 +112,7 @@ void print_dry_run_text(std::FILE* out, const prepared_experiment& p)
                                   d.methods[t.method_1].name, t.method_2 ? d.methods[*t.method_2].name : "-",
                                   static_cast<double>(p.stimuli.frames(t)) / p.render.rate));
     };
-    const std::vector<run_time> times = session_times(p, 0.0);
+    const std::vector<study::run_time> times = study::session_times(p, 0.0);
     for (std::size_t i = 0; i < p.runs.size(); ++i) {
         const study::run_sequence& s = p.runs[i];
         const study::run_definition& r = d.runs[s.run];

@@ -5,12 +5,12 @@
 
 #include <cstdio>
 
-#include "cli/experiment/prepared.hpp"
+#include "study/session/prepared.hpp"
 
 namespace tactor::cli {
 
-void print_dry_run_text(std::FILE* out, const prepared_experiment& p);
+void print_dry_run_text(std::FILE* out, const study::prepared_experiment& p);
 /// Schema tactor-experiment/1.
-void print_dry_run_json(std::FILE* out, const prepared_experiment& p);
+void print_dry_run_json(std::FILE* out, const study::prepared_experiment& p);
 
 } // namespace tactor::cli

@@ -8,7 +8,8 @@
 
 #include <tactor/error.hpp>
 
-#include "cli/session/key_input.hpp"
+#include "cli/play/play_options.hpp"
+#include "cli/session/page_options.hpp"
 #include "cli/settings.hpp"
 #include "study/bids/study_folder.hpp"
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/play/play_options.hpp"
 #include "cli/session/page_options.hpp"
+#include "session/device.hpp"
 #include "study/experiment/simulated.hpp"
 
 namespace CLI {
@@ -28,7 +28,7 @@ struct experiment_options {
     bool dry_run = false;
     bool check_noise = false;
     bool allow_sound_server = false;
-    play_options stream = {};              ///< what is told of it
+    session::stream_options stream = {};   ///< what is told of it
     page_options page = {};                ///< what the participant sees
     std::vector<std::string> keypads = {}; ///< input devices of the participant's
     std::string masker = {};               ///< PCM of the masking noise; empty: none

@@ -7,16 +7,19 @@
 #include <unistd.h>
 
 #include "cli/experiment/real_session.hpp"
-#include "cli/interrupt.hpp"
 #include "cli/say.hpp"
-#include "cli/session/key_input.hpp"
+#include "session/interrupt.hpp"
+#include "study/session/key_input.hpp"
 
 namespace tactor::cli {
 namespace {
 
 class noise_check {
 public:
-    noise_check(const prepared_experiment& p, stage& s) : p_(p), stage_(s), stimuli_(p.stimuli.all()) {}
+    noise_check(const study::prepared_experiment& p, study::stage& s)
+        : p_(p), stage_(s), stimuli_(p.stimuli.all())
+    {
+    }
 
     // Until q, or the end of the lines.
     void hold()
@@ -54,7 +57,7 @@ private:
     {
         const score s(p_.where.tactors, stimuli_[at_]->schedule, p_.render);
         at_ = (at_ + 1) % stimuli_.size();
-        const given_stimulus g = stage_.give("stimulus", s, 0.0, [](std::uint64_t) {});
+        const study::given_stimulus g = stage_.give(s, 0.0, [](std::uint64_t) {});
         show(fmt::format("a stimulus of {:.2f} s{}\n", static_cast<double>(s.frames()) / s.rate(),
                          g.flaw.empty() ? "" : ": " + g.flaw));
         if (stage_.lost())
@@ -63,25 +66,25 @@ private:
             stage_.fade_out();
     }
 
-    const prepared_experiment& p_;
-    stage& stage_;
+    const study::prepared_experiment& p_;
+    study::stage& stage_;
     std::vector<const study::stimulus*> stimuli_;
-    key_input keys_;
+    study::key_input keys_;
     std::size_t at_ = 0;
     bool on_ = false;
 };
 
 } // namespace
 
-int check_noise(const prepared_experiment& p, const experiment_options& o, const settings& s)
+int check_noise(const study::prepared_experiment& p, const experiment_options& o, const settings& s)
 {
     static_cast<void>(check_real_session(p, o, s));
     const study::masking_definition& m = p.definition.masking;
-    const std::unique_ptr<stage> there = open_stage(p, o, s);
+    const std::unique_ptr<study::stage> there = open_stage(p, o, s);
     show(fmt::format("{} noise, {} dBFS, on {}. n noise on and off, s a stimulus under it, q ends.\n",
                      to_string(m.noise), m.level_dbfs, o.masker));
-    const int signal = until_left(*there, [&] { noise_check(p, *there).hold(); }).signal;
-    return signal != 0 ? interrupt::status(signal) : 0;
+    const int signal = study::until_left(*there, [&] { noise_check(p, *there).hold(); }).signal;
+    return signal != 0 ? session::interrupt::status(signal) : 0;
 }
 
 } // namespace tactor::cli

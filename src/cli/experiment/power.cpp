@@ -13,11 +13,11 @@
 
 #include <tactor/error.hpp>
 
-#include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
 #include "cli/say.hpp"
 #include "core/sha256.hpp"
 #include "core/split.hpp"
+#include "session/interrupt.hpp"
 #include "study/analysis/analysis.hpp"
 #include "study/experiment/power.hpp"
 
@@ -71,7 +71,7 @@ std::string comparison_text(const study::run_outline& r)
     return fmt::format("{} correct, t against {:.2f} %", r.methods.back(), study::chance(r));
 }
 
-void print_power_text(const prepared_experiment& e, const std::vector<study::run_power>& all,
+void print_power_text(const study::prepared_experiment& e, const std::vector<study::run_power>& all,
                       std::size_t studies, const study::simulation& s)
 {
     say(stdout,
@@ -105,7 +105,7 @@ json run_power_json(const study::run_power& p, const study::run_outline& r)
     return j;
 }
 
-void print_power_json(const prepared_experiment& e, const std::vector<study::run_power>& all,
+void print_power_json(const study::prepared_experiment& e, const std::vector<study::run_power>& all,
                       std::size_t studies, const study::simulation& s)
 {
     const study::experiment_definition& d = e.definition;
@@ -122,10 +122,10 @@ void print_power_json(const prepared_experiment& e, const std::vector<study::run
 }
 
 // Returns nothing where a signal ends it.
-std::optional<std::vector<study::run_power>> simulate(const prepared_experiment& e,
+std::optional<std::vector<study::run_power>> simulate(const study::prepared_experiment& e,
                                                       const study::power_request& asked, int& signal)
 {
-    interrupt stop;
+    session::interrupt stop;
     progress_line line("--power");
     std::size_t begun = 0;
     return study::simulate_power(e.definition, e.stimuli, asked, [&] {
@@ -171,14 +171,14 @@ void check_power_options(const power_options& p, const experiment_options& o)
                      "leave out --check-noise, --masker, --display, --page, --keypad, --verbose and --log");
 }
 
-int tell_power(const prepared_experiment& e, const power_options& p, const experiment_options& o)
+int tell_power(const study::prepared_experiment& e, const power_options& p, const experiment_options& o)
 {
     const std::size_t studies = p.studies.value_or(default_studies);
     int signal = 0;
     const auto told = simulate(e, {*o.simulate, p.participants, studies, o.seed}, signal);
     if (!told) {
         say(stderr, "tactor: ended by a signal, before there was a result\n");
-        return interrupt::status(signal);
+        return session::interrupt::status(signal);
     }
     if (o.format == "json")
         print_power_json(e, *told, studies, *o.simulate);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cli/experiment/experiment_options.hpp"
-#include "cli/experiment/prepared.hpp"
+#include "study/session/prepared.hpp"
 
 namespace tactor::cli {
 
@@ -25,6 +25,6 @@ void check_power_options(const power_options& p, const experiment_options& o);
 
 /// Prints it; returns the exit status, which is that of a signal where one ended it, with nothing printed.
 /// \throws error (bad_input).
-int tell_power(const prepared_experiment& e, const power_options& p, const experiment_options& o);
+int tell_power(const study::prepared_experiment& e, const power_options& p, const experiment_options& o);
 
 } // namespace tactor::cli

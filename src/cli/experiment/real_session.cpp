@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 
 #include "cli/experiment/participant_screen.hpp"
-#include "cli/experiment/person_session.hpp"
-#include "cli/play/sound_server.hpp"
 #include "cli/play/terminal.hpp"
 #include "cli/say.hpp"
+#include "session/sound_server.hpp"
 #include "study/experiment/noise_options.hpp"
+#include "study/session/person_session.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -20,17 +20,17 @@ namespace {
 constexpr double patience_s = 3600.0; // for a device that was lost; Ctrl-C ends it before
 constexpr unsigned most_keys = 9;
 
-void check_keys(const prepared_experiment& p)
+void check_keys(const study::prepared_experiment& p)
 {
     for (const study::run_definition& r : p.definition.runs)
-        if (choices_in(r) > most_keys)
+        if (study::choices_in(r) > most_keys)
             throw error(error_kind::bad_input, r.where,
                         fmt::format("run \"{}\" has {} answers, and the terminal's keys are 1 to {}",
-                                    r.outline.name, choices_in(r), most_keys),
+                                    r.outline.name, study::choices_in(r), most_keys),
                         "motions = [...] with fewer of them");
 }
 
-void check_noise(const prepared_experiment& p, const experiment_options& o)
+void check_noise(const study::prepared_experiment& p, const experiment_options& o)
 {
     const bool none = p.definition.masking.noise == study::noise_kind::none;
     if (none && !o.masker.empty())
@@ -48,24 +48,24 @@ constexpr const char* masker_cure =
 // The server between the program and a card, where it may be there.
 std::string check_server(const std::string& pcm, const char* cure, const experiment_options& o)
 {
-    std::string server = settle_server(pcm);
+    std::string server = session::settle_server(pcm);
     if (!server.empty() && !o.allow_sound_server)
-        throw error(error_kind::bad_input, pcm, server_note(server),
+        throw error(error_kind::bad_input, pcm, session::server_note(server),
                     fmt::format("{}; --allow-sound-server takes it, and writes it down", cure));
     if (!server.empty())
-        say(stderr, "tactor: warning: {} ({})\n", server_note(server), cure);
+        say(stderr, "tactor: warning: {} ({})\n", session::server_note(server), cure);
     return server;
 }
 
 void warn_of_null(const std::string& pcm)
 {
-    if (!is_felt(pcm))
+    if (!session::is_felt(pcm))
         say(stderr, "tactor: warning: playing to \"{}\", which nobody feels (-D PCM plays on hardware)\n",
             pcm);
 }
 
 // What the shipped definition says in their place would be in the data for good.
-void warn_of_authors(const prepared_experiment& p)
+void warn_of_authors(const study::prepared_experiment& p)
 {
     const std::vector<std::string>& said = p.definition.authors;
     if (!said.empty() && said == study::load_definition("park2016").authors)
@@ -76,7 +76,7 @@ void warn_of_authors(const prepared_experiment& p)
 }
 
 // Whoever is asked about the target must have seen it.
-void warn_of_animation(const prepared_experiment& p)
+void warn_of_animation(const study::prepared_experiment& p)
 {
     const auto& runs = p.definition.runs;
     if (!can_draw() && std::any_of(runs.begin(), runs.end(), [](const auto& r) { return r.animation; }))
@@ -87,13 +87,14 @@ void warn_of_animation(const prepared_experiment& p)
 
 } // namespace
 
-sound_servers check_real_session(const prepared_experiment& p, const experiment_options& o, const settings& s)
+study::sound_servers check_real_session(const study::prepared_experiment& p, const experiment_options& o,
+                                        const settings& s)
 {
-    if (!names_device(s, p.where))
+    if (!session::names_device(s, p.where))
         throw error(error_kind::bad_input, "-D", "no device is configured", "-D PCM, or --simulate SPEC");
     check_keys(p);
     check_noise(p, o);
-    sound_servers between{check_server(p.pcm, server_cure, o), {}};
+    study::sound_servers between{check_server(p.pcm, session::server_cure, o), {}};
     if (!o.masker.empty())
         between.masker = check_server(o.masker, masker_cure, o);
     warn_of_null(p.pcm);
@@ -103,13 +104,13 @@ sound_servers check_real_session(const prepared_experiment& p, const experiment_
     return between;
 }
 
-std::unique_ptr<stage> open_stage(const prepared_experiment& p, const experiment_options& o,
-                                  const settings& s)
+std::unique_ptr<study::stage> open_stage(const study::prepared_experiment& p, const experiment_options& o,
+                                         const settings& s)
 {
-    play_options how = o.stream;
+    session::stream_options how = o.stream;
     how.reopen_s = patience_s;
-    const alsa_options device = device_options(s, how, p.where, p.render.channels, p.render.rate);
-    auto there = std::make_unique<stage>(device, how, p.where);
+    const alsa_options device = session::device_options(s, how, p.where, p.render.channels, p.render.rate);
+    auto there = std::make_unique<study::stage>(device, how, p.where);
     if (!o.masker.empty())
         there->mask(o.masker,
                     study::noise_of(p.definition.masking,
@@ -117,17 +118,18 @@ std::unique_ptr<stage> open_stage(const prepared_experiment& p, const experiment
     return there;
 }
 
-stage::left hold_real_session(const prepared_experiment& p, const experiment_options& o, const settings& s,
-                              const sound_servers& between, net::owned_fd listening,
-                              study::session_store& store)
+study::stage::left hold_real_session(const study::prepared_experiment& p, const experiment_options& o,
+                                     const settings& s, const study::sound_servers& between,
+                                     net::owned_fd listening, study::session_store& store)
 {
-    const std::unique_ptr<stage> there = open_stage(p, o, s);
-    std::optional<participant_page> page; // its thread has the signals blocked that the stage takes
+    const std::unique_ptr<study::stage> there = open_stage(p, o, s);
+    std::optional<study::participant_page> page; // its thread has the signals blocked that the stage takes
     if (listening)
         page.emplace(p.definition.page, p.where.tactors, std::move(listening));
-    return until_left(*there, [&] {
-        const answering with{page ? &*page : nullptr, o.keypads};
-        person_session(p, store, *there, with, {p.pcm, o.masker, between}).hold();
+    return study::until_left(*there, [&] {
+        const study::answering with{page ? &*page : nullptr, o.keypads};
+        terminal_display display;
+        study::person_session(p, store, *there, with, display, {p.pcm, o.masker, between}).hold();
     });
 }
 

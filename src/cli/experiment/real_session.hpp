@@ -6,27 +6,29 @@
 #include <memory>
 #include <string>
 
-#include "cli/experiment/prepared.hpp"
-#include "cli/session/stage.hpp"
+#include "cli/experiment/experiment_options.hpp"
+#include "cli/settings.hpp"
 #include "net/listen.hpp"
 #include "study/bids/session_store.hpp"
+#include "study/session/prepared.hpp"
+#include "study/session/stage.hpp"
 
 namespace tactor::cli {
 
 /// Refuses what the data would not be worth the time for: no device, a sound server in between that nobody
 /// allowed, noise without a device for it or the other way round, more answers than keys. Warns of a device
 /// that nobody feels. Returns the sound servers in between. \throws error (bad_input).
-sound_servers check_real_session(const prepared_experiment& p, const experiment_options& o,
-                                 const settings& s);
+study::sound_servers check_real_session(const study::prepared_experiment& p, const experiment_options& o,
+                                        const settings& s);
 
 /// The array's device, and the noise's where one is named. \throws error.
-std::unique_ptr<stage> open_stage(const prepared_experiment& p, const experiment_options& o,
-                                  const settings& s);
+std::unique_ptr<study::stage> open_stage(const study::prepared_experiment& p, const experiment_options& o,
+                                         const settings& s);
 
 /// All trials that are left, with a person at the terminal or, where `listening` is a socket, before a page.
 /// Returns why it was left. \throws error.
-stage::left hold_real_session(const prepared_experiment& p, const experiment_options& o, const settings& s,
-                              const sound_servers& between, net::owned_fd listening,
-                              study::session_store& store);
+study::stage::left hold_real_session(const study::prepared_experiment& p, const experiment_options& o,
+                                     const settings& s, const study::sound_servers& between,
+                                     net::owned_fd listening, study::session_store& store);
 
 } // namespace tactor::cli

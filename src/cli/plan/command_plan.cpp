@@ -12,9 +12,9 @@
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
 #include "cli/plan/plan_output.hpp"
-#include "cli/threshold_carrier.hpp"
 #include "cli/warnings.hpp"
 #include "files/plan/plan_json.hpp"
+#include "session/threshold_carrier.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -28,11 +28,11 @@ void write_part(std::string_view part)
 
 int print_plan(settings& s, option_list& options, const std::string& format)
 {
-    const environment e = read_environment(s, options);
+    const environment e = session::read_environment(s, options);
     const piece p = plan_one_piece(s, e);
-    const render_options sound = settle_render(s, e);
+    const render_options sound = session::settle_render(s, e);
     const score samples = make_score(p, e, sound); // levels and carrier are checked when planned
-    tell_of_other_carrier(e, sound, std::span(&samples, 1));
+    session::tell_of_other_carrier(e, sound, std::span(&samples, 1));
     if (format == "json")
         files::write_plans(record_plans(p, e, samples, sound), write_part);
     else if (format == "csv") {

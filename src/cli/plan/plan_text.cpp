@@ -3,7 +3,6 @@
 
 #include "cli/plan/plan_output.hpp"
 #include "cli/say.hpp"
-#include "cli/wrapped.hpp"
 #include "core/words.hpp"
 #include "files/plan/plan_json.hpp"
 #include "files/plan/plan_rows.hpp"

@@ -9,15 +9,16 @@
 
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
+#include "cli/play/live_picture.hpp"
 #include "cli/play/play_live.hpp"
 #include "cli/play/play_options.hpp"
 #include "cli/play/play_report.hpp"
-#include "cli/play/play_session.hpp"
-#include "cli/play/sound_server.hpp"
 #include "cli/say.hpp"
 #include "cli/serve/play_remote.hpp"
-#include "cli/threshold_carrier.hpp"
 #include "cli/warnings.hpp"
+#include "session/play_session.hpp"
+#include "session/sound_server.hpp"
+#include "session/threshold_carrier.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -33,7 +34,7 @@ std::vector<score> make_scores(std::vector<piece>& pieces, const settings& s, co
             warnings.push_back(std::move(w));
     }
     say_warnings(warnings);
-    tell_of_other_carrier(e, render, scores);
+    session::tell_of_other_carrier(e, render, scores);
     return scores;
 }
 
@@ -46,13 +47,26 @@ struct broken_off {
     std::string hint;
 };
 
+// Plays one piece and says when it waits for its trigger. The picture leaves log lines alone.
+stroke_report play_once(session::play_session& session, const play_options& o, const array& a, const piece& p,
+                        const score& s)
+{
+    return play_drawn(session, a, p, s, !o.json() && !o.verbose, [&] {
+        if (o.arm && !o.json()) {
+            say(stdout, "{}: armed\n", shown_name(p.name));
+            flush_output();
+        }
+    });
+}
+
 // Plays one piece, once more where its device went before it began. False when there is no device.
-bool play_piece(play_session& session, const piece& p, const score& s, stroke_outcome& out)
+bool play_piece(session::play_session& session, const play_options& o, const array& a, const piece& p,
+                const score& s, stroke_outcome& out)
 {
     for (bool again = false;; again = true) {
         if (session.lost() && !session.reopen())
             return false;
-        out.report = session.play(p, s);
+        out.report = play_once(session, o, a, p, s);
         const bool untouched =
             out.report->state == state_kind::interrupted && out.report->frames == 0 && session.lost();
         if (!untouched || again || !session.waits())
@@ -61,8 +75,8 @@ bool play_piece(play_session& session, const piece& p, const score& s, stroke_ou
 }
 
 // Why the run ends with this stroke. What became of the last is said in the end.
-std::optional<broken_off> judge(const play_session& session, const play_options& o, const stroke_outcome& out,
-                                bool last)
+std::optional<broken_off> judge(const session::play_session& session, const play_options& o,
+                                const stroke_outcome& out, bool last)
 {
     if (out.report->state != state_kind::interrupted)
         return {};
@@ -77,12 +91,12 @@ std::optional<broken_off> judge(const play_session& session, const play_options&
     return {};
 }
 
-std::optional<broken_off> play_all(play_session& session, const play_options& o,
+std::optional<broken_off> play_all(session::play_session& session, const play_options& o, const array& a,
                                    const std::vector<piece>& pieces, const std::vector<score>& scores,
                                    std::vector<stroke_outcome>& outcomes)
 {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-        const bool there = play_piece(session, pieces[i], scores[i], outcomes[i]);
+        const bool there = play_piece(session, o, a, pieces[i], scores[i], outcomes[i]);
         if (!there && session.signal() == 0)
             return broken_off{shown_name(pieces[i].name), "not played: the device is gone",
                               session.waits() ? "it did not come back in time" : wait_hint};
@@ -109,30 +123,31 @@ int play(settings& s, option_list& options, const play_options& o)
         return play_remote(s, options, o);
     if (o.live)
         return play_live(s, options, o);
-    const environment e = read_environment(s, options);
+    const environment e = session::read_environment(s, options);
     const layout faces(e.tactors);
     auto pieces = open_pieces(s, e, faces);
-    const auto scores = make_scores(pieces, s, e, faces, settle_render(s, e));
-    if (!names_device(s, e))
+    const auto scores = make_scores(pieces, s, e, faces, session::settle_render(s, e));
+    if (!session::names_device(s, e))
         say(stderr, "tactor: no device is configured: playing to \"null\", which nobody feels (-D PCM plays "
                     "on hardware)\n");
-    const alsa_options device = device_options(s, o, e, scores.front().channels(), scores.front().rate());
-    const std::string server = settle_server(device.pcm);
-    play_session session(device, o, e);
+    const alsa_options device =
+        session::device_options(s, o, e, scores.front().channels(), scores.front().rate());
+    const std::string server = session::settle_server(device.pcm);
+    session::play_session session(device, o, e);
     if (!o.json())
         say(stdout, "{}\n", describe(session.setup()));
     flush_output();
-    const std::string warning = latency_warning(asked_latency_ms(o, e), session.setup());
+    const std::string warning = session::latency_warning(session::asked_latency_ms(o, e), session.setup());
     if (!warning.empty())
         say(stderr, "tactor: warning: {}\n", warning);
     if (!server.empty())
-        say(stderr, "tactor: warning: {} ({})\n", server_note(server), server_cure);
+        say(stderr, "tactor: warning: {} ({})\n", session::server_note(server), session::server_cure);
 
     run_report r;
     for (std::size_t i = 0; i < pieces.size(); ++i)
         r.strokes.push_back({pieces[i].name, scores[i].frames()});
-    const auto broken = play_all(session, o, pieces, scores, r.strokes);
-    session.finish(r);
+    const auto broken = play_all(session, o, e.tactors, pieces, scores, r.strokes);
+    static_cast<session::run_facts&>(r) = session.finish();
     if (const auto status = tell_end(session, o, e, r))
         return *status;
     if (broken)

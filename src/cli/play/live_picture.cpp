@@ -95,4 +95,23 @@ void live_picture::draw(const instant& now, double t_s, double total_s)
     drawn_lines_ = lines.size();
 }
 
+stroke_report play_drawn(session::play_session& session, const array& a, const piece& p, const score& s,
+                         bool wanted, const std::function<void()>& armed)
+{
+    if (const auto ended = session.submit(s))
+        return *ended;
+    armed();
+    live_picture picture(a, wanted);
+    if (!picture.active())
+        return session.follow();
+    piece_follower follower(p, s, a);
+    const double total_s = static_cast<double>(s.frames()) / s.rate();
+    double t_s = 0.0; // stays where it was while the report of the stroke's end is on its way
+    return session.follow([&](const player_position* at) {
+        if (at != nullptr)
+            t_s = static_cast<double>(at->stroke_frame) / s.rate();
+        picture.draw(follower.at(t_s), t_s, total_s);
+    });
+}
+
 } // namespace tactor::cli

@@ -4,12 +4,14 @@
 #pragma once
 
 #include <csignal>
+#include <functional>
 #include <optional>
 
 #include <tactor/tactor.hpp>
 
 #include "cli/play/instant.hpp"
 #include "cli/play/terminal.hpp"
+#include "session/play_session.hpp"
 
 namespace tactor::cli {
 
@@ -38,5 +40,11 @@ private:
     std::size_t drawn_lines_ = 0;
     struct sigaction before_ = {}; ///< what SIGTSTP did
 };
+
+/// Plays a score of a piece to its end, and draws it on a terminal where that is `wanted`. With
+/// stream_options::arm `armed` is called once the score waits for its trigger. \throws error.
+stroke_report play_drawn(
+    session::play_session& session, const array& a, const piece& p, const score& s, bool wanted,
+    const std::function<void()>& armed = [] {});
 
 } // namespace tactor::cli

@@ -8,9 +8,9 @@
 #include "cli/input.hpp"
 #include "cli/play/live_lines.hpp"
 #include "cli/play/play_report.hpp"
-#include "cli/play/play_session.hpp"
-#include "cli/play/sound_server.hpp"
 #include "cli/say.hpp"
+#include "session/play_session.hpp"
+#include "session/sound_server.hpp"
 
 namespace tactor::cli {
 
@@ -32,7 +32,7 @@ void check_live(const settings& s, const option_list& options, const play_option
 int play_live(settings& s, option_list& options, const play_options& o)
 {
     s.strokes.clear(); // standard input has its points, which come later
-    const environment e = read_environment(s, options);
+    const environment e = session::read_environment(s, options);
     const live_options usual;
     live_options l;
     l.plan = s.plan;
@@ -40,17 +40,17 @@ int play_live(settings& s, option_list& options, const play_options& o)
         l.plan.algorithm = usual.plan.algorithm;
     if (!options.given("outside"))
         l.plan.outside = usual.plan.outside;
-    l.render = settle_render(s, e);
+    l.render = session::settle_render(s, e);
     l.timeout_s = live_timeout_s;
     l.smooth_s = o.smooth_s.value_or(l.smooth_s);
-    if (!names_device(s, e))
+    if (!session::names_device(s, e))
         say(stderr, "tactor: no device is configured: playing to \"null\", which nobody feels (-D PCM plays "
                     "on hardware)\n");
-    const alsa_options device = device_options(s, o, e, l.render.channels, l.render.rate);
-    const std::string between = settle_server(device.pcm);
+    const alsa_options device = session::device_options(s, o, e, l.render.channels, l.render.rate);
+    const std::string between = session::settle_server(device.pcm);
     if (!between.empty())
-        say(stderr, "tactor: warning: {} ({})\n", server_note(between), server_cure);
-    play_session session(device, o, e);
+        say(stderr, "tactor: warning: {} ({})\n", session::server_note(between), session::server_cure);
+    session::play_session session(device, o, e);
     if (!o.json())
         say(stdout, "{}\n", describe(session.setup()));
     flush_output();
@@ -62,7 +62,7 @@ int play_live(settings& s, option_list& options, const play_options& o)
     out.length_frames = out.report->frames;
     if (!o.json())
         say(stdout, "{}\n", describe(out, session.setup().rate));
-    session.finish(r);
+    static_cast<session::run_facts&>(r) = session.finish();
     if (const auto status = tell_end(session, o, e, r))
         return *status;
     if (const auto left = unfinished(r))

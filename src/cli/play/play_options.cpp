@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "cli/parse_number.hpp"
+#include "cli/settings.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -16,7 +17,7 @@ unsigned whole(const std::string& option, const std::string& text, detail::bound
     return static_cast<unsigned>(parse_whole(option, text, b, unit));
 }
 
-void add_latency(CLI::App& c, play_options& o)
+void add_latency(CLI::App& c, session::stream_options& o)
 {
     auto* latency = c.add_option_function<std::string>(
         "--latency-ms",
@@ -42,7 +43,7 @@ void add_latency(CLI::App& c, play_options& o)
         ->type_name("N");
 }
 
-void add_lines(CLI::App& c, play_options& o)
+void add_lines(CLI::App& c, session::stream_options& o)
 {
     c.add_flag("--arm", o.arm, "each stroke waits for an edge on the [sync] in line");
     c.add_option_function<std::string>(
@@ -52,7 +53,7 @@ void add_lines(CLI::App& c, play_options& o)
         ->type_name("MS");
 }
 
-void add_limits(CLI::App& c, play_options& o)
+void add_limits(CLI::App& c, session::stream_options& o)
 {
     const auto add = [&c](const std::string& name, std::optional<double>& into, double lo, double hi,
                           const std::string& unit, const std::string& help) {
@@ -71,33 +72,15 @@ void add_limits(CLI::App& c, play_options& o)
     add("--drive-window-s", o.drive_window_s, 0.1, 3600, "s", "the window of --max-drive-s (default 10)");
 }
 
-// What others wrote into a file must not do more than say which device.
-std::string pcm_name(const settings& s, const output_settings& out)
-{
-    if (s.pcm || !out.pcm)
-        return s.pcm.value_or("null");
-    if (out.pcm_included) {
-        try {
-            require_device_name(*out.pcm);
-        } catch (const error& x) {
-            throw error(
-                x.kind(), out.pcm_at, fmt::format("{}: {}", x.subject(), x.why()),
-                "an array file can only name a device, such as hw:CARD=Tactor; more is taken from -D PCM "
-                "and from your own configuration: tactor.toml(5), SECURITY CONSIDERATIONS");
-        }
-    }
-    return *out.pcm;
-}
-
 } // namespace
 
-void add_verbose_option(CLI::App& c, play_options& o)
+void add_verbose_option(CLI::App& c, session::stream_options& o)
 {
     c.add_flag("--verbose", o.verbose,
                "tell on standard error what is agreed on, xruns, mutes, limits that act");
 }
 
-void add_log_options(CLI::App& c, play_options& o)
+void add_log_options(CLI::App& c, session::stream_options& o)
 {
     add_verbose_option(c, o);
     c.add_option_function<std::string>(
@@ -111,7 +94,7 @@ void add_log_options(CLI::App& c, play_options& o)
         ->type_name("FILE");
 }
 
-void add_stream_options(CLI::App& c, play_options& o)
+void add_stream_options(CLI::App& c, session::stream_options& o)
 {
     add_latency(c, o);
     c.add_flag("--require-realtime", o.require_realtime, "fail without real-time priority and locked memory");
@@ -140,65 +123,6 @@ void add_play_options(CLI::App& c, play_options& o)
         ->type_name("S");
     c.add_option("--socket", o.socket, "play through the server that listens there")->type_name("PATH");
     add_format_option(c, o.format, {"text", "json"}, "what is told of the run (default text)");
-}
-
-bool names_device(const settings& s, const environment& e)
-{
-    return s.pcm || e.config.output.pcm;
-}
-
-alsa_options device_options(const settings& s, const play_options& p, const environment& e, unsigned channels,
-                            unsigned rate)
-{
-    if (channels > max_pcm_channels)
-        throw error(error_kind::bad_input, fmt::format("array \"{}\"", e.tactors.name),
-                    fmt::format("{} channels are more than a device has: {}", channels, max_pcm_channels),
-                    "render writes them to a file; smaller arrays play");
-    alsa_options o;
-    const output_settings& out = e.config.output;
-    o.pcm = pcm_name(s, out);
-    o.channels = channels;
-    o.wider = !s.channels && !out.channels;
-    o.rate = rate;
-    o.format = s.format;
-    o.periods = p.periods.value_or(out.periods.value_or(o.periods));
-    o.period_frames = p.period_frames.value_or(out.period_frames.value_or(o.period_frames));
-    if (const auto latency_ms = asked_latency_ms(p, e)) {
-        const double frames = *latency_ms * 1e-3 * o.rate / o.periods;
-        o.period_frames = std::max(1U, static_cast<unsigned>(std::lround(frames)));
-    }
-    return o;
-}
-
-drive_limits limits_of(const play_options& o, const environment& e)
-{
-    drive_limits l = settle_limits(e);
-    l.power_dbfs = o.power_dbfs.value_or(l.power_dbfs);
-    l.max_drive_s = o.max_drive_s.value_or(l.max_drive_s);
-    l.window_s = o.drive_window_s.value_or(l.window_s);
-    return l;
-}
-
-std::optional<double> asked_latency_ms(const play_options& o, const environment& e)
-{
-    if (o.latency_ms || o.period_frames || !e.latency_s)
-        return o.latency_ms;
-    return 1e3 * *e.latency_s;
-}
-
-double latency_ms(const stream_setup& s)
-{
-    return 1e3 * s.buffer_frames / s.rate;
-}
-
-std::string latency_warning(std::optional<double> asked_ms, const stream_setup& made)
-{
-    // Rounding to whole frames is no news.
-    constexpr double tolerance = 1.05;
-    if (!asked_ms || latency_ms(made) <= *asked_ms * tolerance + 1e3 / made.rate)
-        return {};
-    return fmt::format("a latency of {} ms was asked for, the device makes it {:.1f} ms", *asked_ms,
-                       latency_ms(made));
 }
 
 } // namespace tactor::cli

@@ -52,7 +52,7 @@ json to_json(const stream_setup& d)
             {"format", std::string(to_string(d.format))},
             {"period_frames", d.period_frames},
             {"buffer_frames", d.buffer_frames},
-            {"latency_ms", latency_ms(d)},
+            {"latency_ms", session::latency_ms(d)},
             {"batch", d.batch},
             {"has_clock", d.has_clock}};
 }
@@ -95,34 +95,6 @@ std::string xruns_text(const player_stats& s)
 
 } // namespace
 
-void add_stats(player_stats& sum, const player_stats& more)
-{
-    const bool first = sum.periods == 0;
-    sum.ring_low_water = first ? more.ring_low_water : std::min(sum.ring_low_water, more.ring_low_water);
-    sum.realtime = more.realtime && (first || sum.realtime);
-    sum.periods += more.periods;
-    sum.frames += more.frames;
-    sum.xruns += more.xruns;
-    sum.limited_frames += more.limited_frames;
-    sum.power_limited_frames += more.power_limited_frames;
-    sum.drives_cut += more.drives_cut;
-    sum.stalls += more.stalls;
-    sum.off_failures += more.off_failures;
-    sum.left_on = more.left_on; // a later player may have switched it off
-    const auto pulses = static_cast<double>(sum.sync_pulses + more.sync_pulses);
-    if (pulses > 0.0)
-        sum.sync_mean_late_s = (sum.sync_mean_late_s * static_cast<double>(sum.sync_pulses) +
-                                more.sync_mean_late_s * static_cast<double>(more.sync_pulses)) /
-                               pulses;
-    sum.sync_pulses += more.sync_pulses;
-    sum.sync_missed += more.sync_missed;
-    sum.sync_worst_late_s = std::max(sum.sync_worst_late_s, more.sync_worst_late_s);
-    sum.minor_faults += more.minor_faults;
-    sum.major_faults += more.major_faults;
-    sum.latest_wakeup_s = std::max(sum.latest_wakeup_s, more.latest_wakeup_s);
-    sum.xrun_s.insert(sum.xrun_s.end(), more.xrun_s.begin(), more.xrun_s.end());
-}
-
 std::string fate(const stroke_outcome& s, unsigned rate)
 {
     if (!s.report)
@@ -153,27 +125,7 @@ std::string describe(const stream_setup& d)
                        d.device_channels > d.channels
                            ? fmt::format("{} of {} channels", d.channels, d.device_channels)
                            : counted(d.channels, "channel"),
-                       d.rate, to_string(d.format), d.period_frames, d.buffer_frames, latency_ms(d));
-}
-
-void warn_of_cuts(const drive_limits& l, const player_stats& s)
-{
-    if (s.drives_cut != 0)
-        fmt::print(
-            stderr,
-            "tactor: warning: tactors were driven for longer than {} s in {} s: {} cut short or silent "
-            "([limits] max_drive_s in the array file or configuration)\n",
-            l.max_drive_s, l.window_s, counted(s.drives_cut, "drive"));
-}
-
-std::optional<error> left_on(const player_stats& s)
-{
-    if (!s.left_on)
-        return std::nullopt;
-    return error(error_kind::not_available, "amplifier",
-                 fmt::format("its line cannot be switched off, {} failed: it may be on",
-                             counted(s.off_failures, "try", "tries")),
-                 "cut the amplifier's supply; then see whether \"tactor off\" works, and what dmesg says");
+                       d.rate, to_string(d.format), d.period_frames, d.buffer_frames, session::latency_ms(d));
 }
 
 std::optional<error> unfinished(const run_report& r)
@@ -227,6 +179,21 @@ void print_json(std::FILE* to, const run_report& r)
                    {"strokes", strokes},
                    {"counters", counters(r)}};
     fmt::print(to, "{}\n", all.dump(2, ' ', false, json::error_handler_t::replace));
+}
+
+std::optional<int> tell_end(const session::play_session& session, const play_options& o,
+                            const session::environment& e, const run_report& r)
+{
+    session::warn_of_cuts(session::settle_limits(o, e), r.stats);
+    if (o.json())
+        print_json(stdout, r);
+    else
+        print_table(stdout, r);
+    if (const auto on = session::left_on(r.stats))
+        throw error(*on);
+    if (session.signal() != 0)
+        return session::interrupt::status(session.signal());
+    return std::nullopt;
 }
 
 } // namespace tactor::cli

@@ -11,6 +11,9 @@
 
 #include <tactor/tactor.hpp>
 
+#include "cli/play/play_options.hpp"
+#include "session/play_session.hpp"
+
 namespace tactor::cli {
 
 /// One STROKE argument and how it ended; no report: it was not played.
@@ -20,16 +23,9 @@ struct stroke_outcome {
     std::optional<stroke_report> report = {};
 };
 
-struct run_report {
-    stream_setup device;
-    std::vector<stroke_outcome> strokes;
-    player_stats stats; ///< of all players of the run together
-    unsigned reopened = 0;
-    bool locked_memory = false;
+struct run_report : session::run_facts {
+    std::vector<stroke_outcome> strokes = {};
 };
-
-/// Adds a further player's counters.
-void add_stats(player_stats& sum, const player_stats& more);
 
 /// "played 1.4 s", "interrupted after 0.2 s: reason".
 std::string fate(const stroke_outcome& s, unsigned rate);
@@ -40,14 +36,13 @@ std::string describe(const stroke_outcome& s, unsigned rate);
 /// "hw:Tactor: 9 of 16 channels, 48000 Hz, s32, period 96 of 288 frames, latency 6.0 ms"
 std::string describe(const stream_setup& d);
 
-/// On standard error, where tactors were driven for too long.
-void warn_of_cuts(const drive_limits& l, const player_stats& s);
-
-/// What there is to say, before all else, of an amplifier that may be on.
-std::optional<error> left_on(const player_stats& s);
-
 /// What there is to say in the end of strokes that did not finish; nothing where all of them did.
 std::optional<error> unfinished(const run_report& r);
+
+/// Says how a run went that is finished. Returns the exit status where a signal ended it. \throws error where
+/// an amplifier may be on, before all else.
+std::optional<int> tell_end(const session::play_session& session, const play_options& o,
+                            const session::environment& e, const run_report& r);
 
 /// A short table of the counters.
 void print_table(std::FILE* to, const run_report& r);

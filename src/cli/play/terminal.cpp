@@ -9,8 +9,8 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "cli/variable.hpp"
 #include "core/words.hpp"
+#include "session/variable.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -22,20 +22,20 @@ constexpr int patience_ms = 2000;
 
 bool can_draw()
 {
-    const std::string kind = variable("TERM");
+    const std::string kind = session::variable("TERM");
     return isatty(STDOUT_FILENO) != 0 && !kind.empty() && kind != "dumb";
 }
 
 bool may_colour()
 {
-    return variable("NO_COLOR").empty();
+    return session::variable("NO_COLOR").empty();
 }
 
 // From the environment: the program itself stays in the C locale, whatever it is called in.
 bool speaks_utf8()
 {
     for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
-        const std::string value = in_small_letters(variable(name));
+        const std::string value = in_small_letters(session::variable(name));
         if (value.empty())
             continue;
         return value.find("utf-8") != std::string::npos || value.find("utf8") != std::string::npos;

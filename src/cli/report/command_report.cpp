@@ -5,9 +5,9 @@
 
 #include "cli/analyze/study_options.hpp"
 #include "cli/commands.hpp"
-#include "cli/pipes.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
+#include "session/pipes.hpp"
 #include "study/report/sections.hpp"
 
 namespace tactor::cli {
@@ -30,7 +30,7 @@ int run(const report_options& o)
         fmt::print("{}", text);
     else {
         make_derivatives(o.folder, o.file);
-        tell_of_pipe_to_write(o.file);
+        session::tell_of_pipe_to_write(o.file);
         study::write_report(o.file, text, o.force);
     }
     for (const std::string& w : a.warnings)

@@ -15,23 +15,23 @@
 
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
-#include "cli/interrupt.hpp"
 #include "cli/parse_number.hpp"
-#include "cli/play/open_device.hpp"
-#include "cli/play/own_memory.hpp"
-#include "cli/play/play_lines.hpp"
-#include "cli/play/play_log.hpp"
 #include "cli/play/play_options.hpp"
-#include "cli/play/sound_server.hpp"
 #include "cli/say.hpp"
 #include "cli/serve/owner.hpp"
-#include "cli/session/kept_drive.hpp"
 #include "core/words.hpp"
 #include "files/plan/json_values.hpp"
 #include "files/plan/plan_json.hpp"
 #include "rt/advice.hpp"
 #include "rt/clock.hpp"
 #include "server/server.hpp"
+#include "session/device.hpp"
+#include "session/interrupt.hpp"
+#include "session/kept_drive.hpp"
+#include "session/lines.hpp"
+#include "session/log.hpp"
+#include "session/own_memory.hpp"
+#include "session/sound_server.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -63,7 +63,7 @@ server::planning planning_of(const settings& s, const environment& e, const serv
 {
     server::planning p;
     p.owner.plan = s.plan;
-    p.owner.render = settle_render(s, e);
+    p.owner.render = session::settle_render(s, e);
     p.owner.usual_speed_mm_s = s.usual_speed_mm_s;
     p.owner.compensate = s.compensate;
     p.owner.low_speed = s.low_speed;
@@ -75,16 +75,16 @@ server::planning planning_of(const settings& s, const environment& e, const serv
     return p;
 }
 
-void settle_realtime(const play_options& o)
+void settle_realtime(const session::stream_options& o)
 {
-    limit_runaway_threads();
-    const std::string refused = lock_own_memory();
-    give_memory_back();
+    session::limit_runaway_threads();
+    const std::string refused = session::lock_own_memory();
+    session::give_memory_back();
     const realtime_rights rights = probe_realtime_rights();
     if (!refused.empty() && o.require_realtime)
         throw error(error_kind::not_available, "locked memory", refused,
                     rt::realtime_advice(rights, player_options{}.priority));
-    warn_of_rights(rights.priority != 0, refused.empty());
+    session::warn_of_rights(rights.priority != 0, refused.empty());
 }
 
 void say_who_may(const server::endpoints& at, const std::string& token, bool has_peers)
@@ -148,14 +148,14 @@ void tell_listening(const server::endpoints& at, const std::string& format)
     std::clearerr(stdout);
 }
 
-server::stream_options stream_of(const alsa_options& device, const play_options& o, const environment& e,
-                                 const std::shared_ptr<play_lines>& lines)
+server::stream_options stream_of(const alsa_options& device, const session::stream_options& o,
+                                 const environment& e, const std::shared_ptr<session::lent_lines>& lines)
 {
     server::stream_options s;
-    s.open = [device] { return open_device(device); };
+    s.open = [device] { return session::open_device(device); };
     s.lines = [lines] { return lines->lend(); };
     s.log = device.log;
-    s.player.limits = limits_of(o, e);
+    s.player.limits = session::settle_limits(o, e);
     s.player.require_realtime = o.require_realtime;
     s.wished.name = device.pcm;
     s.wished.channels = device.channels;
@@ -180,13 +180,13 @@ std::function<void(server::stream_state, const std::string&)> tell_owner()
     };
 }
 
-int serve(settings& s, owners_defaults& defaults, const play_options& play, const serve_options& o)
+int serve(settings& s, owners_defaults& defaults, const session::stream_options& play, const serve_options& o)
 {
-    const environment e = read_environment(s, defaults.options);
+    const environment e = session::read_environment(s, defaults.options);
     const serve_settings serve = settle_serve(o, e.config);
     const server::endpoint_options where = settle_endpoints(serve);
     server::network_options network = settle_network(serve);
-    interrupt stop;
+    session::interrupt stop;
 
     server::service_options service;
     service.limits = settle_service_limits(serve);
@@ -202,22 +202,22 @@ int serve(settings& s, owners_defaults& defaults, const play_options& play, cons
     say_who_may(at, service.token, !network.osc_peers.empty());
 
     // A service's owner does not watch it: what is otherwise asked for is there to be looked up.
-    play_log log(play.verbose || goes_to_journal(stderr), play.log);
+    session::session_log log(play.verbose || session::goes_to_journal(stderr), play.log);
     const render_options& sound = service.plans.owner.render;
-    alsa_options device = device_options(s, play, e, sound.channels, sound.rate);
+    alsa_options device = session::device_options(s, play, e, sound.channels, sound.rate);
     device.log = log.function();
-    if (!names_device(s, e))
+    if (!session::names_device(s, e))
         say(stderr, "tactor: no device is configured: playing to \"null\", which nobody feels (-D PCM plays "
                     "on hardware)\n");
-    const std::string between = settle_server(device.pcm);
+    const std::string between = session::settle_server(device.pcm);
     if (!between.empty())
-        say(stderr, "tactor: warning: {} ({})\n", server_note(between), server_cure);
+        say(stderr, "tactor: warning: {} ({})\n", session::server_note(between), session::server_cure);
     const bool armed = !play.no_gpio && e.config.sync && e.config.sync->in;
-    const auto lines = std::make_shared<play_lines>(play.no_gpio ? tactor::setup{} : e.config, armed,
-                                                    play.sync_delay_ms * 1e-3);
+    const auto lines = std::make_shared<session::lent_lines>(play.no_gpio ? tactor::setup{} : e.config, armed,
+                                                             play.sync_delay_ms * 1e-3);
     settle_realtime(play);
     server::stream_options stream = stream_of(device, play, e, lines);
-    kept_drive kept(device.pcm, stream.player.limits);
+    session::kept_drive kept(device.pcm, stream.player.limits);
     stream.driven = [&kept] { return kept.until_now(); };
     stream.going = [&kept](unsigned channels) { kept.going(channels); };
     stream.settled = [&kept](const drive_history& h) { kept.settled(h); };
@@ -252,7 +252,7 @@ command add_serve(CLI::App& app)
 {
     CLI::App* c = app.add_subcommand("serve", "Own the array; other programs draw through it");
     auto s = std::make_shared<settings>();
-    auto play = std::make_shared<play_options>();
+    auto play = std::make_shared<session::stream_options>();
     auto o = std::make_shared<serve_options>();
     auto options = std::make_shared<option_list>(*c, *s);
     add_serve_options(*c, *o);

@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 
 #include "cli/commands.hpp"
-#include "cli/interrupt.hpp"
 #include "cli/say.hpp"
 #include "cli/serve/rpc_client.hpp"
 #include "cli/settings.hpp"
 #include "core/words.hpp"
+#include "session/interrupt.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -79,7 +79,7 @@ int watch(rpc_client& server, const status_options& o)
     }
 }
 
-int status(const status_options& o, interrupt& stop)
+int status(const status_options& o, session::interrupt& stop)
 {
     rpc_client server(o.socket, stop);
     if (o.watch)
@@ -97,11 +97,11 @@ int status(const status_options& o, interrupt& stop)
 template <typename F>
 int until_interrupted(F ask)
 {
-    interrupt stop;
+    session::interrupt stop;
     try {
         return ask(stop);
     } catch (const interrupted& i) {
-        return interrupt::status(i.signal);
+        return session::interrupt::status(i.signal);
     }
 }
 
@@ -115,7 +115,7 @@ command add_status(CLI::App& app)
     c->add_flag("--watch", o->watch, "go on with what changes, line by line");
     add_format_option(*c, o->format, {"text", "json"}, "how to print it (default text)");
     c->footer("Example: tactor status --format json");
-    return [o] { return until_interrupted([&](interrupt& stop) { return status(*o, stop); }); };
+    return [o] { return until_interrupted([&](session::interrupt& stop) { return status(*o, stop); }); };
 }
 
 command add_stop(CLI::App& app)
@@ -125,7 +125,7 @@ command add_stop(CLI::App& app)
     add_socket(*c, o->socket);
     c->footer("Example: tactor stop");
     return [o] {
-        return until_interrupted([&](interrupt& stop) {
+        return until_interrupted([&](session::interrupt& stop) {
             rpc_client(o->socket, stop).call("stop");
             return static_cast<int>(status_ok);
         });

@@ -15,9 +15,9 @@
 #include <unistd.h>
 
 #include "cli/say.hpp"
-#include "cli/session/runtime_folder.hpp"
-#include "cli/variable.hpp"
 #include "files/plan/plan_json.hpp"
+#include "session/runtime_folder.hpp"
+#include "session/variable.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -27,14 +27,14 @@ constexpr const char* socket_name = "/tactor.sock";
 // Of the system, where a service manager gives a folder that is not below the user's own.
 bool is_systems()
 {
-    const std::string given = service_folder();
-    const std::string users = variable("XDG_RUNTIME_DIR");
+    const std::string given = session::service_folder();
+    const std::string users = session::variable("XDG_RUNTIME_DIR");
     return !given.empty() && (users.empty() || !given.starts_with(users + "/"));
 }
 
 std::string default_socket()
 {
-    if (const std::string folder = runtime_folder(); !folder.empty())
+    if (const std::string folder = session::runtime_folder(); !folder.empty())
         return folder + socket_name;
     throw error(error_kind::bad_input, "socket",
                 "neither RUNTIME_DIRECTORY nor XDG_RUNTIME_DIR says in which folder",

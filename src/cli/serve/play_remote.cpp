@@ -17,8 +17,6 @@
 
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
-#include "cli/interrupt.hpp"
-#include "cli/pipes.hpp"
 #include "cli/play/live_lines.hpp"
 #include "cli/play/play_report.hpp"
 #include "cli/say.hpp"
@@ -26,6 +24,8 @@
 #include "cli/serve/server_words.hpp"
 #include "cli/serve/stroke_text.hpp"
 #include "cli/warnings.hpp"
+#include "session/interrupt.hpp"
+#include "session/pipes.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -259,7 +259,7 @@ private:
         else
             say(stdout, "xruns           {}\n", report_.stats.xruns);
         if (signal_ != 0)
-            return interrupt::status(signal_);
+            return session::interrupt::status(signal_);
         if (broken_)
             throw error(*broken_);
         if (const auto left = unfinished(report_))
@@ -268,7 +268,7 @@ private:
     }
 
     const play_options& options_;
-    interrupt stop_;
+    session::interrupt stop_;
     rpc_client server_;
     net::json asked_;
     run_report report_;
@@ -292,7 +292,7 @@ int play_remote(const settings& s, const option_list& options, const play_option
         live_lines lines(STDIN_FILENO);
         return o.live ? player.live(lines) : player.play(pieces);
     } catch (const interrupted& i) {
-        return interrupt::status(i.signal);
+        return session::interrupt::status(i.signal);
     }
 }
 

@@ -15,7 +15,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include "cli/variable.hpp"
+#include "session/variable.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -25,7 +25,7 @@ std::vector<std::string> candidates(const std::optional<std::string>& named)
     if (named)
         return {*named};
     std::vector<std::string> all;
-    if (const std::string folder = variable("XDG_RUNTIME_DIR"); !folder.empty())
+    if (const std::string folder = session::variable("XDG_RUNTIME_DIR"); !folder.empty())
         all.push_back(folder + "/tactor.sock");
     all.emplace_back("/run/tactor.sock");
     all.emplace_back("/run/tactor/tactor.sock");
@@ -62,7 +62,7 @@ error error_of(const net::json& e)
 
 } // namespace
 
-rpc_client::rpc_client(const std::optional<std::string>& socket, interrupt& stop) : stop_(stop)
+rpc_client::rpc_client(const std::optional<std::string>& socket, session::interrupt& stop) : stop_(stop)
 {
     if (socket && socket->empty())
         throw error(error_kind::bad_input, "--socket", "the name is empty", "name a socket");

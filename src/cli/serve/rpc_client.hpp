@@ -11,9 +11,9 @@
 
 #include <tactor/error.hpp>
 
-#include "cli/interrupt.hpp"
 #include "net/listen.hpp"
 #include "net/rpc.hpp"
+#include "session/interrupt.hpp"
 
 namespace tactor::cli {
 
@@ -27,7 +27,7 @@ struct interrupted {
 class rpc_client {
 public:
     /// A signal at `stop` ends what waits for a reply.
-    rpc_client(const std::optional<std::string>& socket, interrupt& stop);
+    rpc_client(const std::optional<std::string>& socket, session::interrupt& stop);
 
     /// The result. \throws error with the server's words, runtime where it went away; interrupted.
     net::json call(const std::string& method, const net::json& params = net::json::object());
@@ -58,7 +58,7 @@ private:
     void receive();
     std::optional<net::json> message();
 
-    interrupt& stop_;
+    session::interrupt& stop_;
     net::owned_fd fd_;
     std::string path_;
     std::string buffer_;

@@ -14,9 +14,9 @@
 #include <tactor/stroke.hpp>
 
 #include "cli/input.hpp"
-#include "cli/pipes.hpp"
 #include "files/plan/plan_file.hpp"
 #include "net/listen.hpp"
+#include "session/pipes.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -72,7 +72,7 @@ net::json params_of(const std::string& argument)
         return {{"stroke", preset_stroke(argument).name}}; // its error lists the presets
     if (files::is_plan_file(argument))
         refuse_plan(argument);
-    check_readable(argument);
+    session::check_readable(argument);
     const net::owned_fd fd(::open(argument.c_str(), O_RDONLY | O_CLOEXEC));
     if (!fd)
         throw error(error_kind::bad_input, argument, std::strerror(errno));

@@ -40,6 +40,15 @@ void add_page_options(CLI::App& command, page_options& o)
         [&o](const std::string& t) { o.at = net::parse_host(t, "--page"); });
 }
 
+void add_keypad_option(CLI::App& command, std::vector<std::string>& into)
+{
+    command
+        .add_option("--keypad", into, "answers from this input device too, which no other program gets then")
+        ->type_name("DEVICE")
+        ->expected(1)
+        ->take_all();
+}
+
 void check_page_options(const page_options& o, bool simulated)
 {
     if (o.at && !o.on_page.value_or(true))

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "net/listen.hpp"
 
@@ -22,6 +24,9 @@ struct page_options {
 
 /// `o` must live as long as the command.
 void add_page_options(CLI::App& command, page_options& o);
+
+/// --keypad of a command, as often as there are any.
+void add_keypad_option(CLI::App& command, std::vector<std::string>& into);
 
 /// What goes together. \throws error (bad_input).
 void check_page_options(const page_options& o, bool simulated);

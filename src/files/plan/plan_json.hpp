@@ -19,9 +19,9 @@ using text_sink = std::function<void(std::string_view)>;
 /// Plans of one score, and everything that its samples depend on. What it refers to must outlive it.
 struct plan_record {
     std::span<const stroke> strokes;
-    std::span<const placed_plan> plans;       ///< one a stroke
-    std::span<const compensated_plan> moved;  ///< what compensation did; none, or one a plan
-    const fitting* fit;                       ///< what fitting did to all strokes; null without
+    std::span<const placed_plan> plans;      ///< one a stroke
+    std::span<const compensated_plan> moved; ///< what compensation did; none, or one a plan
+    const fitting* fit;                      ///< what fitting did to all strokes; null without
     const array& tactors;
     const score& samples;          ///< of all plans, made with `options`
     const render_options& options; ///< with rate and channels

@@ -104,7 +104,7 @@ void study_folder::refuse_others(const experiment_definition& d, bool simulated)
         const fs::path file = e.path() / "session.json";
         if (!there(file))
             continue;
-        const session s = read_session(file);
+        const session_data s = read_session(file);
         const std::string who = e.path().filename().string();
         if (s.simulated != simulated)
             throw error(error_kind::bad_input, folder_.string(),

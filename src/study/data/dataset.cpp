@@ -185,7 +185,7 @@ public:
     }
 
 private:
-    void take_session(const std::string& code, const session& s)
+    void take_session(const std::string& code, const session_data& s)
     {
         if (first_.empty()) {
             first_ = code;

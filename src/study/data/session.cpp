@@ -44,10 +44,10 @@ const json& need(const std::filesystem::path& file, const json& j, const char* k
 
 } // namespace
 
-session read_session(const std::filesystem::path& file)
+session_data read_session(const std::filesystem::path& file)
 {
     const json j = read_object(file);
-    session s;
+    session_data s;
     s.simulated = need(file, j, "simulated", json::value_t::boolean).get<bool>();
     const json& e = need(file, j, "experiment", json::value_t::object);
     s.text = need(file, e, "text", json::value_t::string).get<std::string>();

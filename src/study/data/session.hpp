@@ -10,14 +10,14 @@
 
 namespace tactor::study {
 
-struct session {
+struct session_data {
     bool simulated = false;
     std::string text; ///< of the experiment, TOML
     experiment_outline experiment;
 };
 
 /// \throws error (bad_input) with file and, where it has one, line.
-session read_session(const std::filesystem::path& file);
+session_data read_session(const std::filesystem::path& file);
 
 /// The description of a run's table. \throws error (bad_input) where it is no JSON object, or describes
 /// another run.

@@ -145,14 +145,14 @@ session_facts session_of(const fs::path& folder, const std::string& code, const 
     return s;
 }
 
-std::vector<person> people_of(const fs::path& folder, const std::vector<std::string>& codes)
+std::vector<participant> read_people(const fs::path& folder, const std::vector<std::string>& codes)
 {
     const text_table t(folder / "participants.tsv");
     const auto cell = [&](std::size_t row, const char* column) {
         const auto v = t.has(column) ? t.cell(row, column) : std::nullopt;
         return v ? std::optional<std::string>(*v) : std::nullopt;
     };
-    std::vector<person> all;
+    std::vector<participant> all;
     for (std::size_t i = 0; i < t.rows(); ++i) {
         const std::string code(t.need(i, "participant_id").substr(4)); // after "sub-"
         if (std::find(codes.begin(), codes.end(), code) != codes.end())
@@ -166,7 +166,7 @@ std::vector<person> people_of(const fs::path& folder, const std::vector<std::str
 study_facts read_facts(const fs::path& folder, const dataset& d)
 {
     study_facts f;
-    f.people = people_of(folder, d.participants);
+    f.people = read_people(folder, d.participants);
     for (const std::string& code : d.participants)
         if (is_there(folder, fs::path("sourcedata") / ("sub-" + code) / "session.json"))
             f.sessions.push_back(session_of(folder, code, d.experiment));

@@ -62,7 +62,7 @@ struct session_facts {
 };
 
 /// A line of participants.tsv.
-struct person {
+struct participant {
     std::string code;
     std::optional<std::string> age = {};
     std::optional<std::string> sex = {};
@@ -71,7 +71,7 @@ struct person {
 
 struct study_facts {
     std::vector<session_facts> sessions = {}; ///< in the order of participants.tsv
-    std::vector<person> people = {};          ///< who was selected, those without a session too
+    std::vector<participant> people = {};     ///< who was selected, those without a session too
 };
 
 /// Of those whom `d` has, which was read from the same folder.

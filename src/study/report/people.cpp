@@ -40,7 +40,7 @@ std::string ages_text(const study_facts& f)
     std::size_t at_least = 0;
     std::string others;
     std::size_t missing = 0;
-    for (const person& p : f.people) {
+    for (const participant& p : f.people) {
         const std::string text = p.age.value_or("");
         if (const auto age = read_age(text)) {
             ages.push_back(age->years);
@@ -67,10 +67,10 @@ std::string ages_text(const study_facts& f)
 }
 
 // How many said what, in a column.
-std::string counts_text(const study_facts& f, std::optional<std::string> person::*column)
+std::string counts_text(const study_facts& f, std::optional<std::string> participant::*column)
 {
     std::map<std::string, unsigned> counts;
-    for (const person& p : f.people)
+    for (const participant& p : f.people)
         ++counts[(p.*column) ? plain(*(p.*column)) : not_recorded];
     if (counts.size() == 1 && counts.contains(not_recorded))
         return not_recorded;
@@ -120,12 +120,13 @@ std::string left_out_text(const analysis& a)
 std::string participants_section(const study_facts& f, const analysis& a)
 {
     std::vector<std::string> codes;
-    for (const person& p : f.people)
+    for (const participant& p : f.people)
         codes.push_back(p.code);
     std::string text = "\n## Participants\n\n";
     text += fmt::format("{}: {}. Age: {}. Sex: {}. Handedness: {}. Dates of the sessions (UTC): {}.\n",
                         counted(codes.size(), "participant"), subjects(codes), ages_text(f),
-                        counts_text(f, &person::sex), counts_text(f, &person::handedness), dates_text(f));
+                        counts_text(f, &participant::sex), counts_text(f, &participant::handedness),
+                        dates_text(f));
     for (const std::string& code : codes)
         if (std::none_of(f.sessions.begin(), f.sessions.end(),
                          [&](const session_facts& s) { return s.code == code; }))

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "session/device.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+#include <tactor/tactor.hpp>
+
+namespace tactor::session {
+namespace {
+
+// What others wrote into a file must not do more than say which device.
+std::string pcm_name(const settings& s, const output_settings& out)
+{
+    if (s.pcm || !out.pcm)
+        return s.pcm.value_or("null");
+    if (out.pcm_included) {
+        try {
+            require_device_name(*out.pcm);
+        } catch (const error& x) {
+            throw error(
+                x.kind(), out.pcm_at, fmt::format("{}: {}", x.subject(), x.why()),
+                "an array file can only name a device, such as hw:CARD=Tactor; more is taken from -D PCM "
+                "and from your own configuration: tactor.toml(5), SECURITY CONSIDERATIONS");
+        }
+    }
+    return *out.pcm;
+}
+
+} // namespace
+
+bool names_device(const settings& s, const environment& e)
+{
+    return s.pcm || e.config.output.pcm;
+}
+
+alsa_options device_options(const settings& s, const stream_options& asked, const environment& e,
+                            unsigned channels, unsigned rate)
+{
+    if (channels > max_pcm_channels)
+        throw error(error_kind::bad_input, fmt::format("array \"{}\"", e.tactors.name),
+                    fmt::format("{} channels are more than a device has: {}", channels, max_pcm_channels),
+                    "render writes them to a file; smaller arrays play");
+    alsa_options o;
+    const output_settings& out = e.config.output;
+    o.pcm = pcm_name(s, out);
+    o.channels = channels;
+    o.wider = !s.channels && !out.channels;
+    o.rate = rate;
+    o.format = s.format;
+    o.periods = asked.periods.value_or(out.periods.value_or(o.periods));
+    o.period_frames = asked.period_frames.value_or(out.period_frames.value_or(o.period_frames));
+    if (const auto latency_ms = asked_latency_ms(asked, e)) {
+        const double frames = *latency_ms * 1e-3 * o.rate / o.periods;
+        o.period_frames = std::max(1U, static_cast<unsigned>(std::lround(frames)));
+    }
+    return o;
+}
+
+drive_limits settle_limits(const stream_options& o, const environment& e)
+{
+    const limit_settings said = e.config.limits.value_or(limit_settings{});
+    drive_limits l;
+    l.power_dbfs = o.power_dbfs.value_or(said.power_dbfs.value_or(l.power_dbfs));
+    l.max_drive_s = o.max_drive_s.value_or(said.max_drive_s.value_or(l.max_drive_s));
+    l.window_s = o.drive_window_s.value_or(said.window_s.value_or(l.window_s));
+    return l;
+}
+
+std::optional<double> asked_latency_ms(const stream_options& o, const environment& e)
+{
+    if (o.latency_ms || o.period_frames || !e.latency_s)
+        return o.latency_ms;
+    return 1e3 * *e.latency_s;
+}
+
+double latency_ms(const stream_setup& s)
+{
+    return 1e3 * s.buffer_frames / s.rate;
+}
+
+std::string latency_warning(std::optional<double> asked_ms, const stream_setup& made)
+{
+    // Rounding to whole frames is no news.
+    constexpr double tolerance = 1.05;
+    if (!asked_ms || latency_ms(made) <= *asked_ms * tolerance + 1e3 / made.rate)
+        return {};
+    return fmt::format("a latency of {} ms was asked for, the device makes it {:.1f} ms", *asked_ms,
+                       latency_ms(made));
+}
+
+std::string find_array_that_fits(alsa_options o)
+{
+    std::multimap<unsigned, std::string> by_channels;
+    for (const std::string& name : array_presets())
+        by_channels.emplace(preset_array(name).channels(), name);
+    o.log = {};
+    o.wider = true;
+    const unsigned needed = o.channels;
+    for (auto a = by_channels.rbegin(); a != by_channels.rend(); ++a) {
+        o.channels = a->first;
+        try {
+            if (o.channels < needed && open_alsa(o) != nullptr)
+                return a->second;
+        } catch (const error&) { // NOLINT(bugprone-empty-catch): not that one
+        }
+    }
+    return {};
+}
+
+std::unique_ptr<sink> open_device(const alsa_options& o)
+{
+    try {
+        return open_alsa(o);
+    } catch (const error& e) {
+        const std::string smaller = e.field() == "channels" ? find_array_that_fits(o) : "";
+        if (smaller.empty())
+            throw;
+        throw e.reworded(e.subject(), e.why(), fmt::format("{}; the array {} fits", e.hint(), smaller));
+    }
+}
+
+} // namespace tactor::session

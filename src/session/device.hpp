@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The PCM that a session plays on: which, how it is opened, and what may be given to the array on it.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <tactor/alsa.hpp>
+
+#include "session/environment.hpp"
+
+namespace tactor::session {
+
+/// How a stream is opened, driven and recorded.
+struct stream_options {
+    std::optional<double> latency_ms = {};
+    std::optional<unsigned> period_frames = {};
+    std::optional<unsigned> periods = {};
+    bool require_realtime = false;
+    double reopen_s = 0.0; ///< time that a lost device is waited for
+    bool arm = false;      ///< strokes wait for an edge on the [sync] in line
+    double sync_delay_ms = 50.0;
+    bool no_gpio = false;
+    bool verbose = false; ///< log on standard error
+    std::string log = {}; ///< file that log lines are appended to; empty: none
+    std::optional<double> power_dbfs = {};
+    std::optional<double> max_drive_s = {};
+    std::optional<double> drive_window_s = {};
+};
+
+/// Returns whether anything says which PCM to play on.
+bool names_device(const settings& s, const environment& e);
+
+/// Returns the PCM as it is to be opened for so many channels at that rate, Hz; "null" where nothing names
+/// one. \throws error (bad_input) where an array file says more than the name of a device.
+alsa_options device_options(const settings& s, const stream_options& o, const environment& e,
+                            unsigned channels, unsigned rate);
+
+/// Returns the limits that hold: the options, else [limits], else the defaults.
+drive_limits settle_limits(const stream_options& o, const environment& e);
+
+/// Returns the latency that is asked for, ms: the option's, else that of [defaults] where no option gives a
+/// period.
+std::optional<double> asked_latency_ms(const stream_options& o, const environment& e);
+
+/// Returns a sentence where the device makes more latency than was asked for; else nothing.
+std::string latency_warning(std::optional<double> asked_ms, const stream_setup& made);
+
+/// Returns the time that the buffer holds, ms.
+double latency_ms(const stream_setup& s);
+
+/// Names the largest built-in array that the PCM can play as `o` asks for; empty: none.
+std::string find_array_that_fits(alsa_options o);
+
+/// Opens like open_alsa(); if the PCM has too few channels, the hint names an array that fits.
+std::unique_ptr<sink> open_device(const alsa_options& o);
+
+} // namespace tactor::session

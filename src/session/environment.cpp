@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+#include "session/environment.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "core/words.hpp"
+#include "files/input_files.hpp"
+#include "files/text_file.hpp"
+#include "session/pipes.hpp"
+#include "session/variable.hpp"
+
+namespace tactor::session {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string find_config(const settings& s)
+{
+    if (s.config_file)
+        return *s.config_file;
+    if (std::string named = variable("TACTOR_CONFIG"); !named.empty())
+        return named;
+    std::vector<fs::path> places;
+    if (const std::string xdg = variable("XDG_CONFIG_HOME"); !xdg.empty())
+        places.emplace_back(xdg);
+    else if (const std::string home = variable("HOME"); !home.empty())
+        places.push_back(fs::path(home) / ".config");
+    places.emplace_back("/etc");
+    for (const fs::path& p : places) {
+        std::error_code ignored;
+        if (fs::exists(p / "tactor/tactor.toml", ignored))
+            return (p / "tactor/tactor.toml").string();
+    }
+    return {};
+}
+
+// An array file may bring its own output, amplifier and sync: they belong to that array.
+void use_array_file(setup& config, const setup& file)
+{
+    config.array = file.array;
+    config.calibration = file.calibration;
+    const auto prefer = [](auto& ours, const auto& theirs) {
+        if (theirs)
+            ours = theirs;
+    };
+    if (file.output.pcm) {
+        config.output.pcm = file.output.pcm;
+        config.output.pcm_at = file.output.pcm_at;
+        config.output.pcm_included = true;
+    }
+    prefer(config.output.rate, file.output.rate);
+    // The channel count belongs to the map: one array's count says nothing of another's.
+    config.output.channels = file.output.channels;
+    prefer(config.output.period_frames, file.output.period_frames);
+    prefer(config.output.periods, file.output.periods);
+    prefer(config.amplifier, file.amplifier);
+    prefer(config.sync, file.sync);
+    prefer(config.limits, file.limits);
+}
+
+// It can be read only once, and what it holds is known by its first character.
+void read_standard_input(const option_source& options, environment& e)
+{
+    constexpr const char* name = "standard input";
+    detail::note_input("/dev/fd/0");
+    const detail::whole_text text = detail::read_text(STDIN_FILENO, name, detail::max_stroke_bytes);
+    if (!files::holds_plans(text)) {
+        e.standard_input = parse_strokes(text, name);
+        return;
+    }
+    options.refuse_planning(name);
+    e.plans.emplace("-", files::read_plans(text, name));
+}
+
+// The plans among the STROKE arguments, and what is given on standard input.
+void read_given(const settings& s, const option_source& options, environment& e)
+{
+    if (std::find(s.strokes.begin(), s.strokes.end(), "-") != s.strokes.end())
+        read_standard_input(options, e);
+    for (const std::string& argument : s.strokes) {
+        if (!files::is_plan_file(argument) || e.plans.contains(argument))
+            continue;
+        options.refuse_planning(argument);
+        check_readable(argument);
+        e.plans.emplace(argument, files::load_plans(argument));
+    }
+}
+
+// The first plan among the STROKE arguments; null for none.
+const files::plan_file* first_plan(const settings& s, const environment& e)
+{
+    const auto planned = std::find_if(s.strokes.begin(), s.strokes.end(), [&](const std::string& argument) {
+        return e.plans.contains(argument);
+    });
+    return planned == s.strokes.end() ? nullptr : &e.plans.at(*planned);
+}
+
+// How a plan was rendered is how it is, where no option says otherwise: no [defaults] does.
+void use_sound_of(const files::plan_file& f, settings& s, const option_source& options)
+{
+    if (!options.given("phase"))
+        s.render.phase = f.render.phase;
+    if (!options.given("ramp"))
+        s.render.ramp_s = f.render.ramp_s;
+    if (!options.given("envelope")) {
+        s.render.envelope.kind = f.render.envelope.kind;
+        s.render.envelope.tukey_part = f.render.envelope.tukey_part;
+    }
+    if (!options.given("attack"))
+        s.render.envelope.attack_s = f.render.envelope.attack_s;
+    if (!options.given("release"))
+        s.render.envelope.release_s = f.render.envelope.release_s;
+    if (!options.given("level-dbfs") && !options.given("sl")) {
+        s.render.level_dbfs = f.render.level_dbfs;
+        s.render.sl_db = f.render.sl_db;
+    }
+    if (!options.given("rate"))
+        s.rate = f.render.rate;
+    s.render.marker_channel = f.render.marker_channel;
+    s.render.marker_s = f.render.marker_s;
+}
+
+// What the array file of the plan said when it was made counts with its array.
+array use_array_of(const files::plan_file& f, environment& e)
+{
+    e.plan_channels = f.render.channels;
+    return f.tactors;
+}
+
+array find_array(const settings& s, option_source& options, environment& e)
+{
+    setup& config = e.config;
+    if (!s.array_name) {
+        e.array_file = config.array ? e.config_name : "";
+        if (const files::plan_file* f = first_plan(s, e); f != nullptr && !config.array)
+            return use_array_of(*f, e);
+        return config.array ? *config.array : preset_array("palm-3x3");
+    }
+    if (is_preset(array_presets(), *s.array_name)) {
+        config.output.channels.reset();
+        config.calibration.reset();
+        return preset_array(*s.array_name);
+    }
+    std::error_code unknown; // such as for a name that no file can have
+    if (!fs::exists(*s.array_name, unknown) && s.array_name->find_first_of("./") == std::string::npos)
+        return preset_array(*s.array_name); // its error lists the presets
+    check_readable(*s.array_name);
+    const setup file = load_setup(*s.array_name);
+    if (!file.array)
+        throw error(error_kind::bad_input, *s.array_name, "says no [array]", "see tactor.toml(5)");
+    options.apply_defaults(file);
+    if (file.defaults.latency_s)
+        e.latency_s = file.defaults.latency_s;
+    use_array_file(config, file);
+    e.array_file = *s.array_name;
+    return *file.array;
+}
+
+// A configuration's marker channel may meet another file's array.
+void check_sync_channel(const environment& e)
+{
+    if (!e.config.sync || !e.config.sync->channel)
+        return;
+    for (const tactor_spec& t : e.tactors.tactors)
+        if (t.channel == *e.config.sync->channel)
+            throw error(error_kind::bad_input, "[sync] channel",
+                        fmt::format("channel {} drives a tactor of {}", t.channel, e.tactors.name),
+                        "choose a spare channel");
+}
+
+} // namespace
+
+bool is_preset(const std::vector<std::string>& presets, const std::string& name)
+{
+    return std::find(presets.begin(), presets.end(), name) != presets.end();
+}
+
+environment read_environment(settings& s, option_source& options)
+{
+    environment e;
+    e.config_name = find_config(s);
+    if (!e.config_name.empty()) {
+        check_readable(e.config_name);
+        e.config = load_setup(e.config_name);
+        options.apply_defaults(e.config);
+        e.latency_s = e.config.defaults.latency_s;
+    }
+    read_given(s, options, e);
+    e.tactors = find_array(s, options, e);
+    if (const files::plan_file* f = first_plan(s, e))
+        use_sound_of(*f, s, options);
+    options.settle();
+    check_sync_channel(e);
+    if (s.slope || s.intercept_s) {
+        timing_profile& p = s.plan.profile;
+        p.slope = s.slope.value_or(p.slope);
+        p.intercept_s = s.intercept_s.value_or(p.intercept_s);
+        p.max_soa_s = p.intercept_s / (1.0 - p.slope);
+    }
+    return e;
+}
+
+render_options settle_render(const settings& s, const environment& e)
+{
+    render_options r = s.render;
+    r.rate = s.rate.value_or(e.config.output.rate.value_or(48000));
+    if (e.config.sync && e.config.sync->channel) {
+        r.marker_channel = e.config.sync->channel;
+        r.marker_s = e.config.sync->pulse_s;
+    }
+    const unsigned marker = r.marker_channel ? *r.marker_channel + 1 : 0;
+    const unsigned needed = std::max(e.tactors.channels(), marker);
+    if (s.channels && *s.channels < needed)
+        throw error(error_kind::bad_input, "channels",
+                    fmt::format("{} needs {}", e.tactors.name, counted(needed, "channel")),
+                    fmt::format("give {} or more", needed))
+            .with_field("channels");
+    r.channels =
+        s.channels ? *s.channels : e.config.output.channels.value_or(e.plan_channels.value_or(needed));
+    return r;
+}
+
+} // namespace tactor::session

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Ctrl-C and its kin as a descriptor.
+#pragma once
+
+#include <csignal>
+
+namespace tactor::session {
+
+/// Blocks SIGINT, SIGTERM, SIGHUP and SIGQUIT in this thread, and so in those that it starts, and receives
+/// them through a descriptor. Make it before any thread.
+class interrupt {
+public:
+    interrupt();
+    ~interrupt();
+    interrupt(const interrupt&) = delete;
+    interrupt& operator=(const interrupt&) = delete;
+
+    /// Readable when a signal has come.
+    int descriptor() const noexcept { return fd_; }
+    /// The signal that has come, or 0. Does not wait.
+    int poll() noexcept;
+    /// Whatever else comes is nothing more to this process, which has heard that it is to end and ends.
+    void was_the_last() noexcept { last_ = true; }
+    /// Exit status for a signal: 128 + its number.
+    static int status(int signal) noexcept { return 128 + signal; }
+
+private:
+    int fd_;
+    bool last_ = false;
+    sigset_t before_{};
+};
+
+} // namespace tactor::session

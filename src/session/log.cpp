@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+#include "session/log.hpp"
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+#include <string_view>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <tactor/error.hpp>
+
+#include "files/input_files.hpp"
+#include "session/say.hpp"
+
+namespace tactor::session {
+namespace {
+
+std::string time_text()
+{
+    timespec now{};
+    clock_gettime(CLOCK_REALTIME, &now);
+    std::tm t{};
+    gmtime_r(&now.tv_sec, &t);
+    return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:03}Z", t.tm_year + 1900, t.tm_mon + 1,
+                       t.tm_mday, t.tm_hour, t.tm_min, t.tm_sec, now.tv_nsec / 1'000'000);
+}
+
+// Whether a text begins as our lines do.
+bool is_log(std::string_view text)
+{
+    constexpr std::string_view form = "dddd-dd-ddTdd:dd:dd.dddZ ";
+    if (text.size() < form.size())
+        return false;
+    for (std::size_t i = 0; i < form.size(); ++i)
+        if (form[i] == 'd' ? text[i] < '0' || text[i] > '9' : text[i] != form[i])
+            return false;
+    return true;
+}
+
+// An array file named by mistake must not grow lines of log.
+bool may_be_appended_to(int fd)
+{
+    std::array<char, 32> begin{};
+    const ssize_t n = ::pread(fd, begin.data(), begin.size(), 0);
+    return n == 0 || (n > 0 && is_log({begin.data(), static_cast<std::size_t>(n)}));
+}
+
+// Half a line, where nobody else has written since: the next log would begin in it.
+void take_back(int fd, ssize_t written)
+{
+    const off_t end = ::lseek(fd, 0, SEEK_CUR);
+    struct stat s {};
+    if (end < written || ::fstat(fd, &s) != 0 || s.st_size != end)
+        return;
+    [[maybe_unused]] const int ignored = ::ftruncate(fd, end - written);
+}
+
+} // namespace
+
+session_log::session_log(bool verbose, std::string file) : verbose_(verbose), file_(std::move(file))
+{
+    if (!file_.empty())
+        open();
+}
+
+void session_log::open()
+{
+    // No link is followed, and no pipe is waited for.
+    fd_ = detail::owned_fd(
+        ::open(file_.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666));
+    const int code = errno;
+    struct stat s {};
+    if (!fd_ && code == ELOOP)
+        throw error(error_kind::bad_input, file_, "is a link",
+                    "name the file itself; --verbose writes to standard error");
+    if (!fd_ && code == EISDIR)
+        throw error(error_kind::bad_input, file_, "is a folder", "name a file in it");
+    if (!fd_)
+        throw error(code == ENOENT || code == ENOTDIR ? error_kind::bad_input : error_kind::runtime, file_,
+                    std::strerror(code));
+    if (::fstat(fd_.get(), &s) != 0 || !S_ISREG(s.st_mode))
+        throw error(error_kind::bad_input, file_, "is no regular file",
+                    "name a file; --verbose writes to standard error");
+    detail::refuse_input(s, file_);
+    if (!may_be_appended_to(fd_.get()))
+        throw error(error_kind::bad_input, file_, "there is such a file already, and it is no log",
+                    "choose another name: lines are appended to logs only");
+}
+
+log_function session_log::function()
+{
+    if (!verbose_ && !fd_)
+        return {};
+    return [this](log_kind k, std::string_view text) { write(k, text); };
+}
+
+void session_log::write(log_kind k, std::string_view text)
+{
+    const std::string line = fmt::format("{} {} {}\n", time_text(), to_string(k), shown(text));
+    if (verbose_)
+        say_text(stderr, goes_to_journal(stderr) ? shown(text) + "\n" : line, k);
+    if (!fd_)
+        return;
+    const ssize_t n = ::write(fd_.get(), line.data(), line.size());
+    if (n == static_cast<ssize_t>(line.size()))
+        return;
+    const int code = n < 0 ? errno : ENOSPC;
+    if (n > 0)
+        take_back(fd_.get(), n);
+    // The stroke goes on: a log that ends early is no reason to stop it.
+    say(stderr, "tactor: warning: {}: {}: the log ends here\n", shown(file_), std::strerror(code));
+    fd_.close();
+}
+
+} // namespace tactor::session

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// --verbose and --log FILE: what the library says of its own doing, a line each.
+#pragma once
+
+#include <string>
+
+#include <tactor/log.hpp>
+
+#include "core/owned.hpp"
+
+namespace tactor::session {
+
+/// "2026-03-01T09:30:00.125Z warning xrun 1: ...": UTC, kind, text. Outlives the player that writes to it.
+class session_log {
+public:
+    /// To standard error where `verbose`, in the journal with its level and time instead; appended to a file
+    /// unless its name is empty. \throws error: bad_input for a name that is a link, no regular file, or a
+    /// file that holds something else; runtime for what the system refuses.
+    session_log(bool verbose, std::string file);
+    session_log(const session_log&) = delete;
+    session_log& operator=(const session_log&) = delete;
+
+    /// Empty where nobody wants to know.
+    log_function function();
+
+private:
+    void open();
+    void write(log_kind k, std::string_view text);
+
+    bool verbose_;
+    std::string file_;
+    detail::owned_fd fd_;
+};
+
+} // namespace tactor::session

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "session/own_memory.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string_view>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <malloc.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <tactor/tactor.hpp>
+
+#include "session/say.hpp"
+
+namespace tactor::session {
+namespace {
+
+// For stacks of threads and what is allocated later: with MCL_FUTURE all of it counts, and beyond the limit
+// allocations fail.
+constexpr std::uint64_t reserve_bytes = 32U << 20;
+
+std::uint64_t mapped_bytes()
+{
+    std::uint64_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+/// What the audio thread runs in; `self` is the program's own file, which has the library within. Of the
+/// other libraries only what is used takes memory; those pages are locked when they come.
+bool is_needed(std::string_view mapped, std::string_view self)
+{
+    if (mapped.empty() || mapped == "[heap]" || mapped == "[stack]" || mapped == self)
+        return true;
+    const std::string_view file = mapped.substr(mapped.rfind('/') + 1);
+    constexpr std::string_view names[] = {"libasound", "ld-linux"};
+    return std::any_of(std::begin(names), std::end(names),
+                       [file](std::string_view name) { return file.starts_with(name); });
+}
+
+/// Brings in what is mapped now, so that the audio thread meets no page fault.
+void populate()
+{
+    std::error_code none;
+    const std::string self = std::filesystem::read_symlink("/proc/self/exe", none).string();
+    std::ifstream maps("/proc/self/maps");
+    for (std::string line; std::getline(maps, line);) {
+        std::istringstream in(line);
+        std::uintptr_t from = 0;
+        std::uintptr_t to = 0;
+        char dash = 0;
+        std::string rights, offset, device, inode, mapped;
+        in >> std::hex >> from >> dash >> to >> rights >> offset >> device >> inode >> mapped;
+        if (rights.starts_with('r') && is_needed(mapped, self))
+            // NOLINTNEXTLINE(performance-no-int-to-ptr): the kernel writes addresses as numbers
+            mlock(reinterpret_cast<void*>(from), to - from);
+    }
+}
+
+} // namespace
+
+std::uint64_t memory_to_lock()
+{
+    return mapped_bytes() + reserve_bytes;
+}
+
+std::string lock_own_memory()
+{
+    if (const auto most = probe_realtime_rights().lockable_bytes) {
+        const std::uint64_t wanted = memory_to_lock();
+        if (wanted > *most)
+            return fmt::format("{} MiB must be allowed, a reserve of {} included, and {} MiB are",
+                               (wanted + (1U << 20) - 1) >> 20, reserve_bytes >> 20, *most >> 20);
+    }
+    // One heap that never shrinks: what was locked once stays, and no arena of 64 MiB is charged.
+    mallopt(M_TRIM_THRESHOLD, -1);
+    mallopt(M_MMAP_MAX, 0);
+    mallopt(M_ARENA_MAX, 1);
+    if (mlockall(MCL_CURRENT | MCL_ONFAULT) != 0 || mlockall(MCL_FUTURE) != 0)
+        return std::strerror(errno);
+    populate();
+    return "";
+}
+
+void give_memory_back()
+{
+    constexpr int large = 128 << 10;
+    constexpr int most_at_end = 1 << 20;
+    mallopt(M_ARENA_MAX, 1);
+    mallopt(M_MMAP_MAX, 1 << 16);
+    mallopt(M_MMAP_THRESHOLD, large);
+    mallopt(M_TRIM_THRESHOLD, most_at_end);
+}
+
+void warn_of_rights(bool realtime, bool locked)
+{
+    if (realtime && locked)
+        return;
+    say(stderr,
+        "tactor: warning: {}{}{}: xruns are likelier (run tactor check, which says how: rtprio and memlock "
+        "in limits.d, group audio)\n",
+        realtime ? "" : "no real-time priority", realtime || locked ? "" : ", ",
+        locked ? "" : "memory is not locked");
+}
+
+void limit_runaway_threads()
+{
+    constexpr rlim_t soft_us = 200'000; // SIGXCPU
+    constexpr rlim_t hard_us = 1'000'000;
+    rlimit l{};
+    if (getrlimit(RLIMIT_RTTIME, &l) != 0)
+        return;
+    // What is stricter already stays. The amplifier's holder outlives either signal.
+    l.rlim_max = std::min(l.rlim_max, hard_us);
+    l.rlim_cur = std::min({l.rlim_cur, soft_us, l.rlim_max});
+    setrlimit(RLIMIT_RTTIME, &l);
+}
+
+} // namespace tactor::session

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What the tool, unlike the library, may do with its process to play in real time.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace tactor::session {
+
+/// Locks all memory of the process, now and to come, where the limits leave space for it. Returns why not;
+/// empty: it is locked. Call it before threads are made and after what forks.
+std::string lock_own_memory();
+
+/// How much lock_own_memory() would lock now, with what threads will need.
+std::uint64_t memory_to_lock();
+
+/// Lets the heap give back what is freed, for a process that lives long and whose clients come and go: large
+/// blocks are mapped one by one. Call it after lock_own_memory(), which keeps all.
+void give_memory_back();
+
+/// A real-time thread that runs for 0.2 s without a pause is ended, and the process with it: it would hold
+/// a computer with one core for good.
+void limit_runaway_threads();
+
+/// Warns on standard error where the audio thread has no real-time priority or its memory is not locked.
+void warn_of_rights(bool realtime, bool locked);
+
+} // namespace tactor::session

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// What people read: text that cannot steer their terminal.
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tactor/log.hpp>
+
+namespace tactor::session {
+
+/// A name from a file or the command line as a terminal may get it: control characters, which could move its
+/// cursor or worse, become escapes such as \x1b or \n.
+std::string shown(std::string_view name);
+
+/// Prints text, escaped as above but for line ends, and on a terminal wrapped at words to its width. Never
+/// throws for what cannot be written: standard error that is gone (2>&-, a full disk) does not decide whether
+/// the work was done, and main() looks after standard output. To the journal each line goes with its level:
+/// `kind`, or a warning's where it begins "tactor: warning: ".
+void say_text(std::FILE* to, std::string_view text, log_kind kind = log_kind::info);
+
+/// Hands what was printed on standard output to its reader, and never throws, like say_text().
+void flush_output();
+
+/// Returns the errno of the first write to standard output by these that failed, else 0.
+int output_error();
+
+/// Whether systemd reads what is written there, for its journal.
+bool goes_to_journal(std::FILE* to);
+
+/// The same on standard output, and at once: somebody sits before it.
+void show(std::string_view text);
+
+/// Shows each line of a text; also where no terminal wraps them, they break at words.
+void show_lines(std::string_view text);
+
+template <typename... T>
+void say(std::FILE* to, fmt::format_string<T...> format, T&&... values)
+{
+    say_text(to, fmt::format(format, std::forward<T>(values)...));
+}
+
+/// On standard error, what ends the program.
+template <typename... T>
+void say_error(fmt::format_string<T...> format, T&&... values)
+{
+    say_text(stderr, fmt::format(format, std::forward<T>(values)...), log_kind::error);
+}
+
+} // namespace tactor::session

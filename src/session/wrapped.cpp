@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "session/wrapped.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+namespace tactor::session {
+namespace {
+
+constexpr std::size_t usual_columns = 80;
+constexpr std::size_t least_columns = 40;
+constexpr std::size_t most_columns = 200;
+
+// Characters of East Asia take two columns, and fmt's padding counts them so.
+std::size_t count_columns(std::string_view s)
+{
+    const std::size_t padded = 2 * s.size();
+    return s.size() + padded - fmt::formatted_size("{:{}}", s, padded);
+}
+
+std::size_t count_blanks(std::string_view line, std::size_t at)
+{
+    return std::min(line.find_first_not_of(' ', at), line.size()) - at;
+}
+
+// The column of the line's last words that two blanks or more separate from what stands before, in the left
+// half; else that of its first word.
+std::size_t find_hang(std::string_view line, std::size_t width)
+{
+    std::size_t hang = 0;
+    for (std::size_t at = 0; at < line.size();) {
+        const std::size_t word = at + count_blanks(line, at);
+        const std::size_t column = count_columns(line.substr(0, word));
+        if (word == line.size() || column > width / 2)
+            break;
+        if (at == 0 || word - at > 1)
+            hang = column;
+        at = std::min(line.find(' ', word), line.size());
+    }
+    return hang;
+}
+
+void append_line(std::string& all, std::string_view line, std::size_t hang, std::size_t width)
+{
+    std::size_t column = 0;
+    for (std::size_t at = 0; at < line.size();) {
+        const std::size_t blanks = count_blanks(line, at);
+        const std::size_t end = std::min(line.find(' ', at + blanks), line.size());
+        const std::string_view word = line.substr(at + blanks, end - at - blanks);
+        const std::size_t columns = count_columns(word);
+        if (column + blanks > hang && column + blanks + columns > width && !word.empty()) {
+            all.append("\n").append(hang, ' ').append(word);
+            column = hang + columns;
+        } else {
+            all.append(line.substr(at, end - at));
+            column += blanks + columns;
+        }
+        at = end;
+    }
+}
+
+} // namespace
+
+std::size_t line_width(std::FILE* to)
+{
+    winsize w{};
+    const bool known = ::ioctl(::fileno(to), TIOCGWINSZ, &w) == 0 && w.ws_col != 0;
+    return (known ? std::clamp<std::size_t>(w.ws_col, least_columns, most_columns) : usual_columns) - 1;
+}
+
+std::string wrapped(std::string_view first, std::string_view text, std::size_t width)
+{
+    std::string all;
+    append_line(all, fmt::format("{}{}", first, text), count_columns(first), width);
+    return all + '\n';
+}
+
+std::string wrap_lines(std::string_view text, std::size_t width)
+{
+    std::string all;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find('\n', at), text.size());
+        const std::string_view line = text.substr(at, end - at);
+        append_line(all, line, find_hang(line, width), width);
+        if (end < text.size())
+            all += '\n';
+        at = end + 1;
+    }
+    return all;
+}
+
+std::string fit_lines(std::FILE* to, std::string text)
+{
+    return ::isatty(::fileno(to)) != 0 ? wrap_lines(text, line_width(to)) : text;
+}
+
+} // namespace tactor::session

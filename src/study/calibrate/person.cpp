@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: MIT
+#include "study/calibrate/person.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "rt/clock.hpp"
+#include "session/say.hpp"
+
+namespace tactor::study {
+namespace {
+
+constexpr double lead_s = 0.5; // from the answer before to interval 1, so that nobody is surprised
+constexpr int most_attempts = 5;
+constexpr const char* go_on = "what was answered is kept; --resume goes on";
+
+// What each of them stands for is in the order of the keys.
+constexpr const char* level_keys = "-<>+an";
+
+page_screen choose_screen()
+{
+    return {.name = "question", .question = "Which one vibrated?", .choices = {"", ""}, .keys = "12"};
+}
+
+page_screen adjust_screen()
+{
+    return {.name = "question",
+            .question = "Set it so that you just feel it.",
+            .choices = {"Much weaker", "Weaker", "Stronger", "Much stronger", "That is it",
+                        "Not felt at any level"},
+            .keys = level_keys};
+}
+
+} // namespace
+
+person::person(const alsa_options& device, const session::stream_options& o, const session::environment& e,
+               const render_options& render, const calibration_settings& s,
+               const std::vector<std::string>& keypads, net::owned_fd listening)
+    : environment_(e),
+      render_(render),
+      settings_(s),
+      stage_(device, o, e),
+      page_(listening ? std::make_unique<participant_page>(page_words(), e.tactors, std::move(listening))
+                      : nullptr),
+      keys_(keypads, page_ ? page_->descriptor() : -1)
+{
+    render_.ramp_s = interval_ramp_s;
+    render_.sl_db = 0.0;
+}
+
+// The level in dBFS is what the tactor gets, as with --sl: no gain is added. So it is a threshold, and 0 dB
+// above it.
+score person::trial_score(unsigned tactor, double level_dbfs, double onset_s, double total_s) const
+{
+    array a = environment_.tactors;
+    for (tactor_spec& t : a.tactors) {
+        t.threshold_dbfs = level_dbfs;
+        t.thresholds.clear();
+    }
+    plan p;
+    p.algorithm = "calibrate";
+    p.carrier_hz = settings_.carrier_hz;
+    burst b;
+    b.onset_s = onset_s;
+    b.duration_s = settings_.interval_s;
+    b.position = a.tactors[tactor].position;
+    b.drives = {{tactor, 1.0}};
+    p.bursts.push_back(std::move(b));
+    p.total_s = total_s;
+    p.stroke_duration_s = total_s;
+    return score(a, std::move(p), render_);
+}
+
+// One that is cut off would tell which interval it was.
+void person::make_room(const score& s)
+{
+    const double wait_s = stage_.room_s(s, 0.0);
+    if (wait_s == 0.0)
+        return;
+    session::show(fmt::format("a pause of {:.1f} s, so that tactors are not driven for too long\n", wait_s));
+    stage_.pass(wait_s, [](double) { return true; });
+}
+
+given_stimulus person::play(const calibration_trial& t, const score& s,
+                            const std::function<void(double)>& watch)
+{
+    const std::string name = fmt::format("trial {}", t.number);
+    for (int attempt = 1;; ++attempt) {
+        given_stimulus g =
+            stage_.give(s, 0.0, [&](std::uint64_t frame) { watch(static_cast<double>(frame) / s.rate()); });
+        g.flaw = g.fault();
+        if (g.flaw.empty())
+            return g;
+        if (stage_.lost() || attempt == most_attempts)
+            throw error(error_kind::runtime, name, g.flaw, go_on);
+        session::show(fmt::format("interrupted ({}): once more\n", g.flaw));
+        make_room(s);
+    }
+}
+
+void person::begin()
+{
+    if (begun_)
+        return;
+    begun_ = true;
+    const bool stairs = settings_.method == calibration_method::staircase;
+    on_page({.name = "introduce",
+             .text = stairs ? "There are two intervals, one of which vibrates. Which one? Guess where you do "
+                              "not know."
+                            : "Something vibrates again and again. Set it so that you just feel it.",
+             .choices = {"Begin"},
+             .keys = " "});
+    session::show(
+        stairs ? "Two intervals, one of which vibrates. Which one? 1 or 2; guess where you do not know.\n"
+               : "Set the level at which you just feel it: + and - by 2 dB, > and < by half a dB; a: that "
+                 "is it;\n"
+                 "n: not felt at any level.\n");
+    if (!keys_.has_keys() && !page_)
+        return;
+    session::show(page_ ? "The participant begins, Ctrl-C ends; what was answered is kept.\n"
+                        : "Any key begins, Ctrl-C ends; what was answered is kept.\n");
+    while (!said())
+        stage_.wait_for(keys_.descriptor());
+}
+
+void person::on_page(page_screen s)
+{
+    if (page_)
+        page_->show(std::move(s));
+}
+
+// Before a page the terminal is the experimenter's, who has Ctrl-C.
+std::optional<std::string> person::said()
+{
+    if (!page_)
+        return keys_.next();
+    while (keys_.typed())
+        ;
+    while (const auto key = keys_.pressed())
+        page_->press(*key);
+    const auto a = page_->poll();
+    return a ? std::optional(std::string(1, a->key)) : std::nullopt;
+}
+
+std::string person::wait_for_answer(const calibration_trial& t)
+{
+    for (;;) {
+        if (auto answered = said())
+            return *answered;
+        if (ended()) {
+            session::show("\n");
+            throw error(error_kind::runtime, fmt::format("trial {}", t.number), "no answer", go_on);
+        }
+        stage_.wait_for(keys_.descriptor());
+    }
+}
+
+calibration_answer person::answer(const calibration_trial& t)
+{
+    begin();
+    return t.interval != 0 ? choose(t) : adjust(t);
+}
+
+calibration_answer person::choose(const calibration_trial& t)
+{
+    const double second_s = lead_s + settings_.interval_s + interval_gap_s;
+    const double total_s = second_s + settings_.interval_s;
+    const score s = trial_score(t.tactor, t.level_dbfs, t.interval == 1 ? lead_s : second_s, total_s);
+    make_room(s);
+    session::show(fmt::format("trial {}{}:", t.number, t.practice ? " (practice)" : ""));
+    unsigned shown = 0;
+    const auto show_until = [&](unsigned now) {
+        for (; shown < now; ++shown) {
+            session::show(fmt::format(" interval {}", shown + 1));
+            on_page({.name = "stimulus", .text = fmt::format("Interval {}", shown + 1)});
+        }
+    };
+    std::optional<noise_around> noise(stage_);
+    const given_stimulus p = play(t, s, [&](double at_s) {
+        show_until(at_s >= second_s ? 2 : at_s >= lead_s ? 1 : 0);
+    });
+    show_until(2); // where the process was too slow to look
+    noise.reset();
+    keys_.forget();
+    on_page(choose_screen());
+    session::show(" which? ");
+    for (;;) {
+        const std::string answered = wait_for_answer(t);
+        if (answered == "1" || answered == "2") {
+            session::show(fmt::format("{}\n", answered));
+            const double time_s = std::max(0.0, static_cast<double>(rt::monotonic_ns() - p.ended_ns) * 1e-9);
+            calibration_answer a{.interval = answered == "1" ? 1U : 2U,
+                                 .response_time_s = std::round(time_s * 1e3) / 1e3};
+            if (p.first_frame)
+                a.onset_frame = *p.first_frame + static_cast<std::uint64_t>(std::llround(lead_s * s.rate()));
+            return a;
+        }
+        if (!keys_.has_keys())
+            session::show(fmt::format("\"{}\" is neither 1 nor 2: which? ", answered));
+    }
+}
+
+// True where the keys say that this series is over.
+bool person::change_level(const std::string& keys, const calibration_trial& t, double& level_dbfs,
+                          std::optional<calibration_answer>& out) const
+{
+    for (const char k : keys) {
+        const double by = k == '+' ? 2.0 : k == '-' ? -2.0 : k == '>' ? 0.5 : k == '<' ? -0.5 : 0.0;
+        level_dbfs = std::clamp(level_dbfs + by, floor_dbfs, t.ceiling_dbfs);
+        if (k == 'a')
+            out = {.set_dbfs = level_dbfs};
+        else if (k == 'n')
+            out.emplace();
+        if (out)
+            return true;
+    }
+    return false;
+}
+
+calibration_answer person::adjust(const calibration_trial& t)
+{
+    const std::int64_t began_ns = rt::monotonic_ns();
+    double level = t.level_dbfs;
+    std::optional<calibration_answer> out;
+    std::optional<std::uint64_t> onset;
+    keys_.forget();
+    session::show(fmt::format("series {}: + - > < a n\n", t.number));
+    const noise_around noise(stage_);
+    on_page(adjust_screen());
+    while (!out) {
+        const score s = trial_score(t.tactor, level, 0.0, settings_.interval_s + interval_gap_s);
+        const auto take = [&] {
+            while (!out) {
+                const auto keys = said();
+                if (!keys || change_level(*keys, t, level, out))
+                    return;
+                on_page(adjust_screen()); // each change is an answer
+            }
+        };
+        const given_stimulus p = play(t, s, [&](double) { take(); });
+        onset = onset ? onset : p.first_frame;
+        take();
+        if (!out && ended())
+            throw error(error_kind::runtime, fmt::format("trial {}", t.number), "no answer", go_on);
+    }
+    out->response_time_s = std::round(static_cast<double>(rt::monotonic_ns() - began_ns) * 1e-6) / 1e3;
+    out->onset_frame = onset;
+    return *out;
+}
+
+void person::tell(const calibration_record& r)
+{
+    if (!settings_.feedback || !r.correct)
+        return;
+    session::show(*r.correct ? "right\n" : "wrong\n");
+    on_page({.name = "stimulus", .text = *r.correct ? "That was right." : "That was wrong."});
+}
+
+void person::thank()
+{
+    on_page({.name = "over", .text = page_words()["over"]});
+}
+
+} // namespace tactor::study

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+#include "study/session/page_screens.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace tactor::study {
+namespace {
+
+// Straight between them, nobody sees the difference.
+constexpr double points_per_s = 200.0;
+constexpr double most_points = 4000.0;
+
+std::vector<point> sample_way(const stroke& target, const array& a)
+{
+    const trajectory& m = target.motion;
+    const layout faces(a);
+    const double parts = std::clamp(std::ceil(m.duration_s() * points_per_s), 50.0, most_points);
+    std::vector<point> way;
+    for (double i = 0.0; i <= parts; ++i) {
+        const point p = m.position(m.duration_s() * i / parts);
+        way.push_back(faces.contains(p) ? p : faces.nearest(p));
+    }
+    return way;
+}
+
+const run_definition& run_of(const prepared_experiment& p, const session_step& s)
+{
+    return p.definition.runs[p.runs[s.run].run];
+}
+
+// Texts of the answers, empty where their number says all.
+std::vector<std::string> label_choices(const prepared_experiment& p, const run_definition& r)
+{
+    std::vector<std::string> all(choices_in(r));
+    if (r.outline.task == task_kind::identify)
+        for (std::size_t i = 0; i < r.motions.size(); ++i)
+            all[i] = p.definition.motions[r.motions[i]].name;
+    else if (r.labels.size() == all.size())
+        all = r.labels;
+    else if (r.labels.size() == 2) {
+        all.front() = r.labels.front();
+        all.back() = r.labels.back();
+    }
+    return all;
+}
+
+page_progress where_is(const prepared_experiment& p, const session_step& s)
+{
+    const run_sequence& run = p.runs[s.run];
+    return {s.run + 1, p.runs.size(), s.practice, s.which.trial,
+            s.practice ? run.practice.size() : run.trials.size()};
+}
+
+// A text for each step of the scale, or for its ends.
+std::string scale_text(const page_words& w, const run_definition& r)
+{
+    const unsigned last = r.outline.scale;
+    const bool each = r.labels.size() == last;
+    std::string text;
+    for (unsigned i = 1; i <= last; ++i) {
+        if (!each && i != 1 && i != last)
+            continue;
+        if (i != 1)
+            text += each ? ", " : fmt::format(" {} ", w["to"]);
+        text += fmt::format("{}", i);
+        if (each)
+            text += fmt::format(" ({})", r.labels[i - 1]);
+        else if (r.labels.size() == 2)
+            text += fmt::format(" ({})", r.labels[i == 1 ? 0 : 1]);
+    }
+    return text;
+}
+
+} // namespace
+
+unsigned choices_in(const run_definition& r)
+{
+    switch (r.outline.task) {
+    case task_kind::choose:
+        return 2;
+    case task_kind::rate:
+        return r.outline.scale;
+    case task_kind::identify:
+        break;
+    }
+    return static_cast<unsigned>(r.motions.size());
+}
+
+std::string choices_text(const experiment_definition& d, const run_definition& r)
+{
+    switch (r.outline.task) {
+    case task_kind::choose:
+        return fmt::format("1 {} 2", d.page["or"]);
+    case task_kind::rate:
+        return scale_text(d.page, r);
+    case task_kind::identify:
+        break;
+    }
+    std::string text;
+    for (std::size_t i = 0; i < r.motions.size(); ++i)
+        text += fmt::format("{}{} {}", i == 0 ? "" : ", ", i + 1, d.motions[r.motions[i]].name);
+    return text;
+}
+
+page_screen idle_screen(const prepared_experiment& p, std::string_view key)
+{
+    return {.name = std::string(key), .text = p.definition.page[key]};
+}
+
+page_screen consent_screen(const prepared_experiment& p)
+{
+    const page_words& w = p.definition.page;
+    return {.name = "consent",
+            .text = p.definition.consent,
+            .question = w["agree"],
+            .choices = {w["yes"], w["no"]},
+            .keys = "yn"};
+}
+
+page_screen walk_screen(const prepared_experiment& p, unsigned tactor, bool asked)
+{
+    const page_words& w = p.definition.page;
+    page_screen s{.name = "walk", .text = w["walk"]};
+    if (!asked)
+        return s;
+    s.question = w["felt"];
+    s.choices = {w["yes"], w["no"], w["again"]};
+    s.keys = "ynr";
+    if (tactor > 0) {
+        s.choices.push_back(w["back"]);
+        s.keys += 'b';
+    }
+    return s;
+}
+
+page_screen introduce_screen(const prepared_experiment& p, const session_step& s)
+{
+    page_screen shown{.name = "introduce",
+                      .question = run_of(p, s).question,
+                      .choices = {p.definition.page["begin"]},
+                      .keys = " "};
+    shown.where = where_is(p, s);
+    shown.where->trial = 0;
+    shown.where->trials = p.runs[s.run].trials.size();
+    return shown;
+}
+
+page_screen rest_screen(const prepared_experiment& p, const session_step& s)
+{
+    page_screen shown = idle_screen(p, "rest");
+    shown.lasts_s = run_of(p, s).break_s;
+    return shown;
+}
+
+page_screen target_screen(const prepared_experiment& p, const session_step& s, const stroke& target)
+{
+    page_screen shown = idle_screen(p, "target");
+    shown.path = sample_way(target, p.where.tactors);
+    shown.lasts_s = target.motion.duration_s();
+    shown.where = where_is(p, s);
+    return shown;
+}
+
+page_screen stimulus_screen(const prepared_experiment& p, const session_step& s)
+{
+    page_screen shown = idle_screen(p, "stimulus");
+    shown.where = where_is(p, s);
+    return shown;
+}
+
+page_screen question_screen(const prepared_experiment& p, const session_step& s)
+{
+    const run_definition& r = run_of(p, s);
+    page_screen shown{.name = "question", .question = r.question, .choices = label_choices(p, r)};
+    for (std::size_t i = 0; i < shown.choices.size(); ++i)
+        shown.keys += static_cast<char>('1' + i);
+    shown.where = where_is(p, s);
+    return shown;
+}
+
+} // namespace tactor::study

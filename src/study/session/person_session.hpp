@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// A session with somebody at a terminal or before a page: takes the steps of a session_flow on the stage.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "study/bids/session_store.hpp"
+#include "study/experiment/session_flow.hpp"
+#include "study/session/page_screens.hpp"
+#include "study/session/participant_page.hpp"
+#include "study/session/prepared.hpp"
+#include "study/session/run_table.hpp"
+#include "study/session/session_keys.hpp"
+#include "study/session/stage.hpp"
+#include "study/session/target_display.hpp"
+
+namespace tactor::study {
+
+/// What sounds, for the data.
+struct session_devices {
+    std::string pcm;
+    std::string masker = {}; ///< empty: none
+    sound_servers between = {};
+};
+
+/// Name, in messages, of the person who ends a session with q.
+inline constexpr std::string_view experimenter = "the experimenter (q)";
+
+class person_session {
+public:
+    /// `page` (null: the terminal) is the participant's. All must live as long.
+    person_session(const prepared_experiment& p, session_store& store, stage& s, const answering& with,
+                   target_display& display, session_devices devices);
+
+    /// All that is left of the session. \throws stage::left; error: runtime where nobody agreed, a tactor was
+    /// not felt, there is no answer any more, the device did not come back, or the system refuses to write.
+    void hold();
+
+private:
+    void step(const session_step& s);
+    void ask_consent();
+    void walk(unsigned tactor);
+    void begin_store();
+    void introduce(const session_step& s);
+    void trial(const session_step& s);
+    void rest(const session_step& s);
+    void pause();
+    /// False where the last trial was made void, so that there is more to do.
+    bool end();
+
+    struct asked_answer {
+        unsigned choice = 0; ///< 0: the experimenter repeats the trial
+        double time_s = 0.0;
+    };
+    /// Lets the definition's rest pass. False where the device is gone.
+    bool rest_before(const session_step& s);
+    /// Waits until no tactor would be driven for too long. False where the device is gone.
+    bool make_room(const session_step& s, const planned_trial& t, const score& stimuli);
+    /// Shows the target. Why the trial is void by now, or nothing.
+    std::string animate(const session_step& s, const planned_trial& t);
+    given_stimulus give(const session_step& s, const planned_trial& t);
+    asked_answer ask(const session_step& s, const given_stimulus& g);
+    void write(const session_step& s, const trial_row& row, std::int64_t started_ns);
+
+    /// Where there is a page: the participant sees this.
+    void on_page(page_screen s);
+    /// The experimenter's keys while something plays, and what they ask for at any time.
+    void heed();
+    void obey(operator_key k);
+    void void_last();
+    void wait_for_any_key();
+    void find_device();
+    void note_stream();
+
+    const run_definition& run_of(const session_step& s) const;
+    const planned_trial& trial_of(const session_step& s) const;
+
+    const prepared_experiment& p_;
+    session_store& store_;
+    stage& stage_;
+    participant_page* page_;
+    target_display& display_;
+    session_devices devices_;
+    session_keys keys_;
+    session_flow flow_;
+    std::optional<run_table> practice_ = {}; ///< of the run that is on
+    std::optional<run_table> table_ = {};
+    nlohmann::ordered_json walked_ = nlohmann::ordered_json::array();
+    unsigned stream_ = 0;
+    std::string agreed_at_ = {}; ///< time of the yes; empty: not asked
+    bool begun_ = false;         ///< the store is
+    bool repeat_ = false;        ///< asked for while the stimulus plays
+    bool quit_ = false;
+};
+
+} // namespace tactor::study

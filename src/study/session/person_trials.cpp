@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+// A person's trials: the target, the stimuli, the question, the line.
+#include <algorithm>
+#include <csignal>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "rt/clock.hpp"
+#include "session/say.hpp"
+#include "study/bids/acq_time.hpp"
+#include "study/session/person_session.hpp"
+#include "study/session/session_time.hpp"
+#include "study/session/trials.hpp"
+
+namespace tactor::study {
+
+const planned_trial& person_session::trial_of(const session_step& s) const
+{
+    const run_sequence& run = p_.runs[s.run];
+    return s.practice ? run.practice[s.which.trial - 1] : run.trials[s.which.trial - 1];
+}
+
+std::string person_session::animate(const session_step& s, const planned_trial& t)
+{
+    constexpr const char* gone = "the device is gone";
+    const stroke& target = p_.definition.motions[t.motion].drawn;
+    const double duration_s = target.motion.duration_s();
+    if (page_ != nullptr) {
+        page_->show(target_screen(p_, s, target));
+        const bool began = page_->is_watched();
+        const bool passed = stage_.pass(duration_s, [&](double) {
+            heed();
+            return !repeat_ && !quit_;
+        });
+        if (!passed)
+            return gone;
+        return (began && page_->is_watched()) || repeat_ || quit_ ? "" : "the target moved on no page";
+    }
+    const auto draw = display_.show(p_.where.tactors, target, p_.definition.page);
+    draw(0.0);
+    const bool passed = stage_.pass(duration_s, [&](double at_s) {
+        heed();
+        draw(std::min(at_s, duration_s));
+        return !repeat_ && !quit_;
+    });
+    return passed ? "" : gone;
+}
+
+bool person_session::rest_before(const session_step& s)
+{
+    if (p_.definition.rest_s == 0.0)
+        return true;
+    on_page(stimulus_screen(p_, s));
+    return stage_.pass(p_.definition.rest_s, [&](double) {
+        heed();
+        return !repeat_ && !quit_;
+    });
+}
+
+// Before the target is shown, which the stimulus follows at once.
+bool person_session::make_room(const session_step& s, const planned_trial& t, const score& stimuli)
+{
+    double ahead_s = stimulus_lead_s;
+    if (run_of(s).animation)
+        ahead_s += p_.definition.motions[t.motion].drawn.motion.duration_s();
+    bool told = false;
+    return stage_.make_room(stimuli, ahead_s, [&](double) {
+        if (!std::exchange(told, true)) {
+            on_page(idle_screen(p_, "wait"));
+            session::show(p_.definition.page["wait"] + " ");
+        }
+        heed();
+        return !repeat_ && !quit_;
+    });
+}
+
+given_stimulus person_session::give(const session_step& s, const planned_trial& t)
+{
+    const score stimuli = p_.stimuli.make_score(t);
+    if (!rest_before(s) || !make_room(s, t, stimuli))
+        return {.flaw = "the device is gone"};
+    if (run_of(s).animation)
+        if (std::string flaw = animate(s, t); !flaw.empty())
+            return {.flaw = std::move(flaw)};
+    on_page(stimulus_screen(p_, s));
+    given_stimulus g;
+    if (!repeat_ && !quit_) {
+        std::optional<noise_around> noise;
+        if (!p_.definition.masking.through_run)
+            noise.emplace(stage_);
+        g = stage_.give(stimuli, stimulus_lead_s, [&](std::uint64_t) {
+            heed();
+            if (repeat_ || quit_)
+                stage_.cut();
+        });
+    }
+    heed(); // what was pressed too early is no answer
+    if (quit_)
+        throw stage::left{SIGINT, experimenter};
+    if (std::exchange(repeat_, false))
+        g.flaw = "the experimenter repeats it";
+    else
+        g.flaw = g.fault();
+    return g;
+}
+
+void person_session::trial(const session_step& s)
+{
+    const run_definition& r = run_of(s);
+    const planned_trial& t = trial_of(s);
+    const page_words& w = p_.definition.page;
+    session::show(fmt::format("\n{} {}/{}{}: ", w[s.practice ? "practice" : "trial"], s.which.trial,
+                              s.practice ? p_.runs[s.run].practice.size() : p_.runs[s.run].trials.size(),
+                              s.which.attempt > 1 ? fmt::format(" ({})", w["repeated"]) : ""));
+    const given_stimulus g = give(s, t);
+    trial_row row = planned_row(p_, t, s.which);
+    row.stream = stream_;
+    row.xruns = g.xruns;
+    row.frame_1 = g.first_frame;
+    if (t.method_2 && g.first_frame && g.frames > p_.stimuli.second(t))
+        row.frame_2 = *g.first_frame + p_.stimuli.second(t);
+    std::string flaw = g.flaw;
+    if (flaw.empty()) {
+        const asked_answer a = ask(s, g);
+        if (a.choice == 0) {
+            flaw = "the experimenter repeats it";
+        } else {
+            const bool named = r.outline.task == task_kind::identify;
+            set_response(row, p_, r, named ? static_cast<unsigned>(r.motions[a.choice - 1]) : a.choice);
+            row.response_time_s = a.time_s;
+        }
+    }
+    row.is_void = !flaw.empty();
+    if (row.is_void) {
+        session::show((s.practice ? "" : w["later"]) + "\n");
+        session::say(stderr, "tactor: {}: trial {} is void: {}\n", r.outline.name, s.which.trial, flaw);
+    }
+    const std::int64_t started_ns = utc_now_ns() - (g.first_frame ? rt::monotonic_ns() - g.started_ns : 0);
+    write(s, row, started_ns);
+    find_device();
+}
+
+void person_session::write(const session_step& s, const trial_row& row, std::int64_t started_ns)
+{
+    trial_row line = row;
+    (s.practice ? practice_ : table_)->add(line, started_ns, p_.render.rate);
+    flow_.took(row.is_void);
+}
+
+person_session::asked_answer person_session::ask(const session_step& s, const given_stimulus& g)
+{
+    const run_definition& r = run_of(s);
+    on_page(question_screen(p_, s));
+    const std::string choices = choices_text(p_.definition, r);
+    session::show(fmt::format("{} {}: ", r.question, choices));
+    for (;;) {
+        const session_key k = keys_.wait();
+        const double time_s = std::max(0.0, static_cast<double>(k.at_ns - g.ended_ns) * 1e-9);
+        if (k.asked == operator_key::repeat)
+            return {};
+        if (k.asked)
+            obey(*k.asked);
+        else if (k.answer >= 1 && k.answer <= choices_in(r)) {
+            session::show(fmt::format("{}\n", k.answer));
+            return {k.answer, time_s};
+        } else if (!keys_.come_early())
+            session::show(fmt::format("{}: {} ", p_.definition.page["no_answer"], choices));
+    }
+}
+
+void person_session::void_last()
+{
+    if (!flow_.void_last()) {
+        session::say(stderr, "tactor: there is no trial before this one that can be made void\n");
+        return;
+    }
+    const run_definition& r = p_.definition.runs[p_.runs[flow_.void_run()].run];
+    store_.make_last_void(r);
+    const trial_row row = store_.rows(r).back();
+    table_.emplace(store_, r, false);
+    practice_.emplace(store_, r, true);
+    session::say(stderr, "tactor: {}: trial {} is void: the experimenter says so\n", r.outline.name,
+                 row.trial);
+}
+
+} // namespace tactor::study

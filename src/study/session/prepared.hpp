@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// An experiment on an array, for a participant: all that can be settled and checked before anybody sits
+/// down.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "session/environment.hpp"
+#include "study/experiment/definition.hpp"
+#include "study/experiment/sequence.hpp"
+#include "study/experiment/stimuli.hpp"
+
+namespace tactor::study {
+
+/// Who feels what a session plays.
+enum class audience {
+    person,
+    observer, ///< a simulated one
+    nobody,   ///< a dry run
+};
+
+/// A session that is asked for.
+struct session_request {
+    std::string definition;                 ///< a name that is built in, or a file
+    std::string participant = {};           ///< empty only of a dry run
+    std::optional<std::uint64_t> seed = {}; ///< else that of the definition, else one of the participant's
+    audience who = audience::person;
+};
+
+/// Between the program and its cards; empty: none.
+struct sound_servers {
+    std::string array = {};
+    std::string masker = {};
+};
+
+struct prepared_experiment {
+    experiment_definition definition;
+    std::string participant;
+    std::uint64_t seed = 0;
+    session::environment where; ///< its array has thresholds where the level is a sensation level
+    std::string pcm;            ///< "null" where nothing names one
+    render_options render;
+    bool assumed = false; ///< thresholds that nobody measured
+    std::vector<run_sequence> runs;
+    stimulus_set stimuli;
+    std::vector<std::string> warnings;
+    std::vector<std::string> calibration_doubts; ///< of the warnings, those about the thresholds' origin
+};
+
+/// The threshold that is taken where nobody measured one, and nobody feels anything.
+inline constexpr double assumed_threshold_dbfs = -40.0;
+
+/// Settles a session. \throws error (bad_input): the definition, array or configuration is wrong, a stimulus
+/// cannot be planned
+///         or played; there are no thresholds and somebody is to feel it.
+prepared_experiment prepare(const session_request& r, session::settings& s, session::option_source& options);
+
+} // namespace tactor::study

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "study/session/session_facts.hpp"
+
+#include <algorithm>
+
+#include <tactor/version.hpp>
+
+#include "core/sha256.hpp"
+#include "files/plan/json_values.hpp"
+#include "files/plan/plan_sound.hpp"
+#include "study/session/calibration_facts.hpp"
+
+namespace tactor::study {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+json array_facts(const array& a)
+{
+    json tactors = json::array();
+    for (const tactor_spec& t : a.tactors)
+        tactors.push_back({{"x_mm", t.position.x_mm},
+                           {"y_mm", t.position.y_mm},
+                           {"channel", t.channel},
+                           {"polarity", t.polarity},
+                           {"gain_db", t.gain_db},
+                           {"max_dbfs", t.max_dbfs},
+                           {"threshold_dbfs", files::threshold_json(t)},
+                           {"actuator", std::string(to_string(t.actuator))}});
+    return {{"name", a.name}, {"tactors", tactors}};
+}
+
+json experiment_facts(const experiment_definition& d)
+{
+    return {{"name", d.name}, {"sha256", detail::sha256_text(d.text)}, {"text", d.text}};
+}
+
+json run_names(const prepared_experiment& p)
+{
+    json names = json::array();
+    for (const run_sequence& r : p.runs)
+        names.push_back(p.definition.runs[r.run].outline.name);
+    return names;
+}
+
+} // namespace
+
+json level_facts(const experiment_definition& d)
+{
+    return {{"sl_db", d.level_dbfs ? json(nullptr) : json(d.sl_db)}, {"dbfs", files::or_null(d.level_dbfs)}};
+}
+
+json masking_facts(const masking_definition& m)
+{
+    if (m.noise == noise_kind::none)
+        return nullptr;
+    return {{"noise", std::string(to_string(m.noise))},
+            {"level_dbfs", m.level_dbfs},
+            {"fade_s", m.fade_s},
+            {"while", m.through_run ? "run" : "stimulus"}};
+}
+
+json stimulus_facts(const prepared_experiment& p)
+{
+    json all = json::array();
+    for (const run_definition& r : p.definition.runs)
+        for (const std::size_t motion : r.motions)
+            for (const std::size_t method : r.methods) {
+                const json one{{"sha256", p.stimuli.at(motion, method).hash},
+                               {"motion", p.definition.motions[motion].name},
+                               {"method", p.definition.methods[method].name}};
+                if (std::find(all.begin(), all.end(), one) == all.end())
+                    all.push_back(one);
+            }
+    return all;
+}
+
+json describe_session(const prepared_experiment& p, const std::optional<simulation>& simulate,
+                      const std::string& masker)
+{
+    json thresholds = json::array();
+    for (const tactor_spec& t : p.where.tactors.tactors)
+        thresholds.push_back(files::threshold_json(t));
+    json j{{"schema", "tactor-session/1"}, {"participant", p.participant}};
+    j["simulated"] = simulate.has_value();
+    j["simulation"] = simulate ? json(to_text(*simulate)) : json(nullptr);
+    j["seed"] = p.seed;
+    j["order"] = run_names(p);
+    j["level"] = level_facts(p.definition);
+    j["array"] = array_facts(p.where.tactors);
+    j["thresholds_dbfs"] = thresholds;
+    j["thresholds_assumed"] = p.assumed;
+    j["calibration"] = calibration_facts(p);
+    j["rate"] = p.render.rate;
+    j["channels"] = p.render.channels;
+    j["masking"] = masking_facts(p.definition.masking);
+    j["masker"] = simulate || masker.empty() ? json(nullptr) : json(masker);
+    j["stimuli"] = stimulus_facts(p);
+    j["experiment"] = experiment_facts(p.definition);
+    j["versions"] = {{"tactor", std::string(version())}, {"build", std::string(build_facts())}};
+    j["device"] = simulate ? json(nullptr) : json(p.pcm);
+    j["sound_server"] = nullptr;
+    j["masker_sound_server"] = nullptr;
+    j["streams"] = json::array();
+    j["date"] = nullptr;
+    return j;
+}
+
+} // namespace tactor::study

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+#include "study/session/stage.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "rt/clock.hpp"
+
+namespace tactor::study {
+namespace {
+
+constexpr int look_ms = 40; // 25 times a second
+
+// A buffer of 40 ms: nothing waits for the noise but its own beginning.
+constexpr unsigned masker_period_frames = 480;
+constexpr unsigned masker_periods = 4;
+constexpr unsigned masker_channels = 2;
+
+} // namespace
+
+stage::stage(const alsa_options& device, const session::stream_options& o, const session::environment& e,
+             session::stream_source source)
+    : environment_(e),
+      options_(o),
+      session_(device, options_, e, std::move(source)),
+      room_(session_.setup().channels, session::settle_limits(options_, environment_), session_.setup().rate)
+{
+}
+
+std::string given_stimulus::fault() const
+{
+    if (flaw.empty() && limited)
+        return "a limit changed it ([limits] in the array file or configuration)";
+    return flaw;
+}
+
+double stage::room_s(const score& s, double lead_s) const
+{
+    const std::uint64_t at =
+        before_ + session_.position().played + static_cast<std::uint64_t>(std::llround(lead_s * s.rate()));
+    const std::uint64_t wait = room_.wait(s, at).value_or(0); // it never has room: it will be told as changed
+    return static_cast<double>(wait) / s.rate();
+}
+
+bool stage::make_room(const score& s, double lead_s, const std::function<bool(double)>& watch)
+{
+    const double wait_s = room_s(s, lead_s);
+    return wait_s == 0.0 || pass(wait_s, watch);
+}
+
+void stage::mask(sink_opener open, const masking_options& o)
+{
+    open_masker_ = std::move(open);
+    masking_ = o;
+    masker_ = std::make_unique<masker>(open_masker_(), masking_);
+}
+
+void stage::mask(const std::string& pcm, const masking_options& o)
+{
+    mask(
+        [pcm] {
+            return open_alsa({.pcm = pcm,
+                              .channels = masker_channels,
+                              .wider = true,
+                              .period_frames = masker_period_frames,
+                              .periods = masker_periods});
+        },
+        o);
+}
+
+void stage::check_signal() const
+{
+    if (session_.signal() != 0)
+        throw left{session_.signal()};
+}
+
+bool stage::fade_in()
+{
+    if (!masker_)
+        return true;
+    if (masker_->ended() != io_kind::ok) {
+        masker_.reset(); // it holds the device
+        masker_ = std::make_unique<masker>(open_masker_(), masking_);
+    }
+    masker_->fade_in();
+    const bool full = masker_->wait_for(masking_state::full, [this](int descriptor, int timeout_ms) {
+        return session_.wait_for(descriptor, timeout_ms);
+    });
+    check_signal();
+    return full;
+}
+
+void stage::fade_out() noexcept
+{
+    if (masker_)
+        masker_->fade_out();
+}
+
+given_stimulus stage::give(const score& s, double lead_s, const watcher& watch)
+{
+    given_stimulus g;
+    if (!fade_in()) {
+        g.flaw = fmt::format("the masking noise does not sound ({})", to_string(masker_->ended()));
+        return g;
+    }
+    const unsigned breaks = masker_ ? masker_->breaks() : 0;
+    const player_stats before = session_.stats();
+    // A frame that is known before: where it is late all the same the report says by how much, to the frame.
+    const std::uint64_t at = session_.position().played + session_.setup().buffer_frames +
+                             static_cast<std::uint64_t>(std::llround(lead_s * s.rate()));
+    const stroke_report r = session_.play(
+        s,
+        [&](const player_position* where) {
+            if (where != nullptr)
+                watch(where->stroke_frame);
+        },
+        start_at::frame(at));
+    check_signal();
+    const player_stats after = session_.stats();
+    g.xruns = static_cast<unsigned>(after.xruns - before.xruns);
+    g.limited =
+        after.drives_cut != before.drives_cut || after.power_limited_frames != before.power_limited_frames;
+    const auto length = static_cast<std::int64_t>(static_cast<double>(s.frames()) / s.rate() * 1e9);
+    g.frames = r.frames;
+    if (r.frames > 0)
+        g.first_frame = at + static_cast<std::uint64_t>(std::llround(std::max(0.0, r.late_s) * s.rate()));
+    g.started_ns = r.started_ns.value_or(rt::monotonic_ns() - (r.frames > 0 ? length : 0));
+    g.ended_ns = g.started_ns + length;
+    if (g.first_frame)
+        room_.played(s, before_ + *g.first_frame);
+    if (r.state != state_kind::finished)
+        g.flaw = r.state == state_kind::cancelled ? "it was cut off" : r.why;
+    else if (g.xruns > 0)
+        g.flaw = "an xrun";
+    else if (masker_ && (masker_->breaks() != breaks || noise_ended() != io_kind::ok))
+        g.flaw = "the masking noise stood still";
+    return g;
+}
+
+bool stage::pass(double seconds, const std::function<bool(double)>& watch)
+{
+    const std::uint64_t began = session_.position().played;
+    for (;;) {
+        const std::uint64_t now = session_.position().played;
+        const double passed_s = static_cast<double>(now - std::min(now, began)) / session_.setup().rate;
+        if (passed_s >= seconds || !watch(passed_s))
+            return true;
+        if (session_.lost())
+            return false;
+        const double left_ms = std::ceil((seconds - passed_s) * 1e3);
+        static_cast<void>(session_.wait_for(-1, static_cast<int>(std::min<double>(look_ms, left_ms))));
+        check_signal();
+    }
+}
+
+void stage::wait_for(int descriptor)
+{
+    if (!session_.wait_for(descriptor))
+        throw left{session_.signal()};
+}
+
+bool stage::reopen()
+{
+    const std::uint64_t passed = session_.position().played;
+    const bool back = session_.reopen();
+    before_ += back ? passed : 0;
+    check_signal();
+    return back;
+}
+
+void stage::finish()
+{
+    if (masker_) {
+        masker_->fade_out();
+        masker_->wait_for(masking_state::silent);
+    }
+    session_.end();
+}
+
+} // namespace tactor::study

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// Which keys of an input device answer what. A device itself: tests/vm/guest/test_keypad.py.
+#include "study/session/keypad.hpp"
+
+#include <map>
+#include <string>
+
+#include <doctest/doctest.h>
+#include <linux/input-event-codes.h>
+
+#include <tactor/error.hpp>
+
+namespace keypad_test {
+
+using namespace tactor;
+using study::answer_of_key;
+
+TEST_CASE("keys of a keyboard, a number block, a button box and a joystick answer 1 to 9")
+{
+    const int block[] = {KEY_KP1, KEY_KP2, KEY_KP3, KEY_KP4, KEY_KP5, KEY_KP6, KEY_KP7, KEY_KP8, KEY_KP9};
+    for (int i = 0; i < 9; ++i)
+        for (const int code : {KEY_1 + i, block[i], BTN_0 + i, BTN_TRIGGER + i})
+            CHECK(study::answer_of_key(static_cast<std::uint16_t>(code)) == static_cast<char>('1' + i));
+}
+
+TEST_CASE("an adjustment is made with signs or arrows, and most keys answer nothing")
+{
+    std::map<char, unsigned> of;
+    for (unsigned code = 0; code <= 0xFFFF; ++code)
+        if (const auto c = study::answer_of_key(static_cast<std::uint16_t>(code)))
+            ++of[*c];
+    CHECK(of == std::map<char, unsigned>{{'+', 2},
+                                         {'-', 3},
+                                         {'>', 1},
+                                         {'<', 1},
+                                         {'a', 3},
+                                         {'n', 3},
+                                         {'1', 4},
+                                         {'2', 4},
+                                         {'3', 4},
+                                         {'4', 4},
+                                         {'5', 4},
+                                         {'6', 4},
+                                         {'7', 4},
+                                         {'8', 4},
+                                         {'9', 4}});
+    CHECK(study::answer_of_key(KEY_UP) == '+');
+    CHECK(study::answer_of_key(KEY_LEFT) == '<');
+    CHECK(study::answer_of_key(KEY_ENTER) == 'a');
+    CHECK(study::answer_of_key(KEY_0) == 'n');
+}
+
+TEST_CASE("a keypad that is not there, and what is none")
+{
+    const auto kind = [](const char* device) {
+        try {
+            const study::keypad k(device);
+        } catch (const error& e) {
+            return e.kind();
+        }
+        return error_kind::runtime;
+    };
+    CHECK(kind("/dev/input/by-id/nobody-event-kbd") == error_kind::not_available);
+    CHECK(kind("/dev/null") == error_kind::bad_input);
+    CHECK(kind("/etc/passwd") == error_kind::bad_input);
+}
+
+} // namespace keypad_test

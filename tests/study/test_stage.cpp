@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: MIT
+// Stimuli on devices whose clock the test has: frames, and what makes a trial void.
+#include "study/session/stage.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <functional>
+#include <thread>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "clock_runner.hpp"
+#include "fake_dac.hpp"
+#include "has.hpp"
+#include "player_support.hpp"
+#include "scores.hpp"
+#include "sink/alsa/adopt.hpp"
+#include "study/experiment/definition.hpp"
+#include "study/experiment/stimuli.hpp"
+
+namespace stage_test {
+
+using namespace tactor;
+using session::environment;
+using namespace tactor::test;
+
+namespace {
+
+constexpr std::size_t frame = 36; // bytes: nine channels of s32
+constexpr double lead_s = 0.1;
+
+const char* pairs = R"(
+[experiment]
+name = "pairs"
+level = { dbfs = -20 }
+gap_s = 0.0321
+[[motion]]
+name = "east"
+path = "M0 20H40"
+duration = 0.2
+[[method]]
+name = "a"
+algorithm = "tactile-brush"
+[[method]]
+name = "b"
+[[run]]
+name = "r"
+task = "choose"
+attribute = "uniformity"
+trials = 2
+)";
+
+environment nine_tactors(double longest_drive_s, double window_s)
+{
+    environment e;
+    e.tactors = palm();
+    e.config.limits.emplace();
+    e.config.limits->max_drive_s = longest_drive_s;
+    e.config.limits->window_s = window_s;
+    return e;
+}
+
+// A stage on a DAC that runs as fast as it can.
+struct set_up {
+    fake_dac dac;
+    environment where;
+    study::stage there;
+    std::optional<running_clock> clock; // after the stage, which blocks the signals of threads to come
+
+    explicit set_up(double longest_drive_s = 5.0, double window_s = 10.0)
+        : where(nine_tactors(longest_drive_s, window_s)), there(nine(), {}, where, source(dac))
+    {
+        clock.emplace(dac, running_clock::capture_kind::kept);
+    }
+
+    static session::stream_source source(fake_dac& d)
+    {
+        session::stream_source s{[&d](const alsa_options& o) { return pcm::adopt(d.pcm(), o); }, patient()};
+        s.player.realtime = false;
+        return s;
+    }
+};
+
+bool sounds(const std::vector<std::byte>& bytes)
+{
+    return std::any_of(bytes.begin(), bytes.end(), [](std::byte b) { return b != std::byte{0}; });
+}
+
+// Does something when the stimulus has sounded for a while. Until then the DAC goes on step by step, so that
+// it is not over before, however late this thread gets its turn.
+class meanwhile {
+public:
+    meanwhile(set_up& s, std::function<void()> act)
+    {
+        s.clock.reset();
+        thread_ = std::thread([&s, act = std::move(act)] {
+            const auto step = [&s] {
+                if (s.dac.queued() >= 192)
+                    s.dac.advance_queued(96);
+                std::this_thread::yield();
+            };
+            while (!s.there.session().position().stroke)
+                step();
+            const std::size_t heard = s.dac.captured_frames();
+            while (s.dac.captured_frames() <= heard + 960)
+                step();
+            act();
+            s.clock.emplace(s.dac, running_clock::capture_kind::kept);
+        });
+    }
+    ~meanwhile() { thread_.join(); }
+
+private:
+    std::thread thread_;
+};
+
+const study::stage::watcher nobody = [](std::uint64_t) {};
+
+} // namespace
+
+TEST_CASE("both stimuli of a pair are where they are said to be, the gap between them exact to the frame")
+{
+    set_up s;
+    const auto d = study::read_definition(pairs, "pairs.toml", {});
+    render_options o;
+    o.rate = rate;
+    o.level_dbfs = *d.level_dbfs;
+    const study::stimulus_set stimuli(d, palm(), o,
+                                      [](const stroke&, const plan& p, const score&) { return p.algorithm; });
+    const auto gap = static_cast<std::size_t>(std::llround(0.0321 * rate));
+    for (const study::planned_trial t : {study::planned_trial{0, 0, 1}, study::planned_trial{0, 1, 0}}) {
+        const study::given_stimulus g = s.there.give(stimuli.make_score(t), lead_s, nobody);
+        REQUIRE(g.flaw.empty());
+        REQUIRE(g.first_frame);
+        CHECK(g.xruns == 0);
+        const study::stimulus& first = stimuli.at(0, t.method_1);
+        const study::stimulus& second = stimuli.at(0, *t.method_2);
+        CHECK(g.frames == first.frames + gap + second.frames);
+        CHECK(stimuli.second(t) == first.frames + gap);
+        const std::vector<std::byte> all = s.dac.captured();
+        const auto piece = [&](std::size_t from, std::size_t n) {
+            return part(all, from * frame, n * frame);
+        };
+        const auto alone = [&](const study::stimulus& x) {
+            return rendered(score(palm(), x.schedule, o), format_kind::s32);
+        };
+        CHECK(piece(*g.first_frame, first.frames) == alone(first));
+        CHECK_FALSE(sounds(piece(*g.first_frame + first.frames, gap)));
+        CHECK(piece(*g.first_frame + stimuli.second(t), second.frames) == alone(second));
+        CHECK_FALSE(sounds(piece(*g.first_frame - rate / 10, rate / 10))); // the lead
+    }
+    s.there.finish();
+}
+
+TEST_CASE("a frame that is said is right even where there was no time for it")
+{
+    set_up s;
+    const score music = random_score(3, 4);
+    for (int i = 0; i < 5; ++i) {
+        const study::given_stimulus g = s.there.give(music, 0.0, nobody);
+        REQUIRE(g.flaw.empty());
+        REQUIRE(g.first_frame);
+        CHECK(part(s.dac.captured(), *g.first_frame * frame, music.frames() * frame) ==
+              rendered(music, format_kind::s32));
+    }
+    s.there.finish();
+}
+
+TEST_CASE("an xrun makes it void, and the next is whole again")
+{
+    set_up s;
+    {
+        const meanwhile x(s, [&] { s.dac.advance(1'000'000); });
+        const study::given_stimulus g = s.there.give(tone(0.5), lead_s, nobody);
+        CHECK_FALSE(g.flaw.empty());
+        CHECK(g.xruns == 1);
+        REQUIRE(g.first_frame);
+        CHECK(g.frames > 0);
+        CHECK(g.frames < rate / 2);
+    }
+    CHECK_FALSE(s.there.lost());
+    const study::given_stimulus next = s.there.give(tone(0.1), lead_s, nobody);
+    CHECK(next.flaw.empty());
+    CHECK(next.xruns == 0);
+    s.there.finish();
+}
+
+TEST_CASE("a device that is lost makes it void, in the stimulus and while time passes")
+{
+    set_up s;
+    {
+        const meanwhile x(s, [&] { s.dac.disconnect(); });
+        const study::given_stimulus g = s.there.give(tone(0.5), lead_s, nobody);
+        CHECK(g.flaw == "the device is gone");
+    }
+    while (!s.there.lost())
+        std::this_thread::yield();
+    CHECK_FALSE(s.there.pass(1.0, [](double) { return true; }));
+    CHECK(s.there.give(tone(0.1), lead_s, nobody).flaw == "the device is gone");
+    s.there.finish();
+}
+
+TEST_CASE("a stimulus that a limit changed says so")
+{
+    set_up s(0.3); // for so long one tactor may be driven in ten seconds
+    CHECK_FALSE(s.there.give(tone(0.1), 0.0, nobody).limited);
+    const study::given_stimulus g = s.there.give(tone(0.5), 0.0, nobody);
+    CHECK(g.flaw.empty());
+    CHECK(g.limited);
+    s.there.finish();
+}
+
+TEST_CASE("a stimulus that falls silent because of those before says so")
+{
+    set_up s(0.3, 3600.0); // an hour, on a DAC that does not wait for the test
+    CHECK_FALSE(s.there.give(tone(0.25), 0.0, nobody).limited);
+    // Its tactor is closed in the midst of this one, and still for the next.
+    CHECK(s.there.give(tone(0.2), 0.0, nobody).limited);
+    CHECK(s.there.give(tone(0.2), 0.0, nobody).limited);
+    CHECK(s.there.give(tone(0.01), 0.0, nobody).limited);
+    CHECK_FALSE(s.there.give(tone(0.2, 4), 0.0, nobody).limited);
+    CHECK(s.there.make_room(tone(0.2), 0.1, [](double) { return false; })); // somebody ends it
+    CHECK(s.there.give(tone(0.2), 0.1, nobody).limited);
+    s.there.finish();
+}
+
+TEST_CASE("a stimulus that has waited for room is whole")
+{
+    set_up s(0.3, 60.0);
+    for (int i = 0; i < 4; ++i) {
+        CHECK(s.there.make_room(tone(0.25), 0.1, [](double) { return true; }));
+        const study::given_stimulus g = s.there.give(tone(0.25), 0.1, nobody);
+        CHECK(g.flaw.empty());
+        CHECK_FALSE(g.limited);
+    }
+    s.there.finish();
+}
+
+TEST_CASE("what the experimenter cuts off says so")
+{
+    set_up s;
+    const study::given_stimulus g = s.there.give(tone(100'000.0), 0.0, [&](std::uint64_t) { s.there.cut(); });
+    CHECK(g.flaw == "it was cut off");
+    s.there.finish();
+}
+
+TEST_CASE("time passes by the stream alone")
+{
+    set_up s;
+    const std::uint64_t before = s.there.session().position().played;
+    double last = -1.0;
+    CHECK(s.there.pass(0.5, [&](double t) {
+        CHECK(t >= last);
+        CHECK(t < 0.5);
+        last = t;
+        return true;
+    }));
+    CHECK(s.there.session().position().played >= before + rate / 2);
+    CHECK(s.there.pass(1e9, [](double) { return false; })); // somebody ends it
+    s.there.finish();
+}
+
+TEST_CASE("noise that stands still makes it void; noise whose device is gone is opened again")
+{
+    std::vector<std::unique_ptr<fake_dac>> headphones;
+    std::vector<std::unique_ptr<running_clock>> clocks;
+    set_up s;
+    const auto open = [&] {
+        headphones.push_back(std::make_unique<fake_dac>());
+        fake_dac& d = *headphones.back();
+        auto sink = pcm::adopt(d.pcm(), {.channels = 2, .period_frames = 480, .periods = 4});
+        clocks.push_back(std::make_unique<running_clock>(d, running_clock::capture_kind::kept));
+        return sink;
+    };
+    s.there.mask(open, {.level_dbfs = -20.0, .patience_s = 600.0});
+    const auto give = [&] {
+        const study::noise_around noise(s.there);
+        return s.there.give(tone(0.5), lead_s, nobody);
+    };
+    CHECK(give().flaw.empty());
+    CHECK(sounds(headphones[0]->captured()));
+    {
+        const meanwhile x(s, [&] {
+            fake_dac& d = *headphones[0];
+            d.advance(1'000'000);
+            d.await([&] { return d.starts() == 2; });
+            const std::size_t again = d.captured_frames();
+            d.await([&] { return d.captured_frames() > again + 4800; });
+        });
+        CHECK(give().flaw == "the masking noise stood still");
+    }
+    {
+        const meanwhile x(s, [&] {
+            headphones[0]->disconnect();
+            while (s.there.noise_ended() == io_kind::ok)
+                std::this_thread::yield();
+        });
+        CHECK_FALSE(give().flaw.empty());
+    }
+    CHECK(headphones.size() == 1);
+    CHECK(give().flaw.empty());
+    CHECK(headphones.size() == 2);
+    s.there.finish();
+    clocks.clear();
+}
+
+} // namespace stage_test
