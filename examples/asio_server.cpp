@@ -59,8 +59,9 @@ try {
     asio::io_context context;
     const auto port = static_cast<std::uint16_t>(std::atoi(argv[1]));
     udp::socket socket(context, udp::endpoint(asio::ip::address_v4::loopback(), port));
-    tactor::player player(tactor::open_alsa({.pcm = argc > 2 ? argv[2] : "null", .channels = 9}),
-                          tactor::preset_array("palm-3x3"));
+    tactor::player player(
+        tactor::open_alsa({.pcm = argc > 2 ? argv[2] : "null", .channels = 9, .wider = true}),
+        tactor::preset_array("palm-3x3"));
 
     asio::signal_set signals(context, SIGINT, SIGTERM);
     signals.async_wait([&](auto, int) {

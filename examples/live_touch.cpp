@@ -38,7 +38,8 @@ try {
         return std::perror("usage: live_touch EVENTS [PCM]"), 2;
     const tactor::array palm = tactor::preset_array("palm-3x3");
     tactor::player player(
-        tactor::open_alsa({.pcm = argc > 2 ? argv[2] : "null", .channels = palm.channels()}), palm);
+        tactor::open_alsa({.pcm = argc > 2 ? argv[2] : "null", .channels = palm.channels(), .wider = true}),
+        palm);
     player.on_report([](const tactor::stroke_report& r) { std::puts(to_string(r.state).data()); });
 
     tactor::point at{palm_mm / 2.0, palm_mm / 2.0};

@@ -18,6 +18,7 @@ try {
     tactor::alsa_options device;
     device.pcm = argc > 1 ? argv[1] : "null";
     device.channels = score.channels();
+    device.wider = true; // on a card with more channels the others are silent
     device.rate = score.rate();
     // Opens the device and starts the stream, silent. Keep it: strokes then start within milliseconds.
     tactor::player player(tactor::open_alsa(device), palm);

@@ -84,8 +84,10 @@ endpoints open_endpoints(const endpoint_options& o)
         check_private(e.socket_path);
     } else {
         e.socket_path = o.socket();
-        e.socket = net::listen_unix(e.socket_path, o.mode, o.group);
-        e.own_socket = file_at(e.socket_path);
+        if (!e.socket_path.empty()) {
+            e.socket = net::listen_unix(e.socket_path, o.mode, o.group);
+            e.own_socket = file_at(e.socket_path);
+        }
     }
     try {
         if (!e.tcp && o.tcp)

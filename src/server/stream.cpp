@@ -114,7 +114,8 @@ void stream::open()
             });
         } catch (const error& e) {
             failure = e.what();
-            if (e.kind() == error_kind::bad_input)
+            // A device that is there and cannot do it names the field that is in the way.
+            if (e.kind() == error_kind::bad_input || !e.field().empty())
                 bad = std::current_exception();
         } catch (const std::exception& e) {
             failure = e.what();

@@ -97,7 +97,6 @@ std::string find_array_that_fits(alsa_options o)
     for (const std::string& name : array_presets())
         by_channels.emplace(preset_array(name).channels(), name);
     o.log = {};
-    o.wider = true;
     const unsigned needed = o.channels;
     for (auto a = by_channels.rbegin(); a != by_channels.rend(); ++a) {
         o.channels = a->first;

@@ -2,6 +2,7 @@
 #include "session/interrupt.hpp"
 
 #include <cerrno>
+#include <csignal>
 #include <system_error>
 
 #include <sys/signalfd.h>
@@ -10,8 +11,21 @@
 #include <tactor/error.hpp>
 
 namespace tactor::session {
+namespace {
 
-interrupt::interrupt()
+volatile std::sig_atomic_t ending_signal = 0;
+
+// In a signal's handler: calls of the system only.
+extern "C" void end_now(int)
+{
+    constexpr char text[] = "tactor: the device does not answer: ended all the same\n";
+    static_cast<void>(!write(STDERR_FILENO, text, sizeof text - 1));
+    _exit(interrupt::status(ending_signal));
+}
+
+} // namespace
+
+interrupt::interrupt(unsigned grace_s) : grace_s_(grace_s)
 {
     sigset_t set;
     sigemptyset(&set);
@@ -25,6 +39,8 @@ interrupt::interrupt()
 
 interrupt::~interrupt()
 {
+    alarm(0);
+    ending_signal = 0;
     close(fd_);
     if (!last_)
         pthread_sigmask(SIG_SETMASK, &before_, nullptr);
@@ -35,7 +51,12 @@ int interrupt::poll() noexcept
     signalfd_siginfo info{};
     if (read(fd_, &info, sizeof info) != sizeof info)
         return 0;
-    return static_cast<int>(info.ssi_signo);
+    const auto signal = static_cast<int>(info.ssi_signo);
+    if (ending_signal == 0 && std::signal(SIGALRM, end_now) != SIG_ERR) {
+        ending_signal = signal;
+        alarm(grace_s_);
+    }
+    return signal;
 }
 
 } // namespace tactor::session

@@ -11,14 +11,17 @@ namespace tactor::session {
 /// them through a descriptor. Make it before any thread.
 class interrupt {
 public:
-    interrupt();
+    /// \throws error (runtime).
+    explicit interrupt(unsigned grace_s = 20);
     ~interrupt();
     interrupt(const interrupt&) = delete;
     interrupt& operator=(const interrupt&) = delete;
 
     /// Readable when a signal has come.
     int descriptor() const noexcept { return fd_; }
-    /// The signal that has come, or 0. Does not wait.
+    /// Returns the signal that has come, or 0. Does not wait. From the first signal on the program has
+    /// `grace_s` to end by itself: then it is ended with that signal's status, since a device may hang for
+    /// good in the library that drives it. The amplifier's holder switches off when the program is gone.
     int poll() noexcept;
     /// Whatever else comes is nothing more to this process, which has heard that it is to end and ends.
     void was_the_last() noexcept { last_ = true; }
@@ -27,6 +30,7 @@ public:
 
 private:
     int fd_;
+    unsigned grace_s_;
     bool last_ = false;
     sigset_t before_{};
 };

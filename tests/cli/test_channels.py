@@ -53,7 +53,9 @@ class Channels(ToolTest):
 
     def test_a_number_that_is_stated_is_exact(self):
         self.assertIn(": 16 channels,", self.ok("play", *self.STROKE, "-D", "sixteen", "--channels", "16").stdout)
-        self.refused(3, "play", *self.STROKE, "-D", "sixteen", "--channels", "9", says=["cannot play 9 channels", "it can do channels 16"])
+        says = ["cannot play 9 channels", "it can do channels 16", "without a number of channels it leaves the other channels silent"]
+        r = self.refused(3, "play", *self.STROKE, "-D", "sixteen", "--channels", "9", says=says)
+        self.assertNotIn("fits", r.stderr)
         self.refused(2, "play", *self.STROKE, "-D", "sixteen", "--channels", "8", says=["--channels", "palm-3x3 needs 9 channels", "give 9 or more"])
         self.refused(2, "play", *self.STROKE, "--channels", "0", says=["--channels"])
         self.write("a.toml", 'array.preset = "palm-3x3"\noutput.channels = 10\n')
@@ -86,6 +88,9 @@ class Channels(ToolTest):
         self.assertEqual(c.ok("hello")["stream"]["channels"], 9)
         n = c.ok("play", stroke="park2016-1", options={"duration": 0.2})["stroke"]
         self.assertEqual(c.end_of(n)["state"], "finished")
+
+    def test_the_service_does_not_wait_for_a_card_that_cannot_do_it(self):
+        self.refused(3, "serve", "--socket", f"{self.dir}/s", "-D", "eight", says=["cannot play 9 channels"])
 
     def test_what_is_drawn_live_and_a_walk_take_it_too(self):
         self.assertIn("9 of 16 channels", self.ok("play", "--live", "-", "-D", "sixteen", stdin="20 20\n").stdout)

@@ -27,6 +27,13 @@ class Serve(ServeTest):
         self.assertIn("every user of this machine", err)
         self.assertFalse(os.path.exists(s.where["socket"]))
 
+    def test_a_page_alone_needs_no_folder_for_a_socket(self):
+        s = self.serve("--http", "0", env={"XDG_RUNTIME_DIR": "", "RUNTIME_DIRECTORY": ""})
+        self.assertIsNone(s.where["socket"])
+        self.assertRegex(s.where["http"], "^http://127")
+        self.assertEqual(s.terminate()[0], 0)
+        self.refused(2, "serve", "--socket", "", "--http", "0", "-D", "null", says=["--socket: the name is empty (name a path)"])
+
     def test_sigint_ends_it_too(self):
         self.assertEqual(self.serve().terminate(signal.SIGINT)[0], 0)
 

@@ -156,6 +156,7 @@ TEST_CASE("a line goes into the columns that are there, and ends as the others d
     CHECK(added("a\tb\r1\t2") == "\r7\tn/a\r");
     CHECK(added("a\tb\n1\t2") == "\n7\tn/a\n");
     CHECK(added("a\tb\n1\t") == "n/a\n7\tn/a\n");
+    CHECK(added("a\tb\n1\t\"\"") == "\n7\tn/a\n"); // n/a behind "" would be a part of it
     CHECK(added("a\tb\n1\t2\t") == "\n7\tn/a\n");
     CHECK(added("a") == "\n7\n");
     CHECK(added("a\t\n1\t\n\n") == "7\n");

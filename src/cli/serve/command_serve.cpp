@@ -132,7 +132,8 @@ void tell_listening(const server::endpoints& at, const std::string& format)
                        {"http", or_null(http)}};
         fmt::print("{}\n", all.dump(-1, ' ', false, json::error_handler_t::replace));
     } else {
-        say(stdout, "listening: socket {}\n", at.socket_path);
+        if (!at.socket_path.empty())
+            say(stdout, "listening: socket {}\n", at.socket_path);
         if (!at.tcp_address.empty())
             say(stdout, "listening: tcp {}\n", at.tcp_address);
         if (!at.osc_address.empty())
@@ -222,7 +223,11 @@ int serve(settings& s, owners_defaults& defaults, const session::stream_options&
     stream.going = [&kept](unsigned channels) { kept.going(channels); };
     stream.settled = [&kept](const drive_history& h) { kept.settled(h); };
     stream.tactors = service.plans.tactors;
-    stream.changed = tell_owner();
+    stream.changed = [&stop, tell = tell_owner()](server::stream_state state, const std::string& reason) {
+        if (state == server::stream_state::closing)
+            stop.poll(); // from here on it has so long to end
+        tell(state, reason);
+    };
     stream.idle_stop_s = serve.idle_stop_s.value_or(0.0);
     server::serve(at, std::move(service), std::move(stream), std::move(network), stop.descriptor(),
                   [&] { tell_listening(at, o.format); });

@@ -32,10 +32,13 @@ bool is_systems()
     return !given.empty() && (users.empty() || !given.starts_with(users + "/"));
 }
 
-std::string default_socket()
+// Returns where the Unix socket is by default; empty where nothing says so and there are other doors.
+std::string default_socket(bool others)
 {
     if (const std::string folder = session::runtime_folder(); !folder.empty())
         return folder + socket_name;
+    if (others)
+        return {};
     throw error(error_kind::bad_input, "socket",
                 "neither RUNTIME_DIRECTORY nor XDG_RUNTIME_DIR says in which folder",
                 "name one with --socket PATH, or under [serve] in the configuration");
@@ -60,8 +63,12 @@ serve_settings settle_serve(const serve_options& o, const setup& config)
 
 server::endpoint_options settle_endpoints(const serve_settings& s)
 {
+    if (s.socket && s.socket->empty())
+        throw error(error_kind::bad_input, "--socket", "the name is empty", "name a path");
     server::endpoint_options e;
-    e.socket = [given = s.socket] { return given ? *given : default_socket(); };
+    e.socket = [given = s.socket, others = s.tcp || s.osc || s.http] {
+        return given ? *given : default_socket(others);
+    };
     if (is_systems()) {
         e.mode = S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP;
         if (const group* g = ::getgrnam("tactor"))

@@ -115,11 +115,15 @@ error refused(snd_pcm_t* p, const hw_params& space, const alsa_options& o)
         add("rate");
     if (!takes_format(p, space, wanted_formats(o)))
         add("format");
+    alsa_options wider = o;
+    wider.wider = true;
+    const bool holds = !has_channels && set_channels(p, copy(space), wider) != 0;
     const std::string why =
         s.empty() ? "each alone would do, but not together" : fmt::format("refused: {}", s);
     return error(error_kind::not_available, fmt::format("PCM \"{}\"", o.pcm),
                  fmt::format("cannot play {}; {}", asked(o), why),
-                 fmt::format("it can do {}", describe(space)))
+                 fmt::format("it can do {}{}", describe(space),
+                             holds ? "; wider = true leaves the other channels silent" : ""))
         .with_field(has_channels ? "" : "channels");
 }
 

@@ -259,8 +259,9 @@ std::string text_table::missing_end() const
 {
     if (text_.ends_with('\n') || text_.ends_with('\r'))
         return {};
+    const auto has_no_byte = [](const table_cell& c) { return c.begin == c.end; }; // unlike ""
     const bool empty =
-        is_open() && rows_.back().end() == text_.size() && rows_.back().cells.back().text.empty();
+        is_open() && rows_.back().end() == text_.size() && has_no_byte(rows_.back().cells.back());
     return (empty ? "n/a" : "") + line_end_;
 }
 
