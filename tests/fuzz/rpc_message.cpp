@@ -1,41 +1,48 @@
 // SPDX-License-Identifier: MIT
-// Messages of JSON-RPC, as lines, to a whole service with a device that plays to nobody: every answer is one
-// of the standard's and in words, every stroke that began has one end, and nothing stays.
+// Sends messages of JSON-RPC, as lines, to a whole service on a device without sound. Each request gets one
+// answer, in the form of the standard and with a reason, each stroke that began ends once, and nothing stays
+// behind. One service serves all inputs: in each of them, "stroke":1 is the first stroke of that input. An
+// empty line waits for all answers and then lets some periods of the device pass.
+#include <algorithm>
 #include <chrono>
-#include <cstdlib>
-#include <map>
 #include <memory>
 #include <set>
-#include <span>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 
 #include <tactor/array.hpp>
-#include <tactor/sink.hpp>
 
 #include "holds.hpp"
 #include "server/service.hpp"
+#include "stepped_sink.hpp"
 
 using namespace tactor;
 using net::json;
 
 namespace {
 
-// Fast, so that strokes are soon over.
-constexpr unsigned rate = 384000;
+constexpr unsigned channels = 9;
+constexpr unsigned rate = 48000;
+constexpr unsigned period_frames = 192;
 
-class nobody final : public paced_sink {
-public:
-    nobody() : paced_sink({.name = "nobody", .channels = 9, .rate = rate, .period_frames = 192}) {}
+// Limits that an input of 4 kB can reach. They keep the time of a plan to milliseconds.
+server::service_limits small_limits()
+{
+    server::service_limits l;
+    l.max_strokes = 8;
+    l.max_live_strokes = 2;
+    l.max_points_per_s = 16.0;
+    l.max_stroke_s = 10.0;
+    l.max_nesting = 16;
+    return l;
+}
 
-protected:
-    io_kind take(std::uint64_t, std::span<const std::byte>) noexcept override { return io_kind::ok; }
-};
-
-// Holds what it is told against the protocol.
+// Checks the messages to a client against the protocol.
 class listener final : public server::client_link {
 public:
     void send(std::string message) override
@@ -47,7 +54,23 @@ public:
     std::size_t waiting() const override { return 0; }
     void finish() override {}
 
-    bool ended() const { return going_.empty(); }
+    /// Notes which answers a message needs.
+    void ask(std::string_view text)
+    {
+        for (const auto& part :
+             net::parse_rpc(text, {.nesting = small_limits().max_nesting, .any_form = "stop"}).parts)
+            if (const auto* r = std::get_if<net::rpc_request>(&part); r == nullptr)
+                owed_.push_back(std::get<net::rpc_refusal>(part).id);
+            else if (r->wants_reply)
+                owed_.push_back(r->id);
+    }
+    /// Forgets the strokes that have ended.
+    void forget() { over_.clear(); }
+
+    bool is_owed() const { return !owed_.empty(); }
+    bool is_playing() const { return !going_.empty(); }
+    /// The greatest number of a stroke.
+    int newest() const { return newest_; }
 
 private:
     void take(const json& m)
@@ -56,6 +79,9 @@ private:
         if (m.contains("method"))
             return m["method"] == "stroke" ? stroke(m["params"]) : void();
         HOLDS(m.contains("id") && m.contains("result") != m.contains("error"));
+        const auto asked = std::find(owed_.begin(), owed_.end(), m["id"]);
+        HOLDS(asked != owed_.end());
+        owed_.erase(asked);
         if (m.contains("error")) {
             static const std::set<int> codes{-32700, -32600, -32601, -32602, -32000, -32001, -32002};
             HOLDS(codes.contains(m["error"]["code"].get<int>()));
@@ -70,9 +96,10 @@ private:
     }
     void stroke(const json& p)
     {
-        // Whoever asked without an id learns the number from this.
+        // A client that asks without an id learns the number from this.
         const int n = p["stroke"].get<int>();
         HOLDS(!over_.contains(n));
+        newest_ = std::max(newest_, n);
         going_.insert(n);
         if (p["state"] != "started") {
             going_.erase(n);
@@ -80,16 +107,30 @@ private:
         }
     }
 
+    std::vector<json> owed_; ///< ids
     std::set<int> over_;
     std::set<int> going_;
+    int newest_ = 0;
 };
 
-class quiet final : public server::client_link {
-public:
-    void send(std::string) override {}
-    std::size_t waiting() const override { return 0; }
-    void finish() override {}
-};
+// Adds `base` to each number of a stroke that is an integer of at most two digits.
+std::string with_strokes_from(std::string_view line, int base)
+{
+    constexpr std::string_view key = "\"stroke\":";
+    std::string out;
+    for (std::size_t at = line.find(key); at != line.npos; at = line.find(key)) {
+        out += line.substr(0, at + key.size());
+        line.remove_prefix(at + key.size());
+        const std::size_t digits = std::min(line.find_first_not_of("0123456789"), line.size());
+        const bool whole =
+            digits == line.size() || (line[digits] != '.' && line[digits] != 'e' && line[digits] != 'E');
+        if (!whole || digits == 0 || digits > 2)
+            continue;
+        out += std::to_string(base + std::stoi(std::string(line.substr(0, digits))));
+        line.remove_prefix(digits);
+    }
+    return out += line;
+}
 
 class rig {
 public:
@@ -97,93 +138,124 @@ public:
     {
         server::service_options o;
         o.plans.tactors = preset_array("palm-3x3");
-        o.plans.owner.render.channels = 9;
+        o.plans.owner.render.channels = channels;
         o.plans.owner.render.rate = rate;
+        o.limits = small_limits();
+        o.plans.max_stroke_s = o.limits.max_stroke_s;
+        o.plans.max_strokes = o.limits.max_strokes;
         o.version = "fuzz";
         o.plan_text = [](const server::planned& p, std::size_t) { return json(p.name).dump(); };
-        o.now_ns = [] {
-            return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
-        };
+        o.now_ns = [this] { return clock_.now_ns(); };
         server::stream_options s;
         s.tactors = o.plans.tactors;
         s.player.realtime = false;
         s.player.fade_s = 0.001;
-        s.wished.channels = 9;
+        s.player.stall_s = 600.0; // the clock stands still between inputs
+        // Strokes drive the array nearly always: the limits would mute it after some seconds.
+        s.player.limits.max_drive_s = 3600.0;
+        s.player.limits.window_s = 3600.0;
+        s.wished.channels = channels;
         s.wished.rate = rate;
-        s.open = [] { return std::make_unique<nobody>(); };
+        s.open = [this] { return clock_.make_sink(); };
         all_ = std::make_unique<server::service>(io_, std::move(o), std::move(s));
         all_->start();
         bool ready = false;
         all_->output().when_ready([&] { ready = true; });
         while (!ready)
             io_.run_one();
+        watcher_ = all_->connect(seen_, server::client_kind::local);
+        send_as_watcher(
+            R"({"jsonrpc":"2.0","method":"subscribe","params":{"events":["strokes","levels","stream"],"levels_hz":5}})");
     }
 
     void take(std::string_view lines)
     {
         const auto box = std::make_shared<listener>();
         const server::client_number c = all_->connect(box, server::client_kind::local);
+        const int first = seen_->newest();
         for (std::size_t from = 0; from < lines.size();) {
             const std::size_t end = std::min(lines.find('\n', from), lines.size());
-            if (end != from)
-                HOLDS(all_->receive(c, lines.substr(from, end - from)));
+            if (end == from)
+                settle(*box);
+            else
+                send(c, *box, with_strokes_from(lines.substr(from, end - from), first));
             from = end + 1;
-            io_.poll();
         }
-        // Whatever goes on is stopped, and then there is an end.
-        const server::client_number other =
-            all_->connect(std::make_shared<quiet>(), server::client_kind::local);
-        all_->receive(other, R"({"jsonrpc":"2.0","method":"stop"})");
-        all_->disconnect(other);
-        going_.push_back({c, box});
-        end(most_going);
-    }
-
-    ~rig()
-    {
-        end(0);
-        HOLDS(all_->status_now()["clients"] == 0);
-        HOLDS(all_->status_now()["strokes"].empty());
+        settle(*box);
+        send_as_watcher(R"({"jsonrpc":"2.0","method":"stop"})");
+        for (int steps = 0; !all_->input_ended(c) || seen_->is_playing(); ++steps)
+            step(steps);
+        HOLDS(!box->is_owed() && !box->is_playing());
+        all_->disconnect(c);
+        seen_->forget();
+        if (++inputs_ % inputs_a_look == 0)
+            look();
     }
 
 private:
-    struct client {
-        server::client_number number;
-        std::shared_ptr<listener> box;
-    };
+    static constexpr unsigned inputs_a_look = 64; // a look takes as long as a short message
 
-    // The stream takes milliseconds to fade: inputs that follow are handled meanwhile. So what is found may
-    // be of one of the last inputs: TACTOR_FUZZ_ALONE=1 has one end before the next.
-    const std::size_t most_going = std::getenv("TACTOR_FUZZ_ALONE") != nullptr ? 0 : 64;
-
-    // Waits until no more than so many inputs go on.
-    void end(std::size_t most)
+    void send(server::client_number c, listener& box, const std::string& line)
     {
-        for (;;) {
-            std::erase_if(going_, [this](const client& c) {
-                if (!all_->input_ended(c.number))
-                    return false;
-                HOLDS(c.box->ended());
-                all_->disconnect(c.number);
-                return true;
-            });
-            if (going_.size() <= most)
-                return;
-            io_.run_one();
-        }
+        box.ask(line);
+        HOLDS(all_->receive(c, line));
+        io_.poll();
+    }
+    void send_as_watcher(std::string_view line)
+    {
+        HOLDS(all_->receive(watcher_, line));
+        io_.poll();
     }
 
-    std::vector<client> going_;
+    // Waits for all answers, then lets time pass while strokes go on, for a few periods at most.
+    void settle(const listener& box)
+    {
+        constexpr int most_steps = 8;
+        while (box.is_owed())
+            io_.run_one();
+        for (int i = 0; i < most_steps && (box.is_playing() || seen_->is_playing()); ++i)
+            step(i);
+    }
+
+    // Runs the handlers that wait or, if there are none, plays a period. After many steps another thread
+    // probably needs this processor: then this thread sleeps.
+    void step(int steps)
+    {
+        constexpr int usual_steps = 8;
+        if (io_.poll() != 0)
+            return;
+        clock_.step();
+        if (steps >= usual_steps)
+            io_.run_one_for(std::chrono::milliseconds(1));
+    }
+
+    void look()
+    {
+        const auto now = all_->status_now();
+        HOLDS(now["clients"] == 1);
+        HOLDS(now["strokes"].empty());
+        HOLDS(now["stream"]["state"] == "running");
+    }
+
+    fuzz::stepped_clock clock_{{.name = "nobody",
+                                .channels = channels,
+                                .rate = rate,
+                                .period_frames = period_frames,
+                                .buffer_frames = 2 * period_frames}};
     boost::asio::io_context io_;
     boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{io_.get_executor()};
+    std::shared_ptr<listener> seen_ = std::make_shared<listener>(); ///< messages to the watcher
+    server::client_number watcher_ = 0; ///< a client that stays, and stops each input's strokes
     std::unique_ptr<server::service> all_;
+    unsigned inputs_ = 0;
 };
 
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
-    static rig one;
+    // Never destroyed: at exit, static tables of the library go before the threads that read them.
+    static rig& one = *new rig; // NOLINT(cppcoreguidelines-owning-memory)
     one.take(fuzz::text_of(data, size));
     return 0;
 }
