@@ -52,7 +52,13 @@ def rpc_seeds():
              '"drive","params":{"tactor":4,"intensity":0.5,"duration_s":0.01,"start":"now"}',
              '"subscribe","params":{"events":["strokes","levels","stream"],"levels_hz":100}']
     lines = [f'{{"jsonrpc":"2.0","id":{i},"method":{call}}}' for i, call in enumerate(calls)]
-    return [line.encode() for line in lines + [f"[{','.join(lines)}]", "\n".join(lines)]]
+    # An empty line lets time pass: strokes that begin, go on and end, in some orders.
+    named = {re.match(r'"(\w+)"', call)[1]: line for call, line in zip(calls, lines)}
+    armed = next(line for line in lines if '"armed"' in line)
+    orders = [[named["begin"], named["to"], "", named["to"], "", named["end"]], [named["begin"], named["to"], "", named["cancel"]],
+              [armed, "", named["fire"], "", named["stop"]], [named["play"], "", named["drive"], "", named["cancel"], named["status"]]]
+    whole = [f"[{','.join(lines)}]", *("\n".join(order) for order in [lines, *orders])]
+    return [text.encode() for text in lines + whole]
 
 
 def osc_seeds():
