@@ -69,7 +69,15 @@ void read_standard_input(const option_source& options, environment& e)
 {
     constexpr const char* name = "standard input";
     detail::note_input("/dev/fd/0");
-    const detail::whole_text text = detail::read_text(STDIN_FILENO, name, detail::max_stroke_bytes);
+    const detail::whole_text text = [] {
+        try {
+            return detail::read_text(STDIN_FILENO, name, detail::max_stroke_bytes);
+        } catch (const error& x) {
+            if (x.os_code() != 0)
+                refuse_standard_input(x.os_code());
+            throw;
+        }
+    }();
     if (!files::holds_plans(text)) {
         e.standard_input = parse_strokes(text, name);
         return;

@@ -68,6 +68,14 @@ bool is_standard_output(const std::string& file)
     return ::stat(file.c_str(), &s) == 0 && is_descriptor(s, STDOUT_FILENO);
 }
 
+void refuse_standard_input(int code)
+{
+    const bool wrong = code == EBADF || code == EISDIR;
+    throw error(wrong ? error_kind::bad_input : error_kind::runtime, "standard input",
+                std::generic_category().message(code), "give lines from a terminal, a file or a pipe")
+        .with_os_code(code);
+}
+
 void tell_of_pipe_to_write(const std::string& file)
 {
     if (is_named_pipe(file))

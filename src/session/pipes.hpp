@@ -14,6 +14,10 @@ void check_readable(const std::string& file);
 /// Whether a name is one of this process's standard output (/dev/stdout, /dev/fd/1).
 bool is_standard_output(const std::string& file);
 
+/// Refuses standard input that cannot be read, for an errno. \throws error: bad_input where it is closed or a
+/// folder, else runtime.
+[[noreturn]] void refuse_standard_input(int code);
+
 /// Says on standard error that a named pipe is waited for until a program reads it. Else nothing.
 void tell_of_pipe_to_write(const std::string& file);
 

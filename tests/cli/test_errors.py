@@ -126,6 +126,11 @@ class CommandLine(ToolTest):
         self.refused(2, "plan", "-", stdin=two, says=['tactor: standard input: stroke 2 "standard input-2": leaves'])
         self.assertIn("standard input: played", self.ok("play", "-", "-D", "null", stdin='[stroke]\npath = "M 0 0 L 20 0"\n').stdout)
 
+    def test_standard_input_that_cannot_be_read_says_what_to_give(self):
+        for command in (("plan", "-"), ("play", "--live", "-", "-D", "null"), ("check", "--walk", "-D", "null")):
+            says = ["standard input: Bad file descriptor (give lines from a terminal, a file or a pipe)"]
+            self.refused(2, *command, says=says, before=lambda: os.close(0))
+
     def test_it_says_what_to_do(self):
         self.refused(2, "plan", "park2016-1", "--rate", "48000.5", says=["--rate: 48000.5 is not a whole number (give one, as 48000)"])
         self.refused(2, "play", "park2016-1", "--periods", "2.5", says=["--periods: 2.5 is not a whole number (give one, as 2)"])

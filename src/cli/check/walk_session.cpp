@@ -3,7 +3,6 @@
 
 #include <cerrno>
 #include <charconv>
-#include <cstring>
 #include <utility>
 #include <vector>
 
@@ -12,6 +11,7 @@
 
 #include "cli/play/live_picture.hpp"
 #include "cli/say.hpp"
+#include "session/pipes.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -37,7 +37,7 @@ public:
             char bytes[256];
             const ssize_t n = ::read(STDIN_FILENO, bytes, sizeof bytes);
             if (n < 0 && errno != EINTR && errno != EAGAIN)
-                throw error(error_kind::runtime, "standard input", std::strerror(errno));
+                session::refuse_standard_input(errno);
             if (n == 0)
                 return std::nullopt;
             if (n > 0)

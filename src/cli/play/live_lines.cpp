@@ -5,7 +5,6 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <iterator>
 #include <string_view>
 #include <vector>
@@ -18,6 +17,7 @@
 
 #include "cli/say.hpp"
 #include "core/words.hpp"
+#include "session/pipes.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -58,7 +58,7 @@ bool live_lines::fill()
     if (n < 0 && (errno == EINTR || errno == EAGAIN))
         return false;
     if (n < 0)
-        throw error(error_kind::runtime, "standard input", std::strerror(errno));
+        session::refuse_standard_input(errno);
     if (n == 0) {
         end_ = true;
         if (!buffer_.empty() && buffer_.back() != '\n')

@@ -10,6 +10,8 @@
 
 #include <tactor/error.hpp>
 
+#include "session/pipes.hpp"
+
 namespace tactor::study {
 
 namespace {
@@ -75,7 +77,7 @@ void key_input::fill()
         if (n < 0 && (errno == EINTR || errno == EAGAIN))
             return;
         if (n < 0)
-            throw error(error_kind::runtime, "standard input", std::strerror(errno));
+            session::refuse_standard_input(errno);
         if (n == 0)
             end();
         text_.append(bytes, static_cast<std::size_t>(n));
