@@ -17,7 +17,6 @@ LIBRARIES = (
     ("fmt", "libfmt-dev", None, "fmt", "fmt/format.h"),
     ("pugixml", "libpugixml-dev", None, "pugixml", "pugixml.hpp"),
     ("toml++", "libtomlplusplus-dev", None, "tomlplusplus", "toml++/toml.h"),
-    ("CLI11", "libcli11-dev", None, "CLI11", "CLI/CLI.hpp"),
     ("nlohmann-json", "nlohmann-json3-dev", None, "nlohmann_json", "nlohmann/json.hpp"),
     ("ALSA", "libasound2-dev", "alsa", "alsa", "alsa/asoundlib.h"),
     ("libgpiod", "libgpiod-dev", "gpio", "libgpiod", "gpiod.h"),
