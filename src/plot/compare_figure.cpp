@@ -189,7 +189,7 @@ std::string note(const detail::comparison& c)
 
 } // namespace
 
-canvas draw_comparison(const array& a, const detail::comparison& of, const std::string& title,
+canvas draw_comparison(const array& a, const detail::comparison& all, const std::string& title,
                        double width_mm)
 {
     if (!(width_mm >= least_width_mm && width_mm <= most_width_mm))
@@ -197,16 +197,16 @@ canvas draw_comparison(const array& a, const detail::comparison& of, const std::
                     fmt::format("{} to {} mm", least_width_mm, most_width_mm));
     canvas c;
     c.width = width_mm * pt_per_mm;
-    c.title = fmt::format("{} on {}: predicted percepts", clean(of.target.name), clean(a.name));
-    c.description = note(of);
-    const panel_ground g{a, of.target, shown_extent(a, {of.target})};
-    const std::vector<algorithm_kind> algorithms = different(of.rows, &comparison_row::algorithm);
+    c.title = fmt::format("{} on {}: predicted percepts", clean(all.target.name), clean(a.name));
+    c.description = note(all);
+    const panel_ground g{a, all.target, shown_extent(a, {all.target})};
+    const std::vector<algorithm_kind> algorithms = different(all.rows, &comparison_row::algorithm);
     box rest{margin, margin, c.width - 2.0 * margin, 0.0};
     if (!title.empty())
-        rest.y += draw_heading(c, title, a, of.target, rest);
-    const std::vector<phantom_kind> phantoms = different(of.rows, &comparison_row::phantom);
+        rest.y += draw_heading(c, title, a, all.target, rest);
+    const std::vector<phantom_kind> phantoms = different(all.rows, &comparison_row::phantom);
     for (const phantom_kind phantom : phantoms)
-        rest.y += draw_row(c, g, of.rows, algorithms, phantom, phantom == phantoms.front(), rest);
+        rest.y += draw_row(c, g, all.rows, algorithms, phantom, phantom == phantoms.front(), rest);
     rest.y += draw_words(c, c.description, rest, 9, "note");
     c.height = rest.y + margin;
     return c;

@@ -16,7 +16,7 @@ namespace tactor::plot {
 /// Draws for each phantom model a row of panels, one for each algorithm, and under it all their speeds over
 /// time; of rows that kept their samples. `title` stands over the picture, with the target's length and time;
 /// empty: neither. \throws error (bad_input) for a width out of bounds (figure.hpp).
-canvas draw_comparison(const array& a, const detail::comparison& c, const std::string& title,
+canvas draw_comparison(const array& a, const detail::comparison& all, const std::string& title,
                        double width_mm);
 
 /// The array, target and part of the page that all panels show.

@@ -35,7 +35,7 @@ bool names_device(const settings& s, const environment& e);
 
 /// Returns the PCM as it is to be opened for so many channels at that rate, Hz; "null" where nothing names
 /// one. \throws error (bad_input) where an array file says more than the name of a device.
-alsa_options device_options(const settings& s, const stream_options& o, const environment& e,
+alsa_options device_options(const settings& s, const stream_options& asked, const environment& e,
                             unsigned channels, unsigned rate);
 
 /// Returns the limits that hold: the options, else [limits], else the defaults.
