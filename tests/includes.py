@@ -10,6 +10,7 @@ import sys
 # A folder may include itself and these. A folder within another that has rules of its own stands here, too.
 MAY_INCLUDE = {
     "core": set(),
+    "options": {"core", "percept"},
     "files": {"core"},
     "files/plan": {"core", "files", "plan", "percept", "synth"},
     "plan": {"core"},
@@ -21,13 +22,13 @@ MAY_INCLUDE = {
     "sink/wav": {"core", "files", "plan", "synth", "sink"},
     "amplifier": {"core", "rt"},
     "engine": {"core", "plan", "synth", "rt", "sink", "amplifier"},
-    "session": {"core", "files", "files/plan", "rt"},
+    "session": {"core", "files", "files/plan", "options", "rt"},
     "plot": set(),
     "net": {"core"},
-    "study": {"files/plan", "session", "net"},
-    "server": {"net"},
-    "cli": {"files/plan", "session", "plot", "study", "net", "server"},
-    "python": {"files/plan", "session", "plot"},
+    "study": {"files/plan", "options", "session", "net"},
+    "server": {"net", "options"},
+    "cli": {"files/plan", "options", "session", "plot", "study", "net", "server"},
+    "python": {"files/plan", "options", "session", "plot"},
 }
 # The folder that a public header belongs to; a folder may use the public headers of the folders it may include.
 PUBLIC = {
@@ -38,14 +39,14 @@ PUBLIC = {
     "gpio": "amplifier", "realtime": "rt", "sink": None, "alsa": "sink/alsa", "devices": "sink/alsa", "player": "engine", "live": "engine",
     "asio": "engine", "report": "engine",
 }
-USES_ALL_PUBLIC = {"cli", "files/plan", "plot", "python", "server", "session", "study"}
+USES_ALL_PUBLIC = {"cli", "files/plan", "options", "plot", "python", "server", "session", "study"}
 # What those may know of the library's inside, which is in the tool: no program that embeds it needs these.
 INSIDE = {
-    "cli": {"core/asked_pace.hpp", "core/kind_names.hpp", "core/option_bounds.hpp", "core/sha256.hpp", "core/split.hpp", "core/start_times.hpp", "core/suggest.hpp", "core/words.hpp", "files/channel_map.hpp", "files/setup_defaults.hpp", "percept/compare.hpp", "rt/advice.hpp", "rt/clock.hpp", "synth/score/sounding_now.hpp"},
-    "study": {"core/kind_names.hpp", "core/owned.hpp", "core/sha256.hpp", "core/split.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_text.hpp", "files/text_file.hpp", "files/toml_reader.hpp", "rt/clock.hpp", "rt/event_fd.hpp", "rt/thread.hpp", "synth/mix/converter.hpp", "synth/score/drive_room.hpp"},
+    "cli": {"core/asked_pace.hpp", "core/sha256.hpp", "core/split.hpp", "core/start_times.hpp", "core/suggest.hpp", "core/words.hpp", "files/channel_map.hpp", "percept/compare.hpp", "rt/advice.hpp", "rt/clock.hpp", "synth/score/sounding_now.hpp"},
+    "study": {"core/owned.hpp", "core/sha256.hpp", "core/split.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_text.hpp", "files/text_file.hpp", "files/toml_reader.hpp", "rt/clock.hpp", "rt/event_fd.hpp", "rt/thread.hpp", "synth/mix/converter.hpp", "synth/score/drive_room.hpp"},
     "plot": {"core/split.hpp", "core/words.hpp", "files/output_file.hpp", "percept/compare.hpp", "synth/mix/sample_ranges.hpp"},
-    "server": {"core/asked_pace.hpp", "core/kind_names.hpp", "core/option_bounds.hpp", "core/start_times.hpp", "core/words.hpp"},
-    "python": {"core/access.hpp", "core/asked_pace.hpp", "core/kind_names.hpp", "core/option_bounds.hpp", "core/path/impl.hpp", "core/path/outline.hpp", "core/profile.hpp", "core/trajectory/impl.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_defaults.hpp", "files/setup_text.hpp", "files/text_file.hpp", "percept/compare.hpp", "percept/spread.hpp", "plan/curve_impl.hpp"},
+    "server": {"core/asked_pace.hpp", "core/start_times.hpp", "core/words.hpp"},
+    "python": {"core/access.hpp", "core/asked_pace.hpp", "core/path/impl.hpp", "core/path/outline.hpp", "core/profile.hpp", "core/trajectory/impl.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_text.hpp", "files/text_file.hpp", "percept/compare.hpp", "plan/curve_impl.hpp"},
 }
 # Header prefix: the only places that may include it.
 ONLY_IN = {

@@ -3,22 +3,16 @@
 /// What an array file or a configuration file says: see tactor.toml(5).
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include <tactor/api.hpp>
 #include <tactor/array.hpp>
-#include <tactor/choices.hpp>
-#include <tactor/envelope.hpp>
 #include <tactor/lines.hpp>
-#include <tactor/sample_format.hpp>
-#include <tactor/waveform.hpp>
 
 namespace tactor {
 inline namespace v0 {
@@ -77,55 +71,18 @@ struct serve_settings {
     std::optional<unsigned> max_all_unfinished_bytes = {}; ///< of messages of all that have not come whole
 };
 
-/// [defaults]: values for strokes, plans and their sound where nothing else is said. Reading the file checks
-/// each value by itself. Whether values go together, and fit a sample rate, is checked where they are used.
-struct default_settings {
-    std::optional<double> speed_mm_s = {}; ///< of strokes that say neither speed nor duration
+/// One value of [defaults]: of an option of the tool where nothing else is said. The program that has the
+/// options checks names and values.
+struct default_value {
+    std::string name = {}; ///< as the file writes it
+    std::variant<std::monostate, bool, double, std::string> said = {};
+    source_place at = {};      ///< of the value
+    source_place name_at = {}; ///< of the name
 
-    // plan_options
-    std::optional<algorithm_kind> algorithm = {};
-    std::optional<phantom_kind> phantom = {};
-    std::optional<faces_kind> faces = {};
-    std::optional<double> soa_s = {};
-    std::optional<double> burst_s = {};
-    std::optional<timing_kind> timing = {};
-    std::optional<outside_kind> outside = {};
-    std::optional<bool> snap = {};
-    std::optional<bool> drop_points = {};
-    std::optional<overlap_kind> overlap = {};
-    std::optional<double> carrier_hz = {};
-    std::optional<double> slope = {};         ///< of timing_profile
-    std::optional<double> intercept_s = {};   ///< of timing_profile
-    std::optional<std::string> waveform = {}; ///< for parse_waveform(); no file was opened
-    std::optional<std::uint64_t> noise_seed = {};
-    std::optional<texture_kind> texture = {};
-    std::optional<double> texture_mm = {};
-    std::optional<modulation> am = {};
-    std::optional<scale_kind> intensity_scale = {};
-    std::optional<double> stevens_exponent = {}; ///< of tactor::intensity_scale
-
-    // render_options
-    std::optional<envelope_kind> envelope = {};
-    std::optional<double> tukey_part = {};
-    std::optional<double> attack_s = {};
-    std::optional<double> release_s = {};
-    std::optional<phase_kind> phase = {};
-    std::optional<double> ramp_s = {};
-    std::optional<double> level_dbfs = {};
-    std::optional<double> sl_db = {};
-    std::optional<unsigned> rate = {}; ///< Hz
-
-    // output
-    std::optional<format_kind> sample_format = {};
-    std::optional<double> latency_s = {};
-
-    // low_speed_observer
-    std::optional<bool> compensate = {}; ///< whether bursts are moved by compensate()
-    std::optional<observer_kind> observer = {};
-    std::optional<double> sigma_mm = {};
-    std::optional<double> sigma_v_mm_s = {};
-
-    friend bool operator==(const default_settings&, const default_settings&) = default;
+    friend bool operator==(const default_value& a, const default_value& b)
+    {
+        return a.name == b.name && a.said == b.said;
+    }
 };
 
 /// [[calibration.tactor]]: how a threshold was found.
@@ -164,8 +121,7 @@ struct setup {
     std::optional<limit_settings> limits = {};
     std::optional<serve_settings> serve = {};
     std::optional<calibration_origin> calibration = {};
-    default_settings defaults = {};
-    std::map<std::string, source_place, std::less<>> defaults_at = {}; ///< where, by the keys of [defaults]
+    std::vector<default_value> defaults = {}; ///< each name once; what an included file says comes first
 };
 
 /// Reads an array or configuration file. May block on the file system.

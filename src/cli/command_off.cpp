@@ -40,9 +40,9 @@ std::string searched(const environment& e)
     return own_file ? fmt::format("{} or {}", e.array_file, e.config_name) : e.config_name;
 }
 
-int switch_off(settings& s, option_list& options)
+int switch_off(settings& s)
 {
-    const environment e = session::read_environment(s, options);
+    const environment e = session::read_environment(s);
     if (!e.config.amplifier)
         throw error(error_kind::bad_input, "amplifier", fmt::format("no [amplifier] in {}", searched(e)),
                     "say its line there, see tactor.toml(5), or name the file that does with --array");
@@ -63,10 +63,9 @@ command add_off(CLI::App& app)
 {
     CLI::App* c = app.add_subcommand("off", "Switch the amplifier of [amplifier] off");
     auto s = std::make_shared<settings>();
-    auto options = std::make_shared<option_list>(*c, *s);
-    options->add_array_options();
+    add_options(*c, *s, on_off);
     c->footer("Example: tactor off --config tactor.toml");
-    return [s, options] { return switch_off(*s, *options); };
+    return [s] { return run_with(*s, [&] { return switch_off(*s); }); };
 }
 
 } // namespace tactor::cli

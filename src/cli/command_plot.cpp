@@ -59,11 +59,11 @@ std::string name_of(const piece& p)
     return std::filesystem::path(shown_name(p.name)).filename().string();
 }
 
-int draw(settings& s, option_list& options, const plot_settings& p)
+int draw(settings& s, const plot_settings& p)
 {
     const picture_options& o = p.picture;
     plot::format_of(o.file); // before the work
-    const environment e = session::read_environment(s, options);
+    const environment e = session::read_environment(s);
     const piece q = plan_one_piece(s, e);
     plot::check_output(o.file, o.force);
     // Only the samples have levels: a picture of a plan needs none that a card could play.
@@ -87,13 +87,12 @@ command add_plot(CLI::App& app)
 {
     CLI::App* c = app.add_subcommand("plot", "Draw the array, the path, the bursts and who plays when");
     auto s = std::make_shared<settings>();
-    auto options = std::make_shared<option_list>(*c, *s);
     auto p = std::make_shared<plot_settings>();
-    options->add_stroke_options();
-    options->add_sound_options();
+    add_strokes(*c, *s);
+    add_options(*c, *s, on_plot);
     add_plot_options(*c, *p);
     c->footer("Example: tactor plot park2016-3 -o park2016-3.pdf");
-    return [s, options, p] { return options->run([&] { return draw(*s, *options, *p); }); };
+    return [s, p] { return run_with(*s, [&] { return draw(*s, *p); }); };
 }
 
 } // namespace tactor::cli

@@ -66,10 +66,10 @@ fs::path checked_output(const std::string& name)
     return file;
 }
 
-int render(settings& s, option_list& options, const std::string& name)
+int render(settings& s, const std::string& name)
 {
     const fs::path file = checked_output(name); // before the work
-    const environment e = session::read_environment(s, options);
+    const environment e = session::read_environment(s);
     const layout faces(e.tactors);
     piece p = open_one_piece(s, e, faces);
     const render_options how = session::settle_render(s, e);
@@ -102,16 +102,14 @@ command add_render(CLI::App& app)
 {
     CLI::App* c = app.add_subcommand("render", "Write the samples to a WAV file, one channel per tactor");
     auto s = std::make_shared<settings>();
-    auto options = std::make_shared<option_list>(*c, *s);
     auto file = std::make_shared<std::string>();
-    options->add_stroke_options();
-    options->add_sound_options();
-    options->add_channels_option();
+    add_strokes(*c, *s);
+    add_options(*c, *s, on_render);
     c->add_option("-o,--output", *file, "the file to write; - is standard output")
         ->type_name("FILE.wav")
         ->required();
     c->footer("Example: tactor render --path \"M 0 10 L 40 30\" --speed 80 -o stroke.wav");
-    return [s, options, file] { return options->run([&] { return render(*s, *options, *file); }); };
+    return [s, file] { return run_with(*s, [&] { return render(*s, *file); }); };
 }
 
 } // namespace tactor::cli

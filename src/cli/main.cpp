@@ -76,6 +76,15 @@ bool is_command(std::string_view name)
                        [&](const named_command& c) { return c.name == name; });
 }
 
+// The option of a name that is no command, with or without dashes; null for none.
+const options::option* asked_option(std::string_view name)
+{
+    name.remove_prefix(std::min(name.find_first_not_of('-'), name.size()));
+    const options::option* o = options::find(name);
+    const bool is_shown = o != nullptr && (o->where & options::on_any_command) != 0;
+    return is_shown && !is_command(name) ? o : nullptr;
+}
+
 // `tactor help plan` is `tactor plan --help`, for whoever has no manual pages.
 std::vector<std::string> arguments(int argc, char** argv)
 {
@@ -84,6 +93,8 @@ std::vector<std::string> arguments(int argc, char** argv)
         return all;
     while (!all.empty() && all.front() == "help")
         all.erase(all.begin());
+    if (all.size() == 1 && asked_option(all.front()) != nullptr)
+        return {"help", all.front()};
     if (all.empty() || is_command(all.front())) // another is complained of
         all.emplace_back("--help");
     return all;
@@ -96,10 +107,15 @@ int run(const std::vector<std::string>& given)
         fmt::print("{}\n", version_text());
         return status_ok;
     }
+    if (first == "help" && given.size() == 2) {
+        fmt::print("{}", describe_option(*asked_option(given[1])));
+        return status_ok;
+    }
     CLI::App app("Draws on skin: moving tactile strokes over sparse arrays of tactors.", "tactor");
     app.set_version_flag("--version", version_text);
     app.require_subcommand(1);
-    app.footer("Example: tactor play park2016-3        tactor help COMMAND says more.");
+    app.footer(
+        "Example: tactor play park2016-3        tactor help COMMAND says more, as does tactor help OPTION.");
     // To describe all options of all commands takes as long as to plan a stroke: of a command that is
     // named, its own.
     const auto named = std::find_if(commands.begin(), commands.end(),

@@ -6,6 +6,10 @@
 #include <string>
 #include <string_view>
 
+#include <fmt/format.h>
+
+#include "options/settle.hpp"
+
 namespace tactor::cli {
 namespace {
 
@@ -14,57 +18,15 @@ struct translation {
     std::string_view option;
 };
 
-// What can only mean a field, in advice too.
-constexpr std::array<translation, 29> in_advice{
+// Words of the library that are no field of an option.
+constexpr std::array<translation, 7> own_words{
     {{"measure its detection threshold", "run tactor calibrate"},
-     {"soa_s", "--soa"},
-     {"duration_s", "--duration"},
-     {"burst_s", "--burst"},
-     {"carrier_hz", "--carrier"},
-     {"ramp_s", "--ramp"},
-     {"sl_db", "--sl"},
-     {"level_dbfs", "--level-dbfs"},
-     {"sample_format = ", "--sample-format "},
-     {"sample_format", "--sample-format"},
-     {"timing = ", "--timing "},
-     {"outside = ", "--outside "},
-     {"algorithm = ", "--algorithm "},
-     {"faces = ", "--faces "},
-     {"phantom = ", "--phantom "},
      {"force = true", "--force"},
-     {"snap = true", "--snap"},
-     {"drop_points = true", "--drop-points"},
      {"array = ", "--array "},
      {"config = FILE", "--config FILE"},
      {"wider = true leaves", "without a number of channels it leaves"},
-     {"margin_mm", "--fit-margin"},
      {"leave array out", "say no --array"},
-     {"fit_strokes()", "--fit"},
-     {"texture_mm", "--texture-mm"},
-     {"attack_s", "--attack"},
-     {"release_s", "--release"},
-     {"sigma_mm", "--sigma-mm"},
-     {"sigma_v_mm_s", "--sigma-v-mm-s"}}};
-
-// Words of every day.
-constexpr std::array<translation, 9> as_subject{{{"rate", "--rate"},
-                                                 {"shape", "--shape"},
-                                                 {"channels", "--channels"},
-                                                 {"phantom", "--phantom"},
-                                                 {"faces", "--faces"},
-                                                 {"simulate", "--simulate"},
-                                                 {"waveform", "--waveform"},
-                                                 {"am", "--am"},
-                                                 {"spread", "--spread"}}};
-
-// Those that files have as keys, too.
-constexpr std::array<std::string_view, 8> keys{"duration_s", "soa_s",        "burst_s",  "carrier_hz",
-                                               "texture_mm", "algorithm = ", "faces = ", "phantom = "};
-
-bool is_key(std::string_view field)
-{
-    return std::find(keys.begin(), keys.end(), field) != keys.end();
-}
+     {"fit_strokes()", "--fit"}}};
 
 bool in_a_word(char c)
 {
@@ -72,39 +34,83 @@ bool in_a_word(char c)
            (c >= 'A' && c <= 'Z');
 }
 
+// Writes `to` for each `from` that is no part of a longer word.
+void replace_words(std::string& text, std::string_view from, std::string_view to)
+{
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + 1)) {
+        const std::size_t end = at + from.size();
+        const bool begins = at == 0 || !in_a_word(text[at - 1]);
+        const bool ends = from.back() == ' ' || end == text.size() || !in_a_word(text[end]);
+        if (begins && ends)
+            text.replace(at, from.size(), to);
+    }
+}
+
+// Only words that can mean nothing else: "soa_s", "timing = fit", "snap = true". `but_keys`: a file has keys
+// of these names.
 std::string replaced(std::string text, bool but_keys = false)
 {
-    for (const translation& t : in_advice) {
-        if (but_keys && is_key(t.field))
+    for (const translation& t : own_words)
+        replace_words(text, t.field, t.option);
+    for (const options::option& o : options::all()) {
+        if (but_keys && (o.where & options::in_stroke) != 0)
             continue;
-        for (std::size_t at = text.find(t.field); at != std::string::npos; at = text.find(t.field, at + 1)) {
-            const std::size_t end = at + t.field.size();
-            const bool begins = at == 0 || !in_a_word(text[at - 1]);
-            const bool ends = t.field.back() == ' ' || end == text.size() || !in_a_word(text[end]);
-            if (begins && ends)
-                text.replace(at, t.field.size(), t.option);
-        }
+        const std::string name = option_name(o);
+        if (o.what == options::kind::flag)
+            replace_words(text, fmt::format("{} = true", o.name), name);
+        else if (o.what == options::kind::choice)
+            replace_words(text, fmt::format("{} = ", o.name), name + " ");
+        if (o.field_name().find('_') != std::string_view::npos)
+            replace_words(text, o.field_name(), name);
     }
     return text;
 }
 
+// Whether the library calls only the option so.
+bool is_option(const options::option& o)
+{
+    if (o.what == options::kind::flag)
+        return false;
+    return o.what != options::kind::text || (o.where & options::by_client) != 0 || o.choices != nullptr;
+}
+
 std::string subject(std::string_view what)
 {
-    for (const translation& t : as_subject)
-        if (what == t.field)
-            return std::string(t.option);
     // A file's name and its keys stay as they are.
-    for (const translation& t : in_advice)
-        if (what.substr(0, t.field.size()) == t.field)
-            return replaced(std::string(what));
-    return std::string(what);
+    const options::option* o = options::find_field(what.substr(0, what.find_first_of(": ")));
+    if (o != nullptr && what == o->field_name() && is_option(*o))
+        return option_name(*o);
+    if (o != nullptr && what.starts_with(fmt::format("{} = ", o->name)))
+        return replaced(std::string(what));
+    if (o != nullptr && o->field_name().find('_') != std::string_view::npos)
+        return replaced(std::string(what));
+    return what == "simulate" ? "--simulate" : std::string(what);
+}
+
+std::string spell_option(const options::option& o, std::string_view value)
+{
+    return option_name(o) + (value.empty() ? "" : " ") + std::string(value);
 }
 
 } // namespace
 
+std::string option_name(const options::option& o)
+{
+    std::string name = fmt::format("--{}", o.name);
+    std::replace(name.begin() + 2, name.end(), '_', '-');
+    return name;
+}
+
+std::string spelled(std::string_view marked)
+{
+    return options::spell_marks(marked, spell_option);
+}
+
 error in_options(const error& e)
 {
-    return e.reworded(subject(e.subject()), e.why(), replaced(std::string(e.hint()), e.place().line != 0));
+    const error marked = options::spell_marks(e, spell_option);
+    return marked.reworded(subject(marked.subject()), marked.why(),
+                           replaced(std::string(marked.hint()), e.place().line != 0));
 }
 
 } // namespace tactor::cli

@@ -4,8 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "cli/parse_number.hpp"
 #include "cli/settings.hpp"
+#include "options/parse_number.hpp"
 #include "plot/paint/output.hpp"
 
 namespace tactor::cli {
@@ -16,7 +16,8 @@ void add_picture_options(CLI::App& command, picture_options& into, const std::st
         .add_option_function<std::string>(
             "--width",
             [&into](const std::string& t) {
-                into.width_mm = parse_number("--width", t, plot::least_width_mm, plot::most_width_mm, "mm");
+                into.width_mm =
+                    options::parse_number("--width", t, plot::least_width_mm, plot::most_width_mm, "mm");
             },
             fmt::format("width of the picture (default {})", usual_width))
         ->type_name("MM");
@@ -24,8 +25,8 @@ void add_picture_options(CLI::App& command, picture_options& into, const std::st
         .add_option_function<std::string>(
             "--dpi",
             [&into](const std::string& t) {
-                into.dpi =
-                    static_cast<unsigned>(parse_number("--dpi", t, plot::least_dpi, plot::most_dpi, "dpi"));
+                into.dpi = static_cast<unsigned>(
+                    options::parse_number("--dpi", t, plot::least_dpi, plot::most_dpi, "dpi"));
             },
             "resolution of a PNG (default 300)")
         ->type_name("N");

@@ -2,12 +2,17 @@
 #include "cli/usage.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "cli/option_words.hpp"
+#include "core/split.hpp"
 #include "core/suggest.hpp"
 
 namespace tactor::cli {
@@ -106,7 +111,59 @@ error unknown(const CLI::App& app, const CLI::App& command)
     return {error_kind::bad_input, given, "one argument too many", help};
 }
 
+struct place_name {
+    std::uint64_t place;
+    const char* name;
+};
+
+constexpr std::array command_names{
+    place_name{options::on_plan, "plan"},           place_name{options::on_render, "render"},
+    place_name{options::on_plot, "plot"},           place_name{options::on_compare, "compare"},
+    place_name{options::on_play, "play"},           place_name{options::on_check, "check"},
+    place_name{options::on_calibrate, "calibrate"}, place_name{options::on_experiment, "experiment"},
+    place_name{options::on_devices, "devices"},     place_name{options::on_off, "off"},
+    place_name{options::on_serve, "serve"}};
+
+constexpr std::array python_names{
+    place_name{options::in_plan, "plan"}, place_name{options::in_score, "Score"},
+    place_name{options::in_compare, "compare"}, place_name{options::in_player, "Player"}};
+
+template <std::size_t N>
+std::string places_text(const std::array<place_name, N>& names, std::uint64_t where)
+{
+    std::string all;
+    for (const place_name& p : names)
+        if ((where & p.place) != 0)
+            all.append(all.empty() ? "" : ", ").append(p.name);
+    return all;
+}
+
 } // namespace
+
+std::string describe_option(const options::option& o)
+{
+    std::string text = fmt::format("{}{}{}\n  {}\n", option_name(o), o.what == options::kind::flag ? "" : " ",
+                                   o.what == options::kind::flag ? "" : options::type_text(o), o.help);
+    const auto line = [&text](const char* title, const std::string& said) {
+        if (!said.empty())
+            text += fmt::format("  {:<18}{}\n", title, said);
+    };
+    const auto row = [](std::string_view name) { return option_name(*options::find(name)); };
+    if (o.what == options::kind::number || o.what == options::kind::whole)
+        line("Range:", spelled(options::range_text(o)));
+    line("Not beside:", o.rival.empty() ? "" : row(o.rival));
+    line("Needs:", spelled(fmt::format("{}", fmt::join(detail::split(o.needs, '|'), " or "))));
+    line("Commands:", places_text(command_names, o.where));
+    const bool is_default = (o.where & options::in_defaults) != 0;
+    line("[defaults]:", is_default ? option_name(o).substr(2) : "");
+    line("Stroke files:", (o.where & options::in_stroke) != 0 ? std::string(o.field_name()) : "");
+    line("[[method]]:", (o.where & options::in_method) != 0 ? std::string(o.name) : "");
+    line("JSON-RPC:", (o.where & options::by_client) != 0 ? fmt::format("options.{}", o.name) : "");
+    line("OSC:", (o.where & options::by_client) != 0 ? fmt::format("{}=", o.name) : "");
+    const std::string python = places_text(python_names, o.where);
+    line("Python:", python.empty() ? "" : fmt::format("{} of {}", o.name, python));
+    return text;
+}
 
 error usage_error(const CLI::App& app, const CLI::ParseError& e)
 {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// [output], [amplifier], [sync] and [limits].
+// [output], [amplifier], [sync], [limits] and [defaults].
 #include <fmt/format.h>
 
-#include "core/limits.hpp"
+#include "core/bounds.hpp"
 #include "files/setup_parts.hpp"
 
 namespace tactor::detail {
@@ -43,15 +43,16 @@ void read_output(const toml_table& root, located_setup& out)
         o.pcm_included = false;
     }
     if (t->has("rate"))
-        o.rate = t->whole("rate", 8000, 768000);
+        o.rate = t->whole("rate", bounds_of::rate_hz);
     if (t->has("channels")) {
-        o.channels = t->whole("channels", 1, max_channels);
+        o.channels = t->whole("channels", bounds_of::device_channels);
         out.channels_at = t->where("channels");
     }
     if (t->has("period_frames"))
-        o.period_frames = t->whole("period_frames", least_period_frames(o.rate.value_or(48'000)), 1u << 20);
+        o.period_frames = t->whole("period_frames", {double(least_period_frames(o.rate.value_or(48'000))),
+                                                     bounds_of::period_frames.high});
     if (t->has("periods"))
-        o.periods = t->whole("periods", 2, 1024);
+        o.periods = t->whole("periods", bounds_of::periods);
 }
 
 void read_amplifier(const toml_table& root, located_setup& out)
@@ -88,7 +89,7 @@ void read_sync(const toml_table& root, located_setup& out)
         s.debounce_s = seconds(edge->number("debounce_ms", {0.0, 10000.0})).value_or(s.debounce_s);
         s.pull = edge->kind<pull_kind>("pull").value_or(s.pull);
     }
-    s.channel = t->whole("channel", 0, max_channels - 1);
+    s.channel = t->whole("channel", bounds_of::marker_channel);
     out.sync_channel_at = t->where("channel");
     out.said.sync = s;
 }
@@ -100,10 +101,21 @@ void read_limits(const toml_table& root, located_setup& out)
         return;
     t->only({"power_dbfs", "max_drive_s", "window_s"});
     limit_settings l;
-    l.power_dbfs = t->number("power_dbfs", {-120.0, 60.0});
-    l.max_drive_s = t->number("max_drive_s", {0.1, 3600.0});
-    l.window_s = t->number("window_s", {0.1, 3600.0});
+    l.power_dbfs = t->number("power_dbfs", bounds_of::power_dbfs);
+    l.max_drive_s = t->number("max_drive_s", bounds_of::drive_s);
+    l.window_s = t->number("window_s", bounds_of::drive_s);
     out.said.limits = l;
+}
+
+void read_defaults(const toml_table& root, setup& out)
+{
+    const auto t = root.table("defaults", "[defaults]", "[defaults]");
+    if (!t)
+        return;
+    for (const toml_table::said_key& e : t->entries()) {
+        std::erase_if(out.defaults, [&e](const default_value& d) { return d.name == e.key; });
+        out.defaults.push_back({std::string(e.key), t->plain(*e.value, e.key), t->where(*e.value), e.key_at});
+    }
 }
 
 } // namespace tactor::detail

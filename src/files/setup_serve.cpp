@@ -80,10 +80,10 @@ void read_serve_limits(const toml_table& t, serve_settings& s)
     s.max_strokes = t.whole("max_strokes", 1, 100'000);
     s.max_live_strokes = t.whole("max_live_strokes", 0, 100'000);
     s.max_points_per_s = t.whole("max_points_per_s", 1, 10'000'000);
-    s.max_stroke_s = t.number("max_stroke_s", {0.001, 86400.0});
+    s.max_stroke_s = t.number("max_stroke_s", bounds_of::timeout_s);
     s.max_message_bytes = t.whole("max_message_bytes", 1024, most);
     s.max_nesting = t.whole("max_nesting", 4, 10'000);
-    s.max_message_s = t.number("max_message_s", {0.001, 86400.0});
+    s.max_message_s = t.number("max_message_s", bounds_of::timeout_s);
     s.max_unread_bytes = t.whole("max_unread_bytes", 1024, most);
     s.max_all_unread_bytes = t.whole("max_all_unread_bytes", 1024, most);
     s.max_all_unfinished_bytes = t.whole("max_all_unfinished_bytes", 65536, most);
@@ -129,8 +129,8 @@ void read_serve(const toml_table& root, located_setup& out)
     s.token_file = t->text("token_file");
     s.allow_hosts = texts(*t, "allow_hosts");
     s.osc_peers = prefixes(*t, "osc_peers");
-    s.max_level_dbfs = t->number("max_level_dbfs", {min_db, 0.0});
-    s.idle_stop_s = t->number("idle_stop_s", {0.001, 86400.0});
+    s.max_level_dbfs = t->number("max_level_dbfs", bounds_of::level_dbfs);
+    s.idle_stop_s = t->number("idle_stop_s", bounds_of::timeout_s);
     read_serve_limits(*t, s);
     out.said.serve = s;
 }

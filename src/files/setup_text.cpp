@@ -6,8 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "files/setup_defaults.hpp"
-
 namespace tactor::detail {
 namespace {
 
@@ -108,6 +106,14 @@ std::string calibrated_text(const calibrated_tactor& t)
     return s + fmt::format("trials = {}\n", t.trials);
 }
 
+std::string value_text(const default_value& d)
+{
+    if (const auto* text = std::get_if<std::string>(&d.said))
+        return toml_string(*text);
+    const auto* flag = std::get_if<bool>(&d.said);
+    return flag != nullptr ? fmt::format("{}", *flag) : fmt::format("{}", std::get<double>(d.said));
+}
+
 } // namespace
 
 std::string toml_string(std::string_view s)
@@ -136,11 +142,10 @@ std::string besides_text(const setup& besides)
     std::string s = output_text(besides.output) + lines_text(besides);
     if (besides.limits)
         s += limits_text(*besides.limits);
-    const std::map<std::string, std::string> defaults = detail::default_texts(besides.defaults);
-    if (!defaults.empty())
+    if (!besides.defaults.empty())
         s += "\n[defaults]\n";
-    for (const auto& [name, value] : defaults)
-        s += fmt::format("{} = {}\n", name, toml_string(value));
+    for (const default_value& d : besides.defaults)
+        s += fmt::format("{} = {}\n", d.name, value_text(d));
     return s;
 }
 

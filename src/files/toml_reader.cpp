@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "files/toml_reader.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -60,22 +61,23 @@ toml_table::toml_table(const toml::table& t, std::string title, const std::strin
 
 void toml_table::only(std::span<const std::string_view> known) const
 {
-    // In the order of the file, not of the map: the first slip is the one to report.
-    const toml::key* first = nullptr;
+    for (const said_key& e : entries())
+        if (std::find(known.begin(), known.end(), e.key) == known.end())
+            fail_at(e.key_at, fmt::format("unknown key {} in {}", detail::quoted(e.key), title_),
+                    suggestion(e.key, known, "keys"), e.key);
+}
+
+std::vector<toml_table::said_key> toml_table::entries() const
+{
+    std::vector<said_key> all;
     for (auto&& [key, value] : *table_) {
-        bool found = false;
-        for (const std::string_view k : known)
-            found = found || k == key.str();
         const auto& begin = key.source().begin;
-        if (!found && (first == nullptr || begin < first->source().begin))
-            first = &key;
+        all.push_back({key.str(), &value, {*file_, begin.line, begin.column}});
     }
-    if (first == nullptr)
-        return;
-    const auto& at = first->source().begin;
-    fail_at({*file_, at.line, at.column},
-            fmt::format("unknown key {} in {}", detail::quoted(first->str()), title_),
-            suggestion(first->str(), known, "keys"), first->str());
+    std::sort(all.begin(), all.end(), [](const said_key& a, const said_key& b) {
+        return std::pair(a.key_at.line, a.key_at.column) < std::pair(b.key_at.line, b.key_at.column);
+    });
+    return all;
 }
 
 bool toml_table::has(std::string_view key) const
@@ -125,6 +127,21 @@ void toml_table::wrong_type(std::string_view called, const toml::node& n, std::s
     const bool scalar = n.is_string() || n.is_number() || n.is_boolean();
     fail_at(where(n), fmt::format("{} is {}", called, scalar ? shown(n) : type_name(n)),
             fmt::format("give {}", want), called);
+}
+
+std::variant<std::monostate, bool, double, std::string> toml_table::plain(const toml::node& n,
+                                                                          std::string_view called) const
+{
+    if (const auto* b = n.as_boolean())
+        return b->get();
+    if (const auto* s = n.as_string())
+        return s->get();
+    constexpr auto most = std::int64_t{1} << 53;
+    const auto* i = n.as_integer();
+    if (!n.is_number() || (i != nullptr && (i->get() > most || i->get() < -most)))
+        fail_at(where(n), fmt::format("{} is {}", called, shown(n)), "give a number, a text, true or false",
+                called);
+    return *n.value<double>();
 }
 
 double toml_table::number_of(const toml::node& n, std::string_view called, bounds b) const

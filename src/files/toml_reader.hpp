@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <toml++/toml.h>
@@ -17,9 +18,9 @@
 #include <tactor/geometry.hpp>
 #include <tactor/kinds.hpp>
 
+#include "core/bounds.hpp"
 #include "core/kind_names.hpp"
 #include "core/limits.hpp"
-#include "core/option_bounds.hpp"
 
 namespace tactor::detail {
 
@@ -37,6 +38,15 @@ public:
     void only(std::span<const std::string_view> known) const;
     void only(std::initializer_list<std::string_view> known) const { only({known.begin(), known.size()}); }
 
+    /// A key with its value.
+    struct said_key {
+        std::string_view key;
+        const toml::node* value = nullptr;
+        source_place key_at;
+    };
+    /// All, in the order of the file.
+    std::vector<said_key> entries() const;
+
     bool has(std::string_view key) const;
     const std::string& title() const noexcept { return title_; }
     const std::string& file() const noexcept { return *file_; }
@@ -48,6 +58,10 @@ public:
     /// Values; nothing where the key is missing. All throw error for a wrong type or range.
     std::optional<double> number(std::string_view key, bounds b) const;
     std::optional<unsigned> whole(std::string_view key, unsigned low, unsigned high) const;
+    std::optional<unsigned> whole(std::string_view key, bounds b) const
+    {
+        return whole(key, static_cast<unsigned>(b.low), static_cast<unsigned>(b.high));
+    }
     std::optional<bool> boolean(std::string_view key) const;
     std::optional<std::string> text(std::string_view key) const; ///< not empty
     std::optional<std::string> choice(std::string_view key, std::span<const std::string_view> of) const;
@@ -74,6 +88,9 @@ public:
     /// The numbers of one list entry, into `out`; how many must be in least ... most.
     void numbers(const toml::node& entry, std::string_view called, std::size_t least, std::size_t most,
                  std::vector<double>& out) const;
+    /// A flag, a number or a text. Whole numbers that a double does not hold are none.
+    std::variant<std::monostate, bool, double, std::string> plain(const toml::node& n,
+                                                                  std::string_view called) const;
     double number_of(const toml::node& n, std::string_view called, bounds b) const;
     /// v, which stands at n, if it is within b.
     double within(const toml::node& n, std::string_view called, double v, bounds b) const;

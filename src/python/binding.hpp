@@ -54,7 +54,7 @@ py::array_t<double> given(std::vector<double> values, std::size_t columns = 0);
 /// Ctrl-C, asked for where the lock is not held: throws what Python's handler raised.
 void check_signals();
 /// Python's error is this one. With the interpreter's lock.
-void set_error(const error& e);
+void set_error(const error& marked);
 
 void bind_values(py::module_& m);
 void bind_plan(py::module_& m);

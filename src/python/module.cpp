@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include "options/settle.hpp"
 #include "python/binding.hpp"
+#include "python/options.hpp"
 
 #include <exception>
 #include <string_view>
@@ -48,8 +50,9 @@ void translate(std::exception_ptr p)
 } // namespace
 
 // The classes are Python's, and so is what makes one of them.
-void set_error(const error& e)
+void set_error(const error& marked)
 {
+    const error e = options::spell_marks(marked, spell);
     try {
         const py::object x =
             called(py::module_::import("tactor._errors").attr("made"),

@@ -3,21 +3,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <functional>
-#include <map>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include "core/kind_names.hpp"
-#include "core/option_bounds.hpp"
-#include "core/words.hpp"
+#include <tactor/setup.hpp>
+
+#include "options/check.hpp"
+#include "options/settle.hpp"
 
 namespace tactor::python {
 namespace {
 
-namespace of = detail::option_bounds;
+using options::option;
+
+constexpr std::uint64_t of_python = options::in_plan | options::in_score | options::in_compare;
+// [defaults] speed, which a stroke's own wins over.
+constexpr const char* usual_speed = "usual_speed";
 
 [[noreturn]] void refuse(const std::string& name, const std::string& why, const std::string& hint = {})
 {
@@ -39,11 +40,10 @@ bool is_plain(py::handle v)
     return py::module_::import("tactor._checks").attr("_is_plain")(v).cast<bool>();
 }
 
-double number(const std::string& name, py::handle v, detail::bounds b)
+double number(const option& o, py::handle v)
 {
-    const std::string range = fmt::format("{} to {}", plain_number(b.low), plain_number(b.high));
     if (!is_plain(v))
-        refuse(name, fmt::format("{} is not a number", shown(v)), range);
+        refuse(std::string(o.name), fmt::format("{} is not a number", shown(v)), range_text(o));
     double d = PyFloat_AsDouble(v.ptr());
     bool is_one = !py::isinstance<py::bool_>(v);
     if (PyErr_Occurred() != nullptr) {
@@ -52,246 +52,197 @@ double number(const std::string& name, py::handle v, detail::bounds b)
         d = HUGE_VAL;
     }
     if (!is_one)
-        refuse(name, fmt::format("{} is not a number", shown(v)), range);
+        refuse(std::string(o.name), fmt::format("{} is not a number", shown(v)), range_text(o));
     const bool is_rounded = PyLong_Check(v.ptr()) && !py::float_(d).equal(v);
-    if (!(d >= b.low && d <= b.high) || is_rounded)
-        refuse(name, fmt::format("{} is out of range", shown(v)), range);
+    if (is_rounded || !o.allowed.holds(d))
+        refuse(std::string(o.name), fmt::format("{} is out of range", shown(v)), range_text(o));
     return d;
 }
 
-double whole(const std::string& name, py::handle v, detail::bounds b)
-{
-    const double d = number(name, v, b);
-    if (d != std::floor(d))
-        refuse(name, fmt::format("{} is not a whole number", shown(v)));
-    return d;
-}
-
-bool truth(const std::string& name, py::handle v)
+bool truth(const option& o, py::handle v)
 {
     const int t = PyObject_IsTrue(v.ptr());
     const bool is_one = py::isinstance<py::bool_>(v) || py::hasattr(v, "dtype");
     if (!is_one || t < 0) {
         PyErr_Clear();
-        refuse(name, fmt::format("{} is neither True nor False", shown(v)));
+        refuse(std::string(o.name), fmt::format("{} is neither True nor False", shown(v)));
     }
     return t != 0;
 }
 
-bool compensation(const std::string& name, py::handle v)
-{
-    const std::string said = py::isinstance<py::str>(v) ? v.cast<std::string>() : "";
-    if (said != "none" && said != "low-speed")
-        refuse(name, fmt::format("{} is not known", shown(v)), "one of none, low-speed");
-    return said != "none";
-}
-
-template <class Enum>
-Enum one_of(const std::string& name, py::handle v)
-{
-    if (py::isinstance<py::str>(v))
-        if (const auto e = detail::kind_named<Enum>(v.cast<std::string>()))
-            return *e;
-    refuse(name, fmt::format("{} is not known", shown(v)),
-           fmt::format("one of {}", fmt::join(detail::names_of<Enum>(), ", ")));
-}
-
-std::string text(const std::string& name, py::handle v)
+std::string text(const option& o, py::handle v)
 {
     if (!py::isinstance<py::str>(v))
-        refuse(name, fmt::format("{} is no text", shown(v)), "");
+        refuse(std::string(o.name),
+               o.choices == nullptr ? fmt::format("{} is no text", shown(v))
+                                    : fmt::format("{} is not known", shown(v)),
+               o.choices == nullptr ? "" : fmt::format("one of {}", choices_text(o)));
     auto said = v.cast<std::string>();
     if (said.find('\0') != std::string::npos)
-        refuse(name, fmt::format("{} has a zero byte in it", shown(v)), "");
+        refuse(std::string(o.name), fmt::format("{} has a zero byte in it", shown(v)));
     return said;
 }
 
-// Seed and texture are options of their own.
-void take_waveform(waveform& into, const std::string& said)
+options::value value_of(const option& o, py::handle v)
 {
-    const waveform w = parse_waveform(said);
-    into.kind = w.kind;
-    into.low_hz = w.low_hz;
-    into.high_hz = w.high_hz;
-    into.recorded = w.recorded;
+    switch (o.what) {
+    case options::kind::number:
+        return number(o, v);
+    case options::kind::whole:
+        return options::read_value(o, number(o, v));
+    case options::kind::flag:
+        return truth(o, v);
+    case options::kind::choice:
+        return options::read_value(o, text(o, v));
+    case options::kind::text:
+        break;
+    }
+    const bool takes_number = o.allowed.high > 0.0 && !py::isinstance<py::str>(v);
+    return takes_number ? options::value(number(o, v)) : options::value(text(o, v));
 }
 
-// HZ, "HZ" or "HZ:DEPTH".
-modulation modulation_of(const std::string& name, py::handle v)
+void refuse_rivals(const py::dict& given)
 {
-    return parse_modulation(py::isinstance<py::str>(v) ? v.cast<std::string>()
-                                                       : fmt::format("{}", number(name, v, {0, 20000})));
-}
-
-using setter = std::function<void(wishes&, const std::string&, py::handle)>;
-
-setter numbers(detail::bounds b, void (*set)(wishes&, double))
-{
-    return [=](wishes& w, const std::string& name, py::handle v) { set(w, number(name, v, b)); };
-}
-
-setter counts(detail::bounds b, void (*set)(wishes&, double))
-{
-    return [=](wishes& w, const std::string& name, py::handle v) { set(w, whole(name, v, b)); };
-}
-
-drive_limits& limits(wishes& w)
-{
-    if (!w.sound.limits)
-        w.sound.limits.emplace();
-    return *w.sound.limits;
-}
-
-std::map<std::string, setter> planning()
-{
-    using W = wishes&;
-    return {
-        {"algorithm", [](W w, auto& n, py::handle v) { w.plan.algorithm = one_of<algorithm_kind>(n, v); }},
-        {"faces", [](W w, auto& n, py::handle v) { w.plan.faces = one_of<faces_kind>(n, v); }},
-        {"soa", numbers({-1e9, 1e9}, [](W w, double d) { w.plan.soa_s = d; })},
-        {"burst", numbers(of::burst, [](W w, double d) { w.plan.burst_s = d; })},
-        {"slope", numbers(of::slope, [](W w, double d) { w.slope = d; })},
-        {"intercept", numbers(of::intercept, [](W w, double d) { w.intercept_s = d; })},
-        {"duration", numbers({0.001, 86400}, [](W w, double d) { w.duration_s = d; })},
-        {"speed", numbers(of::speed, [](W w, double d) { w.speed_mm_s = d; })},
-        {"usual_speed", numbers(of::speed, [](W w, double d) { w.usual_speed_mm_s = d; })},
-        {"timing", [](W w, auto& n, py::handle v) { w.plan.timing = one_of<timing_kind>(n, v); }},
-        {"outside", [](W w, auto& n, py::handle v) { w.plan.outside = one_of<outside_kind>(n, v); }},
-        {"fit", [](W w, auto& n, py::handle v) { w.fit = truth(n, v); }},
-        {"fit_margin", numbers({0, 1e6}, [](W w, double d) { w.fit_margin_mm = d; })},
-        {"snap", [](W w, auto& n, py::handle v) { w.plan.snap = truth(n, v); }},
-        {"drop_points", [](W w, auto& n, py::handle v) { w.plan.drop_points = truth(n, v); }},
-        {"overlap", [](W w, auto& n, py::handle v) { w.plan.overlap = one_of<overlap_kind>(n, v); }},
-        {"compensate", [](W w, auto& n, py::handle v) { w.compensate = compensation(n, v); }},
-        {"observer", [](W w, auto& n, py::handle v) { w.observer = one_of<observer_kind>(n, v); }},
-        {"sigma_mm",
-         numbers({least_sigma_mm, most_sigma_mm}, [](W w, double d) { w.low_speed.sigma_mm = d; })},
-        {"sigma_v_mm_s", numbers({least_sigma_v_mm_s, most_sigma_v_mm_s},
-                                 [](W w, double d) { w.low_speed.sigma_v_mm_s = d; })},
-        {"carrier", numbers(of::carrier, [](W w, double d) { w.plan.carrier_hz = d; })},
-        {"waveform", [](W w, auto& n, py::handle v) { take_waveform(w.plan.wave, text(n, v)); }},
-        {"am", [](W w, auto& n, py::handle v) { w.plan.am = modulation_of(n, v); }},
-        {"noise_seed",
-         [](W w, auto& n, py::handle v) {
-             w.plan.wave.seed = static_cast<std::uint64_t>(whole(n, v, of::noise_seed));
-         }},
-        {"texture", [](W w, auto& n, py::handle v) { w.plan.wave.texture = one_of<texture_kind>(n, v); }},
-        {"intensity_scale", [](W w, auto& n, py::handle v) { w.plan.scale.kind = one_of<scale_kind>(n, v); }},
-        {"stevens_exponent", numbers(of::stevens_exponent, [](W w, double d) { w.plan.scale.exponent = d; })},
-        {"texture_mm", numbers(of::texture_mm, [](W w, double d) { w.plan.wave.texture_mm = d; })},
+    const auto says = [&given](std::string_view name) {
+        const py::str key(name.data(), name.size());
+        return given.contains(key) && !given[key].is_none();
     };
+    for (const option& o : options::all())
+        if (!o.rival.empty() && o.name < o.rival && says(o.name) && says(o.rival))
+            refuse(std::string(o.name), fmt::format("there is also {}", o.rival), "give one of them");
 }
 
-std::map<std::string, setter> sounding()
-{
-    using W = wishes&;
-    return {
-        {"phase", [](W w, auto& n, py::handle v) { w.sound.phase = one_of<phase_kind>(n, v); }},
-        {"ramp", numbers(of::ramp, [](W w, double d) { w.sound.ramp_s = d; })},
-        {"envelope", [](W w, auto& n, py::handle v) { w.sound.envelope.kind = one_of<envelope_kind>(n, v); }},
-        {"attack", numbers(of::attack, [](W w, double d) { w.sound.envelope.attack_s = d; })},
-        {"release", numbers(of::release, [](W w, double d) { w.sound.envelope.release_s = d; })},
-        {"tukey_part", numbers({0, 1}, [](W w, double d) { w.sound.envelope.tukey_part = d; })},
-        {"level_dbfs", numbers(of::level_dbfs,
-                               [](W w, double d) {
-                                   w.sound.level_dbfs = d;
-                                   w.sound.sl_db.reset();
-                               })},
-        {"sl", numbers(of::sl, [](W w, double d) { w.sound.sl_db = d; })},
-        {"rate", counts(of::rate, [](W w, double d) { w.sound.rate = static_cast<unsigned>(d); })},
-        {"channels", counts({1, 16384}, [](W w, double d) { w.sound.channels = static_cast<unsigned>(d); })},
-        {"marker_channel",
-         counts({0, 16383}, [](W w, double d) { w.sound.marker_channel = static_cast<unsigned>(d); })},
-        {"marker_s", numbers({1e-6, 10}, [](W w, double d) { w.sound.marker_s = d; })},
-        {"power_dbfs", numbers({-120, 60}, [](W w, double d) { limits(w).power_dbfs = d; })},
-        {"max_drive_s", numbers({0.1, 3600}, [](W w, double d) { limits(w).max_drive_s = d; })},
-        {"drive_window_s", numbers({0.1, 3600}, [](W w, double d) { limits(w).window_s = d; })},
-    };
-}
-
-// Of people who differ: a comparison's.
-std::map<std::string, setter> spreading()
-{
-    using W = wishes&;
-    return {
-        {"spread", counts({2, 100000}, [](W w, double d) { w.spread.people = static_cast<unsigned>(d); })},
-        {"spread_seed",
-         counts({0, 4294967295.0}, [](W w, double d) { w.spread.seed = static_cast<std::uint64_t>(d); })},
-        {"spread_sigma", numbers({1, 100}, [](W w, double d) { w.spread.sigma_factor = d; })},
-        {"spread_threshold_db", numbers({0, 60}, [](W w, double d) { w.spread.threshold_db = d; })},
-        {"spread_place_mm", numbers({0, 1000}, [](W w, double d) { w.spread.place_mm = d; })},
-    };
-}
-
-const std::map<std::string, setter>& known()
-{
-    static const std::map<std::string, setter> all = [] {
-        auto every = planning();
-        every.merge(sounding());
-        every.merge(spreading());
-        return every;
-    }();
-    return all;
-}
-
-void exclude(const py::dict& given, const char* a, const char* b)
-{
-    const auto says = [&given](const char* name) { return given.contains(name) && !given[name].is_none(); };
-    if (says(a) && says(b))
-        refuse(a, fmt::format("there is also {}", b), "give one of them");
-}
-
-void take_phantom(wishes& w, py::handle v, std::size_t tactors)
+void take_phantom(wishes& w, const option& o, py::handle v, std::size_t tactors)
 {
     if (py::hasattr(v, "weights"))
         w.plan.custom_phantom = model_of(py::reinterpret_borrow<py::object>(v), tactors);
     else
-        w.plan.phantom = one_of<phantom_kind>("phantom", v);
+        options::put(w, o, value_of(o, v));
+}
+
+void take(wishes& w, const std::string& name, py::handle v, std::size_t tactors)
+{
+    if (name == usual_speed) {
+        w.usual_speed_mm_s = number(*options::find("speed"), v);
+        return;
+    }
+    const option* o = options::find(name);
+    if (o == nullptr || o->name != name || (o->where & of_python) == 0)
+        throw py::type_error(fmt::format("there is no option '{}'", name));
+    if (name == "phantom")
+        take_phantom(w, *o, v, tactors);
+    else
+        options::put(w, *o, value_of(*o, v));
+    // What a file may say is not refused where nothing uses it.
+    if ((o->where & options::in_defaults) != 0)
+        w.in_file.insert_or_assign(index(*o), source_place());
+    else
+        w.given.set(index(*o));
+}
+
+// A player has its limits with the stream, a score with the samples.
+void settle_score(wishes& w)
+{
+    render_options& r = w.render;
+    r.rate = w.rate.value_or(r.rate);
+    r.channels = w.channels.value_or(r.channels);
+    const options::stream_options& s = w.stream;
+    if (!s.power_dbfs && !s.max_drive_s && !s.drive_window_s)
+        return;
+    if (!r.limits)
+        r.limits.emplace();
+    r.limits->power_dbfs = s.power_dbfs.value_or(r.limits->power_dbfs);
+    r.limits->max_drive_s = s.max_drive_s.value_or(r.limits->max_drive_s);
+    r.limits->window_s = s.drive_window_s.value_or(r.limits->window_s);
 }
 
 } // namespace
 
 void take_options(wishes& into, const py::dict& given, std::size_t tactors)
 {
-    exclude(given, "duration", "speed");
-    exclude(given, "level_dbfs", "sl");
-    std::string of_spread;
-    for (const auto& [key, value] : given) {
-        if (value.is_none())
-            continue;
-        const auto name = key.cast<std::string>();
-        if (name == "phantom") {
-            take_phantom(into, value, tactors);
-            continue;
-        }
-        const auto o = known().find(name);
-        if (o == known().end())
-            throw py::type_error(fmt::format("there is no option '{}'", name));
-        o->second(into, name, value);
-        if (name.starts_with("spread_"))
-            of_spread = name;
-    }
-    if (!of_spread.empty() && into.spread.people == 0)
-        refuse(of_spread, "there is no spread", "say spread=N, too");
-    if (into.fit_margin_mm > 0.0 && !into.fit)
-        refuse("fit_margin", "there is no fit", "say fit=True, too");
-    if (into.plan.scale.kind == scale_kind::sl)
-        into.plan.scale.sl_db = into.sound.sl_db.value_or(0.0);
-    timing_profile& p = into.plan.profile;
-    if (into.slope || into.intercept_s) {
-        p.slope = into.slope.value_or(p.slope);
-        p.intercept_s = into.intercept_s.value_or(p.intercept_s);
-        p.max_soa_s = p.intercept_s / (1.0 - p.slope);
-    }
+    refuse_rivals(given);
+    into.place = of_python;
+    if (given.contains("level_dbfs") && !given["level_dbfs"].is_none())
+        into.render.sl_db.reset();
+    for (const auto& [key, value] : given)
+        if (!value.is_none())
+            take(into, key.cast<std::string>(), value, tactors);
+    options::settle(into);
+    settle_score(into);
 }
 
-std::vector<std::string> option_names()
+void check_used(const std::vector<std::string>& names, const py::dict& all, const std::string& place)
 {
-    std::vector<std::string> names{"phantom"};
-    for (const auto& o : known())
-        names.push_back(o.first);
-    std::sort(names.begin(), names.end());
+    wishes w;
+    w.place = place == "compare" ? options::in_compare : options::in_plan | options::in_score;
+    for (const auto& [key, value] : all) {
+        const auto name = key.cast<std::string>();
+        const option* o = options::find(name);
+        if (value.is_none() || o == nullptr || name == "phantom")
+            continue;
+        const options::value v = value_of(*o, value);
+        const auto* said = std::get_if<std::string>(&v);
+        if (name == "waveform" && waveform_names_file(*said))
+            w.plan.wave.kind = waveform_kind::recording; // it is read later
+        else
+            options::put(w, *o, v);
+    }
+    for (const std::string& name : names)
+        if (const option* o = options::find(name))
+            w.given.set(index(*o));
+    options::settle(w);
+}
+
+std::map<std::string, options::value> player_options_in(const py::dict& given)
+{
+    std::map<std::string, options::value> all;
+    for (const option& o : options::all()) {
+        const py::str name(o.name.data(), o.name.size());
+        if ((o.where & options::in_player) != 0 && given.contains(name) && !given[name].is_none())
+            all.emplace(o.name, value_of(o, given[name]));
+    }
+    return all;
+}
+
+std::vector<std::string> option_names(const std::string& which)
+{
+    std::vector<std::string> names;
+    for (const option& o : options::all()) {
+        const bool plans = (o.where & options::planning) != 0;
+        const bool in_plan = (o.where & options::in_plan) != 0;
+        const bool wanted = which == "planning"   ? plans && (o.where & of_python) != 0
+                            : which == "sounding" ? in_plan && !plans
+                            : which == "live"     ? in_plan && (o.where & options::live) != 0
+                                                  : (o.where & of_python) != 0;
+        if (wanted)
+            names.emplace_back(o.name);
+    }
+    if (which.empty())
+        names.emplace_back(usual_speed);
     return names;
+}
+
+py::dict default_values(const setup& says)
+{
+    py::dict all;
+    for (const options::said_default& d : options::read_defaults(says)) {
+        const py::str name(d.row->name.data(), d.row->name.size());
+        if (const auto* flag = std::get_if<bool>(&d.said))
+            all[name] = *flag;
+        else if (const auto* n = std::get_if<double>(&d.said))
+            all[name] = *n;
+        else
+            all[name] = std::get<std::string>(d.said);
+    }
+    return all;
+}
+
+std::string spell(const option& o, std::string_view value)
+{
+    if (value.empty())
+        return o.what == options::kind::flag ? fmt::format("{}=True", o.name) : std::string(o.name);
+    const bool is_text = o.what == options::kind::choice || o.what == options::kind::text;
+    return is_text ? fmt::format("{}=\"{}\"", o.name, value) : fmt::format("{}={}", o.name, value);
 }
 
 } // namespace tactor::python

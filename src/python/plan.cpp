@@ -23,7 +23,7 @@ plan_handle planned(const std::shared_ptr<array_handle>& on, const stroke& given
     const layout& faces = on->faces();
     asked_stroke asked = stroke_as_asked(given_stroke, faces, w);
     plan_handle p{on, std::move(asked.drawn), {}, asked.fit};
-    p.sound = w.sound;
+    p.sound = w.render;
     p.placed.start_s = p.drawn.start_s;
     p.placed.anchor = p.drawn.anchor;
     const auto work = [&] {
@@ -210,7 +210,8 @@ asked_stroke stroke_as_asked(const stroke& s, const layout& faces, const wishes&
 
 void bind_plan(py::module_& m)
 {
-    m.def("option_names", &option_names);
+    m.def("option_names", &option_names, py::arg("which") = "");
+    m.def("check_used", &check_used);
     m.def("burst_duration", [](const py::dict& options) {
         wishes w;
         take_options(w, options, 0);

@@ -32,21 +32,7 @@ std::shared_ptr<player_handle> open(const std::shared_ptr<array_handle>& on, con
     w.driven = driven;
     take(given, "config", w.config);
     take(given, "array_file", w.array_file);
-    take(given, "rate", w.rate);
-    take(given, "channels", w.channels);
-    take(given, "sample_format", w.format);
-    take(given, "period_frames", w.play.period_frames);
-    take(given, "periods", w.play.periods);
-    take(given, "power_dbfs", w.play.power_dbfs);
-    take(given, "max_drive_s", w.play.max_drive_s);
-    take(given, "drive_window_s", w.play.drive_window_s);
-    std::optional<double> latency_s;
-    take(given, "latency", latency_s);
-    if (latency_s)
-        w.play.latency_ms = *latency_s * 1e3;
-    w.play.require_realtime = given["require_realtime"].cast<bool>();
-    w.play.no_gpio = given["no_gpio"].cast<bool>();
-    w.sync_delay_s = given["sync_delay"].cast<double>();
+    w.given = player_options_in(given);
     w.wants_log = given["log"].cast<bool>();
     const without_lock free;
     return std::make_shared<player_handle>(on->value(), w);
@@ -161,7 +147,7 @@ live_handle begin(const std::shared_ptr<player_handle>& h, const array_handle& o
     const without_lock free;
     return {h, h->use([&](player& p) {
                 return p.begin({.plan = w.plan,
-                                .render = w.sound,
+                                .render = w.render,
                                 .timeout_s = timeout_s,
                                 .longest_s = longest_s,
                                 .smooth_s = smooth_s});

@@ -6,6 +6,7 @@
 
 #include <unistd.h>
 
+#include "options/settle.hpp"
 #include "session/device.hpp"
 #include "session/sound_server.hpp"
 
@@ -15,13 +16,12 @@ namespace {
 session::settings make_settings(const player_wishes& w)
 {
     session::settings s;
-    s.pcm = w.pcm;
+    s.place = options::in_player;
     s.config_file = w.config;
     s.array_name = w.array_file;
-    s.rate = w.rate;
-    s.channels = w.channels;
-    if (w.format)
-        s.format = from_string<format_kind>(*w.format);
+    s.pcm = w.pcm;
+    for (const auto& [name, v] : w.given)
+        options::give(s, *options::find(name), v);
     return s;
 }
 
@@ -35,36 +35,11 @@ bool same_map(const array& a, const array& b)
     return true;
 }
 
-// The caller gave what the settings hold; [defaults] fill in the rest.
-class given_settings final : public session::option_source {
-public:
-    explicit given_settings(session::settings& s) : settings_(s), rate_(s.rate), format_(s.format) {}
-
-    bool given(const std::string&) const override { return false; } // of what the command line plans with
-    void apply_defaults(const setup& says) override
-    {
-        const auto fill = [](auto& into, const auto& by_caller, const auto& by_default) {
-            if (!by_caller && by_default)
-                into = by_default;
-        };
-        fill(settings_.rate, rate_, says.defaults.rate);
-        fill(settings_.format, format_, says.defaults.sample_format);
-    }
-    void refuse_planning(const std::string&) const override {}
-    void settle() override {}
-
-private:
-    session::settings& settings_;
-    std::optional<unsigned> rate_;
-    std::optional<format_kind> format_;
-};
-
 } // namespace
 
 session::environment read_environment(session::settings& s, const array* a)
 {
-    given_settings options(s);
-    session::environment e = session::read_environment(s, options);
+    session::environment e = session::read_environment(s);
     if (a == nullptr)
         return e;
     // A channel count belongs to its map.
@@ -80,20 +55,20 @@ player_handle::player_handle(const array& a, const player_wishes& w)
     session::settings s = make_settings(w);
     const session::environment e = read_environment(s, &a);
     const render_options sound = session::settle_render(s, e);
-    alsa_options device = session::device_options(s, w.play, e, sound.channels, sound.rate);
+    alsa_options device = session::device_options(s, s.stream, e, sound.channels, sound.rate);
     const auto events = events_;
     if (w.wants_log)
         device.log = [events](log_kind k, std::string_view text) {
             events->put(log_line{std::string(to_string(k)), std::string(text)});
         };
     session::settle_server(device.pcm);
-    const bool waits_for_edges = !w.play.no_gpio && e.config.sync && e.config.sync->in;
+    const bool waits_for_edges = !s.stream.no_gpio && e.config.sync && e.config.sync->in;
     // Before threads: it forks the holder of the amplifier's line.
-    open_->lines =
-        session::lent_lines(w.play.no_gpio ? tactor::setup{} : e.config, waits_for_edges, w.sync_delay_s);
+    open_->lines = session::lent_lines(s.stream.no_gpio ? tactor::setup{} : e.config, waits_for_edges,
+                                       s.stream.sync_delay_ms * 1e-3);
     player_options o;
-    o.limits = session::settle_limits(w.play, e);
-    o.require_realtime = w.play.require_realtime;
+    o.limits = session::settle_limits(s.stream, e);
+    o.require_realtime = s.stream.require_realtime;
     o.driven = w.driven;
     o.log = device.log;
     open_->stream = std::make_unique<player>(session::open_device(device), a, o, open_->lines.lend());

@@ -3,6 +3,7 @@
 /// A player as the tool's `play` opens it: configuration, lines and limits included.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <shared_mutex>
@@ -10,6 +11,7 @@
 
 #include <sys/types.h>
 
+#include "options/option.hpp"
 #include "python/binding.hpp"
 #include "python/events.hpp"
 #include "session/device.hpp"
@@ -22,11 +24,7 @@ struct player_wishes {
     std::string pcm = {};
     std::optional<std::string> config = {};
     std::optional<std::string> array_file = {};
-    std::optional<unsigned> rate = {};
-    std::optional<unsigned> channels = {};
-    std::optional<std::string> format = {};
-    session::stream_options play = {};
-    double sync_delay_s = 0.05;
+    std::map<std::string, options::value> given = {}; ///< options by name, checked
     drive_history driven = {};
     bool wants_log = false;
 };

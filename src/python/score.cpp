@@ -33,12 +33,12 @@ bool says(const py::dict& options, const char* name)
 render_options sound_of(const plan_handle& p, const py::dict& said)
 {
     wishes w;
-    w.sound = p.sound;
+    w.render = p.sound;
     take_options(w, said, 0);
     // A plan that was recorded says how many channels it had without a marker.
-    if (w.sound.marker_channel && w.sound.channels != 0 && !says(said, "channels"))
-        w.sound.channels = std::max(w.sound.channels, *w.sound.marker_channel + 1);
-    return w.sound;
+    if (w.render.marker_channel && w.render.channels != 0 && !says(said, "channels"))
+        w.render.channels = std::max(w.render.channels, *w.render.marker_channel + 1);
+    return w.render;
 }
 
 [[noreturn]] void refuse_different(const std::string& name, const std::string& a, const std::string& b)

@@ -11,10 +11,11 @@
 
 #include "core/profile.hpp"
 #include "files/output_file.hpp"
-#include "files/setup_defaults.hpp"
 #include "files/setup_text.hpp"
 #include "files/text_file.hpp"
+#include "options/settle.hpp"
 #include "python/binding.hpp"
+#include "python/options.hpp"
 #include "python/state.hpp"
 
 namespace tactor::python {
@@ -85,6 +86,12 @@ std::string read_text(const std::string& file)
     return std::string(std::string_view(detail::read_text_file(file, most)));
 }
 
+setup checked(setup s)
+{
+    static_cast<void>(options::read_defaults(s));
+    return s;
+}
+
 void bind_array(py::module_& m)
 {
     m.def("read_text", &read_text);
@@ -126,8 +133,8 @@ void bind_array(py::module_& m)
     m.def("array_presets", [] { return array_presets(); });
 
     py::class_<setup>(m, "Setup")
-        .def_static("load", [](const std::string& file) { return load_setup(file); })
-        .def_static("parse", [](const std::string& text) { return parse_setup(text, "array"); })
+        .def_static("load", [](const std::string& file) { return checked(load_setup(file)); })
+        .def_static("parse", [](const std::string& text) { return checked(parse_setup(text, "array")); })
         .def("besides", [](const setup& s) { return detail::besides_text(s); })
         .def("origin",
              [](const setup& s) {
@@ -138,7 +145,7 @@ void bind_array(py::module_& m)
                                    return s.array ? std::optional<array_handle>(std::in_place, *s.array)
                                                   : std::nullopt;
                                })
-        .def_property_readonly("defaults", [](const setup& s) { return detail::default_texts(s.defaults); })
+        .def_property_readonly("defaults", &default_values)
         .def_property_readonly("rate", [](const setup& s) { return s.output.rate; })
         .def_property_readonly("channels", [](const setup& s) { return s.output.channels; })
         .def_property_readonly("marker", [](const setup& s) -> std::optional<std::pair<unsigned, double>> {

@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "core/words.hpp"
+#include "options/settle.hpp"
 
 namespace tactor::server {
 namespace {
@@ -22,64 +23,62 @@ struct translation {
     std::string_view param;
 };
 
-// What the library calls its fields, in advice.
-constexpr std::array<translation, 19> in_advice{{{"fit_strokes() scales it to the array, ", ""},
-                                                 {"soa_s", "options.soa"},
-                                                 {"burst_s", "options.burst"},
-                                                 {"carrier_hz", "options.carrier"},
-                                                 {"ramp_s", "options.ramp"},
-                                                 {"sl_db", "options.sl"},
-                                                 {"level_dbfs", "options.level_dbfs"},
-                                                 {"timing = ", "options.timing "},
-                                                 {"outside = ", "options.outside "},
-                                                 {"algorithm = ", "options.algorithm "},
-                                                 {"faces = ", "options.faces "},
-                                                 {"phantom = ", "options.phantom "},
-                                                 {"snap = true", "options.snap true"},
-                                                 {"drop_points = true", "options.drop_points true"},
-                                                 {"sigma_mm", "options.sigma_mm"},
-                                                 {"sigma_v_mm_s", "options.sigma_v_mm_s"},
-                                                 {"duration_s", "options.duration"},
-                                                 {"array = FILE", "another array of the server"},
-                                                 {"array = palm", "palm"}}};
+// Words of the library's advice that are no field of an option.
+constexpr std::array<translation, 3> own_words{{{"fit_strokes() scales it to the array, ", ""},
+                                                {"array = FILE", "another array of the server"},
+                                                {"array = palm", "palm"}}};
 
-// What it is about, by how it begins.
-constexpr std::array<translation, 25> subjects{{{"soa_s", "options.soa"},
-                                                {"burst_s", "options.burst"},
-                                                {"duration of a burst", "options.burst"},
-                                                {"carrier_hz", "options.carrier"},
-                                                {"ramp_s", "options.ramp"},
-                                                {"sl_db", "options.sl"},
-                                                {"level_dbfs", "options.level_dbfs"},
-                                                {"timing profile", "options.slope"},
-                                                {"timing = ", "options.timing"},
-                                                {"phantom", "options.phantom"},
-                                                {"faces", "options.faces"},
-                                                {"array ", "options.algorithm"},
-                                                {"tactor ", "options.level_dbfs"},
-                                                {"waveform", "options.waveform"},
-                                                {"am", "options.am"},
-                                                {"attack_s", "options.attack"},
-                                                {"release_s", "options.release"},
-                                                {"intensity_scale", "options.intensity_scale"},
-                                                {"stevens_exponent", "options.stevens_exponent"},
-                                                {"compensation", "options.compensate"},
-                                                {"sigma_mm", "options.sigma_mm"},
-                                                {"sigma_v_mm_s", "options.sigma_v_mm_s"},
-                                                {"algorithm", "options.algorithm"},
-                                                {"texture", "options.texture"},
-                                                {"live_options", "options"}}};
+// Subjects of the library that are about an option of another name, by how they begin.
+constexpr std::array<translation, 6> own_subjects{{{"timing profile", "options.slope"},
+                                                   {"duration of a burst", "options.burst"},
+                                                   {"array ", "options.algorithm"},
+                                                   {"tactor ", "options.level_dbfs"},
+                                                   {"compensation", "options.compensate"},
+                                                   {"live_options", "options"}}};
+
+void replace_words(std::string& text, std::string_view from, std::string_view to)
+{
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+        if (at == 0 || (text[at - 1] != '.' && text[at - 1] != '_'))
+            text.replace(at, from.size(), to);
+}
+
+bool is_param(const options::option& o)
+{
+    return (o.where & options::by_client) != 0;
+}
+
+std::string param_name(const options::option& o)
+{
+    return fmt::format("options.{}", o.name);
+}
 
 std::string in_params(std::string text)
 {
-    for (const translation& t : in_advice)
-        for (std::size_t at = text.find(t.field); at != std::string::npos;
-             at = text.find(t.field, at + t.param.size())) {
-            const bool begins = at == 0 || (text[at - 1] != '.' && text[at - 1] != '_');
-            if (begins)
-                text.replace(at, t.field.size(), t.param);
-        }
+    for (const translation& t : own_words)
+        replace_words(text, t.field, t.param);
+    for (const options::option& o : options::all()) {
+        if (!is_param(o))
+            continue;
+        if (o.what == options::kind::flag)
+            replace_words(text, fmt::format("{} = true", o.name), param_name(o) + " true");
+        if (o.what == options::kind::choice)
+            replace_words(text, fmt::format("{} = ", o.name), param_name(o) + " ");
+        if (o.field_name().find('_') != std::string_view::npos)
+            replace_words(text, o.field_name(), param_name(o));
+    }
     return text;
+}
+
+// The option that a subject of the library begins with; empty: none.
+std::string param_of(std::string_view subject)
+{
+    for (const translation& t : own_subjects)
+        if (subject.starts_with(t.field))
+            return std::string(t.param);
+    const std::string_view word = subject.substr(0, subject.find_first_of(" :"));
+    const options::option* o = options::find_field(word);
+    return o != nullptr && is_param(*o) ? param_name(*o) : "";
 }
 
 } // namespace
@@ -104,6 +103,15 @@ void no_stream(const std::string& why)
     throw fault_error({net::code_no_stream, "not-available", "stream", why, "try again when it is back"});
 }
 
+rpc_fault option_fault(const error& e)
+{
+    const error said = options::spell_marks(e, [](const options::option& o, std::string_view value) {
+        return param_name(o) + (value.empty() ? "" : " ") + std::string(value);
+    });
+    return {net::code_bad_params, "bad-input", std::string(said.subject()), std::string(said.why()),
+            std::string(said.hint())};
+}
+
 rpc_fault fault_of(const error& e, const std::string& source)
 {
     const bool of_call = e.subject() == "live stroke" && !e.field().empty();
@@ -119,12 +127,12 @@ rpc_fault fault_of(const error& e, const std::string& source)
         f.code = net::code_internal;
     if (e.kind() == error_kind::not_available)
         f.code = net::code_no_stream;
-    const auto known = std::find_if(subjects.begin(), subjects.end(),
-                                    [&](const translation& t) { return subject.starts_with(t.field); });
-    if (known != subjects.end())
-        f.what = known->param;
+    const std::string param = param_of(subject);
+    if (!param.empty())
+        f.what = param;
     // "toml:3:5" says where in the text; "stroke" and the like, and a field, no more than the parameter does.
-    const bool field = known != subjects.end() && subject == known->field;
+    const options::option* o = options::find_field(subject);
+    const bool field = o != nullptr && is_param(*o);
     if (of_file)
         f.why = fmt::format("{}: {}", subject.substr(source.size() + 1), f.why);
     else if (!field && subject != source && subject != "stroke" &&
@@ -172,11 +180,6 @@ const json* member(const json& params, const char* name)
 {
     const auto found = params.find(name);
     return found == params.end() ? nullptr : &*found;
-}
-
-double number(const json& v, const std::string& what, detail::bounds b)
-{
-    return number(v, what, b.low, b.high);
 }
 
 double number(const json& v, const std::string& what, double low, double high)

@@ -13,7 +13,6 @@
 #include <tactor/error.hpp>
 #include <tactor/render.hpp>
 
-#include "core/option_bounds.hpp"
 #include "net/rpc.hpp"
 
 namespace tactor::server {
@@ -34,6 +33,8 @@ private:
 [[noreturn]] void no_such_stroke(std::uint32_t number, std::string why = "no such stroke of yours goes on");
 [[noreturn]] void no_stream(const std::string& why);
 
+/// An error of the table of options, about one of `options`.
+net::rpc_fault option_fault(const error& e);
 /// An error of the library about the parameter `source`, or about the option that it names.
 net::rpc_fault fault_of(const error& e, const std::string& source);
 /// The fault of whatever is being handled: for catch (...).
@@ -47,7 +48,6 @@ void only(const net::json& params, std::initializer_list<std::string_view> known
 const net::json* member(const net::json& params, const char* name);
 /// A number within bounds. \throws fault_error.
 double number(const net::json& v, const std::string& what, double low, double high);
-double number(const net::json& v, const std::string& what, detail::bounds b);
 /// A required one.
 double need_number(const net::json& params, const char* name, double low, double high);
 std::uint32_t need_stroke(const net::json& params);

@@ -24,7 +24,7 @@ double park_bursts(const stroke& k, const plan_options& o)
 
 } // namespace
 
-planning_work estimate_work(const std::vector<stroke>& strokes, const stroke_settings& s, const layout& faces)
+planning_work estimate_work(const std::vector<stroke>& strokes, const options::wishes& s, const layout& faces)
 {
     planning_work w;
     for (const stroke& k : strokes) {

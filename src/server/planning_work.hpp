@@ -20,7 +20,7 @@ struct planning_work {
 };
 
 /// Estimates the work from durations and options; none for an SOA that the planner refuses.
-planning_work estimate_work(const std::vector<stroke>& strokes, const stroke_settings& s,
+planning_work estimate_work(const std::vector<stroke>& strokes, const options::wishes& s,
                             const layout& faces);
 
 } // namespace tactor::server

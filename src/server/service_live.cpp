@@ -23,7 +23,7 @@ void service::begin(client& c, const json& params, const answer& to)
 {
     only(params, {"options", "timeout_s", "smooth_s"});
     const live_options usual;
-    stroke_settings s = options_.plans.owner;
+    options::wishes s = options_.plans.owner;
     s.plan.algorithm = usual.plan.algorithm;
     s.plan.outside = usual.plan.outside;
     if (const json* o = member(params, "options"))

@@ -51,7 +51,7 @@ std::vector<stroke> read_points(const json& list)
     return {stroke{.name = "points", .motion = trajectory::timed(std::move(points))}};
 }
 
-stroke stroke_of_path(const std::string& data, const stroke_settings& s)
+stroke stroke_of_path(const std::string& data, const options::wishes& s)
 {
     const path p = path::from_svg(data);
     const double speed = s.speed_mm_s.value_or(s.usual_speed_mm_s.value_or(default_speed_mm_s));
@@ -66,7 +66,7 @@ bool is_shape(const std::string& name)
     return std::find(shapes.begin(), shapes.end(), name) != shapes.end();
 }
 
-std::vector<stroke> read_strokes(const std::string& source, const json& v, const stroke_settings& s)
+std::vector<stroke> read_strokes(const std::string& source, const json& v, const options::wishes& s)
 {
     if (source == "points")
         return read_points(v);
@@ -101,7 +101,7 @@ void few_enough(const planning& with, std::size_t strokes)
 }
 
 // When each begins, and that they do not last too long, alone and together: so long takes planning them.
-void place_strokes(const planning& with, const stroke_settings& s, std::vector<stroke>& strokes)
+void place_strokes(const planning& with, const options::wishes& s, std::vector<stroke>& strokes)
 {
     detail::start_times times;
     double together_s = 0.0;
@@ -149,7 +149,7 @@ const char* source_of(const json& params)
     return found;
 }
 
-void check_level(const planning& with, const stroke_settings& s, double intensity, double carrier_hz,
+void check_level(const planning& with, const options::wishes& s, double intensity, double carrier_hz,
                  const std::string& source)
 {
     if (intensity <= 0.0)
@@ -203,7 +203,7 @@ planned make_planned(const planning& with, const layout& faces, const json& para
 {
     const std::string source = source_of(params);
     const json* options = member(params, "options");
-    const stroke_settings s =
+    const options::wishes s =
         options == nullptr ? with.owner : with_options(with.owner, *options, options_for::planned);
     try {
         planned p{source, read_strokes(source, params[source], s), {}, s.render};

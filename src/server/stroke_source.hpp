@@ -25,7 +25,7 @@ namespace tactor::server {
 /// What all plans share.
 struct planning {
     array tactors;
-    stroke_settings owner; ///< with the stream's rate and channels
+    options::wishes owner; ///< with the stream's rate and channels
     double max_level_dbfs = -12.0;
     double max_stroke_s = 600.0; ///< of a stroke, and of those of one request together
     std::size_t max_strokes = 64;
@@ -68,7 +68,7 @@ planned make_drive(const planning& with, const net::json& params);
 
 /// \throws fault_error where the settings are louder at this intensity and carrier than the owner allows; of
 ///         the level, or of `source` where only its intensity is too much.
-void check_level(const planning& with, const stroke_settings& s, double intensity, double carrier_hz,
+void check_level(const planning& with, const options::wishes& s, double intensity, double carrier_hz,
                  const std::string& source);
 
 } // namespace tactor::server

@@ -52,8 +52,8 @@ alsa_options device_options(const settings& s, const stream_options& asked, cons
     o.format = s.format;
     o.periods = asked.periods.value_or(out.periods.value_or(o.periods));
     o.period_frames = asked.period_frames.value_or(out.period_frames.value_or(o.period_frames));
-    if (const auto latency_ms = asked_latency_ms(asked, e)) {
-        const double frames = *latency_ms * 1e-3 * o.rate / o.periods;
+    if (asked.latency_ms) {
+        const double frames = *asked.latency_ms * 1e-3 * o.rate / o.periods;
         o.period_frames = std::max(1U, static_cast<unsigned>(std::lround(frames)));
     }
     return o;
@@ -67,13 +67,6 @@ drive_limits settle_limits(const stream_options& o, const environment& e)
     l.max_drive_s = o.max_drive_s.value_or(said.max_drive_s.value_or(l.max_drive_s));
     l.window_s = o.drive_window_s.value_or(said.window_s.value_or(l.window_s));
     return l;
-}
-
-std::optional<double> asked_latency_ms(const stream_options& o, const environment& e)
-{
-    if (o.latency_ms || o.period_frames || !e.latency_s)
-        return o.latency_ms;
-    return 1e3 * *e.latency_s;
 }
 
 double latency_ms(const stream_setup& s)

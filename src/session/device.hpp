@@ -13,23 +13,6 @@
 
 namespace tactor::session {
 
-/// How a stream is opened, driven and recorded.
-struct stream_options {
-    std::optional<double> latency_ms = {};
-    std::optional<unsigned> period_frames = {};
-    std::optional<unsigned> periods = {};
-    bool require_realtime = false;
-    double reopen_s = 0.0; ///< time that a lost device is waited for
-    bool arm = false;      ///< strokes wait for an edge on the [sync] in line
-    double sync_delay_ms = 50.0;
-    bool no_gpio = false;
-    bool verbose = false; ///< log on standard error
-    std::string log = {}; ///< file that log lines are appended to; empty: none
-    std::optional<double> power_dbfs = {};
-    std::optional<double> max_drive_s = {};
-    std::optional<double> drive_window_s = {};
-};
-
 /// Returns whether anything says which PCM to play on.
 bool names_device(const settings& s, const environment& e);
 
@@ -40,10 +23,6 @@ alsa_options device_options(const settings& s, const stream_options& asked, cons
 
 /// Returns the limits that hold: the options, else [limits], else the defaults.
 drive_limits settle_limits(const stream_options& o, const environment& e);
-
-/// Returns the latency that is asked for, ms: the option's, else that of [defaults] where no option gives a
-/// period.
-std::optional<double> asked_latency_ms(const stream_options& o, const environment& e);
 
 /// Returns a sentence where the device makes more latency than was asked for; else nothing.
 std::string latency_warning(std::optional<double> asked_ms, const stream_setup& made);

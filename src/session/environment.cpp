@@ -12,6 +12,7 @@
 #include "core/words.hpp"
 #include "files/input_files.hpp"
 #include "files/text_file.hpp"
+#include "options/settle.hpp"
 #include "session/pipes.hpp"
 #include "session/variable.hpp"
 
@@ -65,7 +66,7 @@ void use_array_file(setup& config, const setup& file)
 }
 
 // It can be read only once, and what it holds is known by its first character.
-void read_standard_input(const option_source& options, environment& e)
+void read_standard_input(const settings& s, environment& e)
 {
     constexpr const char* name = "standard input";
     detail::note_input("/dev/fd/0");
@@ -82,19 +83,19 @@ void read_standard_input(const option_source& options, environment& e)
         e.standard_input = parse_strokes(text, name);
         return;
     }
-    options.refuse_planning(name);
+    options::refuse_planning(s, name);
     e.plans.emplace("-", files::read_plans(text, name));
 }
 
 // The plans among the STROKE arguments, and what is given on standard input.
-void read_given(const settings& s, const option_source& options, environment& e)
+void read_given(const settings& s, environment& e)
 {
     if (std::find(s.strokes.begin(), s.strokes.end(), "-") != s.strokes.end())
-        read_standard_input(options, e);
+        read_standard_input(s, e);
     for (const std::string& argument : s.strokes) {
         if (!files::is_plan_file(argument) || e.plans.contains(argument))
             continue;
-        options.refuse_planning(argument);
+        options::refuse_planning(s, argument);
         check_readable(argument);
         e.plans.emplace(argument, files::load_plans(argument));
     }
@@ -110,25 +111,25 @@ const files::plan_file* first_plan(const settings& s, const environment& e)
 }
 
 // How a plan was rendered is how it is, where no option says otherwise: no [defaults] does.
-void use_sound_of(const files::plan_file& f, settings& s, const option_source& options)
+void use_sound_of(const files::plan_file& f, settings& s)
 {
-    if (!options.given("phase"))
+    if (!s.gives("phase"))
         s.render.phase = f.render.phase;
-    if (!options.given("ramp"))
+    if (!s.gives("ramp"))
         s.render.ramp_s = f.render.ramp_s;
-    if (!options.given("envelope")) {
+    if (!s.gives("envelope")) {
         s.render.envelope.kind = f.render.envelope.kind;
         s.render.envelope.tukey_part = f.render.envelope.tukey_part;
     }
-    if (!options.given("attack"))
+    if (!s.gives("attack"))
         s.render.envelope.attack_s = f.render.envelope.attack_s;
-    if (!options.given("release"))
+    if (!s.gives("release"))
         s.render.envelope.release_s = f.render.envelope.release_s;
-    if (!options.given("level-dbfs") && !options.given("sl")) {
+    if (!s.gives("level_dbfs") && !s.gives("sl")) {
         s.render.level_dbfs = f.render.level_dbfs;
         s.render.sl_db = f.render.sl_db;
     }
-    if (!options.given("rate"))
+    if (!s.gives("rate"))
         s.rate = f.render.rate;
     s.render.marker_channel = f.render.marker_channel;
     s.render.marker_s = f.render.marker_s;
@@ -141,7 +142,7 @@ array use_array_of(const files::plan_file& f, environment& e)
     return f.tactors;
 }
 
-array find_array(const settings& s, option_source& options, environment& e)
+array find_array(settings& s, environment& e)
 {
     setup& config = e.config;
     if (!s.array_name) {
@@ -162,9 +163,7 @@ array find_array(const settings& s, option_source& options, environment& e)
     const setup file = load_setup(*s.array_name);
     if (!file.array)
         throw error(error_kind::bad_input, *s.array_name, "says no [array]", "see tactor.toml(5)");
-    options.apply_defaults(file);
-    if (file.defaults.latency_s)
-        e.latency_s = file.defaults.latency_s;
+    options::apply_defaults(s, file);
     use_array_file(config, file);
     e.array_file = *s.array_name;
     return *file.array;
@@ -189,28 +188,21 @@ bool is_preset(const std::vector<std::string>& presets, const std::string& name)
     return std::find(presets.begin(), presets.end(), name) != presets.end();
 }
 
-environment read_environment(settings& s, option_source& options)
+environment read_environment(settings& s)
 {
     environment e;
     e.config_name = find_config(s);
     if (!e.config_name.empty()) {
         check_readable(e.config_name);
         e.config = load_setup(e.config_name);
-        options.apply_defaults(e.config);
-        e.latency_s = e.config.defaults.latency_s;
+        options::apply_defaults(s, e.config);
     }
-    read_given(s, options, e);
-    e.tactors = find_array(s, options, e);
+    read_given(s, e);
+    e.tactors = find_array(s, e);
     if (const files::plan_file* f = first_plan(s, e))
-        use_sound_of(*f, s, options);
-    options.settle();
+        use_sound_of(*f, s);
+    options::settle(s);
     check_sync_channel(e);
-    if (s.slope || s.intercept_s) {
-        timing_profile& p = s.plan.profile;
-        p.slope = s.slope.value_or(p.slope);
-        p.intercept_s = s.intercept_s.value_or(p.intercept_s);
-        p.max_soa_s = p.intercept_s / (1.0 - p.slope);
-    }
     return e;
 }
 

@@ -20,17 +20,17 @@ struct environment {
     setup config;
     std::string config_name; ///< file it came from; empty: none
     array tactors;
-    std::string array_file;               ///< that the array came from; empty: it is a preset of its name
-    std::optional<double> latency_s = {}; ///< that [defaults] say
+    std::string array_file; ///< that the array came from; empty: it is a preset of its name
     std::optional<unsigned> plan_channels = {};         ///< of the plan that the array came from
     std::map<std::string, files::plan_file> plans = {}; ///< STROKE arguments that are planned already
     std::vector<stroke> standard_input = {};            ///< strokes of the STROKE "-", unless it is a plan
 };
 
 /// Reads the configuration (--config, $TACTOR_CONFIG, the user's, the system's: the first that exists),
-/// feeds its [defaults] to the options, reads the STROKEs that are plans and standard input where "-" is one,
-/// and finds the array: --array, the configuration's, the first plan's, or palm-3x3. \throws error.
-environment read_environment(settings& s, option_source& options);
+/// fills options that nobody gave from its [defaults], reads the STROKEs that are plans and standard input
+/// where "-" is one, and finds the array: --array, the configuration's, the first plan's, or palm-3x3.
+/// \throws error.
+environment read_environment(settings& s);
 
 /// Whether it is the name of one of these.
 bool is_preset(const std::vector<std::string>& presets, const std::string& name);

@@ -228,12 +228,6 @@ class Schemas(ToolTest):
             alone = {k: v for k, v in SCHEMAS[f"tactor-{one}/1"].items() if k != "$schema"}
             self.assertEqual(SCHEMAS[f"tactor-{several}/1"]["properties"][key]["items"], alone)
 
-    def test_the_protocols_options_are_those_that_the_service_takes(self):
-        taken = re.findall(r'option\{\s*"(\w+)"', (ROOT / "src/server/stroke_options.cpp").read_text(encoding="utf-8"))
-        schema = json.loads((ROOT / "src/cli/schemas/tactor-protocol-1.schema.json").read_text(encoding="utf-8"))
-        self.assertGreater(len(taken), 20)
-        self.assertEqual(sorted(schema["$defs"]["options"]["properties"]), sorted(taken))
-
     def test_the_page_describes_each_field_once(self):
         for name, schema in SCHEMAS.items():
             listed = paths_on_page(name)

@@ -10,7 +10,6 @@
 #include <tactor/setup.hpp>
 #include <tactor/stroke.hpp>
 
-#include "files/setup_defaults.hpp"
 #include "files/text_file.hpp"
 #include "message_of.hpp"
 
@@ -72,7 +71,7 @@ TEST_CASE("the example configuration is read")
     CHECK(s.array->name == "left-hand");
     CHECK(s.amplifier.has_value());
     CHECK(s.sync->channel == 9u);
-    CHECK(detail::default_texts(s.defaults).size() >= 5);
+    CHECK(s.defaults.size() >= 5);
 }
 
 TEST_CASE("the examples in the manual page are read")
@@ -97,15 +96,6 @@ TEST_CASE("the examples in the manual page are read")
     }
     CHECK(arrays >= 3);
     CHECK(strokes >= 2);
-}
-
-TEST_CASE("the manual page names every option that [defaults] takes")
-{
-    const std::string page(std::string_view(detail::read_text_file(source / "man/tactor.toml.5", 1 << 20)));
-    for (const std::string_view name : detail::default_names()) {
-        CAPTURE(name);
-        CHECK(page.find(fmt::format("\n{}\t", name)) != std::string::npos);
-    }
 }
 
 } // namespace examples_test

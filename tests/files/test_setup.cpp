@@ -10,7 +10,7 @@
 
 #include <tactor/setup.hpp>
 
-#include "files/setup_defaults.hpp"
+#include "files/setup_text.hpp"
 #include "message_of.hpp"
 
 namespace setup_test {
@@ -101,12 +101,7 @@ TEST_CASE("a whole configuration")
     CHECK(s.sync->edge == edge_kind::falling);
     CHECK(s.sync->debounce_s == 0.0025);
     CHECK(s.sync->pull == pull_kind::up);
-    CHECK(s.defaults == default_settings{.speed_mm_s = 80.0,
-                                         .algorithm = algorithm_kind::tactile_brush,
-                                         .soa_s = 0.06,
-                                         .snap = true,
-                                         .level_dbfs = -20.0,
-                                         .rate = 96000});
+    CHECK(s.defaults.size() == 6);
 }
 
 TEST_CASE("what a file leaves out is left to the program")
@@ -118,7 +113,7 @@ TEST_CASE("what a file leaves out is left to the program")
         CHECK_FALSE(s.output.channels.has_value());
         CHECK_FALSE(s.amplifier.has_value());
         CHECK_FALSE(s.sync.has_value());
-        CHECK(s.defaults == default_settings());
+        CHECK(s.defaults.empty());
     }
     const setup s = read("[amplifier]\nline = { name = \"GPIO17\" }\n[sync]\n");
     CHECK_FALSE(s.amplifier->active_low);
@@ -195,111 +190,32 @@ TEST_CASE("GPIO lines: a chip and an offset, or a name, each line once")
           "t.toml:14:14: active_low is 1 (give true or false)");
 }
 
-TEST_CASE("[defaults] takes the options it lists, checked")
+TEST_CASE("[defaults] hands on flags, numbers and texts with their places")
 {
-    for (const std::string_view name : detail::default_names())
-        CHECK_FALSE(complaint(fmt::format("[defaults]\n{} = []\n", name)).empty());
-    CHECK(detail::default_names().size() == 35);
-    CHECK(complaint("[defaults]\nphantoms = \"log\"\n") ==
-          "t.toml:2:1: unknown key 'phantoms' in [defaults] (did you mean 'phantom'?)");
-    CHECK(complaint("[defaults]\nlevel_dbfs = -6\n") ==
-          "t.toml:2:1: unknown key 'level_dbfs' in [defaults] (did you mean 'level-dbfs'?)");
-    CHECK(complaint("[defaults]\nphantom = \"gauss\"\n") ==
-          "t.toml:2:11: phantom is 'gauss' (did you mean 'gaussian'?)");
-    CHECK(complaint("[defaults]\ntiming = \"x\"\n") ==
-          "t.toml:2:10: timing is 'x' (known values: fixed, fit)");
-    CHECK(complaint("[defaults]\ntiming = 3\n") == "t.toml:2:10: timing is 3 (known values: fixed, fit)");
-    CHECK(complaint("[defaults]\nsoa = nan\n") ==
-          "t.toml:2:7: soa is nan (allowed: more than 0, at most 10)");
-    CHECK(complaint("[defaults]\nsoa = \"0,07\"\n") == "t.toml:2:7: soa is '0,07' (give a number)");
-    CHECK(complaint("[defaults]\nsoa = \"inf\"\n") ==
-          "t.toml:2:7: soa is inf (allowed: more than 0, at most 10)");
-    CHECK(complaint("[defaults]\nrate = 44100.5\n") == "t.toml:2:8: rate is 44100.5 (give a whole number)");
-    CHECK(complaint("[defaults]\nlevel-dbfs = 1\n") == "t.toml:2:14: level-dbfs is 1 (allowed: -200 to 0)");
-    CHECK(complaint("[defaults]\nsnap = 1\n") == "t.toml:2:8: snap is 1 (give true or false)");
-    CHECK(complaint("[defaults]\nlevel-dbfs = -6\nsl = 7\n") ==
-          "t.toml:3:6: [defaults] has both level-dbfs and sl (keep one of them)");
+    const setup s =
+        read("[defaults]\nsoa = 0.06\nnoise-seed = 9007199254740992\nsnap = true\nphantom = \"log\"\n");
+    CHECK(s.defaults == std::vector<default_value>{{"soa", 0.06, {}, {}},
+                                                   {"noise-seed", 9007199254740992.0, {}, {}},
+                                                   {"snap", true, {}, {}},
+                                                   {"phantom", "log", {}, {}}});
+    CHECK(s.defaults[1].at.text() == "t.toml:3:14");
+    CHECK(s.defaults[1].name_at.text() == "t.toml:3:1");
+    CHECK(complaint("[defaults]\nsoa = []\n") ==
+          "t.toml:2:7: soa is a list (give a number, a text, true or false)");
+    CHECK(complaint("[defaults]\nnoise-seed = 9007199254740993\n") ==
+          "t.toml:2:14: noise-seed is 9007199254740993 (give a number, a text, true or false)");
 }
 
-TEST_CASE("what [defaults] says has its place")
-{
-    const setup s = read("[defaults]\nsoa = 0.06\nnoise-seed = 9007199254740992\n");
-    CHECK(s.defaults.noise_seed == std::uint64_t{1} << 53U);
-    CHECK(s.defaults_at.size() == 2);
-    CHECK(s.defaults_at.at("soa").text() == "t.toml:2:7");
-    CHECK(s.defaults_at.at("noise-seed").text() == "t.toml:3:14");
-    CHECK(complaint("[defaults]\nslope = 0\n") == "t.toml:2:9: slope is 0 (allowed: 0.01 to 0.99)");
-}
-
-TEST_CASE("numbers in [defaults] come out as they went in, in any locale")
+TEST_CASE("[defaults] is read and written in any locale")
 {
     const std::string before = std::setlocale(LC_ALL, nullptr);
     for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "C.UTF-8"})
         std::setlocale(LC_ALL, name); // those that are installed
-    const setup s = read("[defaults]\nsoa = 0.0575\nramp = 1e-4\ncarrier = 250\nslope = 0.1\n");
+    const setup s = read("[defaults]\nsoa = 0.0575\nramp = 1e-4\n");
+    const std::string text = detail::besides_text(s);
     std::setlocale(LC_ALL, before.c_str());
-    CHECK(s.defaults == default_settings{.soa_s = 0.0575, .carrier_hz = 250, .slope = 0.1, .ramp_s = 1e-4});
-    CHECK(detail::default_texts(s.defaults) ==
-          std::map<std::string, std::string>{
-              {"soa", "0.0575"}, {"ramp", "0.0001"}, {"carrier", "250"}, {"slope", "0.1"}});
-}
-
-TEST_CASE("each key of [defaults] has a field, and comes out as it may be typed")
-{
-    const std::map<std::string, std::string> all{{"algorithm", "continuous"},
-                                                 {"phantom", "log"},
-                                                 {"faces", "nearest"},
-                                                 {"speed", "70"},
-                                                 {"soa", "0.06"},
-                                                 {"burst", "0.07"},
-                                                 {"timing", "fit"},
-                                                 {"outside", "clamp"},
-                                                 {"snap", "false"},
-                                                 {"drop-points", "true"},
-                                                 {"overlap", "sum"},
-                                                 {"carrier", "230.5"},
-                                                 {"waveform", "noise:100-300"},
-                                                 {"am", "30:0.5"},
-                                                 {"noise-seed", "9007199254740992"},
-                                                 {"texture", "length"},
-                                                 {"texture-mm", "12.5"},
-                                                 {"envelope", "tukey:0.3"},
-                                                 {"attack", "0.01"},
-                                                 {"release", "0.02"},
-                                                 {"phase", "burst"},
-                                                 {"ramp", "0.005"},
-                                                 {"sl", "7"},
-                                                 {"intensity-scale", "sl"},
-                                                 {"stevens-exponent", "0.9"},
-                                                 {"rate", "44100"},
-                                                 {"sample-format", "s24-4"},
-                                                 {"latency-ms", "17.3"},
-                                                 {"slope", "0.32"},
-                                                 {"intercept", "0.0473"},
-                                                 {"compensate", "low-speed"},
-                                                 {"observer", "low-speed"},
-                                                 {"sigma-mm", "4"},
-                                                 {"sigma-v-mm-s", "90"},
-                                                 {"level-dbfs", "-6.5"}};
-    CHECK(all.size() == detail::default_names().size());
-    for (const auto& [name, value] : all) {
-        CAPTURE(name);
-        const std::map<std::string, std::string> one{{name, value}};
-        const setup s = read(fmt::format("[defaults]\n{} = \"{}\"\n", name, value));
-        CHECK(detail::default_texts(s.defaults) == one);
-        CHECK_FALSE(s.defaults == default_settings());
-    }
-    const setup s =
-        read("[defaults]\nlatency-ms = 20\nam = 30\nenvelope = \"tukey:0.3\"\ncompensate = \"none\"\n");
-    CHECK(s.defaults == default_settings{.am = modulation{.hz = 30.0},
-                                         .envelope = envelope_kind::tukey,
-                                         .tukey_part = 0.3,
-                                         .latency_s = 0.020,
-                                         .compensate = false});
-    CHECK(complaint("[defaults]\nenvelope = \"linear:0.3\"\n") ==
-          "t.toml:2:12: envelope is 'linear:0.3' (only tukey has a part, 0 to 1, as tukey:0.5)");
-    CHECK(complaint("[defaults]\nenvelope = \"tukei\"\n") ==
-          "t.toml:2:12: envelope is 'tukei' (did you mean 'tukey'?)");
+    CHECK(text.ends_with("[defaults]\nsoa = 0.0575\nramp = 0.0001\n"));
+    CHECK(read(text).defaults == s.defaults);
 }
 
 TEST_CASE("what is no TOML has its line")

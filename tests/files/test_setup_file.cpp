@@ -100,7 +100,7 @@ speed = 70
     CHECK(s.output.pcm_included);
     CHECK(s.output.pcm_at.text() == (f / "arrays/arm.toml").string() + ":5:7");
     CHECK(s.output.channels == 10u);
-    CHECK(s.defaults == default_settings{.speed_mm_s = 70.0, .soa_s = 0.06});
+    CHECK(s.defaults == std::vector<default_value>{{"soa", 0.06, {}, {}}, {"speed", 70.0, {}, {}}});
 
     const setup named =
         load_setup(f.write("named.toml", "[array]\nname = \"left\"\nfile = \"arrays/arm.toml\"\n"));

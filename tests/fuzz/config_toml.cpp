@@ -5,8 +5,9 @@
 
 #include <tactor/setup.hpp>
 
-#include "files/setup_defaults.hpp"
+#include "files/setup_text.hpp"
 #include "holds.hpp"
+#include "options/settle.hpp"
 
 using namespace tactor;
 
@@ -34,13 +35,13 @@ void check_setup(const setup& s)
             if (*l)
                 check_line(**l);
     }
-    std::string again = "[defaults]\n";
-    for (const auto& [name, value] : detail::default_texts(s.defaults))
-        if (value.find_first_of("'\n\r") == std::string::npos) // a file's name may be anything
-            again += name + " = '" + value + "'\n";
-        else
-            return;
-    HOLDS(detail::default_texts(parse_setup(again, "again").defaults) == detail::default_texts(s.defaults));
+    HOLDS(parse_setup(detail::besides_text({.defaults = s.defaults}), "again").defaults == s.defaults);
+    try {
+        for (const options::said_default& d : options::read_defaults(s))
+            HOLDS((d.row->where & options::in_defaults) != 0);
+    } catch (const error& e) {
+        HOLDS(e.place().line != 0);
+    }
 }
 
 } // namespace

@@ -166,7 +166,7 @@ HAS_NOT = {
     "reopen_alsa": "make a Player again, after=",
     "route_of pcm_route require_device_name card_of card_info card_holders count_range": "what devices and Player look at themselves",
     "probe_realtime_rights realtime_rights": "Player.stats()['realtime'], and `tactor check`",
-    "parse_setup default_settings": "Array.from_file reads files",
+    "parse_setup default_value": "Array.from_file reads files",
     "wav_progress": "Ctrl-C gives up",
 }
 

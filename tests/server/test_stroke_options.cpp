@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
+#include <fstream>
 #include <string>
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include "options/option.hpp"
 #include "server/faults.hpp"
 #include "server/stroke_options.hpp"
 #include "server/stroke_source.hpp"
@@ -46,10 +48,10 @@ std::string what_of(const json& params)
 
 TEST_CASE("options are put over the owner's, each with its type")
 {
-    stroke_settings owner;
+    options::wishes owner;
     owner.speed_mm_s = 80.0;
     owner.render.sl_db = 7.0;
-    const stroke_settings s = with_options(owner,
+    const options::wishes s = with_options(owner,
                                            {{"algorithm", "tactile-brush"},
                                             {"phantom", "log"},
                                             {"duration", 2},
@@ -64,7 +66,6 @@ TEST_CASE("options are put over the owner's, each with its type")
                                             {"overlap", "max"},
                                             {"carrier", 200},
                                             {"phase", "burst"},
-                                            {"ramp", 0.001},
                                             {"waveform", "noise:50-300"},
                                             {"noise_seed", 5},
                                             {"am", "20:0.5"},
@@ -88,7 +89,6 @@ TEST_CASE("options are put over the owner's, each with its type")
     CHECK(s.plan.overlap == overlap_kind::max);
     CHECK(s.plan.carrier_hz == 200.0);
     CHECK(s.render.phase == phase_kind::burst);
-    CHECK(s.render.ramp_s == 0.001);
     CHECK(waveform_text(s.plan.wave) == "noise:50-300");
     CHECK(s.plan.wave.seed == 5);
     CHECK(s.plan.am == modulation{20.0, 0.5});
@@ -98,6 +98,37 @@ TEST_CASE("options are put over the owner's, each with its type")
     CHECK(s.low_speed == low_speed_observer{8.0, 150.0});
     CHECK(s.render.level_dbfs == -20.0);
     CHECK_FALSE(s.render.sl_db);
+}
+
+// What the schema of the protocol says of an option.
+json schema_of(const options::option& o)
+{
+    using options::kind;
+    if (o.what == kind::choice)
+        return {{"enum", o.choices()}};
+    if (o.what == kind::flag)
+        return {{"type", "boolean"}};
+    json s{{"type", o.what == kind::whole ? "integer" : "number"}};
+    if (o.what == kind::text && o.allowed.high == 0.0)
+        return {{"type", "string"}};
+    if (o.what == kind::text)
+        return {{"type", {"string", "number"}}};
+    if (o.range.empty()) { // else other bounds hold
+        s["minimum"] = o.allowed.low;
+        s["maximum"] = o.allowed.high;
+    }
+    return s;
+}
+
+TEST_CASE("the schema has each option of a client with its type, values and bounds")
+{
+    std::ifstream file(std::string(TACTOR_SOURCE_ROOT) + "/src/cli/schemas/tactor-protocol-1.schema.json");
+    const json said = json::parse(file)["$defs"]["options"]["properties"];
+    json wanted = json::object();
+    for (const options::option& o : options::all())
+        if ((o.where & options::by_client) != 0)
+            wanted[std::string(o.name)] = schema_of(o);
+    CHECK(said == wanted);
 }
 
 TEST_CASE("what is refused names its parameter")

@@ -11,10 +11,9 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "cli/parse_number.hpp"
-#include "cli/play/play_options.hpp"
 #include "cli/session/page_options.hpp"
 #include "core/split.hpp"
+#include "options/parse_number.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -32,7 +31,7 @@ void add(CLI::App& c, const std::string& names, const std::string& type, const s
 
 std::uint32_t whole(const char* option, const std::string& text, double low, double high)
 {
-    return static_cast<std::uint32_t>(parse_whole(option, text, {low, high}, ""));
+    return static_cast<std::uint32_t>(options::parse_whole(option, text, {low, high}, ""));
 }
 
 bool one_of(const char* option, const std::string& text, const char* yes, const char* no)
@@ -57,7 +56,7 @@ std::vector<double> steps(const std::string& text)
 {
     std::vector<double> all;
     for (const std::string_view part : detail::split(text, ','))
-        all.push_back(parse_number("--steps", std::string(part), 0.01, 60.0, "dB"));
+        all.push_back(options::parse_number("--steps", std::string(part), 0.01, 60.0, "dB"));
     if (all.size() > most_steps)
         refuse_setting("--steps", fmt::format("{} steps", all.size()), fmt::format("at most {}", most_steps));
     return all;
@@ -109,7 +108,7 @@ void add_masker_options(CLI::App& c, calibrate_options& o)
     });
     add(c, "--masker-dbfs", "DB", "level of the noise, root of the mean square (default -30)",
         [&o](const std::string& t) {
-            o.masking.level_dbfs = parse_number("--masker-dbfs", t, -100, 0, "dBFS");
+            o.masking.level_dbfs = options::parse_number("--masker-dbfs", t, -100, 0, "dBFS");
             o.of_masker.emplace_back("--masker-dbfs");
         });
 }
@@ -141,16 +140,15 @@ void add_calibrate_options(CLI::App& c, calibrate_options& o)
     add(c, "--tactors", "LIST", "which, in this order, as 0,3-5 (default all)",
         [&o](const std::string& t) { o.tactors = t; });
     add(c, "--interval", "S", "how long each interval or pulse is (default 0.5)",
-        [&s](const std::string& t) { s.interval_s = parse_number("--interval", t, 0.05, 4, "s"); });
+        [&s](const std::string& t) { s.interval_s = options::parse_number("--interval", t, 0.05, 4, "s"); });
     add(c, "--start-dbfs", "DB", "level of the first trial (default -20)", [&o, &s](const std::string& t) {
-        s.staircase.start_dbfs = parse_number("--start-dbfs", t, study::floor_dbfs, 0, "dBFS");
+        s.staircase.start_dbfs = options::parse_number("--start-dbfs", t, study::floor_dbfs, 0, "dBFS");
         o.start_asked = true;
     });
     add_staircase_options(c, o);
     add_masker_options(c, o);
     add_page_options(c, o.page);
     add_keypad_option(c, o.keypads);
-    add_verbose_option(c, o.stream); // --log is the trials'
     add(c, "--log", "FILE.tsv", "a line for each trial (default: the output's name with .tsv)",
         [&o](const std::string& t) { o.log = t; });
     c.add_flag("--resume", o.resume, "go on with the session that the log is of");

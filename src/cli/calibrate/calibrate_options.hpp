@@ -29,8 +29,7 @@ struct calibrate_options {
     std::optional<std::uint32_t> seed;
     std::vector<std::string> keypads; ///< input devices of the participant's
     page_options page;
-    session::stream_options stream; ///< what is told of it
-    std::string masker;             ///< PCM of the masking noise; empty: none
+    std::string masker; ///< PCM of the masking noise; empty: none
     study::masking_options masking;
     std::vector<std::string> of_masker;    ///< options given that only a masker has
     std::vector<std::string> of_staircase; ///< options given that an adjustment does not have

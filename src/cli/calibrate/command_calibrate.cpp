@@ -86,7 +86,7 @@ int ask_person(study::calibration& c, study::calibration_log& log, const setting
                const calibrate_options& asked)
 {
     const render_options render = session::settle_render(s, e);
-    const session::stream_options& o = asked.stream;
+    const session::stream_options& o = s.stream;
     const alsa_options device = session::device_options(s, o, e, render.channels, render.rate);
     const std::string server = session::settle_server(device.pcm);
     study::person who(device, o, e, render, c.settings(), asked.keypads, open_page(asked.page));
@@ -143,14 +143,14 @@ int write_result(const calibrate_options& o, const environment& e, const setup& 
     return status_ok;
 }
 
-int calibrate(settings& s, option_list& options, calibrate_options& o)
+int calibrate(settings& s, calibrate_options& o)
 {
     settle_names(o);
     std::error_code ignored;
     const bool there = o.resume && std::filesystem::exists(o.output, ignored);
     if (!there)
         study::check_new_output(o.output);
-    const environment e = session::read_environment(s, options);
+    const environment e = session::read_environment(s);
     study::calibration_settings begun = settle_calibration(o, s, e);
     std::optional<study::observer_settings> simulated;
     if (o.simulate)
@@ -202,13 +202,11 @@ command add_calibrate(CLI::App& app)
     CLI::App* c = app.add_subcommand("calibrate", "Measure what a participant just feels, tactor by tactor");
     auto s = std::make_shared<settings>();
     auto o = std::make_shared<calibrate_options>();
-    auto options = std::make_shared<option_list>(*c, *s);
     add_calibrate_options(*c, *o);
-    options->add_carrier_option();
-    options->add_array_options();
-    options->add_device_options("needed with a person");
+    add_options(*c, *s, on_calibrate);
+    require_device(*c);
     c->footer("Example: tactor calibrate --participant P07 -o P07.toml -D hw:CARD=Tactor");
-    return [s, o, options] { return options->run([&] { return calibrate(*s, *options, *o); }); };
+    return [s, o] { return run_with(*s, [&] { return calibrate(*s, *o); }); };
 }
 
 } // namespace tactor::cli

@@ -33,7 +33,7 @@ finding told_open(const alsa_options& device, const session::stream_options& o, 
     if (!named)
         return warning("device", "none is named, so play goes to " + found,
                        "-D PCM, or pcm under [output]; tactor devices lists them");
-    const std::string late = session::latency_warning(session::asked_latency_ms(o, e), made);
+    const std::string late = session::latency_warning(o.latency_ms, made);
     if (!late.empty())
         return warning("device", found + "; " + late, "a device with shorter periods, or more latency");
     if (!server.empty())

@@ -145,13 +145,15 @@ void check_usage(const check_options& o)
         check_new_file(o.output);
 }
 
-int check(settings& s, option_list& options, const check_options& o)
+int check(settings& s, check_options o)
 {
+    o.play.take(s.stream);
     check_usage(o);
     std::vector<finding> all;
     std::optional<environment> e;
     try {
-        e = session::read_environment(s, options);
+        e = session::read_environment(s);
+        o.play.take(s.stream);
         all = check_all(s, o, *e);
     } catch (const error& x) {
         all = {failure("array", x)};
@@ -185,16 +187,11 @@ command add_check(CLI::App& app)
     CLI::App* c = app.add_subcommand("check", "Check array, device, rights, limits, lines and wiring");
     auto s = std::make_shared<settings>();
     auto o = std::make_shared<check_options>();
-    auto options = std::make_shared<option_list>(*c, *s);
-    options->add_array_options();
-    options->add_timing_options();
-    options->add_sound_options();
-    options->add_device_options();
-    add_stream_options(*c, o->play);
+    add_options(*c, *s, on_check);
     add_walk_options(*c, *o);
     add_format_option(*c, o->play.format, {"text", "json"}, "how to print it (default text)");
     c->footer("Example: tactor check --array palm-2x4 --walk -o palm-felt.toml");
-    return [s, o, options] { return check(*s, *options, *o); };
+    return [s, o] { return run_with(*s, [&] { return check(*s, *o); }); };
 }
 
 } // namespace tactor::cli

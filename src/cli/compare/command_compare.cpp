@@ -13,7 +13,6 @@
 #include "cli/compare/compare_output.hpp"
 #include "cli/input.hpp"
 #include "cli/option_words.hpp"
-#include "cli/parse_number.hpp"
 #include "cli/picture_options.hpp"
 #include "cli/progress.hpp"
 #include "cli/say.hpp"
@@ -106,32 +105,6 @@ void add_output_options(CLI::App& c, const std::shared_ptr<compare_options>& o)
     add_picture_options(c, o->picture, "85, one print column");
 }
 
-void add_spread_options(CLI::App& c, const std::shared_ptr<compare_options>& o)
-{
-    detail::spread_choice& s = o->choice.spread;
-    auto* people = c.add_option_function<std::string>(
-        "--spread",
-        [&s](const std::string& t) {
-            s.people = static_cast<unsigned>(parse_whole("--spread", t, {2, 100000}, ""));
-        },
-        "intervals of what so many people would feel, drawn at random");
-    people->type_name("N");
-    const auto option = [&](const char* name, const char* type, const char* help, auto set) {
-        c.add_option_function<std::string>(name, set, help)->type_name(type)->needs(people);
-    };
-    option("--spread-seed", "N", "--spread: of the draw (default 1)", [&s](const std::string& t) {
-        s.seed = static_cast<std::uint64_t>(parse_whole("--spread-seed", t, {0, 4294967295.0}, ""));
-    });
-    option("--spread-sigma", "FACTOR", "--spread: low-speed's sigma by up to this factor (default 2)",
-           [&s](const std::string& t) { s.sigma_factor = parse_number("--spread-sigma", t, 1, 100, ""); });
-    option("--spread-threshold-db", "DB", "--spread: each threshold give or take (default 6)",
-           [&s](const std::string& t) {
-               s.threshold_db = parse_number("--spread-threshold-db", t, 0, 60, "dB");
-           });
-    option("--spread-place-mm", "MM", "--spread: each tactor's place within (default 2)",
-           [&s](const std::string& t) { s.place_mm = parse_number("--spread-place-mm", t, 0, 1000, "mm"); });
-}
-
 // Why strokes that no algorithm can play are refused. All reasons but the last are printed, each once.
 error why_refused(const std::vector<comparison>& all, const piece& p)
 {
@@ -152,7 +125,7 @@ error why_refused(const std::vector<comparison>& all, const piece& p)
 }
 
 std::vector<comparison> compare_all(const piece& p, const environment& e, const layout& faces,
-                                    const plan_options& options, comparison_choice choice)
+                                    const plan_options& how, comparison_choice choice)
 {
     progress_line line("compare");
     const std::size_t rows = p.strokes.size() * choice.algorithms.size() * choice.phantoms.size();
@@ -160,7 +133,7 @@ std::vector<comparison> compare_all(const piece& p, const environment& e, const 
     choice.after_person = [&] { line.update(++predicted, rows * choice.spread.people); };
     std::vector<comparison> all;
     for (const stroke& k : p.strokes)
-        all.push_back(detail::compare(k, e.tactors, faces, options, choice));
+        all.push_back(detail::compare(k, e.tactors, faces, how, choice));
     for (comparison& c : all)
         for (comparison_row& r : c.rows)
             if (r.refused)
@@ -168,9 +141,9 @@ std::vector<comparison> compare_all(const piece& p, const environment& e, const 
     return all;
 }
 
-int run(settings& s, option_list& options, const compare_options& asked, bool one_algorithm)
+int run(settings& s, const compare_options& asked, bool one_algorithm)
 {
-    const environment e = session::read_environment(s, options);
+    const environment e = session::read_environment(s);
     comparison_choice choice = asked.choice;
     if (choice.algorithms.empty())
         choice.algorithms = one_algorithm ? std::vector{s.plan.algorithm} : all_of<algorithm_kind>();
@@ -178,6 +151,7 @@ int run(settings& s, option_list& options, const compare_options& asked, bool on
         choice.phantoms = {s.plan.phantom};
     choice.observer = {s.observer, s.low_speed};
     choice.compensate = s.compensate;
+    choice.spread = s.spread;
 
     // A row says what an algorithm cannot do; what nobody may ask for is wrong usage.
     static_cast<void>(burst_duration_s(s.plan));
@@ -220,21 +194,18 @@ command add_compare(CLI::App& app)
     CLI::App* c =
         app.add_subcommand("compare", "Print what algorithms are predicted to feel like, side by side");
     auto s = std::make_shared<settings>();
-    auto options = std::make_shared<option_list>(*c, *s);
     auto asked = std::make_shared<compare_options>();
-    options->add_stroke_options();
+    add_strokes(*c, *s);
+    add_options(*c, *s, on_compare);
     c->get_option("STROKE")->description(
         "preset (park2016-1 ... park2016-4; wave-2x4 and round-2x4 on palm-2x4), "
         "file (.toml, .csv, .svg), or - for such a file on standard input; no plan: it is planned here");
-    options->add_sound_options();
-    options->add_observer_options();
     add_lists(*c, asked);
-    add_spread_options(*c, asked);
     add_output_options(*c, asked);
     c->footer("Example: tactor compare park2016-3 --phantoms inverse-distance,barycentric");
     const CLI::Option* algorithm = c->get_option("--algorithm");
-    return [s, options, asked, algorithm] {
-        return options->run([&] { return run(*s, *options, *asked, algorithm->count() != 0); });
+    return [s, asked, algorithm] {
+        return run_with(*s, [&] { return run(*s, *asked, algorithm->count() != 0); });
     };
 }
 

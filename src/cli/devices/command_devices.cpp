@@ -12,9 +12,9 @@
 namespace tactor::cli {
 namespace {
 
-int list_devices(settings& s, option_list& options, bool as_json)
+int list_devices(settings& s, bool as_json)
 {
-    const session::device_list d = session::look_for_devices(s, session::read_environment(s, options));
+    const session::device_list d = session::look_for_devices(s, session::read_environment(s));
     if (as_json)
         fmt::print("{}", session::devices_json(d));
     else
@@ -28,14 +28,11 @@ command add_devices(CLI::App& app)
 {
     CLI::App* c = app.add_subcommand("devices", "List PCMs, what they can do, and GPIO lines");
     auto s = std::make_shared<settings>();
-    auto options = std::make_shared<option_list>(*c, *s);
     auto format = std::make_shared<std::string>();
-    options->add_array_options();
-    options->add_device_options();
-    options->add_rate_options();
+    add_options(*c, *s, on_devices);
     add_format_option(*c, *format, {"text", "json"}, "how to print it (default text)");
     c->footer("Example: tactor devices --array palm-2x4");
-    return [s, options, format] { return list_devices(*s, *options, *format == "json"); };
+    return [s, format] { return run_with(*s, [&] { return list_devices(*s, *format == "json"); }); };
 }
 
 } // namespace tactor::cli

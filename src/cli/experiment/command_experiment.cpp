@@ -80,11 +80,11 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
     return status_ok;
 }
 
-int run(const experiment_options& o, const power_options& power, settings& s, option_list& options)
+int run(const experiment_options& o, const power_options& power, settings& s)
 {
-    check_power_options(power, o);
+    check_power_options(s, power, o);
     if (power.participants.empty())
-        check_experiment_options(o);
+        check_experiment_options(s, o);
     if (o.print) {
         fmt::print("{}", study::load_definition(o.definition).text);
         return status_ok;
@@ -92,8 +92,7 @@ int run(const experiment_options& o, const power_options& power, settings& s, op
     const auto who = o.dry_run    ? study::audience::nobody
                      : o.simulate ? study::audience::observer
                                   : study::audience::person;
-    const study::prepared_experiment p =
-        study::prepare({o.definition, o.participant, o.seed, who}, s, options);
+    const study::prepared_experiment p = study::prepare({o.definition, o.participant, o.seed, who}, s);
     say_warnings(p.warnings);
     if (!power.participants.empty())
         return tell_power(p, power, o);
@@ -115,13 +114,12 @@ command add_experiment(CLI::App& app)
     auto s = std::make_shared<settings>();
     auto o = std::make_shared<experiment_options>();
     auto power = std::make_shared<power_options>();
-    auto options = std::make_shared<option_list>(*c, *s);
     add_experiment_options(*c, *o);
     add_power_options(*c, *power);
-    options->add_array_options();
-    options->add_device_options("needed with a person");
+    add_options(*c, *s, on_experiment);
+    require_device(*c);
     c->footer("Example: tactor experiment park2016 --participant 01 -o trial --simulate seed=1,sigma=1");
-    return [s, o, power, options] { return run(*o, *power, *s, *options); };
+    return [s, o, power] { return run_with(*s, [&] { return run(*o, *power, *s); }); };
 }
 
 } // namespace tactor::cli

@@ -8,7 +8,6 @@
 
 #include <tactor/error.hpp>
 
-#include "cli/play/play_options.hpp"
 #include "cli/session/page_options.hpp"
 #include "cli/settings.hpp"
 #include "study/bids/study_folder.hpp"
@@ -53,7 +52,6 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
     command.add_flag("--resume", o.resume, "go on with the participant's session, at its next trial");
     add_page_options(command, o.page);
     add_keypad_option(command, o.keypads);
-    add_log_options(command, o.stream);
     add("--masker", "PCM", "the definition's masking noise, on a second device, in stereo",
         [&o](const std::string& t) {
             if (t.empty())
@@ -74,7 +72,7 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
                       "--dry-run, --power: how to print it (default text)");
 }
 
-void check_experiment_options(const experiment_options& o)
+void check_experiment_options(const settings& s, const experiment_options& o)
 {
     if (o.check_noise && o.simulate)
         refuse_experiment("--check-noise", "in a simulated session nobody hears it", "leave one of them out");
@@ -84,8 +82,8 @@ void check_experiment_options(const experiment_options& o)
         refuse_experiment("--format", "only --dry-run and --power have one", "leave it out");
     if (o.resume && (o.print || o.dry_run || o.check_noise))
         refuse_experiment("--resume", "no session is held", "leave it out");
-    if ((o.simulate || o.print || o.dry_run) && (o.stream.verbose || !o.stream.log.empty()))
-        refuse_experiment(o.stream.verbose ? "--verbose" : "--log", "nothing is played", "leave it out");
+    if ((o.simulate || o.print || o.dry_run) && (s.stream.verbose || !s.stream.log.empty()))
+        refuse_experiment(s.stream.verbose ? "--verbose" : "--log", "nothing is played", "leave it out");
     check_page_options(o.page, o.simulate.has_value() && !o.print && !o.dry_run);
     if (o.print || o.dry_run || o.check_noise)
         return;

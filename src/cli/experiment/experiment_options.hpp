@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cli/session/page_options.hpp"
-#include "session/device.hpp"
+#include "cli/settings.hpp"
 #include "study/experiment/simulated.hpp"
 
 namespace CLI {
@@ -28,7 +28,6 @@ struct experiment_options {
     bool dry_run = false;
     bool check_noise = false;
     bool allow_sound_server = false;
-    session::stream_options stream = {};   ///< what is told of it
     page_options page = {};                ///< what the participant sees
     std::vector<std::string> keypads = {}; ///< input devices of the participant's
     std::string masker = {};               ///< PCM of the masking noise; empty: none
@@ -40,6 +39,6 @@ struct experiment_options {
 void add_experiment_options(CLI::App& command, experiment_options& o);
 
 /// What goes together and what is missing. \throws error (bad_input).
-void check_experiment_options(const experiment_options& o);
+void check_experiment_options(const settings& s, const experiment_options& o);
 
 } // namespace tactor::cli

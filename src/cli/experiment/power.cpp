@@ -152,7 +152,7 @@ void add_power_options(CLI::App& command, power_options& p)
         ->type_name("K");
 }
 
-void check_power_options(const power_options& p, const experiment_options& o)
+void check_power_options(const settings& s, const power_options& p, const experiment_options& o)
 {
     if (p.participants.empty()) {
         if (p.studies)
@@ -165,7 +165,7 @@ void check_power_options(const power_options& p, const experiment_options& o)
     if (session || o.dry_run || o.print)
         refuse_power("--power", "it holds no session, and writes nothing",
                      "leave out --participant, -o, --resume, --dry-run and --print");
-    const bool told = o.stream.verbose || !o.stream.log.empty();
+    const bool told = s.stream.verbose || !s.stream.log.empty();
     if (told || o.check_noise || o.page.shown() || !o.masker.empty() || !o.keypads.empty())
         refuse_power("--power", "nothing is played, and nobody sits there",
                      "leave out --check-noise, --masker, --display, --page, --keypad, --verbose and --log");

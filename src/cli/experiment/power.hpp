@@ -21,7 +21,7 @@ struct power_options {
 void add_power_options(CLI::App& command, power_options& p);
 
 /// What goes together and what is missing. \throws error (bad_input).
-void check_power_options(const power_options& p, const experiment_options& o);
+void check_power_options(const settings& s, const power_options& p, const experiment_options& o);
 
 /// Prints it; returns the exit status, which is that of a signal where one ended it, with nothing printed.
 /// \throws error (bad_input).

@@ -107,7 +107,7 @@ study::sound_servers check_real_session(const study::prepared_experiment& p, con
 std::unique_ptr<study::stage> open_stage(const study::prepared_experiment& p, const experiment_options& o,
                                          const settings& s)
 {
-    session::stream_options how = o.stream;
+    session::stream_options how = s.stream;
     how.reopen_s = patience_s;
     const alsa_options device = session::device_options(s, how, p.where, p.render.channels, p.render.rate);
     auto there = std::make_unique<study::stage>(device, how, p.where);

@@ -26,9 +26,9 @@ void write_part(std::string_view part)
         throw std::system_error(errno, std::generic_category(), "cannot write a plan");
 }
 
-int print_plan(settings& s, option_list& options, const std::string& format)
+int print_plan(settings& s, const std::string& format)
 {
-    const environment e = session::read_environment(s, options);
+    const environment e = session::read_environment(s);
     const piece p = plan_one_piece(s, e);
     const render_options sound = session::settle_render(s, e);
     const score samples = make_score(p, e, sound); // levels and carrier are checked when planned
@@ -49,13 +49,12 @@ command add_plan(CLI::App& app)
 {
     CLI::App* c = app.add_subcommand("plan", "Print the schedule: who plays when, how strongly");
     auto s = std::make_shared<settings>();
-    auto options = std::make_shared<option_list>(*c, *s);
     auto format = std::make_shared<std::string>("text");
-    options->add_stroke_options();
-    options->add_sound_options();
+    add_strokes(*c, *s);
+    add_options(*c, *s, on_plan);
     add_format_option(*c, *format, {"text", "json", "csv"}, "how to print it (default text)");
     c->footer("Example: tactor plan park2016-1 --format json");
-    return [s, options, format] { return options->run([&] { return print_plan(*s, *options, *format); }); };
+    return [s, format] { return run_with(*s, [&] { return print_plan(*s, *format); }); };
 }
 
 } // namespace tactor::cli

@@ -112,18 +112,20 @@ std::optional<broken_off> play_all(session::play_session& session, const play_op
     return {};
 }
 
-int play(settings& s, option_list& options, const play_options& o)
+int play(settings& s, play_options o)
 {
+    o.take(s.stream);
     if (o.live)
-        check_live(s, options, o);
+        check_live(s);
     else if (o.smooth_s)
         throw error(error_kind::bad_input, "--smooth", "only points that come one by one are smoothed",
                     "use it with --live, or leave it out");
     if (o.socket)
-        return play_remote(s, options, o);
+        return play_remote(s, o);
     if (o.live)
-        return play_live(s, options, o);
-    const environment e = session::read_environment(s, options);
+        return play_live(s, o);
+    const environment e = session::read_environment(s);
+    o.take(s.stream);
     const layout faces(e.tactors);
     auto pieces = open_pieces(s, e, faces);
     const auto scores = make_scores(pieces, s, e, faces, session::settle_render(s, e));
@@ -137,7 +139,7 @@ int play(settings& s, option_list& options, const play_options& o)
     if (!o.json())
         say(stdout, "{}\n", describe(session.setup()));
     flush_output();
-    const std::string warning = session::latency_warning(session::asked_latency_ms(o, e), session.setup());
+    const std::string warning = session::latency_warning(o.latency_ms, session.setup());
     if (!warning.empty())
         say(stderr, "tactor: warning: {}\n", warning);
     if (!server.empty())
@@ -164,13 +166,12 @@ command add_play(CLI::App& app)
     CLI::App* c = app.add_subcommand("play", "Play on the array");
     auto s = std::make_shared<settings>();
     auto o = std::make_shared<play_options>();
-    auto options = std::make_shared<option_list>(*c, *s);
-    options->add_stroke_options();
-    options->add_sound_options();
-    options->add_device_options();
-    add_play_options(*c, *o);
+    add_strokes(*c, *s);
+    add_options(*c, *s, on_play);
+    c->add_option("--socket", o->socket, "play through the server that listens there")->type_name("PATH");
+    add_format_option(*c, o->format, {"text", "json"}, "what is told of the run (default text)");
     c->footer("Example: tactor play park2016-3 -D hw:CARD=Tactor");
-    return [s, o, options] { return options->run([&] { return play(*s, *options, *o); }); };
+    return [s, o] { return run_with(*s, [&] { return play(*s, *o); }); };
 }
 
 } // namespace tactor::cli

@@ -6,6 +6,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
+#include "cli/option_words.hpp"
 #include "cli/play/live_lines.hpp"
 #include "cli/play/play_report.hpp"
 #include "cli/say.hpp"
@@ -14,31 +15,31 @@
 
 namespace tactor::cli {
 
-void check_live(const settings& s, const option_list& options, const play_options& o)
+void check_live(const settings& s)
 {
     if (s.strokes.size() != 1 || s.strokes.front() != "-" || s.path_data)
         throw error(error_kind::bad_input, "--live", "it takes its points from standard input",
                     "give - as the only STROKE: tactor play --live -");
-    for (const char* name : {"duration", "speed", "timing", "fit", "fit-margin", "snap", "drop-points",
-                             "overlap", "compensate", "sigma-mm", "sigma-v-mm-s"})
-        if (options.given(name))
-            throw error(error_kind::bad_input, fmt::format("--{}", name), "a live stroke does not know it",
+    for (const options::option& o : options::all())
+        if ((o.where & options::planning) != 0 && (o.where & options::live) == 0 && s.gives(o.name))
+            throw error(error_kind::bad_input, option_name(o), "a live stroke does not know it",
                         "its points say when it is where");
-    if (o.arm)
+    if (s.stream.arm)
         throw error(error_kind::bad_input, "--arm", "a live stroke starts with its first point",
                     "leave it out");
 }
 
-int play_live(settings& s, option_list& options, const play_options& o)
+int play_live(settings& s, play_options o)
 {
     s.strokes.clear(); // standard input has its points, which come later
-    const environment e = session::read_environment(s, options);
+    const environment e = session::read_environment(s);
+    o.take(s.stream);
     const live_options usual;
     live_options l;
     l.plan = s.plan;
-    if (!options.given("algorithm"))
+    if (!s.gives("algorithm"))
         l.plan.algorithm = usual.plan.algorithm;
-    if (!options.given("outside"))
+    if (!s.gives("outside"))
         l.plan.outside = usual.plan.outside;
     l.render = session::settle_render(s, e);
     l.timeout_s = live_timeout_s;

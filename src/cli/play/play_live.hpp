@@ -9,9 +9,9 @@
 namespace tactor::cli {
 
 /// Refuses what a live stroke does not know. \throws error (bad_input).
-void check_live(const settings& s, const option_list& options, const play_options& o);
+void check_live(const settings& s);
 
 /// Plays here, until the input ends; the exit status. \throws error.
-int play_live(settings& s, option_list& options, const play_options& o);
+int play_live(settings& s, play_options o);
 
 } // namespace tactor::cli

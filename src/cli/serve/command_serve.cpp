@@ -15,13 +15,13 @@
 
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
-#include "cli/parse_number.hpp"
 #include "cli/play/play_options.hpp"
 #include "cli/say.hpp"
 #include "cli/serve/owner.hpp"
 #include "core/words.hpp"
 #include "files/plan/json_values.hpp"
 #include "files/plan/plan_json.hpp"
+#include "options/parse_number.hpp"
 #include "rt/advice.hpp"
 #include "rt/clock.hpp"
 #include "server/server.hpp"
@@ -37,19 +37,6 @@ namespace tactor::cli {
 namespace {
 
 using files::or_null;
-// Options that clients may give too: here they are the configuration's alone.
-struct owners_defaults {
-    explicit owners_defaults(settings& s) : options(app, s)
-    {
-        options.add_stroke_options();
-        options.add_sound_options();
-        options.add_device_options();
-    }
-
-    CLI::App app;
-    option_list options;
-};
-
 // What the channels get of all clients together: the ceiling, with what the owner adds to a tactor.
 array limited(array a, double max_level_dbfs)
 {
@@ -62,11 +49,8 @@ server::planning planning_of(const settings& s, const environment& e, const serv
                              const server::service_limits& limits)
 {
     server::planning p;
-    p.owner.plan = s.plan;
+    p.owner = s;
     p.owner.render = session::settle_render(s, e);
-    p.owner.usual_speed_mm_s = s.usual_speed_mm_s;
-    p.owner.compensate = s.compensate;
-    p.owner.low_speed = s.low_speed;
     p.max_level_dbfs = serve.max_level_dbfs.value_or(p.owner.render.level_dbfs);
     p.owner.render.level_dbfs = std::min(p.owner.render.level_dbfs, p.max_level_dbfs);
     p.tactors = limited(e.tactors, p.max_level_dbfs);
@@ -181,9 +165,12 @@ std::function<void(server::stream_state, const std::string&)> tell_owner()
     };
 }
 
-int serve(settings& s, owners_defaults& defaults, const session::stream_options& play, const serve_options& o)
+int serve(settings& s, const serve_options& o)
 {
-    const environment e = session::read_environment(s, defaults.options);
+    // Strokes sound as [defaults] say, unless a client says something else.
+    s.place |= on_play;
+    const environment e = session::read_environment(s);
+    const session::stream_options& play = s.stream;
     const serve_settings serve = settle_serve(o, e.config);
     const server::endpoint_options where = settle_endpoints(serve);
     server::network_options network = settle_network(serve);
@@ -246,7 +233,9 @@ void add_serve_options(CLI::App& c, serve_options& o)
     c.add_option("--http", o.http, "serve a page to draw on, and WebSockets")->type_name("[HOST:]PORT");
     c.add_option_function<std::string>(
          "--idle-stop",
-         [&o](const std::string& t) { o.idle_stop_s = parse_number("--idle-stop", t, 0.001, 86400, "s"); },
+         [&o](const std::string& t) {
+             o.idle_stop_s = options::parse_number("--idle-stop", t, detail::bounds_of::timeout_s, "s");
+         },
          "stop the stream after so long without a stroke (default: never)")
         ->type_name("S");
 }
@@ -257,19 +246,12 @@ command add_serve(CLI::App& app)
 {
     CLI::App* c = app.add_subcommand("serve", "Own the array; other programs draw through it");
     auto s = std::make_shared<settings>();
-    auto play = std::make_shared<session::stream_options>();
     auto o = std::make_shared<serve_options>();
-    auto options = std::make_shared<option_list>(*c, *s);
     add_serve_options(*c, *o);
-    options->add_array_options();
-    options->add_device_options();
-    add_stream_options(*c, *play);
+    add_options(*c, *s, on_serve);
     add_format_option(*c, o->format, {"text", "json"}, "how it says where it listens (default text)");
     c->footer("Example: tactor serve --tcp 4001 -D hw:CARD=Tactor");
-    return [s, play, o, options] {
-        owners_defaults defaults(*s);
-        return serve(*s, defaults, *play, *o);
-    };
+    return [s, o] { return run_with(*s, [&] { return serve(*s, *o); }); };
 }
 
 } // namespace tactor::cli

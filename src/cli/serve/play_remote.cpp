@@ -2,7 +2,6 @@
 #include "cli/serve/play_remote.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <set>
@@ -17,6 +16,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
+#include "cli/option_words.hpp"
 #include "cli/play/live_lines.hpp"
 #include "cli/play/play_report.hpp"
 #include "cli/say.hpp"
@@ -33,24 +33,18 @@ namespace {
 constexpr std::chrono::seconds to_finish{10};       // for a server to fade out, after a signal
 constexpr std::chrono::milliseconds limit_pause{5}; // some ten points of 2,000 a second
 // What a server's owner decides, or the server does not do.
-constexpr std::array owners{
-    "array",    "config",           "device",  "rate",       "sample-format", "channels",
-    "fit",      "fit-margin",       "texture", "texture-mm", "latency-ms",    "period-frames",
-    "periods",  "require-realtime", "no-gpio", "power-dbfs", "max-drive-s",   "drive-window-s",
-    "reopen-s", "sync-delay-ms",    "log",     "verbose"};
-
-void refuse_owners(const option_list& options)
+void refuse_owners(const settings& s)
 {
-    for (const char* name : owners)
-        if (options.given(name))
-            throw error(error_kind::bad_input, fmt::format("--{}", name),
-                        "it is not for strokes that a server plays", "leave it out with --socket");
+    for (const options::option& o : options::all())
+        if ((o.where & (options::by_client | options::through_server)) == 0 && s.gives(o.name))
+            throw error(error_kind::bad_input, option_name(o), "it is not for strokes that a server plays",
+                        "leave it out with --socket");
 }
 
 class remote_player {
 public:
-    remote_player(const settings& s, const option_list& options, const play_options& o)
-        : options_(o), server_(o.socket, stop_), asked_(options_of(s, options))
+    remote_player(const settings& s, const play_options& o)
+        : options_(o), server_(o.socket, stop_), asked_(client_options(s))
     {
         const net::json hello = server_.call("hello");
         const net::json& d = hello["stream"];
@@ -283,12 +277,12 @@ private:
 
 } // namespace
 
-int play_remote(const settings& s, const option_list& options, const play_options& o)
+int play_remote(const settings& s, const play_options& o)
 {
-    refuse_owners(options);
+    refuse_owners(s);
     const auto pieces = o.live ? decltype(stroke_params(s)){} : stroke_params(s);
     try {
-        remote_player player(s, options, o);
+        remote_player player(s, o);
         live_lines lines(STDIN_FILENO);
         return o.live ? player.live(lines) : player.play(pieces);
     } catch (const interrupted& i) {

@@ -13,6 +13,6 @@ namespace tactor::cli {
 
 /// Plays all STROKEs, one after the other; the exit status. \throws error, also for options that are the
 /// server's owner's alone.
-int play_remote(const settings& s, const option_list& options, const play_options& o);
+int play_remote(const settings& s, const play_options& o);
 
 } // namespace tactor::cli

@@ -99,44 +99,22 @@ std::vector<std::pair<std::string, net::json>> stroke_params(const settings& s)
     return all;
 }
 
-net::json options_of(const settings& s, const option_list& options)
+net::json client_options(const settings& s)
 {
-    net::json o = net::json::object();
-    const auto put = [&](const char* name, const char* param, const net::json& value) {
-        if (options.given(name))
-            o[param] = value;
-    };
-    put("algorithm", "algorithm", to_string(s.plan.algorithm));
-    put("phantom", "phantom", to_string(s.plan.phantom));
-    put("faces", "faces", to_string(s.plan.faces));
-    put("duration", "duration", s.duration_s.value_or(0.0));
-    put("speed", "speed", s.speed_mm_s.value_or(0.0));
-    put("soa", "soa", s.plan.soa_s);
-    put("burst", "burst", s.plan.burst_s.value_or(0.0));
-    put("slope", "slope", s.slope.value_or(0.0));
-    put("intercept", "intercept", s.intercept_s.value_or(0.0));
-    put("timing", "timing", to_string(s.plan.timing));
-    put("outside", "outside", to_string(s.plan.outside));
-    put("snap", "snap", s.plan.snap);
-    put("drop-points", "drop_points", s.plan.drop_points);
-    put("overlap", "overlap", to_string(s.plan.overlap));
-    put("carrier", "carrier", s.plan.carrier_hz);
-    put("waveform", "waveform", waveform_text(s.plan.wave));
-    put("am", "am", fmt::format("{}:{}", s.plan.am.hz, s.plan.am.depth));
-    put("noise-seed", "noise_seed", s.plan.wave.seed);
-    put("envelope", "envelope", envelope_text(s.render.envelope));
-    put("attack", "attack", s.render.envelope.attack_s.value_or(0.0));
-    put("release", "release", s.render.envelope.release_s.value_or(0.0));
-    put("intensity-scale", "intensity_scale", to_string(s.plan.scale.kind));
-    put("stevens-exponent", "stevens_exponent", s.plan.scale.exponent);
-    put("compensate", "compensate", s.compensate ? "low-speed" : "none");
-    put("sigma-mm", "sigma_mm", s.low_speed.sigma_mm);
-    put("sigma-v-mm-s", "sigma_v_mm_s", s.low_speed.sigma_v_mm_s);
-    put("phase", "phase", to_string(s.render.phase));
-    put("ramp", "ramp", s.render.ramp_s.value_or(0.0));
-    put("level-dbfs", "level_dbfs", s.render.level_dbfs);
-    put("sl", "sl", s.render.sl_db.value_or(0.0));
-    return o;
+    net::json given = net::json::object();
+    for (const options::option& o : options::all()) {
+        if ((o.where & options::by_client) == 0 || !s.gives(o.name))
+            continue;
+        const options::value v = o.to.get(s);
+        net::json& to = given[std::string(o.name)];
+        if (const auto* flag = std::get_if<bool>(&v))
+            to = *flag;
+        else if (const auto* number = std::get_if<double>(&v))
+            to = *number;
+        else if (const auto* text = std::get_if<std::string>(&v))
+            to = *text;
+    }
+    return given;
 }
 
 } // namespace tactor::cli

@@ -17,6 +17,6 @@ namespace tactor::cli {
 std::vector<std::pair<std::string, net::json>> stroke_params(const settings& s);
 
 /// The options that the command line gives, as parameter; the server's owner has said the others.
-net::json options_of(const settings& s, const option_list& options);
+net::json client_options(const settings& s);
 
 } // namespace tactor::cli

@@ -54,7 +54,7 @@ struct box_index::tree {
     bgi::rtree<entry, bgi::rstar<8>> items;
 };
 
-box bounds(const std::vector<point>& points)
+box box_around(const std::vector<point>& points)
 {
     box b{points.front(), points.front()};
     for (const point& p : points) {

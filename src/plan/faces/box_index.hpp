@@ -18,7 +18,7 @@ struct box {
 };
 
 /// The smallest box round some points (at least one).
-box bounds(const std::vector<point>& points);
+box box_around(const std::vector<point>& points);
 
 /// Immutable R-tree over boxes; an item is its place in the vector. Alone in its source file because
 /// Boost.Geometry is slow to compile.

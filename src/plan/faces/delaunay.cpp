@@ -27,7 +27,7 @@ using site = boost::polygon::point_data<std::int32_t>;
 // millimetres exactly rectangular; the grain of a 1 m array is 5e-7 mm.
 std::vector<site> quantise(const std::vector<point>& points)
 {
-    const box b = bounds(points);
+    const box b = box_around(points);
     const point centre{std::midpoint(b.low.x_mm, b.high.x_mm), std::midpoint(b.low.y_mm, b.high.y_mm)};
     const double half = std::max(b.high.x_mm - b.low.x_mm, b.high.y_mm - b.low.y_mm) / 2.0;
     const double scale = std::exp2(29 - std::ilogb(half));

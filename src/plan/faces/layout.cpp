@@ -74,7 +74,7 @@ std::vector<box> boxes_of(const rings& faces, const std::vector<point>& points)
         corners.clear();
         for (const unsigned v : f)
             corners.push_back(points[v]);
-        boxes.push_back(detail::bounds(corners));
+        boxes.push_back(detail::box_around(corners));
     }
     return boxes;
 }
@@ -83,7 +83,7 @@ std::vector<box> boxes_of(const std::vector<std::pair<point, point>>& edges)
 {
     std::vector<box> boxes;
     for (const auto& [a, b] : edges)
-        boxes.push_back(detail::bounds({a, b}));
+        boxes.push_back(detail::box_around({a, b}));
     return boxes;
 }
 
@@ -149,7 +149,7 @@ layout::impl layout::impl::build(const array& a)
     box_index rim_index(boxes_of(rim));
     box_index tactor_index(boxes_of(points));
     const double pitch = median_pitch(faces, points);
-    const box all = detail::bounds(points);
+    const box all = detail::box_around(points);
     // Faces may lap over each other by the grain of the sites from which they were made.
     const double clear = 1e-4 + 1e-7 * distance_mm(all.low, all.high);
     return {std::move(places),     std::move(by_index),  std::move(points),       std::move(order),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import typing as _t
 
+from tactor import _tactor
 from tactor._array import Array
 from tactor._errors import InputError
 
@@ -21,15 +22,12 @@ if _t.TYPE_CHECKING:
     _Envelope = _t.Literal["raised-cosine", "linear", "exponential", "tukey"]
 
 
-# What a plan asks for beside how it sounds; the rest is a score's.
-_PLANNING = frozenset(("algorithm", "phantom", "faces", "soa", "burst", "slope", "intercept", "duration", "speed", "timing", "outside",
-                       "fit", "fit_margin", "snap", "drop_points", "overlap", "carrier", "compensate", "sigma_mm", "sigma_v_mm_s",
-                       "waveform", "am", "noise_seed", "texture", "texture_mm", "intensity_scale", "stevens_exponent"))
-_SOUNDING = frozenset(("phase", "ramp", "envelope", "attack", "release", "tukey_part", "level_dbfs", "sl", "rate"))
+# How a stroke is planned, and how it sounds, which is a score's.
+_PLANNING = frozenset(_tactor.option_names("planning"))
+_SOUNDING = frozenset(_tactor.option_names("sounding"))
 _PLANNING_AND_SOUNDING = _PLANNING | _SOUNDING
 # A live stroke's; which algorithm, and what is done outside, no file says of it, as in the tool.
-_LIVE = frozenset(("phantom", "faces", "soa", "burst", "slope", "intercept", "carrier", "waveform", "am", "noise_seed", "texture",
-                   "texture_mm", "intensity_scale", "stevens_exponent", "phase", "ramp", "envelope", "attack", "release", "tukey_part", "level_dbfs", "sl"))
+_LIVE = frozenset(_tactor.option_names("live")) - {"algorithm", "outside"}
 
 
 _NOTHING: _t.Mapping[str, _t.Any] = {}
@@ -62,23 +60,8 @@ def in_parts(given: dict[str, _t.Any]) -> dict[str, _t.Any]:
 
 def check_used(given: dict[str, _t.Any], options: dict[str, _t.Any]) -> None:
     """Refuses what is given although nothing of all that is said uses it."""
-    wave, envelope = str(options.get("waveform") or "sine"), str(options.get("envelope")).partition(":")[0]
-    noise = wave.startswith("noise:")
-    recorded = not noise and wave not in ("sine", "square", "triangle", "sawtooth")
-    low_speed = "low-speed" in (options.get("compensate"), options.get("observer"))
-    observer = 'say compensate="low-speed", too; of a comparison also observer="low-speed"'
-    for name, used, hint in (("sigma_mm", low_speed, observer), ("sigma_v_mm_s", low_speed, observer),
-                             ("noise_seed", noise, 'say waveform="noise:LO-HI", too'),
-                             ("texture", recorded, 'say waveform="FILE.wav", too'),
-                             ("texture_mm", recorded and options.get("texture") == "length", 'say waveform="FILE.wav" and texture="length", too'),
-                             ("stevens_exponent", options.get("intensity_scale") == "stevens", 'say intensity_scale="stevens", too'),
-                             ("marker_s", options.get("marker_channel") is not None, "say marker_channel=N, too"),
-                             ("tukey_part", envelope == "tukey", 'say envelope="tukey", too')):
-        if given.get(name) is not None and not used:
-            raise InputError(name, "nothing here uses it", hint, field=name)
-    for name in ("attack", "release", "ramp"):
-        if given.get(name) is not None and envelope == "tukey":
-            raise InputError(name, 'envelope="tukey" has its own ramps', "leave one of them out", field=name)
+    place = "compare" if "spread" in given else "plan"
+    _tactor.check_used([name for name, value in given.items() if value is not None], options, place)
 
 
 def _completed(setup: _t.Any, given: dict[str, _t.Any], known: frozenset[str]) -> dict[str, _t.Any]:
@@ -87,12 +70,11 @@ def _completed(setup: _t.Any, given: dict[str, _t.Any], known: frozenset[str]) -
     def says(name: str) -> bool:
         return options.get(name) is not None
 
-    for option, text in setup.defaults.items():
-        name = option.replace("-", "_")
+    for name, value in setup.defaults.items():
         rival = {"speed": "duration", "sl": "level_dbfs", "level_dbfs": "sl"}.get(name)
         if name in known and not says(name) and not (rival is not None and given.get(rival) is not None):
             # What a stroke says itself comes before a file's speed.
-            options["usual_speed" if name == "speed" else name] = _value(text)
+            options["usual_speed" if name == "speed" else name] = value
     kind, _, part = str(options.get("envelope") or "").partition(":")
     if part and given.get("envelope") is None:  # tukey:PART, as the tool takes it
         options["envelope"] = kind

@@ -93,15 +93,12 @@ class Player(_Unique):
             _need(after, Player, "after")
         given: dict[str, _t.Any] = {
             "config": None if config is None else encoded(config, "config"), "array_file": None if array._file is None else encoded(array._file),
-            "sample_format": sample_format, "sync_delay": _number("sync_delay", sync_delay, 0.0, 10.0, "0 to 10 s"),
-            "require_realtime": bool(require_realtime), "no_gpio": bool(no_gpio), "log": log is not None,
+            "rate": rate, "period_frames": period_frames, "periods": periods, "channels": channels, "sample_format": sample_format,
+            "latency_ms": None if latency is None else 1e3 * _number("latency", latency, 0.0001, 10.0, "0.0001 to 10 s"),
+            "power_dbfs": power_dbfs, "max_drive_s": max_drive_s, "drive_window_s": drive_window_s, "no_gpio": bool(no_gpio),
+            "require_realtime": bool(require_realtime), "sync_delay_ms": 1e3 * _number("sync_delay", sync_delay, 0.0, 10.0, "0 to 10 s"),
+            "log": log is not None,
         }
-        for what, number, least in (("rate", rate, 8000), ("period_frames", period_frames, 1), ("periods", periods, 2), ("channels", channels, 1)):
-            given[what] = None if number is None else _whole(what, number, least, (1 << 31) - 1, f"a whole number from {least} on")
-        for what, limit, low, high, unit in (("power_dbfs", power_dbfs, -120.0, 60.0, "dB"), ("max_drive_s", max_drive_s, 0.1, 3600.0, "s"),
-                                             ("drive_window_s", drive_window_s, 0.1, 3600.0, "s")):
-            given[what] = None if limit is None else _number(what, limit, low, high, f"{low:g} to {high:g} {unit}")
-        given["latency"] = None if latency is None else _number("latency", latency, 0.0001, 10.0, "0.0001 to 10 s")
         driven = _tactor.DriveHistory() if after is None else after._history()
         core = _tactor.Player(array._core, device, given, driven)
         self._setup: dict[str, _t.Any] = core.setup()

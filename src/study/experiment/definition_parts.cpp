@@ -5,21 +5,17 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <tactor/error.hpp>
 
-#include "core/kind_names.hpp"
 #include "files/toml_reader.hpp"
+#include "options/check.hpp"
+#include "options/settle.hpp"
 
 namespace tactor::study {
 namespace {
 
-using detail::bounds;
 using detail::toml_table;
-
-constexpr bounds positive_time{0.0, 3600.0, true};
-constexpr bounds positive_speed{0.0, 100000.0, true};
 
 // A key may have its unit behind it, as in stroke files, or not, as options do.
 std::string_view spelled(const toml_table& t, std::string_view plain, std::string_view with_unit)
@@ -37,7 +33,10 @@ auto at_key(const toml_table& t, std::string_view key, F make)
     try {
         return make();
     } catch (const error& e) {
-        throw error(e.kind(), t.where(key), fmt::format("{}: {}", e.subject(), e.why()), e.hint())
+        const error said = options::spell_marks(e, [](const options::option& o, std::string_view value) {
+            return value.empty() ? std::string(o.name) : fmt::format("{} = \"{}\"", o.name, value);
+        });
+        throw error(e.kind(), t.where(key), fmt::format("{}: {}", said.subject(), said.why()), said.hint())
             .with_field(key);
     }
 }
@@ -60,28 +59,20 @@ stroke along_path(const toml_table& t, std::optional<double> duration_s, std::op
     });
 }
 
-template <class Enum>
-void read_kind(const toml_table& t, std::string_view key, Enum& into)
+// The option of a method that a key stands for, with its unit or without.
+const options::option& method_option(const toml_table& t, std::string_view key)
 {
-    const auto text = t.text(key);
-    if (!text)
-        return;
-    const auto e = detail::kind_named<Enum>(*text);
-    if (!e)
-        t.fail(key, fmt::format("{} is {}", key, detail::shown(*t.node(key))),
-               fmt::format("one of {}", fmt::join(detail::names_of<Enum>(), ", ")));
-    into = *e;
-}
-
-void read_law(const toml_table& t, plan_options& o)
-{
-    const auto slope = t.number("slope", {0.01, 0.99});
-    const auto intercept = t.number(spelled(t, "intercept", "intercept_s"), {0.001, 10.0});
-    if (!slope && !intercept)
-        return;
-    o.profile.slope = slope.value_or(o.profile.slope);
-    o.profile.intercept_s = intercept.value_or(o.profile.intercept_s);
-    o.profile.max_soa_s = o.profile.intercept_s / (1.0 - o.profile.slope);
+    const options::option* o = options::find(key);
+    if (o == nullptr)
+        o = options::find_field(key);
+    if (o != nullptr && (o->where & options::in_method) != 0)
+        return *o;
+    std::vector<std::string_view> known{"name"};
+    for (const options::option& x : options::all())
+        if ((x.where & options::in_method) != 0)
+            known.insert(known.end(), {x.name, x.field_name()});
+    t.only(known);
+    t.fail(key, fmt::format("{} is no option of a method", key), "leave it out");
 }
 
 } // namespace
@@ -103,8 +94,8 @@ motion_definition read_motion(const toml_table& t, const std::filesystem::path& 
     const std::string_view kind = t.one_of({"preset", "path", "file"});
     const std::string_view duration_key = spelled(t, "duration", "duration_s");
     const std::string_view speed_key = spelled(t, "speed", "speed_mm_s");
-    const auto duration = t.number(duration_key, positive_time);
-    const auto speed = t.number(speed_key, positive_speed);
+    const auto duration = t.number(duration_key, detail::bounds_of::duration_s);
+    const auto speed = t.number(speed_key, detail::bounds_of::speed_mm_s);
     if (duration && speed)
         t.fail(speed_key, fmt::format("{} has both {} and {}", t.title(), duration_key, speed_key),
                "keep one of them");
@@ -122,25 +113,18 @@ motion_definition read_motion(const toml_table& t, const std::filesystem::path& 
 
 method_definition read_method(const toml_table& t)
 {
-    t.only({"name", "algorithm", "phantom", "faces", "soa", "soa_s", "burst", "burst_s", "slope", "intercept",
-            "intercept_s", "timing", "outside", "snap", "drop-points", "drop_points", "overlap", "carrier",
-            "carrier_hz"});
-    method_definition m{name_in(t, "name"), {}, t.where()};
-    plan_options& o = m.options;
-    read_kind(t, "algorithm", o.algorithm);
-    read_kind(t, "phantom", o.phantom);
-    read_kind(t, "faces", o.faces);
-    read_kind(t, "timing", o.timing);
-    read_kind(t, "outside", o.outside);
-    read_kind(t, "overlap", o.overlap);
-    o.soa_s = t.number(spelled(t, "soa", "soa_s"), {0.0, 10.0, true}).value_or(o.soa_s);
-    if (const auto burst = t.number(spelled(t, "burst", "burst_s"), {0.0001, 10.0}))
-        o.burst_s = burst;
-    read_law(t, o);
-    o.snap = t.boolean("snap").value_or(false);
-    o.drop_points = t.boolean(spelled(t, "drop-points", "drop_points")).value_or(false);
-    o.carrier_hz = t.number(spelled(t, "carrier", "carrier_hz"), {1.0, 384000.0}).value_or(o.carrier_hz);
-    return m;
+    options::wishes w;
+    w.place = options::in_method;
+    for (const toml_table::said_key& k : t.entries()) {
+        if (k.key == "name")
+            continue;
+        const options::option& o = method_option(t, k.key);
+        if (w.gives(o.name))
+            t.fail(k.key, fmt::format("{} says {} twice", t.title(), o.name), "keep one of them");
+        at_key(t, k.key, [&] { options::give(w, o, options::read_value(o, t.plain(*k.value, k.key))); });
+    }
+    at_key(t, "name", [&] { options::settle(w); });
+    return {name_in(t, "name"), w.plan, t.where()};
 }
 
 } // namespace tactor::study

@@ -45,12 +45,12 @@ bool assume_thresholds(array& a, bool nobody_feels)
 
 } // namespace
 
-prepared_experiment prepare(const session_request& r, session::settings& s, session::option_source& options)
+prepared_experiment prepare(const session_request& r, session::settings& s)
 {
     experiment_definition d = load_definition(r.definition);
     if (!s.array_name)
         s.array_name = d.array;
-    session::environment e = session::read_environment(s, options);
+    session::environment e = session::read_environment(s);
     const bool assumed = !d.level_dbfs && assume_thresholds(e.tactors, r.who != audience::person);
     render_options render = session::settle_render(s, e);
     if (d.level_dbfs)

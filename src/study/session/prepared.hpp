@@ -57,6 +57,6 @@ inline constexpr double assumed_threshold_dbfs = -40.0;
 /// Settles a session. \throws error (bad_input): the definition, array or configuration is wrong, a stimulus
 /// cannot be planned
 ///         or played; there are no thresholds and somebody is to feel it.
-prepared_experiment prepare(const session_request& r, session::settings& s, session::option_source& options);
+prepared_experiment prepare(const session_request& r, session::settings& s);
 
 } // namespace tactor::study

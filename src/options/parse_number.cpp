@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/parse_number.hpp"
+#include "options/parse_number.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 
 #include "core/words.hpp"
 
-namespace tactor::cli {
+namespace tactor::options {
 namespace {
 
 // What one of a unit is in the option's own; 0 where it is none of its kind.
@@ -103,4 +103,4 @@ double parse_whole(const std::string& what, const std::string& text, detail::bou
                     fmt::format("give one, as {}", plain_number(std::max(b.low, std::floor(v)))));
     return v;
 }
-} // namespace tactor::cli
+} // namespace tactor::options

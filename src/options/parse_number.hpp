@@ -5,9 +5,9 @@
 
 #include <string>
 
-#include "core/option_bounds.hpp"
+#include "core/bounds.hpp"
 
-namespace tactor::cli {
+namespace tactor::options {
 
 /// A finite number between lo and hi. \throws error (bad_input) naming `what`, the text, the number to give
 /// where the text has a unit, and the range (`range_text`, where what is sensible is less than what is
@@ -20,4 +20,4 @@ double parse_number(const std::string& what, const std::string& text, detail::bo
 double parse_whole(const std::string& what, const std::string& text, detail::bounds b,
                    const std::string& unit);
 
-} // namespace tactor::cli
+} // namespace tactor::options

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Bounds of the numbers that users may set, in every front end. The planner holds some numbers to closer
+/// bounds, which depend on others.
+#pragma once
+
+#include "core/limits.hpp"
+
+namespace tactor::detail {
+
+/// Least and greatest number.
+struct bounds {
+    double low = 0.0;
+    double high = 0.0;
+    bool above_low = false; ///< low itself is not allowed
+
+    constexpr bool holds(double v) const noexcept { return v <= high && (above_low ? v > low : v >= low); }
+};
+
+} // namespace tactor::detail
+
+namespace tactor::detail::bounds_of {
+
+inline constexpr bounds duration_s{0.001, longest_stroke_s};
+inline constexpr bounds speed_mm_s{0.001, 100000.0};
+inline constexpr bounds soa_s{-1e9, 1e9}; // the planner has the bounds, by the timing law
+inline constexpr bounds burst_s{0.0001, 10.0};
+inline constexpr bounds min_duration_s{0.0001, 10.0};
+inline constexpr bounds slope{0.01, 0.99};
+inline constexpr bounds intercept_s{0.001, 10.0};
+inline constexpr bounds margin_mm{0.0, max_mm};
+inline constexpr bounds carrier_hz{1.0, 384000.0}; // half of the highest rate
+inline constexpr bounds seed{0.0, 0x1p53};         // JSON's numbers go so far
+inline constexpr bounds texture_mm{0.0, max_mm};
+inline constexpr bounds am_hz{0.0, 20000.0};
+inline constexpr bounds ramp_s{0.0, 10.0}; // attack and release, too
+inline constexpr bounds part{0.0, 1.0};
+inline constexpr bounds level_dbfs{min_db, 0.0};
+inline constexpr bounds sl_db{-60.0, 100.0};
+inline constexpr bounds stevens_exponent{0.1, 3.0};
+inline constexpr bounds sigma_mm{0.001, 1000.0};
+inline constexpr bounds sigma_v_mm_s{0.001, 1e6};
+
+inline constexpr bounds people{2.0, 100000.0};
+inline constexpr bounds spread_seed{0.0, 4294967295.0};
+inline constexpr bounds spread_sigma{1.0, 100.0};
+inline constexpr bounds spread_threshold_db{0.0, 60.0};
+inline constexpr bounds spread_place_mm{0.0, 1000.0};
+
+inline constexpr bounds rate_hz{8000.0, 768000.0};
+inline constexpr bounds device_channels{1.0, double{max_channels}};
+inline constexpr bounds latency_ms{0.1, 10000.0};
+inline constexpr bounds period_frames{1.0, 1U << 20U};
+inline constexpr bounds periods{2.0, 1024.0};
+inline constexpr bounds reopen_s{0.0, 1e9};
+inline constexpr bounds sync_delay_ms{0.0, 10000.0};
+inline constexpr bounds smooth_s{0.0, 1.0};
+inline constexpr bounds timeout_s{0.001, longest_stroke_s}; // how long a live stroke may last, too
+inline constexpr bounds marker_channel{0.0, max_channels - 1.0};
+inline constexpr bounds marker_s{1e-6, 10.0};
+
+// These guard people.
+inline constexpr bounds power_dbfs{-120.0, 60.0};
+inline constexpr bounds drive_s{0.1, 3600.0}; // longest drive, and the window in which it counts
+
+} // namespace tactor::detail::bounds_of

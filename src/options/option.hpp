@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The table of options: one row for each thing that a user may set, from which all front ends are made.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/bounds.hpp"
+#include "options/wishes.hpp"
+
+namespace tactor::options {
+
+/// Heading under which help and manual list an option.
+enum class group : std::uint8_t { stroke, place, timing, sound, level, device, real_time, output };
+[[nodiscard]] std::string_view to_string(group g) noexcept;
+
+enum class kind : std::uint8_t { number, whole, choice, flag, text };
+
+/// Where an option may be given: a bit each.
+enum place : std::uint64_t {
+    on_plan = 1,
+    on_render = 1 << 1,
+    on_plot = 1 << 2,
+    on_compare = 1 << 3,
+    on_play = 1 << 4,
+    on_check = 1 << 5,
+    on_calibrate = 1 << 6,
+    on_experiment = 1 << 7,
+    on_devices = 1 << 8,
+    on_off = 1 << 9,
+    on_serve = 1 << 10,
+    on_any_command = (1 << 11) - 1,
+    in_defaults = 1 << 11,    ///< [defaults] of a configuration or array file
+    in_method = 1 << 12,      ///< [[method]] of a definition
+    by_client = 1 << 13,      ///< strokes that a client of the service asks for
+    live = 1 << 14,           ///< strokes that are fed point by point
+    in_plan = 1 << 15,        ///< Python's plan() and Score.plan()
+    in_score = 1 << 16,       ///< Python's Score()
+    in_compare = 1 << 17,     ///< Python's compare()
+    planning = 1 << 18,       ///< decides how a stroke is planned: refused beside a plan
+    through_server = 1 << 19, ///< play --socket takes it, though no client sends it
+    in_player = 1 << 21,      ///< Python's Player()
+    in_stroke = 1 << 20,      ///< a stroke file has a key of the field's name
+};
+
+/// A value on its way from a front end: nothing, a flag, a number (whole ones, too), or a text or choice.
+using value = std::variant<std::monostate, bool, double, std::string>;
+
+/// Functions that set and get the member which an option stands for.
+struct access {
+    /// \pre The value is of the option's kind, in bounds, and one of the choices; or it is none, and the
+    /// option has a rival. \throws error (bad_input) for a text that cannot be read.
+    void (*set)(wishes&, const value&) = nullptr;
+    value (*get)(const wishes&) = nullptr;
+};
+
+/// One option.
+struct option {
+    std::string_view name = {};  ///< "level_dbfs"; the command line writes - for _
+    std::string_view field = {}; ///< of the library and in stroke files: "soa_s"; empty: the name
+    std::string_view unit = {};  ///< "s", "mm", "Hz"; empty: none
+    kind what = kind::number;
+    detail::bounds allowed = {};
+    std::string_view range = {}; ///< the bounds in words where they are not these two numbers
+    std::vector<std::string_view> (*choices)() = nullptr;
+    std::string_view shown =
+        {}; ///< the value's type in help, where unit and choices do not say it: "HZ[:DEPTH]"
+    std::string_view letter = {}; ///< the command line's short name
+    group in = group::stroke;
+    std::string_view help = {}; ///< one line, with the default
+    std::uint64_t where = 0;
+    std::string_view rival = {};           ///< name of the option that cannot stand beside it
+    bool (*used)(const wishes&) = nullptr; ///< whether anything uses it; null: always
+    std::string_view needs = {};           ///< otherwise: what to add, in marks; alternatives parted by |
+    access to = {};
+
+    [[nodiscard]] std::string_view field_name() const noexcept { return field.empty() ? name : field; }
+};
+
+/// Returns all rows, in the order of help and manual.
+[[nodiscard]] std::span<const option> all() noexcept;
+
+/// Returns the row of that name, with _ or - between its words; null for none.
+[[nodiscard]] const option* find(std::string_view name) noexcept;
+/// Returns the row of that name or field; null for none.
+[[nodiscard]] const option* find_field(std::string_view field) noexcept;
+/// Returns the place of a row in the table.
+[[nodiscard]] std::size_t index(const option& o) noexcept;
+
+/// Returns the value's type as help shows it: "S", "a|b|c".
+[[nodiscard]] std::string type_text(const option& o);
+/// Returns the values of a choice with ", " between them.
+[[nodiscard]] std::string choices_text(const option& o);
+/// Returns the bounds in words: "0 to 10 s".
+[[nodiscard]] std::string range_text(const option& o);
+
+} // namespace tactor::options

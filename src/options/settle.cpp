@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: MIT
+#include "options/settle.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/split.hpp"
+#include "core/suggest.hpp"
+#include "options/check.hpp"
+
+namespace tactor::options {
+namespace {
+
+std::string mark(const option& o)
+{
+    return fmt::format("{{{}}}", o.name);
+}
+
+error refusal(const option& o, const std::string& why, const std::string& hint)
+{
+    return error(error_kind::bad_input, mark(o), why, hint).with_field(o.name);
+}
+
+// The level in dBFS is always there: one in dB SL counts before it.
+void forget(wishes& w, const option& o)
+{
+    w.given.reset(index(o));
+    w.in_file.erase(index(o));
+    o.to.set(w, {});
+    if (o.name == "speed")
+        w.usual_speed_mm_s.reset();
+}
+
+const option* rival_of(const option& o)
+{
+    return o.rival.empty() ? nullptr : find(o.rival);
+}
+
+// The alternatives that can be given at this place.
+std::string needed(const wishes& w, const option& o)
+{
+    std::string all;
+    for (const std::string_view one : detail::split(o.needs, '|')) {
+        const std::string_view name = one.substr(1, one.find_first_of("=}") - 1);
+        if ((find(name)->where & w.place) == 0)
+            continue;
+        all.append(all.empty() ? "" : " or ").append(one);
+    }
+    return "add " + all;
+}
+
+const option& find_default(const default_value& d)
+{
+    const option* o = find(d.name);
+    if (o != nullptr && (o->where & in_defaults) != 0)
+        return *o;
+    std::vector<std::string> names;
+    for (const option& x : all())
+        if ((x.where & in_defaults) != 0) {
+            names.emplace_back(x.name);
+            std::replace(names.back().begin(), names.back().end(), '_', '-');
+        }
+    const std::vector<std::string_view> known(names.begin(), names.end());
+    throw error(error_kind::bad_input, d.name_at, fmt::format("unknown key '{}' in [defaults]", d.name),
+                detail::suggestion(d.name, known, "keys"))
+        .with_field(d.name);
+}
+
+// One file cannot say both; what an included one says of the other counts no more.
+void refuse_both(const setup& says, const default_value& d, const option* rival)
+{
+    for (const default_value& other : says.defaults)
+        if (rival != nullptr && find(other.name) == rival && other.at.file == d.at.file &&
+            other.at.line < d.at.line)
+            throw error(error_kind::bad_input, d.at,
+                        fmt::format("[defaults] has both {} and {}", other.name, d.name), "keep one of them");
+}
+
+bool is_said(const wishes& w, std::string_view name)
+{
+    return w.gives(name) || w.in_file.contains(index(*find(name)));
+}
+
+// Whether anybody asks for it here, and the user gave neither it nor its rival.
+bool takes_default(const wishes& w, const option& o)
+{
+    const option* rival = rival_of(o);
+    return (o.where & w.place) != 0 && !w.given[index(o)] && (rival == nullptr || !w.given[index(*rival)]);
+}
+
+error at_place(const source_place& at, const option& o, const error& e)
+{
+    const std::string_view subject = e.subject();
+    const bool about_it = subject == mark(o) || subject == o.field_name();
+    std::string name(o.name);
+    std::replace(name.begin(), name.end(), '_', '-');
+    return e
+        .reworded(at.text(),
+                  about_it
+                      ? fmt::format("{}: {}", name, e.why())
+                      : fmt::format("{}: {}: {}", name,
+                                    subject.substr(subject.starts_with(mark(o)) ? mark(o).size() + 2 : 0),
+                                    e.why()),
+                  e.hint())
+        .with_place(at);
+}
+
+} // namespace
+
+void give(wishes& w, const option& o, const value& v)
+{
+    if (const option* rival = rival_of(o)) {
+        if (w.given[index(*rival)])
+            throw refusal(o, fmt::format("there is also {}", mark(*rival)), "give one of them");
+        forget(w, *rival);
+    }
+    put(w, o, v);
+    w.given.set(index(o));
+    w.in_file.erase(index(o));
+}
+
+std::vector<said_default> read_defaults(const setup& says)
+{
+    std::vector<said_default> all;
+    for (const default_value& d : says.defaults) {
+        const option& o = find_default(d);
+        refuse_both(says, d, rival_of(o));
+        const auto* text = std::get_if<std::string>(&d.said);
+        try {
+            // A value in quotes is taken as typed: "0.07" is 0.07.
+            all.push_back({&o, text != nullptr ? read_text(o, *text) : read_value(o, d.said), d.at});
+            wishes tried;
+            if (text == nullptr || o.name != "waveform" || !waveform_names_file(*text))
+                put(tried, o, all.back().said); // a file is looked for where it is used
+        } catch (const error& e) {
+            throw at_place(d.at, o, e);
+        }
+    }
+    return all;
+}
+
+void apply_defaults(wishes& w, const setup& says)
+{
+    for (const said_default& d : read_defaults(says)) {
+        const option& o = *d.row;
+        if (!takes_default(w, o))
+            continue;
+        if (const option* rival = rival_of(o))
+            forget(w, *rival);
+        try {
+            put(w, o, d.said);
+        } catch (const error& e) {
+            throw at_place(d.at, o, e);
+        }
+        if (o.name == "speed") // what a stroke says itself comes first
+            w.usual_speed_mm_s = std::exchange(w.speed_mm_s, std::nullopt);
+        w.in_file.insert_or_assign(index(o), d.at);
+    }
+}
+
+void settle(wishes& w)
+{
+    for (const option& o : all())
+        if (w.given[index(o)] && o.used != nullptr && !o.used(w))
+            throw refusal(o, "nothing here uses it", needed(w, o));
+    if (w.render.envelope.kind == envelope_kind::tukey)
+        for (const char* ramp : {"attack", "release", "ramp"})
+            if (w.gives(ramp))
+                throw refusal(*find(ramp), "{envelope=tukey} has its own ramps", "leave one of them out");
+    timing_profile& law = w.plan.profile;
+    if (is_said(w, "slope") || is_said(w, "intercept"))
+        law.max_soa_s = law.intercept_s / (1.0 - law.slope);
+    if (w.plan.scale.kind == scale_kind::sl && (find("sl")->where & w.place) != 0) {
+        if (!(w.render.sl_db.value_or(0.0) > 0.0))
+            throw refusal(*find("intensity_scale"), "sl is a part of a sensation level above 0 dB",
+                          "add {sl}, such as {sl=7}");
+        w.plan.scale.sl_db = *w.render.sl_db;
+    }
+}
+
+void refuse_planning(const wishes& w, const std::string& what)
+{
+    for (const option& o : all())
+        if ((o.where & planning) != 0 && w.given[index(o)])
+            throw refusal(o, fmt::format("{} is planned already", what),
+                          "plan the stroke anew with it, or leave it out");
+}
+
+error at_default(const wishes& w, const error& e)
+{
+    const option* o = e.field().empty() ? nullptr : find_field(e.field());
+    const auto said = o == nullptr || e.place().line != 0 ? w.in_file.end() : w.in_file.find(index(*o));
+    if (said == w.in_file.end())
+        return e;
+    return at_place(said->second, *o, e);
+}
+
+std::string spell_marks(std::string_view text, const speller& spell)
+{
+    std::string out;
+    for (;;) {
+        const std::size_t begin = text.find('{');
+        const std::size_t end = begin == text.npos ? begin : text.find('}', begin);
+        if (end == text.npos)
+            return out.append(text);
+        const std::string_view inside = text.substr(begin + 1, end - begin - 1);
+        const std::size_t equals = inside.find('=');
+        const option* o = find_field(inside.substr(0, equals));
+        out.append(text.substr(0, begin));
+        if (o == nullptr)
+            out.append(text.substr(begin, end + 1 - begin));
+        else
+            out += spell(*o, equals == inside.npos ? std::string_view() : inside.substr(equals + 1));
+        text.remove_prefix(end + 1);
+    }
+}
+
+error spell_marks(const error& e, const speller& spell)
+{
+    return e.reworded(spell_marks(e.subject(), spell), spell_marks(e.why(), spell),
+                      spell_marks(e.hint(), spell));
+}
+
+} // namespace tactor::options

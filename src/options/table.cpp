@@ -1,0 +1,517 @@
+// SPDX-License-Identifier: MIT
+// One row an option. To add one: a row here, and the code that uses the value.
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/words.hpp"
+#include "options/access.hpp"
+
+namespace tactor::options {
+namespace {
+
+namespace of = detail::bounds_of;
+
+constexpr std::uint64_t drawing = on_plan | on_render | on_plot | on_compare | on_play;
+constexpr std::uint64_t sounding = drawing | on_check;
+constexpr std::uint64_t playing = on_play | on_check | on_serve;
+constexpr std::uint64_t with_device = playing | on_devices | on_calibrate | on_experiment;
+constexpr std::uint64_t with_array = with_device | drawing | on_off;
+constexpr std::uint64_t in_python = in_plan | in_compare;
+// How a stroke is planned; `live`, too, where a stroke that is fed point by point can use it.
+constexpr std::uint64_t planned = drawing | in_defaults | by_client | in_python | planning;
+// How bursts sound.
+constexpr std::uint64_t heard = sounding | in_defaults | by_client | live | in_plan | in_score;
+
+constexpr auto low_speed_choices = [] { return std::vector<std::string_view>{"none", "low-speed"}; };
+
+bool has_sigma(const wishes& w)
+{
+    return w.compensate || w.observer == observer_kind::low_speed;
+}
+
+bool has_noise(const wishes& w)
+{
+    return w.plan.wave.kind == waveform_kind::noise;
+}
+
+bool has_recording(const wishes& w)
+{
+    return w.plan.wave.kind == waveform_kind::recording;
+}
+
+bool has_recording_along_path(const wishes& w)
+{
+    return has_recording(w) && w.plan.wave.texture == texture_kind::length;
+}
+
+bool has_people(const wishes& w)
+{
+    return w.spread.people != 0;
+}
+
+// Seed and texture are options of their own.
+void set_waveform(wishes& w, const value& v)
+{
+    const waveform said = parse_waveform(std::get<std::string>(v));
+    w.plan.wave.kind = said.kind;
+    w.plan.wave.low_hz = said.low_hz;
+    w.plan.wave.high_hz = said.high_hz;
+    w.plan.wave.recorded = said.recorded;
+}
+
+value get_waveform(const wishes& w)
+{
+    return waveform_text(w.plan.wave);
+}
+
+// HZ or "HZ:DEPTH".
+void set_modulation(wishes& w, const value& v)
+{
+    const auto* hz = std::get_if<double>(&v);
+    w.plan.am = parse_modulation(hz != nullptr ? fmt::format("{}", *hz) : std::get<std::string>(v));
+}
+
+value get_modulation(const wishes& w)
+{
+    return fmt::format("{}:{}", w.plan.am.hz, w.plan.am.depth);
+}
+
+// Of how a burst rises and falls, the times are options of their own.
+void set_envelope(wishes& w, const value& v)
+{
+    const auto& text = std::get<std::string>(v);
+    const burst_envelope said = parse_envelope(text);
+    w.render.envelope.kind = said.kind;
+    if (text.find(':') != std::string::npos)
+        w.render.envelope.tukey_part = said.tukey_part;
+}
+
+value get_envelope(const wishes& w)
+{
+    return envelope_text(w.render.envelope);
+}
+
+void set_shape(wishes& w, const value& v)
+{
+    const auto& name = std::get<std::string>(v);
+    static_cast<void>(shape_stroke(name)); // refuses what is none
+    w.shape = name;
+}
+
+void set_log(wishes& w, const value& v)
+{
+    const auto& name = std::get<std::string>(v);
+    if (name.empty())
+        throw error(error_kind::bad_input, "{log}", "the name is empty", "name a file");
+    w.stream.log = name;
+}
+
+value get_log(const wishes& w)
+{
+    return w.stream.log;
+}
+
+value get_shape(const wishes& w)
+{
+    return make_value(w.shape);
+}
+
+void set_compensation(wishes& w, const value& v)
+{
+    w.compensate = std::get<std::string>(v) != "none";
+}
+
+value get_compensation(const wishes& w)
+{
+    return std::string(w.compensate ? "low-speed" : "none");
+}
+
+std::vector<std::string_view> shape_names()
+{
+    const auto& all = stroke_shapes();
+    return {all.begin(), all.end()};
+}
+
+// clang-format off
+constexpr std::array table{
+    option{.name = "path", .field = "path", .what = kind::text, .shown = "DATA", .in = group::stroke,
+           .help = "SVG path data in mm instead of STROKE",
+           .where = drawing | through_server,
+           .to = reach([](auto& w) -> auto& { return w.path_data; })},
+    option{.name = "shape", .what = kind::text, .choices = shape_names, .in = group::stroke,
+           .help = "as large as the array, instead of STROKE, for first steps",
+           .where = drawing | through_server, .to = {set_shape, get_shape}},
+    option{.name = "duration", .field = "duration_s", .unit = "s", .allowed = of::duration_s, .in = group::stroke,
+           .help = "time of each stroke; default: the file's or preset's",
+           .where = in_stroke | drawing | by_client | in_python | planning, .rival = "speed",
+           .to = reach([](auto& w) -> auto& { return w.duration_s; })},
+    option{.name = "speed", .field = "speed_mm_s", .unit = "mm/s", .allowed = of::speed_mm_s, .in = group::stroke,
+           .help = "speed instead of a time (default 60 where nothing says one)",
+           .where = in_stroke | planned, .rival = "duration",
+           .to = reach([](auto& w) -> auto& { return w.speed_mm_s; })},
+
+    option{.name = "array", .what = kind::text, .shown = "NAME|FILE", .in = group::place,
+           .help = "palm-3x3 (default), palm-2x4, or an array file",
+           .where = with_array,
+           .to = reach([](auto& w) -> auto& { return w.array_name; })},
+    option{.name = "config", .what = kind::text, .shown = "FILE", .in = group::place,
+           .help = "configuration, see tactor.toml(5)",
+           .where = with_array,
+           .to = reach([](auto& w) -> auto& { return w.config_file; })},
+    option{.name = "outside", .what = kind::choice, .choices = detail::names_of<outside_kind>, .in = group::place,
+           .help = "paths that leave the array: refuse, or move to its edge (default error)",
+           .where = planned | live | in_method,
+           .to = reach([](auto& w) -> auto& { return w.plan.outside; })},
+    option{.name = "fit", .what = kind::flag, .in = group::place,
+           .help = "scale and centre what is drawn on the array",
+           .where = drawing | in_python | planning,
+           .to = reach([](auto& w) -> auto& { return w.fit; })},
+    option{.name = "fit_margin", .field = "margin_mm", .unit = "mm", .allowed = of::margin_mm, .in = group::place,
+           .help = "--fit: distance kept from the array's edge (default 0)",
+           .where = drawing | in_python | planning,
+           .used = [](const wishes& w) { return w.fit; }, .needs = "{fit}",
+           .to = reach([](auto& w) -> auto& { return w.fit_margin_mm; })},
+
+    option{.name = "algorithm", .what = kind::choice, .choices = detail::names_of<algorithm_kind>, .in = group::timing,
+           .help = "who plays when (default park2016)",
+           .where = in_stroke | planned | on_check | live | in_method,
+           .to = reach([](auto& w) -> auto& { return w.plan.algorithm; })},
+    option{.name = "phantom", .what = kind::choice, .choices = detail::names_of<phantom_kind>, .in = group::timing,
+           .help = "how strongly (default inverse-distance)",
+           .where = in_stroke | planned | live | in_method,
+           .to = reach([](auto& w) -> auto& { return w.plan.phantom; })},
+    option{.name = "faces", .what = kind::choice, .choices = detail::names_of<faces_kind>, .in = group::timing,
+           .help = "inverse-distance: three tactors round the point, or the closest three (default delaunay)",
+           .where = in_stroke | planned | live | in_method,
+           .to = reach([](auto& w) -> auto& { return w.plan.faces; })},
+    option{.name = "soa", .field = "soa_s", .unit = "s", .allowed = of::soa_s,
+           .range = "above 0.0473 to 0.07 s by the usual timing law; see {burst} for others", .in = group::timing,
+           .help = "onset to onset of two bursts (default 0.07)",
+           .where = in_stroke | planned | on_check | live | in_method,
+           .to = reach([](auto& w) -> auto& { return w.plan.soa_s; })},
+    option{.name = "burst", .field = "burst_s", .unit = "s", .allowed = of::burst_s, .in = group::timing,
+           .help = "duration of each burst (default: what the timing law gives for the SOA)",
+           .where = in_stroke | planned | on_check | live | in_method,
+           .to = reach([](auto& w) -> auto& { return w.plan.burst_s; })},
+    option{.name = "slope", .allowed = of::slope, .shown = "A", .in = group::timing,
+           .help = "slope of the timing law SOA = A duration + S (default 0.32)",
+           .where = planned | on_check | live | in_method,
+           .to = reach([](auto& w) -> auto& { return w.plan.profile.slope; })},
+    option{.name = "intercept", .field = "intercept_s", .unit = "s", .allowed = of::intercept_s, .in = group::timing,
+           .help = "intercept of the timing law (default 0.0473)",
+           .where = planned | on_check | live | in_method,
+           .to = reach([](auto& w) -> auto& { return w.plan.profile.intercept_s; })},
+    option{.name = "timing", .what = kind::choice, .choices = detail::names_of<timing_kind>, .in = group::timing,
+           .help = "SOA as given, or fitted to end with the path (default fixed)",
+           .where = planned | in_method,
+           .to = reach([](auto& w) -> auto& { return w.plan.timing; })},
+    option{.name = "snap", .what = kind::flag, .in = group::timing,
+           .help = "tactile-brush: move a start or end onto the grid",
+           .where = planned | in_method,
+           .to = reach([](auto& w) -> auto& { return w.plan.snap; })},
+    option{.name = "drop_points", .what = kind::flag, .in = group::timing,
+           .help = "tactile-brush: leave crossings out until the timing is possible",
+           .where = planned | in_method,
+           .to = reach([](auto& w) -> auto& { return w.plan.drop_points; })},
+    option{.name = "overlap", .what = kind::choice, .choices = detail::names_of<overlap_kind>, .in = group::timing,
+           .help = "bursts that overlap on one tactor (default energy)",
+           .where = planned | in_method,
+           .to = reach([](auto& w) -> auto& { return w.plan.overlap; })},
+    option{.name = "compensate", .what = kind::choice, .choices = low_speed_choices, .in = group::timing,
+           .help = "move bursts so that the low-speed observer feels the target",
+           .where = planned, .to = {set_compensation, get_compensation}},
+    option{.name = "sigma_mm", .unit = "mm", .allowed = of::sigma_mm, .in = group::timing,
+           .help = "low-speed: how well places are known (default 5)",
+           .where = planned,
+           .used = has_sigma, .needs = "{observer=low-speed}|{compensate=low-speed}",
+           .to = reach([](auto& w) -> auto& { return w.low_speed.sigma_mm; })},
+    option{.name = "sigma_v_mm_s", .unit = "mm/s", .allowed = of::sigma_v_mm_s, .in = group::timing,
+           .help = "low-speed: which speeds are expected (default 100)",
+           .where = planned,
+           .used = has_sigma, .needs = "{observer=low-speed}|{compensate=low-speed}",
+           .to = reach([](auto& w) -> auto& { return w.low_speed.sigma_v_mm_s; })},
+
+    option{.name = "carrier", .field = "carrier_hz", .unit = "Hz", .allowed = of::carrier_hz, .in = group::sound,
+           .help = "frequency of the vibration (default 250)",
+           .where = in_stroke | planned | on_check | on_calibrate | live | in_method,
+           .to = reach([](auto& w) -> auto& { return w.plan.carrier_hz; })},
+    option{.name = "waveform", .what = kind::text, .shown = "sine|square|triangle|sawtooth|noise:LO-HI|FILE.wav",
+           .in = group::sound,
+           .help = "what vibrates (default sine): a shape at the carrier's frequency, noise between two, or samples",
+           .where = sounding | in_defaults | by_client | live | in_plan | planning,
+           .to = {set_waveform, get_waveform}},
+    option{.name = "am", .what = kind::text, .allowed = of::am_hz, .shown = "HZ[:DEPTH]", .in = group::sound,
+           .help = "amplitude modulation, depth 0 to 1 (default: none; depth 1)",
+           .where = sounding | in_defaults | by_client | live | in_plan | planning,
+           .to = {set_modulation, get_modulation}},
+    option{.name = "noise_seed", .what = kind::whole, .allowed = of::seed, .in = group::sound,
+           .help = "noise: which (default 1)",
+           .where = sounding | in_defaults | by_client | live | in_plan | planning,
+           .used = has_noise, .needs = "{waveform=noise:LO-HI}",
+           .to = reach([](auto& w) -> auto& { return w.plan.wave.seed; })},
+    option{.name = "texture", .what = kind::choice, .choices = detail::names_of<texture_kind>, .in = group::sound,
+           .help = "FILE.wav: the carrier's cycle (default), in its own time, or laid along the path",
+           .where = sounding | in_defaults | live | in_plan | planning,
+           .used = has_recording, .needs = "{waveform=FILE.wav}",
+           .to = reach([](auto& w) -> auto& { return w.plan.wave.texture; })},
+    option{.name = "texture_mm", .unit = "mm", .allowed = of::texture_mm, .in = group::sound,
+           .help = "--texture length: so much of the path has the whole file (default: all of it)",
+           .where = in_stroke | sounding | in_defaults | live | in_plan | planning,
+           .used = has_recording_along_path, .needs = "{waveform=FILE.wav} {texture=length}",
+           .to = reach([](auto& w) -> auto& { return w.plan.wave.texture_mm; })},
+    option{.name = "phase", .what = kind::choice, .choices = detail::names_of<phase_kind>, .in = group::sound,
+           .help = "carrier starts with the stroke (default) or again with each burst",
+           .where = heard,
+           .to = reach([](auto& w) -> auto& { return w.render.phase; })},
+    option{.name = "ramp", .field = "ramp_s", .unit = "s", .allowed = of::ramp_s, .in = group::sound,
+           .help = "raised-cosine ramp inside each burst (default: 0 between zero crossings, else 0.002)",
+           .where = heard,
+           .to = reach([](auto& w) -> auto& { return w.render.ramp_s; })},
+    option{.name = "envelope", .what = kind::text, .shown = "raised-cosine|linear|exponential|tukey[:PART]",
+           .in = group::sound,
+           .help = "how a burst rises and falls (default raised-cosine; tukey: by a part of it, default 0.5)",
+           .where = heard, .to = {set_envelope, get_envelope}},
+    option{.name = "attack", .field = "attack_s", .unit = "s", .allowed = of::ramp_s, .in = group::sound,
+           .help = "time in which each burst rises (default: what --ramp says)",
+           .where = heard,
+           .to = reach([](auto& w) -> auto& { return w.render.envelope.attack_s; })},
+    option{.name = "release", .field = "release_s", .unit = "s", .allowed = of::ramp_s, .in = group::sound,
+           .help = "time in which it falls (default: that in which it rises)",
+           .where = heard,
+           .to = reach([](auto& w) -> auto& { return w.render.envelope.release_s; })},
+    option{.name = "tukey_part", .allowed = of::part, .in = group::sound,
+           .help = "envelope tukey: part of the burst in which it rises and falls (default 0.5)",
+           .where = live | in_plan | in_score,
+           .used = [](const wishes& w) { return w.render.envelope.kind == envelope_kind::tukey; },
+           .needs = "{envelope=tukey}",
+           .to = reach([](auto& w) -> auto& { return w.render.envelope.tukey_part; })},
+
+    option{.name = "level_dbfs", .unit = "dBFS", .allowed = of::level_dbfs, .shown = "DB", .in = group::level,
+           .help = "peak of the carrier for intensity 1 (default -12)",
+           .where = heard, .rival = "sl",
+           .to = reach([](auto& w) -> auto& { return w.render.level_dbfs; })},
+    option{.name = "sl", .field = "sl_db", .unit = "dB SL", .allowed = of::sl_db, .shown = "DB", .in = group::level,
+           .help = "instead: dB above each tactor's threshold",
+           .where = heard | in_compare, .rival = "level_dbfs",
+           .to = reach([](auto& w) -> auto& { return w.render.sl_db; })},
+    option{.name = "intensity_scale", .what = kind::choice, .choices = detail::names_of<scale_kind>, .in = group::level,
+           .help = "what an intensity of one half is: of the amplitude (default), of --sl in dB, of what is felt",
+           .where = planned | on_check | live,
+           .to = reach([](auto& w) -> auto& { return w.plan.scale.kind; })},
+    option{.name = "stevens_exponent", .allowed = of::stevens_exponent, .shown = "E", .in = group::level,
+           .help = "felt = amplitude^E (default 0.6, at 250 Hz; 0.95 at 60 Hz: Stevens 1968)",
+           .where = planned | on_check | live,
+           .used = [](const wishes& w) { return w.plan.scale.kind == scale_kind::stevens; },
+           .needs = "{intensity_scale=stevens}",
+           .to = reach([](auto& w) -> auto& { return w.plan.scale.exponent; })},
+
+    option{.name = "rate", .unit = "Hz", .what = kind::whole, .allowed = of::rate_hz, .in = group::device,
+           .help = "sample rate (default 48000)",
+           .where = in_player | sounding | on_devices | in_defaults | in_plan | in_score,
+           .to = reach([](auto& w) -> auto& { return w.rate; })},
+    option{.name = "sample_format", .what = kind::choice, .choices = detail::names_of<format_kind>, .in = group::device,
+           .help = "samples (render: float; play: what the device takes)",
+           .where = in_player | sounding | on_devices | in_defaults,
+           .to = reach([](auto& w) -> auto& { return w.format; })},
+    option{.name = "device", .what = kind::text, .shown = "PCM", .letter = "D", .in = group::device,
+           .help = "ALSA device, e.g. hw:CARD=Tactor (default: the configuration's, else null)",
+           .where = with_device,
+           .to = reach([](auto& w) -> auto& { return w.pcm; })},
+    option{.name = "channels", .unit = "channels", .what = kind::whole, .allowed = of::device_channels, .shown = "N",
+           .in = group::device,
+           .help = "channels of the stream (default: the configuration's, else what the array needs)",
+           .where = in_player | with_device | on_render | in_score,
+           .to = reach([](auto& w) -> auto& { return w.channels; })},
+    option{.name = "marker_channel", .what = kind::whole, .allowed = of::marker_channel, .in = group::device,
+           .help = "spare channel on which each stroke's first frames are marked",
+           .where = in_score,
+           .to = reach([](auto& w) -> auto& { return w.render.marker_channel; })},
+    option{.name = "marker_s", .unit = "s", .allowed = of::marker_s, .in = group::device,
+           .help = "length of that mark (default 0.005)",
+           .where = in_score,
+           .used = [](const wishes& w) { return w.render.marker_channel.has_value(); }, .needs = "{marker_channel=N}",
+           .to = reach([](auto& w) -> auto& { return w.render.marker_s; })},
+    option{.name = "no_gpio", .what = kind::flag, .in = group::device,
+           .help = "leave the lines of [amplifier] and [sync] alone",
+           .where = in_player | playing,
+           .to = reach([](auto& w) -> auto& { return w.stream.no_gpio; })},
+    option{.name = "power_dbfs", .unit = "dB", .allowed = of::power_dbfs, .in = group::device,
+           .help = "greatest power of all tactors together, above one channel's full scale (default 4.77)",
+           .where = in_player | playing | in_score,
+           .to = reach([](auto& w) -> auto& { return w.stream.power_dbfs; })},
+    option{.name = "max_drive_s", .unit = "s", .allowed = of::drive_s, .in = group::device,
+           .help = "longest time that one tactor is driven within the window (default 5)",
+           .where = in_player | playing | in_score,
+           .to = reach([](auto& w) -> auto& { return w.stream.max_drive_s; })},
+    option{.name = "drive_window_s", .field = "window_s", .unit = "s", .allowed = of::drive_s, .in = group::device,
+           .help = "the window of --max-drive-s (default 10)",
+           .where = in_player | playing | in_score,
+           .to = reach([](auto& w) -> auto& { return w.stream.drive_window_s; })},
+
+    option{.name = "latency_ms", .unit = "ms", .allowed = of::latency_ms, .in = group::real_time,
+           .help = "length of the device's buffer: periods x period",
+           .where = in_player | playing | in_defaults, .rival = "period_frames",
+           .to = reach([](auto& w) -> auto& { return w.stream.latency_ms; })},
+    option{.name = "period_frames", .unit = "frames", .what = kind::whole, .allowed = of::period_frames, .shown = "N",
+           .in = group::real_time,
+           .help = "instead: frames in a period (default: the configuration's, else 96)",
+           .where = in_player | playing, .rival = "latency_ms",
+           .to = reach([](auto& w) -> auto& { return w.stream.period_frames; })},
+    option{.name = "periods", .unit = "periods", .what = kind::whole, .allowed = of::periods, .shown = "N",
+           .in = group::real_time,
+           .help = "periods in the buffer (default: the configuration's, else 3)",
+           .where = in_player | playing,
+           .to = reach([](auto& w) -> auto& { return w.stream.periods; })},
+    option{.name = "require_realtime", .what = kind::flag, .in = group::real_time,
+           .help = "fail without real-time priority and locked memory",
+           .where = in_player | playing,
+           .to = reach([](auto& w) -> auto& { return w.stream.require_realtime; })},
+    option{.name = "void_on_xrun", .what = kind::flag, .in = group::real_time,
+           .help = "an xrun or a lost device in a stroke ends the run",
+           .where = on_play | through_server,
+           .to = reach([](auto& w) -> auto& { return w.stream.void_on_xrun; })},
+    option{.name = "reopen_s", .unit = "s", .allowed = of::reopen_s, .range = "0 s or more", .in = group::real_time,
+           .help = "wait so long for a lost device to come back, then go on with the next stroke (default 0)",
+           .where = on_play,
+           .to = reach([](auto& w) -> auto& { return w.stream.reopen_s; })},
+    option{.name = "arm", .what = kind::flag, .in = group::real_time,
+           .help = "each stroke waits for an edge on the [sync] in line",
+           .where = on_play | through_server,
+           .to = reach([](auto& w) -> auto& { return w.stream.arm; })},
+    option{.name = "sync_delay_ms", .unit = "ms", .allowed = of::sync_delay_ms, .in = group::real_time,
+           .help = "from the edge to the stroke's first sample at the DAC (default 50)",
+           .where = in_player | on_play,
+           .to = reach([](auto& w) -> auto& { return w.stream.sync_delay_ms; })},
+    option{.name = "live", .what = kind::flag, .in = group::real_time,
+           .help = "lines \"x y [intensity]\" on standard input move a stroke; STROKE is -",
+           .where = on_play | through_server,
+           .to = reach([](auto& w) -> auto& { return w.stream.live; })},
+    option{.name = "smooth", .field = "smooth_s", .unit = "s", .allowed = of::smooth_s, .in = group::real_time,
+           .help = "with --live: move evenly, and be at each point so long after it came (default 0)",
+           .where = on_play | live | through_server,
+           .to = reach([](auto& w) -> auto& { return w.stream.smooth_s; })},
+
+    option{.name = "observer", .what = kind::choice, .choices = detail::names_of<observer_kind>, .in = group::output,
+           .help = "who is predicted to feel it (default centroid)",
+           .where = on_compare | in_defaults | in_compare,
+           .to = reach([](auto& w) -> auto& { return w.observer; })},
+    option{.name = "spread", .what = kind::whole, .allowed = of::people, .in = group::output,
+           .help = "intervals of what so many people would feel, drawn at random",
+           .where = on_compare | in_compare,
+           .to = reach([](auto& w) -> auto& { return w.spread.people; })},
+    option{.name = "spread_seed", .what = kind::whole, .allowed = of::spread_seed, .in = group::output,
+           .help = "--spread: of the draw (default 1)",
+           .where = on_compare | in_compare, .used = has_people, .needs = "{spread=N}",
+           .to = reach([](auto& w) -> auto& { return w.spread.seed; })},
+    option{.name = "spread_sigma", .allowed = of::spread_sigma, .shown = "FACTOR", .in = group::output,
+           .help = "--spread: low-speed's sigma by up to this factor (default 2)",
+           .where = on_compare | in_compare, .used = has_people, .needs = "{spread=N}",
+           .to = reach([](auto& w) -> auto& { return w.spread.sigma_factor; })},
+    option{.name = "spread_threshold_db", .unit = "dB", .allowed = of::spread_threshold_db, .in = group::output,
+           .help = "--spread: each threshold give or take (default 6)",
+           .where = on_compare | in_compare, .used = has_people, .needs = "{spread=N}",
+           .to = reach([](auto& w) -> auto& { return w.spread.threshold_db; })},
+    option{.name = "spread_place_mm", .unit = "mm", .allowed = of::spread_place_mm, .in = group::output,
+           .help = "--spread: each tactor's place within (default 2)",
+           .where = on_compare | in_compare, .used = has_people, .needs = "{spread=N}",
+           .to = reach([](auto& w) -> auto& { return w.spread.place_mm; })},
+    option{.name = "verbose", .what = kind::flag, .in = group::output,
+           .help = "tell on standard error what is agreed on, xruns, mutes, limits that act",
+           .where = playing | on_calibrate | on_experiment,
+           .to = reach([](auto& w) -> auto& { return w.stream.verbose; })},
+    option{.name = "log", .what = kind::text, .shown = "FILE", .in = group::output,
+           .help = "append the same to a file",
+           .where = playing | on_experiment, .to = {set_log, get_log}},
+};
+// clang-format on
+
+static_assert(table.size() <= most_options);
+static_assert(
+    [] {
+        for (std::size_t i = 0; i < table.size(); ++i)
+            for (std::size_t j = 0; j < i; ++j)
+                if (table[i].name == table[j].name)
+                    return false;
+        return true;
+    }(),
+    "each name stands for one option");
+
+// Option names with - for _.
+bool same_name(std::string_view a, std::string_view b)
+{
+    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) {
+               return (x == '-' ? '_' : x) == (y == '-' ? '_' : y);
+           });
+}
+
+} // namespace
+
+std::string_view to_string(group g) noexcept
+{
+    constexpr std::array names{"Stroke", "Place",  "Timing",    "Sound",
+                               "Level",  "Device", "Real time", "Output"};
+    return names[static_cast<std::size_t>(g)];
+}
+
+std::span<const option> all() noexcept
+{
+    return table;
+}
+
+const option* find(std::string_view name) noexcept
+{
+    const auto found =
+        std::find_if(table.begin(), table.end(), [&](const option& o) { return same_name(o.name, name); });
+    return found == table.end() ? nullptr : &*found;
+}
+
+const option* find_field(std::string_view field) noexcept
+{
+    const auto found =
+        std::find_if(table.begin(), table.end(), [&](const option& o) { return o.field_name() == field; });
+    return found == table.end() ? find(field) : &*found;
+}
+
+std::size_t index(const option& o) noexcept
+{
+    return static_cast<std::size_t>(&o - table.data());
+}
+
+bool wishes::gives(std::string_view name) const
+{
+    return given[index(*find(name))];
+}
+
+std::string choices_text(const option& o)
+{
+    return fmt::format("{}", fmt::join(o.choices(), ", "));
+}
+
+std::string range_text(const option& o)
+{
+    if (!o.range.empty())
+        return std::string(o.range);
+    return fmt::format("{}{} to {}{}{}", o.allowed.above_low ? "above " : "", plain_number(o.allowed.low),
+                       plain_number(o.allowed.high), o.unit.empty() ? "" : " ", o.unit);
+}
+
+std::string type_text(const option& o)
+{
+    if (!o.shown.empty())
+        return std::string(o.shown);
+    if (o.choices != nullptr)
+        return fmt::format("{}", fmt::join(o.choices(), "|"));
+    if (o.what == kind::whole)
+        return o.unit == "Hz" ? "HZ" : "N";
+    if (o.unit == "mm/s")
+        return "MM_PER_S";
+    std::string unit(o.unit);
+    std::transform(unit.begin(), unit.end(), unit.begin(),
+                   [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
+    return unit.empty() ? "X" : unit;
+}
+
+} // namespace tactor::options

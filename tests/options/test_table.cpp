@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include "message_of.hpp"
+#include "options/check.hpp"
+#include "options/settle.hpp"
+
+namespace table_test {
+
+using namespace tactor;
+using namespace tactor::options;
+
+namespace {
+
+bool is_number(const option& o)
+{
+    return o.what == kind::number || o.what == kind::whole;
+}
+
+wishes with(std::uint64_t place, std::initializer_list<std::pair<const char*, value>> given)
+{
+    wishes w;
+    w.place = place;
+    for (const auto& [name, v] : given)
+        give(w, *find(name), v);
+    return w;
+}
+
+std::string speech(std::string_view text)
+{
+    return spell_marks(text, [](const option& o, std::string_view v) {
+        return fmt::format("<{}{}{}>", o.name, v.empty() ? "" : ":", v);
+    });
+}
+
+} // namespace
+
+TEST_CASE("each row says what there is to know")
+{
+    std::set<std::string_view> names;
+    for (const option& o : all()) {
+        CAPTURE(o.name);
+        CHECK(names.insert(o.name).second);
+        CHECK(find(o.name) == &o);
+        CHECK(find_field(o.field_name()) == &o);
+        CHECK_FALSE(o.help.empty());
+        CHECK(o.where != 0);
+        CHECK((o.to.set != nullptr && o.to.get != nullptr));
+        CHECK((o.what == kind::choice) <= (o.choices != nullptr));
+        CHECK(is_number(o) <= (o.allowed.low < o.allowed.high));
+        CHECK((o.used == nullptr) == o.needs.empty());
+        if (!o.rival.empty()) {
+            REQUIRE(find(o.rival) != nullptr);
+            CHECK(find(o.rival)->rival == o.name);
+        }
+        // Marks name rows.
+        CHECK(speech(o.needs).find('{') == std::string::npos);
+        CHECK(speech(o.range).find('{') == std::string::npos);
+    }
+}
+
+TEST_CASE("each number ends at its bounds, typed and as a value, and comes back")
+{
+    for (const option& o : all()) {
+        if (!is_number(o))
+            continue;
+        CAPTURE(o.name);
+        for (const double v : {o.allowed.low, o.allowed.high}) {
+            wishes w;
+            put(w, o, read_value(o, v));
+            CHECK(std::get<double>(o.to.get(w)) == v);
+            CHECK(std::get<double>(read_text(o, fmt::format("{}", v))) == v);
+        }
+        const double below = std::nextafter(o.allowed.low, -1e300);
+        const double above = std::nextafter(o.allowed.high, 1e300);
+        for (const double v : {below, above, std::nan(""), double(INFINITY)}) {
+            const std::string said = message_of([&] { static_cast<void>(read_value(o, v)); });
+            CHECK(said.starts_with(fmt::format("{{{}}}: ", o.name)));
+            CHECK(said.find(" is out of range (" + range_text(o) + ")") != std::string::npos);
+            CHECK_THROWS_AS(read_text(o, fmt::format("{}", v)), error);
+        }
+        if (o.what == kind::whole)
+            CHECK_THROWS_AS(read_value(o, o.allowed.low + 0.5), error);
+        CHECK_THROWS_AS(read_value(o, true), error);
+        CHECK_THROWS_AS(read_value(o, "1"), error);
+        CHECK_THROWS_AS(read_value(o, value()), error);
+    }
+}
+
+TEST_CASE("each choice and flag comes back, and no other word is taken")
+{
+    for (const option& o : all()) {
+        CAPTURE(o.name);
+        if (o.what == kind::choice)
+            for (const std::string_view name : o.choices()) {
+                wishes w;
+                put(w, o, read_text(o, std::string(name)));
+                CHECK(std::get<std::string>(o.to.get(w)) == name);
+            }
+        if (o.what == kind::flag) {
+            wishes w;
+            put(w, o, read_text(o, "true"));
+            CHECK(std::get<bool>(o.to.get(w)));
+        }
+        if (o.what == kind::choice || o.what == kind::flag) {
+            CHECK_THROWS_AS(read_text(o, "nonsense"), error);
+            CHECK_THROWS_AS(read_value(o, 1.0), error);
+        }
+    }
+}
+
+TEST_CASE("two that cannot stand together are refused, in whatever order")
+{
+    for (const option& o : all()) {
+        if (o.rival.empty())
+            continue;
+        CAPTURE(o.name);
+        wishes w;
+        give(w, *find(o.rival), find(o.rival)->allowed.low);
+        CHECK(message_of([&] { give(w, o, o.allowed.low); }) ==
+              fmt::format("{{{}}}: there is also {{{}}} (give one of them)", o.name, o.rival));
+    }
+}
+
+TEST_CASE("what nothing uses is refused, and the cure is one of the place")
+{
+    const auto said = [](std::uint64_t place, std::initializer_list<std::pair<const char*, value>> given) {
+        wishes w = with(place, given);
+        return message_of([&] { settle(w); });
+    };
+    CHECK(said(on_plan, {{"sigma_mm", 3.0}}) ==
+          "{sigma_mm}: nothing here uses it (add {compensate=low-speed})");
+    CHECK(said(on_compare, {{"sigma_mm", 3.0}}) ==
+          "{sigma_mm}: nothing here uses it (add {observer=low-speed} or {compensate=low-speed})");
+    CHECK(said(on_plan, {{"sigma_mm", 3.0}, {"compensate", "low-speed"}}) == "");
+    CHECK(said(by_client, {{"stevens_exponent", 0.9}}) ==
+          "{stevens_exponent}: nothing here uses it (add {intensity_scale=stevens})");
+    CHECK(said(by_client, {{"ramp", 0.1}, {"envelope", "tukey"}}) ==
+          "{ramp}: {envelope=tukey} has its own ramps (leave one of them out)");
+    CHECK(said(on_plan, {{"intensity_scale", "sl"}}) ==
+          "{intensity_scale}: sl is a part of a sensation level above 0 dB (add {sl}, such as {sl=7})");
+    CHECK(said(on_plan, {{"fit_margin", 1.0}}) == "{fit_margin}: nothing here uses it (add {fit})");
+}
+
+TEST_CASE("a law of the user's has its own longest SOA")
+{
+    wishes w = with(on_plan, {{"slope", 0.3}, {"intercept", 0.04}});
+    settle(w);
+    CHECK(w.plan.profile.max_soa_s == doctest::Approx(0.04 / 0.7));
+    wishes usual = with(on_plan, {{"soa", 0.06}});
+    settle(usual);
+    CHECK(usual.plan.profile.max_soa_s == 0.07);
+}
+
+TEST_CASE("marks are spelled, other braces stay")
+{
+    CHECK(speech("use {timing=fit} or {soa_s}, {nothing} { x }") ==
+          "use <timing:fit> or <soa>, {nothing} { x }");
+    CHECK(speech("{") == "{");
+    CHECK(speech("") == "");
+}
+
+TEST_CASE("what plans a stroke is refused beside a plan")
+{
+    for (const option& o : all()) {
+        wishes w;
+        w.given.set(index(o));
+        CAPTURE(o.name);
+        const bool refused = !message_of([&] { refuse_planning(w, "p.json"); }).empty();
+        CHECK(refused == ((o.where & planning) != 0));
+    }
+}
+
+} // namespace table_test
