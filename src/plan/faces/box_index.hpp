@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <memory>
 #include <vector>
 
 #include <tactor/geometry.hpp>
@@ -20,22 +19,35 @@ struct box {
 /// The smallest box round some points (at least one).
 box box_around(const std::vector<point>& points);
 
-/// Immutable R-tree over boxes; an item is its place in the vector. Alone in its source file because
-/// Boost.Geometry is slow to compile.
+/// Immutable grid of square cells over boxes (at least one), about as many cells as boxes. An item is its
+/// place in the vector.
 class box_index {
 public:
-    explicit box_index(const std::vector<box>& boxes);
+    explicit box_index(std::vector<box> boxes);
 
     /// Replaces `out` by the items whose boxes come within `margin_mm` of p, ascending.
     void near(point p, double margin_mm, std::vector<unsigned>& out) const;
 
     /// The item with the least distance(item), of equals the first. `distance` may not be less than
-    /// the distance to the item's box. The index must not be empty.
+    /// the distance to the item's box.
     unsigned nearest(point p, const std::function<double(unsigned)>& distance) const;
 
 private:
-    struct tree;
-    std::shared_ptr<const tree> tree_;
+    /// Cells from left to right and from low to high, the last included.
+    struct range {
+        std::size_t left;
+        std::size_t right;
+        std::size_t low;
+        std::size_t high;
+    };
+    range cells(const box& b) const;
+
+    std::vector<box> boxes_;
+    box all_;
+    double cell_mm_;
+    std::size_t columns_;
+    std::size_t rows_;
+    std::vector<std::vector<unsigned>> items_; ///< by cell, row after row; each ascending
 };
 
 } // namespace tactor::detail
