@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// to_png() and to_pdf() of the tool: by the module, which is loaded when the first picture needs it.
+// to_png() and to_pdf() of the tool and of Python's extension, which is compiled with this once more: by the
+// module, which is loaded when the first picture needs it.
 #include <array>
 #include <filesystem>
 #include <string>
@@ -16,14 +17,22 @@
 namespace tactor::plot {
 namespace {
 
-// From the tool's folder: where Meson installs it or built it, and nowhere else. The environment has no say.
-constexpr std::array places{TACTOR_PAINTER_INSTALLED, TACTOR_PAINTER_BUILT};
+// From the folder of tool or extension: where Meson installs it or built it, and nowhere else. The
+// environment has no say.
+constexpr std::array places{TACTOR_PAINTERS};
 
 // Not by $ORIGIN, which a sanitizer's dlopen() takes for its own.
 std::filesystem::path own_folder()
 {
+#ifdef TACTOR_IN_EXTENSION
+    Dl_info here{};
+    if (dladdr(reinterpret_cast<const void*>(&own_folder), &here) == 0 || here.dli_fname == nullptr)
+        return {};
+    return std::filesystem::path(here.dli_fname).parent_path();
+#else
     std::error_code none;
     return std::filesystem::read_symlink("/proc/self/exe", none).parent_path();
+#endif
 }
 
 // It stays loaded: fonts and libraries below it keep what they have begun.
