@@ -7,39 +7,31 @@ import os
 import socket as _socket
 import sys
 import threading
-import time
 import typing as _t
 
 from tactor._checks import _need, _number, _shown, _Unique, _whole
 from tactor._errors import _KINDS, DeviceError, Error, InputError, StreamError, _of_system
 from tactor._path import Path
 from tactor._stroke import Stroke
-from tactor._ticket import Report, _call, _Gate
+from tactor._ticket import Report, _Awaited
 
 if _t.TYPE_CHECKING:
-    import asyncio
     from types import TracebackType as _TracebackType
     from tactor._plan import Plan as _Plan
 
-_LOOK_S = 0.1  # so late Ctrl-C may be noticed
 _HELLO_S = 10.0
 
 
-class Reply(_Unique):
+class Reply(_Awaited[_t.Any]):
     """What a `Client` was asked for. It was sent at once; the answer can be awaited, or waited for by `wait`.
 
     Both give the result, or raise what the service refused it with: `InputError`, `DeviceError` or `StreamError` with its words.
     """
 
     def __init__(self, client: _Connection, convert: _t.Callable[[_t.Any], _t.Any]) -> None:
+        super().__init__()
         self._client = client
         self._convert = convert
-        self._gate = _Gate()
-        self._lock = threading.RLock()
-        self._callbacks: list[_t.Callable[[_t.Any], object]] = []
-        self._result: _t.Any = None
-        self._error: Error | None = None
-        self._done = False
 
     def done(self) -> bool:
         """Whether the answer is there."""
@@ -64,51 +56,17 @@ class Reply(_Unique):
         Error
             What the service answered, or that it has gone.
         """
-        until = None if timeout is None else time.monotonic() + _number("timeout", timeout, finite=False)
+        if timeout is not None:
+            timeout = _number("timeout", timeout, finite=False)
         if not self._done and threading.current_thread() is self._client.thread:
             raise RuntimeError("a callback cannot wait for an answer")
-        while not self._gate.wait(_LOOK_S if until is None else min(max(until - time.monotonic(), 0.0), _LOOK_S)):
-            if until is not None and time.monotonic() >= until:
-                raise TimeoutError(f"there is no answer after {timeout:g} s")
+        if not self._reached(timeout):
+            raise TimeoutError(f"there is no answer after {timeout:g} s")
         return self._answer()
 
     def add_done_callback(self, callback: _t.Callable[[_t.Any], object]) -> None:
         """Calls `callback(reply)` once the answer is there: in the client's thread, or at once and here when it is already."""
-        with self._lock:
-            if not self._done:
-                self._callbacks.append(callback)
-                return
-        callback(self)
-
-    def __await__(self) -> _t.Generator[_t.Any, None, _t.Any]:
-        import asyncio
-        loop = asyncio.get_running_loop()
-        future: asyncio.Future[None] = loop.create_future()
-
-        def set_result() -> None:
-            if not future.done():
-                future.set_result(None)
-
-        def tell(_: Reply) -> None:
-            try:
-                loop.call_soon_threadsafe(set_result)
-            except RuntimeError:
-                pass  # the loop was closed meanwhile: nobody waits
-        self.add_done_callback(tell)
-        try:
-            yield from future.__await__()
-        except asyncio.CancelledError:
-            self._forsake()
-            raise
-        return self._answer()
-
-    def _forsake(self) -> None:
-        """Whoever awaited it was cancelled."""
-
-    def _answer(self) -> _t.Any:
-        if self._error is not None:
-            raise self._error
-        return self._result
+        super().add_done_callback(callback)
 
     def _take(self, result: _t.Any) -> None:
         """The service's result."""
@@ -116,16 +74,6 @@ class Reply(_Unique):
             self._end(self._convert(result))
         except Error as e:
             self._end(None, e)
-
-    def _end(self, result: _t.Any, error: Error | None = None) -> None:
-        with self._lock:
-            if self._done:
-                return
-            self._result, self._error, self._done = result, error, True
-            callbacks, self._callbacks = self._callbacks, []
-        self._gate.open()
-        for callback in callbacks:
-            _call(callback, self)
 
     def __repr__(self) -> str:
         how = "waits" if not self._done else "refused" if self._error is not None else "done"
@@ -154,7 +102,7 @@ class RemoteStroke(Reply):
     @property
     def report(self) -> Report | None:
         """How it ended; None as long as it has not."""
-        return self._result  # type: ignore[no-any-return]
+        return self._result
 
     def cancel(self) -> None:
         """Fades it out."""

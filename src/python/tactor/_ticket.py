@@ -15,10 +15,12 @@ from tactor._checks import _number, _Unique
 if _t.TYPE_CHECKING:
     import asyncio
     from types import TracebackType as _TracebackType
+    from tactor._errors import Error
     _State = _t.Literal["finished", "cancelled", "interrupted"]
     _LogKind = _t.Literal["debug", "info", "warning", "error"]
 
 _LOOK_S = 0.1  # so late Ctrl-C may be noticed
+_T = _t.TypeVar("_T")
 
 
 class Delay(_t.NamedTuple):
@@ -69,19 +71,83 @@ class Report(_t.NamedTuple):
     held_points: int = 0
 
 
-class Ticket(_Unique):
+class _Awaited(_Unique, _t.Generic[_T]):
+    """What ends once, with a result or an error: awaited, waited for, and told to callbacks."""
+
+    def __init__(self) -> None:
+        self._gate = _Gate()
+        self._lock = threading.RLock()  # a signal's handler may interrupt who has it
+        self._callbacks: list[_t.Callable[[_t.Any], object]] = []
+        self._result: _T | None = None
+        self._error: Error | None = None
+        self._done = False
+
+    def _reached(self, timeout: float | None) -> bool:
+        """Waits for the end. Where the kernel gives a signal to another thread, nothing wakes one that waits: it looks for itself."""
+        until = None if timeout is None else time.monotonic() + timeout
+        while not self._gate.wait(_LOOK_S if until is None else min(max(until - time.monotonic(), 0.0), _LOOK_S)):
+            if until is not None and time.monotonic() >= until:
+                return False
+        return True
+
+    def add_done_callback(self, callback: _t.Callable[[_t.Any], object]) -> None:
+        with self._lock:
+            if not self._done:
+                self._callbacks.append(callback)
+                return
+        callback(self)
+
+    def __await__(self) -> _t.Generator[_t.Any, None, _T]:
+        import asyncio
+        loop = asyncio.get_running_loop()
+        future: asyncio.Future[None] = loop.create_future()
+
+        def set_result() -> None:
+            if not future.done():
+                future.set_result(None)
+
+        def tell(_: _t.Any) -> None:
+            try:
+                loop.call_soon_threadsafe(set_result)
+            except RuntimeError:
+                pass  # the loop was closed meanwhile: nobody waits
+        self.add_done_callback(tell)
+        try:
+            yield from future.__await__()
+        except asyncio.CancelledError:
+            self._forsake()
+            raise
+        return self._answer()
+
+    def _forsake(self) -> None:
+        """Whoever awaited it was cancelled."""
+
+    def _answer(self) -> _T:
+        if self._error is not None:
+            raise self._error
+        return self._result  # type: ignore[return-value]
+
+    def _end(self, result: _T | None, error: Error | None = None) -> None:
+        with self._lock:
+            if self._done:
+                return
+            self._result, self._error, self._done = result, error, True
+            callbacks, self._callbacks = self._callbacks, []
+        self._gate.open()
+        for callback in callbacks:
+            _call(callback, self)
+
+
+class Ticket(_Awaited[Report]):
     """A stroke that a player was given. Can be awaited, which gives the report; who cancels the waiting cancels the stroke.
 
     Callbacks run in the player's own thread of Python.
     """
 
     def __init__(self, player: _Shared, number: int) -> None:
+        super().__init__()
         self._player = player
         self._number = number
-        self._ended = _Gate()
-        self._report: Report | None = None
-        self._lock = threading.RLock()  # a signal's handler may interrupt who has it
-        self._callbacks: list[_t.Callable[[_t.Any], object]] = []
 
     @property
     def id(self) -> int:
@@ -96,11 +162,11 @@ class Ticket(_Unique):
     @property
     def report(self) -> Report | None:
         """How it ended; None as long as it has not."""
-        return self._report
+        return self._result
 
     def done(self) -> bool:
         """Whether it has ended."""
-        return self._report is not None
+        return self._done
 
     def wait(self, timeout: float | None = None) -> Report:
         """Waits until it has ended. Ctrl-C fades it out.
@@ -127,74 +193,35 @@ class Ticket(_Unique):
         """
         if timeout is not None:
             timeout = _number("timeout", timeout, finite=False)
-        if self._report is None:
+        if not self._done:
             self._player.core.refuse_child()
             if threading.current_thread() is self._player.thread:
                 raise RuntimeError("a callback cannot wait for a stroke that goes on")
             try:
-                ended = self._wait(timeout)
+                ended = self._reached(timeout)
             except KeyboardInterrupt:
                 self.cancel()
-                self._ended.wait(1.0)
+                self._gate.wait(1.0)
                 raise
             if not ended:
                 raise TimeoutError(f"stroke {self._number} goes on after {timeout:g} s")
-        assert self._report is not None
-        return self._report
-
-    def _wait(self, timeout: float | None) -> bool:
-        # Where the kernel gives a signal to another thread, nothing wakes one that waits: it looks for itself.
-        until = None if timeout is None else time.monotonic() + timeout
-        while not self._ended.wait(_LOOK_S if until is None else min(max(until - time.monotonic(), 0.0), _LOOK_S)):
-            if until is not None and time.monotonic() >= until:
-                return False
-        return True
+        return self._answer()
 
     def cancel(self) -> bool:
         """Fades it out. False when it has ended."""
-        return self._report is None and self._player.core.cancel(self._number)
+        return not self._done and self._player.core.cancel(self._number)
 
     def add_done_callback(self, callback: _t.Callable[[_t.Any], object]) -> None:
         """Calls `callback(ticket)` once it has ended: in the player's thread of Python, or at once and here when it has already."""
-        if self._report is None:
+        if not self._done:
             self._player.core.refuse_child()
-        with self._lock:
-            if self._report is None:
-                self._callbacks.append(callback)
-                return
-        callback(self)
+        super().add_done_callback(callback)
 
-    def __await__(self) -> _t.Generator[_t.Any, None, Report]:
-        import asyncio
-        loop = asyncio.get_running_loop()
-        future: asyncio.Future[Report] = loop.create_future()
-
-        def tell(ticket: Ticket) -> None:
-            def set_result() -> None:
-                if not future.done():
-                    future.set_result(ticket._report)  # type: ignore[arg-type]
-            try:
-                loop.call_soon_threadsafe(set_result)
-            except RuntimeError:
-                pass  # the loop was closed meanwhile: nobody waits
-        self.add_done_callback(tell)
-        try:
-            report = yield from future.__await__()
-        except asyncio.CancelledError:
-            self.cancel()
-            raise
-        return report
-
-    def _end(self, report: Report) -> None:
-        with self._lock:
-            self._report = report
-            callbacks, self._callbacks = self._callbacks, []
-        self._ended.open()
-        for callback in callbacks:
-            _call(callback, self)
+    def _forsake(self) -> None:
+        self.cancel()
 
     def __repr__(self) -> str:
-        how = "goes on" if self._report is None else self._report.state
+        how = "goes on" if self._result is None else self._result.state
         return f"<tactor.{type(self).__name__} {self._number}: {how}>"
 
 
