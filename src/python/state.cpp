@@ -39,6 +39,13 @@ public:
         put(std::uint64_t{t.size()});
         bytes_ += t;
     }
+    template <class T>
+    void all(const std::vector<T>& list)
+    {
+        put(std::uint64_t{list.size()});
+        for (const T& v : list)
+            put(v);
+    }
     void maybe(const std::optional<double>& v)
     {
         put(v.has_value());
@@ -72,6 +79,14 @@ public:
             refuse();
         return static_cast<std::size_t>(n);
     }
+    template <class T>
+    std::vector<T> all()
+    {
+        std::vector<T> list(count(sizeof(T)));
+        for (T& v : list)
+            v = get<T>();
+        return list;
+    }
     std::string text()
     {
         const std::string_view t = left_.substr(0, count(1));
@@ -97,9 +112,7 @@ private:
 void put(writer& w, const path& p)
 {
     const path::impl& i = detail::access::of(p);
-    w.put(std::uint64_t{i.vertices.size()});
-    for (const point v : i.vertices)
-        w.put(v);
+    w.all(i.vertices);
     w.put(std::uint64_t{i.curves.size()});
     for (const auto& c : i.curves) {
         w.put(std::uint64_t{c.segment});
@@ -120,9 +133,7 @@ void put(writer& w, const waveform& v)
     if (v.recorded) {
         w.text(v.recorded->file);
         w.put(v.recorded->rate_hz);
-        w.put(std::uint64_t{v.recorded->samples.size()});
-        for (const float x : v.recorded->samples)
-            w.put(x);
+        w.all(v.recorded->samples);
         w.text(v.recorded->sha256);
         w.put(v.recorded->missing);
     }
@@ -147,8 +158,7 @@ waveform get_waveform(reader& r)
         recording samples;
         samples.file = r.text();
         samples.rate_hz = r.get<double>();
-        for (std::size_t n = r.count(sizeof(float)); n > 0; --n)
-            samples.samples.push_back(r.get<float>());
+        samples.samples = r.all<float>();
         samples.sha256 = r.text();
         samples.missing = r.get<std::uint64_t>();
         v.recorded = std::make_shared<const recording>(std::move(samples));
@@ -160,8 +170,7 @@ waveform get_waveform(reader& r)
 path get_path(reader& r)
 {
     detail::outline o;
-    for (std::size_t n = r.count(sizeof(point)); n > 0; --n)
-        o.vertices.push_back(r.get<point>());
+    o.vertices = r.all<point>();
     if (o.vertices.size() < 2)
         refuse();
     for (std::size_t n = r.count(sizeof(detail::elliptic)); n > 0; --n) {
@@ -177,30 +186,13 @@ path get_path(reader& r)
     return detail::make_path(std::move(o), [] { return "pickle"; });
 }
 
-void put(writer& w, const std::vector<profile_point>& points)
-{
-    w.put(std::uint64_t{points.size()});
-    for (const profile_point& p : points)
-        w.put(p);
-}
-
 void put(writer& w, const movement& m, double moving_s)
 {
     w.put(moving_s);
     w.text(to_string(m.easing));
-    put(w, m.speed_mm_s);
-    put(w, m.intensity);
-    w.put(std::uint64_t{m.rests.size()});
-    for (const rest& p : m.rests)
-        w.put(p);
-}
-
-std::vector<profile_point> get_profile(reader& r)
-{
-    std::vector<profile_point> points;
-    for (std::size_t n = r.count(sizeof(profile_point)); n > 0; --n)
-        points.push_back(r.get<profile_point>());
-    return points;
+    w.all(m.speed_mm_s);
+    w.all(m.intensity);
+    w.all(m.rests);
 }
 
 std::shared_ptr<const detail::pace> get_pace(reader& r)
@@ -208,10 +200,9 @@ std::shared_ptr<const detail::pace> get_pace(reader& r)
     const double moving_s = r.get<double>();
     movement m;
     m.easing = from_string<easing_kind>(r.text());
-    m.speed_mm_s = get_profile(r);
-    m.intensity = get_profile(r);
-    for (std::size_t n = r.count(sizeof(rest)); n > 0; --n)
-        m.rests.push_back(r.get<rest>());
+    m.speed_mm_s = r.all<profile_point>();
+    m.intensity = r.all<profile_point>();
+    m.rests = r.all<rest>();
     detail::check_movement(m);
     detail::check_duration(moving_s);
     return std::make_shared<const detail::pace>(std::move(m), moving_s);
@@ -232,9 +223,7 @@ void put(writer& w, const trajectory& m)
         return;
     }
     const auto& points = *std::get<detail::timed_points>(i.law).points;
-    w.put(std::uint64_t{points.size()});
-    for (const timed_point& p : points)
-        w.put(p);
+    w.all(points);
 }
 
 trajectory get_trajectory(reader& r)
@@ -254,10 +243,7 @@ trajectory get_trajectory(reader& r)
             return detail::access::make<trajectory>(
                 std::make_shared<const trajectory::impl>(trajectory::impl{std::move(law), duration_s, 1.0}));
         }
-        std::vector<timed_point> points;
-        for (std::size_t n = r.count(sizeof(timed_point)); n > 0; --n)
-            points.push_back(r.get<timed_point>());
-        const trajectory own = trajectory::timed(std::move(points));
+        const trajectory own = trajectory::timed(r.all<timed_point>());
         return own.duration_s() == duration_s ? own : own.with_duration(duration_s);
     }();
     // Times a factor: one, unless it was taken several times.
@@ -297,9 +283,7 @@ std::string state_of(const stroke& s)
         put(w, *s.wave);
     w.put(s.am.has_value());
     w.put(s.am.value_or(modulation{}));
-    w.put(std::uint64_t{s.carrier_profile.size()});
-    for (const carrier_part& p : s.carrier_profile)
-        w.put(p);
+    w.all(s.carrier_profile);
     w.text(to_string(s.note));
     w.put(std::uint64_t{s.warnings.size()});
     for (const std::string& t : s.warnings)
@@ -342,8 +326,7 @@ stroke stroke_from(std::string_view state)
     const auto am = r.get<modulation>();
     if (modulated)
         s.am = am;
-    for (std::size_t n = r.count(sizeof(carrier_part)); n > 0; --n)
-        s.carrier_profile.push_back(r.get<carrier_part>());
+    s.carrier_profile = r.all<carrier_part>();
     s.note = from_string<note_kind>(r.text());
     for (std::size_t n = r.count(1); n > 0; --n)
         s.warnings.push_back(r.text());

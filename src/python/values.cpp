@@ -52,8 +52,11 @@ std::vector<tactor_row> rows_of(const array_handle& h)
     return rows;
 }
 
+using number_rows = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using number_list = number_rows;
+
 // Places from an (n, 2) array.
-std::vector<point> points_of(const py::array_t<double, py::array::c_style | py::array::forcecast>& a)
+std::vector<point> points_of(const number_rows& a)
 {
     if (a.ndim() != 2 || a.shape(1) != 2)
         throw error(error_kind::bad_input, "points", "they are no list of (x, y)",
@@ -68,6 +71,18 @@ std::vector<point> points_of(const py::array_t<double, py::array::c_style | py::
 py::tuple pair(point p)
 {
     return py::make_tuple(p.x_mm, p.y_mm);
+}
+
+// The place that `find` gives for each number, as an (n, 2) array.
+template <class F>
+py::array_t<double> places(const number_list& numbers, F&& find)
+{
+    std::vector<double> out;
+    for (py::ssize_t i = 0; i < numbers.size(); ++i) {
+        const point p = find(numbers.data()[i]);
+        out.insert(out.end(), {p.x_mm, p.y_mm});
+    }
+    return given(std::move(out), 2);
 }
 
 // Whole or not at all.
@@ -159,10 +174,7 @@ void bind_path(py::module_& m)
 {
     py::class_<path>(m, "Path")
         .def_static("svg", [](const std::string& data) { return path::from_svg(data); })
-        .def_static("polyline",
-                    [](const py::array_t<double, py::array::c_style | py::array::forcecast>& a) {
-                        return path::polyline(points_of(a));
-                    })
+        .def_static("polyline", [](const number_rows& a) { return path::polyline(points_of(a)); })
         .def_static("arc",
                     [](double x, double y, double radius, double from, double sweep) {
                         return path::arc({x, y}, radius, from, sweep);
@@ -172,21 +184,13 @@ void bind_path(py::module_& m)
         .def("data", &path::svg)
         .def_property_readonly("length_mm", &path::length_mm)
         .def("at", [](const path& p, double s) { return pair(p.at(s)); })
-        .def("at_all",
-             [](const path& p, const py::array_t<double, py::array::c_style | py::array::forcecast>& s) {
-                 std::vector<double> out;
-                 for (py::ssize_t i = 0; i < s.size(); ++i) {
-                     const point q = p.at(s.data()[i]);
-                     out.insert(out.end(), {q.x_mm, q.y_mm});
-                 }
-                 return given(std::move(out), 2);
-             })
+        .def("at_all", [](const path& p,
+                          const number_list& all) { return places(all, [&](double s) { return p.at(s); }); })
         .def("meets_x", &path::meets_x)
         .def("meets_y", &path::meets_y);
 }
 
-stroke timed(const std::string& name,
-             const py::array_t<double, py::array::c_style | py::array::forcecast>& rows)
+stroke timed(const std::string& name, const number_rows& rows)
 {
     const auto v = rows.unchecked<2>();
     std::vector<timed_point> points;
@@ -207,9 +211,6 @@ stroke along(const std::string& name, const path& p, std::optional<double> durat
     s.usual_pace = !duration_s && !speed_mm_s;
     return s;
 }
-
-using number_rows = py::array_t<double, py::array::c_style | py::array::forcecast>;
-using number_list = number_rows;
 
 // As TOML; a preset by its name, which keeps its note.
 std::string text_of(const stroke& s)
@@ -335,13 +336,8 @@ void bind_stroke(py::module_& m)
         .def("position", [](const stroke& s, double t) { return pair(s.motion.position(t)); })
         .def("intensity", [](const stroke& s, double t) { return s.motion.intensity(t); })
         .def("positions",
-             [](const stroke& s, const number_list& t) {
-                 std::vector<double> out;
-                 for (py::ssize_t i = 0; i < t.size(); ++i) {
-                     const point q = s.motion.position(t.data()[i]);
-                     out.insert(out.end(), {q.x_mm, q.y_mm});
-                 }
-                 return given(std::move(out), 2);
+             [](const stroke& s, const number_list& all) {
+                 return places(all, [&](double t) { return s.motion.position(t); });
              })
         .def("intensities",
              [](const stroke& s, const number_list& t) {

@@ -113,6 +113,38 @@ class _Value:
         return self
 
 
+_S = _t.TypeVar("_S", bound="_Stated")
+
+
+class _Stated(_Value):
+    """A value that the extension has and writes as bytes: equal where they are."""
+
+    __slots__ = ("_core",)
+
+    _core: _t.Any
+
+    @classmethod
+    def _of(cls: type[_S], core: _t.Any) -> _S:
+        made = cls.__new__(cls)
+        made._core = core
+        return made
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, type(self)):
+            return NotImplemented
+        return bool(self._core.state() == other._core.state())
+
+    def __hash__(self) -> int:
+        return hash(self._core.state())
+
+    def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
+        return _again, (type(self), type(self._core), self._core.state())
+
+
+def _again(kind: type[_S], core: _t.Any, state: bytes) -> _S:
+    return kind._of(core.from_state(state))
+
+
 class _Unique:
     """What is there once, as a device is: two of it would close each other."""
 

@@ -6,14 +6,14 @@ import typing as _t
 
 from tactor import _tactor
 from tactor._array import Point
-from tactor._checks import _floats, _need, _number, _place, _Value
+from tactor._checks import _floats, _need, _number, _place, _Stated
 
 if _t.TYPE_CHECKING:
     import numpy as _np
     from numpy.typing import ArrayLike as _ArrayLike, NDArray as _NDArray
 
 
-class Path(_Value):
+class Path(_Stated):
     """A curve on the skin, by arc length. Immutable.
 
     Made by `svg`, `polyline` or `arc`.
@@ -24,18 +24,10 @@ class Path(_Value):
         For what is not path data (with its column), for numbers that are not finite or beyond 1e6 mm, and for no point.
     """
 
-    __slots__ = ("_core",)
-
-    _core: _t.Any
+    __slots__ = ()
 
     def __init__(self) -> None:
         raise TypeError("use Path.svg(), Path.polyline() or Path.arc()")
-
-    @classmethod
-    def _of(cls, core: _t.Any) -> Path:
-        made = cls.__new__(cls)
-        made._core = core
-        return made
 
     @classmethod
     def svg(cls, data: str) -> Path:
@@ -85,21 +77,6 @@ class Path(_Value):
         """The same for the line y = y_mm."""
         return self._core.meets_y(_number("y_mm", y_mm))  # type: ignore[no-any-return]
 
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Path):
-            return NotImplemented
-        return bool(self._core.state() == other._core.state())
-
-    def __hash__(self) -> int:
-        return hash(self._core.state())
-
     def __repr__(self) -> str:
         data = self.data
         return f"<tactor.Path {data if len(data) <= 60 else data[:57] + '...'!r}: {self.length_mm:.6g} mm>"
-
-    def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
-        return _path_again, (self._core.state(),)
-
-
-def _path_again(state: bytes) -> Path:
-    return Path._of(_tactor.Path.from_state(state))

@@ -7,7 +7,7 @@ import typing as _t
 
 from tactor import _tactor
 from tactor._array import Array, Point
-from tactor._checks import _floats, _need, _number, _Value
+from tactor._checks import _floats, _need, _number, _Stated
 from tactor._errors import InputError
 from tactor._files import reading
 from tactor._path import Path
@@ -59,24 +59,16 @@ def _placed(name: str, start: float | None, carrier: float | None) -> tuple[str,
             None if carrier is None else _number("carrier", carrier, 1.0, 384000.0))
 
 
-class Stroke(_Value):
+class Stroke(_Stated):
     """A movement: where the target is at which time, and how strongly. Immutable.
 
     Made by `along`, `timed`, `preset`, `shape` or `tactor.load`.
     """
 
-    __slots__ = ("_core",)
-
-    _core: _t.Any
+    __slots__ = ()
 
     def __init__(self) -> None:
         raise TypeError("use Stroke.along(), Stroke.timed(), Stroke.preset(), Stroke.shape() or tactor.load()")
-
-    @classmethod
-    def _of(cls, core: _t.Any) -> Stroke:
-        made = cls.__new__(cls)
-        made._core = core
-        return made
 
     @classmethod
     def along(cls, path: Path, duration: float | None = None, *, speed: _Profile | None = None, intensity: _Profile = 1.0,
@@ -291,27 +283,12 @@ class Stroke(_Value):
         from tactor._fitting import fit_strokes
         return fit_strokes([self], array, margin_mm)[0][0]
 
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Stroke):
-            return NotImplemented
-        return bool(self._core.state() == other._core.state())
-
-    def __hash__(self) -> int:
-        return hash(self._core.state())
-
     def __repr__(self) -> str:
         return f"<tactor.Stroke {self.name!r}: {self.length_mm:.6g} mm in {self.duration:.6g} s>"
 
     def _repr_svg_(self) -> str:
         from tactor._tool import picture_of_stroke
         return picture_of_stroke(self)
-
-    def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
-        return _stroke_again, (self._core.state(),)
-
-
-def _stroke_again(state: bytes) -> Stroke:
-    return Stroke._of(_tactor.Stroke.from_state(state))
 
 
 def load(file: str | os.PathLike[str]) -> list[Stroke]:
