@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "files/channel_map.hpp"
+#include "files/setup_text.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -21,14 +22,6 @@ error already_there(const std::string& name)
 {
     return {error_kind::bad_input, name, "there is such a file already",
             "choose another name: it is not overwritten"};
-}
-
-std::string quoted(const std::string& s)
-{
-    std::string q = "\"";
-    for (const char c : s)
-        q += c == '"' || c == '\\' ? fmt::format("\\{}", c) : std::string(1, c);
-    return q + '"';
 }
 
 // How a file is named in another one. Where that cannot be told, as it is named here.
@@ -46,12 +39,12 @@ std::string named_in(const std::string& name, const std::string& file)
 // Takes the array from where it is and says nothing but the channels.
 std::string overlay(const std::string& name, const environment& e, const std::vector<unsigned>& channels)
 {
-    std::string base = fmt::format("preset = {}", quoted(e.tactors.name));
+    std::string base = fmt::format("preset = {}", detail::toml_string(e.tactors.name));
     if (!e.array_file.empty())
-        base = fmt::format("file = {}", quoted(named_in(name, e.array_file)));
+        base = fmt::format("file = {}", detail::toml_string(named_in(name, e.array_file)));
     std::string s =
         fmt::format("# Channels as felt on a walk (tactor check --walk).\n[array]\nname = {}\n{}\n",
-                    quoted(e.tactors.name), base);
+                    detail::toml_string(e.tactors.name), base);
     for (std::size_t i = 0; i < channels.size(); ++i)
         if (channels[i] != e.tactors.tactors[i].channel)
             s += fmt::format("\n[[tactor]]\ntactor = {}\nchannel = {}\n", i, channels[i]);

@@ -136,16 +136,6 @@ std::string raised(const array& a)
                             : fmt::format(", at beginnings of bursts up to {} for rise_ms", s.text("dBFS"));
 }
 
-std::string indices(const array& a, bool (*take)(const tactor_spec&, const render_options&),
-                    const render_options& r)
-{
-    std::vector<std::size_t> all;
-    for (std::size_t i = 0; i < a.tactors.size(); ++i)
-        if (take(a.tactors[i], r))
-            all.push_back(i);
-    return fmt::format("{}", fmt::join(all, ", "));
-}
-
 finding check_levels(const render_options& r, const array& a, const plan_options& p)
 {
     try {
@@ -156,22 +146,19 @@ finding check_levels(const render_options& r, const array& a, const plan_options
     }
     const std::string found = fmt::format("peaks of {}{}{}", peaks(r, a).text("dBFS"),
                                           r.sl_db ? fmt::format(", {} dB SL", *r.sl_db) : "", raised(a));
-    const std::string unmeasured = indices(
-        a, [](const tactor_spec& t, const render_options&) { return !threshold_at(t, usual_hz); }, r);
-    const bool some = std::any_of(a.tactors.begin(), a.tactors.end(),
-                                  [](const tactor_spec& t) { return threshold_at(t, usual_hz).has_value(); });
-    if (some && !unmeasured.empty())
-        return warning("levels", fmt::format("{}; no threshold of tactors {}", found, unmeasured),
+    const auto unmeasured = tactors_where(a, [](const tactor_spec& t) { return !threshold_at(t, usual_hz); });
+    if (unmeasured.size() != a.tactors.size() && !unmeasured.empty())
+        return warning("levels",
+                       fmt::format("{}; no threshold of tactors {}", found, fmt::join(unmeasured, ", ")),
                        "measure threshold_dbfs of all, or --sl refuses strokes that drive these");
-    const std::string unfelt = indices(
-        a,
-        [](const tactor_spec& t, const render_options& o) {
-            return !o.sl_db && o.level_dbfs + t.gain_db <= threshold_at(t, usual_hz).value_or(-HUGE_VAL);
-        },
-        r);
+    const auto unfelt = tactors_where(a, [&](const tactor_spec& t) {
+        return !r.sl_db && r.level_dbfs + t.gain_db <= threshold_at(t, usual_hz).value_or(-HUGE_VAL);
+    });
     if (!unfelt.empty())
-        return warning("levels", fmt::format("{}; not above the threshold of tactors {}", found, unfelt),
-                       "raise --level-dbfs or gain_db, or use --sl");
+        return warning(
+            "levels",
+            fmt::format("{}; not above the threshold of tactors {}", found, fmt::join(unfelt, ", ")),
+            "raise --level-dbfs or gain_db, or use --sl");
     return fine("levels", found);
 }
 

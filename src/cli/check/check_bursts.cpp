@@ -25,11 +25,7 @@ constexpr double fewest_cycles = 5.0;
 
 std::vector<std::size_t> of_kind(const array& a, actuator_kind kind)
 {
-    std::vector<std::size_t> all;
-    for (std::size_t i = 0; i < a.tactors.size(); ++i)
-        if (a.tactors[i].actuator == kind)
-            all.push_back(i);
-    return all;
+    return tactors_where(a, [kind](const tactor_spec& t) { return t.actuator == kind; });
 }
 
 std::string who(const array& a, const std::vector<std::size_t>& some)
@@ -72,14 +68,12 @@ void check_actuators(const array& a, double carrier_hz, double burst_s, bool has
                 "of its own resonance; the carrier is {:.4g} Hz",
                 who(a, lra), lra_rise_s * 1e3, burst, carrier_hz),
             "set --carrier to the resonance in its data sheet, or use piezo or voice coil actuators"));
-    std::vector<std::size_t> slow;
     double slowest_s = 0.0;
-    for (std::size_t i = 0; has_bursts && i < a.tactors.size(); ++i)
-        if (a.tactors[i].rise_s.value_or(0.0) > 0.5 * burst_s) {
-            slow.push_back(i);
-            slowest_s = std::max(slowest_s, *a.tactors[i].rise_s);
-        }
-    if (!slow.empty())
+    const auto slow = tactors_where(a, [&](const tactor_spec& t) {
+        slowest_s = std::max(slowest_s, t.rise_s.value_or(0.0));
+        return t.rise_s.value_or(0.0) > 0.5 * burst_s;
+    });
+    if (has_bursts && !slow.empty())
         into.push_back(warning(
             "actuators",
             fmt::format("{}: rise_ms is up to {:.3g}, much of {}", who(a, slow), slowest_s * 1e3, burst),

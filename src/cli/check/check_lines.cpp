@@ -36,7 +36,7 @@ std::vector<finding> check_lines(const setup& config, bool felt, const line_find
         all.push_back({"amplifier", felt ? level::warning : level::ok,
                        "no [amplifier]: nothing switches it off",
                        "wire its enable input to a GPIO line, see tactor-raspberry-pi(7)"});
-    if (config.amplifier) {
+    else {
         finding f = check_line("amplifier", config.amplifier->line, find);
         if (f.how == level::ok && config.amplifier->active_low)
             f = warning("amplifier", f.found + ", on when low: a line that floats may switch it on",

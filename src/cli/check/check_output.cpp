@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/words.hpp"
+
 namespace tactor::cli {
 namespace {
 
@@ -20,12 +22,8 @@ std::size_t count(const std::vector<finding>& all, level l)
 
 std::string summary(const std::vector<finding>& all)
 {
-    const auto number = [&](level l, const char* word) {
-        const std::size_t n = count(all, l);
-        return fmt::format("{} {}{}", n, word, n == 1 ? "" : "s");
-    };
-    return fmt::format("{}, {}, {} ok", number(level::error, "error"), number(level::warning, "warning"),
-                       count(all, level::ok));
+    return fmt::format("{}, {}, {} ok", counted(count(all, level::error), "error"),
+                       counted(count(all, level::warning), "warning"), count(all, level::ok));
 }
 
 json to_json(const std::vector<finding>& all)

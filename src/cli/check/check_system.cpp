@@ -27,6 +27,15 @@ std::string how_to_join(const system_facts& f, const std::string& group)
     return fmt::format("sudo usermod -aG {} $USER, then log out and in again", group);
 }
 
+finding insist(finding x, bool required)
+{
+    if (required) {
+        x.how = level::error;
+        x.kind = error_kind::not_available;
+    }
+    return x;
+}
+
 finding check_nodes(const system_facts& f, const char* check, const std::vector<device_node>& nodes,
                     const char* usual_group, bool needed)
 {
@@ -37,26 +46,13 @@ finding check_nodes(const system_facts& f, const char* check, const std::vector<
     for (const device_node& n : nodes) {
         if (n.may_open)
             continue;
-        finding x = warning(check, fmt::format("no permission to open {}", n.path), how_to_join(f, n.group));
-        if (needed) {
-            x.how = level::error;
-            x.kind = error_kind::not_available;
-        }
-        return x;
+        return insist(
+            warning(check, fmt::format("no permission to open {}", n.path), how_to_join(f, n.group)), needed);
     }
     return fine(check,
                 fmt::format("{} may be opened{}",
                             nodes.size() == 1 ? nodes.front().path : fmt::format("{} devices", nodes.size()),
                             f.own.root ? "; you are root" : ", group " + nodes.front().group));
-}
-
-finding insist(finding x, bool required)
-{
-    if (required) {
-        x.how = level::error;
-        x.kind = error_kind::not_available;
-    }
-    return x;
 }
 
 finding check_priority(const system_facts& f, const system_needs& n)
