@@ -82,7 +82,7 @@ double draw_heading(canvas& c, const scene& s, const std::vector<std::string>& p
 double draw_time_key(canvas& c, const timeline& t, box where)
 {
     const scale x{0.0, std::max(t.total_s, 1e-9), where.x + 6.0, where.right() - 10.0};
-    draw_time_strip(c, t, {x.page_from, where.y, x.page_to - x.page_from, 6.0});
+    draw_time_strip(c, {x.page_from, where.y, x.page_to - x.page_from, 6.0});
     draw_horizontal_axis(c, x, where.y + 6.0, where.y + 6.0, "time (s)");
     return 6.0 + axis_height;
 }

@@ -120,7 +120,7 @@ private:
         canvas_.text({frame_.x.page_from - 3.0, where_.y + (strip_height + cap_height(small_text)) / 2.0},
                      strip_heading, {.size = small_text, .anchor = align::end, .ink = dark_grey},
                      {.kind = "row-heading"});
-        draw_time_strip(canvas_, time_,
+        draw_time_strip(canvas_,
                         {frame_.x(0.0), where_.y, frame_.x(time_.total_s) - frame_.x(0.0), strip_height});
     }
 

@@ -71,10 +71,8 @@ struct chart_band {
 
 struct chart {
     std::string id = {};
-    box where = {};          ///< of the whole chart, its labels and legend included
-    double left_column = 30; ///< for the labels of y, pt: the same in charts that share a time axis
-    double x_from = 0.0;
-    double x_to = 1.0;
+    box where = {};    ///< of the whole chart, its labels and legend included
+    double x_to = 1.0; ///< from 0
     double y_from = 0.0;
     double y_to = 1.0;
     std::string x_title = {};
@@ -87,10 +85,6 @@ struct chart {
 /// its width, however many values there are. Returns the box inside the axes. Its SVG group has data-x0,
 /// data-x-scale, data-y0 and data-y-scale: page = 0 + scale * value.
 box draw_chart(canvas& c, const chart& ch);
-
-/// Draws names behind samples of their lines, in rows up to `width`, from (x, y) down; returns the height,
-/// also without a canvas.
-double draw_line_legend(canvas* c, const std::vector<series>& lines, double x, double y, double width);
 
 /// Parts of a line inside a box.
 std::vector<std::vector<spot>> clip(const std::vector<spot>& line, box b);

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double legend_row = 9.0;
 constexpr double sample_length = 14.0;
-constexpr double column = 0.25; // pt: values nearer than this along x are one
+constexpr double left_column = 30.0; // for the labels of y, pt
+constexpr double column = 0.25;      // pt: values nearer than this along x are one
 
 // Of the values that fall on one column of the page the first, the least, the largest and the last remain.
 std::vector<spot> thin_out(const std::vector<spot>& line)
@@ -42,8 +43,8 @@ std::vector<spot> thin_out(const std::vector<spot>& line)
     return out;
 }
 
-} // namespace
-
+// Draws names behind samples of their lines, in rows up to `width`, from (x, y) down; returns the height,
+// also without a canvas.
 double draw_line_legend(canvas* c, const std::vector<series>& lines, double x, double y, double width)
 {
     double at = x;
@@ -68,13 +69,15 @@ double draw_line_legend(canvas* c, const std::vector<series>& lines, double x, d
     return at > x ? row + legend_row - y : 0.0;
 }
 
+} // namespace
+
 box draw_chart(canvas& c, const chart& ch)
 {
-    const double legend = draw_line_legend(nullptr, ch.lines, 0.0, 0.0, ch.where.width - ch.left_column);
+    const double legend = draw_line_legend(nullptr, ch.lines, 0.0, 0.0, ch.where.width - left_column);
     const double top = legend + 3.0;
-    const box inside{ch.where.x + ch.left_column, ch.where.y + top, ch.where.width - ch.left_column - 5.0,
+    const box inside{ch.where.x + left_column, ch.where.y + top, ch.where.width - left_column - 5.0,
                      ch.where.height - top - axis_height};
-    const scale x{ch.x_from, ch.x_to, inside.x, inside.right()};
+    const scale x{0.0, ch.x_to, inside.x, inside.right()};
     const scale y{ch.y_from, ch.y_to, inside.bottom(), inside.y};
     const group g(c, {.id = ch.id,
                       .kind = "chart",

@@ -125,7 +125,7 @@ colour colour_of(const timeline& t, const shown_burst& b) noexcept
                        : ordered(t.total_s > 0.0 ? b.target_s / t.total_s : 0.0);
 }
 
-void draw_time_strip(canvas& c, const timeline&, box where)
+void draw_time_strip(canvas& c, box where)
 {
     constexpr int steps = 128;
     const group g(c, {.id = "time-colours", .title = "colour of each time"});

@@ -65,7 +65,7 @@ timeline make_timeline(const scene& s);
 std::string find_repeated_name(const std::string& name);
 
 /// Draws a strip of the colours of time, over x.
-void draw_time_strip(canvas& c, const timeline& t, box where);
+void draw_time_strip(canvas& c, box where);
 
 /// Returns the colour of a burst: of its time in the piece where there is one stroke, of its stroke where
 /// there are several.

@@ -29,7 +29,6 @@ inline constexpr colour ink{34, 34, 34};
 inline constexpr colour dark_grey{90, 90, 90};
 inline constexpr colour grey{150, 150, 150};
 inline constexpr colour light_grey{215, 215, 215};
-inline constexpr colour pale{243, 243, 243};
 inline constexpr colour white{255, 255, 255};
 
 /// For lines that stand for things and not for numbers, from the palette of Okabe and Ito; each also differs
