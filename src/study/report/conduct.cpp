@@ -32,21 +32,14 @@ bool is_simulated(const session_facts& s)
 template <class F>
 std::string over_streams(const session_facts& s, const std::set<unsigned>& used, const F& say)
 {
-    std::vector<std::pair<std::string, std::vector<std::string>>> said;
+    sayings said;
     for (const json_fact& one : s.facts()["streams"].list()) {
         const std::string number = one["stream"].words();
         if (!used.empty() && std::none_of(used.begin(), used.end(),
                                           [&](unsigned n) { return fmt::format("{}", n) == number; }))
             continue;
         std::string text = say(one);
-        if (text.empty())
-            text = not_recorded;
-        const auto at =
-            std::find_if(said.begin(), said.end(), [&](const auto& p) { return p.first == text; });
-        if (at == said.end())
-            said.emplace_back(std::move(text), std::vector<std::string>{number});
-        else
-            at->second.push_back(number);
+        add_saying(said, text.empty() ? not_recorded : std::move(text), number);
     }
     if (said.size() == 1)
         return said.front().first == not_recorded ? "" : said.front().first;

@@ -61,19 +61,20 @@ std::string table_head(const std::vector<std::string>& cells)
     return table_row(cells) + table_row(std::vector<std::string>(cells.size(), "---"));
 }
 
+void add_saying(sayings& all, std::string text, const std::string& who)
+{
+    auto at = std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.first == text; });
+    if (at == all.end())
+        at = all.insert(at, {std::move(text), {}});
+    at->second.push_back(who);
+}
+
 std::string told(const study_facts& f, const std::function<std::string(const session_facts&)>& say)
 {
-    std::vector<std::pair<std::string, std::vector<std::string>>> said;
+    sayings said;
     for (const session_facts& s : f.sessions) {
         std::string text = say(s);
-        if (text.empty())
-            text = not_recorded;
-        const auto at =
-            std::find_if(said.begin(), said.end(), [&](const auto& p) { return p.first == text; });
-        if (at == said.end())
-            said.emplace_back(std::move(text), std::vector<std::string>{s.code});
-        else
-            at->second.push_back(s.code);
+        add_saying(said, text.empty() ? not_recorded : std::move(text), s.code);
     }
     if (said.size() == 1)
         return said.front().first;

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "study/report/facts.hpp"
@@ -28,6 +29,10 @@ std::string subjects(std::span<const std::string> codes);
 /// A line of a table, and the line under a table's head.
 std::string table_row(const std::vector<std::string>& cells);
 std::string table_head(const std::vector<std::string>& cells);
+
+/// Texts in the order in which they were first said, each with those who said it.
+using sayings = std::vector<std::pair<std::string, std::vector<std::string>>>;
+void add_saying(sayings& all, std::string text, const std::string& who);
 
 /// What each session says: once where all say the same, else each with those who do. A session that says
 /// nothing (an empty text) is told as "not recorded".

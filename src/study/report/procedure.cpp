@@ -92,10 +92,10 @@ std::string cells_text(const dataset& d, std::size_t run)
 
 std::string order_of(const session_facts& s)
 {
-    std::string all;
+    std::vector<std::string> runs;
     for (const json_fact& one : s.facts()["order"].list())
-        all += (all.empty() ? "" : ", ") + plain(one.need_text());
-    return all;
+        runs.push_back(one.need_text());
+    return plain_list(runs);
 }
 
 // The session file's numbers are whole: as digits() they would lose some of theirs.

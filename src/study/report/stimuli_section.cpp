@@ -3,6 +3,7 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/words.hpp"
 #include "study/report/markdown.hpp"
@@ -31,10 +32,7 @@ std::string over_plans(const session_facts& s, const F& value)
     for (const planned_stimulus& p : s.stimuli)
         if (std::string text = value(p.facts()); !text.empty())
             seen.insert(std::move(text));
-    std::string all;
-    for (const std::string& text : seen)
-        all += (all.empty() ? "" : ", ") + text;
-    return all;
+    return fmt::format("{}", fmt::join(seen, ", "));
 }
 
 std::string carrier_text(const session_facts& s)
@@ -63,10 +61,7 @@ std::string law_text(const session_facts& s)
     std::set<std::string> laws;
     for (const method_definition& m : s.design->methods)
         laws.insert(timing_law(m.options.profile));
-    std::string all;
-    for (const std::string& law : laws)
-        all += (all.empty() ? "" : " and ") + law;
-    return all;
+    return fmt::format("{}", fmt::join(laws, " and "));
 }
 
 // The names of what a key has in the plans of a method, in the order of the sessions.
@@ -126,15 +121,10 @@ std::string plan_row(const planned_stimulus& p)
 // Every plan once; whose it is, where not everybody's.
 std::string plans_table(const study_facts& f)
 {
-    std::vector<std::pair<std::string, std::vector<std::string>>> rows;
+    sayings rows;
     for (const session_facts& s : f.sessions)
-        for (const planned_stimulus& p : s.stimuli) {
-            const std::string row = plan_row(p);
-            auto at = std::find_if(rows.begin(), rows.end(), [&](const auto& r) { return r.first == row; });
-            if (at == rows.end())
-                at = rows.insert(rows.end(), {row, {}});
-            at->second.push_back(s.code);
-        }
+        for (const planned_stimulus& p : s.stimuli)
+            add_saying(rows, plan_row(p), s.code);
     if (rows.empty())
         return "\nThe stimuli are not recorded.\n";
     std::string text = "\n" + table_head({"motion", "method", "path", "target (s)", "length (mm)", "SOA (s)",
@@ -160,10 +150,7 @@ std::string notes_text(const study_facts& f)
                 notes.insert(
                     fmt::format("- {} by {}: {}\n", plain(p.motion), plain(p.method), plain(w.need_text())));
         }
-    std::string all;
-    for (const std::string& n : notes)
-        all += n;
-    return all.empty() ? "" : "\nOf these plans it was noted:\n\n" + all;
+    return notes.empty() ? "" : fmt::format("\nOf these plans it was noted:\n\n{}", fmt::join(notes, ""));
 }
 
 } // namespace
