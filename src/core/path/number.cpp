@@ -31,6 +31,15 @@ bool blank(char c) noexcept
     return c == ' ' || c == '\t' || c == '\n' || c == '\f' || c == '\r';
 }
 
+std::string_view without_blanks(std::string_view text) noexcept
+{
+    while (!text.empty() && blank(text.front()))
+        text.remove_prefix(1);
+    while (!text.empty() && blank(text.back()))
+        text.remove_suffix(1);
+    return text;
+}
+
 void skip_blanks(std::string_view text, std::size_t& at) noexcept
 {
     while (at < text.size() && blank(text[at]))

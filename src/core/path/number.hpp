@@ -19,6 +19,9 @@ struct value_fault {
 /// Blank, tab, line feed, form feed, carriage return.
 bool blank(char c) noexcept;
 
+/// Returns the text without blanks at both ends.
+std::string_view without_blanks(std::string_view text) noexcept;
+
 /// Goes on behind blanks.
 void skip_blanks(std::string_view text, std::size_t& at) noexcept;
 

@@ -22,18 +22,9 @@ constexpr std::size_t longest_look = 4096;
     throw error(error_kind::bad_input, at, why, hint);
 }
 
-std::string_view trimmed(std::string_view s)
-{
-    while (!s.empty() && blank(s.front()))
-        s.remove_prefix(1);
-    while (!s.empty() && blank(s.back()))
-        s.remove_suffix(1);
-    return s;
-}
-
 bool is_number(std::string_view s)
 {
-    s = trimmed(s);
+    s = without_blanks(s);
     if (s.size() > 1 && s.front() == '"' && s.back() == '"')
         s = s.substr(1, s.size() - 2);
     std::size_t end = 0;
@@ -60,10 +51,11 @@ std::string_view separators(std::string_view line)
         const std::vector<std::string_view> parts = split(line, separator);
         const auto fits = [](std::string_view s) {
             // 0,5 is a number where semicolons separate.
-            return trimmed(s).empty() || trimmed(s) == first_column || is_number(s.substr(0, s.find(',')));
+            return without_blanks(s).empty() || without_blanks(s) == first_column ||
+                   is_number(s.substr(0, s.find(',')));
         };
-        const auto holds =
-            std::count_if(parts.begin(), parts.end(), [](std::string_view s) { return !trimmed(s).empty(); });
+        const auto holds = std::count_if(parts.begin(), parts.end(),
+                                         [](std::string_view s) { return !without_blanks(s).empty(); });
         if (holds > 1 && std::any_of(parts.begin(), parts.end(), fits))
             return words;
     }
@@ -85,7 +77,7 @@ void refuse_other_form(std::string_view text, const std::string& name)
     for (std::size_t at = 0; at < text.size();) {
         const std::size_t end = std::min(text.find('\n', at), text.size());
         // The form shows in the line's first bytes: a line may be as long as the file.
-        const std::string_view line = trimmed(text.substr(at, std::min(end - at, longest_look)));
+        const std::string_view line = without_blanks(text.substr(at, std::min(end - at, longest_look)));
         if (line.starts_with('#') && line.find(first_column) != std::string_view::npos)
             comment = place_of(text, at, name);
         if (line.empty() || line.starts_with('#')) {

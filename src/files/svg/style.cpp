@@ -21,15 +21,6 @@ constexpr std::size_t most_skipped = 100;
 /// A million elements with 50 rules each; more is hostile.
 constexpr std::size_t most_tried = 50'000'000;
 
-std::string_view without_blanks(std::string_view s)
-{
-    while (!s.empty() && blank(s.front()))
-        s.remove_prefix(1);
-    while (!s.empty() && blank(s.back()))
-        s.remove_suffix(1);
-    return s;
-}
-
 std::string without_comments(std::string_view css)
 {
     std::string s;
