@@ -64,7 +64,7 @@ void check_options(const plan_options& o)
         throw error(error_kind::bad_input, "timing = fit",
                     fmt::format("bursts of at least {} cannot be had: an SOA of {} gives {}",
                                 seconds_text(o.min_duration_s), seconds_text(o.soa_s), seconds_text(longest)),
-                    "ask for a shorter least duration, above 0 s, or for a longer SOA")
+                    "lower min_duration_s, or take a longer SOA")
             .with_field("min_duration_s");
 }
 

@@ -213,6 +213,8 @@ std::vector<std::string> option_names(const std::string& which)
         const bool wanted = which == "planning"   ? plans && (o.where & of_python) != 0
                             : which == "sounding" ? in_plan && !plans
                             : which == "live"     ? in_plan && (o.where & options::live) != 0
+                            : which == "flags"    ? o.what == options::kind::flag
+                            : which == "choices"  ? o.what == options::kind::choice
                                                   : (o.where & of_python) != 0;
         if (wanted)
             names.emplace_back(o.name);
@@ -220,6 +222,15 @@ std::vector<std::string> option_names(const std::string& which)
     if (which.empty())
         names.emplace_back(usual_speed);
     return names;
+}
+
+std::map<std::string, std::string> option_fields()
+{
+    std::map<std::string, std::string> all;
+    for (const option& o : options::all())
+        if (!o.field.empty() && o.field != o.name)
+            all.emplace(o.field, o.name);
+    return all;
 }
 
 py::dict default_values(const setup& says)

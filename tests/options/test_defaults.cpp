@@ -45,6 +45,7 @@ TEST_CASE("each option of [defaults] is read as it may be typed, and no other")
     const std::map<std::string, std::string> all{{"algorithm", "continuous"},
                                                  {"phantom", "log"},
                                                  {"faces", "nearest"},
+                                                 {"min-duration", "0.01"},
                                                  {"speed", "70"},
                                                  {"soa", "0.06"},
                                                  {"burst", "0.07"},

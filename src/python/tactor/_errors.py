@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import typing as _t
 
-# The library speaks of its fields; here options have the names of the tool's.
+# The library speaks of its fields; here options have the names of the tool's. Those of the table of options come from the extension.
 _NAMES = {
-    "soa_s": "soa", "burst_s": "burst", "carrier_hz": "carrier", "ramp_s": "ramp", "sl_db": "sl", "margin_mm": "fit_margin",
-    "pitch_x_mm": "pitch_mm", "pitch_y_mm": "pitch_mm", "window_s": "drive_window_s", "rests": "pauses", "start_s": "start",
-    "duration_s": "duration", "speed_mm_s": "speed", "timeout_s": "timeout", "longest_s": "longest", "smooth_s": "smooth", "at_ns": "at_s",
-    "duration of a burst": "burst", "fit_strokes()": "fit=True", "snap = true": "snap=True", "force = true": "force=True", "drop_points = true": "drop_points=True",
-    "tactor devices": "tactor.devices()", "tactor plan STROKE --format json": "Plan.write()",
-    "or name a file": "or Array.from_file() reads one", "sample format": "sample_format", "leave array out: the plan has its own": "give its own, plan.array",
+    "pitch_x_mm": "pitch_mm", "pitch_y_mm": "pitch_mm", "rests": "pauses", "start_s": "start", "timeout_s": "timeout", "longest_s": "longest",
+    "smooth_s": "smooth", "at_ns": "at_s", "duration of a burst": "burst", "fit_strokes()": "fit=True", "force = true": "force=True",
+    "wider = true leaves": "without channels= it leaves", "tactor devices": "tactor.devices()", "tactor plan STROKE --format json": "Plan.write()",
+    "or name a file": "or Array.from_file() reads one", "sample format": "sample_format",
+    "leave array out: the plan has its own": "give its own, plan.array",
 }
 _FIELDS = {"wave": "waveform"}  # words that stand elsewhere, too
-_CHOICE = r"(?<![\w.-])(timing|outside|algorithm|phantom|faces) = ([\w-]+)"
 
 
 class Error(Exception):
@@ -121,10 +119,11 @@ def _again(kind: type[Error], of_system: bool, what: str, why: str, hint: str, f
 
 def _in_python(text: str) -> str:
     import re
-    fields = "|".join(map(re.escape, _NAMES))
-    text = re.sub(rf"(?<![\w.-])(?:{fields})(?![\w.-])", lambda m: _NAMES[m[0]], text)
+    from tactor import _tactor
+    names = {**_tactor.option_fields(), **_NAMES, **{f"{flag} = true": f"{flag}=True" for flag in _tactor.option_names("flags")}}
+    text = re.sub(rf"(?<![\w.-])(?:{'|'.join(map(re.escape, names))})(?![\w.-])", lambda m: names[m[0]], text)
     text = re.sub(r"(?<!\S)-D ([\w:=.,]*\w)", r'device="\1"', text)
-    return re.sub(_CHOICE, r'\1="\2"', text)
+    return re.sub(rf"(?<![\w.-])({'|'.join(_tactor.option_names('choices'))}) = ([\w-]+)", r'\1="\2"', text)
 
 
 def made(kind: str, what: str, why: str, hint: str, field: str = "", file: str = "", line: int = 0, column: int = 0,

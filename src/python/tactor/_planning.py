@@ -18,8 +18,8 @@ if _t.TYPE_CHECKING:
 
 def plan(array: Array, stroke: Stroke, *, algorithm: _Algorithm | None = None, phantom: _t.Union[_Phantom, PhantomModel, None] = None,
          faces: _Faces | None = None, soa: float | None = None, burst: float | None = None, slope: float | None = None, intercept: float | None = None,
-         duration: float | None = None, speed: float | None = None, timing: _Timing | None = None, outside: _Outside | None = None,
-         fit: bool | None = None, fit_margin: float | None = None, snap: bool | None = None, drop_points: bool | None = None,
+         duration: float | None = None, speed: float | None = None, timing: _Timing | None = None, min_duration: float | None = None,
+         outside: _Outside | None = None, fit: bool | None = None, fit_margin: float | None = None, snap: bool | None = None, drop_points: bool | None = None,
          overlap: _Overlap | None = None, carrier: float | None = None, compensate: _Compensate | None = None,
          sigma_mm: float | None = None, sigma_v_mm_s: float | None = None, waveform: str | None = None,
          am: _t.Union[float, str, None] = None, noise_seed: int | None = None, texture: _Texture | None = None,
@@ -53,6 +53,8 @@ def plan(array: Array, stroke: Stroke, *, algorithm: _Algorithm | None = None, p
         mm/s, instead of a time.
     timing : str
         SOA as given ("fixed"), or fitted to end with the path ("fit").
+    min_duration : float
+        Shortest burst that `timing="fit"` may use, s (0.02).
     outside : str
         Paths that leave the array: "error", or "clamp" to its edge.
     fit : bool
@@ -98,17 +100,10 @@ def plan(array: Array, stroke: Stroke, *, algorithm: _Algorithm | None = None, p
     InputError
         SOA out of bounds, a path outside the array, timing that cannot be done, no grid for the Tactile Brush.
     """
+    options = dict(locals())
+    del options["array"], options["stroke"]
     _need(array, Array, "array")
     _need(stroke, Stroke, "stroke")
-    options = {
-        "algorithm": algorithm, "phantom": phantom, "faces": faces, "soa": soa, "burst": burst, "slope": slope, "intercept": intercept,
-        "duration": duration, "speed": speed, "timing": timing, "outside": outside, "fit": fit, "fit_margin": fit_margin, "snap": snap,
-        "drop_points": drop_points, "overlap": overlap, "carrier": carrier, "compensate": compensate, "sigma_mm": sigma_mm,
-        "sigma_v_mm_s": sigma_v_mm_s, "waveform": waveform, "am": am, "noise_seed": noise_seed, "texture": texture,
-        "texture_mm": texture_mm, "intensity_scale": intensity_scale, "stevens_exponent": stevens_exponent, "phase": phase, "ramp": ramp,
-        "envelope": envelope, "attack": attack, "release": release, "tukey_part": tukey_part, "level_dbfs": level_dbfs, "sl": sl,
-        "rate": rate,
-    }
     options = settled(array, options, _PLANNING_AND_SOUNDING)
     asked = {name: options[name] for name in _SOUNDING if options.get(name) is not None}
     return Plan._of(_tactor.Plan(array._core, stroke._core, options), array, asked=asked)

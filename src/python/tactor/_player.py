@@ -22,7 +22,7 @@ from tactor._ticket import LiveStroke, Report, Ticket, _call, _Held, _Shared
 
 if _t.TYPE_CHECKING:
     from types import TracebackType as _TracebackType
-    from tactor._options import _Algorithm, _Envelope, _Faces, _Outside, _Phantom, _Phase
+    from tactor._options import _Algorithm, _Envelope, _Faces, _Outside, _Phantom, _Phase, _Scale, _Texture
     from tactor._score import _SampleFormat
     from tactor._ticket import _LogKind
     _At = _t.Literal["now", "armed"]
@@ -191,10 +191,11 @@ class Player(_Unique):
         return score._core
 
     def live(self, *, algorithm: _Algorithm | None = None, phantom: _t.Union[_Phantom, PhantomModel, None] = None, faces: _Faces | None = None, soa: float | None = None,
-             slope: float | None = None, intercept: float | None = None, outside: _Outside | None = None, carrier: float | None = None,
-             waveform: str | None = None, am: _t.Union[float, str, None] = None, noise_seed: int | None = None, phase: _Phase | None = None,
-             ramp: float | None = None, envelope: _Envelope | None = None, attack: float | None = None, release: float | None = None,
-             level_dbfs: float | None = None, sl: float | None = None, timeout: float = 0.5,
+             burst: float | None = None, slope: float | None = None, intercept: float | None = None, outside: _Outside | None = None,
+             carrier: float | None = None, waveform: str | None = None, am: _t.Union[float, str, None] = None, noise_seed: int | None = None,
+             texture: _Texture | None = None, intensity_scale: _Scale | None = None, stevens_exponent: float | None = None,
+             phase: _Phase | None = None, ramp: float | None = None, envelope: _Envelope | None = None, attack: float | None = None,
+             release: float | None = None, tukey_part: float | None = None, level_dbfs: float | None = None, sl: float | None = None, timeout: float = 0.5,
              longest: float | None = None, smooth: float = 0.0) -> LiveStroke:
         """Begins a stroke that is fed point by point; silent until the first.
 
@@ -202,8 +203,12 @@ class Player(_Unique):
         ----------
         algorithm : str
             "continuous" (default), or "park2016": bursts, each SOA one at the newest position.
-        phantom, faces, soa, slope, intercept, carrier, waveform, am, noise_seed, phase, ramp, envelope, attack, release, level_dbfs, sl
+        phantom, faces, soa, burst, slope, intercept, carrier, waveform, am, noise_seed, intensity_scale, stevens_exponent, phase, ramp
             As in `plan`.
+        envelope, attack, release, tukey_part, level_dbfs, sl
+            As in `plan`.
+        texture : str
+            As in `plan`, but for "length": a live stroke has none.
         outside : str
             "clamp" (default) or "error".
         timeout : float
@@ -226,13 +231,13 @@ class Player(_Unique):
         StreamError
             When the stream has ended.
         """
+        given = dict(locals())
+        for own in ("self", "timeout", "longest", "smooth"):
+            del given[own]
         shared = self._get()
         times = (_number("timeout", timeout, 0.001, 86400.0), None if longest is None else _number("longest", longest, 0.001, 86400.0),
                  _number("smooth", smooth, 0.0, 1.0))
-        options = settled(self._array, dict(
-            algorithm=algorithm, phantom=phantom, faces=faces, soa=soa, slope=slope, intercept=intercept, outside=outside, carrier=carrier,
-            waveform=waveform, am=am, noise_seed=noise_seed, phase=phase, ramp=ramp, envelope=envelope, attack=attack, release=release,
-            level_dbfs=level_dbfs, sl=sl), _LIVE)
+        options = settled(self._array, given, _LIVE)
         with shared.lock:
             core = shared.core.live(self._array._core, options, *times)
             stroke = LiveStroke(shared, core)
@@ -298,7 +303,8 @@ class Player(_Unique):
 
     def __repr__(self) -> str:
         s = self._setup
-        return f"<tactor.Player {s['name']!r}: {s['channels']} channels, {s['rate']} Hz, {s['format']}, {s['period_frames']} of {s['buffer_frames']} frames>"
+        of = f" of {s['device_channels']}" if s["device_channels"] > s["channels"] else ""
+        return f"<tactor.Player {s['name']!r}: {s['channels']}{of} channels, {s['rate']} Hz, {s['format']}, {s['period_frames']} of {s['buffer_frames']} frames>"
 
 
 _open: weakref.WeakSet[Player] = weakref.WeakSet()

@@ -114,11 +114,8 @@ class Score(_Value):
                  release: float | None = None, tukey_part: float | None = None, channels: int | None = None,
                  marker_channel: int | None = None, marker_s: float | None = None, power_dbfs: float | None = None,
                  max_drive_s: float | None = None, drive_window_s: float | None = None) -> None:
-        given = {
-            "level_dbfs": level_dbfs, "sl": sl, "rate": rate, "phase": phase, "ramp": ramp, "envelope": envelope,
-            "attack": attack, "release": release, "tukey_part": tukey_part, "channels": channels, "marker_channel": marker_channel,
-            "marker_s": marker_s, "power_dbfs": power_dbfs, "max_drive_s": max_drive_s, "drive_window_s": drive_window_s,
-        }
+        given = dict(locals())
+        del given["self"], given["array"], given["plans"]
         _need(array, Array, "array")
         self._take(array, tuple(placed(plans)), in_parts(given))
 

@@ -79,8 +79,8 @@ def _names(what: str, value: str | _t.Iterable[str] | None, one: _t.Any) -> list
 def compare(array: Array, stroke: Stroke, *, algorithms: _t.Union[str, _t.Iterable[_Algorithm], None] = None,
             phantoms: _t.Union[str, _t.Iterable[_Phantom], None] = None, algorithm: _Algorithm | None = None, phantom: _Phantom | None = None,
             faces: _Faces | None = None, soa: float | None = None, burst: float | None = None, slope: float | None = None, intercept: float | None = None,
-            duration: float | None = None, speed: float | None = None, timing: _Timing | None = None, outside: _Outside | None = None,
-            fit: bool | None = None, fit_margin: float | None = None, snap: bool | None = None, drop_points: bool | None = None,
+            duration: float | None = None, speed: float | None = None, timing: _Timing | None = None, min_duration: float | None = None,
+            outside: _Outside | None = None, fit: bool | None = None, fit_margin: float | None = None, snap: bool | None = None, drop_points: bool | None = None,
             overlap: _Overlap | None = None, carrier: float | None = None, intensity_scale: _Scale | None = None,
             stevens_exponent: float | None = None, sl: float | None = None, compensate: _Compensate | None = None,
             observer: _Observer | None = None, sigma_mm: float | None = None, sigma_v_mm_s: float | None = None, spread: int | None = None,
@@ -98,7 +98,7 @@ def compare(array: Array, stroke: Stroke, *, algorithms: _t.Union[str, _t.Iterab
         With which phantom models; default: that of `phantom`.
     algorithm : str
         Only this one.
-    phantom, faces, soa, burst, slope, intercept, duration, speed, timing, outside, fit, fit_margin, snap, drop_points, overlap, carrier, compensate
+    phantom, faces, soa, burst, slope, intercept, duration, speed, timing, min_duration, outside, fit, fit_margin, snap, drop_points, overlap, carrier, compensate
         As in `plan`; `phantom` is a built-in one.
     intensity_scale, stevens_exponent, sl
         As in `plan`; `sl` is for `intensity_scale="sl"`.
@@ -125,11 +125,8 @@ def compare(array: Array, stroke: Stroke, *, algorithms: _t.Union[str, _t.Iterab
     InputError
         Where none can play it.
     """
-    given = {name: value for name, value in dict(
-        algorithm=algorithm, phantom=phantom, faces=faces, soa=soa, burst=burst, slope=slope, intercept=intercept, duration=duration, speed=speed,
-        timing=timing, outside=outside, fit=fit, fit_margin=fit_margin, snap=snap, drop_points=drop_points, overlap=overlap,
-        carrier=carrier, intensity_scale=intensity_scale, stevens_exponent=stevens_exponent, sl=sl, compensate=compensate, observer=observer, sigma_mm=sigma_mm, sigma_v_mm_s=sigma_v_mm_s, spread=spread, spread_seed=spread_seed,
-        spread_sigma=spread_sigma, spread_threshold_db=spread_threshold_db, spread_place_mm=spread_place_mm).items() if value is not None}
+    not_options = {"array", "stroke", "algorithms", "phantoms"}
+    given = {name: value for name, value in locals().items() if value is not None and name not in not_options}
     _need(array, Array, "array")
     _need(stroke, Stroke, "stroke")
     if hasattr(phantom, "weights"):
