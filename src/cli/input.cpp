@@ -28,8 +28,13 @@ std::vector<stroke> read_one(const environment& e, const std::string& argument)
     if (argument == "-")
         return e.standard_input;
     std::error_code ignored;
-    if (!fs::exists(argument, ignored) && argument.find_first_of("./") == std::string::npos)
+    if (!fs::exists(argument, ignored) && argument.find_first_of("./") == std::string::npos) {
+        const auto& shapes = stroke_shapes();
+        if (std::find(shapes.begin(), shapes.end(), argument) != shapes.end())
+            throw error(error_kind::bad_input, argument, "it is a shape, not a preset",
+                        fmt::format("--shape {}", argument));
         return {preset_stroke(argument)}; // its error lists the presets
+    }
     session::check_readable(argument);
     return load_strokes(argument);
 }

@@ -24,12 +24,12 @@
 namespace tactor::net {
 namespace {
 
-[[noreturn]] void refused(const std::string& what, int code)
+[[noreturn]] void refused(const std::string& what, int code, std::string_view hint = {})
 {
     const auto kind = code == EADDRINUSE || code == EACCES || code == EADDRNOTAVAIL
                           ? error_kind::not_available
                           : error_kind::runtime;
-    detail::throw_caused(error(kind, what, std::strerror(code)), code);
+    detail::throw_caused(error(kind, what, std::strerror(code), hint), code);
 }
 
 sockaddr_un unix_address(const std::string& path)
@@ -108,7 +108,9 @@ bound_to local(int fd)
 {
     const std::string holder = code == EADDRINUSE ? find_port_holder(port, stream) : "";
     if (holder.empty())
-        refused(what, code);
+        refused(what, code,
+                code == EACCES && port < 1024 ? "ports below 1024 need rights; take another, such as 4003"
+                                              : "");
     detail::throw_caused(error(error_kind::not_available, what,
                                fmt::format("{}: by {}", std::strerror(code), holder),
                                "choose another port, or end it"),
@@ -171,8 +173,9 @@ owned_fd listen_unix(const std::string& path, mode_t mode, std::optional<gid_t> 
     const owned_fd lock(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (!lock) {
         const int code = errno;
-        detail::throw_caused(
-            error(error_kind::bad_input, what, std::strerror(code), "its folder must be there"), code);
+        detail::throw_caused(error(error_kind::bad_input, what, std::strerror(code),
+                                   code == EACCES ? "name a folder of your own" : "its folder must be there"),
+                             code);
     }
     constexpr int tries = 200;
     detail::lock_folder(lock, tries);

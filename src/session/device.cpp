@@ -107,7 +107,7 @@ std::unique_ptr<sink> open_device(const alsa_options& o)
     try {
         return open_alsa(o);
     } catch (const error& e) {
-        const std::string smaller = e.field() == "channels" ? find_array_that_fits(o) : "";
+        const std::string smaller = e.field() == "channels" && o.wider ? find_array_that_fits(o) : "";
         if (smaller.empty())
             throw;
         throw e.reworded(e.subject(), e.why(), fmt::format("{}; the array {} fits", e.hint(), smaller));

@@ -76,6 +76,13 @@ void refuse_standard_input(int code)
         .with_os_code(code);
 }
 
+void check_standard_input()
+{
+    char none = 0;
+    if (::read(STDIN_FILENO, &none, 0) < 0)
+        refuse_standard_input(errno);
+}
+
 void tell_of_pipe_to_write(const std::string& file)
 {
     if (is_named_pipe(file))

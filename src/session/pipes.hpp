@@ -18,6 +18,9 @@ bool is_standard_output(const std::string& file);
 /// folder, else runtime.
 [[noreturn]] void refuse_standard_input(int code);
 
+/// Refuses standard input that cannot be read, before anything else is done. \throws error as above.
+void check_standard_input();
+
 /// Says on standard error that a named pipe is waited for until a program reads it. Else nothing.
 void tell_of_pipe_to_write(const std::string& file);
 

@@ -14,6 +14,7 @@
 #include "cli/say.hpp"
 #include "core/sha256.hpp"
 #include "core/words.hpp"
+#include "session/pipes.hpp"
 #include "session/sound_server.hpp"
 #include "study/calibrate/calibration_time.hpp"
 #include "study/calibrate/log.hpp"
@@ -85,6 +86,8 @@ void ask(study::calibration& c, study::calibration_log& log, Who& who, const Tol
 int ask_person(study::calibration& c, study::calibration_log& log, const settings& s, const environment& e,
                const calibrate_options& asked)
 {
+    if (!asked.page.shown() && asked.keypads.empty())
+        session::check_standard_input();
     const render_options render = session::settle_render(s, e);
     const session::stream_options& o = s.stream;
     const alsa_options device = session::device_options(s, o, e, render.channels, render.rate);

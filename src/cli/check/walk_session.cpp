@@ -185,6 +185,8 @@ piece walk_one(const array& a, unsigned tactor, double carrier_hz)
 walk_result walk(const alsa_options& device, const environment& e, const render_options& render,
                  const walk_options& o, session::stream_source source)
 {
+    if (o.ask)
+        session::check_standard_input();
     session::play_session session(device, o.play, e, std::move(source));
     walk_result result;
     try {

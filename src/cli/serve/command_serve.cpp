@@ -154,11 +154,13 @@ server::stream_options stream_of(const alsa_options& device, const session::stre
 // To whoever started it: a person, the journal, the line that systemctl status shows.
 std::function<void(server::stream_state, const std::string&)> tell_owner()
 {
-    return [lost = false](server::stream_state state, const std::string& reason) mutable {
+    return [lost = false, ran = false](server::stream_state state, const std::string& reason) mutable {
+        const bool again = std::exchange(ran, ran || state == server::stream_state::running);
         if (state == server::stream_state::lost)
-            say(stderr, "tactor: warning: the stream is lost: {}\n", shown(reason));
+            say(stderr, "tactor: warning: {}: {}\n", again ? "the stream is lost" : "waiting for the device",
+                shown(reason));
         if (state == server::stream_state::running && lost)
-            say(stderr, "tactor: the stream runs again\n");
+            say(stderr, "tactor: the stream runs{}\n", again ? " again" : "");
         lost = state == server::stream_state::lost || (lost && state != server::stream_state::running);
         net::notify_manager(fmt::format("STATUS=stream: {}{}{}", server::name_of(state),
                                         reason.empty() ? "" : ": ", shown(reason)));

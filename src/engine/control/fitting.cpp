@@ -67,7 +67,7 @@ void check_fits(const score& s, const stream_setup& stream, std::span<const doub
         throw error(error_kind::bad_input, "stroke",
                     fmt::format("made for {} at {} Hz, the stream has {} at {} Hz",
                                 counted(s.channels(), "channel"), s.rate(), stream.channels, stream.rate),
-                    "render it with the stream's rate and channels")
+                    "render it with the stream's rate and channels, or open the stream with the score's")
             .with_field(s.channels() == stream.channels ? "rate"
                         : s.rate() == stream.rate       ? "channels"
                                                         : "");
