@@ -11,7 +11,7 @@
 #include "folder.hpp"
 #include "study/bids/disk.hpp"
 #include "study/bids/study_folder.hpp"
-#include "study/bids/trial_row.hpp"
+#include "study/data/columns.hpp"
 
 namespace tactor::study::test_study_files {
 namespace {

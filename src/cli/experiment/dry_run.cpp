@@ -14,34 +14,26 @@
 #include "files/plan/json_values.hpp"
 #include "study/session/session_facts.hpp"
 #include "study/session/session_time.hpp"
+#include "study/session/trials.hpp"
 
 namespace tactor::cli {
 namespace {
 
 using json = nlohmann::ordered_json;
 
-json trial_json(const study::prepared_experiment& p, const study::planned_trial& t, std::size_t place)
-{
-    const study::experiment_definition& d = p.definition;
-    json j{{"trial", place},
-           {"motion", d.motions[t.motion].name},
-           {"method_1", d.methods[t.method_1].name},
-           {"method_2", nullptr},
-           {"duration_s", static_cast<double>(p.stimuli.frames(t)) / p.render.rate},
-           {"plan_1", p.stimuli.at(t.motion, t.method_1).hash},
-           {"plan_2", nullptr}};
-    if (t.method_2) {
-        j["method_2"] = d.methods[*t.method_2].name;
-        j["plan_2"] = p.stimuli.at(t.motion, *t.method_2).hash;
-    }
-    return j;
-}
-
 json trials_json(const study::prepared_experiment& p, const std::vector<study::planned_trial>& trials)
 {
     json all = json::array();
-    for (const study::planned_trial& t : trials)
-        all.push_back(trial_json(p, t, all.size() + 1));
+    for (const study::planned_trial& t : trials) {
+        const study::trial_row r = study::planned_row(p, t, {static_cast<unsigned>(all.size() + 1)});
+        all.push_back({{"trial", r.trial},
+                       {"motion", r.motion},
+                       {"method_1", r.method_1},
+                       {"method_2", files::or_null(r.method_2)},
+                       {"duration_s", r.duration_s},
+                       {"plan_1", r.plan_1},
+                       {"plan_2", files::or_null(r.plan_2)}});
+    }
     return all;
 }
 
@@ -108,9 +100,9 @@ void print_dry_run_text(std::FILE* out, const study::prepared_experiment& p)
                               d.level_dbfs ? fmt::format("{} dBFS", *d.level_dbfs)
                                            : fmt::format("{} dB SL", d.sl_db)));
     const auto row = [&](const study::planned_trial& t, const std::string& place) {
-        say_text(out, fmt::format("{:>8}  {:<16} {:<16} {:<16} {:>7.3f}\n", place, d.motions[t.motion].name,
-                                  d.methods[t.method_1].name, t.method_2 ? d.methods[*t.method_2].name : "-",
-                                  static_cast<double>(p.stimuli.frames(t)) / p.render.rate));
+        const study::trial_row r = study::planned_row(p, t, {});
+        say_text(out, fmt::format("{:>8}  {:<16} {:<16} {:<16} {:>7.3f}\n", place, r.motion, r.method_1,
+                                  r.method_2.empty() ? "-" : r.method_2, r.duration_s));
     };
     const std::vector<study::run_time> times = study::session_times(p, 0.0);
     for (std::size_t i = 0; i < p.runs.size(); ++i) {

@@ -9,6 +9,8 @@
 
 #include <tactor/version.hpp>
 
+#include "study/data/columns.hpp"
+
 namespace tactor::study {
 namespace {
 
@@ -26,10 +28,10 @@ std::string description_text(const ordered& j)
     return j.dump(2, ' ', false, ordered::error_handler_t::replace) + "\n";
 }
 
-ordered column_json(const char* description, const char* units = nullptr)
+ordered column_json(std::string_view description, std::string_view units = {})
 {
     ordered j{{"Description", description}};
-    if (units != nullptr)
+    if (!units.empty())
         j["Units"] = units;
     return j;
 }
@@ -120,26 +122,9 @@ std::string task_text(const run_definition& r, bool simulated)
     j["Instructions"] = r.question;
     if (!r.labels.empty())
         j["Labels"] = r.labels;
-    j["onset"] =
-        column_json("First frame of the first stimulus at the DAC, since the run's first sample there", "s");
-    j["duration"] = column_json(
-        "From the first frame of the first stimulus to the last of the last, the gap included", "s");
-    j["trial"] = column_json("Place in the sequence, from 1; a trial that comes again keeps it");
-    j["attempt"] = column_json("How often the trial has been begun");
-    j["motion"] = column_json("Target motion; the methods are how it was rendered");
-    j["method_1"] = column_json("Method of the first stimulus");
-    j["method_2"] = column_json("Method of the second stimulus; n/a where there is one only");
-    j["response"] = column_json(response_meaning(r).c_str());
-    j["response_time"] = column_json("From the last stimulus frame at the DAC to the answer", "s");
-    j["rating"] = column_json("The rating; n/a where nothing is rated");
-    j["void"] = column_json("Whether the trial does not count; it comes again at the end of the run");
+    for (const trial_column& c : trial_columns)
+        j[std::string(c.name)] = column_json(c.meaning.empty() ? response_meaning(r) : c.meaning, c.unit);
     j["void"]["Levels"] = {{"true", "does not count"}, {"false", "counts"}};
-    j["xruns"] = column_json("Gaps in the sound while the stimuli played, as the device tells them");
-    j["stream"] = column_json("Counts openings of the device, from 1");
-    j["frame_1"] = column_json("First frame of the first stimulus in that stream");
-    j["frame_2"] = column_json("First frame of the second stimulus in that stream");
-    j["plan_1"] = column_json("SHA-256 of the first stimulus' plan: sourcedata/sub-CODE/plans");
-    j["plan_2"] = column_json("SHA-256 of the second stimulus' plan");
     return description_text(j);
 }
 

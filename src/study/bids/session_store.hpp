@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "study/bids/study_folder.hpp"
-#include "study/bids/trial_row.hpp"
+#include "study/data/columns.hpp"
 #include "study/experiment/run_queue.hpp"
 #include "study/experiment/stimuli.hpp"
 

@@ -10,7 +10,7 @@
 
 #include "study/bids/disk.hpp"
 #include "study/bids/session_store.hpp"
-#include "study/bids/trial_row.hpp"
+#include "study/data/columns.hpp"
 #include "study/data/session.hpp"
 #include "study/data/text_table.hpp"
 

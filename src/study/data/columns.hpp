@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A trial as a line of sub-CODE_task-NAME_beh.tsv.
+/// The columns of the trials in sub-CODE_task-NAME_beh.tsv.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 #include "study/data/text_table.hpp"
 
 namespace tactor::study {
 
-/// Empty texts and missing values are n/a.
+/// A trial as a line of its table. Empty texts and missing values are n/a.
 struct trial_row {
     std::optional<double> onset_s = {}; ///< since the run's first sample at the DAC
     double duration_s = 0.0;            ///< from the first stimulus frame to the last, the gap included
@@ -34,8 +37,25 @@ struct trial_row {
     std::string plan_2 = {};
 };
 
-/// The cells of a row, in the order of a new table's columns.
+struct trial_column {
+    std::string_view name;
+    std::string_view meaning; ///< empty: depends on the task
+    std::string_view unit;    ///< empty: none
+    std::variant<std::string trial_row::*, double trial_row::*, std::optional<double> trial_row::*,
+                 unsigned trial_row::*, std::optional<unsigned> trial_row::*,
+                 std::optional<std::uint64_t> trial_row::*, bool trial_row::*>
+        member;
+    unsigned least = 0; ///< of whole numbers
+};
+
+/// All columns, in the order of a new table.
+extern const std::array<trial_column, 17> trial_columns;
+
+/// Returns the cells of a row, in the order of a new table.
 named_cells cells_of(const trial_row& r);
+
+/// Reads all columns of all lines. \throws error (bad_input) with file and line.
+std::vector<trial_row> read_rows(const text_table& t);
 
 /// Tests whether a crash cut the table's last line within its last cell, a plan.
 bool is_cut_in_plan(const text_table& t);
@@ -43,8 +63,5 @@ bool is_cut_in_plan(const text_table& t);
 /// Reads a table of trials; a last line that a crash cut off is none of its rows. \throws error (bad_input)
 /// with file and line.
 text_table read_trials(const std::filesystem::path& table);
-
-/// All lines of a table. \throws error (bad_input) with file and line.
-std::vector<trial_row> read_rows(const text_table& t);
 
 } // namespace tactor::study
