@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/data/outline.hpp"
+#include "study/experiment/definition.hpp"
 
 #include <string>
 
@@ -42,19 +42,19 @@ TEST_CASE("what is wrong is said with its line")
 {
     CHECK(refusal("[experiment\n").find("e.toml:1:") == 0);
     CHECK(refusal("[[run]]\n").find("there is no [experiment]") != std::string::npos);
-    CHECK(refusal("[experiment]\nname = 3\n").find("e.toml:2:8: name is no text") == 0);
+    CHECK(refusal("[experiment]\nname = 3\n").find("e.toml:2:8: name is 3") == 0);
     CHECK(refusal("[experiment]\nname = \"e\"\n").find("there is no [[motion]]") != std::string::npos);
     CHECK(refusal(head).find("there is no [[run]]") != std::string::npos);
     const auto with = [](const std::string& run) { return refusal(head + "[[run]]\n" + run); };
-    CHECK(with("task = \"rate\"\n").find("name is missing") != std::string::npos);
+    CHECK(with("task = \"rate\"\n").find("[[run]] has no name") != std::string::npos);
     CHECK(with("name = \"-\"\ntask = \"rate\"\n").find("no letter or digit") != std::string::npos);
-    CHECK(with("name = \"r\"\ntask = \"guess\"\n").find("e.toml:15:8: the task \"guess\" is not known") == 0);
+    CHECK(with("name = \"r\"\ntask = \"guess\"\n").find("e.toml:15:8: task is 'guess'") == 0);
     CHECK(with("name = \"r\"\ntask = \"choose\"\n").find("r has 3 methods to choose from") !=
           std::string::npos);
     CHECK(with("name = \"r\"\ntask = \"rate\"\nmotions = [\"c\"]\n")
               .find("motions has what is not defined (one of a, b)") != std::string::npos);
-    CHECK(with("name = \"r\"\ntask = \"rate\"\nscale = 1\n").find("scale is no whole number from 2") !=
-          std::string::npos);
+    for (const char* beyond : {"scale = 1", "scale = 10", "trials = 0", "trials = 10001"})
+        CHECK(with(std::string("name = \"r\"\ntask = \"rate\"\n") + beyond + "\n").find("e.toml:16:") == 0);
     CHECK(with("name = \"r\"\ntask = \"identify\"\nmotions = [\"a\"]\n").find("one motion to identify") !=
           std::string::npos);
     CHECK(with("name = \"r 1\"\ntask = \"rate\"\n[[run]]\nname = \"r-1\"\ntask = \"rate\"\n")
@@ -62,6 +62,14 @@ TEST_CASE("what is wrong is said with its line")
     CHECK(refusal(head + "[[method]]\nname = \"old\"\n").find("the method \"old\" is there twice") !=
           std::string::npos);
     CHECK(refusal(head + "[[motion]]\nname = \"a\\tb\"\n").find("no such name") != std::string::npos);
+}
+
+TEST_CASE("what the analysis does not need is passed over")
+{
+    CHECK(refusal("[masking]\nnoise = 7\n" + head +
+                  "algorithm = 7\nnew = true\n[[run]]\nname = \"r\"\ntask = \"choose\"\nscale = 7\n"
+                  "attribute = \"likeness\"\nmethods = [\"old\", \"new\"]\nbreak = \"long\"\n[other]\n")
+              .empty());
 }
 
 TEST_CASE("a key of very many parts is refused before it fills the stack, dots in a text are not")

@@ -111,7 +111,7 @@ void study_folder::refuse_others(const experiment_definition& d, bool simulated)
                         fmt::format("{} is {}, and this session is {}", who,
                                     s.simulated ? "simulated" : "real", simulated ? "simulated" : "real"),
                         "simulated and real sessions need a folder each");
-        if (s.experiment != d.outline)
+        if (s.experiment != make_outline(d))
             throw error(error_kind::bad_input, folder_.string(),
                         fmt::format("{} had another experiment: \"{}\" with other runs, motions or methods",
                                     who, s.experiment.name),

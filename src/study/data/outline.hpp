@@ -34,10 +34,4 @@ struct experiment_outline {
 /// Letters and digits of a run's name (BIDS allows no others in a task's).
 std::string file_name_of(std::string_view run);
 
-/// Reads the parts named above from TOML; leaves the others alone. `name` stands for the text in messages.
-/// \throws error (bad_input) with line: no TOML, a key that is missing or of another type, a name that is
-/// there twice or not known, runs whose files would have one name, choose without two methods, identify
-/// without two motions.
-experiment_outline read_outline(std::string_view toml, const std::string& name);
-
 } // namespace tactor::study

@@ -9,6 +9,7 @@
 #include <tactor/error.hpp>
 
 #include "study/data/text_table.hpp"
+#include "study/experiment/definition.hpp"
 
 namespace tactor::study {
 namespace {

@@ -9,7 +9,6 @@
 
 #include <tactor/error.hpp>
 
-#include "core/words.hpp"
 #include "files/text_file.hpp"
 #include "files/toml_reader.hpp"
 #include "study/experiment/noise_options.hpp"
@@ -20,25 +19,12 @@ namespace {
 namespace fs = std::filesystem;
 using detail::toml_table;
 
-constexpr unsigned most_trials = 10000;
 constexpr std::size_t most_bytes_of_text = std::size_t{1} << 20;
 
-std::vector<std::string> texts(const toml_table& t, std::string_view key, std::size_t most)
-{
-    std::vector<std::string> all;
-    const toml::array* list = t.list(key, "texts in quotes");
-    if (list == nullptr)
-        return all;
-    for (const toml::node& n : *list) {
-        if (!n.is_string())
-            detail::fail_at(t.where(n), fmt::format("{} has {}", key, detail::shown(n)),
-                            "texts in quotes, with commas between");
-        all.push_back(n.as_string()->get());
-    }
-    if (all.size() > most)
-        t.fail(key, fmt::format("{} has {} texts", key, all.size()), fmt::format("at most {}", most));
-    return all;
-}
+struct extent {
+    const fs::path* folder = nullptr; ///< of the files that the array and the motions name; none: left out
+    bool outline_only = false;        ///< of what others wrote: all else is passed over
+};
 
 // A name among the files beside the definition, unless it is a preset's.
 std::string array_in(const toml_table& t, const fs::path& folder)
@@ -80,23 +66,24 @@ std::optional<std::uint64_t> read_seed(const toml_table& t)
     return static_cast<std::uint64_t>(*v);
 }
 
-// `folder`: where the array's file is looked for; none: it is not.
-void read_head(const toml_table& root, const fs::path* folder, experiment_definition& d)
+void read_head(const toml_table& root, const extent& e, experiment_definition& d)
 {
     const auto t = root.table("experiment", "[experiment]", "[experiment]");
     if (!t)
         root.fail("there is no [experiment]", "it begins with one");
-    t->only({"name", "title", "array", "level", "gap_s", "rest_s", "seed", "consent", "authors"});
     d.name = name_in(*t, "name");
+    if (e.outline_only)
+        return;
+    t->only({"name", "title", "array", "level", "gap_s", "rest_s", "seed", "consent", "authors"});
     d.title = t->has("title") ? name_in(*t, "title") : d.name;
-    if (t->has("array") && folder != nullptr)
-        d.array = array_in(*t, *folder);
+    if (t->has("array") && e.folder != nullptr)
+        d.array = array_in(*t, *e.folder);
     read_level(*t, d);
     d.gap_s = t->number("gap_s", {0.0, 60.0}).value_or(d.gap_s);
     d.rest_s = t->number("rest_s", {0.0, 60.0}).value_or(d.rest_s);
     d.seed = read_seed(*t);
     d.consent = t->text("consent").value_or("");
-    d.authors = texts(*t, "authors", 1000);
+    d.authors = texts_in(*t, "authors", 1000);
 }
 
 masking_definition read_masking(const toml_table& root)
@@ -138,109 +125,50 @@ page_words read_page(const toml_table& root)
     return words;
 }
 
-std::string question_of(const run_definition& r)
+std::vector<toml_table> need_tables(const toml_table& root, std::string_view key)
 {
-    const bool similar = r.attribute == "similarity";
-    switch (r.outline.task) {
-    case task_kind::choose:
-        return similar ? "Which of the two was more like the target?" : "Which of the two was more even?";
-    case task_kind::rate:
-        return similar ? "How much was it like the target?" : "How even was it?";
-    case task_kind::identify:
-        break;
-    }
-    return "Which movement was it?";
-}
-
-// Places of names in a list that has them.
-template <class T>
-std::vector<std::size_t> places(const std::vector<std::string>& names, const std::vector<T>& all)
-{
-    std::vector<std::size_t> found;
-    for (std::size_t i = 0; i < all.size(); ++i)
-        if (std::find(names.begin(), names.end(), all[i].name) != names.end())
-            found.push_back(i);
-    return found;
-}
-
-void check_task_keys(const toml_table& t, task_kind task)
-{
-    for (const std::string_view key : {"scale", "labels"})
-        if (task != task_kind::rate && t.has(key))
-            t.fail(key, fmt::format("{} is of runs that rate", key), "leave it out, or task = \"rate\"");
-}
-
-run_definition run_in(const toml_table& t)
-{
-    t.only({"name", "task", "attribute", "question", "animation", "trials", "practice", "scale", "labels",
-            "break_s", "motions", "methods"});
-    run_definition r;
-    r.where = t.where();
-    r.outline.name = name_in(t, "name");
-    const std::string task = t.need(t.choice("task", {"choose", "rate", "identify"}), "task");
-    r.outline.task = task == "choose" ? task_kind::choose
-                     : task == "rate" ? task_kind::rate
-                                      : task_kind::identify;
-    check_task_keys(t, r.outline.task);
-    r.attribute = t.choice("attribute", {"similarity", "uniformity"}).value_or("");
-    if (r.attribute.empty() && r.outline.task != task_kind::identify)
-        t.need(std::optional<std::string>{}, "attribute");
-    r.question = t.text("question").value_or(question_of(r));
-    r.animation = t.boolean("animation").value_or(false);
-    r.outline.trials = t.need(t.whole("trials", 1, most_trials), "trials");
-    r.practice = t.whole("practice", 0, most_trials).value_or(0);
-    r.outline.scale = t.whole("scale", 2, 9).value_or(5);
-    r.labels = texts(t, "labels", r.outline.scale);
-    if (!r.labels.empty() && r.labels.size() != 2 && r.labels.size() != r.outline.scale)
-        t.fail(
-            "labels",
-            fmt::format("labels has {} for a scale of {}", counted(r.labels.size(), "text"), r.outline.scale),
-            "one for each end, or one for each step");
-    r.break_s = t.number("break_s", {0.0, 86400.0}).value_or(0.0);
-    t.list("motions", "names");
-    t.list("methods", "names");
-    return r;
-}
-
-// Not every disk tells capitals from small letters.
-void check_file_names(const std::vector<run_definition>& runs)
-{
-    for (std::size_t i = 0; i < runs.size(); ++i)
-        for (std::size_t k = 0; k < i; ++k)
-            if (in_small_letters(runs[i].outline.file_name) == in_small_letters(runs[k].outline.file_name))
-                throw error(error_kind::bad_input, runs[i].where,
-                            fmt::format("the runs \"{}\" and \"{}\" differ in capitals only",
-                                        runs[k].outline.name, runs[i].outline.name),
-                            "another name: on some disks their files would be one");
+    std::vector<toml_table> all = root.tables(key);
+    if (all.empty())
+        root.fail(fmt::format("there is no [[{}]]", key), "an experiment has at least one");
+    return all;
 }
 
 template <class T, class Read>
 std::vector<T> read_all(const toml_table& root, std::string_view key, const Read& read)
 {
     std::vector<T> all;
-    for (const toml_table& t : root.tables(key))
-        all.push_back(read(t));
-    if (all.empty())
-        root.fail(fmt::format("there is no [[{}]]", key), "an experiment has at least one");
+    for (const toml_table& t : need_tables(root, key)) {
+        T one = read(t);
+        if (std::any_of(all.begin(), all.end(), [&](const T& other) { return other.name == one.name; }))
+            t.fail("name", fmt::format("the {} \"{}\" is there twice", key, one.name),
+                   "each has a name of its own");
+        all.push_back(std::move(one));
+    }
     return all;
 }
 
-// All but the motions, whose files may be elsewhere.
-experiment_definition design_in(const toml_table& root, std::string_view toml, const std::string& name,
-                                const fs::path* folder)
+experiment_definition definition_in(std::string_view toml, const std::string& name, const extent& e)
 {
-    root.only({"experiment", "masking", "page", "motion", "method", "run"});
+    const toml::table document = detail::parse_toml(toml, name);
+    const toml_table root(document, "the file", name);
     experiment_definition d;
     d.text = toml;
-    read_head(root, folder, d);
-    d.masking = read_masking(root);
-    d.page = read_page(root);
-    d.methods = read_all<method_definition>(root, "method", read_method);
-    d.runs = read_all<run_definition>(root, "run", run_in);
-    // What the analysis will read of it; it knows which names go together.
-    d.outline = read_outline(toml, name);
-    for (std::size_t i = 0; i < d.runs.size(); ++i)
-        d.runs[i].outline = d.outline.runs[i];
+    if (!e.outline_only)
+        root.only({"experiment", "masking", "page", "motion", "method", "run"});
+    read_head(root, e, d);
+    if (!e.outline_only) {
+        d.masking = read_masking(root);
+        d.page = read_page(root);
+    }
+    d.motions = read_all<motion_definition>(root, "motion", [&](const toml_table& t) {
+        return e.folder != nullptr ? read_motion(t, *e.folder)
+                                   : motion_definition{name_in(t, "name"), {}, t.where()};
+    });
+    d.methods = read_all<method_definition>(root, "method", [&](const toml_table& t) {
+        return e.outline_only ? method_definition{name_in(t, "name"), {}, t.where()} : read_method(t);
+    });
+    for (const toml_table& t : need_tables(root, "run"))
+        d.runs.push_back(e.outline_only ? read_run_outline(t, d) : read_run_definition(t, d));
     return d;
 }
 
@@ -253,23 +181,25 @@ std::string_view to_string(noise_kind k) noexcept
 
 experiment_definition read_definition(std::string_view toml, const std::string& name, const fs::path& folder)
 {
-    const toml::table document = detail::parse_toml(toml, name);
-    const toml_table root(document, "the file", name);
-    experiment_definition d = design_in(root, toml, name, &folder);
-    check_file_names(d.runs);
-    d.motions = read_all<motion_definition>(root, "motion",
-                                            [&](const toml_table& t) { return read_motion(t, folder); });
-    for (run_definition& r : d.runs) {
-        r.motions = places(r.outline.motions, d.motions);
-        r.methods = places(r.outline.methods, d.methods);
-    }
-    return d;
+    return definition_in(toml, name, {.folder = &folder});
 }
 
 experiment_definition read_design(std::string_view toml, const std::string& name)
 {
-    const toml::table document = detail::parse_toml(toml, name);
-    return design_in(toml_table(document, "the file", name), toml, name, nullptr);
+    return definition_in(toml, name, {});
+}
+
+experiment_outline read_outline(std::string_view toml, const std::string& name)
+{
+    return make_outline(definition_in(toml, name, {.outline_only = true}));
+}
+
+experiment_outline make_outline(const experiment_definition& d)
+{
+    experiment_outline e{d.name};
+    for (const run_definition& r : d.runs)
+        e.runs.push_back(r.outline);
+    return e;
 }
 
 const std::vector<std::string>& shipped_experiments()

@@ -3,6 +3,7 @@
 /// The definition of an experiment: tactor-experiment(5) as values.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -77,8 +78,7 @@ struct experiment_definition {
     std::vector<motion_definition> motions = {};
     std::vector<method_definition> methods = {};
     std::vector<run_definition> runs = {};
-    experiment_outline outline = {}; ///< what the analysis will read
-    std::string text = {};           ///< all of it, TOML
+    std::string text = {}; ///< all of it, TOML
 };
 
 /// Reads a definition. `name` stands for the text in messages, and names of files in it are relative to
@@ -88,9 +88,16 @@ struct experiment_definition {
 experiment_definition read_definition(std::string_view toml, const std::string& name,
                                       const std::filesystem::path& folder);
 
-/// The same of a text that was read once, as a session keeps it: without the array and the motions, whose
-/// files may be elsewhere by now, nor the runs' places in them. \throws error (bad_input).
+/// Reads a text that was read once, as a session keeps it: without the array, and of the motions, whose files
+/// may be elsewhere by now, only the names. \throws error (bad_input).
 experiment_definition read_design(std::string_view toml, const std::string& name);
+
+/// Reads only what the analysis needs, with the same bounds; passes over all else, as other programs may
+/// write it. \throws error (bad_input).
+experiment_outline read_outline(std::string_view toml, const std::string& name);
+
+/// Returns what the analysis needs of a definition.
+experiment_outline make_outline(const experiment_definition& d);
 
 /// The definitions that are built in: park2016.
 const std::vector<std::string>& shipped_experiments();
@@ -104,11 +111,20 @@ experiment_definition load_definition(const std::string& name_or_file);
 /// Reads a text of one line that can stand in a table. \throws error (bad_input).
 std::string name_in(const detail::toml_table& t, std::string_view key);
 
+/// Reads a list of texts, empty where there is none. \throws error (bad_input) for more than `most`.
+std::vector<std::string> texts_in(const detail::toml_table& t, std::string_view key, std::size_t most);
+
 /// Reads [[motion]]: a stroke from a preset, path data or a file, in the time that is asked for.
 motion_definition read_motion(const detail::toml_table& t, const std::filesystem::path& folder);
 
 /// Reads [[method]]: options of a plan.
 method_definition read_method(const detail::toml_table& t);
+
+/// Reads [[run]], after the motions, methods and runs before it. \throws error (bad_input).
+run_definition read_run_definition(const detail::toml_table& t, const experiment_definition& d);
+
+/// Reads of it what the analysis needs, and passes over other keys. \throws error (bad_input).
+run_definition read_run_outline(const detail::toml_table& t, const experiment_definition& d);
 
 /// Returns the experiment that is built in, as it stands among the examples.
 std::string_view park2016_text() noexcept;
