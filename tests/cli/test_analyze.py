@@ -375,9 +375,9 @@ class Refusals(AnalyzeTest):
         text = told["experiment"]["text"]
         for broken, why in (
                 ("{\n\"simulated\": tru", f"{name}:2: it is no JSON"), ("[]", f"{name}:1: it is no object"),
-                ("[" * 100000, f"{name}:1: it is no JSON"), ("{}", "simulated is missing"),
-                (json.dumps(told | {"simulated": 1}), "simulated is of another type"),
-                (json.dumps(told | {"experiment": "park2016"}), "experiment is of another type"),
+                ("[" * 100000, f"{name}:1: it is no JSON"), ("{}", "simulated: is missing"),
+                (json.dumps(told | {"simulated": 1}), "simulated: is neither true nor false"),
+                (json.dumps(told | {"experiment": "park2016"}), "experiment: is no object"),
                 (json.dumps(told | {"experiment": {"text": text + "[[run"}}), "experiment.text:"),
                 (json.dumps(told | {"experiment": {"text": text.replace("motion-4", "motion-5")}}),
                  "sub-01 and sub-02: their experiments differ"),

@@ -465,17 +465,17 @@ class Refusals(ReportTest):
         good = (self.dir / "study/sourcedata/sub-01/session.json").read_text()
         for change, why in (
                 (lambda t: t["experiment"].update(text=t["experiment"]["text"] + "# more\n"), "its SHA-256 is"),
-                (lambda t: t["array"]["tactors"][3].update(x_mm="left"), "array.tactors[3].x_mm is no number"),
-                (lambda t: t["array"]["tactors"][3].pop("y_mm"), "array.tactors[3].y_mm is missing"),
-                (lambda t: t["array"].update(tactors=7), "array.tactors is no list"),
-                (lambda t: t["array"]["tactors"][3].update(channel=-1), "array.tactors[3].channel is no whole number"),
-                (lambda t: t["array"]["tactors"][3].update(polarity=1e300), "array.tactors[3].polarity is no whole number"),
-                (lambda t: t["array"]["tactors"][3].update(actuator="pump"), 'session.json: array.tactors[3].actuator "pump" is not known'),
-                (lambda t: t["array"]["tactors"][3].update(x_mm=20.0), "session.json: array is none: "),
-                (lambda t: t["thresholds_dbfs"].__setitem__(2, [[250]]), "thresholds_dbfs[2][0] is no frequency"),
-                (lambda t: t.update(level=[7]), "level is no object"),
-                (lambda t: t.update(order=[7]), "order[0] is no text"),
-                (lambda t: t.update(thresholds_assumed="yes"), "thresholds_assumed is neither true nor false"),
+                (lambda t: t["array"]["tactors"][3].update(x_mm="left"), "array.tactors[3].x_mm: is no number"),
+                (lambda t: t["array"]["tactors"][3].pop("y_mm"), "array.tactors[3].y_mm: is missing"),
+                (lambda t: t["array"].update(tactors=7), "array.tactors: is no list"),
+                (lambda t: t["array"]["tactors"][3].update(channel=-1), "array.tactors[3].channel: is no whole number"),
+                (lambda t: t["array"]["tactors"][3].update(polarity=1e300), "array.tactors[3].polarity: is no whole number"),
+                (lambda t: t["array"]["tactors"][3].update(actuator="pump"), 'session.json: array.tactors[3].actuator: is "pump", which is not known'),
+                (lambda t: t["array"]["tactors"][3].update(x_mm=20.0), "session.json: array: is none: "),
+                (lambda t: t["thresholds_dbfs"].__setitem__(2, [[250]]), "thresholds_dbfs[2][0]: is no frequency"),
+                (lambda t: t.update(level=[7]), "level: is no object"),
+                (lambda t: t.update(order=[7]), "order[0]: is no text"),
+                (lambda t: t.update(thresholds_assumed="yes"), "thresholds_assumed: is neither true nor false"),
                 (lambda t: t["stimuli"][0].update(sha256="../../../passwd"), "passwd.json"),
                 (lambda t: t["stimuli"].pop(0), "plan_1 is no plan of its motion by its method")):
             self.change("01", change)

@@ -5,9 +5,9 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "files/plan/json_value.hpp"
 #include "has.hpp"
 #include "message_of.hpp"
-#include "study/report/json_fact.hpp"
 #include "study/report/markdown.hpp"
 #include "study/report/sections.hpp"
 
@@ -15,6 +15,8 @@ namespace tactor::study::test_report {
 namespace {
 
 using ordered = nlohmann::ordered_json;
+
+const std::string file = "s.json";
 
 study_facts sessions_that_say(const std::vector<std::string>& devices)
 {
@@ -60,25 +62,25 @@ TEST_CASE("ranges are one number where all are alike to six digits")
 TEST_CASE("a value that is not what it should be is told with its place")
 {
     const ordered j = {{"array", {{"tactors", {{{"x_mm", "left"}}}}}}, {"n", nullptr}, {"date", 7}};
-    const json_fact f(j, "s.json");
+    const json_value f(j, file, "it was changed");
     CHECK_FALSE(f["n"].there());
     CHECK_FALSE(f["none"]["deeper"]["still"].there());
     CHECK(f["none"].list().empty());
-    const json_fact first = f["array"]["tactors"].list().at(0);
+    const json_value first = f["array"]["tactors"].list().at(0);
     CHECK(has(message_of([&] { static_cast<void>(first["x_mm"].number()); }),
-              "s.json: array.tactors[0].x_mm is no number"));
+              "s.json: array.tactors[0].x_mm: is no number"));
     CHECK(has(message_of([&] { static_cast<void>(first["y_mm"].need_number()); }),
-              "array.tactors[0].y_mm is missing"));
-    CHECK(has(message_of([&] { static_cast<void>(f["date"].text()); }), "date is no text"));
-    CHECK(has(message_of([&] { static_cast<void>(f["date"]["deeper"]); }), "date is no object"));
-    CHECK(has(message_of([&] { static_cast<void>(f["date"].list()); }), "date is no list"));
-    CHECK(has(message_of([&] { static_cast<void>(f["date"].truth()); }), "date is neither true nor false"));
+              "array.tactors[0].y_mm: is missing"));
+    CHECK(has(message_of([&] { static_cast<void>(f["date"].text()); }), "date: is no text"));
+    CHECK(has(message_of([&] { static_cast<void>(f["date"]["deeper"]); }), "date: is no object"));
+    CHECK(has(message_of([&] { static_cast<void>(f["date"].list()); }), "date: is no list"));
+    CHECK(has(message_of([&] { static_cast<void>(f["date"].truth()); }), "date: is neither true nor false"));
 }
 
 TEST_CASE("any value has words")
 {
     const ordered j = {{"a", {{"pcm", "hw:0"}, {"rate", 48000}, {"none", nullptr}}}, {"b", {1, "two"}}};
-    const json_fact f(j, "s.json");
+    const json_value f(j, file, "it was changed");
     CHECK(f["a"].words() == "pcm: hw:0, rate: 48000");
     CHECK(f["b"].words() == "1, two");
     CHECK(f["c"].words().empty());
@@ -88,7 +90,7 @@ TEST_CASE("carriers are told as they were")
 {
     const auto carrier = [](const ordered& stroke) {
         const ordered plan = {{"stroke", stroke}};
-        return carrier_of({plan, "p.json"});
+        return carrier_of({plan, file, "it was changed"});
     };
     CHECK(carrier({{"carrier_hz", 250.0}}) == "sine of 250 Hz");
     CHECK(carrier({{"carrier_hz", 250.0}, {"waveform", "noise:100-300"}, {"noise_seed", 7}}) ==

@@ -19,6 +19,9 @@
 namespace tactor::files {
 namespace {
 
+using nlohmann::ordered_json;
+
+constexpr const char* hint = "see tactor-json(5)";
 constexpr const char* how_to_make = "tactor plan STROKE --format json makes one";
 
 /// Follows the parser: bursts and samples are taken as they end, and dropped from the document.
@@ -26,14 +29,14 @@ class reader {
 public:
     explicit reader(std::string file) : file_(std::move(file)) {}
 
-    bool event(int depth, nlohmann::json::parse_event_t what, nlohmann::json& parsed)
+    bool event(int depth, ordered_json::parse_event_t what, ordered_json& parsed)
     {
         const auto d = static_cast<std::size_t>(depth);
-        if (what == nlohmann::json::parse_event_t::key) {
+        if (what == ordered_json::parse_event_t::key) {
             keys_.resize(d + 1);
             keys_[d] = parsed.get<std::string>();
         }
-        if (what != nlohmann::json::parse_event_t::object_end || keys_.size() < 2)
+        if (what != ordered_json::parse_event_t::object_end || keys_.size() < 2)
             return true;
         const std::size_t top = keys_[1] == "plans" ? 2 : 0; // depth of a plan
         if (d == top)
@@ -52,22 +55,22 @@ private:
     std::string key(std::size_t depth) const { return depth < keys_.size() ? keys_[depth] : ""; }
 
     // A burst or a sample, so deep in a plan.
-    bool take(std::size_t deep, std::size_t top, const nlohmann::json& j)
+    bool take(std::size_t deep, std::size_t top, const ordered_json& j)
     {
         const bool is_burst = deep == 2 && key(top + 1) == "bursts";
         const bool is_sample = deep == 3 && key(top + 1) == "continuous" && key(top + 2) == "points";
         if (is_burst)
-            bursts_.push_back(read_burst({file_, fmt::format("bursts[{}]", bursts_.size()), j}));
+            bursts_.push_back(read_burst({j, file_, hint, fmt::format("bursts[{}]", bursts_.size())}));
         if (is_sample)
-            samples_.add(read_sample({file_, fmt::format("points[{}]", samples_.ends.size()), j}));
+            samples_.add(read_sample({j, file_, hint, fmt::format("points[{}]", samples_.ends.size())}));
         return is_burst || is_sample;
     }
 
     // False: it is done with.
-    bool end_plan(const nlohmann::json& j, bool whole)
+    bool end_plan(const ordered_json& j, bool whole)
     {
-        const fields all{file_, "", j};
-        const std::string schema = j.contains("schema") ? all.text("schema") : "none";
+        const json_value all(j, file_, hint);
+        const std::string schema = all["schema"].text().value_or("none");
         if (whole && schema == "tactor-plans/1")
             return true;
         if (schema != "tactor-plan/1")
@@ -88,7 +91,7 @@ private:
         if (moved)
             read_.moved.push_back(*std::move(moved));
         if (!read_.moved.empty() && read_.moved.size() != read_.plans.size())
-            all.refuse("compensation", "is said of some plans and not of all");
+            all["compensation"].refuse("is said of some plans and not of all");
         return false;
     }
 
@@ -114,10 +117,11 @@ plan_file read_from(Input&& in, const std::string& name)
 {
     reader r(name);
     try {
-        const nlohmann::json all =
-            nlohmann::json::parse(in, [&r](int depth, nlohmann::json::parse_event_t what,
-                                           nlohmann::json& parsed) { return r.event(depth, what, parsed); });
-    } catch (const nlohmann::json::exception& e) {
+        const ordered_json all =
+            ordered_json::parse(in, [&r](int depth, ordered_json::parse_event_t what, ordered_json& parsed) {
+                return r.event(depth, what, parsed);
+            });
+    } catch (const ordered_json::exception& e) {
         throw error(error_kind::bad_input, name, said(e.what()), how_to_make);
     }
     return std::move(r).result();

@@ -19,16 +19,15 @@ nlohmann::ordered_json fit_json(const fitting& f)
     return matrix(f.scale * x * x, f.scale * x * y, f.scale * y * y);
 }
 
-std::optional<fitting> read_fitting(const fields& plan)
+std::optional<fitting> read_fitting(const json_value& plan)
 {
-    const fields stroke = plan.object("stroke");
-    if (!stroke.has("fit"))
+    const json_value told = plan["stroke"]["fit"];
+    if (!told.there())
         return {};
-    const fields told = stroke.object("fit");
-    const std::vector<double> m = told.numbers("matrix");
+    const std::vector<double> m = told["matrix"].need_numbers();
     if (m.size() != 6)
-        told.refuse("matrix", "has not six numbers");
-    fitting f{.to = {m[4], m[5]}, .scale = m[0], .margin_mm = told.number("margin_mm")};
+        told["matrix"].refuse("has not six numbers");
+    fitting f{.to = {m[4], m[5]}, .scale = m[0], .margin_mm = told["margin_mm"].need_number()};
     if (m[0] != m[3] || m[1] != 0.0) {
         f.scale = m[0] + m[3];
         f.line = {std::sqrt(m[0] / f.scale), std::copysign(std::sqrt(m[3] / f.scale), m[1])};

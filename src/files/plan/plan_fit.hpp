@@ -16,6 +16,6 @@ namespace tactor::files {
 nlohmann::ordered_json fit_json(const fitting& f);
 
 /// None where the plan's stroke was not fitted. \throws error (bad_input).
-std::optional<fitting> read_fitting(const fields& plan);
+std::optional<fitting> read_fitting(const json_value& plan);
 
 } // namespace tactor::files

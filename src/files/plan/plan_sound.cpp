@@ -30,12 +30,12 @@ std::string name_waveform(const waveform& w)
     return nowhere ? text : whole.string();
 }
 
-void take_bend(const fields& c, carrier_point& into)
+void take_bend(const json_value& c, carrier_point& into)
 {
-    const std::vector<double> bend = c.numbers("bend");
+    const std::vector<double> bend = c["bend"].need_numbers();
     if (bend.size() != into.bend.size() ||
         std::any_of(bend.begin(), bend.end(), [](double v) { return !(std::abs(v) <= most_bend_hz); }))
-        c.refuse("bend", "is not four numbers of at most 1e7 Hz");
+        c["bend"].refuse("is not four numbers of at most 1e7 Hz");
     std::copy(bend.begin(), bend.end(), into.bend.begin());
 }
 
@@ -89,23 +89,29 @@ nlohmann::ordered_json threshold_json(const tactor_spec& t)
     return all;
 }
 
-void take_threshold(const fields& t, tactor_spec& into)
+void take_threshold(const json_value& t, tactor_spec& into)
 {
-    if (!t.is_list("threshold_dbfs")) {
-        into.threshold_dbfs = t.number_or_null("threshold_dbfs");
+    const json_value one_or_more = t["threshold_dbfs"].need_member();
+    if (!one_or_more.is_list()) {
+        into.threshold_dbfs = one_or_more.number();
         return;
     }
-    for (const auto& [hz, dbfs] : t.pairs("threshold_dbfs"))
-        into.thresholds.push_back({hz, dbfs});
+    for (const json_value& pair : one_or_more.list()) {
+        const std::vector<double> hz_and_dbfs = pair.need_numbers();
+        if (hz_and_dbfs.size() != 2)
+            pair.refuse("is no pair of numbers");
+        into.thresholds.push_back({hz_and_dbfs[0], hz_and_dbfs[1]});
+    }
 }
 
 namespace {
 
 // Other samples would sound under the plan's name.
-void check_recording(const fields& said, const recording& r)
+void check_recording(const json_value& said, const recording& r)
 {
-    if (said.text("sha256") != r.sha256 || said.number("frames") != static_cast<double>(r.samples.size()) ||
-        said.number("rate") != r.rate_hz)
+    if (said["sha256"].need_text() != r.sha256 ||
+        said["frames"].need_number() != static_cast<double>(r.samples.size()) ||
+        said["rate"].need_number() != r.rate_hz)
         throw error(error_kind::bad_input, source_place{r.file},
                     "the recording has changed since the plan was made",
                     "plan the stroke again, or bring the old file back");
@@ -113,51 +119,46 @@ void check_recording(const fields& said, const recording& r)
 
 } // namespace
 
-void take_sound(const fields& stroke, plan& p)
+void take_sound(const json_value& stroke, plan& p)
 {
     try {
-        if (stroke.has("waveform"))
-            p.wave = parse_waveform(stroke.text("waveform"));
+        if (const auto text = stroke["waveform"].text())
+            p.wave = parse_waveform(*text);
     } catch (const error& e) {
-        stroke.refuse("waveform", fmt::format("{}: {}", e.subject(), e.why()));
+        stroke["waveform"].refuse(fmt::format("{}: {}", e.subject(), e.why()));
     }
-    if (p.wave.recorded && stroke.has("recording"))
-        check_recording(stroke.object("recording"), *p.wave.recorded);
-    if (stroke.has("noise_seed")) {
-        const double seed = stroke.number("noise_seed");
-        if (!(seed >= 0.0 && seed <= 0x1p53 && seed == std::floor(seed)))
-            stroke.refuse("noise_seed", "is no whole number from 0 to 2^53");
-        p.wave.seed = static_cast<std::uint64_t>(seed);
+    if (p.wave.recorded && stroke["recording"].there())
+        check_recording(stroke["recording"], *p.wave.recorded);
+    if (const auto seed = stroke["noise_seed"].number()) {
+        if (!(*seed >= 0.0 && *seed <= 0x1p53 && *seed == std::floor(*seed)))
+            stroke["noise_seed"].refuse("is no whole number from 0 to 2^53");
+        p.wave.seed = static_cast<std::uint64_t>(*seed);
     }
-    if (stroke.has("texture"))
-        p.wave.texture = stroke.kind<texture_kind>("texture");
-    if (stroke.has("texture_mm"))
-        p.wave.texture_mm = stroke.number("texture_mm");
-    if (stroke.has("am_hz"))
-        p.am = {stroke.number("am_hz"), stroke.number("am_depth")};
-    if (!stroke.has("course"))
-        return;
-    for (const fields& c : stroke.list("course")) {
-        carrier_point next{c.number("t_s"), c.number("hz")};
-        if (c.has("bend"))
+    p.wave.texture = stroke["texture"].kind<texture_kind>().value_or(p.wave.texture);
+    p.wave.texture_mm = stroke["texture_mm"].number().value_or(p.wave.texture_mm);
+    if (stroke["am_hz"].there())
+        p.am = {stroke["am_hz"].need_number(), stroke["am_depth"].need_number()};
+    for (const json_value& c : stroke["course"].list()) {
+        carrier_point next{c["t_s"].need_number(), c["hz"].need_number()};
+        if (c["bend"].there())
             take_bend(c, next);
         const bool ascends = p.course.empty() ? next.t_s >= 0.0 : next.t_s >= p.course.back().t_s;
         if (!ascends || !(next.hz >= 0.0 && next.hz <= 384000.0))
-            stroke.refuse("course", "has a point out of order, or with no frequency");
+            stroke["course"].refuse("has a point out of order, or with no frequency");
         p.course.push_back(next);
     }
 }
 
-burst_envelope read_envelope(const fields& render)
+burst_envelope read_envelope(const json_value& render)
 {
     burst_envelope e;
-    if (!render.has("envelope"))
+    if (!render["envelope"].there())
         return e;
-    const fields f = render.object("envelope");
-    e.kind = f.kind<envelope_kind>("kind");
-    e.attack_s = f.number_or_null("attack_s");
-    e.release_s = f.number_or_null("release_s");
-    e.tukey_part = f.number("tukey_part");
+    const json_value f = render["envelope"];
+    e.kind = f["kind"].need_kind<envelope_kind>();
+    e.attack_s = f["attack_s"].need_member().number();
+    e.release_s = f["release_s"].need_member().number();
+    e.tukey_part = f["tukey_part"].need_number();
     return e;
 }
 

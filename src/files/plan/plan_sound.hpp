@@ -19,11 +19,11 @@ nlohmann::ordered_json envelope_json(const burst_envelope& e);
 
 /// "threshold_dbfs" of a tactor: a level, a list of [Hz, dBFS], or null.
 nlohmann::ordered_json threshold_json(const tactor_spec& t);
-void take_threshold(const fields& t, tactor_spec& into);
+void take_threshold(const json_value& t, tactor_spec& into);
 
 /// Back from "stroke". Reads the WAV file that it names. \throws error (bad_input).
-void take_sound(const fields& stroke, plan& p);
+void take_sound(const json_value& stroke, plan& p);
 /// Back from "render".
-burst_envelope read_envelope(const fields& render);
+burst_envelope read_envelope(const json_value& render);
 
 } // namespace tactor::files

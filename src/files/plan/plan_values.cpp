@@ -2,7 +2,6 @@
 #include "files/plan/plan_values.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <utility>
 
@@ -17,48 +16,46 @@ namespace {
 
 constexpr double most_amplitude = 1000.0; // as the intensity of a stroke
 
-std::vector<drive> read_drives(const fields& f)
+std::vector<drive> read_drives(const json_value& f)
 {
     std::vector<drive> drives;
-    for (const fields& d : f.list("drives")) {
-        drives.push_back({d.count("tactor"), d.number("amplitude")});
+    for (const json_value& d : f["drives"].need_list()) {
+        drives.push_back({d["tactor"].need_count(), d["amplitude"].need_number()});
         if (!(drives.back().amplitude >= 0.0 && drives.back().amplitude <= most_amplitude))
-            d.refuse("amplitude",
-                     fmt::format("is {}, not from 0 to {}", drives.back().amplitude, most_amplitude));
+            d["amplitude"].refuse(
+                fmt::format("is {}, not from 0 to {}", drives.back().amplitude, most_amplitude));
     }
     return drives;
 }
 
-burst read_place(const fields& f)
+burst read_place(const json_value& f)
 {
     burst b;
-    b.position = {f.number("x_mm"), f.number("y_mm")};
-    b.intensity = f.number("intensity");
+    b.position = {f["x_mm"].need_number(), f["y_mm"].need_number()};
+    b.intensity = f["intensity"].need_number();
     b.drives = read_drives(f);
     return b;
 }
 
 // A built-in model shares the intensity out and adds nothing to it.
-void check_amplitudes(const fields& f, const std::string& name, const plan& p, const burst& b)
+void check_amplitudes(const json_value& f, const std::string& name, const plan& p, const burst& b)
 {
     constexpr double rounding = 1e-9;
     if (!detail::kind_named<phantom_kind>(p.phantom))
         return;
     for (const drive& d : b.drives)
         if (d.amplitude > b.intensity * (1.0 + rounding))
-            f.refuse(name.c_str(), fmt::format("drives tactor {} at {}, above its intensity of {}", d.tactor,
-                                               d.amplitude, b.intensity));
+            f[name].refuse(fmt::format("drives tactor {} at {}, above its intensity of {}", d.tactor,
+                                       d.amplitude, b.intensity));
 }
 
 // Drives and their order as planners make them.
-void check_bursts(const fields& f, const array& a, const plan& p, const std::vector<burst>& bursts)
+void check_bursts(const json_value& f, const array& a, const plan& p, const std::vector<burst>& bursts)
 {
     double latest = 0.0;
     for (std::size_t i = 0; i < bursts.size(); ++i) {
         const burst& b = bursts[i];
-        const auto refuse = [&](const std::string& why) {
-            f.refuse(fmt::format("bursts[{}]", i).c_str(), why);
-        };
+        const auto refuse = [&](const std::string& why) { f[fmt::format("bursts[{}]", i)].refuse(why); };
         if (b.onset_s < latest)
             refuse("begins before the one before it");
         latest = b.onset_s;
@@ -72,7 +69,7 @@ void check_bursts(const fields& f, const array& a, const plan& p, const std::vec
     }
 }
 
-void check_samples(const fields& f, const array& a, const plan& p, const curve_samples& samples)
+void check_samples(const json_value& f, const array& a, const plan& p, const curve_samples& samples)
 {
     burst b;
     for (std::size_t i = 0; i < samples.ends.size(); ++i) {
@@ -83,250 +80,127 @@ void check_samples(const fields& f, const array& a, const plan& p, const curve_s
     }
     for (const drive& d : samples.drives)
         if (d.tactor >= a.tactors.size())
-            f.refuse("points", fmt::format("drive tactor {} of {}", d.tactor, a.tactors.size()));
+            f["points"].refuse(fmt::format("drive tactor {} of {}", d.tactor, a.tactors.size()));
 }
 
 constexpr std::uint64_t most_way_points = 10000;
 
 } // namespace
 
-void fields::refuse(const char* name, const std::string& why) const
-{
-    const std::string where = place_.empty() ? name : fmt::format("{}.{}", place_, name);
-    throw error(error_kind::bad_input, fmt::format("{}: {}", file_, where), why, "see tactor-json(5)")
-        .with_field(where)
-        .with_place({file_});
-}
-
-const nlohmann::json& fields::member(const char* name) const
-{
-    const auto it = object_.find(name);
-    if (it == object_.end())
-        refuse(name, "is missing");
-    return *it;
-}
-
-bool fields::has(const char* name) const
-{
-    return object_.contains(name);
-}
-
-bool fields::is_null(const char* name) const
-{
-    return member(name).is_null();
-}
-
-double fields::number(const char* name) const
-{
-    const nlohmann::json& j = member(name);
-    if (!j.is_number() || !std::isfinite(j.get<double>()))
-        refuse(name, "is no number");
-    return j.get<double>();
-}
-
-std::optional<double> fields::number_or_null(const char* name) const
-{
-    return member(name).is_null() ? std::nullopt : std::optional(number(name));
-}
-
-unsigned fields::count(const char* name) const
-{
-    const nlohmann::json& j = member(name);
-    if (!j.is_number_unsigned() || j.get<std::uint64_t>() > 1'000'000)
-        refuse(name, "is no whole number from 0 to 1000000");
-    return j.get<unsigned>();
-}
-
-std::string fields::text(const char* name) const
-{
-    const nlohmann::json& j = member(name);
-    if (!j.is_string())
-        refuse(name, "is no text");
-    return j.get<std::string>();
-}
-
-bool fields::flag(const char* name) const
-{
-    const nlohmann::json& j = member(name);
-    if (!j.is_boolean())
-        refuse(name, "is neither true nor false");
-    return j.get<bool>();
-}
-
-fields fields::object(const char* name) const
-{
-    const nlohmann::json& j = member(name);
-    if (!j.is_object())
-        refuse(name, "is no object");
-    return {file_, place_.empty() ? name : fmt::format("{}.{}", place_, name), j};
-}
-
-std::vector<fields> fields::list(const char* name) const
-{
-    const nlohmann::json& j = member(name);
-    if (!j.is_array())
-        refuse(name, "is no list");
-    std::vector<fields> all;
-    for (std::size_t i = 0; i < j.size(); ++i) {
-        const std::string place = fmt::format("{}{}{}[{}]", place_, place_.empty() ? "" : ".", name, i);
-        if (!j[i].is_object())
-            refuse(name, "has a member that is no object");
-        all.emplace_back(file_, place, j[i]);
-    }
-    return all;
-}
-
-bool fields::is_list(const char* name) const
-{
-    return member(name).is_array();
-}
-
-std::vector<std::pair<double, double>> fields::pairs(const char* name) const
-{
-    std::vector<std::pair<double, double>> all;
-    for (const nlohmann::json& p : member(name)) {
-        if (!p.is_array() || p.size() != 2 || !p[0].is_number() || !p[1].is_number())
-            refuse(name, "is no list of pairs of numbers");
-        all.emplace_back(p[0].get<double>(), p[1].get<double>());
-    }
-    return all;
-}
-
-std::vector<double> fields::numbers(const char* name) const
-{
-    const nlohmann::json& j = member(name);
-    const auto is_number = [](const nlohmann::json& n) { return n.is_number(); };
-    if (!j.is_array() || !std::all_of(j.begin(), j.end(), is_number))
-        refuse(name, "is no list of numbers");
-    return j.get<std::vector<double>>();
-}
-
-std::vector<std::string> fields::texts(const char* name) const
-{
-    const nlohmann::json& j = member(name);
-    const auto is_text = [](const nlohmann::json& t) { return t.is_string(); };
-    if (!j.is_array() || !std::all_of(j.begin(), j.end(), is_text))
-        refuse(name, "is no list of texts");
-    return j.get<std::vector<std::string>>();
-}
-
-burst read_burst(const fields& f)
+burst read_burst(const json_value& f)
 {
     burst b = read_place(f);
-    b.onset_s = f.number("onset_s");
-    b.duration_s = f.number("duration_s");
-    if (f.has("tau_s"))
-        b.tau_s = f.number("tau_s");
+    b.onset_s = f["onset_s"].need_number();
+    b.duration_s = f["duration_s"].need_number();
+    b.tau_s = f["tau_s"].number();
     return b;
 }
 
-burst read_sample(const fields& f)
+burst read_sample(const json_value& f)
 {
     return read_place(f);
 }
 
-array read_array(const fields& plan)
+array read_array(const json_value& plan)
 {
-    const fields f = plan.object("array");
+    const json_value f = plan["array"];
     array a;
-    a.name = f.text("name");
-    for (const fields& t : f.list("tactors")) {
+    a.name = f["name"].need_text();
+    for (const json_value& t : f["tactors"].need_list()) {
         tactor_spec s;
-        s.position = {t.number("x_mm"), t.number("y_mm")};
-        s.channel = t.count("channel");
-        s.polarity = t.number("polarity") < 0.0 ? -1 : 1;
-        s.gain_db = t.number("gain_db");
-        s.max_dbfs = t.number("max_dbfs");
+        s.position = {t["x_mm"].need_number(), t["y_mm"].need_number()};
+        s.channel = t["channel"].need_count();
+        s.polarity = t["polarity"].need_number() < 0.0 ? -1 : 1;
+        s.gain_db = t["gain_db"].need_number();
+        s.max_dbfs = t["max_dbfs"].need_number();
         take_threshold(t, s);
-        if (t.has("rise_s"))
-            s.rise_s = t.number("rise_s");
+        s.rise_s = t["rise_s"].number();
         a.tactors.push_back(s);
     }
     validate(a);
     return a;
 }
 
-render_options read_render(const fields& plan)
+render_options read_render(const json_value& plan)
 {
-    const fields f = plan.object("render");
+    const json_value f = plan["render"];
     render_options o;
-    o.rate = f.count("rate");
-    o.channels = f.count("channels");
-    o.phase = f.kind<phase_kind>("phase");
-    o.ramp_s = f.number_or_null("ramp_s");
-    if (f.has("sl_db"))
-        o.sl_db = f.number("sl_db");
-    else
-        o.level_dbfs = f.number("level_dbfs");
+    o.rate = f["rate"].need_count();
+    o.channels = f["channels"].need_count();
+    o.phase = f["phase"].need_kind<phase_kind>();
+    o.ramp_s = f["ramp_s"].need_member().number();
+    o.sl_db = f["sl_db"].number();
+    if (!o.sl_db)
+        o.level_dbfs = f["level_dbfs"].need_number();
     o.envelope = read_envelope(f);
-    if (!f.is_null("marker")) {
-        const fields marker = f.object("marker");
-        o.marker_channel = marker.count("channel");
-        o.marker_s = marker.number("duration_s");
+    if (f["marker"].need_member().there()) {
+        const json_value marker = f["marker"];
+        o.marker_channel = marker["channel"].need_count();
+        o.marker_s = marker["duration_s"].need_number();
     }
     return o;
 }
 
-placed_plan read_plan(const fields& f, const array& a, std::vector<burst> bursts, curve_samples samples)
+placed_plan read_plan(const json_value& f, const array& a, std::vector<burst> bursts, curve_samples samples)
 {
     plan p;
-    const fields drawn = f.object("stroke");
-    p.algorithm = f.text("algorithm");
-    p.phantom = f.text("phantom");
-    if (f.has("faces"))
-        p.faces = f.kind<faces_kind>("faces");
-    p.stroke_duration_s = drawn.number("duration_s");
-    p.stroke_length_mm = drawn.number("length_mm");
-    p.carrier_hz = drawn.number("carrier_hz");
+    const json_value drawn = f["stroke"];
+    p.algorithm = f["algorithm"].need_text();
+    p.phantom = f["phantom"].need_text();
+    p.faces = f["faces"].kind<faces_kind>().value_or(p.faces);
+    p.stroke_duration_s = drawn["duration_s"].need_number();
+    p.stroke_length_mm = drawn["length_mm"].need_number();
+    p.carrier_hz = drawn["carrier_hz"].need_number();
     take_sound(drawn, p);
-    p.overlap = f.object("render").kind<overlap_kind>("overlap");
-    p.soa_s = f.number_or_null("soa_s");
-    p.total_s = f.number("total_s");
+    p.overlap = f["render"]["overlap"].need_kind<overlap_kind>();
+    p.soa_s = f["soa_s"].need_member().number();
+    p.total_s = f["total_s"].need_number();
     check_bursts(f, a, p, bursts);
     p.bursts = std::move(bursts);
-    if (f.has("continuous")) {
-        if (f.object("continuous").number("step_s") != continuous_step_s)
-            f.refuse("continuous.step_s", fmt::format("only {} s can be played", continuous_step_s));
+    if (f["continuous"].there()) {
+        if (f["continuous"]["step_s"].need_number() != continuous_step_s)
+            f["continuous"]["step_s"].refuse(fmt::format("only {} s can be played", continuous_step_s));
         check_samples(f, a, p, samples);
         try {
             p.curve = curve(p.stroke_duration_s, std::move(samples));
         } catch (const error& e) {
-            f.refuse("continuous.points", fmt::format("{}: {}", e.why(), e.hint()));
+            f["continuous"]["points"].refuse(fmt::format("{}: {}", e.why(), e.hint()));
         }
     }
-    for (const fields& c : f.list("conflicts"))
-        p.conflicts.push_back({c.count("tactor"), c.number("from_s"), c.number("to_s")});
+    for (const json_value& c : f["conflicts"].need_list())
+        p.conflicts.push_back({c["tactor"].need_count(), c["from_s"].need_number(), c["to_s"].need_number()});
     for (const conflict& c : p.conflicts)
         if (c.tactor >= a.tactors.size())
-            f.refuse("conflicts", fmt::format("have tactor {} of {}", c.tactor, a.tactors.size()));
-    for (const fields& m : f.list("dropped"))
-        p.dropped.push_back({m.number("tau_s"), {m.number("x_mm"), m.number("y_mm")}});
-    p.warnings = f.texts("warnings");
-    const double start_s = f.number("start_s");
-    return {std::move(p), f.flag("follows") ? std::nullopt : std::optional(start_s)};
+            f["conflicts"].refuse(fmt::format("have tactor {} of {}", c.tactor, a.tactors.size()));
+    for (const json_value& m : f["dropped"].need_list())
+        p.dropped.push_back({m["tau_s"].need_number(), {m["x_mm"].need_number(), m["y_mm"].need_number()}});
+    for (const json_value& w : f["warnings"].need_list())
+        p.warnings.push_back(w.need_text());
+    const double start_s = f["start_s"].need_number();
+    return {std::move(p), f["follows"].need_truth() ? std::nullopt : std::optional(start_s)};
 }
 
-std::optional<compensated_plan> read_compensation(const fields& plan)
+std::optional<compensated_plan> read_compensation(const json_value& plan)
 {
-    if (!plan.has("compensation"))
+    if (!plan["compensation"].there())
         return {};
-    const fields f = plan.object("compensation");
+    const json_value f = plan["compensation"];
     compensated_plan c;
-    c.observer = {f.number("sigma_mm"), f.number("sigma_v_mm_s")};
-    c.at_edge = f.count("bursts_at_edge");
-    c.residual_rms_mm = f.number("residual_rms_mm");
-    c.residual_largest_mm = f.number("residual_largest_mm");
-    for (const fields& t : f.list("taps"))
-        c.taps.push_back({t.number("onset_s"),
-                          {t.number("target_x_mm"), t.number("target_y_mm")},
-                          {t.number("alone_x_mm"), t.number("alone_y_mm")},
-                          {t.number("felt_x_mm"), t.number("felt_y_mm")}});
+    c.observer = {f["sigma_mm"].need_number(), f["sigma_v_mm_s"].need_number()};
+    c.at_edge = f["bursts_at_edge"].need_count();
+    c.residual_rms_mm = f["residual_rms_mm"].need_number();
+    c.residual_largest_mm = f["residual_largest_mm"].need_number();
+    for (const json_value& t : f["taps"].need_list())
+        c.taps.push_back({t["onset_s"].need_number(),
+                          {t["target_x_mm"].need_number(), t["target_y_mm"].need_number()},
+                          {t["alone_x_mm"].need_number(), t["alone_y_mm"].need_number()},
+                          {t["felt_x_mm"].need_number(), t["felt_y_mm"].need_number()}});
     return c;
 }
 
-stroke read_stroke(const fields& f, const plan& p, const std::optional<compensated_plan>& moved)
+stroke read_stroke(const json_value& f, const plan& p, const std::optional<compensated_plan>& moved)
 {
-    const fields drawn = f.object("stroke");
+    const json_value drawn = f["stroke"];
     std::vector<timed_point> way;
     const auto add = [&](double t_s, const burst& b) {
         if (way.empty())
@@ -353,18 +227,16 @@ stroke read_stroke(const fields& f, const plan& p, const std::optional<compensat
     if (p.curve)
         p.curve->sample(p.curve->size() - 1, last);
     if (way.empty())
-        f.refuse("bursts", "there are none");
+        f["bursts"].refuse("there are none");
     way.push_back({p.stroke_duration_s, last.position, last.intensity});
-    stroke s{drawn.text("name"), trajectory::timed(std::move(way))};
+    stroke s{drawn["name"].need_text(), trajectory::timed(std::move(way))};
     s.carrier_hz = p.carrier_hz;
     s.wave = p.wave;
     s.am = p.am;
-    if (drawn.has("note")) {
-        const std::string note = drawn.text("note");
-        for (const note_kind n : values_of<note_kind>())
-            if (note == note_text(n))
-                s.note = n;
-    }
+    const auto note = drawn["note"].text();
+    for (const note_kind n : values_of<note_kind>())
+        if (note == note_text(n))
+            s.note = n;
     return s;
 }
 

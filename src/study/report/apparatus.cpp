@@ -81,7 +81,7 @@ std::string arrays_text(const study_facts& f)
 
 std::string level_text(const session_facts& s)
 {
-    const json_fact level = s.facts()["level"];
+    const json_value level = s.facts()["level"];
     if (const auto sl = level["sl_db"].number())
         return fmt::format("{} dB above each tactor's detection threshold ({} dB SL)", digits(*sl),
                            digits(*sl));
@@ -97,9 +97,9 @@ bool needs_thresholds(const session_facts& s)
 // Returns true if a session has a threshold.
 bool has_thresholds(const session_facts& s)
 {
-    const std::vector<json_fact> all = s.facts()["thresholds_dbfs"].list();
+    const std::vector<json_value> all = s.facts()["thresholds_dbfs"].list();
     return needs_thresholds(s) ||
-           std::any_of(all.begin(), all.end(), [](const json_fact& one) { return one.there(); });
+           std::any_of(all.begin(), all.end(), [](const json_value& one) { return one.there(); });
 }
 
 std::string assumed_text(const session_facts& s)
@@ -114,19 +114,19 @@ std::string assumed_text(const session_facts& s)
 }
 
 // One threshold, or those at several frequencies.
-std::string threshold_text(const json_fact& t)
+std::string threshold_text(const json_value& t)
 {
     if (!t.there())
         return "none";
     if (!t.is_list())
         return digits(t.need_number());
     std::string all;
-    for (const json_fact& pair : t.list()) {
-        const std::vector<json_fact> hz_and_dbfs = pair.list();
+    for (const json_value& pair : t.list()) {
+        const std::vector<double> hz_and_dbfs = pair.need_numbers();
         if (hz_and_dbfs.size() != 2)
-            pair.refuse("is no frequency with a threshold", "it was changed");
-        all += fmt::format("{}{} at {} Hz", all.empty() ? "" : ", ", digits(hz_and_dbfs[1].need_number()),
-                           digits(hz_and_dbfs[0].need_number()));
+            pair.refuse("is no frequency with a threshold");
+        all += fmt::format("{}{} at {} Hz", all.empty() ? "" : ", ", digits(hz_and_dbfs[1]),
+                           digits(hz_and_dbfs[0]));
     }
     return all;
 }
@@ -161,7 +161,7 @@ std::string thresholds_table(const study_facts& f)
         if (!has_thresholds(s))
             continue;
         std::vector<std::string> row{"sub-" + s.code};
-        for (const json_fact& one : s.facts()["thresholds_dbfs"].list()) {
+        for (const json_value& one : s.facts()["thresholds_dbfs"].list()) {
             row.push_back(threshold_text(one));
             if (one.there() && !one.is_list())
                 columns[row.size() - 2].push_back(one.need_number());
@@ -180,7 +180,7 @@ std::string origin_text(const session_facts& s)
 {
     if (!s.document.contains("calibration"))
         return "";
-    const json_fact c = s.facts()["calibration"];
+    const json_value c = s.facts()["calibration"];
     if (!c.there())
         return "none";
     if (s.facts()["schema"].text() != own_schema)
@@ -197,7 +197,7 @@ std::string origin_text(const session_facts& s)
                         plain(c["date"].text().value_or(not_recorded)));
     if (c["simulated"].truth().value_or(false))
         text += ", **SIMULATED: nobody was asked**";
-    for (const json_fact& w : c["warnings"].list())
+    for (const json_value& w : c["warnings"].list())
         text += "; " + plain(w.need_text());
     return text;
 }
@@ -205,7 +205,7 @@ std::string origin_text(const session_facts& s)
 std::string words_of(const study_facts& f, const char* key)
 {
     return told(f, [&](const session_facts& s) {
-        const json_fact said = s.facts()[key];
+        const json_value said = s.facts()[key];
         return !said.there() && s.document.contains(key) ? std::string("none") : plain(said.words());
     });
 }

@@ -33,7 +33,7 @@ template <class F>
 std::string over_streams(const session_facts& s, const std::set<unsigned>& used, const F& say)
 {
     sayings said;
-    for (const json_fact& one : s.facts()["streams"].list()) {
+    for (const json_value& one : s.facts()["streams"].list()) {
         const std::string number = one["stream"].words();
         if (!used.empty() && std::none_of(used.begin(), used.end(),
                                           [&](unsigned n) { return fmt::format("{}", n) == number; }))
@@ -58,7 +58,7 @@ std::set<unsigned> all_streams(const session_facts& s)
     return all;
 }
 
-std::string noise_words(const json_fact& m)
+std::string noise_words(const json_value& m)
 {
     return fmt::format("{} noise of {} dBFS (root mean square), faded over {} s, {}",
                        plain(m["noise"].need_text()), digits(m["level_dbfs"].need_number()),
@@ -67,11 +67,11 @@ std::string noise_words(const json_fact& m)
 }
 
 // The noise in an opening of the device. Sessions of older versions name the noise's device alone.
-std::string masker_words(const json_fact& stream, const json_fact& asked)
+std::string masker_words(const json_value& stream, const json_value& asked)
 {
     if (!stream["masker"].there())
         return "none";
-    const json_fact noise = stream["masking"].there() ? stream["masking"] : asked;
+    const json_value noise = stream["masking"].there() ? stream["masking"] : asked;
     return noise.there() ? fmt::format("{}, from {}", noise_words(noise), plain(stream["masker"].words()))
                          : "";
 }
@@ -87,7 +87,7 @@ std::string animation_text(const session_facts& s, std::size_t run)
     constexpr const char* asked = " (the definition asks for it)";
     if (is_simulated(s))
         return std::string(nobody) + asked;
-    const std::string shown = over_streams(s, s.streams.at(run), [](const json_fact& one) -> std::string {
+    const std::string shown = over_streams(s, s.streams.at(run), [](const json_value& one) -> std::string {
         const std::string display = one["display"].words();
         return display == "page"                         ? "yes, on the page"
                : display == "terminal with animation"    ? "yes, on the terminal"
@@ -99,7 +99,7 @@ std::string animation_text(const session_facts& s, std::size_t run)
 
 std::string masking_text(const session_facts& s)
 {
-    const json_fact asked = s.facts()["masking"];
+    const json_value asked = s.facts()["masking"];
     if (!is_own(s))
         return asked.there() ? noise_words(asked) : "";
     const std::string wanted =
@@ -107,7 +107,7 @@ std::string masking_text(const session_facts& s)
     if (is_simulated(s))
         return nobody + wanted;
     const std::string played =
-        over_streams(s, all_streams(s), [&](const json_fact& one) { return masker_words(one, asked); });
+        over_streams(s, all_streams(s), [&](const json_value& one) { return masker_words(one, asked); });
     if (played.empty())
         return asked.there() ? not_recorded + wanted : "none";
     return played + (played.starts_with("none") ? wanted : "");
@@ -118,7 +118,7 @@ std::string display_text(const session_facts& s)
     if (is_simulated(s))
         return nobody;
     return over_streams(s, all_streams(s),
-                        [](const json_fact& one) { return plain(one["display"].words()); });
+                        [](const json_value& one) { return plain(one["display"].words()); });
 }
 
 std::string consent_text(const session_facts& s)
@@ -136,7 +136,7 @@ std::string walk_text(const session_facts& s)
         return nobody;
     std::set<std::string> felt;
     std::string last;
-    for (const json_fact& one : s.facts()["walk"].list()) {
+    for (const json_value& one : s.facts()["walk"].list()) {
         felt.insert(one["tactor"].words());
         last = one["asked"].words();
     }
@@ -151,7 +151,7 @@ std::vector<std::string> session_days(const session_facts& s)
             days.insert(time.substr(0, time.find('T')));
     };
     add(s.facts()["date"].words());
-    for (const json_fact& one : s.facts()["streams"].list())
+    for (const json_value& one : s.facts()["streams"].list())
         add(one["opened"].words());
     return {days.begin(), days.end()};
 }

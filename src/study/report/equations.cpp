@@ -108,9 +108,9 @@ std::string phantom_text(std::string_view name)
     return text_of(phantoms, name);
 }
 
-std::string carrier_of(const json_fact& plan)
+std::string carrier_of(const json_value& plan)
 {
-    const json_fact s = plan["stroke"];
+    const json_value s = plan["stroke"];
     const std::string wave = s["waveform"].text().value_or("sine");
     std::string text;
     if (s["noise_seed"].there())
@@ -125,16 +125,16 @@ std::string carrier_of(const json_fact& plan)
         text += fmt::format(", amplitude-modulated at {} Hz to a depth of {}",
                             digits(s["am_hz"].need_number()), digits(s["am_depth"].need_number()));
     std::vector<double> course;
-    for (const json_fact& c : s["course"].list())
+    for (const json_value& c : s["course"].list())
         course.push_back(c["hz"].need_number());
     if (!course.empty())
         text += fmt::format(", its frequency changing on the way: {} Hz", range_text(course));
     return text;
 }
 
-std::string envelope_of(const json_fact& plan)
+std::string envelope_of(const json_value& plan)
 {
-    const json_fact e = plan["render"]["envelope"];
+    const json_value e = plan["render"]["envelope"];
     if (!e.there())
         return "raised-cosine ramps";
     std::string text = plain(e["kind"].need_text()) + " envelopes";
@@ -147,10 +147,10 @@ std::string envelope_of(const json_fact& plan)
     return text;
 }
 
-std::string rise_of(const json_fact& plan)
+std::string rise_of(const json_value& plan)
 {
     std::string all;
-    for (const json_fact& t : plan["array"]["tactors"].list())
+    for (const json_value& t : plan["array"]["tactors"].list())
         if (t["rise_s"].there())
             all += fmt::format("{}tactor {} {} s", all.empty() ? "" : ", ", t["tactor"].words(),
                                digits(t["rise_s"].need_number()));

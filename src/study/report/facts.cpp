@@ -25,7 +25,7 @@ constexpr int most_channel = 16383;
                 "it was changed after the session: put back what it was");
 }
 
-tactor_spec tactor_in(const json_fact& t)
+tactor_spec tactor_in(const json_value& t)
 {
     tactor_spec one;
     one.position = {t["x_mm"].need_number(), t["y_mm"].need_number()};
@@ -34,22 +34,17 @@ tactor_spec tactor_in(const json_fact& t)
         one.polarity = t["polarity"].need_whole(-1, 1);
     one.gain_db = t["gain_db"].number().value_or(0.0);
     one.max_dbfs = t["max_dbfs"].number().value_or(0.0);
-    const std::string actuator = t["actuator"].text().value_or("unknown");
-    try {
-        one.actuator = from_string<actuator_kind>(actuator);
-    } catch (const error& e) {
-        t["actuator"].refuse(e.why(), e.hint());
-    }
+    one.actuator = t["actuator"].kind<actuator_kind>().value_or(one.actuator);
     return one;
 }
 
-std::optional<array> array_in(const json_fact& a)
+std::optional<array> array_in(const json_value& a)
 {
     if (!a.there())
         return {};
     array all;
     all.name = a["name"].text().value_or("");
-    for (const json_fact& t : a["tactors"].list())
+    for (const json_value& t : a["tactors"].list())
         all.tactors.push_back(tactor_in(t));
     try {
         validate(all);
@@ -62,7 +57,7 @@ std::optional<array> array_in(const json_fact& a)
 std::vector<planned_stimulus> stimuli_of(const session_facts& s, const fs::path& plans)
 {
     std::vector<planned_stimulus> all;
-    for (const json_fact& one : s.facts()["stimuli"].list()) {
+    for (const json_value& one : s.facts()["stimuli"].list()) {
         planned_stimulus p{
             one["motion"].need_text(), one["method"].need_text(), one["sha256"].need_text(), {}, {}};
         const fs::path file = plans / (fs::path(p.hash).filename().string() + ".json");
@@ -70,7 +65,7 @@ std::vector<planned_stimulus> stimuli_of(const session_facts& s, const fs::path&
         const std::string text = read_file(file);
         if (const std::string is = detail::sha256_text(text); is != p.hash)
             refuse_changed(p.file, p.hash, is);
-        p.plan = read_json(file, text);
+        p.plan = files::read_object(text, p.file);
         all.push_back(std::move(p));
     }
     return all;
@@ -131,7 +126,7 @@ session_facts session_of(const fs::path& folder, const std::string& code, const 
     session_facts s;
     s.code = code;
     s.file = file.string();
-    s.document = read_json(file, read_file(file));
+    s.document = files::read_object(read_file(file), s.file);
     const std::string text = s.facts()["experiment"]["text"].need_text();
     s.definition_hash = detail::sha256_text(text);
     if (const auto said = s.facts()["experiment"]["sha256"].text(); said && *said != s.definition_hash)

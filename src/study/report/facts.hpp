@@ -14,11 +14,16 @@
 #include <nlohmann/json.hpp>
 #include <tactor/array.hpp>
 
+#include "files/plan/json_value.hpp"
 #include "study/data/dataset.hpp"
 #include "study/experiment/definition.hpp"
-#include "study/report/json_fact.hpp"
 
 namespace tactor::study {
+
+using files::json_value;
+
+/// Hint where a file is not as a session wrote it.
+inline constexpr const char* changed_file = "it was changed";
 
 /// A stimulus that a session lists, with its plan (schema tactor-plan/1).
 struct planned_stimulus {
@@ -28,7 +33,7 @@ struct planned_stimulus {
     std::string file;
     nlohmann::ordered_json plan;
 
-    json_fact facts() const { return {plan, file}; }
+    json_value facts() const { return {plan, file, changed_file}; }
 };
 
 /// Void trials of a run, how many of them were given again, in how many the sound had gaps, and of how many
@@ -58,7 +63,7 @@ struct session_facts {
     std::vector<void_count> voids = {};           ///< by run of the outline
     std::vector<std::set<unsigned>> streams = {}; ///< openings of the device in which its trials count
 
-    json_fact facts() const { return {document, file}; }
+    json_value facts() const { return {document, file, changed_file}; }
 };
 
 /// A line of participants.tsv.

@@ -93,7 +93,7 @@ std::string cells_text(const dataset& d, std::size_t run)
 std::string order_of(const session_facts& s)
 {
     std::vector<std::string> runs;
-    for (const json_fact& one : s.facts()["order"].list())
+    for (const json_value& one : s.facts()["order"].list())
         runs.push_back(one.need_text());
     return plain_list(runs);
 }

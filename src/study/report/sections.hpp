@@ -10,9 +10,9 @@
 
 #include <tactor/plan.hpp>
 
+#include "files/plan/json_value.hpp"
 #include "study/analysis/analysis.hpp"
 #include "study/report/facts.hpp"
-#include "study/report/json_fact.hpp"
 
 namespace tactor::study {
 
@@ -43,13 +43,13 @@ std::string algorithm_text(std::string_view name);
 std::string phantom_text(std::string_view name);
 
 /// Returns "a sine of 250 Hz, amplitude-modulated at ..." for a plan (schema tactor-plan/1).
-std::string carrier_of(const json_fact& plan);
+std::string carrier_of(const json_value& plan);
 
 /// Returns the shape of its bursts but for the ramps' length: "raised-cosine ramps".
-std::string envelope_of(const json_fact& plan);
+std::string envelope_of(const json_value& plan);
 
 /// Says how long actuators take to move and what is done about it; empty where none takes time.
-std::string rise_of(const json_fact& plan);
+std::string rise_of(const json_value& plan);
 
 /// Writes the whole text. `a` is of `d`, and `f` of the folder that `d` was read from. Every number is from
 /// its files.

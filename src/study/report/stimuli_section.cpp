@@ -18,7 +18,7 @@ using numbers = std::vector<double>;
 numbers of_bursts(const planned_stimulus& p, const char* key)
 {
     numbers all;
-    for (const json_fact& b : p.facts()["bursts"].list())
+    for (const json_value& b : p.facts()["bursts"].list())
         if (const auto v = b[key].number())
             all.push_back(*v);
     return all;
@@ -43,7 +43,7 @@ std::string carrier_text(const session_facts& s)
     for (const planned_stimulus& p : s.stimuli)
         for (const double r : of_bursts(p, "ramp_s"))
             ramps.push_back(r);
-    const std::string phase = over_plans(s, [](const json_fact& p) { return p["render"]["phase"].words(); });
+    const std::string phase = over_plans(s, [](const json_value& p) { return p["render"]["phase"].words(); });
     std::string text = fmt::format("{}; {}; {} of {} s at both ends of a burst", over_plans(s, carrier_of),
                                    phase == "stroke"  ? "the phase ran on through each stimulus"
                                    : phase == "burst" ? "the phase began anew with each burst"
@@ -108,8 +108,8 @@ std::string bursts_cell(const planned_stimulus& p)
 
 std::string plan_row(const planned_stimulus& p)
 {
-    const json_fact f = p.facts();
-    const auto number = [](const json_fact& v) {
+    const json_value f = p.facts();
+    const auto number = [](const json_value& v) {
         return v.there() ? digits(v.need_number()) : std::string("-");
     };
     return table_row({plain(p.motion), plain(p.method), plain(f["stroke"]["name"].words()),
@@ -146,7 +146,7 @@ std::string notes_text(const study_facts& f)
         for (const planned_stimulus& p : s.stimuli) {
             if (const std::string note = p.facts()["stroke"]["note"].words(); !note.empty())
                 notes.insert(fmt::format("- {}: {}\n", plain(p.motion), plain(note)));
-            for (const json_fact& w : p.facts()["warnings"].list())
+            for (const json_value& w : p.facts()["warnings"].list())
                 notes.insert(
                     fmt::format("- {} by {}: {}\n", plain(p.motion), plain(p.method), plain(w.need_text())));
         }

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include "files/plan/json_value.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+namespace tactor::files {
+
+using nlohmann::ordered_json;
+
+ordered_json read_object(const std::string& text, const std::string& file)
+{
+    std::size_t byte = 0;
+    const char* why = "it is no JSON";
+    try {
+        ordered_json j = ordered_json::parse(text);
+        if (j.is_object())
+            return j;
+        why = "it is no object";
+    } catch (const ordered_json::parse_error& e) {
+        byte = std::min(e.byte, text.size());
+    } catch (const ordered_json::exception&) { // a number that no double holds
+    }
+    const auto end = text.begin() + static_cast<std::ptrdiff_t>(byte);
+    throw error(error_kind::bad_input, fmt::format("{}:{}", file, 1 + std::count(text.begin(), end, '\n')),
+                why, "it was changed, or not written to its end");
+}
+
+void json_value::refuse(std::string_view why, std::string_view hint) const
+{
+    throw error(error_kind::bad_input, place_.empty() ? *file_ : fmt::format("{}: {}", *file_, place_), why,
+                hint.empty() ? hint_ : hint)
+        .with_field(place_)
+        .with_place({*file_});
+}
+
+json_value json_value::operator[](const std::string& key) const
+{
+    std::string place = place_.empty() ? key : place_ + "." + key;
+    if (!there())
+        return {nullptr, *file_, hint_, std::move(place)};
+    if (!value_->is_object())
+        refuse("is no object");
+    const auto at = value_->find(key);
+    return {at == value_->end() ? nullptr : &*at, *file_, hint_, std::move(place)};
+}
+
+const json_value& json_value::need_member() const
+{
+    if (value_ == nullptr)
+        refuse("is missing");
+    return *this;
+}
+
+std::vector<json_value> json_value::list() const
+{
+    std::vector<json_value> all;
+    if (!there())
+        return all;
+    if (!value_->is_array())
+        refuse("is no list");
+    for (const ordered_json& one : *value_)
+        all.push_back({&one, *file_, hint_, fmt::format("{}[{}]", place_, all.size())});
+    return all;
+}
+
+std::optional<double> json_value::number() const
+{
+    if (!there())
+        return {};
+    if (!value_->is_number())
+        refuse("is no number");
+    return value_->get<double>();
+}
+
+std::optional<std::string> json_value::text() const
+{
+    if (!there())
+        return {};
+    if (!value_->is_string())
+        refuse("is no text");
+    return value_->get<std::string>();
+}
+
+std::optional<bool> json_value::truth() const
+{
+    if (!there())
+        return {};
+    if (!value_->is_boolean())
+        refuse("is neither true nor false");
+    return value_->get<bool>();
+}
+
+int json_value::need_whole(int least, int most) const
+{
+    const double v = need_number();
+    if (!(v >= least && v <= most) || v != std::floor(v))
+        refuse(fmt::format("is no whole number from {} to {}", least, most));
+    return static_cast<int>(v);
+}
+
+std::vector<json_value> json_value::need_list() const
+{
+    if (!need_member().there())
+        refuse("is null");
+    return list();
+}
+
+std::vector<double> json_value::need_numbers() const
+{
+    std::vector<double> all;
+    for (const json_value& one : need_list())
+        all.push_back(one.need_number());
+    return all;
+}
+
+std::string json_value::words() const
+{
+    if (!there())
+        return {};
+    if (value_->is_string())
+        return value_->get<std::string>();
+    if (!value_->is_structured())
+        return value_->dump();
+    std::string all;
+    for (const auto& [key, value] : value_->items()) {
+        const std::string one = json_value(&value, *file_, hint_, place_).words();
+        if (one.empty())
+            continue;
+        all += all.empty() ? "" : ", ";
+        all += value_->is_object() ? fmt::format("{}: {}", key, one) : one;
+    }
+    return all;
+}
+
+} // namespace tactor::files

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// A value of a JSON file with its place there, such as bursts[3].onset_s, for what is refused.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "core/kind_names.hpp"
+
+namespace tactor::files {
+
+/// Reads a text that is one object. \throws error (bad_input) with the file's name and the line.
+nlohmann::ordered_json read_object(const std::string& text, const std::string& file);
+
+/// A value that may not be there: null is not there either. It refers to the document and to the file's name,
+/// which must outlive it. All but there() and is_list() throw error (bad_input) for a value of another type,
+/// and what begins with need_ for one that is not there.
+class json_value {
+public:
+    /// `hint` ends what is refused.
+    json_value(const nlohmann::ordered_json& document, const std::string& file, const char* hint,
+               std::string place = {})
+        : json_value(&document, file, hint, std::move(place))
+    {
+    }
+    json_value(const nlohmann::ordered_json&, std::string&&, const char*, std::string = {}) = delete;
+
+    bool there() const noexcept { return value_ != nullptr && !value_->is_null(); }
+    bool is_list() const noexcept { return there() && value_->is_array(); }
+
+    /// A member of an object; not there where this is not.
+    json_value operator[](const std::string& key) const;
+    /// This value, where its object has it; it may be null. \throws error (bad_input).
+    const json_value& need_member() const;
+    /// The members of a list; none where it is not there.
+    std::vector<json_value> list() const;
+
+    std::optional<double> number() const;
+    std::optional<std::string> text() const;
+    std::optional<bool> truth() const;
+    /// A value of a closed set, by its name.
+    template <class Kind>
+    std::optional<Kind> kind() const
+    {
+        const std::optional<std::string> name = text();
+        const std::optional<Kind> k = name ? detail::kind_named<Kind>(*name) : std::nullopt;
+        if (name && !k)
+            refuse("is \"" + *name + "\", which is not known");
+        return k;
+    }
+
+    double need_number() const { return need(number()); }
+    int need_whole(int least, int most) const;
+    unsigned need_count() const { return static_cast<unsigned>(need_whole(0, 1'000'000)); }
+    std::string need_text() const { return need(text()); }
+    bool need_truth() const { return need(truth()); }
+    template <class Kind>
+    Kind need_kind() const
+    {
+        return need(kind<Kind>());
+    }
+    std::vector<json_value> need_list() const;
+    std::vector<double> need_numbers() const;
+
+    /// Any value in words: members of objects and lists with commas between; empty where it is not there.
+    std::string words() const;
+
+    /// \throws error (bad_input) with file and place. An empty hint is that of the file.
+    [[noreturn]] void refuse(std::string_view why, std::string_view hint = {}) const;
+
+private:
+    json_value(const nlohmann::ordered_json* value, const std::string& file, const char* hint,
+               std::string place)
+        : value_(value), file_(&file), hint_(hint), place_(std::move(place))
+    {
+    }
+
+    template <class T>
+    T need(std::optional<T> v) const
+    {
+        if (!v)
+            need_member().refuse("is null");
+        return *std::move(v);
+    }
+
+    const nlohmann::ordered_json* value_;
+    const std::string* file_;
+    const char* hint_;
+    std::string place_;
+};
+
+} // namespace tactor::files
