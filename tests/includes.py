@@ -26,7 +26,7 @@ MAY_INCLUDE = {
     "plot": set(),
     "net": {"core"},
     "study": {"files/plan", "options", "session", "net"},
-    "server": {"net", "options"},
+    "server": {"net", "options", "session"},
     "cli": {"files/plan", "options", "session", "plot", "study", "net", "server"},
     "python": {"files/plan", "options", "session", "plot"},
 }

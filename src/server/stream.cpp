@@ -12,6 +12,7 @@
 
 #include "server/clock.hpp"
 #include "server/stream_watch.hpp"
+#include "session/play_session.hpp"
 
 namespace tactor::server {
 
@@ -24,14 +25,6 @@ std::string_view name_of(stream_state s) noexcept
 namespace {
 
 constexpr double longest_pause_s = 5.0;
-
-void add(player_stats& sum, const player_stats& more)
-{
-    sum.periods += more.periods;
-    sum.frames += more.frames;
-    sum.xruns += more.xruns;
-    sum.realtime = more.realtime;
-}
 
 } // namespace
 
@@ -225,7 +218,7 @@ void stream::retire(std::function<void()> then)
         p.reset();
         boost::asio::post(io_, [this, last = std::move(last), driven = std::move(driven), then] {
             retiring_ = false;
-            add(before_, last);
+            session::add_stats(before_, last);
             driven_ = driven.value_or(driven_);
             if (driven && options_.settled)
                 options_.settled(*driven);
@@ -243,7 +236,7 @@ player_stats stream::stats() const
 {
     player_stats all = before_;
     if (player_ != nullptr)
-        add(all, player_->stats());
+        session::add_stats(all, player_->stats());
     return all;
 }
 

@@ -26,6 +26,8 @@ constexpr int kept_ms = 1000;  // how often it is kept that the array is driven
 constexpr int proof_ms = 1000; // a device that was lost is back when it has held for so long
 constexpr double longest_pause_s = 5.0;
 
+constexpr std::ptrdiff_t most_xrun_lengths = 64; // as player_stats::xrun_s has of one stream
+
 } // namespace
 
 void add_stats(player_stats& sum, const player_stats& more)
@@ -54,6 +56,8 @@ void add_stats(player_stats& sum, const player_stats& more)
     sum.major_faults += more.major_faults;
     sum.latest_wakeup_s = std::max(sum.latest_wakeup_s, more.latest_wakeup_s);
     sum.xrun_s.insert(sum.xrun_s.end(), more.xrun_s.begin(), more.xrun_s.end());
+    if (std::ssize(sum.xrun_s) > most_xrun_lengths) // the newest are kept
+        sum.xrun_s.erase(sum.xrun_s.begin(), sum.xrun_s.end() - most_xrun_lengths);
 }
 
 void warn_of_cuts(const drive_limits& l, const player_stats& s)
