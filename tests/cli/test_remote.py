@@ -242,6 +242,15 @@ class Remote(ToolTest):
         self.played_at_a_door("".join(f"{i} {i}\n" for i in range(40)), answer)
         self.assertEqual(taken, list(range(40)))
 
+    def test_what_a_server_refuses_is_said_in_options(self):
+        s = self.serve()
+        refused = self.refused(2, "play", "park2016-1", "--sl", "7", "--socket", s.where["socket"], says=("--sl",)).stderr
+        self.assertIn("--level-dbfs", refused)
+        self.assertNotIn("options.", refused)
+        refused = self.refused(2, "play", "park2016-1", "--timing", "fit", "--min-duration", "5", "--socket", s.where["socket"]).stderr
+        self.assertIn("--timing fit: bursts of at least", refused)
+        self.assertNotIn("options.", refused)
+
     def test_a_stroke_that_the_server_interrupts_is_a_failure(self):
         s = self.serve(config="[serve]\nmax_stroke_s = 0.1\n")
         p = self.begun("play", "--live", "-", "--socket", s.where["socket"])

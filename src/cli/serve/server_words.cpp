@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "cli/serve/server_words.hpp"
 
-#include <algorithm>
 #include <charconv>
 #include <string_view>
 #include <system_error>
 #include <utility>
+
+#include <fmt/format.h>
+
+#include "cli/option_words.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -25,6 +28,22 @@ std::pair<source_place, std::string> placed(const std::string& file, const std::
     return {at, std::string(rest + 2, end)};
 }
 
+// "options.level_dbfs" as "--level-dbfs".
+std::string in_options(std::string_view text)
+{
+    constexpr std::string_view prefix = "options.";
+    std::string out;
+    for (std::size_t at = 0; (at = text.find(prefix)) != text.npos;) {
+        out.append(text.substr(0, at));
+        text.remove_prefix(at + prefix.size());
+        const std::string_view name = text.substr(0, text.find_first_not_of("abcdefghijklmnopqrstuvwxyz_"));
+        const options::option* o = options::find(name);
+        out += o == nullptr ? fmt::format("{}{}", prefix, name) : option_name(*o);
+        text.remove_prefix(name.size());
+    }
+    return out.append(text);
+}
+
 } // namespace
 
 error in_words_of_the_tool(const error& e, const std::string& argument)
@@ -35,14 +54,10 @@ error in_words_of_the_tool(const error& e, const std::string& argument)
         if (at.line != 0)
             return e.reworded(at.text(), why, e.hint()).with_place(at);
         what = argument;
-    } else if (what.starts_with("options.")) {
-        what = "--" + what.substr(std::string_view("options.").size());
-        std::replace(what.begin(), what.end(), '_', '-');
+    } else {
+        what = in_options(what);
     }
-    std::string hint(e.hint());
-    for (std::size_t at = hint.find("options."); at != std::string::npos; at = hint.find("options."))
-        hint.replace(at, std::string_view("options.").size(), "--");
-    return e.reworded(what, e.why(), hint);
+    return e.reworded(what, in_options(e.why()), in_options(e.hint()));
 }
 
 } // namespace tactor::cli
