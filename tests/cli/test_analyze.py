@@ -228,6 +228,11 @@ class Forms(AnalyzeTest):
         told = self.analysis("simulated")["runs"]["similarity"]
         self.assertIn(f"F(3, 33) = {told['anova']['motion']['F']:.2f}", text)
         self.assertIn(f"{told['preference']['all']['mean']:.2f}", text)
+        every = " ".join(text.split())
+        for run in self.analysis("simulated")["runs"].values():
+            for effect, found in run.get("anova", {}).items():
+                if found["F"] is not None:
+                    self.assertRegex(every, rf"\b{effect}: F\([0-9, ]+\) = {found['F']:.2f}")
         self.assertNotIn("Park et al.", self.ok("analyze", self.study("ties")).stdout)
 
     def test_the_same_in_any_locale(self):

@@ -157,6 +157,9 @@ TEST_CASE("fewer channels than the map or the marker needs")
     CHECK(complaint(with("channels = 16", "channels = 15")) ==
           "t.toml:19:11: the marker's channel is 15, but there are 15 channels (t.toml:8:12) (channels count "
           "from 0)");
+    CHECK(complaint("[output]\nchannels = 1\n[sync]\nchannel = 1\n") ==
+          "t.toml:4:11: the marker's channel is 1, but there is 1 channel (t.toml:2:12) (channels count from "
+          "0)");
     CHECK(complaint(with("channel = 15", "channel = 3")) ==
           "t.toml:19:11: the marker's channel 3 is that of tactor 3 (t.toml:3:8) (give the marker a channel "
           "without a tactor)");

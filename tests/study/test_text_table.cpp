@@ -64,6 +64,10 @@ TEST_CASE("a table that is not whole says where")
     CHECK(refusal("a\tb\n1").find("t.tsv:2: it has 1 column, not 2") == 0);
     CHECK(refusal(std::string("a\n\0\n", 4)).find("t.tsv:2: it is not UTF-8") == 0);
     CHECK(refusal("a\n\xe4\n").find("t.tsv:2: it is not UTF-8") == 0);
+    // A character of four bytes, one with a byte too few, one with a byte too many.
+    CHECK(refusal("a\n\xf0\x9f\x91\x8b\n").empty());
+    CHECK(refusal("a\n\xf0\x9f\x91\n").find("t.tsv:2: it is not UTF-8") == 0);
+    CHECK(refusal("a\n\xf0\x9f\x91\x8b\x8b\n").find("t.tsv:2: it is not UTF-8") == 0);
     CHECK(refusal("a\tb\n1\t2\n").empty());
 }
 
