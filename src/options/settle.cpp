@@ -199,30 +199,4 @@ error at_default(const wishes& w, const error& e)
     return at_place(said->second, *o, e);
 }
 
-std::string spell_marks(std::string_view text, const speller& spell)
-{
-    std::string out;
-    for (;;) {
-        const std::size_t begin = text.find('{');
-        const std::size_t end = begin == text.npos ? begin : text.find('}', begin);
-        if (end == text.npos)
-            return out.append(text);
-        const std::string_view inside = text.substr(begin + 1, end - begin - 1);
-        const std::size_t equals = inside.find('=');
-        const option* o = find_field(inside.substr(0, equals));
-        out.append(text.substr(0, begin));
-        if (o == nullptr)
-            out.append(text.substr(begin, end + 1 - begin));
-        else
-            out += spell(*o, equals == inside.npos ? std::string_view() : inside.substr(equals + 1));
-        text.remove_prefix(end + 1);
-    }
-}
-
-error spell_marks(const error& e, const speller& spell)
-{
-    return e.reworded(spell_marks(e.subject(), spell), spell_marks(e.why(), spell),
-                      spell_marks(e.hint(), spell));
-}
-
 } // namespace tactor::options

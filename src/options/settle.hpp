@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What is given to options: who wins, what goes together, and how errors call them.
+/// What is given to options: who wins, and what goes together.
 #pragma once
 
-#include <functional>
-#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,14 +42,5 @@ void refuse_planning(const wishes& w, const std::string& what);
 
 /// An error about a value that [defaults] gave, with its place there; others as they are.
 error at_default(const wishes& w, const error& e);
-
-/// Writes a mark: the row's name and, where the mark has one, the value.
-using speller = std::function<std::string(const option& o, std::string_view value)>;
-
-/// Texts of the library and of the table name options by marks: {soa}, {timing=fit}. Returns the text with
-/// each mark as `spell` writes it.
-std::string spell_marks(std::string_view text, const speller& spell);
-/// The same of all texts of an error.
-error spell_marks(const error& e, const speller& spell);
 
 } // namespace tactor::options

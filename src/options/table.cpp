@@ -172,7 +172,7 @@ constexpr std::array table{
     option{.name = "fit_margin", .field = "margin_mm", .unit = "mm", .allowed = of::margin_mm, .in = group::place,
            .help = "--fit: distance kept from the array's edge (default 0)",
            .where = drawing | in_python | planning,
-           .used = [](const wishes& w) { return w.fit; }, .needs = "{fit}",
+           .used = [](const wishes& w) { return w.fit; }, .needs = "{fit=true}",
            .to = reach([](auto& w) -> auto& { return w.fit_margin_mm; })},
 
     option{.name = "algorithm", .what = kind::choice, .choices = detail::names_of<algorithm_kind>, .in = group::timing,

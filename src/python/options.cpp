@@ -10,6 +10,7 @@
 
 #include "options/check.hpp"
 #include "options/settle.hpp"
+#include "options/words.hpp"
 
 namespace tactor::python {
 namespace {
@@ -213,8 +214,6 @@ std::vector<std::string> option_names(const std::string& which)
         const bool wanted = which == "planning"   ? plans && (o.where & of_python) != 0
                             : which == "sounding" ? in_plan && !plans
                             : which == "live"     ? in_plan && (o.where & options::live) != 0
-                            : which == "flags"    ? o.what == options::kind::flag
-                            : which == "choices"  ? o.what == options::kind::choice
                                                   : (o.where & of_python) != 0;
         if (wanted)
             names.emplace_back(o.name);
@@ -224,13 +223,9 @@ std::vector<std::string> option_names(const std::string& which)
     return names;
 }
 
-std::map<std::string, std::string> option_fields()
+std::string in_python_words(const std::string& text)
 {
-    std::map<std::string, std::string> all;
-    for (const option& o : options::all())
-        if (!o.field.empty() && o.field != o.name)
-            all.emplace(o.field, o.name);
-    return all;
+    return options::spell(text, {spell});
 }
 
 py::dict default_values(const setup& says)
@@ -251,7 +246,9 @@ py::dict default_values(const setup& says)
 std::string spell(const option& o, std::string_view value)
 {
     if (value.empty())
-        return o.what == options::kind::flag ? fmt::format("{}=True", o.name) : std::string(o.name);
+        return std::string(o.name);
+    if (o.what == options::kind::flag)
+        return fmt::format("{}=True", o.name);
     const bool is_text = o.what == options::kind::choice || o.what == options::kind::text;
     return is_text ? fmt::format("{}=\"{}\"", o.name, value) : fmt::format("{}={}", o.name, value);
 }

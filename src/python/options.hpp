@@ -26,10 +26,10 @@ void check_used(const std::vector<std::string>& names, const py::dict& all, cons
 /// Options of a player among `given`, checked. \throws error (bad_input).
 std::map<std::string, options::value> player_options_in(const py::dict& given);
 
-/// Names of options by the library's fields, where these differ.
-std::map<std::string, std::string> option_fields();
+/// A text of the library with options as keyword arguments.
+std::string in_python_words(const std::string& text);
 
-/// Names of options: "planning", "sounding", "live", "flags", "choices", or all that take_options() knows.
+/// Names of options: "planning", "sounding", "live", or all that take_options() knows.
 std::vector<std::string> option_names(const std::string& which);
 
 /// Values of [defaults] by the names of options. \throws error (bad_input) with the place in the file.

@@ -10,7 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "core/words.hpp"
-#include "options/settle.hpp"
+#include "options/words.hpp"
 
 namespace tactor::server {
 namespace {
@@ -18,30 +18,25 @@ namespace {
 using net::json;
 using net::rpc_fault;
 
-struct translation {
-    std::string_view field;
-    std::string_view param;
-};
-
 // Words of the library's advice that are no field of an option.
-constexpr std::array<translation, 3> own_words{{{"fit_strokes() scales it to the array, ", ""},
-                                                {"array = FILE", "another array of the server"},
-                                                {"array = palm", "palm"}}};
+constexpr std::array own_words{options::own_word{"fit_strokes() scales it to the array, ", ""},
+                               options::own_word{"array = FILE", "another array of the server"},
+                               options::own_word{"array = palm", "palm"}};
+
+std::string write_param(const options::option& o, std::string_view value)
+{
+    return fmt::format("options.{}{}{}", o.name, value.empty() ? "" : " ", value);
+}
+
+constexpr options::spelling by_protocol{write_param, options::by_client, own_words};
 
 // Subjects of the library that are about an option of another name, by how they begin.
-constexpr std::array<translation, 6> own_subjects{{{"timing profile", "options.slope"},
-                                                   {"duration of a burst", "options.burst"},
-                                                   {"array ", "options.algorithm"},
-                                                   {"tactor ", "options.level_dbfs"},
-                                                   {"compensation", "options.compensate"},
-                                                   {"live_options", "options"}}};
-
-void replace_words(std::string& text, std::string_view from, std::string_view to)
-{
-    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-        if (at == 0 || (text[at - 1] != '.' && text[at - 1] != '_'))
-            text.replace(at, from.size(), to);
-}
+constexpr std::array own_subjects{options::own_word{"timing profile", "options.slope"},
+                                  options::own_word{"duration of a burst", "options.burst"},
+                                  options::own_word{"array ", "options.algorithm"},
+                                  options::own_word{"tactor ", "options.level_dbfs"},
+                                  options::own_word{"compensation", "options.compensate"},
+                                  options::own_word{"live_options", "options"}};
 
 bool is_param(const options::option& o)
 {
@@ -53,29 +48,17 @@ std::string param_name(const options::option& o)
     return fmt::format("options.{}", o.name);
 }
 
-std::string in_params(std::string text)
+std::string in_params(std::string_view text)
 {
-    for (const translation& t : own_words)
-        replace_words(text, t.field, t.param);
-    for (const options::option& o : options::all()) {
-        if (!is_param(o))
-            continue;
-        if (o.what == options::kind::flag)
-            replace_words(text, fmt::format("{} = true", o.name), param_name(o) + " true");
-        if (o.what == options::kind::choice)
-            replace_words(text, fmt::format("{} = ", o.name), param_name(o) + " ");
-        if (o.field_name().find('_') != std::string_view::npos)
-            replace_words(text, o.field_name(), param_name(o));
-    }
-    return text;
+    return options::spell(text, by_protocol);
 }
 
 // The option that a subject of the library begins with; empty: none.
 std::string param_of(std::string_view subject)
 {
-    for (const translation& t : own_subjects)
-        if (subject.starts_with(t.field))
-            return std::string(t.param);
+    for (const options::own_word& w : own_subjects)
+        if (subject.starts_with(w.of_library))
+            return std::string(w.here);
     const std::string_view word = subject.substr(0, subject.find_first_of(" :"));
     const options::option* o = options::find_field(word);
     return o != nullptr && is_param(*o) ? param_name(*o) : "";
@@ -105,9 +88,7 @@ void no_stream(const std::string& why)
 
 rpc_fault option_fault(const error& e)
 {
-    const error said = options::spell_marks(e, [](const options::option& o, std::string_view value) {
-        return param_name(o) + (value.empty() ? "" : " ") + std::string(value);
-    });
+    const error said = options::spell_marks(e, by_protocol);
     return {net::code_bad_params, "bad-input", std::string(said.subject()), std::string(said.why()),
             std::string(said.hint())};
 }
@@ -118,9 +99,7 @@ rpc_fault fault_of(const error& e, const std::string& source)
     const std::string_view subject = of_call ? e.field() : e.subject();
     // Keys of a file are called as they are there.
     const bool of_file = subject.starts_with(source + ":");
-    const auto told = [&](std::string_view t) {
-        return of_file ? std::string(t) : in_params(std::string(t));
-    };
+    const auto told = [&](std::string_view t) { return of_file ? std::string(t) : in_params(t); };
     rpc_fault f{net::code_bad_params, std::string(to_string(e.kind())), source, told(e.why()),
                 told(e.hint())};
     if (e.kind() == error_kind::runtime)
@@ -138,7 +117,7 @@ rpc_fault fault_of(const error& e, const std::string& source)
     else if (!field && subject != source && subject != "stroke" &&
              subject != fmt::format("stroke \"{}\"", source) && subject != "path data" &&
              !subject.starts_with("soa_s"))
-        f.why = fmt::format("{}: {}", in_params(std::string(subject)), f.why);
+        f.why = fmt::format("{}: {}", in_params(subject), f.why);
     return f;
 }
 

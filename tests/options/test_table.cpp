@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <string>
@@ -10,6 +11,7 @@
 #include "message_of.hpp"
 #include "options/check.hpp"
 #include "options/settle.hpp"
+#include "options/words.hpp"
 
 namespace table_test {
 
@@ -32,11 +34,14 @@ wishes with(std::uint64_t place, std::initializer_list<std::pair<const char*, va
     return w;
 }
 
+std::string bracketed(const option& o, std::string_view value)
+{
+    return fmt::format("<{}{}{}>", o.name, value.empty() ? "" : ":", value);
+}
+
 std::string speech(std::string_view text)
 {
-    return spell_marks(text, [](const option& o, std::string_view v) {
-        return fmt::format("<{}{}{}>", o.name, v.empty() ? "" : ":", v);
-    });
+    return spell_marks(text, {bracketed});
 }
 
 } // namespace
@@ -145,7 +150,7 @@ TEST_CASE("what nothing uses is refused, and the cure is one of the place")
           "{ramp}: {envelope=tukey} has its own ramps (leave one of them out)");
     CHECK(said(on_plan, {{"intensity_scale", "sl"}}) ==
           "{intensity_scale}: sl is a part of a sensation level above 0 dB (add {sl}, such as {sl=7})");
-    CHECK(said(on_plan, {{"fit_margin", 1.0}}) == "{fit_margin}: nothing here uses it (add {fit})");
+    CHECK(said(on_plan, {{"fit_margin", 1.0}}) == "{fit_margin}: nothing here uses it (add {fit=true})");
 }
 
 TEST_CASE("a law of the user's has its own longest SOA")
@@ -164,6 +169,22 @@ TEST_CASE("marks are spelled, other braces stay")
           "use <timing:fit> or <soa>, {nothing} { x }");
     CHECK(speech("{") == "{");
     CHECK(speech("") == "");
+}
+
+TEST_CASE("fields and choices of the library are spelled, longer words and other front ends' options stay")
+{
+    constexpr std::array own{own_word{"fit_strokes()", "<fit>"}};
+    const auto said = [&](std::string_view text, bool but_keys = false) {
+        return spell(text, {bracketed, by_client, own}, but_keys);
+    };
+    CHECK(said("lower sl_db, soa_second or my_soa_s, then soa_s") ==
+          "lower <sl>, soa_second or my_soa_s, then <soa>");
+    CHECK(said("timing = fit; snap = true, fit_strokes()") == "<timing:fit>; <snap:true>, <fit>");
+    CHECK(said("use algorithm = park2016 or algorithm = continuous.") ==
+          "use <algorithm:park2016> or <algorithm:continuous>.");
+    CHECK(said("max_drive_s and {soa}") == "max_drive_s and <soa>"); // no client has the first
+    CHECK(said("soa_s, sl_db, phantom = log", true) == "soa_s, <sl>, phantom = log");
+    CHECK(said("") == "");
 }
 
 TEST_CASE("what plans a stroke is refused beside a plan")

@@ -120,10 +120,9 @@ def _again(kind: type[Error], of_system: bool, what: str, why: str, hint: str, f
 def _in_python(text: str) -> str:
     import re
     from tactor import _tactor
-    names = {**_tactor.option_fields(), **_NAMES, **{f"{flag} = true": f"{flag}=True" for flag in _tactor.option_names("flags")}}
-    text = re.sub(rf"(?<![\w.-])(?:{'|'.join(map(re.escape, names))})(?![\w.-])", lambda m: names[m[0]], text)
+    text = re.sub(rf"(?<![\w.-])(?:{'|'.join(map(re.escape, _NAMES))})(?![\w.-])", lambda m: _NAMES[m[0]], text)
     text = re.sub(r"(?<!\S)-D ([\w:=.,]*\w)", r'device="\1"', text)
-    return re.sub(rf"(?<![\w.-])({'|'.join(_tactor.option_names('choices'))}) = ([\w-]+)", r'\1="\2"', text)
+    return _tactor.in_python_words(text)  # type: ignore[no-any-return]
 
 
 def made(kind: str, what: str, why: str, hint: str, field: str = "", file: str = "", line: int = 0, column: int = 0,

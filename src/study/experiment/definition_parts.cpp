@@ -11,6 +11,7 @@
 #include "files/toml_reader.hpp"
 #include "options/check.hpp"
 #include "options/settle.hpp"
+#include "options/words.hpp"
 
 namespace tactor::study {
 namespace {
@@ -26,6 +27,11 @@ std::string_view spelled(const toml_table& t, std::string_view plain, std::strin
     return t.has(with_unit) ? with_unit : plain;
 }
 
+std::string write_key(const options::option& o, std::string_view value)
+{
+    return value.empty() ? std::string(o.name) : fmt::format("{} = \"{}\"", o.name, value);
+}
+
 // What the library refuses, with the place in the definition.
 template <class F>
 auto at_key(const toml_table& t, std::string_view key, F make)
@@ -33,9 +39,7 @@ auto at_key(const toml_table& t, std::string_view key, F make)
     try {
         return make();
     } catch (const error& e) {
-        const error said = options::spell_marks(e, [](const options::option& o, std::string_view value) {
-            return value.empty() ? std::string(o.name) : fmt::format("{} = \"{}\"", o.name, value);
-        });
+        const error said = options::spell_marks(e, {write_key});
         throw error(e.kind(), t.where(key), fmt::format("{}: {}", said.subject(), said.why()), said.hint())
             .with_field(key);
     }

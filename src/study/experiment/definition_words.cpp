@@ -1,35 +1,35 @@
 // SPDX-License-Identifier: MIT
 #include "study/experiment/definition_words.hpp"
 
+#include <algorithm>
 #include <array>
+
+#include <fmt/format.h>
+
+#include "options/words.hpp"
 
 namespace tactor::study {
 namespace {
 
-struct wording {
-    std::string_view field;
-    std::string_view key;
-};
+constexpr std::array own_words{options::own_word{"level_dbfs", "level.dbfs"},
+                               options::own_word{"sl_db", "level.sl_db"},
+                               options::own_word{"fit_strokes() scales it to the array, ", ""}};
 
-constexpr std::array wordings{
-    wording{"level_dbfs", "level.dbfs"},
-    wording{"sl_db", "level.sl_db"},
-    wording{"fit_strokes() scales it to the array, ", ""},
-    wording{"outside = clamp", "the method's outside, \"clamp\","},
-    wording{"drop_points = true", "the method's drop-points, true,"},
-    wording{"faces = delaunay", "the method's faces, \"delaunay\","},
-    wording{"snap = true", "the method's snap, true,"},
-};
+std::string write_choice(const options::option& o, std::string_view value)
+{
+    if (value.empty())
+        return std::string(o.field_name());
+    std::string name(o.name);
+    std::replace(name.begin(), name.end(), '_', '-');
+    const char* quote = o.what == options::kind::flag ? "" : "\"";
+    return fmt::format("the method's {}, {}{}{},", name, quote, value, quote);
+}
 
 } // namespace
 
 std::string in_definition_words(std::string_view hint)
 {
-    std::string text(hint);
-    for (const wording& w : wordings)
-        if (const std::size_t at = text.find(w.field); at != std::string::npos)
-            text.replace(at, w.field.size(), w.key);
-    return text;
+    return options::spell(hint, {write_choice, options::in_method, own_words});
 }
 
 } // namespace tactor::study
