@@ -125,8 +125,9 @@ def compare(array: Array, stroke: Stroke, *, algorithms: _t.Union[str, _t.Iterab
     InputError
         Where none can play it.
     """
-    not_options = {"array", "stroke", "algorithms", "phantoms"}
-    given = {name: value for name, value in locals().items() if value is not None and name not in not_options}
+    given = {name: value for name, value in locals().items() if value is not None}
+    for name in ("array", "stroke", "algorithms", "phantoms"):
+        given.pop(name, None)
     _need(array, Array, "array")
     _need(stroke, Stroke, "stroke")
     if hasattr(phantom, "weights"):
