@@ -32,7 +32,7 @@ std::string spell_option(const options::option& o, std::string_view value)
 
 constexpr options::spelling by_tool{.write = spell_option, .own = own_words};
 
-// Whether the library calls only the option so.
+// Returns true where the library uses the name for nothing else.
 bool is_option(const options::option& o)
 {
     if (o.what == options::kind::flag)

@@ -22,7 +22,7 @@ enum class group : std::uint8_t { stroke, place, timing, sound, level, device, r
 
 enum class kind : std::uint8_t { number, whole, choice, flag, text };
 
-/// Where an option may be given: a bit each.
+/// Places where an option may be given, a bit each.
 enum place : std::uint64_t {
     on_plan = 1,
     on_render = 1 << 1,
@@ -60,7 +60,7 @@ struct access {
     value (*get)(const wishes&) = nullptr;
 };
 
-/// One option.
+/// A row of the table.
 struct option {
     std::string_view name = {};  ///< "level_dbfs"; the command line writes - for _
     std::string_view field = {}; ///< of the library and in stroke files: "soa_s"; empty: the name

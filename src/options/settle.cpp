@@ -75,7 +75,7 @@ void refuse_both(const setup& says, const default_value& d, const option* rival)
 {
     for (const default_value& other : says.defaults)
         if (rival != nullptr && find(other.name) == rival && other.at.file == d.at.file &&
-            other.at.line < d.at.line)
+            std::pair(other.at.line, other.at.column) < std::pair(d.at.line, d.at.column))
             throw error(error_kind::bad_input, d.at,
                         fmt::format("[defaults] has both {} and {}", other.name, d.name), "keep one of them");
 }
@@ -85,7 +85,7 @@ bool is_said(const wishes& w, std::string_view name)
     return w.gives(name) || w.in_file.contains(index(*find(name)));
 }
 
-// Whether anybody asks for it here, and the user gave neither it nor its rival.
+// Returns true where the place has the option, and the user gave neither it nor its rival.
 bool takes_default(const wishes& w, const option& o)
 {
     const option* rival = rival_of(o);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What is given to options: who wins, and what goes together.
+/// Options with what was given: precedence, and options that exclude or need each other.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One row an option. To add one: a row here, and the code that uses the value.
+// The rows. To add an option: a row here, and the code that uses the value.
 #include <algorithm>
 #include <array>
 
@@ -20,9 +20,9 @@ constexpr std::uint64_t playing = on_play | on_check | on_serve;
 constexpr std::uint64_t with_device = playing | on_devices | on_calibrate | on_experiment;
 constexpr std::uint64_t with_array = with_device | drawing | on_off;
 constexpr std::uint64_t in_python = in_plan | in_compare;
-// How a stroke is planned; `live`, too, where a stroke that is fed point by point can use it.
+// Places of what plans a stroke; `live`, too, where a stroke that is fed point by point can use it.
 constexpr std::uint64_t planned = drawing | in_defaults | by_client | in_python | planning;
-// How bursts sound.
+// Places of what makes the sound of bursts.
 constexpr std::uint64_t heard = sounding | in_defaults | by_client | live | in_plan | in_score;
 
 constexpr auto low_speed_choices = [] { return std::vector<std::string_view>{"none", "low-speed"}; };
@@ -79,7 +79,7 @@ value get_modulation(const wishes& w)
     return fmt::format("{}:{}", w.plan.am.hz, w.plan.am.depth);
 }
 
-// Of how a burst rises and falls, the times are options of their own.
+// The times in which a burst rises and falls are options of their own.
 void set_envelope(wishes& w, const value& v)
 {
     const auto& text = std::get<std::string>(v);

@@ -22,7 +22,7 @@ namespace tactor::options {
 
 struct option;
 
-/// How a stream is opened, driven and recorded.
+/// Opening, driving and recording of a stream.
 struct stream_options {
     std::optional<double> latency_ms = {};
     std::optional<unsigned> period_frames = {};
@@ -45,7 +45,7 @@ struct stream_options {
 /// Most rows that the table may have.
 inline constexpr std::size_t most_options = 128;
 
-/// What somebody asks for. What nobody gave holds the built-in default.
+/// Values of the options. Those that nobody gave hold the built-in default.
 struct wishes {
     std::optional<std::string> path_data = {};   ///< SVG path data in place of a stroke
     std::optional<std::string> shape = {};       ///< the same, by the name of a shape

@@ -12,7 +12,7 @@ bool in_a_word(char c)
            (c >= 'A' && c <= 'Z');
 }
 
-// Where `from` stands at or after `at` and is no part of a longer word; npos: nowhere.
+// Finds `from`, at or after `at`, where it is no part of a longer word; npos: nowhere.
 std::size_t find_word(std::string_view text, std::string_view from, std::size_t at)
 {
     for (at = text.find(from, at); at != text.npos; at = text.find(from, at + 1)) {

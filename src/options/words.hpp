@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// How errors name options: the library by its fields, the table by marks, each front end as its user does.
+/// Names of options in errors: fields of the library and marks of the table, written as the user of a front
+/// end knows them.
 #pragma once
 
 #include <cstdint>

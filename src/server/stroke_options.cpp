@@ -59,7 +59,7 @@ options::wishes with_options(options::wishes w, const json& given, options_for w
 {
     if (!given.is_object())
         bad_param("options", "they are no object", R"(such as {"algorithm":"continuous"})");
-    // What the owner gave is where a client begins.
+    // A client starts from the owner's values.
     w.given.reset();
     w.in_file.clear();
     w.place = options::by_client;

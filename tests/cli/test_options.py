@@ -9,7 +9,7 @@ COMMANDS = ("plan", "render", "plot", "compare", "play", "check", "calibrate", "
 GROUPS = ("Stroke", "Place", "Timing", "Sound", "Level", "Device", "Real time", "Output")
 OWNER = "the owner's: it guards people or the machine"
 OTHER = "a parameter of its own in the protocol"
-# What no client of the service may give.
+# Options that no client of the service may give.
 NO_CLIENT = {
     "path": OTHER, "shape": OTHER, "live": OTHER, "smooth": OTHER, "arm": OTHER,
     "array": OWNER, "config": OWNER, "device": OWNER, "channels": OWNER, "rate": OWNER, "sample-format": OWNER, "no-gpio": OWNER,
@@ -21,7 +21,7 @@ NO_CLIENT = {
     "spread-seed": "a comparison is the tool's", "spread-sigma": "a comparison is the tool's", "spread-threshold-db": "a comparison is the tool's",
     "spread-place-mm": "a comparison is the tool's",
 }
-# What a method of an experiment leaves to the definition, or to the session.
+# Options that a method of an experiment leaves to the definition, or to the session.
 NO_METHOD = {
     "duration": "a motion's", "speed": "a motion's", "compensate": "of people who are asked what they feel, it would decide the answer",
     "sigma-mm": "of compensate", "sigma-v-mm-s": "of compensate", "waveform": "all methods of a study vibrate alike",

@@ -124,6 +124,9 @@ TEST_CASE("a value of [defaults] that cannot be names its place")
     CHECK(complaint("waveform = 3") == "t.toml:2:12: waveform: 3 is no text (put it in quotes)");
     CHECK(complaint("am = 30") == "");
     CHECK(complaint("waveform = \"nowhere.wav\"") == ""); // looked for where it is used
+    CHECK(message_of([&] {
+              static_cast<void>(read_defaults(read("defaults = { sl = 7, level-dbfs = -6 }\n")));
+          }) == "t.toml:1:35: [defaults] has both sl and level-dbfs (keep one of them)");
     CHECK(complaint("level-dbfs = -6\nsl = 7") ==
           "t.toml:3:6: [defaults] has both level-dbfs and sl (keep one of them)");
 }

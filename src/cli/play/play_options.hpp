@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What only `play` is asked for.
+/// Options of `play` alone.
 #pragma once
 
 #include <optional>

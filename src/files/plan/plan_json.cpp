@@ -19,7 +19,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-// One plan of a record.
+// A plan of a record.
 struct record {
     const stroke& drawn;
     const plan& schedule;
