@@ -46,11 +46,9 @@ void put_value(T& into, const value& v)
 template <class T>
 value make_value(const T& from)
 {
-    if constexpr (std::is_same_v<T, bool>)
-        return from;
-    else if constexpr (std::is_enum_v<T>)
+    if constexpr (std::is_enum_v<T>)
         return std::string(to_string(from));
-    else if constexpr (std::is_same_v<T, std::string>)
+    else if constexpr (std::is_same_v<T, bool> || std::is_same_v<T, std::string>)
         return from;
     else
         return static_cast<double>(from);
