@@ -71,7 +71,7 @@ struct serve_settings {
     std::optional<unsigned> max_all_unfinished_bytes = {}; ///< of messages of all that have not come whole
 };
 
-/// One value of [defaults]: of an option of the tool where nothing else is said. The program that has the
+/// A value of [defaults], for an option of the tool where nothing else is said. The program that has the
 /// options checks names and values.
 struct default_value {
     std::string name = {}; ///< as the file writes it

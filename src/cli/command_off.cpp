@@ -63,7 +63,7 @@ command add_off(CLI::App& app)
 {
     CLI::App* c = app.add_subcommand("off", "Switch the amplifier of [amplifier] off");
     auto s = std::make_shared<settings>();
-    add_options(*c, *s, on_off);
+    add_options(*c, *s, options::on_off);
     c->footer("Example: tactor off --config tactor.toml");
     return [s] { return run_with(*s, [&] { return switch_off(*s); }); };
 }

@@ -89,7 +89,7 @@ command add_plot(CLI::App& app)
     auto s = std::make_shared<settings>();
     auto p = std::make_shared<plot_settings>();
     add_strokes(*c, *s);
-    add_options(*c, *s, on_plot);
+    add_options(*c, *s, options::on_plot);
     add_plot_options(*c, *p);
     c->footer("Example: tactor plot park2016-3 -o park2016-3.pdf");
     return [s, p] { return run_with(*s, [&] { return draw(*s, *p); }); };

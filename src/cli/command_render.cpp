@@ -104,7 +104,7 @@ command add_render(CLI::App& app)
     auto s = std::make_shared<settings>();
     auto file = std::make_shared<std::string>();
     add_strokes(*c, *s);
-    add_options(*c, *s, on_render);
+    add_options(*c, *s, options::on_render);
     c->add_option("-o,--output", *file, "the file to write; - is standard output")
         ->type_name("FILE.wav")
         ->required();

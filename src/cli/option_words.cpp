@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/option_words.hpp"
 
-#include <algorithm>
 #include <array>
 #include <string>
 #include <string_view>
@@ -57,9 +56,7 @@ std::string subject(std::string_view what)
 
 std::string option_name(const options::option& o)
 {
-    std::string name = fmt::format("--{}", o.name);
-    std::replace(name.begin() + 2, name.end(), '_', '-');
-    return name;
+    return "--" + options::dashed(o);
 }
 
 std::string spelled(std::string_view marked)

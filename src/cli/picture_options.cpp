@@ -17,7 +17,7 @@ void add_picture_options(CLI::App& command, picture_options& into, const std::st
             "--width",
             [&into](const std::string& t) {
                 into.width_mm =
-                    options::parse_number("--width", t, plot::least_width_mm, plot::most_width_mm, "mm");
+                    options::parse_number("--width", t, {plot::least_width_mm, plot::most_width_mm}, "mm");
             },
             fmt::format("width of the picture (default {})", usual_width))
         ->type_name("MM");
@@ -26,7 +26,7 @@ void add_picture_options(CLI::App& command, picture_options& into, const std::st
             "--dpi",
             [&into](const std::string& t) {
                 into.dpi = static_cast<unsigned>(
-                    options::parse_number("--dpi", t, plot::least_dpi, plot::most_dpi, "dpi"));
+                    options::parse_number("--dpi", t, {plot::least_dpi, plot::most_dpi}, "dpi"));
             },
             "resolution of a PNG (default 300)")
         ->type_name("N");

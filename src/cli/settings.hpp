@@ -20,17 +20,6 @@ class Option;
 
 namespace tactor::cli {
 
-using options::on_calibrate;
-using options::on_check;
-using options::on_compare;
-using options::on_devices;
-using options::on_experiment;
-using options::on_off;
-using options::on_plan;
-using options::on_play;
-using options::on_plot;
-using options::on_render;
-using options::on_serve;
 using session::environment;
 using session::settings;
 

@@ -142,8 +142,9 @@ std::string places_text(const std::array<place_name, N>& names, std::uint64_t wh
 
 std::string describe_option(const options::option& o)
 {
-    std::string text = fmt::format("{}{}{}\n  {}\n", option_name(o), o.what == options::kind::flag ? "" : " ",
-                                   o.what == options::kind::flag ? "" : options::type_text(o), o.help);
+    std::string text =
+        fmt::format("{}{}{}\n  {}\n", option_name(o), o.what == options::kind::flag ? "" : " ",
+                    o.what == options::kind::flag ? "" : options::type_text(o), spelled(o.help));
     const auto line = [&text](const char* title, const std::string& said) {
         if (!said.empty())
             text += fmt::format("  {:<18}{}\n", title, said);
@@ -155,7 +156,7 @@ std::string describe_option(const options::option& o)
     line("Needs:", spelled(fmt::format("{}", fmt::join(detail::split(o.needs, '|'), " or "))));
     line("Commands:", places_text(command_names, o.where));
     const bool is_default = (o.where & options::in_defaults) != 0;
-    line("[defaults]:", is_default ? option_name(o).substr(2) : "");
+    line("[defaults]:", is_default ? options::dashed(o) : "");
     line("Stroke files:", (o.where & options::in_stroke) != 0 ? std::string(o.field_name()) : "");
     line("[[method]]:", (o.where & options::in_method) != 0 ? std::string(o.name) : "");
     line("JSON-RPC:", (o.where & options::by_client) != 0 ? fmt::format("options.{}", o.name) : "");

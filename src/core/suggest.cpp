@@ -81,6 +81,14 @@ std::string suggestion(std::string_view name, std::span<const std::string_view> 
     return fmt::format("known {}: {}", kind, fmt::join(known, ", "));
 }
 
+error unknown_key(const source_place& at, std::string_view key, std::string_view title,
+                  std::span<const std::string_view> known)
+{
+    return error(error_kind::bad_input, at, fmt::format("unknown key {} in {}", quoted(key), title),
+                 suggestion(key, known, "keys"))
+        .with_field(key);
+}
+
 std::string preset_hint(std::string_view name, const std::vector<std::string>& presets)
 {
     const std::vector<std::string_view> known(presets.begin(), presets.end());

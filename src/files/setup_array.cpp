@@ -102,7 +102,7 @@ void read_threshold(const toml_table& entry, tactor_spec& t)
     std::vector<double> pair;
     for (const toml::node& e : *entry.list("threshold_dbfs", "[Hz, dBFS]")) {
         entry.numbers(e, "a threshold", 2, 2, pair);
-        const threshold_point p{entry.within(e, "the frequency", pair[0], {1.0, 384000.0}),
+        const threshold_point p{entry.within(e, "the frequency", pair[0], bounds_of::carrier_hz),
                                 entry.within(e, "the threshold", pair[1], limit_db)};
         if (!t.thresholds.empty() && p.hz <= t.thresholds.back().hz)
             fail_at(entry.where(e),

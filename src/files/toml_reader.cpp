@@ -63,8 +63,7 @@ void toml_table::only(std::span<const std::string_view> known) const
 {
     for (const said_key& e : entries())
         if (std::find(known.begin(), known.end(), e.key) == known.end())
-            fail_at(e.key_at, fmt::format("unknown key {} in {}", detail::quoted(e.key), title_),
-                    suggestion(e.key, known, "keys"), e.key);
+            throw unknown_key(e.key_at, e.key, title_, known);
 }
 
 std::vector<toml_table::said_key> toml_table::entries() const

@@ -45,8 +45,8 @@ enum place : std::uint64_t {
     in_compare = 1 << 17,     ///< Python's compare()
     planning = 1 << 18,       ///< decides how a stroke is planned: refused beside a plan
     through_server = 1 << 19, ///< play --socket takes it, though no client sends it
-    in_player = 1 << 21,      ///< Python's Player()
     in_stroke = 1 << 20,      ///< a stroke file has a key of the field's name
+    in_player = 1 << 21,      ///< Python's Player()
 };
 
 /// A value on its way from a front end: nothing, a flag, a number (whole ones, too), or a text or choice.
@@ -69,8 +69,7 @@ struct option {
     detail::bounds allowed = {};
     std::string_view range = {}; ///< the bounds in words where they are not these two numbers
     std::vector<std::string_view> (*choices)() = nullptr;
-    std::string_view shown =
-        {}; ///< the value's type in help, where unit and choices do not say it: "HZ[:DEPTH]"
+    std::string_view shown = {};  ///< type of the value in help, else by unit or choices: "HZ[:DEPTH]"
     std::string_view letter = {}; ///< the command line's short name
     group in = group::stroke;
     std::string_view help = {}; ///< one line, with the default
@@ -92,6 +91,15 @@ struct option {
 [[nodiscard]] const option* find_field(std::string_view field) noexcept;
 /// Returns the place of a row in the table.
 [[nodiscard]] std::size_t index(const option& o) noexcept;
+
+/// Returns the name with - between its words.
+[[nodiscard]] std::string dashed(const option& o);
+/// Returns the names of all rows with a bit of `where`, with - between their words.
+[[nodiscard]] std::vector<std::string> dashed_names(std::uint64_t where);
+/// Returns the mark of a row: "{soa}".
+[[nodiscard]] std::string mark(const option& o);
+/// Returns an error about an option. Its texts may have marks.
+[[nodiscard]] error refusal(const option& o, std::string_view why, std::string_view hint);
 
 /// Returns the value's type as help shows it: "S", "a|b|c".
 [[nodiscard]] std::string type_text(const option& o);

@@ -46,7 +46,7 @@ double factor_of(std::string_view given, const std::string& unit)
 }
 
 // "70ms" for seconds: the number to give instead, where it can be told; "1,5": a decimal point.
-std::string without_unit(const std::string& text, double v, std::string_view rest, double lo, double hi,
+std::string without_unit(const std::string& text, double v, std::string_view rest, detail::bounds b,
                          const std::string& unit)
 {
     if (rest.front() == ',') {
@@ -60,38 +60,31 @@ std::string without_unit(const std::string& text, double v, std::string_view res
     }
     rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
     const double meant = v * factor_of(rest, unit);
-    if (meant == 0.0 || meant < lo || meant > hi)
+    if (meant == 0.0 || !b.holds(meant))
         return {};
     return fmt::format("give {} without a unit, as {}", unit == "s" ? "seconds" : unit, plain_number(meant));
 }
 
 } // namespace
 
-double parse_number(const std::string& what, const std::string& text, double lo, double hi,
+double parse_number(const std::string& what, const std::string& text, detail::bounds b,
                     const std::string& unit, const std::string& range_text)
 {
     double v = 0.0;
     const char* end = text.data() + text.size();
     const auto r = std::from_chars(text.data(), end, v);
-    const std::string range =
-        range_text.empty()
-            ? fmt::format("{} to {}{}", plain_number(lo), plain_number(hi), unit.empty() ? "" : " " + unit)
-            : range_text;
+    const std::string range = range_text.empty()
+                                  ? fmt::format("{} to {}{}", plain_number(b.low), plain_number(b.high),
+                                                unit.empty() ? "" : " " + unit)
+                                  : range_text;
     if (r.ec == std::errc::invalid_argument || r.ptr != end) {
-        const std::string meant =
-            r.ec == std::errc() ? without_unit(text, v, {r.ptr, end}, lo, hi, unit) : "";
+        const std::string meant = r.ec == std::errc() ? without_unit(text, v, {r.ptr, end}, b, unit) : "";
         throw error(error_kind::bad_input, what, fmt::format("\"{}\" is not a number", text),
                     meant.empty() ? range : fmt::format("{}; {}", meant, range));
     }
-    if (r.ec != std::errc() || !std::isfinite(v) || v < lo || v > hi)
+    if (r.ec != std::errc() || !std::isfinite(v) || !b.holds(v))
         throw error(error_kind::bad_input, what, fmt::format("{} is out of range", text), range);
     return v;
-}
-
-double parse_number(const std::string& what, const std::string& text, detail::bounds b,
-                    const std::string& unit)
-{
-    return parse_number(what, text, b.low, b.high, unit);
 }
 
 double parse_whole(const std::string& what, const std::string& text, detail::bounds b,

@@ -9,13 +9,10 @@
 
 namespace tactor::options {
 
-/// A finite number between lo and hi. \throws error (bad_input) naming `what`, the text, the number to give
-/// where the text has a unit, and the range (`range_text`, where what is sensible is less than what is
-/// taken).
-double parse_number(const std::string& what, const std::string& text, double lo, double hi,
-                    const std::string& unit, const std::string& range_text = {});
+/// A finite number within bounds. \throws error (bad_input) naming `what`, the text, the number to give where
+/// the text has a unit, and the range (`range_text`, where what is sensible is less than what is taken).
 double parse_number(const std::string& what, const std::string& text, detail::bounds b,
-                    const std::string& unit);
+                    const std::string& unit, const std::string& range_text = {});
 /// The same, and it is whole.
 double parse_whole(const std::string& what, const std::string& text, detail::bounds b,
                    const std::string& unit);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "options/settle.hpp"
 
-#include <algorithm>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -15,16 +14,6 @@
 namespace tactor::options {
 namespace {
 
-std::string mark(const option& o)
-{
-    return fmt::format("{{{}}}", o.name);
-}
-
-error refusal(const option& o, const std::string& why, const std::string& hint)
-{
-    return error(error_kind::bad_input, mark(o), why, hint).with_field(o.name);
-}
-
 // The level in dBFS is always there: one in dB SL counts before it.
 void forget(wishes& w, const option& o)
 {
@@ -35,7 +24,7 @@ void forget(wishes& w, const option& o)
         w.usual_speed_mm_s.reset();
 }
 
-const option* rival_of(const option& o)
+const option* find_rival(const option& o)
 {
     return o.rival.empty() ? nullptr : find(o.rival);
 }
@@ -58,19 +47,12 @@ const option& find_default(const default_value& d)
     const option* o = find(d.name);
     if (o != nullptr && (o->where & in_defaults) != 0)
         return *o;
-    std::vector<std::string> names;
-    for (const option& x : all())
-        if ((x.where & in_defaults) != 0) {
-            names.emplace_back(x.name);
-            std::replace(names.back().begin(), names.back().end(), '_', '-');
-        }
-    const std::vector<std::string_view> known(names.begin(), names.end());
-    throw error(error_kind::bad_input, d.name_at, fmt::format("unknown key '{}' in [defaults]", d.name),
-                detail::suggestion(d.name, known, "keys"))
-        .with_field(d.name);
+    const std::vector<std::string> names = dashed_names(in_defaults);
+    throw detail::unknown_key(d.name_at, d.name, "[defaults]",
+                              std::vector<std::string_view>(names.begin(), names.end()));
 }
 
-// One file cannot say both; what an included one says of the other counts no more.
+// Refuses a pair in one file. What an included file says of the other counts no more.
 void refuse_both(const setup& says, const default_value& d, const option* rival)
 {
     for (const default_value& other : says.defaults)
@@ -88,7 +70,7 @@ bool is_said(const wishes& w, std::string_view name)
 // Returns true where the place has the option, and the user gave neither it nor its rival.
 bool takes_default(const wishes& w, const option& o)
 {
-    const option* rival = rival_of(o);
+    const option* rival = find_rival(o);
     return (o.where & w.place) != 0 && !w.given[index(o)] && (rival == nullptr || !w.given[index(*rival)]);
 }
 
@@ -96,8 +78,7 @@ error at_place(const source_place& at, const option& o, const error& e)
 {
     const std::string_view subject = e.subject();
     const bool about_it = subject == mark(o) || subject == o.field_name();
-    std::string name(o.name);
-    std::replace(name.begin(), name.end(), '_', '-');
+    const std::string name = dashed(o);
     return e
         .reworded(at.text(),
                   about_it
@@ -113,7 +94,7 @@ error at_place(const source_place& at, const option& o, const error& e)
 
 void give(wishes& w, const option& o, const value& v)
 {
-    if (const option* rival = rival_of(o)) {
+    if (const option* rival = find_rival(o)) {
         if (w.given[index(*rival)])
             throw refusal(o, fmt::format("there is also {}", mark(*rival)), "give one of them");
         forget(w, *rival);
@@ -128,7 +109,7 @@ std::vector<said_default> read_defaults(const setup& says)
     std::vector<said_default> all;
     for (const default_value& d : says.defaults) {
         const option& o = find_default(d);
-        refuse_both(says, d, rival_of(o));
+        refuse_both(says, d, find_rival(o));
         const auto* text = std::get_if<std::string>(&d.said);
         try {
             // A value in quotes is taken as typed: "0.07" is 0.07.
@@ -149,7 +130,7 @@ void apply_defaults(wishes& w, const setup& says)
         const option& o = *d.row;
         if (!takes_default(w, o))
             continue;
-        if (const option* rival = rival_of(o))
+        if (const option* rival = find_rival(o))
             forget(w, *rival);
         try {
             put(w, o, d.said);

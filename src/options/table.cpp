@@ -4,9 +4,7 @@
 #include <array>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include "core/words.hpp"
 #include "options/access.hpp"
 
 namespace tactor::options {
@@ -109,16 +107,6 @@ void set_log(wishes& w, const value& v)
     w.stream.log = name;
 }
 
-value get_log(const wishes& w)
-{
-    return w.stream.log;
-}
-
-value get_shape(const wishes& w)
-{
-    return make_value(w.shape);
-}
-
 void set_compensation(wishes& w, const value& v)
 {
     w.compensate = std::get<std::string>(v) != "none";
@@ -143,7 +131,7 @@ constexpr std::array table{
            .to = reach([](auto& w) -> auto& { return w.path_data; })},
     option{.name = "shape", .what = kind::text, .choices = shape_names, .in = group::stroke,
            .help = "as large as the array, instead of STROKE, for first steps",
-           .where = drawing | through_server, .to = {set_shape, get_shape}},
+           .where = drawing | through_server, .to = {set_shape, reach([](auto& w) -> auto& { return w.shape; }).get}},
     option{.name = "duration", .field = "duration_s", .unit = "s", .allowed = of::duration_s, .in = group::stroke,
            .help = "time of each stroke; default: the file's or preset's",
            .where = in_stroke | drawing | by_client | in_python | planning, .rival = "speed",
@@ -170,7 +158,7 @@ constexpr std::array table{
            .where = drawing | in_python | planning,
            .to = reach([](auto& w) -> auto& { return w.fit; })},
     option{.name = "fit_margin", .field = "margin_mm", .unit = "mm", .allowed = of::margin_mm, .in = group::place,
-           .help = "--fit: distance kept from the array's edge (default 0)",
+           .help = "{fit}: distance kept from the array's edge (default 0)",
            .where = drawing | in_python | planning,
            .used = [](const wishes& w) { return w.fit; }, .needs = "{fit=true}",
            .to = reach([](auto& w) -> auto& { return w.fit_margin_mm; })},
@@ -228,12 +216,12 @@ constexpr std::array table{
     option{.name = "compensate", .what = kind::choice, .choices = low_speed_choices, .in = group::timing,
            .help = "move bursts so that the low-speed observer feels the target",
            .where = planned, .to = {set_compensation, get_compensation}},
-    option{.name = "sigma_mm", .unit = "mm", .allowed = of::sigma_mm, .in = group::timing,
+    option{.name = "sigma_mm", .unit = "mm", .allowed = {least_sigma_mm, most_sigma_mm}, .in = group::timing,
            .help = "low-speed: how well places are known (default 5)",
            .where = planned,
            .used = has_sigma, .needs = "{observer=low-speed}|{compensate=low-speed}",
            .to = reach([](auto& w) -> auto& { return w.low_speed.sigma_mm; })},
-    option{.name = "sigma_v_mm_s", .unit = "mm/s", .allowed = of::sigma_v_mm_s, .in = group::timing,
+    option{.name = "sigma_v_mm_s", .unit = "mm/s", .allowed = {least_sigma_v_mm_s, most_sigma_v_mm_s}, .in = group::timing,
            .help = "low-speed: which speeds are expected (default 100)",
            .where = planned,
            .used = has_sigma, .needs = "{observer=low-speed}|{compensate=low-speed}",
@@ -263,7 +251,7 @@ constexpr std::array table{
            .used = has_recording, .needs = "{waveform=FILE.wav}",
            .to = reach([](auto& w) -> auto& { return w.plan.wave.texture; })},
     option{.name = "texture_mm", .unit = "mm", .allowed = of::texture_mm, .in = group::sound,
-           .help = "--texture length: so much of the path has the whole file (default: all of it)",
+           .help = "{texture=length}: so much of the path has the whole file (default: all of it)",
            .where = in_stroke | sounding | in_defaults | live | in_plan | planning,
            .used = has_recording_along_path, .needs = "{waveform=FILE.wav} {texture=length}",
            .to = reach([](auto& w) -> auto& { return w.plan.wave.texture_mm; })},
@@ -280,7 +268,7 @@ constexpr std::array table{
            .help = "how a burst rises and falls (default raised-cosine; tukey: by a part of it, default 0.5)",
            .where = heard, .to = {set_envelope, get_envelope}},
     option{.name = "attack", .field = "attack_s", .unit = "s", .allowed = of::ramp_s, .in = group::sound,
-           .help = "time in which each burst rises (default: what --ramp says)",
+           .help = "time in which each burst rises (default: what {ramp} says)",
            .where = heard,
            .to = reach([](auto& w) -> auto& { return w.render.envelope.attack_s; })},
     option{.name = "release", .field = "release_s", .unit = "s", .allowed = of::ramp_s, .in = group::sound,
@@ -303,7 +291,7 @@ constexpr std::array table{
            .where = heard | in_compare, .rival = "level_dbfs",
            .to = reach([](auto& w) -> auto& { return w.render.sl_db; })},
     option{.name = "intensity_scale", .what = kind::choice, .choices = detail::names_of<scale_kind>, .in = group::level,
-           .help = "what an intensity of one half is: of the amplitude (default), of --sl in dB, of what is felt",
+           .help = "what an intensity of one half is: of the amplitude (default), of {sl} in dB, of what is felt",
            .where = planned | on_check | live,
            .to = reach([](auto& w) -> auto& { return w.plan.scale.kind; })},
     option{.name = "stevens_exponent", .allowed = of::stevens_exponent, .shown = "E", .in = group::level,
@@ -352,7 +340,7 @@ constexpr std::array table{
            .where = in_player | playing | in_score,
            .to = reach([](auto& w) -> auto& { return w.stream.max_drive_s; })},
     option{.name = "drive_window_s", .field = "window_s", .unit = "s", .allowed = of::drive_s, .in = group::device,
-           .help = "the window of --max-drive-s (default 10)",
+           .help = "the window of {max_drive_s} (default 10)",
            .where = in_player | playing | in_score,
            .to = reach([](auto& w) -> auto& { return w.stream.drive_window_s; })},
 
@@ -395,7 +383,7 @@ constexpr std::array table{
            .where = on_play | through_server,
            .to = reach([](auto& w) -> auto& { return w.stream.live; })},
     option{.name = "smooth", .field = "smooth_s", .unit = "s", .allowed = of::smooth_s, .in = group::real_time,
-           .help = "with --live: move evenly, and be at each point so long after it came (default 0)",
+           .help = "with {live}: move evenly, and be at each point so long after it came (default 0)",
            .where = on_play | live | through_server,
            .to = reach([](auto& w) -> auto& { return w.stream.smooth_s; })},
 
@@ -408,19 +396,19 @@ constexpr std::array table{
            .where = on_compare | in_compare,
            .to = reach([](auto& w) -> auto& { return w.spread.people; })},
     option{.name = "spread_seed", .what = kind::whole, .allowed = of::spread_seed, .in = group::output,
-           .help = "--spread: of the draw (default 1)",
+           .help = "{spread}: of the draw (default 1)",
            .where = on_compare | in_compare, .used = has_people, .needs = "{spread=N}",
            .to = reach([](auto& w) -> auto& { return w.spread.seed; })},
     option{.name = "spread_sigma", .allowed = of::spread_sigma, .shown = "FACTOR", .in = group::output,
-           .help = "--spread: low-speed's sigma by up to this factor (default 2)",
+           .help = "{spread}: low-speed's sigma by up to this factor (default 2)",
            .where = on_compare | in_compare, .used = has_people, .needs = "{spread=N}",
            .to = reach([](auto& w) -> auto& { return w.spread.sigma_factor; })},
     option{.name = "spread_threshold_db", .unit = "dB", .allowed = of::spread_threshold_db, .in = group::output,
-           .help = "--spread: each threshold give or take (default 6)",
+           .help = "{spread}: each threshold give or take (default 6)",
            .where = on_compare | in_compare, .used = has_people, .needs = "{spread=N}",
            .to = reach([](auto& w) -> auto& { return w.spread.threshold_db; })},
     option{.name = "spread_place_mm", .unit = "mm", .allowed = of::spread_place_mm, .in = group::output,
-           .help = "--spread: each tactor's place within (default 2)",
+           .help = "{spread}: each tactor's place within (default 2)",
            .where = on_compare | in_compare, .used = has_people, .needs = "{spread=N}",
            .to = reach([](auto& w) -> auto& { return w.spread.place_mm; })},
     option{.name = "verbose", .what = kind::flag, .in = group::output,
@@ -429,7 +417,7 @@ constexpr std::array table{
            .to = reach([](auto& w) -> auto& { return w.stream.verbose; })},
     option{.name = "log", .what = kind::text, .shown = "FILE", .in = group::output,
            .help = "append the same to a file",
-           .where = playing | on_experiment, .to = {set_log, get_log}},
+           .where = playing | on_experiment, .to = {set_log, reach([](auto& w) -> auto& { return w.stream.log; }).get}},
 };
 // clang-format on
 
@@ -444,79 +432,11 @@ static_assert(
     }(),
     "each name stands for one option");
 
-// Option names with - for _.
-bool same_name(std::string_view a, std::string_view b)
-{
-    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) {
-               return (x == '-' ? '_' : x) == (y == '-' ? '_' : y);
-           });
-}
-
 } // namespace
-
-std::string_view to_string(group g) noexcept
-{
-    constexpr std::array names{"Stroke", "Place",  "Timing",    "Sound",
-                               "Level",  "Device", "Real time", "Output"};
-    return names[static_cast<std::size_t>(g)];
-}
 
 std::span<const option> all() noexcept
 {
     return table;
-}
-
-const option* find(std::string_view name) noexcept
-{
-    const auto found =
-        std::find_if(table.begin(), table.end(), [&](const option& o) { return same_name(o.name, name); });
-    return found == table.end() ? nullptr : &*found;
-}
-
-const option* find_field(std::string_view field) noexcept
-{
-    const auto found =
-        std::find_if(table.begin(), table.end(), [&](const option& o) { return o.field_name() == field; });
-    return found == table.end() ? find(field) : &*found;
-}
-
-std::size_t index(const option& o) noexcept
-{
-    return static_cast<std::size_t>(&o - table.data());
-}
-
-bool wishes::gives(std::string_view name) const
-{
-    return given[index(*find(name))];
-}
-
-std::string choices_text(const option& o)
-{
-    return fmt::format("{}", fmt::join(o.choices(), ", "));
-}
-
-std::string range_text(const option& o)
-{
-    if (!o.range.empty())
-        return std::string(o.range);
-    return fmt::format("{}{} to {}{}{}", o.allowed.above_low ? "above " : "", plain_number(o.allowed.low),
-                       plain_number(o.allowed.high), o.unit.empty() ? "" : " ", o.unit);
-}
-
-std::string type_text(const option& o)
-{
-    if (!o.shown.empty())
-        return std::string(o.shown);
-    if (o.choices != nullptr)
-        return fmt::format("{}", fmt::join(o.choices(), "|"));
-    if (o.what == kind::whole)
-        return o.unit == "Hz" ? "HZ" : "N";
-    if (o.unit == "mm/s")
-        return "MM_PER_S";
-    std::string unit(o.unit);
-    std::transform(unit.begin(), unit.end(), unit.begin(),
-                   [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
-    return unit.empty() ? "X" : unit;
 }
 
 } // namespace tactor::options

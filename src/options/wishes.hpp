@@ -74,6 +74,7 @@ struct wishes {
 
     /// Returns whether the user gave the option of that name. \pre There is one.
     bool gives(std::string_view name) const;
+    bool gives(const option& o) const;
 };
 
 } // namespace tactor::options

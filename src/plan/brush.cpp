@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/limits.hpp"
 #include "core/words.hpp"
 #include "plan/brush.hpp"
 #include "plan/job.hpp"
@@ -14,8 +15,6 @@
 
 namespace tactor::detail {
 namespace {
-
-constexpr double longest_stroke_s = 86400.0;
 
 std::vector<double> times_of(const std::vector<meeting>& points)
 {

@@ -13,6 +13,7 @@
 
 #include <tactor/error.hpp>
 
+#include "core/bounds.hpp"
 #include "core/refused.hpp"
 #include "core/trajectory/spans.hpp"
 
@@ -129,7 +130,7 @@ void check_profile(const std::vector<carrier_part>& profile)
             throw detail::bad_field("carrier_profile",
                                     fmt::format("the part {} is out of order or range", p.part),
                                     "give parts of the path from 0 to 1, ascending");
-        if (!(p.hz >= 1.0 && p.hz <= 384000.0))
+        if (!bounds_of::carrier_hz.holds(p.hz))
             throw detail::bad_field("carrier_profile", fmt::format("{} Hz is not a carrier", p.hz),
                                     "give 1 to 384000 Hz");
         before = p.part;

@@ -11,6 +11,7 @@
 #include "options/check.hpp"
 #include "options/settle.hpp"
 #include "options/words.hpp"
+#include "session/device.hpp"
 
 namespace tactor::python {
 namespace {
@@ -21,7 +22,7 @@ constexpr std::uint64_t of_python = options::in_plan | options::in_score | optio
 // [defaults] speed, which a stroke's own wins over.
 constexpr const char* usual_speed = "usual_speed";
 
-[[noreturn]] void refuse(const std::string& name, const std::string& why, const std::string& hint = {})
+[[noreturn]] void refuse(std::string_view name, const std::string& why, const std::string& hint = {})
 {
     throw error(error_kind::bad_input, name, why, hint).with_field(name);
 }
@@ -44,7 +45,7 @@ bool is_plain(py::handle v)
 double number(const option& o, py::handle v)
 {
     if (!is_plain(v))
-        refuse(std::string(o.name), fmt::format("{} is not a number", shown(v)), range_text(o));
+        refuse(o.name, fmt::format("{} is not a number", shown(v)), range_text(o));
     double d = PyFloat_AsDouble(v.ptr());
     bool is_one = !py::isinstance<py::bool_>(v);
     if (PyErr_Occurred() != nullptr) {
@@ -53,10 +54,10 @@ double number(const option& o, py::handle v)
         d = HUGE_VAL;
     }
     if (!is_one)
-        refuse(std::string(o.name), fmt::format("{} is not a number", shown(v)), range_text(o));
+        refuse(o.name, fmt::format("{} is not a number", shown(v)), range_text(o));
     const bool is_rounded = PyLong_Check(v.ptr()) && !py::float_(d).equal(v);
     if (is_rounded || !o.allowed.holds(d))
-        refuse(std::string(o.name), fmt::format("{} is out of range", shown(v)), range_text(o));
+        refuse(o.name, fmt::format("{} is out of range", shown(v)), range_text(o));
     return d;
 }
 
@@ -66,7 +67,7 @@ bool truth(const option& o, py::handle v)
     const bool is_one = py::isinstance<py::bool_>(v) || py::hasattr(v, "dtype");
     if (!is_one || t < 0) {
         PyErr_Clear();
-        refuse(std::string(o.name), fmt::format("{} is neither True nor False", shown(v)));
+        refuse(o.name, fmt::format("{} is neither True nor False", shown(v)));
     }
     return t != 0;
 }
@@ -74,17 +75,17 @@ bool truth(const option& o, py::handle v)
 std::string text(const option& o, py::handle v)
 {
     if (!py::isinstance<py::str>(v))
-        refuse(std::string(o.name),
+        refuse(o.name,
                o.choices == nullptr ? fmt::format("{} is no text", shown(v))
                                     : fmt::format("{} is not known", shown(v)),
                o.choices == nullptr ? "" : fmt::format("one of {}", choices_text(o)));
     auto said = v.cast<std::string>();
     if (said.find('\0') != std::string::npos)
-        refuse(std::string(o.name), fmt::format("{} has a zero byte in it", shown(v)));
+        refuse(o.name, fmt::format("{} has a zero byte in it", shown(v)));
     return said;
 }
 
-options::value value_of(const option& o, py::handle v)
+options::value read_handle(const option& o, py::handle v)
 {
     switch (o.what) {
     case options::kind::number:
@@ -110,7 +111,7 @@ void refuse_rivals(const py::dict& given)
     };
     for (const option& o : options::all())
         if (!o.rival.empty() && o.name < o.rival && says(o.name) && says(o.rival))
-            refuse(std::string(o.name), fmt::format("there is also {}", o.rival), "give one of them");
+            refuse(o.name, fmt::format("there is also {}", o.rival), "give one of them");
 }
 
 void take_phantom(wishes& w, const option& o, py::handle v, std::size_t tactors)
@@ -118,7 +119,7 @@ void take_phantom(wishes& w, const option& o, py::handle v, std::size_t tactors)
     if (py::hasattr(v, "weights"))
         w.plan.custom_phantom = model_of(py::reinterpret_borrow<py::object>(v), tactors);
     else
-        options::put(w, o, value_of(o, v));
+        options::put(w, o, read_handle(o, v));
 }
 
 void take(wishes& w, const std::string& name, py::handle v, std::size_t tactors)
@@ -133,8 +134,8 @@ void take(wishes& w, const std::string& name, py::handle v, std::size_t tactors)
     if (name == "phantom")
         take_phantom(w, *o, v, tactors);
     else
-        options::put(w, *o, value_of(*o, v));
-    // What a file may say is not refused where nothing uses it.
+        options::put(w, *o, read_handle(*o, v));
+    // A file may say it for other strokes: then it is not refused where nothing uses it.
     if ((o->where & options::in_defaults) != 0)
         w.in_file.insert_or_assign(index(*o), source_place());
     else
@@ -150,11 +151,7 @@ void settle_score(wishes& w)
     const options::stream_options& s = w.stream;
     if (!s.power_dbfs && !s.max_drive_s && !s.drive_window_s)
         return;
-    if (!r.limits)
-        r.limits.emplace();
-    r.limits->power_dbfs = s.power_dbfs.value_or(r.limits->power_dbfs);
-    r.limits->max_drive_s = s.max_drive_s.value_or(r.limits->max_drive_s);
-    r.limits->window_s = s.drive_window_s.value_or(r.limits->window_s);
+    r.limits = session::limits_over(s, r.limits.value_or(drive_limits()));
 }
 
 } // namespace
@@ -181,7 +178,7 @@ void check_used(const std::vector<std::string>& names, const py::dict& all, cons
         const option* o = options::find(name);
         if (value.is_none() || o == nullptr || name == "phantom")
             continue;
-        const options::value v = value_of(*o, value);
+        const options::value v = read_handle(*o, value);
         const auto* said = std::get_if<std::string>(&v);
         if (name == "waveform" && waveform_names_file(*said))
             w.plan.wave.kind = waveform_kind::recording; // it is read later
@@ -194,13 +191,13 @@ void check_used(const std::vector<std::string>& names, const py::dict& all, cons
     options::settle(w);
 }
 
-std::map<std::string, options::value> player_options_in(const py::dict& given)
+given_options player_options_in(const py::dict& given)
 {
-    std::map<std::string, options::value> all;
+    given_options all;
     for (const option& o : options::all()) {
         const py::str name(o.name.data(), o.name.size());
         if ((o.where & options::in_player) != 0 && given.contains(name) && !given[name].is_none())
-            all.emplace(o.name, value_of(o, given[name]));
+            all.emplace_back(&o, read_handle(o, given[name]));
     }
     return all;
 }
@@ -233,12 +230,12 @@ py::dict default_values(const setup& says)
     py::dict all;
     for (const options::said_default& d : options::read_defaults(says)) {
         const py::str name(d.row->name.data(), d.row->name.size());
-        if (const auto* flag = std::get_if<bool>(&d.said))
-            all[name] = *flag;
-        else if (const auto* n = std::get_if<double>(&d.said))
-            all[name] = *n;
-        else
-            all[name] = std::get<std::string>(d.said);
+        std::visit(
+            [&]<class T>(const T& v) {
+                if constexpr (!std::is_same_v<T, std::monostate>)
+                    all[name] = v;
+            },
+            d.said);
     }
     return all;
 }

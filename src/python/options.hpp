@@ -3,9 +3,9 @@
 /// Keyword arguments: options of the table.
 #pragma once
 
-#include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "options/option.hpp"
@@ -14,6 +14,9 @@
 namespace tactor::python {
 
 using options::wishes;
+
+/// Options with their values.
+using given_options = std::vector<std::pair<const options::option*, options::value>>;
 
 /// Takes what `given` says; None is as good as nothing. `tactors` is how many an own phantom model may name.
 /// \throws error (bad_input) for names that are not known, and for values that cannot be.
@@ -24,7 +27,7 @@ void take_options(wishes& into, const py::dict& given, std::size_t tactors);
 void check_used(const std::vector<std::string>& names, const py::dict& all, const std::string& place);
 
 /// Options of a player among `given`, checked. \throws error (bad_input).
-std::map<std::string, options::value> player_options_in(const py::dict& given);
+given_options player_options_in(const py::dict& given);
 
 /// A text of the library with options as keyword arguments.
 std::string in_python_words(const std::string& text);

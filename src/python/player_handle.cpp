@@ -20,8 +20,8 @@ session::settings make_settings(const player_wishes& w)
     s.config_file = w.config;
     s.array_name = w.array_file;
     s.pcm = w.pcm;
-    for (const auto& [name, v] : w.given)
-        options::give(s, *options::find(name), v);
+    for (const auto& [o, v] : w.given)
+        options::give(s, *o, v);
     return s;
 }
 

@@ -3,7 +3,6 @@
 /// A player as the tool's `play` opens it: configuration, lines and limits included.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <optional>
 #include <shared_mutex>
@@ -11,9 +10,9 @@
 
 #include <sys/types.h>
 
-#include "options/option.hpp"
 #include "python/binding.hpp"
 #include "python/events.hpp"
+#include "python/options.hpp"
 #include "session/device.hpp"
 #include "session/lines.hpp"
 
@@ -24,7 +23,7 @@ struct player_wishes {
     std::string pcm = {};
     std::optional<std::string> config = {};
     std::optional<std::string> array_file = {};
-    std::map<std::string, options::value> given = {}; ///< options by name, checked
+    given_options given = {}; ///< checked
     drive_history driven = {};
     bool wants_log = false;
 };

@@ -161,6 +161,11 @@ const json* member(const json& params, const char* name)
     return found == params.end() ? nullptr : &*found;
 }
 
+double number(const json& v, const std::string& what, detail::bounds b)
+{
+    return number(v, what, b.low, b.high);
+}
+
 double number(const json& v, const std::string& what, double low, double high)
 {
     if (!v.is_number())

@@ -13,6 +13,7 @@
 #include <tactor/error.hpp>
 #include <tactor/render.hpp>
 
+#include "core/bounds.hpp"
 #include "net/rpc.hpp"
 
 namespace tactor::server {
@@ -48,6 +49,7 @@ void only(const net::json& params, std::initializer_list<std::string_view> known
 const net::json* member(const net::json& params, const char* name);
 /// A number within bounds. \throws fault_error.
 double number(const net::json& v, const std::string& what, double low, double high);
+double number(const net::json& v, const std::string& what, detail::bounds b);
 /// A required one.
 double need_number(const net::json& params, const char* name, double low, double high);
 std::uint32_t need_stroke(const net::json& params);

@@ -34,9 +34,9 @@ void service::begin(client& c, const json& params, const answer& to)
     o.render = s.render;
     o.longest_s = options_.limits.max_stroke_s;
     if (const json* t = member(params, "timeout_s"))
-        o.timeout_s = number(*t, "timeout_s", 0.001, 86400);
+        o.timeout_s = number(*t, "timeout_s", detail::bounds_of::timeout_s);
     if (const json* t = member(params, "smooth_s"))
-        o.smooth_s = number(*t, "smooth_s", 0.0, 1.0);
+        o.smooth_s = number(*t, "smooth_s", detail::bounds_of::smooth_s);
     check_free_place(c);
     if (c.live >= options_.limits.max_live_strokes)
         limit_reached("max_live_strokes",

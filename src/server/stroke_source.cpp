@@ -251,7 +251,8 @@ planned make_drive(const planning& with, const json& params)
     const double intensity = given == nullptr ? 1.0 : number(*given, "intensity", 0, 1);
     given = member(params, "duration_s");
     constexpr double usual_s = 0.5;
-    const double seconds = given == nullptr ? usual_s : number(*given, "duration_s", 0.001, 86400);
+    const double seconds =
+        given == nullptr ? usual_s : number(*given, "duration_s", detail::bounds_of::duration_s);
     in_time(with, seconds);
     check_level(with, with.owner, intensity, with.owner.plan.carrier_hz, "intensity");
     planned p{"drive", {}, {}, with.owner.render};

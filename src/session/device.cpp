@@ -59,14 +59,21 @@ alsa_options device_options(const settings& s, const stream_options& asked, cons
     return o;
 }
 
+drive_limits limits_over(const stream_options& asked, drive_limits l)
+{
+    l.power_dbfs = asked.power_dbfs.value_or(l.power_dbfs);
+    l.max_drive_s = asked.max_drive_s.value_or(l.max_drive_s);
+    l.window_s = asked.drive_window_s.value_or(l.window_s);
+    return l;
+}
+
 drive_limits settle_limits(const stream_options& o, const environment& e)
 {
     const limit_settings said = e.config.limits.value_or(limit_settings{});
-    drive_limits l;
-    l.power_dbfs = o.power_dbfs.value_or(said.power_dbfs.value_or(l.power_dbfs));
-    l.max_drive_s = o.max_drive_s.value_or(said.max_drive_s.value_or(l.max_drive_s));
-    l.window_s = o.drive_window_s.value_or(said.window_s.value_or(l.window_s));
-    return l;
+    return limits_over(o, limits_over({.power_dbfs = said.power_dbfs,
+                                       .max_drive_s = said.max_drive_s,
+                                       .drive_window_s = said.window_s},
+                                      {}));
 }
 
 double latency_ms(const stream_setup& s)

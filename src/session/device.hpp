@@ -21,6 +21,9 @@ bool names_device(const settings& s, const environment& e);
 alsa_options device_options(const settings& s, const stream_options& asked, const environment& e,
                             unsigned channels, unsigned rate);
 
+/// Returns `l` with what is asked for instead.
+drive_limits limits_over(const stream_options& asked, drive_limits l);
+
 /// Returns the limits that hold: the options, else [limits], else the defaults.
 drive_limits settle_limits(const stream_options& o, const environment& e);
 

@@ -72,6 +72,8 @@ public:
     play_session& operator=(const play_session&) = delete;
 
     const stream_setup& setup() const noexcept { return setup_; }
+    /// What the constructor was given.
+    const stream_options& asked() const noexcept { return options_; }
 
     /// Called some 25 times a second while a score is played: where the stream is, or null while the score
     /// does not sound.

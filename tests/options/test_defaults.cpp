@@ -80,8 +80,7 @@ TEST_CASE("each option of [defaults] is read as it may be typed, and no other")
                                                  {"level-dbfs", "-6.5"}};
     std::size_t known = 0;
     for (const option& o : options::all()) {
-        std::string name(o.name);
-        std::replace(name.begin(), name.end(), '_', '-');
+        const std::string name = dashed(o);
         CAPTURE(name);
         if ((o.where & in_defaults) == 0) {
             CHECK(complaint(name + " = 1").find("unknown key '" + name + "' in [defaults]") !=
@@ -192,8 +191,7 @@ TEST_CASE("the manual page names every option that [defaults] takes")
     const auto source = std::filesystem::path(TACTOR_SOURCE_ROOT);
     const std::string page(std::string_view(detail::read_text_file(source / "man/tactor.toml.5", 1 << 20)));
     for (const option& o : options::all()) {
-        std::string name(o.name);
-        std::replace(name.begin(), name.end(), '_', '-');
+        const std::string name = dashed(o);
         CAPTURE(name);
         if ((o.where & in_defaults) != 0)
             CHECK(page.find(fmt::format("\n{}\t", name)) != std::string::npos);

@@ -100,7 +100,7 @@ TEST_CASE("options are put over the owner's, each with its type")
     CHECK_FALSE(s.render.sl_db);
 }
 
-// What the schema of the protocol says of an option.
+// Returns the schema of one option.
 json schema_of(const options::option& o)
 {
     using options::kind;

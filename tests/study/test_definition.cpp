@@ -127,6 +127,9 @@ TEST_CASE("what is wrong is said with its line")
     says(head + "[[motion]]\nname = \"m\"\nfile = \"none.csv\"\n" + methods + run, "e.toml:5:", "none.csv");
     says(head + "[[motion]]\nname = \"a\\tb\"\npreset = \"park2016-1\"\n" + methods + run,
          "e.toml:4:", "tabs");
+    // A key that is there in its other spelling is not the one that is unknown.
+    says(head + motion + "[[method]]\nname = \"a\"\ndrop-points = true\nsoa_s = 0.06\nburts = 0.05\n" + run,
+         "e.toml", "unknown key 'burts' in [[method]] (did you mean 'burst'?)");
     says(head + motion + "[[method]]\nname = \"a\"\nalgorithm = \"brush\"\n" + run,
          "e.toml:8:", "tactile-brush");
     says(head + motion + "[[method]]\nname = \"a\"\n" + run, "e.toml", "1 methods to choose from");

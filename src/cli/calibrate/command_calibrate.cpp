@@ -206,7 +206,7 @@ command add_calibrate(CLI::App& app)
     auto s = std::make_shared<settings>();
     auto o = std::make_shared<calibrate_options>();
     add_calibrate_options(*c, *o);
-    add_options(*c, *s, on_calibrate);
+    add_options(*c, *s, options::on_calibrate);
     require_device(*c);
     c->footer("Example: tactor calibrate --participant P07 -o P07.toml -D hw:CARD=Tactor");
     return [s, o] { return run_with(*s, [&] { return calibrate(*s, *o); }); };

@@ -23,10 +23,12 @@ namespace tactor::cli {
 namespace {
 
 struct check_options {
-    play_options play;
+    std::string format = "text";
     bool walk = false;
     bool no_questions = false;
     std::string output; // empty: none
+
+    bool json() const { return format == "json"; }
 };
 
 // Adds what needs no array, so that a file that cannot be read hides nothing else.
@@ -47,23 +49,23 @@ void check_machine(const setup& config, const alsa_options& device, const sessio
         all.push_back(std::move(f));
 }
 
-alsa_options device_for(const settings& s, const check_options& o, const environment& e)
+alsa_options device_for(const settings& s, const environment& e)
 {
     const render_options r = session::settle_render(s, e);
-    return session::device_options(s, o.play, e, r.channels, r.rate);
+    return session::device_options(s, s.stream, e, r.channels, r.rate);
 }
 
-std::vector<finding> check_all(const settings& s, const check_options& o, const environment& e)
+std::vector<finding> check_all(const settings& s, const environment& e)
 {
-    std::vector<finding> all = check_array(s, e, session::settle_limits(o.play, e));
+    std::vector<finding> all = check_array(s, e, session::settle_limits(s.stream, e));
     alsa_options device;
     try {
-        device = device_for(s, o, e);
-        all.push_back(check_device(device, o.play, e, session::names_device(s, e)));
+        device = device_for(s, e);
+        all.push_back(check_device(device, s.stream, e, session::names_device(s, e)));
     } catch (const error& x) {
         all.push_back(failure("device", x));
     }
-    if (!o.play.no_gpio)
+    if (!s.stream.no_gpio)
         for (finding& f : check_lines(e.config, session::is_felt(device.pcm), find_gpio_line))
             all.push_back(std::move(f));
     if (e.config.serve) {
@@ -75,7 +77,7 @@ std::vector<finding> check_all(const settings& s, const check_options& o, const 
             all.push_back(failure("service settings", x));
         }
     }
-    check_machine(e.config, device, o.play, all);
+    check_machine(e.config, device, s.stream, all);
     return all;
 }
 
@@ -91,7 +93,7 @@ void conclude(const check_options& o, const environment& e, const session::walk_
         throw no_map(v);
     if (!o.output.empty())
         write_channel_file(o.output, e, v.channels);
-    if (o.play.json())
+    if (o.json())
         return;
     say(stdout, "{}\n",
         v.changed ? fmt::format("The map is wrong: tactors 0 to {} are on channels {}.",
@@ -105,17 +107,17 @@ void conclude(const check_options& o, const environment& e, const session::walk_
 
 int run_walk(const settings& s, const check_options& o, const environment& e, const std::vector<finding>& all)
 {
-    const walk_options how{o.play, s.plan.carrier_hz, !o.no_questions, o.output};
-    const walk_result w = walk(device_for(s, o, e), e, session::settle_render(s, e), how);
+    const walk_options how{s.stream, o.json(), s.plan.carrier_hz, !o.no_questions, o.output};
+    const walk_result w = walk(device_for(s, e), e, session::settle_render(s, e), how);
     if (w.signal != 0)
         return session::interrupt::status(w.signal);
     if (o.no_questions) {
-        if (o.play.json())
+        if (o.json())
             fmt::print("{}", check_json(all, {}));
         return status_ok;
     }
     const session::walk_verdict v = session::judge(e.tactors, w.felt);
-    if (o.play.json())
+    if (o.json())
         fmt::print("{}", check_json(all, walk_told{e.tactors, w.felt, v}));
     conclude(o, e, v);
     return status_ok;
@@ -130,13 +132,13 @@ int complain(const std::vector<finding>& all)
     return status_of(all);
 }
 
-void check_usage(const check_options& o)
+void check_usage(const settings& s, const check_options& o)
 {
     if (!o.walk && (o.no_questions || !o.output.empty()))
         throw error(error_kind::bad_input, o.no_questions ? "--auto" : "--output", "only a walk has it",
                     "add --walk");
-    if (!o.walk && (o.play.verbose || !o.play.log.empty()))
-        throw error(error_kind::bad_input, o.play.verbose ? "--verbose" : "--log",
+    if (!o.walk && (s.stream.verbose || !s.stream.log.empty()))
+        throw error(error_kind::bad_input, s.stream.verbose ? "--verbose" : "--log",
                     "without a walk nothing is played", "add --walk");
     if (o.no_questions && !o.output.empty())
         throw error(error_kind::bad_input, "--output", "without answers there is no map",
@@ -145,22 +147,20 @@ void check_usage(const check_options& o)
         check_new_file(o.output);
 }
 
-int check(settings& s, check_options o)
+int check(settings& s, const check_options& o)
 {
-    o.play.take(s.stream);
-    check_usage(o);
+    check_usage(s, o);
     std::vector<finding> all;
     std::optional<environment> e;
     try {
         e = session::read_environment(s);
-        o.play.take(s.stream);
-        all = check_all(s, o, *e);
+        all = check_all(s, *e);
     } catch (const error& x) {
         all = {failure("array", x)};
-        check_machine({}, {.pcm = s.pcm.value_or("null")}, o.play, all);
+        check_machine({}, {.pcm = s.pcm.value_or("null")}, s.stream, all);
     }
     const bool walks = o.walk && status_of(all) == status_ok;
-    if (!o.play.json())
+    if (!o.json())
         say(stdout, "{}", check_text(all, o.walk));
     else if (!walks)
         fmt::print("{}", check_json(all, {}));
@@ -187,9 +187,9 @@ command add_check(CLI::App& app)
     CLI::App* c = app.add_subcommand("check", "Check array, device, rights, limits, lines and wiring");
     auto s = std::make_shared<settings>();
     auto o = std::make_shared<check_options>();
-    add_options(*c, *s, on_check);
+    add_options(*c, *s, options::on_check);
     add_walk_options(*c, *o);
-    add_format_option(*c, o->play.format, {"text", "json"}, "how to print it (default text)");
+    add_format_option(*c, o->format, {"text", "json"}, "how to print it (default text)");
     c->footer("Example: tactor check --array palm-2x4 --walk -o palm-felt.toml");
     return [s, o] { return run_with(*s, [&] { return check(*s, *o); }); };
 }

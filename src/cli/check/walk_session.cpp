@@ -59,12 +59,7 @@ std::string without_blanks(std::string s)
 class walker {
 public:
     walker(session::play_session& s, const environment& e, const render_options& r, const walk_options& o)
-        : session_(s),
-          environment_(e),
-          render_(r),
-          options_(o),
-          input_(s),
-          to_(o.play.json() ? stderr : stdout)
+        : session_(s), environment_(e), render_(r), options_(o), input_(s), to_(o.json ? stderr : stdout)
     {
     }
 
@@ -115,7 +110,7 @@ private:
         const piece p = walk_one(environment_.tactors, i, options_.carrier_hz);
         const stroke_report r =
             play_drawn(session_, environment_.tactors, p, make_score(p, environment_, render_),
-                       !options_.play.json() && !options_.play.verbose);
+                       !options_.json && !options_.stream.verbose);
         if (session_.signal() != 0)
             throw interrupted{};
         if (r.state == state_kind::interrupted && session_.lost())
@@ -187,7 +182,7 @@ walk_result walk(const alsa_options& device, const environment& e, const render_
 {
     if (o.ask)
         session::check_standard_input();
-    session::play_session session(device, o.play, e, std::move(source));
+    session::play_session session(device, o.stream, e, std::move(source));
     walk_result result;
     try {
         result.felt = walker(session, e, render, o).all();

@@ -6,14 +6,14 @@
 #include <string>
 
 #include "cli/input.hpp"
-#include "cli/play/play_options.hpp"
 #include "session/play_session.hpp"
 #include "session/walk.hpp"
 
 namespace tactor::cli {
 
 struct walk_options {
-    play_options play; ///< how the stream is opened; its format says where questions go
+    session::stream_options stream;
+    bool json = false; ///< questions go to standard error
     double carrier_hz = 250.0;
     bool ask = true;    ///< else each is only named
     std::string output; ///< the file for the map; empty: none

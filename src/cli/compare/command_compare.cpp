@@ -196,7 +196,7 @@ command add_compare(CLI::App& app)
     auto s = std::make_shared<settings>();
     auto asked = std::make_shared<compare_options>();
     add_strokes(*c, *s);
-    add_options(*c, *s, on_compare);
+    add_options(*c, *s, options::on_compare);
     c->get_option("STROKE")->description(
         "preset (park2016-1 ... park2016-4; wave-2x4 and round-2x4 on palm-2x4), "
         "file (.toml, .csv, .svg), or - for such a file on standard input; no plan: it is planned here");

@@ -29,7 +29,7 @@ command add_devices(CLI::App& app)
     CLI::App* c = app.add_subcommand("devices", "List PCMs, what they can do, and GPIO lines");
     auto s = std::make_shared<settings>();
     auto format = std::make_shared<std::string>();
-    add_options(*c, *s, on_devices);
+    add_options(*c, *s, options::on_devices);
     add_format_option(*c, *format, {"text", "json"}, "how to print it (default text)");
     c->footer("Example: tactor devices --array palm-2x4");
     return [s, format] { return run_with(*s, [&] { return list_devices(*s, *format == "json"); }); };

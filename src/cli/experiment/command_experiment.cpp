@@ -116,7 +116,7 @@ command add_experiment(CLI::App& app)
     auto power = std::make_shared<power_options>();
     add_experiment_options(*c, *o);
     add_power_options(*c, *power);
-    add_options(*c, *s, on_experiment);
+    add_options(*c, *s, options::on_experiment);
     require_device(*c);
     c->footer("Example: tactor experiment park2016 --participant 01 -o trial --simulate seed=1,sigma=1");
     return [s, o, power] { return run_with(*s, [&] { return run(*o, *power, *s); }); };

@@ -51,7 +51,7 @@ command add_plan(CLI::App& app)
     auto s = std::make_shared<settings>();
     auto format = std::make_shared<std::string>("text");
     add_strokes(*c, *s);
-    add_options(*c, *s, on_plan);
+    add_options(*c, *s, options::on_plan);
     add_format_option(*c, *format, {"text", "json", "csv"}, "how to print it (default text)");
     c->footer("Example: tactor plan park2016-1 --format json");
     return [s, format] { return run_with(*s, [&] { return print_plan(*s, *format); }); };

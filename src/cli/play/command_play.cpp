@@ -48,11 +48,11 @@ struct broken_off {
 };
 
 // Plays one piece and says when it waits for its trigger. The picture leaves log lines alone.
-stroke_report play_once(session::play_session& session, const play_options& o, const array& a, const piece& p,
+stroke_report play_once(session::play_session& session, bool as_json, const array& a, const piece& p,
                         const score& s)
 {
-    return play_drawn(session, a, p, s, !o.json() && !o.verbose, [&] {
-        if (o.arm && !o.json()) {
+    return play_drawn(session, a, p, s, !as_json && !session.asked().verbose, [&] {
+        if (session.asked().arm && !as_json) {
             say(stdout, "{}: armed\n", shown_name(p.name));
             flush_output();
         }
@@ -60,13 +60,13 @@ stroke_report play_once(session::play_session& session, const play_options& o, c
 }
 
 // Plays one piece, once more where its device went before it began. False when there is no device.
-bool play_piece(session::play_session& session, const play_options& o, const array& a, const piece& p,
-                const score& s, stroke_outcome& out)
+bool play_piece(session::play_session& session, bool as_json, const array& a, const piece& p, const score& s,
+                stroke_outcome& out)
 {
     for (bool again = false;; again = true) {
         if (session.lost() && !session.reopen())
             return false;
-        out.report = play_once(session, o, a, p, s);
+        out.report = play_once(session, as_json, a, p, s);
         const bool untouched =
             out.report->state == state_kind::interrupted && out.report->frames == 0 && session.lost();
         if (!untouched || again || !session.waits())
@@ -75,13 +75,12 @@ bool play_piece(session::play_session& session, const play_options& o, const arr
 }
 
 // Why the run ends with this stroke. What became of the last is said in the end.
-std::optional<broken_off> judge(const session::play_session& session, const play_options& o,
-                                const stroke_outcome& out, bool last)
+std::optional<broken_off> judge(const session::play_session& session, const stroke_outcome& out, bool last)
 {
     if (out.report->state != state_kind::interrupted)
         return {};
     const std::string why = fate(out, session.setup().rate);
-    if (o.void_on_xrun)
+    if (session.asked().void_on_xrun)
         return broken_off{shown_name(out.name), why, "the run is void: --void-on-xrun"};
     if (last)
         return {};
@@ -91,41 +90,40 @@ std::optional<broken_off> judge(const session::play_session& session, const play
     return {};
 }
 
-std::optional<broken_off> play_all(session::play_session& session, const play_options& o, const array& a,
+std::optional<broken_off> play_all(session::play_session& session, bool as_json, const array& a,
                                    const std::vector<piece>& pieces, const std::vector<score>& scores,
                                    std::vector<stroke_outcome>& outcomes)
 {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-        const bool there = play_piece(session, o, a, pieces[i], scores[i], outcomes[i]);
+        const bool there = play_piece(session, as_json, a, pieces[i], scores[i], outcomes[i]);
         if (!there && session.signal() == 0)
             return broken_off{shown_name(pieces[i].name), "not played: the device is gone",
                               session.waits() ? "it did not come back in time" : wait_hint};
-        if (!o.json() && outcomes[i].report) {
+        if (!as_json && outcomes[i].report) {
             say(stdout, "{}\n", describe(outcomes[i], session.setup().rate));
             flush_output();
         }
         if (session.signal() != 0)
             return {};
-        if (auto broken = judge(session, o, outcomes[i], i + 1 == pieces.size()))
+        if (auto broken = judge(session, outcomes[i], i + 1 == pieces.size()))
             return broken;
     }
     return {};
 }
 
-int play(settings& s, play_options o)
+int play(settings& s, const play_options& o)
 {
-    o.take(s.stream);
-    if (o.live)
+    const session::stream_options& asked = s.stream;
+    if (asked.live)
         check_live(s);
-    else if (o.smooth_s)
+    else if (asked.smooth_s)
         throw error(error_kind::bad_input, "--smooth", "only points that come one by one are smoothed",
                     "use it with --live, or leave it out");
     if (o.socket)
         return play_remote(s, o);
-    if (o.live)
+    if (asked.live)
         return play_live(s, o);
     const environment e = session::read_environment(s);
-    o.take(s.stream);
     const layout faces(e.tactors);
     auto pieces = open_pieces(s, e, faces);
     const auto scores = make_scores(pieces, s, e, faces, session::settle_render(s, e));
@@ -133,13 +131,13 @@ int play(settings& s, play_options o)
         say(stderr, "tactor: no device is configured: playing to \"null\", which nobody feels (-D PCM plays "
                     "on hardware)\n");
     const alsa_options device =
-        session::device_options(s, o, e, scores.front().channels(), scores.front().rate());
+        session::device_options(s, asked, e, scores.front().channels(), scores.front().rate());
     const std::string server = session::settle_server(device.pcm);
-    session::play_session session(device, o, e);
+    session::play_session session(device, asked, e);
     if (!o.json())
         say(stdout, "{}\n", describe(session.setup()));
     flush_output();
-    const std::string warning = session::latency_warning(o.latency_ms, session.setup());
+    const std::string warning = session::latency_warning(asked.latency_ms, session.setup());
     if (!warning.empty())
         say(stderr, "tactor: warning: {}\n", warning);
     if (!server.empty())
@@ -148,9 +146,9 @@ int play(settings& s, play_options o)
     run_report r;
     for (std::size_t i = 0; i < pieces.size(); ++i)
         r.strokes.push_back({pieces[i].name, scores[i].frames()});
-    const auto broken = play_all(session, o, e.tactors, pieces, scores, r.strokes);
+    const auto broken = play_all(session, o.json(), e.tactors, pieces, scores, r.strokes);
     static_cast<session::run_facts&>(r) = session.finish();
-    if (const auto status = tell_end(session, o, e, r))
+    if (const auto status = tell_end(session, o.json(), e, r))
         return *status;
     if (broken)
         throw error(error_kind::runtime, broken->stroke, broken->why, broken->hint);
@@ -167,7 +165,7 @@ command add_play(CLI::App& app)
     auto s = std::make_shared<settings>();
     auto o = std::make_shared<play_options>();
     add_strokes(*c, *s);
-    add_options(*c, *s, on_play);
+    add_options(*c, *s, options::on_play);
     c->add_option("--socket", o->socket, "play through the server that listens there")->type_name("PATH");
     add_format_option(*c, o->format, {"text", "json"}, "what is told of the run (default text)");
     c->footer("Example: tactor play park2016-3 -D hw:CARD=Tactor");

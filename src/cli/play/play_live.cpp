@@ -21,7 +21,7 @@ void check_live(const settings& s)
         throw error(error_kind::bad_input, "--live", "it takes its points from standard input",
                     "give - as the only STROKE: tactor play --live -");
     for (const options::option& o : options::all())
-        if ((o.where & options::planning) != 0 && (o.where & options::live) == 0 && s.gives(o.name))
+        if ((o.where & options::planning) != 0 && (o.where & options::live) == 0 && s.gives(o))
             throw error(error_kind::bad_input, option_name(o), "a live stroke does not know it",
                         "its points say when it is where");
     if (s.stream.arm)
@@ -29,11 +29,10 @@ void check_live(const settings& s)
                     "leave it out");
 }
 
-int play_live(settings& s, play_options o)
+int play_live(settings& s, const play_options& o)
 {
     s.strokes.clear(); // standard input has its points, which come later
     const environment e = session::read_environment(s);
-    o.take(s.stream);
     const live_options usual;
     live_options l;
     l.plan = s.plan;
@@ -43,15 +42,15 @@ int play_live(settings& s, play_options o)
         l.plan.outside = usual.plan.outside;
     l.render = session::settle_render(s, e);
     l.timeout_s = live_timeout_s;
-    l.smooth_s = o.smooth_s.value_or(l.smooth_s);
+    l.smooth_s = s.stream.smooth_s.value_or(l.smooth_s);
     if (!session::names_device(s, e))
         say(stderr, "tactor: no device is configured: playing to \"null\", which nobody feels (-D PCM plays "
                     "on hardware)\n");
-    const alsa_options device = session::device_options(s, o, e, l.render.channels, l.render.rate);
+    const alsa_options device = session::device_options(s, s.stream, e, l.render.channels, l.render.rate);
     const std::string between = session::settle_server(device.pcm);
     if (!between.empty())
         say(stderr, "tactor: warning: {} ({})\n", session::server_note(between), session::server_cure);
-    session::play_session session(device, o, e);
+    session::play_session session(device, s.stream, e);
     if (!o.json())
         say(stdout, "{}\n", describe(session.setup()));
     flush_output();
@@ -64,7 +63,7 @@ int play_live(settings& s, play_options o)
     if (!o.json())
         say(stdout, "{}\n", describe(out, session.setup().rate));
     static_cast<session::run_facts&>(r) = session.finish();
-    if (const auto status = tell_end(session, o, e, r))
+    if (const auto status = tell_end(session, o.json(), e, r))
         return *status;
     if (const auto left = unfinished(r))
         throw error(*left);

@@ -12,6 +12,6 @@ namespace tactor::cli {
 void check_live(const settings& s);
 
 /// Plays here, until the input ends; the exit status. \throws error.
-int play_live(settings& s, play_options o);
+int play_live(settings& s, const play_options& o);
 
 } // namespace tactor::cli

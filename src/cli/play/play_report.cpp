@@ -181,11 +181,11 @@ void print_json(std::FILE* to, const run_report& r)
     fmt::print(to, "{}\n", all.dump(2, ' ', false, json::error_handler_t::replace));
 }
 
-std::optional<int> tell_end(const session::play_session& session, const play_options& o,
-                            const session::environment& e, const run_report& r)
+std::optional<int> tell_end(const session::play_session& session, bool as_json, const session::environment& e,
+                            const run_report& r)
 {
-    session::warn_of_cuts(session::settle_limits(o, e), r.stats);
-    if (o.json())
+    session::warn_of_cuts(session::settle_limits(session.asked(), e), r.stats);
+    if (as_json)
         print_json(stdout, r);
     else
         print_table(stdout, r);

@@ -41,8 +41,8 @@ std::optional<error> unfinished(const run_report& r);
 
 /// Says how a run went that is finished. Returns the exit status where a signal ended it. \throws error where
 /// an amplifier may be on, before all else.
-std::optional<int> tell_end(const session::play_session& session, const play_options& o,
-                            const session::environment& e, const run_report& r);
+std::optional<int> tell_end(const session::play_session& session, bool as_json, const session::environment& e,
+                            const run_report& r);
 
 /// A short table of the counters.
 void print_table(std::FILE* to, const run_report& r);

@@ -170,7 +170,7 @@ std::function<void(server::stream_state, const std::string&)> tell_owner()
 int serve(settings& s, const serve_options& o)
 {
     // Strokes sound as [defaults] say, unless a client says something else.
-    s.place |= on_play;
+    s.place |= options::on_play;
     const environment e = session::read_environment(s);
     const session::stream_options& play = s.stream;
     const serve_settings serve = settle_serve(o, e.config);
@@ -250,7 +250,7 @@ command add_serve(CLI::App& app)
     auto s = std::make_shared<settings>();
     auto o = std::make_shared<serve_options>();
     add_serve_options(*c, *o);
-    add_options(*c, *s, on_serve);
+    add_options(*c, *s, options::on_serve);
     add_format_option(*c, o->format, {"text", "json"}, "how it says where it listens (default text)");
     c->footer("Example: tactor serve --tcp 4001 -D hw:CARD=Tactor");
     return [s, o] { return run_with(*s, [&] { return serve(*s, *o); }); };

@@ -36,7 +36,7 @@ constexpr std::chrono::milliseconds limit_pause{5}; // some ten points of 2,000 
 void refuse_owners(const settings& s)
 {
     for (const options::option& o : options::all())
-        if ((o.where & (options::by_client | options::through_server)) == 0 && s.gives(o.name))
+        if ((o.where & (options::by_client | options::through_server)) == 0 && s.gives(o))
             throw error(error_kind::bad_input, option_name(o), "it is not for strokes that a server plays",
                         "leave it out with --socket");
 }
@@ -44,7 +44,7 @@ void refuse_owners(const settings& s)
 class remote_player {
 public:
     remote_player(const settings& s, const play_options& o)
-        : options_(o), server_(o.socket, stop_), asked_(client_options(s))
+        : options_(o), stream_(s.stream), server_(o.socket, stop_), asked_(client_options(s))
     {
         const net::json hello = server_.call("hello");
         const net::json& d = hello["stream"];
@@ -76,8 +76,8 @@ public:
         report_.strokes.push_back({"live"});
         stroke_outcome& out = report_.strokes.back();
         net::json begin{{"options", asked_}, {"timeout_s", live_timeout_s}};
-        if (options_.smooth_s)
-            begin["smooth_s"] = *options_.smooth_s;
+        if (stream_.smooth_s)
+            begin["smooth_s"] = *stream_.smooth_s;
         server_.let_finish(to_finish);
         const net::json n = server_.call("begin", begin)["stroke"];
         try {
@@ -139,7 +139,7 @@ private:
     void play_one(stroke_outcome& out, net::json params, bool last)
     {
         params["options"] = asked_;
-        if (options_.arm)
+        if (stream_.arm)
             params["start"] = "armed";
         net::json r;
         server_.let_finish(to_finish);
@@ -152,7 +152,7 @@ private:
         say_warnings(r["warnings"].get<std::vector<std::string>>());
         out.length_frames =
             static_cast<std::uint64_t>(std::llround(r.value("total_s", 0.0) * report_.device.rate));
-        if (options_.arm && !options_.json())
+        if (stream_.arm && !options_.json())
             say(stdout, "{}: armed\n", shown_name(out.name));
         flush_output();
         for (const net::json& n : r["strokes"])
@@ -231,9 +231,9 @@ private:
         const bool cancelled = out.report->state == state_kind::cancelled;
         const bool gone = server_.call("status")["stream"].value("state", "") == "lost";
         const std::string why = fate(out, report_.device.rate);
-        if (cancelled || gone || options_.void_on_xrun)
+        if (cancelled || gone || stream_.void_on_xrun)
             broken_.emplace(error_kind::runtime, shown_name(out.name), why,
-                            options_.void_on_xrun && !cancelled ? "the run is void: --void-on-xrun" : "");
+                            stream_.void_on_xrun && !cancelled ? "the run is void: --void-on-xrun" : "");
         else if (!last)
             say(stderr, "tactor: warning: {}\n", describe(out, report_.device.rate));
     }
@@ -262,6 +262,7 @@ private:
     }
 
     const play_options& options_;
+    const session::stream_options& stream_;
     session::interrupt stop_;
     rpc_client server_;
     net::json asked_;
@@ -280,11 +281,11 @@ private:
 int play_remote(const settings& s, const play_options& o)
 {
     refuse_owners(s);
-    const auto pieces = o.live ? decltype(stroke_params(s)){} : stroke_params(s);
+    const auto pieces = s.stream.live ? decltype(stroke_params(s)){} : stroke_params(s);
     try {
         remote_player player(s, o);
         live_lines lines(STDIN_FILENO);
-        return o.live ? player.live(lines) : player.play(pieces);
+        return s.stream.live ? player.live(lines) : player.play(pieces);
     } catch (const interrupted& i) {
         return session::interrupt::status(i.signal);
     }

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <filesystem>
 #include <string_view>
+#include <type_traits>
+#include <variant>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -103,16 +105,14 @@ net::json client_options(const settings& s)
 {
     net::json given = net::json::object();
     for (const options::option& o : options::all()) {
-        if ((o.where & options::by_client) == 0 || !s.gives(o.name))
+        if ((o.where & options::by_client) == 0 || !s.gives(o))
             continue;
-        const options::value v = o.to.get(s);
-        net::json& to = given[std::string(o.name)];
-        if (const auto* flag = std::get_if<bool>(&v))
-            to = *flag;
-        else if (const auto* number = std::get_if<double>(&v))
-            to = *number;
-        else if (const auto* text = std::get_if<std::string>(&v))
-            to = *text;
+        std::visit(
+            [&]<class T>(const T& v) {
+                if constexpr (!std::is_same_v<T, std::monostate>)
+                    given[std::string(o.name)] = v;
+            },
+            o.to.get(s));
     }
     return given;
 }

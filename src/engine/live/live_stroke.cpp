@@ -14,6 +14,7 @@
 
 #include <tactor/error.hpp>
 
+#include "core/bounds.hpp"
 #include "plan/job.hpp"
 #include "rt/clock.hpp"
 #include "synth/mix/mixer.hpp"
@@ -42,9 +43,9 @@ void check(const live_options& o, unsigned rate)
             "carrier_hz",
             fmt::format("a carrier of {} Hz cannot be rendered at a rate of {} Hz", o.plan.carrier_hz, rate),
             "250 is usual");
-    if (!(o.timeout_s >= 0.001 && o.timeout_s <= 86400.0))
+    if (!detail::bounds_of::timeout_s.holds(o.timeout_s))
         throw refused("timeout_s", fmt::format("a time-out of {} s", o.timeout_s), "give 0.001 to 86400 s");
-    if (o.longest_s && !(*o.longest_s >= 0.001 && *o.longest_s <= 86400.0))
+    if (o.longest_s && !detail::bounds_of::timeout_s.holds(*o.longest_s))
         throw refused("longest_s", fmt::format("at most {} s of it", *o.longest_s), "give 0.001 to 86400 s");
     if (!(o.smooth_s >= 0.0 && o.smooth_s <= 1.0))
         throw refused("smooth_s", fmt::format("points smoothed over {} s", o.smooth_s),

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "core/bounds.hpp"
 #include "files/plan/json_values.hpp"
 
 namespace tactor::files {
@@ -130,7 +131,7 @@ void take_sound(const json_value& stroke, plan& p)
     if (p.wave.recorded && stroke["recording"].there())
         check_recording(stroke["recording"], *p.wave.recorded);
     if (const auto seed = stroke["noise_seed"].number()) {
-        if (!(*seed >= 0.0 && *seed <= 0x1p53 && *seed == std::floor(*seed)))
+        if (!detail::bounds_of::seed.holds(*seed) || *seed != std::floor(*seed))
             stroke["noise_seed"].refuse("is no whole number from 0 to 2^53");
         p.wave.seed = static_cast<std::uint64_t>(*seed);
     }

@@ -88,7 +88,7 @@ std::vector<carrier_part> read_profile(const toml_table& t)
     for (const toml::node& entry : *t.list("carrier_profile", "[part, hz]")) {
         t.numbers(entry, "a point of the carrier", 2, 2, pair);
         const carrier_part p{t.within(entry, "the part of the path", pair[0], {0.0, 1.0}),
-                             t.within(entry, "the frequency", pair[1], {1.0, 384000.0})};
+                             t.within(entry, "the frequency", pair[1], bounds_of::carrier_hz)};
         if (!profile.empty() && p.part <= profile.back().part)
             fail_at(t.where(entry),
                     fmt::format("the part {} does not come after {}", p.part, profile.back().part),

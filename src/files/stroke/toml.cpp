@@ -13,6 +13,7 @@
 #include <tactor/stroke.hpp>
 
 #include "core/access.hpp"
+#include "core/bounds.hpp"
 #include "core/limits.hpp"
 #include "core/profile.hpp"
 #include "core/suggest.hpp"
@@ -154,7 +155,7 @@ stroke read_drawn(const toml_table& t, std::string name)
         t.has("stroke") ? t.one_of({"path", "points", "timed", "arc", "preset", "stroke"}) // says it has two
                         : t.one_of({"path", "points", "timed", "arc", "preset"});
     const told_pace asked = detail::read_pace(t);
-    const auto carrier = t.number("carrier_hz", {1.0, 384000.0});
+    const auto carrier = t.number("carrier_hz", detail::bounds_of::carrier_hz);
 
     const auto described = [&](trajectory motion, note_kind note = note_kind::none) {
         stroke s{t.text("name").value_or(name), motion, {}, carrier, note};

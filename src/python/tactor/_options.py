@@ -41,7 +41,7 @@ def settled(array: Array, given: dict[str, _t.Any], known: frozenset[str], befor
     given = in_parts(given)
     setup = array._settings()
     options = given if setup is None else _completed(setup, given, known)
-    check_used(given, {**before, **{name: value for name, value in options.items() if value is not None}})
+    check_used(given, {**before, **{name: value for name, value in options.items() if value is not None}}, "compare" if "observer" in known else "plan")
     return options
 
 
@@ -58,9 +58,8 @@ def in_parts(given: dict[str, _t.Any]) -> dict[str, _t.Any]:
     return {**given, "envelope": "tukey", "tukey_part": part}
 
 
-def check_used(given: dict[str, _t.Any], options: dict[str, _t.Any]) -> None:
-    """Refuses what is given although nothing of all that is said uses it."""
-    place = "compare" if "spread" in given else "plan"
+def check_used(given: dict[str, _t.Any], options: dict[str, _t.Any], place: str = "plan") -> None:
+    """Refuses what is given although nothing of all that is said uses it. `place`: the function that has it, "plan" or "compare"."""
     _tactor.check_used([name for name, value in given.items() if value is not None], options, place)
 
 

@@ -48,7 +48,7 @@ struct trial_column {
     unsigned least = 0; ///< of whole numbers
 };
 
-/// All columns, in the order of a new table.
+/// Columns in the order of a new table.
 extern const std::array<trial_column, 17> trial_columns;
 
 /// Returns the cells of a row, in the order of a new table.

@@ -8,6 +8,7 @@
 
 #include <tactor/error.hpp>
 
+#include "core/suggest.hpp"
 #include "files/toml_reader.hpp"
 #include "options/check.hpp"
 #include "options/settle.hpp"
@@ -63,20 +64,18 @@ stroke along_path(const toml_table& t, std::optional<double> duration_s, std::op
     });
 }
 
-// The option of a method that a key stands for, with its unit or without.
-const options::option& method_option(const toml_table& t, std::string_view key)
+// Finds the option of a method that a key stands for, with its unit or without.
+const options::option& find_method_option(const toml_table::said_key& k)
 {
-    const options::option* o = options::find(key);
+    const options::option* o = options::find(k.key);
     if (o == nullptr)
-        o = options::find_field(key);
+        o = options::find_field(k.key);
     if (o != nullptr && (o->where & options::in_method) != 0)
         return *o;
-    std::vector<std::string_view> known{"name"};
-    for (const options::option& x : options::all())
-        if ((x.where & options::in_method) != 0)
-            known.insert(known.end(), {x.name, x.field_name()});
-    t.only(known);
-    t.fail(key, fmt::format("{} is no option of a method", key), "leave it out");
+    const std::vector<std::string> names = options::dashed_names(options::in_method);
+    std::vector<std::string_view> known(names.begin(), names.end());
+    known.insert(known.begin(), "name");
+    throw detail::unknown_key(k.key_at, k.key, "[[method]]", known);
 }
 
 } // namespace
@@ -122,8 +121,8 @@ method_definition read_method(const toml_table& t)
     for (const toml_table::said_key& k : t.entries()) {
         if (k.key == "name")
             continue;
-        const options::option& o = method_option(t, k.key);
-        if (w.gives(o.name))
+        const options::option& o = find_method_option(k);
+        if (w.gives(o))
             t.fail(k.key, fmt::format("{} says {} twice", t.title(), o.name), "keep one of them");
         at_key(t, k.key, [&] { options::give(w, o, options::read_value(o, t.plain(*k.value, k.key))); });
     }

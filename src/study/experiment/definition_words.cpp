@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "study/experiment/definition_words.hpp"
 
-#include <algorithm>
 #include <array>
 
 #include <fmt/format.h>
@@ -19,10 +18,8 @@ std::string write_choice(const options::option& o, std::string_view value)
 {
     if (value.empty())
         return std::string(o.field_name());
-    std::string name(o.name);
-    std::replace(name.begin(), name.end(), '_', '-');
     const char* quote = o.what == options::kind::flag ? "" : "\"";
-    return fmt::format("the method's {}, {}{}{},", name, quote, value, quote);
+    return fmt::format("the method's {}, {}{}{},", options::dashed(o), quote, value, quote);
 }
 
 } // namespace

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "options/option.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/words.hpp"
+
+namespace tactor::options {
+namespace {
+
+// Option names with - for _.
+bool same_name(std::string_view a, std::string_view b)
+{
+    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) {
+               return (x == '-' ? '_' : x) == (y == '-' ? '_' : y);
+           });
+}
+
+} // namespace
+
+std::string_view to_string(group g) noexcept
+{
+    constexpr std::array names{"Stroke", "Place",  "Timing",    "Sound",
+                               "Level",  "Device", "Real time", "Output"};
+    return names[static_cast<std::size_t>(g)];
+}
+
+const option* find(std::string_view name) noexcept
+{
+    const auto found =
+        std::find_if(all().begin(), all().end(), [&](const option& o) { return same_name(o.name, name); });
+    return found == all().end() ? nullptr : &*found;
+}
+
+const option* find_field(std::string_view field) noexcept
+{
+    const auto found =
+        std::find_if(all().begin(), all().end(), [&](const option& o) { return o.field_name() == field; });
+    return found == all().end() ? find(field) : &*found;
+}
+
+std::size_t index(const option& o) noexcept
+{
+    return static_cast<std::size_t>(&o - all().data());
+}
+
+bool wishes::gives(std::string_view name) const
+{
+    return gives(*find(name));
+}
+
+bool wishes::gives(const option& o) const
+{
+    return given[index(o)];
+}
+
+std::string dashed(const option& o)
+{
+    std::string name(o.name);
+    std::replace(name.begin(), name.end(), '_', '-');
+    return name;
+}
+
+std::vector<std::string> dashed_names(std::uint64_t where)
+{
+    std::vector<std::string> names;
+    for (const option& o : all())
+        if ((o.where & where) != 0)
+            names.push_back(dashed(o));
+    return names;
+}
+
+std::string mark(const option& o)
+{
+    return fmt::format("{{{}}}", o.name);
+}
+
+error refusal(const option& o, std::string_view why, std::string_view hint)
+{
+    return error(error_kind::bad_input, mark(o), why, hint).with_field(o.name);
+}
+
+std::string choices_text(const option& o)
+{
+    return fmt::format("{}", fmt::join(o.choices(), ", "));
+}
+
+std::string range_text(const option& o)
+{
+    if (!o.range.empty())
+        return std::string(o.range);
+    return fmt::format("{}{} to {}{}{}", o.allowed.above_low ? "above " : "", plain_number(o.allowed.low),
+                       plain_number(o.allowed.high), o.unit.empty() ? "" : " ", o.unit);
+}
+
+std::string type_text(const option& o)
+{
+    if (!o.shown.empty())
+        return std::string(o.shown);
+    if (o.choices != nullptr)
+        return fmt::format("{}", fmt::join(o.choices(), "|"));
+    if (o.what == kind::whole)
+        return o.unit == "Hz" ? "HZ" : "N";
+    if (o.unit == "mm/s")
+        return "MM_PER_S";
+    std::string unit(o.unit);
+    std::transform(unit.begin(), unit.end(), unit.begin(),
+                   [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
+    return unit.empty() ? "X" : unit;
+}
+
+} // namespace tactor::options
