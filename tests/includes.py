@@ -32,12 +32,10 @@ MAY_INCLUDE = {
 }
 # The folder that a public header belongs to; a folder may use the public headers of the folders it may include.
 PUBLIC = {
-    "api": None, "error": None, "version": None, "kinds": None, "lines": None, "log": None, "geometry": None, "tactor": "engine",
-    "array": "core", "path": "core", "stroke": "core", "movement": "core", "choices": "core", "envelope": "core", "setup": "files",
-    "phantom": "plan", "curve": "plan", "plan": "plan", "fit": "plan", "percept": "percept", "observer": "percept",
-    "waveform": "core", "render": "synth", "sample_format": None, "wav": "sink/wav",
-    "gpio": "amplifier", "realtime": "rt", "sink": None, "alsa": "sink/alsa", "devices": "sink/alsa", "player": "engine", "live": "engine",
-    "asio": "engine", "report": "engine",
+    "api": None, "error": None, "version": None, "lines": None, "tactor": "engine",
+    "array": "core", "path": "core", "stroke": "core", "choices": "core", "waveform": "core", "setup": "files",
+    "phantom": "plan", "plan": "plan", "percept": "percept", "render": "synth",
+    "sink": None, "alsa": "sink/alsa", "player": "engine", "live": "engine", "asio": "engine", "report": "engine",
 }
 USES_ALL_PUBLIC = {"cli", "files/plan", "options", "plot", "python", "server", "session", "study"}
 # What those may know of the library's inside, which is in the tool: no program that embeds it needs these.

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// ALSA playback as a sink.
+/// ALSA playback as a sink, and the PCMs that could be played on.
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <tactor/api.hpp>
-#include <tactor/log.hpp>
+#include <tactor/choices.hpp>
+#include <tactor/error.hpp>
 #include <tactor/sink.hpp>
 
 namespace tactor {
@@ -50,6 +53,101 @@ struct alsa_options {
 ///         bad_input without `pause`.
 [[nodiscard]] TACTOR_API std::unique_ptr<sink> reopen_alsa(const alsa_options& o,
                                                            const std::function<bool(double pause_s)>& pause);
+
+/// Stands for "as many as you like" in count_range::most, as software PCMs say.
+inline constexpr unsigned no_limit = std::numeric_limits<unsigned>::max();
+
+/// Whole numbers from least to most, both included.
+struct count_range {
+    unsigned least = 0;
+    unsigned most = 0;
+};
+
+/// What a PCM takes. Each value counts by itself: on some devices not every combination works.
+struct pcm_abilities {
+    /// Channel counts, ascending, as ranges without gaps. A range that ends at 1024 may go on beyond.
+    std::vector<count_range> channels = {};
+    count_range rates_hz = {};
+    std::vector<unsigned> usual_rates_hz = {}; ///< those of the usual rates, 8 to 768 kHz, that it takes
+    std::vector<format_kind> formats = {};     ///< those that tactor can play, the preferred first
+    count_range period_frames = {};
+    count_range periods = {};
+    count_range buffer_frames = {};
+};
+
+/// A process that has a playback device open.
+struct process_info {
+    int pid = 0;
+    std::string program = {}; ///< empty: not told
+};
+
+/// A PCM for playback, by the name that alsa_options::pcm takes.
+struct pcm_info {
+    std::string name = {};        ///< a card's own device is hw:CARD=ID,DEV=N, whatever its number
+    std::string description = {}; ///< of the card and device, or ALSA's own; one line; may be empty
+    bool hardware = false;        ///< a card's own device, without conversion
+    bool wanted = false;          ///< list_pcms() was asked about this one
+    bool opened = false;
+    /// Why it was not opened, and what to do. A PCM whose opening would empty a file or start a command is
+    /// never tried here. One whose opening would start a card (mixers such as dmix do) or a sound server is
+    /// tried only if it is the one that is wanted. open_alsa() tries them all.
+    std::string error = {};
+    bool tried = true;                      ///< false: see error
+    std::vector<process_info> holders = {}; ///< who has a card's own device open
+    std::optional<pcm_abilities> can = {};  ///< none where it was not opened
+    std::string misfit = {}; ///< why it cannot play what is wanted; empty: it can, or not known
+};
+
+/// All PCMs for playback: each device of each card, then those that ALSA's configuration names. They are
+/// opened and looked at, not configured: nothing sounds and no other program is disturbed. With `wanted` the
+/// list also says which of them take exactly its channels, rate and format, as open_alsa() would ask for; its
+/// PCM is listed even where nothing else lists it. Blocks for some milliseconds. Any thread, but one at a
+/// time.
+/// \throws error: bad_input for numbers in `wanted` that no PCM can have; runtime, as all below, when the
+///         process has no descriptors left. PCMs that cannot be opened say so in the list.
+[[nodiscard]] TACTOR_API std::vector<pcm_info> list_pcms(const std::optional<alsa_options>& wanted = {});
+
+/// The plugins between a PCM and its device, as ALSA's configuration says.
+struct pcm_route {
+    std::vector<std::string> types =
+        {};                  ///< of its plugins, as they are defined: "plug", "hw"; none: not defined
+    std::string server = {}; ///< the sound server in between: "PipeWire", "PulseAudio", "JACK"; empty: none
+    bool writes = false;     ///< opening it empties a file or starts a command (type file)
+};
+
+/// Looks up the name of a PCM. Opens nothing, and does not throw for names that are not defined. Blocks for
+/// some milliseconds (ALSA reads its configuration). Any thread, but one at a time.
+[[nodiscard]] TACTOR_API pcm_route route_of(const std::string& pcm);
+
+/// Which channels of the device a PCM would reach if it were opened with so many channels, as ALSA's
+/// configuration says: through tables, bindings and everything else that hands channels on. As route_of(), it
+/// blocks for some milliseconds, opens nothing, and does not throw for names that are not defined. Any
+/// thread, but one at a time.
+[[nodiscard]] TACTOR_API stream_wiring wiring_of(const std::string& pcm, unsigned channels);
+
+/// Checks a name that somebody else has chosen, for example in an array file. This is needed because
+/// open_alsa() takes any ALSA name, and one such as "file:'|COMMAND',raw" runs the command. A name passes if
+/// it consists of letters, digits, "_", "-", and of ":", "," and "=" where ALSA's own names have them
+/// ("hw:CARD=Tactor,DEV=0", "plug:'hw:0,1'"), and if ALSA's configuration defines it as a device: through
+/// conversions, mixers and sound servers, but not through a file or a type that is not known here. A name
+/// that is not defined passes, and cannot be opened. Blocks as route_of() does.
+/// \throws error: bad_input that says what is wrong with the name.
+TACTOR_API void require_device_name(const std::string& pcm);
+
+/// A sound card.
+struct card_info {
+    unsigned index = 0;
+    std::string id = {};   ///< as in hw:CARD=ID
+    std::string name = {}; ///< for people
+};
+
+/// The card that the name of a PCM refers to, as in "hw:CARD=Tactor" or "plughw:1,0"; nothing where there is
+/// no such card. Blocks shortly (/proc). Any thread.
+[[nodiscard]] TACTOR_API std::optional<card_info> card_of(const std::string& pcm);
+
+/// Who has a playback device of this card open. Of other users' processes only those that the driver tells
+/// of. Blocks shortly (/proc). Any thread.
+[[nodiscard]] TACTOR_API std::vector<process_info> card_holders(unsigned card_index);
 
 } // namespace v0
 } // namespace tactor

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Export marker: names that carry it are the interface of libtactor; everything else in the shared library
-/// is hidden.
+/// Export marker, and the words of enumerations. Names with TACTOR_API are the interface of libtactor;
+/// everything else in the shared library is hidden. Closed sets are enumerations, called ..._kind, so that
+/// fields can have the plain names. Any thread may call their functions; nothing blocks.
 #pragma once
+
+#include <span>
+#include <string_view>
 
 // Each header includes this one before all that needs it. CMake asks for the compiler's default, C++17.
 #if defined(__cplusplus) && __cplusplus < 202002L
@@ -19,3 +23,27 @@
 namespace tactor::detail {
 struct access; // the library's own way into its classes
 } // namespace tactor::detail
+
+namespace tactor {
+inline namespace v0 {
+
+/// Returns the value whose to_string() is `name`: from_string<phantom_kind>("barycentric").
+/// \throws error (bad_input) that lists the names.
+template <typename Kind>
+[[nodiscard]] Kind from_string(std::string_view name) = delete;
+
+/// Returns all values, in the order of their declaration, for menus and loops.
+template <typename Kind>
+[[nodiscard]] std::span<const Kind> values_of() noexcept = delete;
+
+} // namespace v0
+} // namespace tactor
+
+/// Declares the words of an enumeration, in its own namespace: to_string(), "unknown" for what is no value of
+/// it, from_string<>() and values_of<>().
+#define TACTOR_KIND(Kind)                                                                                    \
+    TACTOR_API std::string_view to_string(Kind k) noexcept;                                                  \
+    template <>                                                                                              \
+    TACTOR_API Kind from_string<Kind>(std::string_view name);                                                \
+    template <>                                                                                              \
+    TACTOR_API std::span<const Kind> values_of<Kind>() noexcept

@@ -11,8 +11,7 @@
 
 #include <tactor/api.hpp>
 #include <tactor/error.hpp>
-#include <tactor/geometry.hpp>
-#include <tactor/kinds.hpp>
+#include <tactor/path.hpp>
 
 namespace tactor {
 inline namespace v0 {

@@ -4,12 +4,12 @@
 /// itself beside its movement: how it is planned, and from when its start counts.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string_view>
 
 #include <tactor/api.hpp>
-#include <tactor/kinds.hpp>
 
 namespace tactor {
 inline namespace v0 {
@@ -61,8 +61,8 @@ TACTOR_KIND(phase_kind);
 
 /// Who is predicted to feel a plan.
 enum class observer_kind {
-    centroid,  ///< feels the centre of energy of what sounds: tactor/percept.hpp
-    low_speed, ///< expects low speeds: tactor/observer.hpp
+    centroid,  ///< feels the centre of energy of what sounds
+    low_speed, ///< expects low speeds
 };
 TACTOR_KIND(observer_kind);
 
@@ -104,6 +104,20 @@ struct start_anchor {
 [[nodiscard]] TACTOR_API double resolve_start_s(std::optional<double> start_s, const start_anchor& anchor,
                                                 std::span<const double> starts_s,
                                                 std::span<const double> ends_s);
+
+enum class format_kind {
+    float32, ///< FLOAT_LE, full scale 1.0
+    s16,     ///< S16_LE
+    s24_3,   ///< S24_3LE: packed in three bytes, as in WAV files
+    s24_4,   ///< S24_LE: right-aligned in four bytes
+    s32,     ///< S32_LE
+};
+
+/// Bytes of one sample.
+[[nodiscard]] TACTOR_API std::size_t bytes_of(format_kind f) noexcept;
+
+/// "float", "s16", "s24" (s24_3), "s24-4", "s32".
+TACTOR_KIND(format_kind);
 
 } // namespace v0
 } // namespace tactor

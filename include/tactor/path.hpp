@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A curve on the skin, by arc length.
+/// Points and curves on the skin.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <span>
 #include <string>
@@ -10,10 +11,26 @@
 #include <vector>
 
 #include <tactor/api.hpp>
-#include <tactor/geometry.hpp>
 
 namespace tactor {
 inline namespace v0 {
+
+/// A place on the array in millimetres: x to the right, y down, as on a screen.
+struct point {
+    double x_mm = 0.0;
+    double y_mm = 0.0;
+
+    friend bool operator==(const point&, const point&) = default;
+};
+
+/// Distance between two points in millimetres.
+inline double distance_mm(point a, point b) noexcept
+{
+    return std::hypot(a.x_mm - b.x_mm, a.y_mm - b.y_mm);
+}
+
+/// Two places nearer to each other than this are the same place (a nanometre).
+inline constexpr double same_place_mm = 1e-6;
 
 /// One open or closed curve of lines, arcs and Beziers, or one place, whose length is 0. Immutable; copies
 /// and moves share it, and a path that was moved from keeps its value. All members may be called from any

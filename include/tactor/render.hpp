@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// From plans to samples (rendering model, section 7).
+/// From plans to frames: scores, samples and WAV files.
 #pragma once
 
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -16,10 +18,9 @@
 
 #include <tactor/api.hpp>
 #include <tactor/array.hpp>
-#include <tactor/envelope.hpp>
-#include <tactor/kinds.hpp>
+#include <tactor/choices.hpp>
 #include <tactor/plan.hpp>
-#include <tactor/sample_format.hpp>
+#include <tactor/waveform.hpp>
 
 namespace tactor {
 inline namespace v0 {
@@ -173,6 +174,18 @@ private:
     struct impl;
     std::unique_ptr<impl> impl_;
 };
+
+/// Called between blocks with the frames done and in all; false gives up.
+using wav_progress = std::function<bool(std::uint64_t done, std::uint64_t all)>;
+
+/// Renders a score to a WAV file (RF64 above 4 GB) in bounded memory. Writes to a temporary name in
+/// the same folder, which becomes `file` when complete; on failure, or when `progress` gives up,
+/// nothing is left behind and an existing `file` stays as it was. Blocks on the file system.
+/// \returns false when `progress` gave up.
+/// \throws error: bad_input for a format that WAV cannot hold (s24_4), a folder that does not exist, and a
+///         plan that fails in mid-stroke (renderer::failure()); runtime for what the file system refuses.
+TACTOR_API bool write_wav(const score& s, format_kind f, const std::filesystem::path& file,
+                          const wav_progress& progress = {});
 
 } // namespace v0
 } // namespace tactor

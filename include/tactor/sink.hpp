@@ -14,8 +14,7 @@
 #include <poll.h>
 
 #include <tactor/api.hpp>
-#include <tactor/kinds.hpp>
-#include <tactor/sample_format.hpp>
+#include <tactor/choices.hpp>
 
 namespace tactor {
 inline namespace v0 {

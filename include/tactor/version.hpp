@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Version of the library that runs.
+/// Facts about the library that runs and this process: version, build, and the right to work in real time.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include <tactor/api.hpp>
@@ -26,6 +28,17 @@ inline namespace v0 {
 /// Facts for a bug report about this library: how and with what it was built, and which of its loops this
 /// processor runs. Some lines for people. Any thread.
 [[nodiscard]] TACTOR_API std::string build_facts();
+
+/// What limits and capabilities allow.
+struct realtime_rights {
+    int priority = 0; ///< highest SCHED_FIFO priority that may be asked for; 0: none
+    /// Bytes of memory that may be locked; none: no limit.
+    std::optional<std::uint64_t> lockable_bytes = 0;
+};
+
+/// Of this process, now. The library asks for priorities itself and never locks the memory of its host. No
+/// files are read; does not block.
+[[nodiscard]] TACTOR_API realtime_rights probe_realtime_rights() noexcept;
 
 } // namespace v0
 } // namespace tactor

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include <tactor/gpio.hpp>
 #include <tactor/lines.hpp>
 
 #include "amplifier/line.hpp"

@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include <tactor/gpio.hpp>
+#include <tactor/lines.hpp>
 
 namespace tactor::gpio {
 

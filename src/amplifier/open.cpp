@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The public functions of this folder, but for the list of chips.
-#include <tactor/gpio.hpp>
+#include <tactor/lines.hpp>
 
 #include <array>
 #include <cmath>

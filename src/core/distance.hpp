@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include <tactor/geometry.hpp>
+#include <tactor/path.hpp>
 
 namespace tactor::detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <tactor/envelope.hpp>
+#include <tactor/waveform.hpp>
 
 #include <fmt/format.h>
 

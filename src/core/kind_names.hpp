@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include <tactor/kinds.hpp>
+#include <tactor/api.hpp>
 
 namespace tactor::detail {
 

@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
+#include <tactor/api.hpp>
 #include <tactor/error.hpp>
-#include <tactor/kinds.hpp>
 
 namespace tactor::detail {
 

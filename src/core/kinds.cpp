@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <tactor/array.hpp>
+#include <tactor/choices.hpp>
 #include <tactor/error.hpp>
 #include <tactor/lines.hpp>
-#include <tactor/log.hpp>
-#include <tactor/movement.hpp>
-#include <tactor/sample_format.hpp>
 #include <tactor/sink.hpp>
 #include <tactor/stroke.hpp>
 

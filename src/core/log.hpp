@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include <tactor/log.hpp>
+#include <tactor/error.hpp>
 
 namespace tactor::detail {
 

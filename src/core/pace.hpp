@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include <tactor/movement.hpp>
+#include <tactor/stroke.hpp>
 
 namespace tactor::detail {
 

@@ -5,7 +5,6 @@
 #include <string_view>
 #include <vector>
 
-#include <tactor/movement.hpp>
 #include <tactor/stroke.hpp>
 
 namespace tactor::detail {

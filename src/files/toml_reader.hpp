@@ -14,9 +14,9 @@
 
 #include <toml++/toml.h>
 
+#include <tactor/api.hpp>
 #include <tactor/error.hpp>
-#include <tactor/geometry.hpp>
-#include <tactor/kinds.hpp>
+#include <tactor/path.hpp>
 
 #include "core/bounds.hpp"
 #include "core/kind_names.hpp"

@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <utility>
 
-#include <tactor/kinds.hpp>
+#include <tactor/api.hpp>
 
 #include "core/kind_names.hpp"
 #include "options/option.hpp"

@@ -10,11 +10,11 @@
 #include <optional>
 #include <string>
 
+#include <tactor/choices.hpp>
 #include <tactor/error.hpp>
-#include <tactor/observer.hpp>
+#include <tactor/percept.hpp>
 #include <tactor/plan.hpp>
 #include <tactor/render.hpp>
-#include <tactor/sample_format.hpp>
 
 #include "percept/spread.hpp"
 

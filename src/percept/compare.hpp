@@ -9,7 +9,6 @@
 #include <vector>
 
 #include <tactor/array.hpp>
-#include <tactor/observer.hpp>
 #include <tactor/percept.hpp>
 #include <tactor/phantom.hpp>
 #include <tactor/plan.hpp>

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include <tactor/fit.hpp>
-#include <tactor/observer.hpp>
+#include <tactor/percept.hpp>
+#include <tactor/phantom.hpp>
 
 #include "core/access.hpp"
 #include "core/refused.hpp"

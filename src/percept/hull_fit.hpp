@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include <tactor/geometry.hpp>
+#include <tactor/path.hpp>
 
 #include "plan/faces/sides.hpp"
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include <tactor/observer.hpp>
+#include <tactor/percept.hpp>
 
 namespace tactor::detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <tactor/observer.hpp>
+#include <tactor/percept.hpp>
 
 #include <algorithm>
 #include <cmath>

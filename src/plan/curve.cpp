@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <tactor/curve.hpp>
+#include <tactor/plan.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,6 @@
 #include <memory>
 #include <utility>
 
-#include <tactor/curve.hpp>
 #include <tactor/plan.hpp>
 
 #include "plan/phantom/same_tactors.hpp"

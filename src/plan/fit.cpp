@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <tactor/fit.hpp>
+#include <tactor/phantom.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include <tactor/fit.hpp>
+#include <tactor/phantom.hpp>
 
 #include "core/recording_name.hpp"
 #include "core/refused.hpp"

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include <tactor/geometry.hpp>
+#include <tactor/path.hpp>
 
 namespace tactor::detail {
 

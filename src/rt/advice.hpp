@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include <tactor/realtime.hpp>
+#include <tactor/version.hpp>
 
 namespace tactor::rt {
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include <tactor/curve.hpp>
+#include <tactor/plan.hpp>
 
 namespace tactor::server {
 namespace {

@@ -18,7 +18,7 @@
 #include <boost/asio/thread_pool.hpp>
 
 #include <tactor/array.hpp>
-#include <tactor/log.hpp>
+#include <tactor/error.hpp>
 #include <tactor/player.hpp>
 #include <tactor/sink.hpp>
 

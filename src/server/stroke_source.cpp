@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include <tactor/fit.hpp>
+#include <tactor/phantom.hpp>
 
 #include "core/asked_pace.hpp"
 #include "core/start_times.hpp"

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include <tactor/log.hpp>
+#include <tactor/error.hpp>
 
 #include "core/owned.hpp"
 

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include <tactor/log.hpp>
+#include <tactor/error.hpp>
 
 namespace tactor::session {
 

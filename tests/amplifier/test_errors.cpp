@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include <tactor/gpio.hpp>
+#include <tactor/lines.hpp>
 
 #include "amplifier/line.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <tactor/sample_format.hpp>
+#include <tactor/choices.hpp>
 
 namespace bench {
 

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include <tactor/geometry.hpp>
+#include <tactor/path.hpp>
 
 namespace tactor::test {
 

@@ -15,7 +15,6 @@
 
 #include <tactor/array.hpp>
 #include <tactor/error.hpp>
-#include <tactor/movement.hpp>
 #include <tactor/path.hpp>
 #include <tactor/stroke.hpp>
 #include <tactor/waveform.hpp>

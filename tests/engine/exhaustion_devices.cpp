@@ -6,8 +6,7 @@
 #include <span>
 
 #include <tactor/alsa.hpp>
-#include <tactor/devices.hpp>
-#include <tactor/gpio.hpp>
+#include <tactor/lines.hpp>
 #include <tactor/sink.hpp>
 
 #include "amplifier/line.hpp"

@@ -6,9 +6,9 @@
 #include <fcntl.h>
 
 #include <tactor/config.hpp>
+#include <tactor/render.hpp>
 #include <tactor/setup.hpp>
 #include <tactor/stroke.hpp>
-#include <tactor/wav.hpp>
 #include <tactor/waveform.hpp>
 
 #include "core/owned.hpp"

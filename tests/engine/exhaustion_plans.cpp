@@ -4,9 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include <tactor/fit.hpp>
-#include <tactor/observer.hpp>
 #include <tactor/percept.hpp>
+#include <tactor/phantom.hpp>
 #include <tactor/render.hpp>
 
 #include "exhaustion_calls.hpp"

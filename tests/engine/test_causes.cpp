@@ -14,12 +14,11 @@
 
 #include <tactor/alsa.hpp>
 #include <tactor/error.hpp>
-#include <tactor/gpio.hpp>
+#include <tactor/lines.hpp>
 #include <tactor/player.hpp>
 #include <tactor/render.hpp>
 #include <tactor/setup.hpp>
 #include <tactor/stroke.hpp>
-#include <tactor/wav.hpp>
 
 #include "folder.hpp"
 #include "has.hpp"

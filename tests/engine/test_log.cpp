@@ -9,7 +9,6 @@
 #include <doctest/doctest.h>
 
 #include <tactor/error.hpp>
-#include <tactor/log.hpp>
 #include <tactor/player.hpp>
 
 #include "amplifier_rig.hpp"

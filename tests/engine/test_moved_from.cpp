@@ -14,7 +14,7 @@
 #include <tactor/error.hpp>
 #include <tactor/percept.hpp>
 #include <tactor/player.hpp>
-#include <tactor/wav.hpp>
+#include <tactor/render.hpp>
 
 #include "clock_runner.hpp"
 #include "has.hpp"

@@ -9,8 +9,8 @@
 #include <doctest/doctest.h>
 
 #include <tactor/error.hpp>
-#include <tactor/fit.hpp>
-#include <tactor/observer.hpp>
+#include <tactor/percept.hpp>
+#include <tactor/phantom.hpp>
 
 #include "../plan/arrays.hpp"
 #include "../plan/strokes.hpp"

@@ -7,7 +7,7 @@
 #include <doctest/doctest.h>
 
 #include <tactor/error.hpp>
-#include <tactor/observer.hpp>
+#include <tactor/percept.hpp>
 
 #include "../plan/arrays.hpp"
 #include "../plan/strokes.hpp"

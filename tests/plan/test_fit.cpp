@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include <tactor/fit.hpp>
+#include <tactor/phantom.hpp>
 
 #include "arrays.hpp"
 #include "rounds.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include <tactor/fit.hpp>
+#include <tactor/phantom.hpp>
 
 #include "strokes.hpp"
 

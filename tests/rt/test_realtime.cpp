@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <tactor/realtime.hpp>
+#include <tactor/version.hpp>
 
 #include <algorithm>
 #include <string>

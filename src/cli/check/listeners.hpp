@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include <tactor/devices.hpp>
+#include <tactor/alsa.hpp>
 
 namespace tactor::cli {
 

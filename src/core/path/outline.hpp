@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include <tactor/geometry.hpp>
+#include <tactor/path.hpp>
 
 #include "core/limits.hpp"
 #include "core/path/number.hpp"

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
-#include <tactor/realtime.hpp>
+#include <tactor/version.hpp>
 
 #include "core/log.hpp"
 #include "core/refused.hpp"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <tactor/log.hpp>
+#include <tactor/error.hpp>
 #include <tactor/render.hpp>
 #include <tactor/report.hpp>
 

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <tactor/observer.hpp>
+#include <tactor/percept.hpp>
 
 namespace tactor::files {
 

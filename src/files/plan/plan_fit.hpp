@@ -6,7 +6,7 @@
 #include <optional>
 
 #include <nlohmann/json.hpp>
-#include <tactor/fit.hpp>
+#include <tactor/phantom.hpp>
 
 #include "files/plan/plan_values.hpp"
 

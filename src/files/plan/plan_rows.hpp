@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdint>
 
-#include <tactor/curve.hpp>
 #include <tactor/plan.hpp>
 
 namespace tactor::files {

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include <tactor/movement.hpp>
+#include <tactor/stroke.hpp>
 
 #include "files/svg/document.hpp"
 

@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include <tactor/geometry.hpp>
+#include <tactor/path.hpp>
 
 namespace tactor::detail {
 

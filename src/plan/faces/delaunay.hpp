@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include <tactor/geometry.hpp>
+#include <tactor/path.hpp>
 
 namespace tactor::detail {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <tactor/geometry.hpp>
+#include <tactor/path.hpp>
 
 #include "core/distance.hpp"
 

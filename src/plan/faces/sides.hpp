@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include <tactor/geometry.hpp>
+#include <tactor/path.hpp>
 
 #include "core/path/shape.hpp"
 #include "plan/faces/layout_impl.hpp"

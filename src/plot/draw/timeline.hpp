@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <tactor/array.hpp>
-#include <tactor/observer.hpp>
+#include <tactor/percept.hpp>
 #include <tactor/plan.hpp>
 #include <tactor/render.hpp>
 #include <tactor/stroke.hpp>

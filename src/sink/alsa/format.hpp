@@ -7,7 +7,7 @@
 
 #include <alsa/asoundlib.h>
 
-#include <tactor/sample_format.hpp>
+#include <tactor/choices.hpp>
 
 namespace tactor::pcm {
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <tactor/alsa.hpp>
-#include <tactor/devices.hpp>
 #include <tactor/error.hpp>
 
 #include "sink/alsa/devices/plain_name.hpp"

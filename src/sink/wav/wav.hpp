@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <string>
 
-#include <tactor/sample_format.hpp>
-#include <tactor/wav.hpp>
+#include <tactor/choices.hpp>
+#include <tactor/render.hpp>
 
 namespace tactor::wav {
 

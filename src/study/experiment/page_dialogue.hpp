@@ -12,7 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <tactor/geometry.hpp>
+#include <tactor/path.hpp>
 
 namespace tactor::study {
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <span>
 
-#include <tactor/sample_format.hpp>
+#include <tactor/choices.hpp>
 
 #include "synth/mix/converter.hpp"
 

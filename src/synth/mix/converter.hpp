@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-#include <tactor/sample_format.hpp>
+#include <tactor/choices.hpp>
 
 namespace tactor::synth {
 

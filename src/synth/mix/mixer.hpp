@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <tactor/array.hpp>
-#include <tactor/sample_format.hpp>
+#include <tactor/choices.hpp>
 
 #include "synth/guard/drive_history.hpp"
 #include "synth/guard/guard.hpp"

@@ -12,7 +12,7 @@
 #include <doctest/doctest.h>
 
 #include <tactor/error.hpp>
-#include <tactor/gpio.hpp>
+#include <tactor/lines.hpp>
 
 #include "../fake_line.hpp"
 #include "sim.hpp"

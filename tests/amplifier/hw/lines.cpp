@@ -12,7 +12,7 @@
 #include <doctest/doctest.h>
 
 #include <tactor/error.hpp>
-#include <tactor/gpio.hpp>
+#include <tactor/lines.hpp>
 
 #include "../../support/count_allocations.hpp"
 #include "../fake_line.hpp"

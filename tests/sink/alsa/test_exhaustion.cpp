@@ -9,7 +9,6 @@
 #include <doctest/doctest.h>
 
 #include <tactor/alsa.hpp>
-#include <tactor/devices.hpp>
 #include <tactor/error.hpp>
 
 #include "descriptors_left.hpp"

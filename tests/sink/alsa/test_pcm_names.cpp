@@ -5,7 +5,7 @@
 #include <alsa/asoundlib.h>
 #include <doctest/doctest.h>
 
-#include <tactor/devices.hpp>
+#include <tactor/alsa.hpp>
 #include <tactor/error.hpp>
 
 #include "has.hpp"

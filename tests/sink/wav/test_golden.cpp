@@ -9,8 +9,8 @@
 #include <doctest/doctest.h>
 
 #include <tactor/plan.hpp>
+#include <tactor/render.hpp>
 #include <tactor/stroke.hpp>
-#include <tactor/wav.hpp>
 
 #include "../../synth/pieces.hpp"
 #include "folder.hpp"

@@ -12,7 +12,7 @@
 
 #include <alsa/asoundlib.h>
 
-#include <tactor/devices.hpp>
+#include <tactor/alsa.hpp>
 
 namespace tactor::pcm {
 
