@@ -46,42 +46,18 @@ struct limit_settings {
     std::optional<double> window_s = {};
 };
 
-/// [serve]: what tactor serve listens on and allows. Values that are not given are that program's defaults.
-struct serve_settings {
-    std::optional<std::string> socket = {}; ///< path of the Unix socket
-    std::optional<std::string> tcp = {};    ///< "[HOST:]PORT", as for osc and http
-    std::optional<std::string> osc = {};
-    std::optional<std::string> http = {};
-    std::optional<std::string> token_file = {};
-    std::vector<std::string> allow_hosts = {};
-    std::vector<std::string> osc_peers = {};
-    std::optional<double> max_level_dbfs = {};
-    std::optional<double> idle_stop_s = {};
-    std::optional<unsigned> max_clients = {};
-    std::optional<unsigned> kept_clients = {};     ///< of these, places for the Unix socket alone
-    std::optional<unsigned> max_strokes = {};      ///< of one client at once
-    std::optional<unsigned> max_live_strokes = {}; ///< of these, live ones
-    std::optional<unsigned> max_points_per_s = {}; ///< of one client
-    std::optional<double> max_stroke_s = {};
-    std::optional<unsigned> max_message_bytes = {};
-    std::optional<unsigned> max_nesting = {};
-    std::optional<double> max_message_s = {};
-    std::optional<unsigned> max_unread_bytes = {};         ///< that wait for one client
-    std::optional<unsigned> max_all_unread_bytes = {};     ///< that wait for all together
-    std::optional<unsigned> max_all_unfinished_bytes = {}; ///< of messages of all that have not come whole
-};
-
-/// A value of [defaults], for an option of the tool where nothing else is said. The program that has the
-/// options checks names and values.
-struct default_value {
+/// A value of a table whose names only a program knows: [defaults], [serve]. The program checks names and
+/// values.
+struct said_value {
     std::string name = {}; ///< as the file writes it
     std::variant<std::monostate, bool, double, std::string> said = {};
+    bool in_list = false;      ///< an entry of a list; each entry is one of these
     source_place at = {};      ///< of the value
     source_place name_at = {}; ///< of the name
 
-    friend bool operator==(const default_value& a, const default_value& b)
+    friend bool operator==(const said_value& a, const said_value& b)
     {
-        return a.name == b.name && a.said == b.said;
+        return a.name == b.name && a.said == b.said && a.in_list == b.in_list;
     }
 };
 
@@ -119,9 +95,11 @@ struct setup {
     std::optional<amplifier_settings> amplifier = {};
     std::optional<sync_settings> sync = {};
     std::optional<limit_settings> limits = {};
-    std::optional<serve_settings> serve = {};
     std::optional<calibration_origin> calibration = {};
-    std::vector<default_value> defaults = {}; ///< each name once; what an included file says comes first
+    /// [defaults]: each name once; what an included file says comes first.
+    std::vector<said_value> defaults = {};
+    /// [serve]: names in the order of the file.
+    std::vector<said_value> serve = {};
 };
 
 /// Reads an array or configuration file. May block on the file system.

@@ -94,7 +94,7 @@ located_setup read_setup(std::string_view text, const setup_source& source)
     read_amplifier(root, out);
     read_sync(root, out);
     read_limits(root, out);
-    read_serve(root, out);
+    read_serve(root, out.said);
     read_defaults(root, out.said);
 
     if (out.said.array)

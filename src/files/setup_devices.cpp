@@ -113,8 +113,27 @@ void read_defaults(const toml_table& root, setup& out)
     if (!t)
         return;
     for (const toml_table::said_key& e : t->entries()) {
-        std::erase_if(out.defaults, [&e](const default_value& d) { return d.name == e.key; });
-        out.defaults.push_back({std::string(e.key), t->plain(*e.value, e.key), t->where(*e.value), e.key_at});
+        std::erase_if(out.defaults, [&e](const said_value& d) { return d.name == e.key; });
+        out.defaults.push_back(
+            {std::string(e.key), t->plain(*e.value, e.key), false, t->where(*e.value), e.key_at});
+    }
+}
+
+void read_serve(const toml_table& root, setup& out)
+{
+    const auto t = root.table("serve", "[serve]", "[serve]");
+    if (!t)
+        return;
+    out.serve.clear();
+    for (const toml_table::said_key& e : t->entries()) {
+        const auto add = [&](const toml::node& n, bool in_list) {
+            out.serve.push_back({std::string(e.key), t->plain(n, e.key), in_list, t->where(n), e.key_at});
+        };
+        if (const toml::array* list = e.value->as_array())
+            for (const toml::node& n : *list)
+                add(n, true);
+        else
+            add(*e.value, false);
     }
 }
 

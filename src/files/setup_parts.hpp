@@ -40,9 +40,8 @@ void read_output(const toml_table& root, located_setup& out);
 void read_amplifier(const toml_table& root, located_setup& out);
 void read_sync(const toml_table& root, located_setup& out);
 void read_limits(const toml_table& root, located_setup& out);
-/// [serve].
-void read_serve(const toml_table& root, located_setup& out);
-/// [defaults].
+/// [serve] and [defaults], as they are written.
+void read_serve(const toml_table& root, setup& out);
 void read_defaults(const toml_table& root, setup& out);
 
 } // namespace tactor::detail

@@ -106,7 +106,7 @@ std::string calibrated_text(const calibrated_tactor& t)
     return s + fmt::format("trials = {}\n", t.trials);
 }
 
-std::string value_text(const default_value& d)
+std::string value_text(const said_value& d)
 {
     if (const auto* text = std::get_if<std::string>(&d.said))
         return toml_string(*text);
@@ -144,7 +144,7 @@ std::string besides_text(const setup& besides)
         s += limits_text(*besides.limits);
     if (!besides.defaults.empty())
         s += "\n[defaults]\n";
-    for (const default_value& d : besides.defaults)
+    for (const said_value& d : besides.defaults)
         s += fmt::format("{} = {}\n", d.name, value_text(d));
     return s;
 }

@@ -164,6 +164,7 @@ array find_array(settings& s, environment& e)
     if (!file.array)
         throw error(error_kind::bad_input, *s.array_name, "says no [array]", "see tactor.toml(5)");
     options::apply_defaults(s, file);
+    static_cast<void>(options::read_serve(file.serve)); // checked, though it does not count here
     use_array_file(config, file);
     e.array_file = *s.array_name;
     return *file.array;
@@ -196,6 +197,7 @@ environment read_environment(settings& s)
         check_readable(e.config_name);
         e.config = load_setup(e.config_name);
         options::apply_defaults(s, e.config);
+        e.serve = options::read_serve(e.config.serve);
     }
     read_given(s, e);
     e.tactors = find_array(s, e);

@@ -11,6 +11,7 @@
 #include <tactor/tactor.hpp>
 
 #include "files/plan/plan_file.hpp"
+#include "options/serve.hpp"
 #include "session/settings.hpp"
 
 namespace tactor::session {
@@ -18,7 +19,8 @@ namespace tactor::session {
 /// The configuration that applies, and the array file's own [output], [amplifier] and [sync] over it.
 struct environment {
     setup config;
-    std::string config_name; ///< file it came from; empty: none
+    options::serve_settings serve; ///< the configuration's [serve]
+    std::string config_name;       ///< file it came from; empty: none
     array tactors;
     std::string array_file; ///< that the array came from; empty: it is a preset of its name
     std::optional<unsigned> plan_channels = {};         ///< of the plan that the array came from

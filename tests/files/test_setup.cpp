@@ -197,10 +197,10 @@ TEST_CASE("[defaults] hands on flags, numbers and texts with their places")
 {
     const setup s =
         read("[defaults]\nsoa = 0.06\nnoise-seed = 9007199254740992\nsnap = true\nphantom = \"log\"\n");
-    CHECK(s.defaults == std::vector<default_value>{{"soa", 0.06, {}, {}},
-                                                   {"noise-seed", 9007199254740992.0, {}, {}},
-                                                   {"snap", true, {}, {}},
-                                                   {"phantom", "log", {}, {}}});
+    CHECK(s.defaults == std::vector<said_value>{{"soa", 0.06, false, {}, {}},
+                                                {"noise-seed", 9007199254740992.0, {}, {}},
+                                                {"snap", true, {}, {}},
+                                                {"phantom", "log", {}, {}}});
     CHECK(s.defaults[1].at.text() == "t.toml:3:14");
     CHECK(s.defaults[1].name_at.text() == "t.toml:3:1");
     CHECK(complaint("[defaults]\nsoa = []\n") ==

@@ -159,14 +159,13 @@ HAS_NOT = {
     "carrier_part carrier_point": "of stroke files: Stroke.load(), and the record of a plan: Plan.to_dict()",
     "threshold_point threshold_at": "Tactor.thresholds; a Score uses them",
     "score_builder": "a Score is made from plans that are there; the tool plans strokes while it places them",
-    "serve_settings": "the service's configuration, which the tool reads",
     "sink paced_sink io_kind io_result stream_position": "what the audio thread calls cannot be Python",
     "enable_line edge_input gpio_edge gpio_line_name gpio_line_place find_gpio_line player_lines amplifier_settings sync_settings edge_kind pull_kind":
         "lines are the configuration's; a player opens them",
     "reopen_alsa": "make a Player again, after=",
     "route_of pcm_route require_device_name card_of card_info card_holders count_range": "what devices and Player look at themselves",
     "probe_realtime_rights realtime_rights": "Player.stats()['realtime'], and `tactor check`",
-    "parse_setup default_value": "Array.from_file reads files",
+    "parse_setup said_value": "Array.from_file reads files",
     "wav_progress": "Ctrl-C gives up",
 }
 

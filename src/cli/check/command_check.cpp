@@ -68,10 +68,10 @@ std::vector<finding> check_all(const settings& s, const environment& e)
     if (!s.stream.no_gpio)
         for (finding& f : check_lines(e.config, session::is_felt(device.pcm), find_gpio_line))
             all.push_back(std::move(f));
-    if (e.config.serve) {
+    if (!e.config.serve.empty()) {
         try {
-            static_cast<void>(read_token(settle_serve({}, e.config)));
-            static_cast<void>(settle_network(*e.config.serve));
+            static_cast<void>(read_token(e.serve));
+            static_cast<void>(settle_network(e.serve));
             all.push_back(fine("service settings", "[serve] can be served"));
         } catch (const error& x) {
             all.push_back(failure("service settings", x));

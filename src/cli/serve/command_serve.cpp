@@ -45,7 +45,7 @@ array limited(array a, double max_level_dbfs)
     return a;
 }
 
-server::planning planning_of(const settings& s, const environment& e, const serve_settings& serve,
+server::planning planning_of(const settings& s, const environment& e, const options::serve_settings& serve,
                              const server::service_limits& limits)
 {
     server::planning p;
@@ -173,7 +173,7 @@ int serve(settings& s, const serve_options& o)
     s.place |= options::on_play;
     const environment e = session::read_environment(s);
     const session::stream_options& play = s.stream;
-    const serve_settings serve = settle_serve(o, e.config);
+    const options::serve_settings serve = settle_serve(o, e.serve);
     const server::endpoint_options where = settle_endpoints(serve);
     server::network_options network = settle_network(serve);
     session::interrupt stop;

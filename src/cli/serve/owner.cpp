@@ -46,9 +46,8 @@ std::string default_socket(bool others)
 
 } // namespace
 
-serve_settings settle_serve(const serve_options& o, const setup& config)
+options::serve_settings settle_serve(const serve_options& o, options::serve_settings s)
 {
-    serve_settings s = config.serve.value_or(serve_settings{});
     const auto prefer = [](auto& ours, const auto& given) {
         if (given)
             ours = given;
@@ -61,7 +60,7 @@ serve_settings settle_serve(const serve_options& o, const setup& config)
     return s;
 }
 
-server::endpoint_options settle_endpoints(const serve_settings& s)
+server::endpoint_options settle_endpoints(const options::serve_settings& s)
 {
     if (s.socket && s.socket->empty())
         throw error(error_kind::bad_input, "--socket", "the name is empty", "name a path");
@@ -85,7 +84,7 @@ server::endpoint_options settle_endpoints(const serve_settings& s)
     return e;
 }
 
-server::network_options settle_network(const serve_settings& s)
+server::network_options settle_network(const options::serve_settings& s)
 {
     server::network_options n{.allow_hosts = s.allow_hosts};
     for (const std::string& p : s.osc_peers)
@@ -93,7 +92,7 @@ server::network_options settle_network(const serve_settings& s)
     return n;
 }
 
-server::service_limits settle_service_limits(const serve_settings& s)
+server::service_limits settle_service_limits(const options::serve_settings& s)
 {
     server::service_limits l;
     l.max_clients = s.max_clients.value_or(l.max_clients);
@@ -142,7 +141,7 @@ std::string plan_text(const server::planned& p, const environment& e, std::size_
     return text;
 }
 
-std::string read_token(const serve_settings& s)
+std::string read_token(const options::serve_settings& s)
 {
     if (!s.token_file)
         return {};

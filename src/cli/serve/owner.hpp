@@ -22,17 +22,17 @@ struct serve_options {
     std::string format = "text";
 };
 
-/// The options over the configuration.
-serve_settings settle_serve(const serve_options& o, const setup& config);
+/// The options over `s`, which the configuration says.
+options::serve_settings settle_serve(const serve_options& o, options::serve_settings s);
 
 /// Where to listen. \throws error (bad_input) where nothing says which socket, and for a network beyond
 /// loopback without a token.
-server::endpoint_options settle_endpoints(const serve_settings& s);
+server::endpoint_options settle_endpoints(const options::serve_settings& s);
 
 /// Who else may come. \throws error (bad_input) for what is no prefix.
-server::network_options settle_network(const serve_settings& s);
+server::network_options settle_network(const options::serve_settings& s);
 
-server::service_limits settle_service_limits(const serve_settings& s);
+server::service_limits settle_service_limits(const options::serve_settings& s);
 
 /// Raises how many files may be open to what so many clients need; warns where that is not allowed.
 void provide_descriptors(const server::service_limits& l);
@@ -43,6 +43,6 @@ std::string plan_text(const server::planned& p, const environment& e, std::size_
 
 /// The text of token_file without its line end; empty for none. \throws error (bad_input) for a file that
 /// others may read, and for an empty one.
-std::string read_token(const serve_settings& s);
+std::string read_token(const options::serve_settings& s);
 
 } // namespace tactor::cli

@@ -8,8 +8,9 @@
 #include <tactor/setup.hpp>
 
 #include "message_of.hpp"
+#include "options/serve.hpp"
 
-namespace setup_serve_test {
+namespace serve_test {
 
 using namespace tactor;
 
@@ -39,8 +40,7 @@ max_all_unread_bytes = 4000
 max_all_unfinished_bytes = 70000
 )",
                                   "t");
-    REQUIRE(all.serve);
-    const serve_settings& s = *all.serve;
+    const options::serve_settings s = options::read_serve(all.serve);
     CHECK(s.socket == "/run/x.sock");
     CHECK(s.tcp == "4001");
     CHECK(s.osc == "0.0.0.0:4002");
@@ -62,14 +62,16 @@ max_all_unfinished_bytes = 70000
     CHECK(s.max_unread_bytes == 3000U);
     CHECK(s.max_all_unread_bytes == 4000U);
     CHECK(s.max_all_unfinished_bytes == 70000U);
-    CHECK_FALSE(parse_setup("", "t").serve);
-    CHECK_FALSE(parse_setup("[serve]\n", "t").serve->tcp);
+    CHECK(parse_setup("", "t").serve.empty());
+    CHECK_FALSE(options::read_serve(parse_setup("[serve]\n", "t").serve).tcp);
 }
 
 TEST_CASE("[serve]: what cannot be, with its place")
 {
     const auto says = [](const std::string& line) {
-        return message_of([&] { static_cast<void>(parse_setup("[serve]\n" + line + "\n", "t")); });
+        return message_of([&] {
+            static_cast<void>(options::read_serve(parse_setup("[serve]\n" + line + "\n", "t").serve));
+        });
     };
     CHECK(says("tpc = 1").find("t:2:") == 0);
     CHECK(says("tpc = 1").find("tcp") != std::string::npos);
@@ -86,7 +88,7 @@ TEST_CASE("[serve]: what cannot be, with its place")
                           bad));
     const auto s =
         parse_setup("[serve]\nosc_peers = ['1.2.3.4', '::/0', '0.0.0.0/0', 'fe80::1%eth0']\n", "t");
-    CHECK(s.serve->osc_peers.size() == 4);
+    CHECK(options::read_serve(s.serve).osc_peers.size() == 4);
 }
 
-} // namespace setup_serve_test
+} // namespace serve_test

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+#include "options/serve.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string_view>
+#include <system_error>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "core/bounds.hpp"
+#include "core/prefix_bits.hpp"
+#include "core/suggest.hpp"
+#include "core/words.hpp"
+
+namespace tactor::options {
+namespace {
+
+[[noreturn]] void fail(const said_value& d, const std::string& why, std::string_view hint)
+{
+    throw error(error_kind::bad_input, d.at, why, hint).with_field(d.name);
+}
+
+std::string shown(const said_value& d)
+{
+    if (const auto* text = std::get_if<std::string>(&d.said))
+        return fmt::format("\"{}\"", *text);
+    const auto* flag = std::get_if<bool>(&d.said);
+    return flag != nullptr ? fmt::format("{}", *flag) : plain_number(std::get<double>(d.said));
+}
+
+std::string text_of(const said_value& d)
+{
+    const auto* text = std::get_if<std::string>(&d.said);
+    if (text == nullptr)
+        fail(d, fmt::format("{} is {}", d.name, shown(d)), "give a string in quotes");
+    if (text->empty() || text->find('\0') != std::string::npos)
+        fail(d, fmt::format("{} is {}", d.name, text->empty() ? "empty" : "not text"), {});
+    return *text;
+}
+
+double number_of(const said_value& d, detail::bounds b, bool whole)
+{
+    const auto* v = std::get_if<double>(&d.said);
+    if (v == nullptr || (whole && *v != std::floor(*v)))
+        fail(d, fmt::format("{} is {}", d.name, shown(d)), whole ? "give a whole number" : "give a number");
+    if (!b.holds(*v))
+        fail(d, fmt::format("{} is {}", d.name, shown(d)),
+             fmt::format("allowed: {} to {}", plain_number(b.low), plain_number(b.high)));
+    return *v;
+}
+
+// Returns whether it is [HOST:]PORT. Whether this machine has such a host shows when it listens there.
+bool is_address(std::string_view text)
+{
+    const auto colon = text.rfind(':');
+    if (colon != std::string_view::npos) {
+        const std::string_view host = text.substr(0, colon);
+        const bool bracketed = host.size() > 2 && host.front() == '[' && host.back() == ']';
+        if (host.empty() || (!bracketed && host.find(':') != std::string_view::npos))
+            return false;
+        text.remove_prefix(colon + 1);
+    }
+    std::uint16_t port = 0;
+    const auto r = std::from_chars(text.data(), text.data() + text.size(), port);
+    return r.ec == std::errc() && r.ptr == text.data() + text.size();
+}
+
+// "127.0.0.1:4001", or a bare 4001.
+std::string address_of(const said_value& d)
+{
+    if (std::holds_alternative<double>(d.said))
+        return plain_number(number_of(d, {0.0, 65535.0}, true));
+    std::string text = text_of(d);
+    if (!is_address(text))
+        fail(d, fmt::format("\"{}\" is no address", text),
+             "[HOST:]PORT, such as 4001, \"0.0.0.0:4001\" or \"[::1]:4001\"; port 0 takes a free one");
+    return text;
+}
+
+// Which of them are near is seen when they send.
+std::string prefix_of(const said_value& d)
+{
+    std::string text = text_of(d);
+    if (!detail::prefix_bits(text))
+        fail(d, fmt::format("\"{}\" is neither an address nor a prefix", text),
+             "such as 192.168.1.7, 192.168.1.0/24 or fd00::/8");
+    return text;
+}
+
+using text_place = std::optional<std::string> serve_settings::*;
+using list_place = std::vector<std::string> serve_settings::*;
+using number_place = std::optional<double> serve_settings::*;
+using count_place = std::optional<unsigned> serve_settings::*;
+
+struct key {
+    std::string_view name;
+    std::variant<text_place, list_place, number_place, count_place> to;
+    detail::bounds allowed = {};
+    std::string (*read_text)(const said_value&) = text_of;
+};
+
+constexpr double most = std::numeric_limits<int>::max();
+
+const std::array keys{
+    key{"socket", &serve_settings::socket},
+    key{"tcp", &serve_settings::tcp, {}, address_of},
+    key{"osc", &serve_settings::osc, {}, address_of},
+    key{"http", &serve_settings::http, {}, address_of},
+    key{"token_file", &serve_settings::token_file},
+    key{"allow_hosts", &serve_settings::allow_hosts},
+    key{"osc_peers", &serve_settings::osc_peers, {}, prefix_of},
+    key{"max_level_dbfs", &serve_settings::max_level_dbfs, detail::bounds_of::level_dbfs},
+    key{"idle_stop_s", &serve_settings::idle_stop_s, detail::bounds_of::timeout_s},
+    key{"max_clients", &serve_settings::max_clients, {1, 100'000}},
+    key{"kept_clients", &serve_settings::kept_clients, {0, 100'000}},
+    key{"max_strokes", &serve_settings::max_strokes, {1, 100'000}},
+    key{"max_live_strokes", &serve_settings::max_live_strokes, {0, 100'000}},
+    key{"max_points_per_s", &serve_settings::max_points_per_s, {1, 10'000'000}},
+    key{"max_stroke_s", &serve_settings::max_stroke_s, detail::bounds_of::timeout_s},
+    key{"max_message_bytes", &serve_settings::max_message_bytes, {1024, most}},
+    key{"max_nesting", &serve_settings::max_nesting, {4, 10'000}},
+    key{"max_message_s", &serve_settings::max_message_s, detail::bounds_of::timeout_s},
+    key{"max_unread_bytes", &serve_settings::max_unread_bytes, {1024, most}},
+    key{"max_all_unread_bytes", &serve_settings::max_all_unread_bytes, {1024, most}},
+    key{"max_all_unfinished_bytes", &serve_settings::max_all_unfinished_bytes, {65536, most}},
+};
+
+const key& find_key(const said_value& d)
+{
+    const auto found =
+        std::find_if(keys.begin(), keys.end(), [&d](const key& k) { return k.name == d.name; });
+    if (found != keys.end())
+        return *found;
+    std::vector<std::string_view> known;
+    for (const key& k : keys)
+        known.push_back(k.name);
+    throw detail::unknown_key(d.name_at, d.name, "[serve]", known);
+}
+
+void take(serve_settings& s, const key& k, const said_value& d)
+{
+    const auto* list = std::get_if<list_place>(&k.to);
+    if ((list != nullptr) != d.in_list)
+        fail(d, fmt::format("{} is {}", d.name, d.in_list ? "a list" : shown(d)),
+             d.in_list ? "give one value" : "give a list of texts");
+    if (list != nullptr)
+        (s.*(*list)).push_back(k.read_text(d));
+    else if (const auto* text = std::get_if<text_place>(&k.to))
+        s.*(*text) = k.read_text(d);
+    else if (const auto* number = std::get_if<number_place>(&k.to))
+        s.*(*number) = number_of(d, k.allowed, false);
+    else
+        s.*std::get<count_place>(k.to) = static_cast<unsigned>(number_of(d, k.allowed, true));
+}
+
+} // namespace
+
+serve_settings read_serve(const std::vector<said_value>& said)
+{
+    serve_settings s;
+    const said_value* kept = nullptr;
+    for (const said_value& d : said) {
+        const key& k = find_key(d);
+        take(s, k, d);
+        if (k.name == "kept_clients")
+            kept = &d;
+    }
+    const unsigned clients = s.max_clients.value_or(128);
+    if (kept != nullptr && *s.kept_clients >= clients)
+        fail(*kept, fmt::format("{} places are kept of {}", *s.kept_clients, clients),
+             "keep fewer than max_clients");
+    return s;
+}
+
+} // namespace tactor::options
