@@ -183,9 +183,9 @@ struct compensated_places {
 
 /// A plan that is moved so that the observer feels the target.
 struct compensated_plan {
-    plan schedule = {};
+    tactor::plan plan = {};
     low_speed_observer observer = {};
-    std::vector<tap> taps = {}; ///< predict_taps() of the schedule
+    std::vector<tap> taps = {}; ///< predict_taps() of the plan
     std::size_t at_edge = 0;    ///< as in compensated_places
     /// How far the places felt are from the target, if each burst by itself is felt exactly at its own point.
     double residual_rms_mm = 0.0;

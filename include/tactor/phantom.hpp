@@ -130,8 +130,8 @@ struct fitted_strokes {
 [[nodiscard]] TACTOR_API fitted_strokes fit_strokes(const std::vector<stroke>& strokes, const layout& l,
                                                     double margin_mm = 0.0);
 
-/// The same for each stroke with a stroke::fit_margin_mm: by itself, or together with the others of its
-/// stroke::fit_group. The strokes returned have neither any more. Throws as above.
+/// The same for each stroke with a stroke::fit: by itself, or together with the others of its group. The
+/// strokes returned have none any more. Throws as above.
 [[nodiscard]] TACTOR_API std::vector<stroke> fit_as_asked(std::vector<stroke> strokes, const layout& l);
 
 } // namespace v0

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Planning: from an array and a stroke to the schedule of bursts. Pure functions of their arguments.
+/// Planning: from an array and a stroke to a plan, which says when each tactor plays. Pure functions of their
+/// arguments.
 #pragma once
 
 #include <array>
@@ -184,7 +185,7 @@ struct plan {
 };
 
 /// Plans one stroke on an array. `l` must be the layout of `a`. The stroke's own choices (stroke::choices)
-/// win over `o`. A stroke with a fit_margin_mm is fitted first. O(log n) in the tactors for each burst.
+/// win over `o`. A stroke with a stroke::fit is fitted first. O(log n) in the tactors for each burst.
 /// \throws error (bad_input): SOA out of bounds, path outside the array (with the place where it leaves it),
 ///         timing that is not possible (with the nearest duration that is), no grid for Tactile Brush.
 [[nodiscard]] TACTOR_API plan make_plan(const array& a, const layout& l, const stroke& s,

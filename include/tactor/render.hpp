@@ -74,7 +74,7 @@ struct render_options {
 
 /// A plan and when it starts.
 struct placed_plan {
-    plan schedule = {};
+    tactor::plan plan = {};
     /// Seconds from the start of the piece, or from the time that `anchor` says. None: at the end of the plan
     /// before it (the first: 0).
     std::optional<double> start_s = {};

@@ -156,41 +156,52 @@ struct carrier_part {
     friend bool operator==(const carrier_part&, const carrier_part&) = default;
 };
 
+/// How a stroke sounds, in place of what all strokes have.
+struct stroke_sound {
+    std::optional<double> carrier_hz = {};
+    /// The carrier along the path, linear between parts, which ascend; in place of carrier_hz. Its phase goes
+    /// on through every change.
+    std::vector<carrier_part> carrier_profile = {};
+    std::optional<waveform> wave = {};
+    std::optional<modulation> am = {};
+};
+
+/// A stroke that is to be as large as the array has space for: see fit_strokes().
+struct stroke_fit {
+    double margin_mm = 0.0; ///< from the array's edge
+    /// Strokes with the same number above 0 are fitted as one picture; 0: this one by itself.
+    unsigned group = 0;
+
+    friend bool operator==(const stroke_fit&, const stroke_fit&) = default;
+};
+
+/// Where a file says parts of a stroke, for messages. Line 0: it is not in a file.
+struct stroke_places {
+    source_place choices = {}; ///< of choices.soa_s, or else of choices.burst_s
+    source_place start = {};   ///< of a start_s below 0
+    source_place carrier = {}; ///< of carrier_hz, or of carrier_profile
+    source_place wave = {};
+};
+
 /// One stroke as the user gave it.
 struct stroke {
     std::string name = {};
     trajectory motion = {};
     /// Start in seconds, counted from `anchor`; none: when the stroke before it has ended.
     std::optional<double> start_s = {};
-    std::optional<double> carrier_hz = {}; ///< instead of the common carrier
-    note_kind note = note_kind::none;
-    /// Oddities of the input that were accepted; make_plan() hands them on to plan::warnings.
-    std::vector<std::string> warnings = {};
+    start_anchor anchor = {};
     /// The speed from which the motion's time follows; none where a time is given. fit_strokes() keeps it.
     std::optional<double> speed_mm_s = {};
     /// The input says neither a time nor a speed: default_speed_mm_s holds, unless a set-up has another one.
     bool usual_pace = false;
-    start_anchor anchor = {};
+    std::optional<stroke_fit> fit = {};
+    stroke_sound sound = {};
     stroke_choices choices = {};
-    /// The place in a file of choices.soa_s, or else of choices.burst_s, for messages; line 0: it is not in a
-    /// file.
-    source_place choices_at = {};
-    /// The stroke is to be as large as the array has space for, so far from the array's edge: see
-    /// fit_strokes().
-    std::optional<double> fit_margin_mm = {};
-    /// With fit_margin_mm: strokes with the same number above 0 are fitted as one picture; 0: this one by
-    /// itself.
-    unsigned fit_group = 0;
-    std::optional<waveform> wave = {}; ///< instead of the common waveform
-    std::optional<modulation> am = {}; ///< instead of the common modulation
-    /// The carrier along the path, linear between parts, which ascend; instead of carrier_hz. Its phase goes
-    /// on through every change.
-    std::vector<carrier_part> carrier_profile = {};
-    // The same places as choices_at, of start_s where it is below 0, of the carrier, and of the waveform.
-    source_place start_at = {};
-    source_place carrier_at = {}; ///< of carrier_hz, or of carrier_profile
-    source_place wave_at = {};
+    note_kind note = note_kind::none;
     std::string made_for = {}; ///< name of the array preset that it is drawn for; messages name it
+    /// Oddities of the input that were accepted; make_plan() hands them on to plan::warnings.
+    std::vector<std::string> warnings = {};
+    stroke_places places = {};
 };
 
 /// Names of the built-in strokes: "park2016-1" ... "park2016-4" for palm-3x3, "wave-2x4" and "round-2x4" for
@@ -203,7 +214,7 @@ struct stroke {
 /// Names of the shapes for first steps: "tap", "line", "circle", "eight" and "spiral".
 [[nodiscard]] TACTOR_API const std::vector<std::string>& stroke_shapes();
 
-/// A shape by name, as large as the array on which it is played (stroke::fit_margin_mm): at
+/// A shape by name, as large as the array on which it is played (stroke::fit): at
 /// default_speed_mm_s, but a tap takes 0.3 s. \throws error (bad_input) that lists the shapes.
 [[nodiscard]] TACTOR_API stroke shape_stroke(std::string_view name);
 

@@ -144,7 +144,7 @@ piece open_argument(const settings& s, const environment& e, const layout& faces
 
 bool has_own_carrier(const stroke& s)
 {
-    return s.carrier_hz || !s.carrier_profile.empty();
+    return s.sound.carrier_hz || !s.sound.carrier_profile.empty();
 }
 
 // Calls f(stroke), and says of which it is that it throws.
@@ -173,7 +173,7 @@ void check_starts(const piece& p)
         } catch (const error& x) {
             throw i < p.strokes.size() ? of_stroke(x, p, i) : x;
         }
-        times.lasts(q.schedule.total_s);
+        times.lasts(q.plan.total_s);
     }
 }
 
@@ -215,9 +215,9 @@ error of_stroke(const error& x, const piece& p, std::size_t i)
     const stroke& s = p.strokes[i];
     const std::string_view what = x.subject();
     const bool carrier = has_own_carrier(s) && (what == "carrier_hz" || what == "carrier_profile");
-    const bool wave = s.wave && what == "waveform";
+    const bool wave = s.sound.wave && what == "waveform";
     const bool start = x.field() == "start_s";
-    const source_place& at = carrier ? s.carrier_at : wave ? s.wave_at : s.start_at;
+    const source_place& at = carrier ? s.places.carrier : wave ? s.places.wave : s.places.start;
     if ((carrier || wave || start) && at.line != 0)
         return x.reworded(at.text(), fmt::format("{}: {}", start ? "start_s" : what, x.why()), x.hint())
             .with_place(at);
@@ -258,7 +258,7 @@ piece plan_one_piece(const settings& s, const environment& e)
                 return;
             }
             p.moved.push_back(make_compensated_plan(e.tactors, faces, k, s.plan, s.low_speed));
-            p.plans.push_back({std::move(p.moved.back().schedule), k.start_s, k.anchor});
+            p.plans.push_back({std::move(p.moved.back().plan), k.start_s, k.anchor});
         });
     check_starts(p);
     return p;
@@ -271,13 +271,13 @@ score plan_and_score(piece& p, const settings& s, const environment& e, const la
     if (p.plans.empty())
         for_each_stroke(p, [&](const stroke& k) {
             if (s.compensate)
-                made.add(make_compensated_plan(e.tactors, faces, k, s.plan, s.low_speed).schedule, k.start_s,
+                made.add(make_compensated_plan(e.tactors, faces, k, s.plan, s.low_speed).plan, k.start_s,
                          k.anchor);
             else
                 made.add(faces, k, s.plan);
         });
     for (placed_plan& q : std::exchange(p.plans, {}))
-        made.add(std::move(q.schedule), q.start_s, q.anchor);
+        made.add(std::move(q.plan), q.start_s, q.anchor);
     return made.take();
 }
 
@@ -293,7 +293,7 @@ score make_score(const piece& p, const environment& e, const render_options& ren
     for (std::size_t i = 0; i < p.plans.size(); ++i) {
         const placed_plan& q = p.plans[i];
         try {
-            made.add(q.schedule, q.start_s, q.anchor);
+            made.add(q.plan, q.start_s, q.anchor);
         } catch (const error& x) {
             if (i < p.strokes.size())
                 throw of_stroke(x, p, i);

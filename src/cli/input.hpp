@@ -20,7 +20,7 @@ struct piece {
     std::vector<stroke> strokes;
     std::vector<placed_plan> plans;
     std::optional<fitting> fit = {}; ///< what --fit did
-    /// What --compensate did to each plan; empty without it. Their schedules are moved to `plans`.
+    /// What --compensate did to each plan; empty without it. The plans themselves are moved to `plans`.
     std::vector<compensated_plan> moved = {};
     bool from_plan = false; ///< the argument is a plan, which knows its stroke's name
 };

@@ -44,7 +44,7 @@ std::vector<std::string> collect_warnings(std::span<const placed_plan> plans)
 {
     std::vector<std::string> all;
     for (const placed_plan& p : plans)
-        all.insert(all.end(), p.schedule.warnings.begin(), p.schedule.warnings.end());
+        all.insert(all.end(), p.plan.warnings.begin(), p.plan.warnings.end());
     return all;
 }
 

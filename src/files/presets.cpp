@@ -134,7 +134,7 @@ stroke shape_stroke(std::string_view name)
         const bool tap = p.length_mm() == 0.0;
         stroke k{.name = std::string(name),
                  .motion = trajectory::along(p, tap ? tap_s : p.length_mm() / default_speed_mm_s),
-                 .fit_margin_mm = 0.0};
+                 .fit = stroke_fit{}};
         if (!tap)
             k.speed_mm_s = default_speed_mm_s;
         return k;

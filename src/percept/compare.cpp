@@ -13,10 +13,10 @@ namespace {
 
 void add_taps(comparison_row& row, const stroke& s, const array& a, const low_speed_observer& o)
 {
-    if (row.schedule->curve) {
+    if (row.plan->curve) {
         row.unpredicted = "continuous has no bursts, and this observer feels taps";
     } else {
-        row.taps = predict_taps(a, s, *row.schedule, o);
+        row.taps = predict_taps(a, s, *row.plan, o);
         row.tapped = summarise(row.taps);
         row.felt.rms_error_mm = row.tapped.rms_error_mm;
         row.felt.largest_error_mm = row.tapped.largest_error_mm;
@@ -31,7 +31,7 @@ void predict_people(comparison_row& row, const stroke& s, const array& a, const 
     std::optional<low_speed_observer> taps;
     if (choice.observer.kind == observer_kind::low_speed)
         taps = choice.observer.low_speed;
-    row.spread = predict_spread(people, a, s, *row.schedule, taps, choice.keep_samples, choice.after_person);
+    row.spread = predict_spread(people, a, s, *row.plan, taps, choice.keep_samples, choice.after_person);
 }
 
 // All rows at once, since they have the target in common.
@@ -40,9 +40,9 @@ void predict_centroids(comparison& c, const array& a, bool keep_samples)
     std::vector<comparison_row*> rows;
     std::vector<const plan*> plans;
     for (comparison_row& row : c.rows)
-        if (row.schedule) {
+        if (row.plan) {
             rows.push_back(&row);
-            plans.push_back(&*row.schedule);
+            plans.push_back(&*row.plan);
         }
     try {
         const std::vector<percept_summary> felt = predict_summaries(a, c.target, plans);
@@ -56,7 +56,7 @@ void predict_centroids(comparison& c, const array& a, bool keep_samples)
         if (e.kind() != error_kind::bad_input)
             throw;
         for (comparison_row* row : rows) {
-            row->schedule.reset();
+            row->plan.reset();
             row->refused = e;
         }
     }
@@ -74,8 +74,7 @@ std::string prediction_note(const observer_choice& o)
 
 bool comparison::playable() const
 {
-    return std::any_of(rows.begin(), rows.end(),
-                       [](const comparison_row& r) { return r.schedule.has_value(); });
+    return std::any_of(rows.begin(), rows.end(), [](const comparison_row& r) { return r.plan.has_value(); });
 }
 
 comparison compare(const stroke& given, const array& a, const layout& faces, const plan_options& options,
@@ -95,16 +94,16 @@ comparison compare(const stroke& given, const array& a, const layout& faces, con
             o.algorithm = algorithm;
             o.phantom = phantom;
             try {
-                row.schedule = choice.compensate
-                                   ? make_compensated_plan(a, faces, s, o, choice.observer.low_speed).schedule
-                                   : make_plan(a, faces, s, o);
+                row.plan = choice.compensate
+                               ? make_compensated_plan(a, faces, s, o, choice.observer.low_speed).plan
+                               : make_plan(a, faces, s, o);
                 if (choice.observer.kind == observer_kind::low_speed)
                     add_taps(row, s, a, choice.observer.low_speed);
                 predict_people(row, s, a, choice, people);
             } catch (const error& e) {
                 if (e.kind() != error_kind::bad_input)
                     throw;
-                row.schedule.reset();
+                row.plan.reset();
                 row.refused = e;
             }
             c.rows.push_back(std::move(row));

@@ -31,7 +31,7 @@ std::string prediction_note(const observer_choice& o);
 struct comparison_row {
     algorithm_kind algorithm = algorithm_kind::park2016;
     phantom_kind phantom = phantom_kind::inverse_distance;
-    std::optional<plan> schedule = {};
+    std::optional<tactor::plan> plan = {};
     percept_summary felt = {};                ///< of the centroid; of low-speed the errors alone
     std::vector<percept_sample> samples = {}; ///< of the centroid, only where asked for
     tap_summary tapped = {};                  ///< of low-speed

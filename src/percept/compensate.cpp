@@ -108,7 +108,7 @@ std::string notice(const compensated_plan& p)
             "; {} of {} cannot be moved far enough on this array, which alone leaves {:.3f} mm RMS "
             "and at most {:.3f} mm",
             p.at_edge, counted(p.taps.size(), "burst"), p.residual_rms_mm, p.residual_largest_mm);
-    if (p.schedule.algorithm == to_string(algorithm_kind::tactile_brush))
+    if (p.plan.algorithm == to_string(algorithm_kind::tactile_brush))
         text += "; off the lines of the grid they are no longer the Tactile Brush's";
     return text;
 }
@@ -145,7 +145,7 @@ compensated_places compensate(const layout& l, const low_speed_observer& o, std:
 compensated_plan make_compensated_plan(const array& a, const layout& l, const stroke& s,
                                        const plan_options& o, const low_speed_observer& m)
 {
-    if (s.fit_margin_mm)
+    if (s.fit)
         return make_compensated_plan(a, l, fit_as_asked({s}, l).front(), o, m);
     const plan_options chosen = detail::chosen(o, s.choices);
     if (chosen.algorithm == algorithm_kind::continuous)
@@ -153,29 +153,29 @@ compensated_plan make_compensated_plan(const array& a, const layout& l, const st
                                 "continuous has no bursts that could be moved for the low-speed observer",
                                 "algorithm = park2016, or no compensation");
     compensated_plan r;
-    r.schedule = make_plan(a, l, s, o);
+    r.plan = make_plan(a, l, s, o);
     r.observer = m;
     std::vector<burst*> felt;
     std::vector<double> onsets_s;
     std::vector<point> targets;
-    for (burst& b : r.schedule.bursts)
+    for (burst& b : r.plan.bursts)
         if (detail::centre_of(a, b)) {
             felt.push_back(&b);
             onsets_s.push_back(b.onset_s);
             targets.push_back(s.motion.position(b.onset_s));
         }
     const compensated_places places = compensate(l, m, onsets_s, targets);
-    std::erase(r.schedule.warnings, missed_warning(l, r.schedule)); // counted anew where they are moved to
+    std::erase(r.plan.warnings, missed_warning(l, r.plan)); // counted anew where they are moved to
     const std::shared_ptr<const phantom_model> model = detail::model_of(l, chosen);
     for (std::size_t i = 0; i < felt.size(); ++i) {
         burst& b = *felt[i];
         b.position = places.played[i];
         detail::drives_at(*model, l, b.position, b.intensity, b.drives);
     }
-    if (std::string text = missed_warning(l, r.schedule); !text.empty())
-        r.schedule.warnings.push_back(std::move(text));
-    r.schedule.conflicts = detail::find_conflicts(r.schedule.bursts);
-    r.taps = predict_taps(a, s, r.schedule, m);
+    if (std::string text = missed_warning(l, r.plan); !text.empty())
+        r.plan.warnings.push_back(std::move(text));
+    r.plan.conflicts = detail::find_conflicts(r.plan.bursts);
+    r.taps = predict_taps(a, s, r.plan, m);
     r.at_edge = places.at_edge;
     double squares = 0.0;
     for (std::size_t i = 0; i < targets.size(); ++i) {
@@ -185,7 +185,7 @@ compensated_plan make_compensated_plan(const array& a, const layout& l, const st
     }
     if (!targets.empty())
         r.residual_rms_mm = std::sqrt(squares / static_cast<double>(targets.size()));
-    r.schedule.warnings.push_back(notice(r));
+    r.plan.warnings.push_back(notice(r));
     return r;
 }
 

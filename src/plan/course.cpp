@@ -160,11 +160,11 @@ double hz_between(const carrier_point& from, const carrier_point& to, double u)
 
 std::vector<carrier_point> course_of(const stroke& s, const waveform& w)
 {
-    check_profile(s.carrier_profile);
+    check_profile(s.sound.carrier_profile);
     if (w.kind == waveform_kind::recording && w.texture == texture_kind::length)
         return texture_course(s.motion, w.texture_mm);
-    if (!s.carrier_profile.empty())
-        return profile_course(s.motion, s.carrier_profile);
+    if (!s.sound.carrier_profile.empty())
+        return profile_course(s.motion, s.sound.carrier_profile);
     return {};
 }
 

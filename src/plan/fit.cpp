@@ -226,10 +226,10 @@ std::vector<stroke> fit_as_asked(std::vector<stroke> strokes, const layout& l)
     std::map<unsigned, std::size_t> of_group;
     for (std::size_t i = 0; i < strokes.size(); ++i) {
         const stroke& s = strokes[i];
-        if (!s.fit_margin_mm)
+        if (!s.fit)
             continue;
-        const auto [there, is_new] = of_group.try_emplace(s.fit_group, pictures.size());
-        if (is_new || s.fit_group == 0)
+        const auto [there, is_new] = of_group.try_emplace(s.fit->group, pictures.size());
+        if (is_new || s.fit->group == 0)
             pictures.push_back({i});
         else
             pictures[there->second].push_back(i);
@@ -238,11 +238,10 @@ std::vector<stroke> fit_as_asked(std::vector<stroke> strokes, const layout& l)
         std::vector<stroke> together;
         for (const std::size_t i : members)
             together.push_back(strokes[i]);
-        fitted_strokes fitted = fit_strokes(together, l, *strokes[members.front()].fit_margin_mm);
+        fitted_strokes fitted = fit_strokes(together, l, strokes[members.front()].fit->margin_mm);
         for (std::size_t k = 0; k < members.size(); ++k) {
             stroke& s = strokes[members[k]] = std::move(fitted.strokes[k]);
-            s.fit_margin_mm.reset();
-            s.fit_group = 0;
+            s.fit.reset();
         }
     }
     return strokes;

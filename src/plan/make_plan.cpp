@@ -142,17 +142,17 @@ void check_chosen(const plan_options& o, const stroke& s)
     try {
         detail::check_options(o);
     } catch (const error& e) {
-        if (s.choices_at.line == 0 || !is_own(e, s.choices))
+        if (s.places.choices.line == 0 || !is_own(e, s.choices))
             throw;
-        throw e.reworded(s.choices_at.text(), fmt::format("{}: {}", e.subject(), e.why()), e.hint())
-            .with_place(s.choices_at);
+        throw e.reworded(s.places.choices.text(), fmt::format("{}: {}", e.subject(), e.why()), e.hint())
+            .with_place(s.places.choices);
     }
 }
 
 plan planned(const array& a, const layout& l, const stroke& s, const plan_options& common,
              const detail::burst_taker& take)
 {
-    if (s.fit_margin_mm)
+    if (s.fit)
         return planned(a, l, fit_as_asked({s}, l).front(), common, take);
     const plan_options o = detail::chosen(common, s.choices);
     check_chosen(o, s);
@@ -170,11 +170,12 @@ plan planned(const array& a, const layout& l, const stroke& s, const plan_option
     p.faces = detail::faces_used(o);
     p.stroke_duration_s = s.motion.duration_s();
     p.stroke_length_mm = s.motion.length_mm();
-    p.carrier_hz = detail::check_carrier(s.carrier_profile.empty() ? s.carrier_hz.value_or(o.carrier_hz)
-                                                                   : s.carrier_profile.front().hz);
+    p.carrier_hz =
+        detail::check_carrier(s.sound.carrier_profile.empty() ? s.sound.carrier_hz.value_or(o.carrier_hz)
+                                                              : s.sound.carrier_profile.front().hz);
     p.overlap = o.overlap;
-    p.wave = s.wave.value_or(o.wave);
-    p.am = s.am.value_or(o.am);
+    p.wave = s.sound.wave.value_or(o.wave);
+    p.am = s.sound.am.value_or(o.am);
     validate(p.wave);
     validate(p.am);
     p.course = detail::course_of(s, p.wave);

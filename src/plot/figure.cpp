@@ -24,9 +24,9 @@ namespace {
 template <class Get>
 std::string common(const scene& s, Get&& get)
 {
-    std::string first = get(s.plans.front().schedule);
+    std::string first = get(s.plans.front().plan);
     for (const placed_plan& p : s.plans)
-        if (get(p.schedule) != first)
+        if (get(p.plan) != first)
             return {};
     return first;
 }
@@ -34,14 +34,14 @@ std::string common(const scene& s, Get&& get)
 // The movement's own time; of several, that of the piece.
 double seconds(const scene& s, const timeline& t)
 {
-    return s.plans.size() == 1 ? s.plans[0].schedule.stroke_duration_s : t.total_s;
+    return s.plans.size() == 1 ? s.plans[0].plan.stroke_duration_s : t.total_s;
 }
 
 std::vector<std::string> details(const scene& s, const timeline& t)
 {
     double length = 0.0;
     for (const placed_plan& p : s.plans)
-        length += p.schedule.stroke_length_mm;
+        length += p.plan.stroke_length_mm;
     std::vector<std::string> d{clean(s.tactors.name)};
     d.push_back(common(s, [](const plan& p) { return p.algorithm; }));
     d.push_back(common(s, describe_phantom));

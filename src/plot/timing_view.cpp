@@ -165,7 +165,7 @@ private:
     bool common_soa() const
     {
         return std::all_of(scene_.plans.begin(), scene_.plans.end(), [&](const placed_plan& p) {
-            return p.schedule.soa_s && *p.schedule.soa_s == scene_.plans[0].schedule.soa_s;
+            return p.plan.soa_s && *p.plan.soa_s == scene_.plans[0].plan.soa_s;
         });
     }
 

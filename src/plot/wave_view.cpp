@@ -120,8 +120,8 @@ public:
         double highest = 0.0;
         double lowest = std::numeric_limits<double>::infinity();
         for (const placed_plan& p : s.plans) {
-            highest = std::max(highest, p.schedule.carrier_hz);
-            lowest = std::min(lowest, p.schedule.carrier_hz);
+            highest = std::max(highest, p.plan.carrier_hz);
+            lowest = std::min(lowest, p.plan.carrier_hz);
         }
         const double cycle = x_.per_unit() / highest;
         carrier_ = cycle >= least_cycle;

@@ -28,11 +28,11 @@ plan_handle planned(const std::shared_ptr<array_handle>& on, const stroke& given
     p.placed.anchor = p.drawn.anchor;
     const auto work = [&] {
         if (!w.compensate) {
-            p.placed.schedule = make_plan(on->value(), faces, p.drawn, w.plan);
+            p.placed.plan = make_plan(on->value(), faces, p.drawn, w.plan);
             return;
         }
         p.moved = make_compensated_plan(on->value(), faces, p.drawn, w.plan, w.low_speed);
-        p.placed.schedule = std::move(p.moved->schedule);
+        p.placed.plan = std::move(p.moved->plan);
     };
     if (w.plan.custom_phantom) { // which takes the lock for each point
         work();
@@ -47,7 +47,7 @@ plan_handle planned(const std::shared_ptr<array_handle>& on, const stroke& given
 template <class Member>
 py::array_t<double> column(const py::object& self, const Member& of)
 {
-    const auto& bursts = self.cast<const plan_handle&>().schedule().bursts;
+    const auto& bursts = self.cast<const plan_handle&>().plan().bursts;
     if (bursts.empty())
         return given({});
     return view_of({static_cast<py::ssize_t>(bursts.size())}, {sizeof(burst)}, of(bursts.front()), self);
@@ -55,7 +55,7 @@ py::array_t<double> column(const py::object& self, const Member& of)
 
 py::array_t<double> positions(const py::object& self)
 {
-    const auto& bursts = self.cast<const plan_handle&>().schedule().bursts;
+    const auto& bursts = self.cast<const plan_handle&>().plan().bursts;
     if (bursts.empty())
         return given({}, 2);
     return view_of({static_cast<py::ssize_t>(bursts.size()), 2}, {sizeof(burst), sizeof(double)},
@@ -65,7 +65,7 @@ py::array_t<double> positions(const py::object& self)
 py::array_t<double> amplitudes(const plan_handle& p)
 {
     const std::size_t tactors = p.on->value().tactors.size();
-    const auto& bursts = p.schedule().bursts;
+    const auto& bursts = p.plan().bursts;
     std::vector<double> all(bursts.size() * tactors);
     for (std::size_t i = 0; i < bursts.size(); ++i)
         for (const drive& d : bursts[i].drives)
@@ -76,7 +76,7 @@ py::array_t<double> amplitudes(const plan_handle& p)
 py::array_t<double> taus(const plan_handle& p)
 {
     std::vector<double> all;
-    for (const burst& b : p.schedule().bursts)
+    for (const burst& b : p.plan().bursts)
         all.push_back(b.tau_s.value_or(std::numeric_limits<double>::quiet_NaN()));
     return given(std::move(all));
 }
@@ -92,7 +92,7 @@ py::list drives_of(const burst& b)
 py::list rows(const plan_handle& p)
 {
     py::list all;
-    for (const burst& b : p.schedule().bursts)
+    for (const burst& b : p.plan().bursts)
         all.append(py::make_tuple(b.onset_s, b.duration_s, py::make_tuple(b.position.x_mm, b.position.y_mm),
                                   b.intensity, drives_of(b)));
     return all;
@@ -101,9 +101,9 @@ py::list rows(const plan_handle& p)
 // t, positions, intensities and amplitudes of all samples; None where there is no curve.
 py::object samples(const plan_handle& p)
 {
-    if (!p.schedule().curve)
+    if (!p.plan().curve)
         return py::none();
-    const curve& c = *p.schedule().curve;
+    const curve& c = *p.plan().curve;
     const std::size_t tactors = p.on->value().tactors.size();
     std::vector<double> t, places, intensities, all;
     {
@@ -131,7 +131,7 @@ py::tuple felt(const plan_handle& p)
     std::vector<double> t, targets, places, intensities, asked, shared, speeds;
     {
         const without_lock free;
-        for (const percept_sample& s : predict_percept(p.on->value(), p.drawn, p.schedule())) {
+        for (const percept_sample& s : predict_percept(p.on->value(), p.drawn, p.plan())) {
             t.push_back(s.t_s);
             targets.insert(targets.end(), {s.target.x_mm, s.target.y_mm});
             const point where = s.felt.value_or(point{none, none});
@@ -181,7 +181,7 @@ py::dict summary(const plan_handle& p)
     percept_summary s;
     {
         const without_lock free;
-        s = summarise(p.on->value(), p.drawn, p.schedule());
+        s = summarise(p.on->value(), p.drawn, p.plan());
     }
     using namespace py::literals;
     return py::dict("rms_error_mm"_a = s.rms_error_mm, "largest_error_mm"_a = s.largest_error_mm,
@@ -193,7 +193,7 @@ py::dict summary(const plan_handle& p)
 
 asked_stroke stroke_as_asked(const stroke& s, const layout& faces, const wishes& w)
 {
-    if (s.fit_margin_mm && s.fit_group != 0)
+    if (s.fit && s.fit->group != 0)
         throw error(error_kind::bad_input, fmt::format("stroke \"{}\"", s.name),
                     "it is fitted together with others of its group",
                     "give fit_as_asked() all strokes of the file, and what it returns here");
@@ -238,51 +238,49 @@ void bind_plan(py::module_& m)
         .def("json", &json_of)
         .def("same",
              [](const plan_handle& a, const plan_handle& b) {
-                 return a.schedule() == b.schedule() && a.placed.anchor == b.placed.anchor;
+                 return a.plan() == b.plan() && a.placed.anchor == b.placed.anchor;
              })
-        .def("sounds_like",
-             [](const plan_handle& a, const plan_handle& b) { return a.schedule() == b.schedule(); })
+        .def("sounds_like", [](const plan_handle& a, const plan_handle& b) { return a.plan() == b.plan(); })
         .def_property_readonly("recipe", &recipe_of)
         .def_property_readonly("array", [](const plan_handle& p) { return p.on; })
         .def_property_readonly("stroke", [](const plan_handle& p) { return p.drawn; })
-        .def_property_readonly("algorithm", [](const plan_handle& p) { return p.schedule().algorithm; })
-        .def_property_readonly("phantom", [](const plan_handle& p) { return p.schedule().phantom; })
-        .def_property_readonly(
-            "faces", [](const plan_handle& p) { return std::string(to_string(p.schedule().faces)); })
-        .def_property_readonly(
-            "overlap", [](const plan_handle& p) { return std::string(to_string(p.schedule().overlap)); })
+        .def_property_readonly("algorithm", [](const plan_handle& p) { return p.plan().algorithm; })
+        .def_property_readonly("phantom", [](const plan_handle& p) { return p.plan().phantom; })
+        .def_property_readonly("faces",
+                               [](const plan_handle& p) { return std::string(to_string(p.plan().faces)); })
+        .def_property_readonly("overlap",
+                               [](const plan_handle& p) { return std::string(to_string(p.plan().overlap)); })
         .def_property_readonly("start_s", [](const plan_handle& p) { return p.placed.start_s; })
         .def_property_readonly("stroke_duration_s",
-                               [](const plan_handle& p) { return p.schedule().stroke_duration_s; })
+                               [](const plan_handle& p) { return p.plan().stroke_duration_s; })
         .def_property_readonly("stroke_length_mm",
-                               [](const plan_handle& p) { return p.schedule().stroke_length_mm; })
-        .def_property_readonly("carrier_hz", [](const plan_handle& p) { return p.schedule().carrier_hz; })
-        .def_property_readonly("soa_s", [](const plan_handle& p) { return p.schedule().soa_s; })
-        .def_property_readonly("total_s", [](const plan_handle& p) { return p.schedule().total_s; })
-        .def_property_readonly("warnings", [](const plan_handle& p) { return p.schedule().warnings; })
+                               [](const plan_handle& p) { return p.plan().stroke_length_mm; })
+        .def_property_readonly("carrier_hz", [](const plan_handle& p) { return p.plan().carrier_hz; })
+        .def_property_readonly("soa_s", [](const plan_handle& p) { return p.plan().soa_s; })
+        .def_property_readonly("total_s", [](const plan_handle& p) { return p.plan().total_s; })
+        .def_property_readonly("warnings", [](const plan_handle& p) { return p.plan().warnings; })
         .def_property_readonly("conflicts",
                                [](const plan_handle& p) {
                                    std::vector<std::tuple<unsigned, double, double>> all;
-                                   for (const conflict& c : p.schedule().conflicts)
+                                   for (const conflict& c : p.plan().conflicts)
                                        all.emplace_back(c.tactor, c.from_s, c.to_s);
                                    return all;
                                })
         .def_property_readonly("dropped",
                                [](const plan_handle& p) {
                                    std::vector<std::tuple<double, double, double>> all;
-                                   for (const meeting& d : p.schedule().dropped)
+                                   for (const meeting& d : p.plan().dropped)
                                        all.emplace_back(d.t_s, d.position.x_mm, d.position.y_mm);
                                    return all;
                                })
-        .def_property_readonly("size", [](const plan_handle& p) { return p.schedule().bursts.size(); })
+        .def_property_readonly("size", [](const plan_handle& p) { return p.plan().bursts.size(); })
         .def_property_readonly("sound",
                                [](const plan_handle& p) {
                                    return py::dict("envelope"_a =
                                                        std::string(to_string(p.sound.envelope.kind)),
                                                    "marker_channel"_a = p.sound.marker_channel);
                                })
-        .def_property_readonly("continuous",
-                               [](const plan_handle& p) { return p.schedule().curve.has_value(); })
+        .def_property_readonly("continuous", [](const plan_handle& p) { return p.plan().curve.has_value(); })
         .def("onsets",
              [](const py::object& s) { return column(s, [](const burst& b) { return &b.onset_s; }); })
         .def("durations",

@@ -17,15 +17,15 @@ struct plan_handle {
     stroke drawn;
     placed_plan placed;
     std::optional<fitting> fit = {};
-    std::optional<compensated_plan> moved = {}; ///< without its schedule, which is in `placed`
+    std::optional<compensated_plan> moved = {}; ///< without its plan, which is in `placed`
     render_options sound = {};                  ///< how it sounds where nobody says otherwise
 
     /// As it is placed at `start_s`: its own start counts from where its stroke says.
     placed_plan at(std::optional<double> start_s) const
     {
-        return {placed.schedule, start_s, start_s == placed.start_s ? placed.anchor : start_anchor{}};
+        return {placed.plan, start_s, start_s == placed.start_s ? placed.anchor : start_anchor{}};
     }
-    const plan& schedule() const noexcept { return placed.schedule; }
+    const tactor::plan& plan() const noexcept { return placed.plan; }
 };
 
 /// The tool's tactor-plan/1 object as text, and back. \throws error.

@@ -129,8 +129,8 @@ py::tuple make_score(const array_handle& on, const std::vector<score_part>& plan
         for (std::size_t i = 0; i < plans.size(); ++i) {
             all.push_back(std::get<1>(plans[i])->at(std::get<0>(plans[i])));
             if (levels[i] != level_of(common))
-                all.back().schedule = detail::scaled(std::move(all.back().schedule),
-                                                     std::pow(10.0, (levels[i] - level_of(common)) / 20.0));
+                all.back().plan = detail::scaled(std::move(all.back().plan),
+                                                 std::pow(10.0, (levels[i] - level_of(common)) / 20.0));
         }
         return score(on.value(), std::move(all), common);
     }();

@@ -265,7 +265,7 @@ std::string state_of(const stroke& s)
     w.text(s.name);
     put(w, s.motion);
     w.maybe(s.start_s);
-    w.maybe(s.carrier_hz);
+    w.maybe(s.sound.carrier_hz);
     w.maybe(s.speed_mm_s);
     w.put(s.usual_pace);
     w.text(to_string(s.anchor.from));
@@ -276,14 +276,14 @@ std::string state_of(const stroke& s)
     w.maybe(s.choices.soa_s);
     w.maybe(s.choices.burst_s);
     w.put(s.choices.level_db);
-    w.maybe(s.fit_margin_mm);
-    w.put(s.fit_group);
-    w.put(s.wave.has_value());
-    if (s.wave)
-        put(w, *s.wave);
-    w.put(s.am.has_value());
-    w.put(s.am.value_or(modulation{}));
-    w.all(s.carrier_profile);
+    w.maybe(s.fit ? std::optional(s.fit->margin_mm) : std::nullopt);
+    w.put(s.fit ? s.fit->group : 0U);
+    w.put(s.sound.wave.has_value());
+    if (s.sound.wave)
+        put(w, *s.sound.wave);
+    w.put(s.sound.am.has_value());
+    w.put(s.sound.am.value_or(modulation{}));
+    w.all(s.sound.carrier_profile);
     w.text(to_string(s.note));
     w.put(std::uint64_t{s.warnings.size()});
     for (const std::string& t : s.warnings)
@@ -304,7 +304,7 @@ stroke stroke_from(std::string_view state)
     reader r(state);
     stroke s{r.text(), get_trajectory(r)}; // braces: in this order
     s.start_s = r.maybe();
-    s.carrier_hz = r.maybe();
+    s.sound.carrier_hz = r.maybe();
     s.speed_mm_s = r.maybe();
     s.usual_pace = r.get<bool>();
     s.anchor.from = from_string<start_from_kind>(r.text());
@@ -318,15 +318,17 @@ stroke stroke_from(std::string_view state)
     s.choices.soa_s = r.maybe();
     s.choices.burst_s = r.maybe();
     s.choices.level_db = r.get<double>();
-    s.fit_margin_mm = r.maybe();
-    s.fit_group = r.get<unsigned>();
+    const auto margin_mm = r.maybe();
+    const auto group = r.get<unsigned>();
+    if (margin_mm)
+        s.fit = stroke_fit{*margin_mm, group};
     if (r.get<char>() != 0)
-        s.wave = get_waveform(r);
+        s.sound.wave = get_waveform(r);
     const bool modulated = r.get<char>() != 0;
     const auto am = r.get<modulation>();
     if (modulated)
-        s.am = am;
-    s.carrier_profile = r.all<carrier_part>();
+        s.sound.am = am;
+    s.sound.carrier_profile = r.all<carrier_part>();
     s.note = from_string<note_kind>(r.text());
     for (std::size_t n = r.count(1); n > 0; --n)
         s.warnings.push_back(r.text());

@@ -288,7 +288,7 @@ void bind_stroke(py::module_& m)
                  stroke t = s;
                  t.name = name;
                  t.start_s = start_s;
-                 t.carrier_hz = carrier_hz;
+                 t.sound.carrier_hz = carrier_hz;
                  return t;
              })
         .def("with_duration",
@@ -311,7 +311,7 @@ void bind_stroke(py::module_& m)
              [](const stroke& s) {
                  stroke t = s;
                  t.motion = s.motion.reversed();
-                 t.carrier_profile = detail::from_the_end(s.carrier_profile);
+                 t.sound.carrier_profile = detail::from_the_end(s.sound.carrier_profile);
                  return t;
              })
         .def("with_intensity",
@@ -326,7 +326,7 @@ void bind_stroke(py::module_& m)
                                [](const stroke& s) { return std::string(to_string(s.anchor.from)); })
         .def_property_readonly("start_back", [](const stroke& s) { return s.anchor.back; })
         .def_property_readonly("choices", &choices_of)
-        .def_readonly("carrier_hz", &stroke::carrier_hz)
+        .def_property_readonly("carrier_hz", [](const stroke& s) { return s.sound.carrier_hz; })
         .def_property_readonly("level_db", [](const stroke& s) { return s.choices.level_db; })
         .def_readonly("speed_mm_s", &stroke::speed_mm_s)
         .def_readonly("warnings", &stroke::warnings)

@@ -181,7 +181,7 @@ double planned::total_s() const
     double end = 0.0;
     const auto starts = starts_s();
     for (std::size_t i = 0; i < plans.size(); ++i)
-        end = std::max(end, starts[i] + plans[i].schedule.total_s);
+        end = std::max(end, starts[i] + plans[i].plan.total_s);
     return end;
 }
 
@@ -189,13 +189,13 @@ std::vector<std::string> planned::warnings() const
 {
     std::vector<std::string> all;
     for (const placed_plan& p : plans)
-        all.insert(all.end(), p.schedule.warnings.begin(), p.schedule.warnings.end());
+        all.insert(all.end(), p.plan.warnings.begin(), p.plan.warnings.end());
     return all;
 }
 
 score planned::score_of(const array& a, std::size_t i) const
 {
-    return {a, plans[i].schedule, render};
+    return {a, plans[i].plan, render};
 }
 
 planned make_planned(const planning& with, const layout& faces, const json& params,
@@ -222,11 +222,11 @@ planned make_planned(const planning& with, const layout& faces, const json& para
             between();
             if (s.compensate) {
                 p.moved.push_back(make_compensated_plan(with.tactors, faces, k, s.plan, s.low_speed));
-                p.plans.push_back({std::move(p.moved.back().schedule), k.start_s, k.anchor});
+                p.plans.push_back({std::move(p.moved.back().plan), k.start_s, k.anchor});
             } else {
                 p.plans.push_back({make_plan(with.tactors, faces, k, s.plan), k.start_s, k.anchor});
             }
-            const plan& made = p.plans.back().schedule;
+            const plan& made = p.plans.back().plan;
             check_level(with, s, loudest(k, made, s.plan.scale), made.carrier_hz, source);
         }
         in_time(with, p.total_s());

@@ -37,7 +37,7 @@ struct planned {
     std::vector<stroke> strokes;
     std::vector<placed_plan> plans;
     render_options render;
-    /// What `compensate` did to each plan; empty without it. Their schedules are moved to `plans`.
+    /// What `compensate` did to each plan; empty without it. The plans themselves are moved to `plans`.
     std::vector<compensated_plan> moved = {};
 
     /// Start of each plan, s from the start of all.

@@ -49,7 +49,7 @@ void tell_of_other_carrier(const environment& e, const render_options& r, std::s
     std::vector<const plan*> plans;
     for (const score& s : scores)
         for (const placed_plan& p : s.plans())
-            plans.push_back(&p.schedule);
+            plans.push_back(&p.plan);
     if (const std::string other = other_carrier(e, plans); !other.empty())
         say(stderr, "tactor: warning: {}\n", other);
 }

@@ -19,7 +19,7 @@ stroke across_a_face(unsigned i, unsigned faces_a_side)
 {
     const point from{20.0 * (i % faces_a_side) + 3.0, 20.0 * (i / faces_a_side % faces_a_side) + 2.0};
     const point ends[] = {from, {from.x_mm + 12.0, from.y_mm + 9.0}};
-    return {"", trajectory::along(path::polyline(ends), 1.4), {}, 150.0 + 2.0 * i};
+    return {.motion = trajectory::along(path::polyline(ends), 1.4), .sound = {.carrier_hz = 150.0 + 2.0 * i}};
 }
 
 } // namespace
@@ -70,7 +70,7 @@ plain_loop::plain_loop(const score& s, const std::vector<placed_plan>& plans, do
     : frames_(s.frames()), channels_(s.channels()), rate_(s.rate())
 {
     for (std::size_t i = 0; i < plans.size(); ++i) {
-        const plan& p = plans[i].schedule;
+        const plan& p = plans[i].plan;
         add_bursts(p, s.starts()[i], level);
         if (p.curve)
             add_lines(p, s.starts()[i], level);

@@ -33,7 +33,7 @@ call_table plan_calls(const call_things& t)
     const std::vector<point> edges{{0.0, 0.0}, {40.0, 40.0}, {0.0, 40.0}};
     const std::vector<point> few{{10.0, 20.0}};
     stroke fitted = t.s;
-    fitted.fit_margin_mm = 5.0;
+    fitted.fit = stroke_fit{5.0};
     stroke outside = t.s;
     outside.motion = trajectory::along(path::from_svg("M 0 0 L 400 400"), 1.0);
     const person who{.sensitivity_db = std::vector<double>(9, 1.0), .shift = std::vector<point>(9)};
@@ -91,10 +91,10 @@ call_table plan_calls(const call_things& t)
 
 call_table sound_calls(const call_things& t)
 {
-    const std::vector<placed_plan> plans{{.schedule = t.p}, {.schedule = t.p, .start_s = 1.0}};
-    const std::vector<placed_plan> early{{.schedule = t.p, .start_s = -1.0}};
+    const std::vector<placed_plan> plans{{.plan = t.p}, {.plan = t.p, .start_s = 1.0}};
+    const std::vector<placed_plan> early{{.plan = t.p, .start_s = -1.0}};
     const auto sine = make_plan(t.a, t.l, t.s, planned_by(algorithm_kind::continuous));
-    const auto sound = std::make_shared<score>(t.a, std::vector<placed_plan>{{.schedule = sine}});
+    const auto sound = std::make_shared<score>(t.a, std::vector<placed_plan>{{.plan = sine}});
     const auto rendered_by = std::make_shared<renderer>(*sound, format_kind::s16);
     const auto builder = std::make_shared<score_builder>(t.a, render_options{});
     return {

@@ -45,7 +45,7 @@ inline score random_score(std::uint64_t seed, unsigned bursts, unsigned channels
     render_options o;
     o.rate = rate;
     o.channels = channels;
-    return {a, {{.schedule = p, .start_s = {}}}, o};
+    return {a, {{.plan = p, .start_s = {}}}, o};
 }
 
 /// One burst on one tactor.
@@ -60,7 +60,7 @@ inline score tone(double seconds, unsigned tactor = 0)
     p.stroke_duration_s = seconds;
     render_options o;
     o.rate = rate;
-    return {palm(), {{.schedule = p, .start_s = {}}}, o};
+    return {palm(), {{.plan = p, .start_s = {}}}, o};
 }
 
 /// What the offline renderer makes of a score, in one call.

@@ -50,7 +50,7 @@ score stroke_of(unsigned bursts)
     p.stroke_duration_s = p.total_s;
     render_options o;
     o.rate = low_rate;
-    return {make_grid("pair", 1, 2, 20.0, 20.0), {{.schedule = p, .start_s = {}}}, o};
+    return {make_grid("pair", 1, 2, 20.0, 20.0), {{.plan = p, .start_s = {}}}, o};
 }
 
 class day {

@@ -59,7 +59,7 @@ score random_stroke(std::mt19937_64& random, const render_options& o)
         p.bursts.push_back(b);
     }
     p.stroke_duration_s = p.total_s;
-    return {row(), {{.schedule = p, .start_s = {}}}, o};
+    return {row(), {{.plan = p, .start_s = {}}}, o};
 }
 
 struct totals {

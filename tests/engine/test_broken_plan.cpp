@@ -77,7 +77,7 @@ score made(const std::shared_ptr<fault>& broken, double from_s)
     });
     render_options o;
     o.rate = rate;
-    return {palm(), {{.schedule = p, .start_s = {}}}, o};
+    return {palm(), {{.plan = p, .start_s = {}}}, o};
 }
 
 struct sample {
@@ -145,7 +145,7 @@ TEST_CASE("a rounding more than the plan promised is no failure")
     p.curve = test::make_curve(0.1, [&](double, burst& out) { out.drives = {{4, amplitude}}; });
     render_options o;
     o.rate = rate;
-    const score music(palm(), {{.schedule = p, .start_s = {}}}, o);
+    const score music(palm(), {{.plan = p, .start_s = {}}}, o);
     amplitude = std::nextafter(0.5, 1.0);
     rig r;
     REQUIRE(r.start().status == io_kind::ok);

@@ -29,7 +29,7 @@ score drawn(algorithm_kind how)
     const array a = palm();
     render_options r;
     r.level_dbfs = -60.0;
-    return {a, {{.schedule = make_plan(a, preset_stroke("park2016-1"), o), .start_s = {}}}, r};
+    return {a, {{.plan = make_plan(a, preset_stroke("park2016-1"), o), .start_s = {}}}, r};
 }
 
 // Every tactor of 64 at once, twice.
@@ -47,7 +47,7 @@ score broad()
     p.stroke_duration_s = 0.15;
     render_options r;
     r.level_dbfs = -60.0;
-    return {make_grid("8x8", 8, 8, 20.0, 20.0), {{.schedule = p, .start_s = {}}}, r};
+    return {make_grid("8x8", 8, 8, 20.0, 20.0), {{.plan = p, .start_s = {}}}, r};
 }
 
 // How many strokes ended with each state and reason.

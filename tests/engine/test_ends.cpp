@@ -251,7 +251,7 @@ TEST_CASE("drives that come too late end the stroke instead of starting in mid-b
 TEST_CASE("a continuous stroke whose drives stop coming fades out before the last of them")
 {
     stroke around = preset_stroke("park2016-3");
-    around.carrier_hz = 230.0;
+    around.sound.carrier_hz = 230.0;
     plan_options o;
     o.algorithm = algorithm_kind::continuous;
     const score s(palm(), {{make_plan(palm(), around, o)}}, {});

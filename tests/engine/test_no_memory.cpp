@@ -250,7 +250,7 @@ COUNTING_TEST_CASE("a plan that fails at once ends once, also where there is no 
         });
         render_options sound;
         sound.rate = rate;
-        const score s(palm(), {{.schedule = broken, .start_s = {}}}, sound);
+        const score s(palm(), {{.plan = broken, .start_s = {}}}, sound);
         *fails = true;
         rig r;
         REQUIRE(r.start().status == io_kind::ok);

@@ -354,16 +354,15 @@ TEST_CASE("scores of plans with absurd numbers: an error, or something that can 
             });
         };
         CHECK(with([&](placed_plan& p, render_options&) { p.start_s = bad; }));
-        CHECK(with([&](placed_plan& p, render_options&) { p.schedule.carrier_hz = bad; }));
-        CHECK(with([&](placed_plan& p, render_options&) { p.schedule.total_s = bad; }));
-        CHECK(with([&](placed_plan& p, render_options&) { p.schedule.stroke_duration_s = bad; }));
-        CHECK(with([&](placed_plan& p, render_options&) { p.schedule.bursts[0].onset_s = bad; }));
-        CHECK(with([&](placed_plan& p, render_options&) { p.schedule.bursts[0].duration_s = bad; }));
-        CHECK(with([&](placed_plan& p, render_options&) { p.schedule.bursts[0].intensity = bad; }));
-        CHECK(with([&](placed_plan& p, render_options&) { p.schedule.bursts[0].drives[0].amplitude = bad; }));
-        CHECK(with([&](placed_plan& p, render_options&) {
-            p.schedule.bursts[0].drives[0].tactor = 4'000'000'000U;
-        }));
+        CHECK(with([&](placed_plan& p, render_options&) { p.plan.carrier_hz = bad; }));
+        CHECK(with([&](placed_plan& p, render_options&) { p.plan.total_s = bad; }));
+        CHECK(with([&](placed_plan& p, render_options&) { p.plan.stroke_duration_s = bad; }));
+        CHECK(with([&](placed_plan& p, render_options&) { p.plan.bursts[0].onset_s = bad; }));
+        CHECK(with([&](placed_plan& p, render_options&) { p.plan.bursts[0].duration_s = bad; }));
+        CHECK(with([&](placed_plan& p, render_options&) { p.plan.bursts[0].intensity = bad; }));
+        CHECK(with([&](placed_plan& p, render_options&) { p.plan.bursts[0].drives[0].amplitude = bad; }));
+        CHECK(with(
+            [&](placed_plan& p, render_options&) { p.plan.bursts[0].drives[0].tactor = 4'000'000'000U; }));
         CHECK(with([&](placed_plan&, render_options& o) { o.level_dbfs = bad; }));
         CHECK(with([&](placed_plan&, render_options& o) { o.sl_db = bad; }));
         CHECK(with([&](placed_plan&, render_options& o) { o.ramp_s = bad; }));

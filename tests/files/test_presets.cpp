@@ -37,7 +37,7 @@ TEST_CASE("the four motions of the paper, y down")
         CHECK(s.name == m.name);
         CHECK(s.note == tactor::note_kind::reconstructed);
         CHECK_FALSE(s.start_s.has_value());
-        CHECK_FALSE(s.carrier_hz.has_value());
+        CHECK_FALSE(s.sound.carrier_hz.has_value());
         CHECK(s.motion.duration_s() == doctest::Approx(m.duration_s).epsilon(1e-15));
         const auto turns = static_cast<double>(m.quarters.size() - 1);
         CHECK(s.motion.length_mm() == doctest::Approx(8.0 * std::numbers::pi * turns).epsilon(1e-14));

@@ -229,8 +229,8 @@ TEST_CASE("text that is no file names no file")
     const std::string text = "[stroke]\npath = \"M 0 0 L 40 0\"\nwaveform = \"w.wav\"\n";
     const auto all = load_strokes(dir.write("s.toml", text));
     REQUIRE(all.size() == 1);
-    REQUIRE(all.front().wave);
-    CHECK(all.front().wave->recorded->samples.size() == 2);
+    REQUIRE(all.front().sound.wave);
+    CHECK(all.front().sound.wave->recorded->samples.size() == 2);
     CHECK(has(message_of([&] { static_cast<void>(parse_strokes_toml(text, "text")); }), "text:3"));
     CHECK(has(message_of([&] { static_cast<void>(parse_strokes(text, "text")); }), "text:3"));
 }

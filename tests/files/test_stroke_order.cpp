@@ -104,8 +104,8 @@ TEST_CASE("a start before the piece is refused when it is known")
     CHECK(message_of([&] { static_cast<void>(resolve_start_s(s[1].start_s, s[1].anchor, from, to)); }) ==
           "start of the stroke: 1.5 s before the end of what comes before it is before the piece "
           "(1 s before is the start of the piece)");
-    CHECK(s[1].start_at.line != 0); // where the file says so
-    CHECK(s[0].start_at.line == 0);
+    CHECK(s[1].places.start.line != 0); // where the file says so
+    CHECK(s[0].places.start.line == 0);
 }
 
 TEST_CASE("a stroke is repeated with pauses between, and what follows comes behind all")
@@ -167,9 +167,9 @@ TEST_CASE("reversed, a stroke goes from its end to its start, with its profile")
 TEST_CASE("reversed, a stroke has the carrier at each place that it has there forwards")
 {
     const std::string rising = "carrier_profile = [[0, 100], [0.25, 300]]\n";
-    CHECK(all_of(one + line(1, rising))[0].carrier_profile ==
+    CHECK(all_of(one + line(1, rising))[0].sound.carrier_profile ==
           std::vector<carrier_part>{{0.0, 100.0}, {0.25, 300.0}});
-    CHECK(all_of(one + line(1, rising + "reverse = true"))[0].carrier_profile ==
+    CHECK(all_of(one + line(1, rising + "reverse = true"))[0].sound.carrier_profile ==
           std::vector<carrier_part>{{0.75, 300.0}, {1.0, 100.0}});
 }
 
@@ -179,8 +179,8 @@ TEST_CASE("a stroke may be planned in its own way")
         all_of(one + line(1, "algorithm = \"tactile-brush\"\nphantom = \"barycentric\"\nsoa_s = 0.06\n"
                              "burst_s = 0.05\nfit = true\nfit_margin_mm = 2"))[0];
     CHECK(s.choices == stroke_choices{algorithm_kind::tactile_brush, phantom_kind::barycentric, 0.06, 0.05});
-    CHECK(s.fit_margin_mm == 2.0);
-    CHECK(all_of(one + line(1, "fit = true"))[0].fit_margin_mm == 0.0);
+    CHECK(s.fit == stroke_fit{2.0});
+    CHECK(all_of(one + line(1, "fit = true"))[0].fit == stroke_fit{});
     CHECK(all_of(one + line(1))[0].choices == stroke_choices{});
     for (const algorithm_kind k : values_of<algorithm_kind>())
         CHECK(all_of(one + line(1, fmt::format("algorithm = \"{}\"", to_string(k))))[0].choices.algorithm ==
@@ -194,12 +194,12 @@ TEST_CASE("a group is fitted as one picture")
     const std::vector<stroke> asked =
         all_of("[[stroke]]\nfit = true\nfit_margin_mm = 5\n" + two + "[[stroke]]\nfit = true\n" + two);
     REQUIRE(asked.size() == 4);
-    CHECK(asked[0].fit_group == asked[1].fit_group);
-    CHECK(asked[2].fit_group == asked[3].fit_group);
-    CHECK(asked[0].fit_group != asked[2].fit_group);
-    CHECK(asked[0].fit_margin_mm == 5.0);
-    CHECK(asked[3].fit_margin_mm == 0.0);
-    CHECK(all_of("[[stroke]]\n" + two)[0].fit_group == 0);
+    CHECK(asked[0].fit->group == asked[1].fit->group);
+    CHECK(asked[2].fit->group == asked[3].fit->group);
+    CHECK(asked[0].fit->group != asked[2].fit->group);
+    CHECK(asked[0].fit->margin_mm == 5.0);
+    CHECK(asked[3].fit->margin_mm == 0.0);
+    CHECK_FALSE(all_of("[[stroke]]\n" + two)[0].fit);
     CHECK(complaint("[[stroke]]\nfit = true\n" + two + "fit = true\n").find("is fitted already") !=
           std::string::npos);
     CHECK(complaint("[[stroke]]\nfit_margin_mm = 1\n" + two).find("nothing is fitted") != std::string::npos);

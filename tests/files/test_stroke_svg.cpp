@@ -110,7 +110,7 @@ TEST_CASE("data attributes say time, pace, intensity and carrier")
     CHECK(s.motion.duration_s() == 1.5);
     CHECK(s.start_s == 0.25);
     CHECK(s.motion.intensity(1.0) == 0.5);
-    CHECK(s.carrier_hz == 200.0);
+    CHECK(s.sound.carrier_hz == 200.0);
     CHECK(one("<line x2='6' data-speed-mm-s='12'/>").motion.duration_s() == 0.5);
     // A group's pace is that of what it holds.
     CHECK(one("<g data-speed-mm-s='12'><g><line x2='6'/></g></g>").motion.duration_s() == 0.5);

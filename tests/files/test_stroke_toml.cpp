@@ -48,7 +48,7 @@ TEST_CASE("a path at the default speed, at a speed, in a time")
     CHECK(s.motion.duration_s() == doctest::Approx(40.0 / 60.0));
     check_near(s.motion.position(1.0 / 3.0), 20.0, 10.0);
     CHECK_FALSE(s.start_s.has_value());
-    CHECK_FALSE(s.carrier_hz.has_value());
+    CHECK_FALSE(s.sound.carrier_hz.has_value());
     CHECK(one("path = \"M 0 10 H 40\"\nspeed_mm_s = 20").motion.duration_s() == doctest::Approx(2.0));
     CHECK(one("path = \"M 0 10 H 40\"\nduration_s = 3").motion.duration_s() == 3.0);
 }
@@ -120,7 +120,7 @@ intensity = 0.5
     CHECK(all[0].start_s == 0.5);
     CHECK(all[1].name == "second");
     CHECK_FALSE(all[1].start_s.has_value());
-    CHECK(all[1].carrier_hz == 200.0);
+    CHECK(all[1].sound.carrier_hz == 200.0);
     CHECK(all[1].motion.intensity(0.1) == 0.5);
 }
 

@@ -99,7 +99,7 @@ void check_stroke(const stroke& s)
     HOLDS(!s.start_s || std::isfinite(*s.start_s));
     HOLDS(!s.start_s || *s.start_s >= 0.0 || s.anchor.from != start_from_kind::piece);
     HOLDS(s.anchor.back >= 1);
-    HOLDS(!s.carrier_hz || (*s.carrier_hz > 0.0 && std::isfinite(*s.carrier_hz)));
+    HOLDS(!s.sound.carrier_hz || (*s.sound.carrier_hz > 0.0 && std::isfinite(*s.sound.carrier_hz)));
     for (int i = 0; i <= 8; ++i) {
         const double t = m.duration_s() * i / 8.0;
         const point at = m.position(t);

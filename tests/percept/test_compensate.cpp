@@ -94,7 +94,7 @@ TEST_CASE("inside the array the target itself is felt")
         const compensated_plan p = make_compensated_plan(wide, layout(wide), s, o, {sigma, 100.0});
         CHECK(p.at_edge == 0);
         CHECK(p.residual_largest_mm < 1e-9);
-        const tap_summary felt = summarise(predict_taps(wide, s, p.schedule, {sigma, 100.0}));
+        const tap_summary felt = summarise(predict_taps(wide, s, p.plan, {sigma, 100.0}));
         CHECK(*felt.largest_error_mm < 1e-6);
         CHECK(*felt.length_ratio == doctest::Approx(1.0).epsilon(1e-9));
         // It is another plan: without it, the observer is off.
@@ -264,11 +264,11 @@ TEST_CASE("a plan is moved whole: places, drives and what it says")
 {
     const compensated_plan p = of_motion("park2016-1", phantom_kind::barycentric);
     const plan before = make_plan(palm, preset_stroke("park2016-1"), {.phantom = phantom_kind::barycentric});
-    REQUIRE(p.schedule.bursts.size() == before.bursts.size());
+    REQUIRE(p.plan.bursts.size() == before.bursts.size());
     CHECK(p.observer == low_speed_observer{});
     bool moved = false;
     for (std::size_t i = 0; i < before.bursts.size(); ++i) {
-        const burst& b = p.schedule.bursts[i];
+        const burst& b = p.plan.bursts[i];
         CHECK(b.onset_s == before.bursts[i].onset_s);
         CHECK(b.duration_s == before.bursts[i].duration_s);
         CHECK(energy(b.drives) == doctest::Approx(1.0).epsilon(1e-12));
@@ -277,9 +277,9 @@ TEST_CASE("a plan is moved whole: places, drives and what it says")
         moved = moved || distance_mm(b.position, before.bursts[i].position) > 0.1;
     }
     CHECK(moved);
-    REQUIRE(p.schedule.warnings.size() == before.warnings.size() + 1);
+    REQUIRE(p.plan.warnings.size() == before.warnings.size() + 1);
     for (const char* word : {"low-speed", "sigma 5 mm", "taps", "RMS"})
-        CHECK(p.schedule.warnings.back().find(word) != std::string::npos);
+        CHECK(p.plan.warnings.back().find(word) != std::string::npos);
     // With another phantom what it is off by itself is left.
     const compensated_plan q = of_motion("park2016-1", phantom_kind::inverse_distance);
     CHECK(q.residual_rms_mm == doctest::Approx(p.residual_rms_mm).epsilon(1e-9));
@@ -287,7 +287,7 @@ TEST_CASE("a plan is moved whole: places, drives and what it says")
     // The Tactile Brush is moved off its lines, and says so.
     const compensated_plan brushed =
         of_motion("park2016-1", phantom_kind::barycentric, {2.0, 100.0}, algorithm_kind::tactile_brush);
-    CHECK(brushed.schedule.warnings.back().find("Tactile Brush") != std::string::npos);
+    CHECK(brushed.plan.warnings.back().find("Tactile Brush") != std::string::npos);
     CHECK_THROWS_WITH_AS(of_motion("park2016-1", phantom_kind::log, {}, algorithm_kind::continuous),
                          doctest::Contains("no bursts"), error);
 }
@@ -302,8 +302,8 @@ TEST_CASE("what is moved has the phantom and the scale of its plan")
         o.scale = {.kind = k, .sl_db = 30.0};
         const compensated_plan p = make_compensated_plan(palm, layout(palm), s, o, {});
         const double asked = std::pow(o.scale.amplitude(0.5), 2.0);
-        CHECK(p.schedule.phantom == "barycentric");
-        for (const burst& b : p.schedule.bursts) {
+        CHECK(p.plan.phantom == "barycentric");
+        for (const burst& b : p.plan.bursts) {
             CHECK(energy(b.drives) == doctest::Approx(asked).epsilon(1e-12));
             CHECK(distance_mm(energy_centroid(layout(palm), b.drives), b.position) < 1e-9);
         }
@@ -320,7 +320,7 @@ TEST_CASE("where the three closest miss the point is counted at the places that 
     const plan still = make_plan(wide, l, s, o);
     const compensated_plan p = make_compensated_plan(wide, l, s, o, {.sigma_mm = 10.0});
     std::vector<drive> d;
-    for (const burst& b : p.schedule.bursts) {
+    for (const burst& b : p.plan.bursts) {
         model->weights(b.position, b.intensity, d);
         CHECK(b.drives == d);
     }
@@ -332,14 +332,14 @@ TEST_CASE("where the three closest miss the point is counted at the places that 
         return all;
     };
     REQUIRE(missed(still).size() == 1);
-    REQUIRE(missed(p.schedule).size() == 1);
-    CHECK(missed(still) != missed(p.schedule));
+    REQUIRE(missed(p.plan).size() == 1);
+    CHECK(missed(still) != missed(p.plan));
 }
 
 TEST_CASE("what is fitted to the array is moved where it was fitted")
 {
     stroke s = preset_stroke("park2016-1");
-    s.fit_margin_mm = 12.0;
+    s.fit = stroke_fit{12.0};
     const compensated_plan p = make_compensated_plan(palm, layout(palm), s, {}, {});
     const stroke fitted = fit_as_asked({s}, layout(palm)).front();
     for (const tap& t : p.taps)

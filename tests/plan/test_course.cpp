@@ -62,7 +62,7 @@ std::vector<carrier_point> texture_of(stroke s)
     w.texture = texture_kind::length;
     w.texture_mm = length_mm / 4.0;
     w.recorded = std::make_shared<const recording>(recording{"x.wav", 8000.0, {0.0F, 1.0F, 0.0F, -1.0F}});
-    s.wave = w;
+    s.sound.wave = w;
     return course_of(s);
 }
 
@@ -125,7 +125,7 @@ double greatest_hz(const std::vector<carrier_point>& course)
 TEST_CASE("the carrier is that of the part of the path that the target has gone")
 {
     for (stroke s : strokes()) {
-        s.carrier_profile = {{0.2, 100.0}, {0.7, 300.0}};
+        s.sound.carrier_profile = {{0.2, 100.0}, {0.7, 300.0}};
         const auto course = course_of(s);
         const double end_s = s.motion.duration_s();
         CHECK(course.front().t_s == 0.0);
@@ -145,7 +145,7 @@ TEST_CASE("the carrier's cycles are the integral of its frequency, over an hour 
     for (const double duration_s : {2.0, 3600.0})
         for (stroke s : strokes()) {
             s.motion = s.motion.with_duration(duration_s);
-            s.carrier_profile = {{0.2, 60.0}, {0.7, 300.0}};
+            s.sound.carrier_profile = {{0.2, 60.0}, {0.7, 300.0}};
             const auto course = course_of(s);
             // By Gauss and Legendre, from point to point in many pieces, and at each of them.
             constexpr int pieces = 50;
@@ -201,7 +201,7 @@ TEST_CASE("where the target rests a recording along the path stays, and the carr
     CHECK(silent_s(texture_of(s)) == doctest::Approx(rest_s));
     CHECK(silent_s(texture_of(moving(at_ends))) == doctest::Approx(0.75));
     CHECK(silent_s(texture_of(moving(jerk))) == 0.0);
-    s.carrier_profile = {{0.0, 100.0}, {1.0, 200.0}};
+    s.sound.carrier_profile = {{0.0, 100.0}, {1.0, 200.0}};
     double held_s = 0.0;
     const auto course = course_of(s);
     for (std::size_t i = 0; i + 1 < course.size(); ++i)
@@ -215,13 +215,13 @@ TEST_CASE("where the target rests a recording along the path stays, and the carr
 TEST_CASE("a course has as many points as its bends need")
 {
     stroke s = moving({.duration_s = 2.0, .intensity = {{0.0, 0.2}, {1.0, 0.8}}});
-    s.carrier_profile = {{0.0, 100.0}, {1.0, 200.0}};
+    s.sound.carrier_profile = {{0.0, 100.0}, {1.0, 200.0}};
     CHECK(course_of(s) == std::vector<carrier_point>{{0.0, 100.0}, {2.0, 200.0}});
     s.motion = moving(at_ends).motion;
     CHECK(course_of(s) ==
           std::vector<carrier_point>{{0.0, 100.0}, {0.5, 100.0}, {1.75, 200.0}, {2.0, 200.0}});
     for (stroke t : strokes()) {
-        t.carrier_profile = s.carrier_profile;
+        t.sound.carrier_profile = s.sound.carrier_profile;
         CHECK(course_of(t).size() < 600);
     }
 }

@@ -112,13 +112,13 @@ TEST_CASE("several strokes are one picture")
     const stroke left = along("M 0 0 V 100", 1.0);
     stroke right = along("M 300 0 V 100", 1.0);
     right.start_s = 3.0;
-    right.carrier_hz = 200.0;
+    right.sound.carrier_hz = 200.0;
     const fitted_strokes r = fit_strokes({left, right}, low);
     CHECK(r.placed.scale == doctest::Approx(0.2).epsilon(1e-12));
     CHECK(distance_mm(r.strokes[0].motion.position(0.0), {0, 0}) < 1e-9);
     CHECK(distance_mm(r.strokes[1].motion.position(1.0), {60, 20}) < 1e-9);
     CHECK(r.strokes[1].start_s == 3.0);
-    CHECK(r.strokes[1].carrier_hz == 200.0);
+    CHECK(r.strokes[1].sound.carrier_hz == 200.0);
     CHECK(fit_strokes({}, low).strokes.empty());
 }
 
@@ -210,9 +210,8 @@ TEST_CASE("strokes ask to be fitted by themselves, or as one picture")
     std::vector<stroke> asked{along("M 0 0 L 10 0", 1.0), along("M 3 3 L 4 3", 1.0),
                               along("M 0 10 L 10 10", 1.0), along("M 0 0 L 1 0", 1.0),
                               along("M 7 7 L 9 7", 1.0)};
-    asked[0].fit_margin_mm = asked[2].fit_margin_mm = 5.0;
-    asked[0].fit_group = asked[2].fit_group = 3;
-    asked[3].fit_margin_mm = asked[4].fit_margin_mm = 0.0;
+    asked[0].fit = asked[2].fit = stroke_fit{5.0, 3};
+    asked[3].fit = asked[4].fit = stroke_fit{};
     const std::vector<stroke> s = fit_as_asked(asked, l);
     const auto goes = [&](std::size_t i, point from, point to) {
         return distance_mm(s[i].motion.position(0.0), from) < 1e-9 &&
@@ -224,7 +223,7 @@ TEST_CASE("strokes ask to be fitted by themselves, or as one picture")
     CHECK(goes(3, {0, 20}, {40, 20}));
     CHECK(goes(4, {0, 20}, {40, 20}));
     for (const stroke& k : s)
-        CHECK((!k.fit_margin_mm && k.fit_group == 0));
+        CHECK_FALSE(k.fit);
 }
 
 TEST_CASE("small pictures far away and huge ones")

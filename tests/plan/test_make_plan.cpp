@@ -54,9 +54,9 @@ TEST_CASE("carrier: the stroke's own before the common one; anything but a frequ
     plan_options o;
     o.carrier_hz = 200.0;
     CHECK(make_plan(palm, s, o).carrier_hz == 200.0);
-    s.carrier_hz = 180.0;
+    s.sound.carrier_hz = 180.0;
     CHECK(make_plan(palm, s, o).carrier_hz == 180.0);
-    s.carrier_hz.reset();
+    s.sound.carrier_hz.reset();
     for (const double hz : {0.0, -250.0, not_a_number, infinite}) {
         o.carrier_hz = hz;
         CHECK(refusal(palm, s, o).starts_with("carrier_hz"));

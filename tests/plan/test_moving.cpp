@@ -151,12 +151,12 @@ TEST_CASE("an SOA or a burst that a stroke chooses and cannot have is told with 
 TEST_CASE("a stroke that asks to be fitted is")
 {
     stroke s = along("M 100 100 L 900 700", 1.4);
-    s.fit_margin_mm = 2.0;
+    s.fit = stroke_fit{2.0};
     const plan p = make_plan(palm, s);
     CHECK(p.bursts.front().position.x_mm == doctest::Approx(2.0));
     CHECK(p.bursts.back().position.x_mm == doctest::Approx(38.0));
     const std::vector<stroke> both = fit_as_asked({s, along("M 0 0 H 10", 1.0)}, layout(palm));
-    CHECK_FALSE(both[0].fit_margin_mm.has_value());
+    CHECK_FALSE(both[0].fit);
     CHECK(both[1].motion.length_mm() == 10.0);
     CHECK(make_plan(palm, both[0]) == p);
 }

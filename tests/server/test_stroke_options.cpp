@@ -173,9 +173,9 @@ TEST_CASE("bursts are moved for the low-speed observer where it is asked for")
         make_compensated_plan(p.tactors, faces, preset_stroke("park2016-3"), o, {.sigma_mm = 8.0});
     const planned made = make_planned(p, faces, params);
     REQUIRE(made.moved.size() == 1);
-    CHECK(made.plans.front().schedule == wanted.schedule);
+    CHECK(made.plans.front().plan == wanted.plan);
     CHECK(made.moved.front().taps == wanted.taps);
-    CHECK(made.warnings() == wanted.schedule.warnings);
+    CHECK(made.warnings() == wanted.plan.warnings);
 
     // The owner's configuration may ask for it; a client may not want it.
     p.owner.compensate = true;
@@ -210,7 +210,7 @@ TEST_CASE("faces are those that are asked for, and go with inverse-distance alon
     };
     const planned made = make_planned(p, l, with_faces("inverse-distance"));
     const plan_options o{.faces = faces_kind::nearest};
-    CHECK(made.plans.front().schedule == make_plan(p.tactors, preset_stroke("park2016-1"), o));
+    CHECK(made.plans.front().plan == make_plan(p.tactors, preset_stroke("park2016-1"), o));
     CHECK(what_of(with_faces("log")) == "options.faces");
     CHECK(what_of({{"stroke", "park2016-1"}, {"options", {{"faces", "neerest"}}}}) == "options.faces");
     const auto f = fault_from([&] { make_planned(p, l, with_faces("log")); });
@@ -271,8 +271,8 @@ TEST_CASE("the work is known before it is done, whatever the text is as long as"
             double bursts = 0.0;
             double samples = 0.0;
             for (const placed_plan& one : made.plans) {
-                bursts += static_cast<double>(one.schedule.bursts.size());
-                samples += one.schedule.curve ? static_cast<double>(one.schedule.curve->size()) : 0.0;
+                bursts += static_cast<double>(one.plan.bursts.size());
+                samples += one.plan.curve ? static_cast<double>(one.plan.curve->size()) : 0.0;
             }
             CHECK(bursts <= w.bursts);
             CHECK(bursts >= w.bursts / 8.0 - 1.0);

@@ -54,7 +54,7 @@ TEST_CASE("each tactor alone is driven, three times, at full intensity")
     const std::vector<placed_plan> all = walk_plans(three(), 200.0);
     REQUIRE(all.size() == 3);
     for (unsigned i = 0; i < 3; ++i) {
-        const plan& p = all[i].schedule;
+        const plan& p = all[i].plan;
         CHECK(p.carrier_hz == 200.0);
         REQUIRE(p.bursts.size() == 3);
         for (const burst& b : p.bursts) {

@@ -33,7 +33,7 @@ score pieces(const std::vector<burst>& bursts, double level_dbfs)
     render_options o;
     o.rate = rate;
     o.level_dbfs = level_dbfs;
-    return {make_grid("two", 1, 2, 20.0, 20.0), {{.schedule = p, .start_s = {}}}, o};
+    return {make_grid("two", 1, 2, 20.0, 20.0), {{.plan = p, .start_s = {}}}, o};
 }
 
 burst one(double onset_s, double duration_s, unsigned tactor = 0)

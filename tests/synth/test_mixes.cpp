@@ -156,7 +156,7 @@ levels record_of(const mix& m, const score& s)
     }
     levels all(peaks.size(), std::vector<double>(s.frames(), 0.0));
     for (std::size_t i = 0; i < m.plans.size(); ++i) {
-        const plan& p = m.plans[i].schedule;
+        const plan& p = m.plans[i].plan;
         if (p.curve)
             add_curve(p, m.options.rate, peaks, s.starts()[i], all);
         else

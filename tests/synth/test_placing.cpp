@@ -106,7 +106,7 @@ TEST_CASE("strokes that are planned while they are placed have the samples of th
     stroke second = preset_stroke("park2016-3");
     first.motion = first.motion.with_duration(150.0); // more bursts than are handed over at once
     second.start_s = 0.35;
-    second.carrier_hz = 180.0;
+    second.sound.carrier_hz = 180.0;
     for (const algorithm_kind algorithm : values_of<algorithm_kind>()) {
         plan_options how;
         how.algorithm = algorithm;
@@ -123,8 +123,8 @@ TEST_CASE("strokes that are planned while they are placed have the samples of th
         const score both = made.take();
         const score expected(a, plans, o);
         for (std::size_t i = 0; i < plans.size(); ++i) {
-            plans[i].schedule.bursts.clear(); // they are not kept twice
-            CHECK(both.plans()[i].schedule == plans[i].schedule);
+            plans[i].plan.bursts.clear(); // they are not kept twice
+            CHECK(both.plans()[i].plan == plans[i].plan);
             CHECK(both.plans()[i].start_s == plans[i].start_s);
         }
         CHECK(both.starts() == expected.starts());
@@ -144,9 +144,9 @@ TEST_CASE("a stroke that cannot be planned or rendered is refused while it is ad
     const layout l(a);
     score_builder made(a, {});
     stroke s = preset_stroke("park2016-1");
-    s.carrier_hz = 30000.0;
+    s.sound.carrier_hz = 30000.0;
     CHECK_THROWS_AS(made.add(l, s, {}), error);
-    s.carrier_hz = 250.0;
+    s.sound.carrier_hz = 250.0;
     CHECK_THROWS_AS(made.add(l, s, {.soa_s = 1.0}), error);
     s.start_s = -1.0;
     CHECK_THROWS_AS(made.add(l, s, {}), error);

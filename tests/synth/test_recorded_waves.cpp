@@ -101,8 +101,8 @@ TEST_CASE("a recording along the path follows the target's speed")
     const array a = row(3);
     stroke s{
         "", trajectory::timed({{0.0, {0, 0}}, {1.0, {20, 0}}, {2.0, {20, 0}}, {6.0, {40, 0}}}), {}, {}, {}};
-    s.wave = recorded(cycle, texture_kind::length);
-    s.wave->texture_mm = 10.0;
+    s.sound.wave = recorded(cycle, texture_kind::length);
+    s.sound.wave->texture_mm = 10.0;
     plan_options o;
     o.algorithm = algorithm_kind::continuous;
     render_options r;

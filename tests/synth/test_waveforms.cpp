@@ -279,7 +279,7 @@ TEST_CASE("the phase of a carrier that changes is its integral, to 1e-9 cycles a
 TEST_CASE("a carrier along the path is where its list says, and goes on without a jump")
 {
     stroke s{"", trajectory::timed({{0.0, {0, 0}}, {1.0, {10, 0}}, {3.0, {40, 0}}}), {}, {}, {}};
-    s.carrier_profile = {{0.1, 100.0}, {0.5, 200.0}, {1.0, 50.0}};
+    s.sound.carrier_profile = {{0.1, 100.0}, {0.5, 200.0}, {1.0, 50.0}};
     const plan p = make_plan(row(3), s, {.algorithm = algorithm_kind::continuous});
     // 4 mm after 0.4 s, 10 mm (half-way to the next point) after 1 s, 20 mm after 1.6667 s.
     REQUIRE(p.course.size() == 5);
@@ -289,9 +289,9 @@ TEST_CASE("a carrier along the path is where its list says, and goes on without 
     CHECK(p.course[3].t_s == doctest::Approx(5.0 / 3.0));
     CHECK(p.course[3].hz == 200.0);
     CHECK(p.course[4] == carrier_point{3.0, 50.0});
-    s.carrier_profile = {{0.5, 100.0}, {0.5, 200.0}};
+    s.sound.carrier_profile = {{0.5, 100.0}, {0.5, 200.0}};
     CHECK(has(message_of([&] { static_cast<void>(make_plan(row(3), s, {})); }), "carrier_profile"));
-    s.carrier_profile = {{0.5, 0.5}};
+    s.sound.carrier_profile = {{0.5, 0.5}};
     CHECK(has(message_of([&] { static_cast<void>(make_plan(row(3), s, {})); }), "not a carrier"));
 }
 

@@ -66,13 +66,13 @@ void print_row(std::FILE* out, const comparison_row& r, bool by_taps)
         return;
     }
     if (by_taps) {
-        fmt::print(out, "{} {:>6} {:>6} {:>6} {:>8} {:>8} {:>6}\n", names(r), r.schedule->bursts.size(),
+        fmt::print(out, "{} {:>6} {:>6} {:>6} {:>8} {:>8} {:>6}\n", names(r), r.plan->bursts.size(),
                    figure(r.felt.rms_error_mm), figure(r.felt.largest_error_mm),
                    figure(r.tapped.felt_length_mm), figure(r.tapped.target_length_mm),
                    figure(r.tapped.length_ratio));
         return;
     }
-    const std::string bursts = r.schedule->curve ? "-" : fmt::format("{}", r.schedule->bursts.size());
+    const std::string bursts = r.plan->curve ? "-" : fmt::format("{}", r.plan->bursts.size());
     fmt::print(out, "{} {:>6} {:>6} {:>6} {:>6} {:>7} {:>6.1f} {:>6.1f}\n", names(r), bursts,
                figure(r.felt.rms_error_mm), figure(r.felt.largest_error_mm), figure(r.felt.speed_cv),
                figure(r.felt.intensity_cv), 100.0 * r.felt.silent_share, 100.0 * r.felt.shared_share);
@@ -83,8 +83,8 @@ void print_warnings(std::FILE* out, std::string_view before, const comparison& c
 {
     std::set<std::string> said;
     for (const comparison_row& r : c.rows)
-        if (r.schedule)
-            for (const std::string& w : r.schedule->warnings) {
+        if (r.plan)
+            for (const std::string& w : r.plan->warnings) {
                 const std::string text =
                     fmt::format("{}warning: {}: {}\n", before, to_string(r.algorithm), w);
                 if (said.insert(text).second)
@@ -211,7 +211,7 @@ void print_taps_csv(std::FILE* out, const std::vector<comparison>& all)
             const auto if_predicted = [&](double v) { return predicted ? std::optional(v) : std::nullopt; };
             fmt::print(out, "{},{},{},{},low-speed,{},{},taps,{},{},{},{},{},{},{},{}{}\n", i,
                        field(all[i].target.name), to_string(r.algorithm), to_string(r.phantom), o.sigma_mm,
-                       o.sigma_v_mm_s, predicted ? fmt::format("{}", r.schedule->bursts.size()) : "",
+                       o.sigma_v_mm_s, predicted ? fmt::format("{}", r.plan->bursts.size()) : "",
                        field(r.felt.rms_error_mm), field(r.felt.largest_error_mm),
                        field(if_predicted(r.tapped.felt_length_mm)),
                        field(if_predicted(r.tapped.target_length_mm)), field(r.tapped.length_ratio),
@@ -237,7 +237,7 @@ void print_samples_csv(std::FILE* out, const std::vector<comparison>& all)
                 fmt::print(out, ",,,,,,,{}", field(std::string(r.refused->what())));
             else
                 fmt::print(out, "{},{},{},{},{},{},{},",
-                           r.schedule->curve ? "" : fmt::format("{}", r.schedule->bursts.size()),
+                           r.plan->curve ? "" : fmt::format("{}", r.plan->bursts.size()),
                            field(r.felt.rms_error_mm), field(r.felt.largest_error_mm), field(r.felt.speed_cv),
                            field(r.felt.intensity_cv), r.felt.silent_share, r.felt.shared_share);
             fmt::print(out, "{}\n",

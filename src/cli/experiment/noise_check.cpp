@@ -55,7 +55,7 @@ private:
     // Each in turn.
     void play()
     {
-        const score s(p_.where.tactors, stimuli_[at_]->schedule, p_.render);
+        const score s(p_.where.tactors, stimuli_[at_]->plan, p_.render);
         at_ = (at_ + 1) % stimuli_.size();
         const study::given_stimulus g = stage_.give(s, 0.0, [](std::uint64_t) {});
         show(fmt::format("a stimulus of {:.2f} s{}\n", static_cast<double>(s.frames()) / s.rate(),

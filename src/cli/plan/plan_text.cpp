@@ -78,7 +78,7 @@ void print_text(std::FILE* out, const piece& p, const environment& e, const rend
     for (std::size_t i = 0; i < p.plans.size(); ++i) {
         if (i != 0)
             fmt::print(out, "\n");
-        print_one(out, name_stroke(p, i), p.strokes[i], p.plans[i].schedule, starts[i], e.tactors, sound);
+        print_one(out, name_stroke(p, i), p.strokes[i], p.plans[i].plan, starts[i], e.tactors, sound);
     }
 }
 
@@ -87,7 +87,7 @@ void print_csv(std::FILE* out, const piece& p, const environment& e)
     fmt::print(out, "stroke,start_s,onset_s,duration_s,tau_s,x_mm,y_mm,tactor,channel,amplitude\n");
     const auto starts = starts_of(p.plans);
     for (std::size_t i = 0; i < p.plans.size(); ++i) {
-        files::for_each_row(p.plans[i].schedule, [&](const burst& b) {
+        files::for_each_row(p.plans[i].plan, [&](const burst& b) {
             const std::string tau = b.tau_s ? fmt::format("{}", *b.tau_s) : "";
             for (const drive& d : b.drives)
                 fmt::print(out, "{},{},{},{},{},{},{},{},{},{}\n", i, starts[i], b.onset_s, b.duration_s, tau,

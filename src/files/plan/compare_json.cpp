@@ -80,7 +80,7 @@ json compared_row_json(const comparison_row& r, bool by_taps)
     j["refused"] = r.refused ? json(r.refused->what()) : json(nullptr);
     if (r.refused)
         return j;
-    const plan& p = *r.schedule;
+    const plan& p = *r.plan;
     j["bursts"] = p.curve ? json(nullptr) : json(p.bursts.size());
     j["soa_s"] = or_null(p.soa_s);
     j["total_s"] = p.total_s;

@@ -87,7 +87,7 @@ private:
         read_.plans.push_back(
             read_plan(all, read_.tactors, std::exchange(bursts_, {}), std::exchange(samples_, {})));
         std::optional<compensated_plan> moved = read_compensation(all);
-        read_.strokes.push_back(read_stroke(all, read_.plans.back().schedule, moved));
+        read_.strokes.push_back(read_stroke(all, read_.plans.back().plan, moved));
         if (moved)
             read_.moved.push_back(*std::move(moved));
         if (!read_.moved.empty() && read_.moved.size() != read_.plans.size())

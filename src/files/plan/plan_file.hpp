@@ -16,7 +16,7 @@ namespace tactor::files {
 struct plan_file {
     std::vector<stroke> strokes; ///< as far as plans tell: where their bursts or samples are
     std::vector<placed_plan> plans;
-    std::vector<compensated_plan> moved; ///< what --compensate did, without the schedules; none or one a plan
+    std::vector<compensated_plan> moved; ///< what --compensate did, without the plans; none or one a plan
     std::optional<fitting> fit = {};     ///< what --fit did, to all
     array tactors;
     render_options render; ///< with rate, channels and marker

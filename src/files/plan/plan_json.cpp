@@ -22,7 +22,7 @@ using json = nlohmann::ordered_json;
 // A plan of a record.
 struct record {
     const stroke& drawn;
-    const plan& schedule;
+    const tactor::plan& plan;
     double start_s;
     bool follows; // the stroke before it, from the frame at which that ends
     std::uint64_t start_frame;
@@ -56,10 +56,10 @@ json render_json(const record& r)
         j["sl_db"] = *o.sl_db;
     else
         j["level_dbfs"] = o.level_dbfs;
-    j["overlap"] = to_string(r.schedule.overlap);
+    j["overlap"] = to_string(r.plan.overlap);
     j["peak_dbfs"] = json::array();
     for (const tactor_spec& t : r.tactors.tactors)
-        j["peak_dbfs"].push_back(peak_dbfs(t, r.schedule.carrier_hz, o));
+        j["peak_dbfs"].push_back(peak_dbfs(t, r.plan.carrier_hz, o));
     if (o.envelope != burst_envelope{})
         j["envelope"] = envelope_json(o.envelope);
     j["marker"] = nullptr;
@@ -72,7 +72,7 @@ json render_json(const record& r)
 json head_json(const record& r)
 {
     const stroke& s = r.drawn;
-    const plan& p = r.schedule;
+    const plan& p = r.plan;
     json j;
     j["schema"] = "tactor-plan/1";
     j["algorithm"] = p.algorithm;
@@ -118,7 +118,7 @@ json compensation_json(const compensated_plan& c)
 
 json tail_json(const record& r)
 {
-    const plan& p = r.schedule;
+    const plan& p = r.plan;
     json j;
     if (r.moved != nullptr)
         j["compensation"] = compensation_json(*r.moved);
@@ -147,7 +147,7 @@ std::string members(const json& j)
 
 void write_plan(const text_sink& out, const record& r)
 {
-    const plan& p = r.schedule;
+    const plan& p = r.plan;
     out(fmt::format("{{{},\n", members(head_json(r))));
     const bool sampled = p.curve.has_value();
     if (sampled)
@@ -194,9 +194,8 @@ void write_plans(const plan_record& r, const text_sink& out)
 {
     const auto starts = starts_of(r.plans);
     const auto write = [&](std::size_t i) {
-        write_plan(out,
-                   {r.strokes[i], r.plans[i].schedule, starts[i], !r.plans[i].start_s, r.samples.starts()[i],
-                    r.tactors, r.samples, r.fit, r.moved.empty() ? nullptr : &r.moved[i], r.options});
+        write_plan(out, {r.strokes[i], r.plans[i].plan, starts[i], !r.plans[i].start_s, r.samples.starts()[i],
+                         r.tactors, r.samples, r.fit, r.moved.empty() ? nullptr : &r.moved[i], r.options});
     };
     if (r.plans.size() == 1) {
         write(0);

@@ -230,9 +230,9 @@ stroke read_stroke(const json_value& f, const plan& p, const std::optional<compe
         f["bursts"].refuse("there are none");
     way.push_back({p.stroke_duration_s, last.position, last.intensity});
     stroke s{drawn["name"].need_text(), trajectory::timed(std::move(way))};
-    s.carrier_hz = p.carrier_hz;
-    s.wave = p.wave;
-    s.am = p.am;
+    s.sound.carrier_hz = p.carrier_hz;
+    s.sound.wave = p.wave;
+    s.sound.am = p.am;
     const auto note = drawn["note"].text();
     for (const note_kind n : values_of<note_kind>())
         if (note == note_text(n))

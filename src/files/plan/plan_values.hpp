@@ -18,7 +18,7 @@ burst read_sample(const json_value& f);
 array read_array(const json_value& plan);
 render_options read_render(const json_value& plan);
 placed_plan read_plan(const json_value& f, const array& a, std::vector<burst> bursts, curve_samples samples);
-/// What --compensate did, without the schedule; none where it was not asked for.
+/// What --compensate did, without the plan; none where it was not asked for.
 std::optional<compensated_plan> read_compensation(const json_value& plan);
 /// The way of a plan's bursts or samples, or of what moved ones are to be felt as, for pictures.
 stroke read_stroke(const json_value& f, const plan& p, const std::optional<compensated_plan>& moved);

@@ -55,7 +55,9 @@ public:
                  fmt::format("{} of at least 2 points{}", points_.size(),
                              repeated_ != 0 ? " with times of their own" : ""),
                  "give where the stroke starts and where it ends");
-        return {{detail::stem(name_), trajectory::timed(std::move(points_)), {}, {}, {}, warnings()}};
+        return {{.name = detail::stem(name_),
+                 .motion = trajectory::timed(std::move(points_)),
+                 .warnings = warnings()}};
     }
 
 private:

@@ -67,7 +67,7 @@ void sequence::place(const toml_table& t, stroke& first, double lead_s) const
         t.number("start_s", {from == start_from_kind::piece ? 0.0 : -longest_stroke_s, longest_stroke_s});
     const double after_s = told.value_or(0.0) + lead_s;
     if (told && *told < 0.0)
-        first.start_at = t.where("start_s");
+        first.places.start = t.where("start_s");
     if (from == start_from_kind::end || (!told && !t.has("start_from")))
         follow(first, after_s, before_.size);
     else if (from == start_from_kind::start)

@@ -130,13 +130,13 @@ turned turn_of(double degrees)
 
 void read_sound(const toml_table& t, const std::filesystem::path* folder, stroke& s)
 {
-    s.wave = read_waveform(t, folder);
-    s.am = read_modulation(t);
-    s.carrier_profile = read_profile(t);
-    if (s.wave)
-        s.wave_at = t.where("waveform");
-    if (!s.carrier_profile.empty())
-        s.carrier_at = t.where("carrier_profile");
+    s.sound.wave = read_waveform(t, folder);
+    s.sound.am = read_modulation(t);
+    s.sound.carrier_profile = read_profile(t);
+    if (s.sound.wave)
+        s.places.wave = t.where("waveform");
+    if (!s.sound.carrier_profile.empty())
+        s.places.carrier = t.where("carrier_profile");
 }
 
 stroke chosen(const toml_table& t, stroke s)
@@ -152,20 +152,18 @@ stroke chosen(const toml_table& t, stroke s)
                "bursts must not overlap: at most soa_s");
     for (const char* key : {"burst_s", "soa_s"})
         if (t.has(key))
-            s.choices_at = t.where(key);
-    s.fit_margin_mm = read_fit(t);
+            s.places.choices = t.where(key);
+    s.fit = read_fit(t);
     return s;
 }
 
-std::optional<double> read_fit(const toml_table& t)
+std::optional<stroke_fit> read_fit(const toml_table& t)
 {
     const bool fit = t.boolean("fit").value_or(false);
     const auto margin = t.number("fit_margin_mm", {0.0, max_mm});
     if (margin && !fit)
         t.fail("fit_margin_mm", "nothing is fitted", "add fit = true, or leave it out");
-    if (!fit)
-        return {};
-    return margin.value_or(0.0);
+    return fit ? std::optional(stroke_fit{margin.value_or(0.0)}) : std::nullopt;
 }
 
 stroke levelled(const toml_table& t, stroke s)

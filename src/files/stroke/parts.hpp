@@ -105,8 +105,8 @@ inline constexpr std::array<std::string_view, 8> choice_keys{
 /// Returns the stroke with algorithm, phantom, faces, soa_s, burst_s, fit and fit_margin_mm as the file says.
 stroke chosen(const toml_table& t, stroke s);
 
-/// Reads fit and fit_margin_mm: the margin; nothing where nothing is to be fitted.
-std::optional<double> read_fit(const toml_table& t);
+/// Reads fit and fit_margin_mm; nothing where nothing is to be fitted.
+std::optional<stroke_fit> read_fit(const toml_table& t);
 
 /// Returns the stroke as much stronger or weaker as level_db says.
 stroke levelled(const toml_table& t, stroke s);

@@ -118,12 +118,12 @@ void add_path(lines& out, const stroke& s, const trajectory::impl& i, const draw
 
 void add_sound(lines& out, const stroke& s)
 {
-    if (s.carrier_profile.empty())
-        out.maybe("carrier_hz", s.carrier_hz);
-    out.rows("carrier_profile", s.carrier_profile,
+    if (s.sound.carrier_profile.empty())
+        out.maybe("carrier_hz", s.sound.carrier_hz);
+    out.rows("carrier_profile", s.sound.carrier_profile,
              [](const carrier_part& p) { return fmt::format("{}, {}", p.part, p.hz); });
-    if (s.wave) {
-        const waveform& w = *s.wave;
+    if (s.sound.wave) {
+        const waveform& w = *s.sound.wave;
         const bool recorded = w.kind == waveform_kind::recording;
         // The new file may lie elsewhere.
         out.add("waveform",
@@ -135,9 +135,9 @@ void add_sound(lines& out, const stroke& s)
         if (recorded && w.texture_mm > 0.0)
             out.add("texture_mm", w.texture_mm);
     }
-    if (s.am) {
-        out.add("am_hz", s.am->hz);
-        out.add("am_depth", s.am->depth);
+    if (s.sound.am) {
+        out.add("am_hz", s.sound.am->hz);
+        out.add("am_depth", s.sound.am->depth);
     }
 }
 
@@ -153,11 +153,11 @@ void add_choices(lines& out, const stroke& s)
     out.maybe("burst_s", s.choices.burst_s);
     if (s.choices.level_db != 0.0)
         out.add("level_db", s.choices.level_db);
-    if (s.fit_margin_mm && s.fit_group != 0)
+    if (s.fit && s.fit->group != 0)
         refuse(s, "it is fitted together with others of its group", "fit_as_asked() fits them");
-    if (s.fit_margin_mm) {
+    if (s.fit) {
         out.append("fit", "true");
-        out.add("fit_margin_mm", *s.fit_margin_mm);
+        out.add("fit_margin_mm", s.fit->margin_mm);
     }
 }
 

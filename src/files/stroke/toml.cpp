@@ -158,10 +158,13 @@ stroke read_drawn(const toml_table& t, std::string name)
     const auto carrier = t.number("carrier_hz", detail::bounds_of::carrier_hz);
 
     const auto described = [&](trajectory motion, note_kind note = note_kind::none) {
-        stroke s{t.text("name").value_or(name), motion, {}, carrier, note};
-        s.speed_mm_s = asked.speed_mm_s;
+        stroke s{.name = t.text("name").value_or(name),
+                 .motion = motion,
+                 .speed_mm_s = asked.speed_mm_s,
+                 .sound = {.carrier_hz = carrier},
+                 .note = note};
         if (carrier)
-            s.carrier_at = t.where("carrier_hz");
+            s.places.carrier = t.where("carrier_hz");
         return s;
     };
     if (kind == "timed") {
@@ -199,7 +202,7 @@ detail::entry read_one(const toml_table& t, std::string name, folder_of_file fol
     detail::read_sound(t, folder, s);
     if (t.boolean("reverse").value_or(false)) {
         s.motion = at_key(t, "reverse", [&] { return s.motion.reversed(); });
-        s.carrier_profile = detail::from_the_end(s.carrier_profile);
+        s.sound.carrier_profile = detail::from_the_end(s.sound.carrier_profile);
     }
     detail::entry e;
     e.strokes.push_back(detail::placed(t, std::move(s)));
@@ -230,16 +233,17 @@ detail::entry read_group(const toml_table& t, const std::string& name, folder_of
         t.fail("stroke", "a group without a stroke", "add [[stroke.stroke]]");
     detail::entry e =
         read_all(inside, detail::sequence::of::group, t.text("name").value_or(name), folder, depth + 1);
-    const auto margin_mm = detail::read_fit(t);
+    auto fit = detail::read_fit(t);
+    if (fit)
+        fit->group = t.where().line; // no other group of the file begins there
     for (stroke& s : e.strokes) {
         s = detail::placed(t, detail::levelled(t, std::move(s)));
-        if (!margin_mm)
+        if (!fit)
             continue;
-        if (s.fit_margin_mm)
+        if (s.fit)
             t.fail("fit", fmt::format("{} is fitted already", detail::quoted(s.name)),
                    "fit the group, or what is in it");
-        s.fit_margin_mm = margin_mm;
-        s.fit_group = t.where().line; // no other group of the file begins there
+        s.fit = fit;
     }
     return detail::repeated(t, std::move(e));
 }

@@ -246,14 +246,12 @@ private:
                           "a stroke takes at most a day");
             if (s.look.asked == svg_strength::stroke_width)
                 widths_.emplace_back(strokes_.size(), width);
-            strokes_.push_back({paths.size() == 1 ? name : fmt::format("{}-{}", name, i + 1),
-                                eased(paths[i], time, s),
-                                start,
-                                s.carrier_hz,
-                                {},
-                                {},
-                                duration ? std::nullopt : std::optional(speed),
-                                !duration && !s.speed_mm_s});
+            strokes_.push_back({.name = paths.size() == 1 ? name : fmt::format("{}-{}", name, i + 1),
+                                .motion = eased(paths[i], time, s),
+                                .start_s = start,
+                                .speed_mm_s = duration ? std::nullopt : std::optional(speed),
+                                .usual_pace = !duration && !s.speed_mm_s,
+                                .sound = {.carrier_hz = s.carrier_hz}});
             start.reset();
         }
     }

@@ -23,7 +23,7 @@ public:
         place();
         find_looks();
         for (std::size_t i = 0; i < scene_.plans.size(); ++i) {
-            const plan& p = scene_.plans[i].schedule;
+            const plan& p = scene_.plans[i].plan;
             if (p.curve)
                 add_instants(i, p);
             else
@@ -40,7 +40,7 @@ private:
     {
         t_.starts_s = starts_of(scene_.plans);
         for (std::size_t i = 0; i < scene_.plans.size(); ++i) {
-            const plan& p = scene_.plans[i].schedule;
+            const plan& p = scene_.plans[i].plan;
             t_.total_s = std::max(t_.total_s, t_.starts_s[i] + p.total_s);
             t_.sampled = t_.sampled || p.curve.has_value();
         }

@@ -167,7 +167,7 @@ void draw_columns(canvas& c, const scene& s, const timeline& t, const timing_fra
         if (b.to_s > b.from_s)
             note(b.stroke, *b.what, b.from_s, b.to_s);
     for (std::size_t i = 0; i < s.plans.size(); ++i)
-        if (const plan& p = s.plans[i].schedule; p.curve)
+        if (const plan& p = s.plans[i].plan; p.curve)
             look_up(p, f.x,
                     [&](const burst& b, double at) { note(i, b, t.starts_s[i] + at, t.starts_s[i] + at); });
     style look = t.sampled ? style{.fill = grey, .stroke = ink, .width = 0.5}
@@ -189,7 +189,7 @@ bool draw_conflicts(canvas& c, const scene& s, const timeline& t, const timing_f
     std::size_t drawn = 0;
     const double h = f.bar_height(f.peak);
     for (std::size_t i = 0; i < s.plans.size(); ++i)
-        for (const conflict& k : s.plans[i].schedule.conflicts) {
+        for (const conflict& k : s.plans[i].plan.conflicts) {
             if (f.rows.row_of[k.tactor] < 0 || drawn == most_hatches)
                 continue;
             ++drawn;

@@ -74,15 +74,15 @@ stimulus stimulus_set::make(const motion_definition& motion, const method_defini
             throw error(error_kind::bad_input, "stroke", "it takes more than ten minutes", "a shorter one");
         const stroke& drawn = motion.drawn;
         stimulus s;
-        s.schedule = make_plan(a, faces, drawn, method.options);
-        const score sounds(a, s.schedule, options_);
+        s.plan = make_plan(a, faces, drawn, method.options);
+        const score sounds(a, s.plan, options_);
         s.frames = sounds.frames();
-        s.text = write(drawn, s.schedule, sounds);
+        s.text = write(drawn, s.plan, sounds);
         s.hash = detail::sha256_text(s.text);
-        const std::vector<percept_sample> samples = predict_percept(a, drawn, s.schedule);
+        const std::vector<percept_sample> samples = predict_percept(a, drawn, s.plan);
         s.felt = summarise(samples);
         s.felt_path = path_of(samples);
-        for (const std::string& w : s.schedule.warnings) {
+        for (const std::string& w : s.plan.warnings) {
             const std::string said =
                 fmt::format("motion \"{}\" by method \"{}\": {}", motion.name, method.name, w);
             if (std::find(warnings_.begin(), warnings_.end(), said) == warnings_.end())
@@ -123,9 +123,9 @@ std::uint64_t stimulus_set::frames(const planned_trial& t) const
 
 score stimulus_set::make_score(const planned_trial& t, const std::optional<drive_limits>& limits) const
 {
-    std::vector<placed_plan> plans{{at(t.motion, t.method_1).schedule, 0.0}};
+    std::vector<placed_plan> plans{{at(t.motion, t.method_1).plan, 0.0}};
     if (t.method_2)
-        plans.push_back({at(t.motion, *t.method_2).schedule, static_cast<double>(second(t)) / options_.rate});
+        plans.push_back({at(t.motion, *t.method_2).plan, static_cast<double>(second(t)) / options_.rate});
     render_options o = options_;
     o.limits = limits;
     return score(array_, std::move(plans), o);

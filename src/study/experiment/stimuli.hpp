@@ -22,7 +22,7 @@
 namespace tactor::study {
 
 struct stimulus {
-    plan schedule = {};
+    tactor::plan plan = {};
     std::uint64_t frames = 0;          ///< from its first frame to its last sound's end
     std::string text = {};             ///< the plan as tactor-plan/1
     std::string hash = {};             ///< its SHA-256

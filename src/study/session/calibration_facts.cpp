@@ -36,7 +36,7 @@ std::vector<std::string> calibration_doubts(const std::string& participant, cons
             fmt::format("the thresholds are of participant {}, not {}", c.participant, participant));
     std::vector<const plan*> plans;
     for (const stimulus* s : stimuli.all())
-        plans.push_back(&s->schedule);
+        plans.push_back(&s->plan);
     if (std::string other = session::other_carrier(e, plans); !other.empty())
         doubts.push_back(std::move(other));
     return doubts;

@@ -141,7 +141,7 @@ bool expander::next_points() noexcept
         const std::uint64_t before = step_end_;
         while (step_end_ == before)
             step_end_ = item_->start + control_frame(++step_, score_->rate, item_->length);
-        failing_ = !checked_sample(score_->plans[item_->plan].schedule, step_, score_->promised[item_->plan],
+        failing_ = !checked_sample(score_->plans[item_->plan].plan, step_, score_->promised[item_->plan],
                                    c.seen, c.now, c.failure);
         if (failing_) {
             step_end_ = before;

@@ -176,7 +176,7 @@ const std::vector<double>& continuous_items::most(std::size_t number)
     const auto there = most_.find(number);
     if (there != most_.end())
         return there->second;
-    const auto intensity = greatest_intensity(score_.plans[score_.list.items[number].plan].schedule);
+    const auto intensity = greatest_intensity(score_.plans[score_.list.items[number].plan].plan);
     if (!intensity)
         return looked_at(number);
     return most_[number] = std::vector<double>(score_.tactors.size(), *intensity);
@@ -187,7 +187,7 @@ const std::vector<double>& continuous_items::looked_at(std::size_t number)
     const auto there = looked_at_.find(number);
     if (there != looked_at_.end())
         return there->second;
-    const plan& p = score_.plans[score_.list.items[number].plan].schedule;
+    const plan& p = score_.plans[score_.list.items[number].plan].plan;
     const std::size_t tactors = score_.tactors.size();
     // What is harmless alone may not be together with others.
     const bool equalised = !score_.measured.empty(); // harmless_ does not know of it

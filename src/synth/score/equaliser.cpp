@@ -35,7 +35,7 @@ double score::impl::equalised(std::size_t tactor, std::uint32_t plan, std::uint6
     if (measured.empty())
         return 1.0;
     const double t_s = (static_cast<double>(frame) - static_cast<double>(starts[plan])) / rate;
-    return synth::threshold_factor(measured[tactor], hz_at(plans[plan].schedule, t_s));
+    return synth::threshold_factor(measured[tactor], hz_at(plans[plan].plan, t_s));
 }
 
 double score::impl::most_equalised(std::size_t tactor, std::uint32_t plan) const
@@ -43,7 +43,7 @@ double score::impl::most_equalised(std::size_t tactor, std::uint32_t plan) const
     if (measured.empty())
         return 1.0;
     const tactor_spec& t = measured[tactor];
-    const tactor::plan& p = plans[plan].schedule;
+    const tactor::plan& p = plans[plan].plan;
     double most = synth::threshold_factor(t, hz_at(p, 0.0));
     double low = p.carrier_hz;
     double high = p.carrier_hz;

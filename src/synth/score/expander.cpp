@@ -23,7 +23,7 @@ void expander::begin(const score::impl& s, std::size_t item_number, control_poin
     if (item_->kind == item_kind::continuous) {
         points_->rows.clear();
         points_->seen = {};
-        failed_ = !checked_sample(s.plans[item_->plan].schedule, 0, s.promised[item_->plan], points_->seen,
+        failed_ = !checked_sample(s.plans[item_->plan].plan, 0, s.promised[item_->plan], points_->seen,
                                   points_->now, points_->failure);
     }
     if (failed_) {
@@ -54,7 +54,7 @@ void expander::advance() noexcept
 /// Begins an event at a frame of the score.
 void expander::stretch(std::uint64_t start, std::uint64_t length) noexcept
 {
-    const plan& p = score_->plans[item_->plan].schedule;
+    const plan& p = score_->plans[item_->plan].plan;
     event_.start = start;
     event_.length = static_cast<std::uint32_t>(length);
     const std::uint64_t stroke = score_->starts[item_->plan];
@@ -113,7 +113,7 @@ void expander::joined_event() noexcept
     }
     const joined_stretch s =
         join_members(score_->list.members.data() + item_->first, item_->count, next_, position_,
-                     score_->plans[item_->plan].schedule.overlap, score_->envelope.kind);
+                     score_->plans[item_->plan].plan.overlap, score_->envelope.kind);
     stretch(position_, s.end - position_);
     add(item_->tactor, s.from, s.to);
     position_ = s.end;

@@ -210,7 +210,7 @@ std::uint64_t score::impl::heard_from(const synth::item& it) const noexcept
 {
     const bool joined = it.kind == synth::item_kind::joined;
     const std::uint32_t ramp = joined ? list.members[it.first].ramp : it.ramp;
-    const waveform_kind wave = plans[it.plan].schedule.wave.kind;
+    const waveform_kind wave = plans[it.plan].plan.wave.kind;
     const bool at_zero = (phase == phase_kind::burst || it.start == starts[it.plan]) &&
                          wave != waveform_kind::noise && wave != waveform_kind::recording;
     return it.start + (it.length > 1 && (ramp > 0 || at_zero) ? 1 : 0);

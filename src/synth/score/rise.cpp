@@ -108,7 +108,7 @@ private:
     {
         if (!(headroom > 0.0 && amplitude > before))
             return {};
-        const double half_cycle = 0.5 * s_.rate / s_.plans[it.plan].schedule.carrier_hz;
+        const double half_cycle = 0.5 * s_.rate / s_.plans[it.plan].plan.carrier_hz;
         const double longest = std::min(static_cast<double>(it.length), enough_rises * rise_s * s_.rate);
         const double shortest = std::max(1.0, static_cast<double>(it.ramp) + release);
         const auto first = static_cast<std::uint64_t>(std::ceil(shortest / half_cycle));

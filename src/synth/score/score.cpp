@@ -306,7 +306,7 @@ score::score(const array& a, std::vector<placed_plan> plans, const render_option
 {
     score_builder b(a, o);
     for (placed_plan& p : plans)
-        b.add(std::move(p.schedule), p.start_s, p.anchor);
+        b.add(std::move(p.plan), p.start_s, p.anchor);
     *this = b.take();
 }
 
@@ -315,7 +315,7 @@ std::vector<double> starts_of(std::span<const placed_plan> plans)
     detail::start_times times;
     for (const placed_plan& p : plans) {
         times.start(p.start_s, p.anchor);
-        times.lasts(p.schedule.total_s);
+        times.lasts(p.plan.total_s);
     }
     return std::move(times).all();
 }
