@@ -19,8 +19,8 @@ inline namespace v0 {
 struct live_options {
     /// These members count: `algorithm` (continuous: the carrier runs and the phantom's weights follow the
     /// points; park2016: a burst each SOA, at the newest position), `phantom` and `faces`, or
-    /// `custom_phantom`, `carrier_hz`, `outside`; for bursts `soa_s` and `profile`, which give their
-    /// duration.
+    /// `custom_phantom`, `carrier_hz`, `wave` (no recording along a length), `am`, `scale`, `outside`; for
+    /// bursts `soa_s`, and `burst_s` or `profile`, which give their duration.
     plan_options plan{.algorithm = algorithm_kind::continuous, .outside = outside_kind::clamp};
     /// Levels, phase and the bursts' ramp; rate and channels are the stream's.
     render_options render = {};

@@ -31,16 +31,16 @@ inline namespace v0 {
 struct drive_limits {
     /// Greatest power of all tactors together, in dB above one channel's sine at full scale: the sum of the
     /// squared envelopes in every frame. Where carriers beat on a tactor, the crests of the beat count.
-    /// Default: the power of three such sines; infinite: no limit. The gain of all tactors falls within some
+    /// -120 to 60. Default: the power of three such sines. The gain of all tactors falls within some
     /// 10 ms, without a click, and returns with a time constant of 50 ms; a drive that begins abruptly
     /// meanwhile is faded in.
     double power_dbfs = 4.771212547196624;
     /// Longest time that one tactor is driven (above -40 dBFS) within any window. Then its channel fades out,
     /// and stays silent until half of that time has left the window. No window holds more than this and one
     /// fade of 20 ms. Time is counted in steps of 1/256 of the window: a tactor that begins to be driven more
-    /// than once in a step may be cut up to one step too early. Not below window_s: no limit.
+    /// than once in a step may be cut up to one step too early. 0.1 to 3600 s; not below window_s: no limit.
     double max_drive_s = 5.0;
-    double window_s = 10.0;
+    double window_s = 10.0; ///< 0.1 to 3600 s
 };
 
 struct render_options {

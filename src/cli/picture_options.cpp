@@ -26,7 +26,7 @@ void add_picture_options(CLI::App& command, picture_options& into, const std::st
             "--dpi",
             [&into](const std::string& t) {
                 into.dpi = static_cast<unsigned>(
-                    options::parse_number("--dpi", t, {plot::least_dpi, plot::most_dpi}, "dpi"));
+                    options::parse_whole("--dpi", t, {plot::least_dpi, plot::most_dpi}, "dpi"));
             },
             "resolution of a PNG (default 300)")
         ->type_name("N");

@@ -66,6 +66,15 @@ void add_options(CLI::App& command, settings& into, std::uint64_t place)
             add_one(command, into, o);
 }
 
+std::string asked_of_stream(const settings& s)
+{
+    for (const options::option& o : options::all())
+        if (s.gives(o) && (o.in == options::group::real_time || o.name == "no_gpio" || o.name == "verbose" ||
+                           o.name == "log"))
+            return option_name(o);
+    return {};
+}
+
 void add_strokes(CLI::App& command, settings& into)
 {
     auto* strokes =

@@ -27,6 +27,10 @@ using session::settings;
 /// command.
 void add_options(CLI::App& command, settings& into, std::uint64_t place);
 
+/// Returns the first given option that is about a stream which sounds: for sessions in which nothing is
+/// played. Empty: none was given.
+std::string asked_of_stream(const settings& s);
+
 /// Adds the argument STROKE.
 void add_strokes(CLI::App& command, settings& into);
 

@@ -31,7 +31,7 @@ inline constexpr bounds intercept_s{0.001, 10.0};
 inline constexpr bounds margin_mm{0.0, max_mm};
 inline constexpr bounds carrier_hz{1.0, 384000.0}; // half of the highest rate
 inline constexpr bounds seed{0.0, 0x1p53};         // JSON's numbers go so far
-inline constexpr bounds texture_mm{0.0, max_mm};
+inline constexpr bounds texture_mm{0.0, max_mm};   // 0: all of the path
 inline constexpr bounds am_hz{0.0, 20000.0};
 inline constexpr bounds ramp_s{0.0, 10.0}; // attack and release, too
 inline constexpr bounds part{0.0, 1.0};
@@ -54,6 +54,8 @@ inline constexpr bounds reopen_s{0.0, 1e9};
 inline constexpr bounds sync_delay_ms{0.0, 10000.0};
 inline constexpr bounds smooth_s{0.0, 1.0};
 inline constexpr bounds timeout_s{0.001, longest_stroke_s}; // how long a live stroke may last, too
+inline constexpr bounds masker_dbfs{-120.0, 0.0};
+inline constexpr bounds interval_s{0.05, 4.0}; // of a measured threshold
 inline constexpr bounds marker_channel{0.0, max_channels - 1.0};
 inline constexpr bounds marker_s{1e-6, 10.0};
 

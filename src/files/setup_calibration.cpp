@@ -12,8 +12,6 @@ namespace {
 
 constexpr bounds any_level_db{min_db, 0.0};
 constexpr bounds spread_db{0.0, -min_db};
-constexpr bounds any_carrier_hz{0.0, 384000.0, true};
-constexpr bounds interval_lengths{0.0, 3600.0, true};
 constexpr unsigned any_number = std::numeric_limits<unsigned>::max();
 
 calibrated_tactor read_tactor(const toml_table& t, std::vector<const toml_table*>& said)
@@ -51,8 +49,8 @@ void read_calibration(const toml_table& root, located_setup& said)
     r.participant = t->need(t->text("participant"), "participant");
     r.method = t->need(t->choice("method", {"staircase", "adjustment"}), "method");
     r.rule = t->choice("rule", {"1up3down", "1up2down"});
-    r.carrier_hz = t->need(t->number("carrier_hz", any_carrier_hz), "carrier_hz");
-    r.interval_s = t->need(t->number("interval_s", interval_lengths), "interval_s");
+    r.carrier_hz = t->need(t->number("carrier_hz", bounds_of::carrier_hz), "carrier_hz");
+    r.interval_s = t->need(t->number("interval_s", bounds_of::interval_s), "interval_s");
     r.feedback = t->boolean("feedback");
     r.masker = t->text("masker");
     r.date = t->text("date");

@@ -13,8 +13,10 @@ namespace {
 namespace of = detail::bounds_of;
 
 constexpr std::uint64_t drawing = on_plan | on_render | on_plot | on_compare | on_play;
-constexpr std::uint64_t sounding = drawing | on_check;
+constexpr std::uint64_t sounding =
+    (drawing & ~std::uint64_t{on_compare}) | on_check; // a prediction needs no sound
 constexpr std::uint64_t playing = on_play | on_check | on_serve;
+constexpr std::uint64_t measuring = playing | on_calibrate | on_experiment;
 constexpr std::uint64_t with_device = playing | on_devices | on_calibrate | on_experiment;
 constexpr std::uint64_t with_array = with_device | drawing | on_off;
 constexpr std::uint64_t in_python = in_plan | in_compare;
@@ -155,7 +157,7 @@ constexpr std::array table{
            .to = reach([](auto& w) -> auto& { return w.plan.outside; })},
     option{.name = "fit", .what = kind::flag, .in = group::place,
            .help = "scale and centre what is drawn on the array",
-           .where = drawing | in_python | planning,
+           .where = in_stroke | drawing | in_python | planning,
            .to = reach([](auto& w) -> auto& { return w.fit; })},
     option{.name = "fit_margin", .field = "margin_mm", .unit = "mm", .allowed = of::margin_mm, .in = group::place,
            .help = "{fit}: distance kept from the array's edge (default 0)",
@@ -234,7 +236,7 @@ constexpr std::array table{
     option{.name = "waveform", .what = kind::text, .shown = "sine|square|triangle|sawtooth|noise:LO-HI|FILE.wav",
            .in = group::sound,
            .help = "what vibrates (default sine): a shape at the carrier's frequency, noise between two, or samples",
-           .where = sounding | in_defaults | by_client | live | in_plan | planning,
+           .where = in_stroke | sounding | in_defaults | by_client | live | in_plan | planning,
            .to = {set_waveform, get_waveform}},
     option{.name = "am", .what = kind::text, .allowed = of::am_hz, .shown = "HZ[:DEPTH]", .in = group::sound,
            .help = "amplitude modulation, depth 0 to 1 (default: none; depth 1)",
@@ -242,12 +244,12 @@ constexpr std::array table{
            .to = {set_modulation, get_modulation}},
     option{.name = "noise_seed", .what = kind::whole, .allowed = of::seed, .in = group::sound,
            .help = "noise: which (default 1)",
-           .where = sounding | in_defaults | by_client | live | in_plan | planning,
+           .where = in_stroke | sounding | in_defaults | by_client | live | in_plan | planning,
            .used = has_noise, .needs = "{waveform=noise:LO-HI}",
            .to = reach([](auto& w) -> auto& { return w.plan.wave.seed; })},
     option{.name = "texture", .what = kind::choice, .choices = detail::names_of<texture_kind>, .in = group::sound,
            .help = "FILE.wav: the carrier's cycle (default), in its own time, or laid along the path",
-           .where = sounding | in_defaults | live | in_plan | planning,
+           .where = in_stroke | sounding | in_defaults | live | in_plan | planning,
            .used = has_recording, .needs = "{waveform=FILE.wav}",
            .to = reach([](auto& w) -> auto& { return w.plan.wave.texture; })},
     option{.name = "texture_mm", .unit = "mm", .allowed = of::texture_mm, .in = group::sound,
@@ -288,7 +290,7 @@ constexpr std::array table{
            .to = reach([](auto& w) -> auto& { return w.render.level_dbfs; })},
     option{.name = "sl", .field = "sl_db", .unit = "dB SL", .allowed = of::sl_db, .shown = "DB", .in = group::level,
            .help = "instead: dB above each tactor's threshold",
-           .where = heard | in_compare, .rival = "level_dbfs",
+           .where = heard | on_compare | in_compare, .rival = "level_dbfs",
            .to = reach([](auto& w) -> auto& { return w.render.sl_db; })},
     option{.name = "intensity_scale", .what = kind::choice, .choices = detail::names_of<scale_kind>, .in = group::level,
            .help = "what an intensity of one half is: of the amplitude (default), of {sl} in dB, of what is felt",
@@ -329,7 +331,7 @@ constexpr std::array table{
            .to = reach([](auto& w) -> auto& { return w.render.marker_s; })},
     option{.name = "no_gpio", .what = kind::flag, .in = group::device,
            .help = "leave the lines of [amplifier] and [sync] alone",
-           .where = in_player | playing,
+           .where = in_player | measuring,
            .to = reach([](auto& w) -> auto& { return w.stream.no_gpio; })},
     option{.name = "power_dbfs", .unit = "dB", .allowed = of::power_dbfs, .in = group::device,
            .help = "greatest power of all tactors together, above one channel's full scale (default 4.77)",
@@ -346,21 +348,21 @@ constexpr std::array table{
 
     option{.name = "latency_ms", .unit = "ms", .allowed = of::latency_ms, .in = group::real_time,
            .help = "length of the device's buffer: periods x period",
-           .where = in_player | playing | in_defaults, .rival = "period_frames",
+           .where = in_player | measuring | in_defaults, .rival = "period_frames",
            .to = reach([](auto& w) -> auto& { return w.stream.latency_ms; })},
     option{.name = "period_frames", .unit = "frames", .what = kind::whole, .allowed = of::period_frames, .shown = "N",
            .in = group::real_time,
            .help = "instead: frames in a period (default: the configuration's, else 96)",
-           .where = in_player | playing, .rival = "latency_ms",
+           .where = in_player | measuring, .rival = "latency_ms",
            .to = reach([](auto& w) -> auto& { return w.stream.period_frames; })},
     option{.name = "periods", .unit = "periods", .what = kind::whole, .allowed = of::periods, .shown = "N",
            .in = group::real_time,
            .help = "periods in the buffer (default: the configuration's, else 3)",
-           .where = in_player | playing,
+           .where = in_player | measuring,
            .to = reach([](auto& w) -> auto& { return w.stream.periods; })},
     option{.name = "require_realtime", .what = kind::flag, .in = group::real_time,
            .help = "fail without real-time priority and locked memory",
-           .where = in_player | playing,
+           .where = in_player | measuring,
            .to = reach([](auto& w) -> auto& { return w.stream.require_realtime; })},
     option{.name = "void_on_xrun", .what = kind::flag, .in = group::real_time,
            .help = "an xrun or a lost device in a stroke ends the run",
@@ -376,7 +378,7 @@ constexpr std::array table{
            .to = reach([](auto& w) -> auto& { return w.stream.arm; })},
     option{.name = "sync_delay_ms", .unit = "ms", .allowed = of::sync_delay_ms, .in = group::real_time,
            .help = "from the edge to the stroke's first sample at the DAC (default 50)",
-           .where = in_player | on_play,
+           .where = in_player | on_play | on_serve,
            .to = reach([](auto& w) -> auto& { return w.stream.sync_delay_ms; })},
     option{.name = "live", .what = kind::flag, .in = group::real_time,
            .help = "lines \"x y [intensity]\" on standard input move a stroke; STROKE is -",

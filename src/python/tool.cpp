@@ -54,8 +54,16 @@ compared compare(const std::shared_ptr<array_handle>& on, const stroke& s, const
     return c;
 }
 
+void check_width(double width_mm)
+{
+    if (!(width_mm >= plot::least_width_mm && width_mm <= plot::most_width_mm))
+        throw error(error_kind::bad_input, "width", plain_number(width_mm) + " mm is out of range",
+                    plain_number(plot::least_width_mm) + " to " + plain_number(plot::most_width_mm) + " mm");
+}
+
 plot::canvas draw(const compared& c, double width_mm)
 {
+    check_width(width_mm);
     return plot::draw_comparison(c.on->value(), c.result, c.result.target.name, width_mm);
 }
 
@@ -80,9 +88,7 @@ plot::figure_view view_from(const std::string& name)
 plot::canvas draw(const array_handle& on, const plans& all, const std::string& name, const score* sound,
                   const std::string& view, double width_mm)
 {
-    if (!(width_mm >= plot::least_width_mm && width_mm <= plot::most_width_mm))
-        throw error(error_kind::bad_input, "width", plain_number(width_mm) + " mm is out of range",
-                    plain_number(plot::least_width_mm) + " to " + plain_number(plot::most_width_mm) + " mm");
+    check_width(width_mm);
     std::vector<stroke> strokes;
     std::vector<placed_plan> placed;
     std::vector<compensated_plan> moved;

@@ -387,7 +387,8 @@ class Pictures(CompareTest):
     def test_what_cannot_be_drawn(self):
         self.refused(2, "compare", "park2016-1", "-o", "c.gif", says=["c.gif", "svg"])
         self.refused(2, "compare", "park2016-1", "-o", "c.svg", "--width", "5", says=["--width"])
-        self.refused(2, "compare", "park2016-1", "-o", "c.png", "--dpi", "1e9", says=["--dpi"])
+        for dpi in ("1e9", "300.5"):
+            self.refused(2, "compare", "park2016-1", "-o", "c.png", "--dpi", dpi, says=["--dpi"])
         self.write("two.toml", '[[stroke]]\npath = "M 0 0 L 40 0"\n[[stroke]]\npath = "M 0 40 L 40 40"\n')
         self.refused(2, "compare", "two.toml", "-o", "c.svg", says=["-o", "2 strokes"])
         self.assertFalse((self.dir / "c.svg").exists())

@@ -30,6 +30,21 @@ NO_METHOD = {
     "level-dbfs": "[experiment] level", "sl": "[experiment] level", "intensity-scale": "its motions have the intensities that they have",
     "stevens-exponent": "of intensity-scale",
 }
+# What a stroke file may say of one stroke. The other options of planning hold for the piece: its strokes share one clock and one array.
+IN_STROKE = {"duration", "speed", "carrier", "algorithm", "phantom", "faces", "soa", "burst", "waveform", "noise-seed", "texture", "texture-mm", "fit"}
+# Where else front ends differ, and why:
+# - Configuration: Python's Player and devices() read its [defaults]; plan(), Score() and live() read those of the array file alone, so that a
+#   plan is the same on each machine. marker_channel is [sync]'s on the command line, beside the wires.
+# - Time: Python gives all times in seconds (latency, sync_delay); the tool's --latency-ms is what other audio programs have. A stream's
+#   `longest` and `frame` are a program's; a person presses Ctrl-C.
+# - Waiting: a client's next point comes from a program, 0.5 s; play --live reads lines that a person may type, a day. A lost device: play
+#   ends, since somebody sees it; an experiment waits an hour for its participant's; calibrate and a walk begin again, because a threshold and a
+#   place count on one device; serve waits as long as it runs.
+# - Bounds: an intensity of a profile is a factor, 0 to 1, that of a timed point an amplitude, which max_dbfs limits. calibrate's seed and
+#   --spread-seed are of 32 bits. ALSA has 1024 channels at most, a rendered score may have more. A file's strokes lie within a day.
+# - One name for two things, in two commands: --power, --log, --method, --page, --seed. The manual says so at each.
+# - /tactor/drive of OSC has its intensity always, as OSC's arguments have places, not names; levels_hz is a page's, which has a WebSocket.
+# - drive (one tactor) is for finding wires from a program; a person has check --walk.
 
 
 class Options(ToolTest):
@@ -86,6 +101,26 @@ class Options(ToolTest):
         self.assertEqual({w.replace("_", "-") for w in re.findall(r"[a-z_-]{2,}", line)}, by_method)
         clients = {name for name in self.every() if "JSON-RPC" in self.about(name)}
         self.assertEqual(clients - by_method, set(NO_METHOD))
+
+    def test_a_stroke_of_a_file_has_what_is_its_own(self):
+        self.assertEqual({n for n in self.every() if "Stroke files" in self.about(n)}, IN_STROKE)
+
+    def test_a_prediction_takes_nothing_that_only_sounds(self):
+        compare = self.options_of("compare")
+        self.assertLessEqual({"carrier", "sl", "intensity-scale", "stevens-exponent"}, compare)
+        for name in ("level-dbfs", "ramp", "phase", "envelope", "attack", "release", "am", "waveform", "rate", "sample-format"):
+            self.assertIn(name, self.options_of("plan"))
+            self.assertNotIn(name, compare)
+
+    def test_whoever_measures_says_how_the_device_is_driven(self):
+        of_stream = {"latency-ms", "period-frames", "periods", "require-realtime", "no-gpio"}
+        for command in ("play", "check", "serve", "calibrate", "experiment"):
+            self.assertLessEqual(of_stream, self.options_of(command), command)
+        self.assertIn("sync-delay-ms", self.options_of("serve"))
+        for option in ("--no-gpio", "--require-realtime", "--verbose"):
+            self.refused(2, "calibrate", "--participant", "P1", "-o", "c.toml", "--simulate", "seed=1", option, says=[option, "nothing is played"])
+        self.refused(2, "experiment", "park2016", "--participant", "P1", "-o", "study", "--simulate", "seed=1,sigma=1", "--periods", "4",
+                     says=["--periods", "nothing is played"])
 
     def test_each_key_of_defaults_is_taken_by_its_name(self):
         for name in self.every():

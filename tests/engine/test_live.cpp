@@ -243,7 +243,8 @@ TEST_CASE("options that cannot be are errors, which name their field")
         refused("smooth_s", [bad](live_options& o) { o.smooth_s = bad; });
     refused("level_dbfs", [](live_options& o) { o.render.level_dbfs = 3.0; });
     refused("", [](live_options& o) { o.render.sl_db = 7.0; });
-    refused("ramp_s", [](live_options& o) { o.render.ramp_s = -1.0; });
+    for (const double bad : {-1.0, 10.1})
+        refused("ramp_s", [bad](live_options& o) { o.render.ramp_s = bad; });
     refused("soa_s", [](live_options& o) {
         o.plan.profile.intercept_s = 0.0;
         o.plan.soa_s = 0.001;

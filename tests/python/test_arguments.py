@@ -50,7 +50,7 @@ def refusals(player, finger, ticket):
         (lambda: finger.to(1, 1, at_s=-1), "at_s"), (lambda: finger.to("1", 1), "x_mm"), (lambda: finger.to(HUGE, 1), "x_mm"), (lambda: finger.to(1, None), "y_mm"),
         (lambda: finger.to(1, 1, "loud"), "intensity"),
         (lambda: player.submit(score, delay=nan), "delay"), (lambda: player.submit(score, delay="soon"), "delay"), (lambda: player.submit(score, at_s=HUGE), "at_s"),
-        (lambda: player.submit(score, at_s=nan), "at_s"), (lambda: player.submit(score, frame=1.5), "frame"), (lambda: player.fire(nan), "at_s"),
+        (lambda: player.submit(score, at_s=nan), "at_s"), (lambda: player.submit(score, frame=1.5), "frame"), (lambda: player.play(score, frame=1.5), "frame"), (lambda: player.fire(nan), "at_s"),
         (lambda: player.live(timeout=0), "timeout"), (lambda: player.live(timeout=None), "timeout"), (lambda: player.live(longest=nan), "longest"),
         (lambda: player.live(smooth=2), "smooth"), (lambda: player.live(soa=0.001, algorithm="park2016"), "soa"), (lambda: ticket.wait(nan), "timeout"),
         (lambda: finger.wait("long"), "timeout"),
@@ -78,7 +78,7 @@ def refusals(player, finger, ticket):
         (lambda: tactor.plan(palm, stroke, soa=HUGE), "soa"), (lambda: tactor.plan(palm, stroke, soa=1j), "soa"),
         (lambda: tactor.plan(palm, stroke, soa=np.zeros(2)), "soa"), (lambda: tactor.Score(palm, [(HUGE, plan)]), "start"),
         (lambda: tactor.Score(palm, plan, level_dbfs=HUGE), "level_dbfs"), (lambda: tactor.plot(plan, "x.svg", dpi="300"), "dpi"),
-        (lambda: tactor.plot(plan, "x.svg", width=None), "width"), (lambda: stroke.fitted(palm, "1"), "margin_mm"),
+        (lambda: tactor.plot(plan, "x.svg", width=None), "width"), (lambda: tactor.compare(palm, stroke).plot("x.svg", width=5), "width"), (lambda: stroke.fitted(palm, "1"), "margin_mm"),
         (lambda: tactor.devices(rate=3), "rate"), (lambda: tactor.devices(rate=48000.5), "rate"), (lambda: tactor.devices(rate="48000"), "rate"),
     ]
 

@@ -60,8 +60,7 @@ double largest(const std::vector<double>& x, double from_s, double to_s)
 
 drive_limits no_longest(double power_dbfs)
 {
-    return {
-        .power_dbfs = power_dbfs, .max_drive_s = std::numeric_limits<double>::infinity(), .window_s = 10.0};
+    return {.power_dbfs = power_dbfs, .max_drive_s = 3600.0, .window_s = 10.0};
 }
 
 } // namespace
@@ -208,7 +207,10 @@ TEST_CASE("weak drives do not count, and limits that are none are told")
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (const drive_limits& l :
          {drive_limits{.power_dbfs = nan}, drive_limits{.max_drive_s = 0.0}, drive_limits{.max_drive_s = nan},
-          drive_limits{.window_s = nan}, drive_limits{.window_s = 1e9}, drive_limits{.power_dbfs = -500.0}})
+          drive_limits{.window_s = nan}, drive_limits{.window_s = 1e9}, drive_limits{.power_dbfs = -500.0},
+          drive_limits{.power_dbfs = 61.0},
+          drive_limits{.power_dbfs = std::numeric_limits<double>::infinity()},
+          drive_limits{.max_drive_s = 3601.0}})
         CHECK_THROWS_AS(loud(1, {{0.0, 0.1}}, 0.1, l), error);
 }
 

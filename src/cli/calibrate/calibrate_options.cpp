@@ -108,7 +108,8 @@ void add_masker_options(CLI::App& c, calibrate_options& o)
     });
     add(c, "--masker-dbfs", "DB", "level of the noise, root of the mean square (default -30)",
         [&o](const std::string& t) {
-            o.masking.level_dbfs = options::parse_number("--masker-dbfs", t, {-100, 0}, "dBFS");
+            o.masking.level_dbfs =
+                options::parse_number("--masker-dbfs", t, detail::bounds_of::masker_dbfs, "dBFS");
             o.of_masker.emplace_back("--masker-dbfs");
         });
 }
@@ -140,7 +141,7 @@ void add_calibrate_options(CLI::App& c, calibrate_options& o)
     add(c, "--tactors", "LIST", "which, in this order, as 0,3-5 (default all)",
         [&o](const std::string& t) { o.tactors = t; });
     add(c, "--interval", "S", "how long each interval or pulse is (default 0.5)", [&s](const std::string& t) {
-        s.interval_s = options::parse_number("--interval", t, {0.05, 4}, "s");
+        s.interval_s = options::parse_number("--interval", t, detail::bounds_of::interval_s, "s");
     });
     add(c, "--start-dbfs", "DB", "level of the first trial (default -20)", [&o, &s](const std::string& t) {
         s.staircase.start_dbfs = options::parse_number("--start-dbfs", t, {study::floor_dbfs, 0}, "dBFS");

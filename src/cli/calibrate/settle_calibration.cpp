@@ -158,8 +158,8 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
     check_staircase(c);
     check_masker(o);
     check_page_options(o.page, o.simulate.has_value());
-    if (o.simulate && s.stream.verbose)
-        refuse_setting("--verbose", "nothing is played", "leave it out, or --simulate");
+    if (const std::string asked = asked_of_stream(s); o.simulate && !asked.empty())
+        refuse_setting(asked, "nothing is played", "leave it out, or --simulate");
     if (o.simulate && !o.keypads.empty())
         refuse_setting("--keypad", "nobody is asked", "leave it out, or --simulate");
     c.masker = masker_text(o);

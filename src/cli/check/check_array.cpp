@@ -193,9 +193,7 @@ std::vector<std::string> lifted(const drive_limits& l, std::size_t tactors)
 std::string limit_text(const drive_limits& l)
 {
     const std::string power =
-        std::isfinite(l.power_dbfs)
-            ? fmt::format("all together at most {:+.3g} dB of one at full scale", l.power_dbfs)
-            : "no limit on all together";
+        fmt::format("all together at most {:+.3g} dB of one at full scale", l.power_dbfs);
     return l.max_drive_s < l.window_s
                ? fmt::format("{}; each at most {:.4g} s in {:.4g} s", power, l.max_drive_s, l.window_s)
                : fmt::format("{}; no limit on time", power);

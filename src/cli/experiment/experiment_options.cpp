@@ -82,8 +82,8 @@ void check_experiment_options(const settings& s, const experiment_options& o)
         refuse_experiment("--format", "only --dry-run and --power have one", "leave it out");
     if (o.resume && (o.print || o.dry_run || o.check_noise))
         refuse_experiment("--resume", "no session is held", "leave it out");
-    if ((o.simulate || o.print || o.dry_run) && (s.stream.verbose || !s.stream.log.empty()))
-        refuse_experiment(s.stream.verbose ? "--verbose" : "--log", "nothing is played", "leave it out");
+    if (const std::string asked = asked_of_stream(s); !asked.empty() && (o.simulate || o.print || o.dry_run))
+        refuse_experiment(asked, "nothing is played", "leave it out");
     check_page_options(o.page, o.simulate.has_value() && !o.print && !o.dry_run);
     if (o.print || o.dry_run || o.check_noise)
         return;

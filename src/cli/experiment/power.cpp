@@ -165,10 +165,11 @@ void check_power_options(const settings& s, const power_options& p, const experi
     if (session || o.dry_run || o.print)
         refuse_power("--power", "it holds no session, and writes nothing",
                      "leave out --participant, -o, --resume, --dry-run and --print");
-    const bool told = s.stream.verbose || !s.stream.log.empty();
-    if (told || o.check_noise || o.page.shown() || !o.masker.empty() || !o.keypads.empty())
+    const std::string asked = asked_of_stream(s);
+    if (!asked.empty() || o.check_noise || o.page.shown() || !o.masker.empty() || !o.keypads.empty())
         refuse_power("--power", "nothing is played, and nobody sits there",
-                     "leave out --check-noise, --masker, --display, --page, --keypad, --verbose and --log");
+                     fmt::format("leave out --check-noise, --masker, --display, --page, --keypad and {}",
+                                 asked.empty() ? "--verbose" : asked));
 }
 
 int tell_power(const study::prepared_experiment& e, const power_options& p, const experiment_options& o)

@@ -47,11 +47,11 @@ void check(const live_options& o, unsigned rate)
         throw refused("timeout_s", fmt::format("a time-out of {} s", o.timeout_s), "give 0.001 to 86400 s");
     if (o.longest_s && !detail::bounds_of::timeout_s.holds(*o.longest_s))
         throw refused("longest_s", fmt::format("at most {} s of it", *o.longest_s), "give 0.001 to 86400 s");
-    if (!(o.smooth_s >= 0.0 && o.smooth_s <= 1.0))
+    if (!detail::bounds_of::smooth_s.holds(o.smooth_s))
         throw refused("smooth_s", fmt::format("points smoothed over {} s", o.smooth_s),
                       "give 0 (off) to 1 s");
-    if (o.render.ramp_s && !(*o.render.ramp_s >= 0.0 && *o.render.ramp_s <= 1.0))
-        throw refused("ramp_s", fmt::format("a ramp of {} s", *o.render.ramp_s), "give 0 to 1 s");
+    if (o.render.ramp_s && !detail::bounds_of::ramp_s.holds(*o.render.ramp_s))
+        throw refused("ramp_s", fmt::format("a ramp of {} s", *o.render.ramp_s), "give 0 to 10 s");
 }
 
 /// What of a plan says how it sounds.

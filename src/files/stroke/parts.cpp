@@ -43,7 +43,7 @@ std::optional<waveform> read_waveform(const toml_table& t, const std::filesystem
     const auto text = t.text("waveform");
     const auto seed = t.number("noise_seed", {0.0, 9007199254740992.0});
     const auto texture = t.kind<texture_kind>("texture");
-    const auto texture_mm = t.number("texture_mm", {0.0, max_mm, true});
+    const auto texture_mm = t.number("texture_mm", bounds_of::texture_mm);
     waveform w;
     if (text && folder == nullptr && waveform_names_file(*text))
         t.fail("waveform", fmt::format("waveform is a file, {}, and this text is none", *text),

@@ -131,9 +131,10 @@ class Player(_Unique):
         """Whether it was closed."""
         return self._get().core.closed  # type: ignore[no-any-return]
 
-    def play(self, score: Score, at: _At = "now", *, at_s: float | None = None, delay: float | None = None) -> Report:
+    def play(self, score: Score, at: _At = "now", *, at_s: float | None = None, delay: float | None = None,
+             frame: int | None = None) -> Report:
         """Plays a score and waits until it has ended; Ctrl-C fades it out. See `submit`."""
-        return self.submit(score, at, at_s=at_s, delay=delay).wait()
+        return self.submit(score, at, at_s=at_s, delay=delay, frame=frame).wait()
 
     def submit(self, score: Score, at: _At = "now", *, at_s: float | None = None, delay: float | None = None,
                frame: int | None = None) -> Ticket:

@@ -95,7 +95,7 @@ masking_definition read_masking(const toml_table& root)
     t->only({"noise", "level_dbfs", "fade_s", "while"});
     const std::string noise = t->choice("noise", {"white", "pink", "none"}).value_or("white");
     m.noise = noise == "white" ? noise_kind::white : noise == "pink" ? noise_kind::pink : noise_kind::none;
-    m.level_dbfs = t->number("level_dbfs", {-120.0, 0.0}).value_or(m.level_dbfs);
+    m.level_dbfs = t->number("level_dbfs", detail::bounds_of::masker_dbfs).value_or(m.level_dbfs);
     if (m.noise != noise_kind::none) {
         const double most = greatest_noise_dbfs(noise_of(m, {}).color);
         if (m.level_dbfs > most)

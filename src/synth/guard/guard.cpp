@@ -28,15 +28,15 @@ guard_settings guards_of(const drive_limits& l, unsigned rate)
 
 void check_limits(const drive_limits& l)
 {
-    if (std::isnan(l.power_dbfs) || l.power_dbfs < -120.0) {
+    if (!detail::bounds_of::power_dbfs.holds(l.power_dbfs)) {
         throw detail::bad_field("power_dbfs", fmt::format("{} dBFS is not one", l.power_dbfs),
-                                "give e.g. 4.77, three channels at full scale");
+                                "give -120 to 60 dB, e.g. 4.77, three channels at full scale");
     }
-    if (!(l.max_drive_s >= 0.1)) {
+    if (!detail::bounds_of::drive_s.holds(l.max_drive_s)) {
         throw detail::bad_field("max_drive_s", fmt::format("{} s is not a limit", l.max_drive_s),
-                                "give 0.1 s or more, e.g. 5");
+                                "give 0.1 to 3600 s, e.g. 5");
     }
-    if (!(l.window_s >= 0.1 && l.window_s <= longest_window_s)) {
+    if (!detail::bounds_of::drive_s.holds(l.window_s)) {
         throw detail::bad_field("window_s", fmt::format("{} s is no window", l.window_s),
                                 "give 0.1 to 3600 s, e.g. 10");
     }

@@ -9,10 +9,12 @@
 
 #include <tactor/render.hpp>
 
+#include "core/bounds.hpp"
+
 namespace tactor::synth {
 
 /// The longest window that drive_limits may have, s.
-inline constexpr double longest_window_s = 3600.0;
+inline constexpr double longest_window_s = detail::bounds_of::drive_s.high;
 
 /// Limits in the mixer's units; as initialised: no limits.
 struct guard_settings {
