@@ -248,6 +248,20 @@ TEST_CASE("drives that come too late end the stroke instead of starting in mid-b
     CHECK_FALSE(r.first_sound(from + 2400 + 4800 + 480));
 }
 
+TEST_CASE("a cancel ends a stroke whose drives never came, although its time is over")
+{
+    rig r({.loop = {.horizon_frames = 2400}});
+    REQUIRE(r.start().status == io_kind::ok);
+    const score s = random_score(31, 20);
+    const stroke_id id = r.submit(s);
+    while (r.status().written < s.frames() + 9600)
+        sleep_of_control(r, 1);
+    CHECK(r.feed.cancel(id)); // before the control thread hands over what is late
+    r.play(4800);
+    REQUIRE(r.report(id));
+    CHECK(r.report(id)->state == state_kind::cancelled);
+}
+
 TEST_CASE("a continuous stroke whose drives stop coming fades out before the last of them")
 {
     stroke around = preset_stroke("park2016-3");

@@ -165,9 +165,11 @@ void score_table::want_fade(entry& e, state_kind s, reason_kind why) noexcept
         over(e, s, why, 0, 0); // nothing of it has been mixed yet
         return;
     }
-    if (e.finish <= next && why != reason_kind::late && why != reason_kind::crowded &&
+    // All of it is on its way to the DAC: it finishes. Without its last command it would wait for ever, since
+    // of a score that is cancelled nothing more comes.
+    if (e.finish <= next && e.fed && why != reason_kind::late && why != reason_kind::crowded &&
         why != reason_kind::plan)
-        return; // all of it is on its way to the DAC: it finishes
+        return;
     e.state = s;
     e.why = why;
     e.fade_wanted = true;
