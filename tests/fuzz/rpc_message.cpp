@@ -5,6 +5,7 @@
 // empty line waits for all answers and then lets some periods of the device pass.
 #include <algorithm>
 #include <chrono>
+#include <iostream>
 #include <memory>
 #include <set>
 #include <string>
@@ -183,8 +184,11 @@ public:
         }
         settle(*box);
         send_as_watcher(R"({"jsonrpc":"2.0","method":"stop"})");
-        for (int steps = 0; !all_->input_ended(c) || seen_->is_playing(); ++steps)
+        for (int steps = 0; !all_->input_ended(c) || seen_->is_playing(); ++steps) {
             step(steps);
+            if (steps == most_steps_to_end)
+                tell_what_hangs(c);
+        }
         HOLDS(!box->is_owed() && !box->is_playing());
         all_->disconnect(c);
         seen_->forget();
@@ -194,6 +198,15 @@ public:
 
 private:
     static constexpr unsigned inputs_a_look = 64; // a look takes as long as a short message
+    // Of 4 ms of the device's time each, and at least 1 ms of other threads' time.
+    static constexpr int most_steps_to_end = 20'000;
+
+    void tell_what_hangs(server::client_number c)
+    {
+        std::cerr << "no end of " << (all_->input_ended(c) ? "strokes" : "messages") << ": "
+                  << all_->status_now().dump() << '\n';
+        HOLDS(false);
+    }
 
     void send(server::client_number c, listener& box, const std::string& line)
     {
