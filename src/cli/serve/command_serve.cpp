@@ -49,7 +49,7 @@ server::planning planning_of(const settings& s, const environment& e, const opti
                              const server::service_limits& limits)
 {
     server::planning p;
-    p.owner = s;
+    p.owner = static_cast<const options::wishes&>(s);
     p.owner.render = session::settle_render(s, e);
     p.max_level_dbfs = serve.max_level_dbfs.value_or(p.owner.render.level_dbfs);
     p.owner.render.level_dbfs = std::min(p.owner.render.level_dbfs, p.max_level_dbfs);

@@ -65,7 +65,7 @@ void add_saying(sayings& all, std::string text, const std::string& who)
 {
     auto at = std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.first == text; });
     if (at == all.end())
-        at = all.insert(at, {std::move(text), {}});
+        at = all.emplace(at, std::move(text), std::vector<std::string>());
     at->second.push_back(who);
 }
 
