@@ -13,6 +13,7 @@
 
 #include "net/access.hpp"
 #include "net/listen.hpp"
+#include "options/serve.hpp"
 #include "server/service.hpp"
 
 namespace tactor::server {
@@ -46,6 +47,15 @@ struct network_options {
         {}; ///< HTTP: other names of this server, and pages that may use it
     std::vector<net::address_prefix> osc_peers = {}; ///< OSC: other machines that are heard
 };
+
+/// Returns who else may come. \throws error (bad_input) for what is no prefix.
+network_options network_of(const options::serve_settings& s);
+
+service_limits limits_of(const options::serve_settings& s);
+
+/// Returns the text of token_file without its line end; empty for none. \throws error (bad_input) for a file
+/// that others may read, and for an empty one.
+std::string read_token(const options::serve_settings& s);
 
 /// Binds, or takes what was inherited. \throws error: see net/listen.hpp; bad_input for inherited sockets
 /// that are not what their names say.

@@ -15,7 +15,7 @@
 #include "cli/check/walk_session.hpp"
 #include "cli/commands.hpp"
 #include "cli/say.hpp"
-#include "cli/serve/owner.hpp"
+#include "server/server.hpp"
 #include "session/interrupt.hpp"
 #include "session/sound_server.hpp"
 
@@ -70,8 +70,8 @@ std::vector<finding> check_all(const settings& s, const environment& e)
             all.push_back(std::move(f));
     if (!e.config.serve.empty()) {
         try {
-            static_cast<void>(read_token(e.serve));
-            static_cast<void>(settle_network(e.serve));
+            static_cast<void>(server::read_token(e.serve));
+            static_cast<void>(server::network_of(e.serve));
             all.push_back(fine("service settings", "[serve] can be served"));
         } catch (const error& x) {
             all.push_back(failure("service settings", x));

@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "cli/commands.hpp"
 #include "cli/compare/compare_output.hpp"
@@ -16,6 +17,7 @@
 #include "cli/picture_options.hpp"
 #include "cli/progress.hpp"
 #include "cli/say.hpp"
+#include "core/kind_names.hpp"
 #include "core/split.hpp"
 #include "files/plan/compare_json.hpp"
 #include "plot/compare_figure.hpp"
@@ -30,31 +32,22 @@ using detail::comparison_choice;
 using detail::comparison_row;
 
 template <class Enum>
-std::vector<Enum> all_of()
+std::string names_of()
 {
-    const auto all = values_of<Enum>();
-    return {all.begin(), all.end()};
-}
-
-template <class Enum>
-std::string names_of(const std::vector<Enum>& values)
-{
-    std::string names;
-    for (const Enum v : values)
-        names += (names.empty() ? "" : ",") + std::string(to_string(v));
-    return names;
+    return fmt::format("{}", fmt::join(detail::names_of<Enum>(), ","));
 }
 
 // "a,b,c", each once, in the order given.
 template <class Enum>
-std::vector<Enum> parse_list(const char* option, std::string_view text, const std::vector<Enum>& known)
+std::vector<Enum> parse_list(const char* option, std::string_view text)
 {
+    const auto known = values_of<Enum>();
     std::vector<Enum> list;
     for (const std::string_view name : detail::split(text, ',')) {
         const auto v = std::find_if(known.begin(), known.end(), [&](Enum e) { return to_string(e) == name; });
         if (v == known.end())
             throw error(error_kind::bad_input, option, fmt::format("\"{}\" is not known", name),
-                        "one or more of " + names_of(known));
+                        "one or more of " + names_of<Enum>());
         if (std::find(list.begin(), list.end(), *v) != list.end())
             throw error(error_kind::bad_input, option, fmt::format("\"{}\" is there twice", name),
                         "name each once");
@@ -74,18 +67,14 @@ void add_lists(CLI::App& c, const std::shared_ptr<compare_options>& o)
 {
     auto* algorithms = c.add_option_function<std::string>(
         "--algorithms",
-        [o](const std::string& t) {
-            o->choice.algorithms = parse_list("--algorithms", t, all_of<algorithm_kind>());
-        },
+        [o](const std::string& t) { o->choice.algorithms = parse_list<algorithm_kind>("--algorithms", t); },
         "what to compare (default all three)");
-    algorithms->type_name(names_of(all_of<algorithm_kind>()));
+    algorithms->type_name(names_of<algorithm_kind>());
     auto* phantoms = c.add_option_function<std::string>(
         "--phantoms",
-        [o](const std::string& t) {
-            o->choice.phantoms = parse_list("--phantoms", t, all_of<phantom_kind>());
-        },
+        [o](const std::string& t) { o->choice.phantoms = parse_list<phantom_kind>("--phantoms", t); },
         "with which phantom models (default that of --phantom)");
-    phantoms->type_name(names_of(all_of<phantom_kind>()));
+    phantoms->type_name(names_of<phantom_kind>());
     c.get_option("--algorithm")->description("only this one; see --algorithms")->excludes(algorithms);
     c.get_option("--phantom")->excludes(phantoms);
     add_format_option(c, o->format, {"text", "json", "csv"}, "how to print it (default text)");
@@ -145,8 +134,12 @@ int run(settings& s, const compare_options& asked, bool one_algorithm)
 {
     const environment e = session::read_environment(s);
     comparison_choice choice = asked.choice;
-    if (choice.algorithms.empty())
-        choice.algorithms = one_algorithm ? std::vector{s.plan.algorithm} : all_of<algorithm_kind>();
+    if (choice.algorithms.empty()) {
+        const auto every = values_of<algorithm_kind>();
+        choice.algorithms.assign(every.begin(), every.end());
+        if (one_algorithm)
+            choice.algorithms = {s.plan.algorithm};
+    }
     if (choice.phantoms.empty())
         choice.phantoms = {s.plan.phantom};
     choice.observer = {s.observer, s.low_speed};

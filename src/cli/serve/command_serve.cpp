@@ -116,14 +116,12 @@ void tell_listening(const server::endpoints& at, const std::string& format)
                        {"http", or_null(http)}};
         fmt::print("{}\n", all.dump(-1, ' ', false, json::error_handler_t::replace));
     } else {
-        if (!at.socket_path.empty())
-            say(stdout, "listening: socket {}\n", at.socket_path);
-        if (!at.tcp_address.empty())
-            say(stdout, "listening: tcp {}\n", at.tcp_address);
-        if (!at.osc_address.empty())
-            say(stdout, "listening: osc {}\n", at.osc_address);
-        if (!http.empty())
-            say(stdout, "listening: {}\n", http);
+        for (const auto& [kind, address] : {std::pair("socket ", &at.socket_path),
+                                            {"tcp ", &at.tcp_address},
+                                            {"osc ", &at.osc_address},
+                                            {"", &http}})
+            if (!address->empty())
+                say(stdout, "listening: {}{}\n", kind, *address);
     }
     if (std::fflush(stdout) == 0)
         return;
@@ -175,13 +173,13 @@ int serve(settings& s, const serve_options& o)
     const session::stream_options& play = s.stream;
     const options::serve_settings serve = settle_serve(o, e.serve);
     const server::endpoint_options where = settle_endpoints(serve);
-    server::network_options network = settle_network(serve);
+    server::network_options network = server::network_of(serve);
     session::interrupt stop;
 
     server::service_options service;
-    service.limits = settle_service_limits(serve);
+    service.limits = server::limits_of(serve);
     provide_descriptors(service.limits);
-    service.token = read_token(serve);
+    service.token = server::read_token(serve);
     service.version = version();
     service.array = files::array_json(e.tactors);
     service.plans = planning_of(s, e, serve, service.limits);

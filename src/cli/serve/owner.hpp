@@ -29,20 +29,11 @@ options::serve_settings settle_serve(const serve_options& o, options::serve_sett
 /// loopback without a token.
 server::endpoint_options settle_endpoints(const options::serve_settings& s);
 
-/// Who else may come. \throws error (bad_input) for what is no prefix.
-server::network_options settle_network(const options::serve_settings& s);
-
-server::service_limits settle_service_limits(const options::serve_settings& s);
-
 /// Raises how many files may be open to what so many clients need; warns where that is not allowed.
 void provide_descriptors(const server::service_limits& l);
 
 /// Returns what `tactor plan --format json` prints, for the service's answers. \throws std::bad_alloc above
 /// `most_bytes`.
 std::string plan_text(const server::planned& p, const environment& e, std::size_t most_bytes);
-
-/// The text of token_file without its line end; empty for none. \throws error (bad_input) for a file that
-/// others may read, and for an empty one.
-std::string read_token(const options::serve_settings& s);
 
 } // namespace tactor::cli
