@@ -58,7 +58,8 @@ void check_width(double width_mm)
 {
     if (!(width_mm >= plot::least_width_mm && width_mm <= plot::most_width_mm))
         throw error(error_kind::bad_input, "width", plain_number(width_mm) + " mm is out of range",
-                    plain_number(plot::least_width_mm) + " to " + plain_number(plot::most_width_mm) + " mm");
+                    plain_number(plot::least_width_mm) + " to " + plain_number(plot::most_width_mm) + " mm")
+            .with_field("width");
 }
 
 plot::canvas draw(const compared& c, double width_mm)
@@ -71,7 +72,8 @@ void check_dpi(unsigned dpi)
 {
     if (dpi < plot::least_dpi || dpi > plot::most_dpi)
         throw error(error_kind::bad_input, "dpi", std::to_string(dpi) + " is out of range",
-                    std::to_string(plot::least_dpi) + " to " + std::to_string(plot::most_dpi));
+                    std::to_string(plot::least_dpi) + " to " + std::to_string(plot::most_dpi))
+            .with_field("dpi");
 }
 
 plot::figure_view view_from(const std::string& name)

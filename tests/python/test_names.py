@@ -156,7 +156,8 @@ HAS_NOT = {
     "parse_envelope envelope_text": "envelope and tukey_part of a Score",
     "parse_waveform waveform_names_file waveform_text parse_modulation recording load_recording": "plan(waveform=..., am=...) read texts and files",
     "least_noise_hz most_cycle_samples most_recording_samples max_pcm_channels": "bounds, which messages say",
-    "carrier_part carrier_point": "of stroke files: Stroke.load(), and the record of a plan: Plan.to_dict()",
+    "stroke_fit stroke_sound stroke_places carrier_part carrier_point":
+        "of stroke files: Stroke.load(), and the record of a plan: Plan.to_dict()",
     "threshold_point threshold_at": "Tactor.thresholds; a Score uses them",
     "score_builder": "a Score is made from plans that are there; the tool plans strokes while it places them",
     "sink paced_sink io_kind io_result stream_position": "what the audio thread calls cannot be Python",
