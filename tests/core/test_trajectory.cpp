@@ -13,10 +13,7 @@
 
 namespace trajectory_test {
 
-using tactor::path;
-using tactor::point;
-using tactor::timed_point;
-using tactor::trajectory;
+using namespace tactor;
 
 namespace {
 

@@ -9,6 +9,7 @@
 
 #include <tactor/player.hpp>
 
+#include "clock_runner.hpp"
 #include "player_support.hpp"
 #include "scores.hpp"
 

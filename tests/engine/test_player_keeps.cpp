@@ -7,6 +7,7 @@
 
 #include <tactor/player.hpp>
 
+#include "clock_runner.hpp"
 #include "fake_dac.hpp"
 #include "player_support.hpp"
 #include "rig.hpp"
