@@ -28,6 +28,11 @@ std::optional<double> seconds(std::optional<double> ms)
     return ms ? std::optional(*ms * 1e-3) : std::nullopt;
 }
 
+said_value said_at(const toml_table& t, const toml_table::said_key& e, const toml::node& n, bool in_list)
+{
+    return {std::string(e.key), t.plain(n, e.key), in_list, t.where(n), e.key_at};
+}
+
 } // namespace
 
 void read_output(const toml_table& root, located_setup& out)
@@ -114,8 +119,7 @@ void read_defaults(const toml_table& root, setup& out)
         return;
     for (const toml_table::said_key& e : t->entries()) {
         std::erase_if(out.defaults, [&e](const said_value& d) { return d.name == e.key; });
-        out.defaults.push_back(
-            {std::string(e.key), t->plain(*e.value, e.key), false, t->where(*e.value), e.key_at});
+        out.defaults.push_back(said_at(*t, e, *e.value, false));
     }
 }
 
@@ -125,16 +129,12 @@ void read_serve(const toml_table& root, setup& out)
     if (!t)
         return;
     out.serve.clear();
-    for (const toml_table::said_key& e : t->entries()) {
-        const auto add = [&](const toml::node& n, bool in_list) {
-            out.serve.push_back({std::string(e.key), t->plain(n, e.key), in_list, t->where(n), e.key_at});
-        };
+    for (const toml_table::said_key& e : t->entries())
         if (const toml::array* list = e.value->as_array())
             for (const toml::node& n : *list)
-                add(n, true);
+                out.serve.push_back(said_at(*t, e, n, true));
         else
-            add(*e.value, false);
-    }
+            out.serve.push_back(said_at(*t, e, *e.value, false));
 }
 
 } // namespace tactor::detail

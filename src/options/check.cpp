@@ -13,17 +13,6 @@
 namespace tactor::options {
 namespace {
 
-std::string shown(const value& v)
-{
-    if (const auto* b = std::get_if<bool>(&v))
-        return *b ? "true" : "false";
-    if (const auto* d = std::get_if<double>(&v))
-        return fmt::format("{}", *d);
-    if (const auto* s = std::get_if<std::string>(&v))
-        return fmt::format("\"{}\"", *s);
-    return "that";
-}
-
 value choose(const option& o, const value& v)
 {
     const auto* name = std::get_if<std::string>(&v);

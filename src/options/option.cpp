@@ -79,6 +79,17 @@ std::string mark(const option& o)
     return fmt::format("{{{}}}", o.name);
 }
 
+std::string shown(const value& v)
+{
+    if (const auto* b = std::get_if<bool>(&v))
+        return *b ? "true" : "false";
+    if (const auto* d = std::get_if<double>(&v))
+        return fmt::format("{}", *d);
+    if (const auto* s = std::get_if<std::string>(&v))
+        return fmt::format("\"{}\"", *s);
+    return "that";
+}
+
 error refusal(const option& o, std::string_view why, std::string_view hint)
 {
     return error(error_kind::bad_input, mark(o), why, hint).with_field(o.name);

@@ -98,6 +98,8 @@ struct option {
 [[nodiscard]] std::vector<std::string> dashed_names(std::uint64_t where);
 /// Returns the mark of a row: "{soa}".
 [[nodiscard]] std::string mark(const option& o);
+/// Returns a value as messages show it.
+[[nodiscard]] std::string shown(const value& v);
 /// Returns an error about an option. Its texts may have marks.
 [[nodiscard]] error refusal(const option& o, std::string_view why, std::string_view hint);
 

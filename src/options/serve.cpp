@@ -19,6 +19,7 @@
 #include "core/prefix_bits.hpp"
 #include "core/suggest.hpp"
 #include "core/words.hpp"
+#include "options/option.hpp"
 
 namespace tactor::options {
 namespace {
@@ -28,19 +29,11 @@ namespace {
     throw error(error_kind::bad_input, d.at, why, hint).with_field(d.name);
 }
 
-std::string shown(const said_value& d)
-{
-    if (const auto* text = std::get_if<std::string>(&d.said))
-        return fmt::format("\"{}\"", *text);
-    const auto* flag = std::get_if<bool>(&d.said);
-    return flag != nullptr ? fmt::format("{}", *flag) : plain_number(std::get<double>(d.said));
-}
-
 std::string text_of(const said_value& d)
 {
     const auto* text = std::get_if<std::string>(&d.said);
     if (text == nullptr)
-        fail(d, fmt::format("{} is {}", d.name, shown(d)), "give a string in quotes");
+        fail(d, fmt::format("{} is {}", d.name, shown(d.said)), "give a string in quotes");
     if (text->empty() || text->find('\0') != std::string::npos)
         fail(d, fmt::format("{} is {}", d.name, text->empty() ? "empty" : "not text"), {});
     return *text;
@@ -50,9 +43,10 @@ double number_of(const said_value& d, detail::bounds b, bool whole)
 {
     const auto* v = std::get_if<double>(&d.said);
     if (v == nullptr || (whole && *v != std::floor(*v)))
-        fail(d, fmt::format("{} is {}", d.name, shown(d)), whole ? "give a whole number" : "give a number");
+        fail(d, fmt::format("{} is {}", d.name, shown(d.said)),
+             whole ? "give a whole number" : "give a number");
     if (!b.holds(*v))
-        fail(d, fmt::format("{} is {}", d.name, shown(d)),
+        fail(d, fmt::format("{} is {}", d.name, shown(d.said)),
              fmt::format("allowed: {} to {}", plain_number(b.low), plain_number(b.high)));
     return *v;
 }
@@ -149,7 +143,7 @@ void take(serve_settings& s, const key& k, const said_value& d)
 {
     const auto* list = std::get_if<list_place>(&k.to);
     if ((list != nullptr) != d.in_list)
-        fail(d, fmt::format("{} is {}", d.name, d.in_list ? "a list" : shown(d)),
+        fail(d, fmt::format("{} is {}", d.name, d.in_list ? "a list" : shown(d.said)),
              d.in_list ? "give one value" : "give a list of texts");
     if (list != nullptr)
         (s.*(*list)).push_back(k.read_text(d));

@@ -163,31 +163,26 @@ const json* member(const json& params, const char* name)
 
 double number(const json& v, const std::string& what, detail::bounds b)
 {
-    return number(v, what, b.low, b.high);
-}
-
-double number(const json& v, const std::string& what, double low, double high)
-{
+    const std::string range = fmt::format("{} to {}", plain_number(b.low), plain_number(b.high));
     if (!v.is_number())
-        bad_param(what, "it is no number", fmt::format("{} to {}", plain_number(low), plain_number(high)));
+        bad_param(what, "it is no number", range);
     const auto n = v.get<double>();
-    if (!std::isfinite(n) || n < low || n > high)
-        bad_param(what, fmt::format("{} is out of range", n),
-                  fmt::format("{} to {}", plain_number(low), plain_number(high)));
+    if (!std::isfinite(n) || !b.holds(n))
+        bad_param(what, fmt::format("{} is out of range", n), range);
     return n;
 }
 
-double need_number(const json& params, const char* name, double low, double high)
+double need_number(const json& params, const char* name, detail::bounds b)
 {
     const json* v = member(params, name);
     if (v == nullptr)
         bad_param(name, "it is missing", "give a number");
-    return number(*v, name, low, high);
+    return number(*v, name, b);
 }
 
 std::uint32_t need_stroke(const json& params)
 {
-    const double n = need_number(params, "stroke", 0, 4294967295.0);
+    const double n = need_number(params, "stroke", {0, 4294967295.0});
     if (n != std::floor(n))
         bad_param("stroke", fmt::format("{} is no whole number", n));
     return static_cast<std::uint32_t>(n);

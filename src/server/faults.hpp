@@ -48,10 +48,9 @@ void only(const net::json& params, std::initializer_list<std::string_view> known
 /// A member, or null where there is none.
 const net::json* member(const net::json& params, const char* name);
 /// A number within bounds. \throws fault_error.
-double number(const net::json& v, const std::string& what, double low, double high);
 double number(const net::json& v, const std::string& what, detail::bounds b);
 /// A required one.
-double need_number(const net::json& params, const char* name, double low, double high);
+double need_number(const net::json& params, const char* name, detail::bounds b);
 std::uint32_t need_stroke(const net::json& params);
 const std::string& text(const net::json& v, const std::string& what);
 

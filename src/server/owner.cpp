@@ -15,7 +15,7 @@
 
 namespace tactor::server {
 
-network_options network_of(const options::serve_settings& s)
+network_options settle_network(const options::serve_settings& s)
 {
     network_options n{.allow_hosts = s.allow_hosts};
     for (const std::string& p : s.osc_peers)
@@ -23,7 +23,7 @@ network_options network_of(const options::serve_settings& s)
     return n;
 }
 
-service_limits limits_of(const options::serve_settings& s)
+service_limits settle_limits(const options::serve_settings& s)
 {
     service_limits l;
     l.max_clients = s.max_clients.value_or(l.max_clients);

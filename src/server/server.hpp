@@ -49,9 +49,9 @@ struct network_options {
 };
 
 /// Returns who else may come. \throws error (bad_input) for what is no prefix.
-network_options network_of(const options::serve_settings& s);
+network_options settle_network(const options::serve_settings& s);
 
-service_limits limits_of(const options::serve_settings& s);
+service_limits settle_limits(const options::serve_settings& s);
 
 /// Returns the text of token_file without its line end; empty for none. \throws error (bad_input) for a file
 /// that others may read, and for an empty one.

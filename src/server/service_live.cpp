@@ -117,11 +117,11 @@ void service::to(client& c, const json& params, const answer& to)
         limit_reached("max_points_per_s",
                       fmt::format("{} points in a second are the most", options_.limits.max_points_per_s));
     const std::uint32_t n = need_stroke(params);
-    const double x = need_number(params, "x_mm", -farthest_mm, farthest_mm);
-    const double y = need_number(params, "y_mm", -farthest_mm, farthest_mm);
+    const double x = need_number(params, "x_mm", {-farthest_mm, farthest_mm});
+    const double y = need_number(params, "y_mm", {-farthest_mm, farthest_mm});
     const json* given = member(params, "intensity");
     const double intensity =
-        given == nullptr ? 1.0 : number(*given, "intensity", 0.0, std::numeric_limits<double>::max());
+        given == nullptr ? 1.0 : number(*given, "intensity", {0.0, std::numeric_limits<double>::max()});
     stroke_record& r = own_live(c, n);
     try {
         if (!r.live->to(x, y, intensity))

@@ -138,7 +138,7 @@ void service::subscribe(client& c, const json& params, const answer& to)
     }
     const json* hz = member(params, "levels_hz");
     constexpr double usual_hz = 30.0;
-    const double rate = hz == nullptr ? usual_hz : number(*hz, "levels_hz", 0.01, most_levels_hz);
+    const double rate = hz == nullptr ? usual_hz : number(*hz, "levels_hz", {0.01, most_levels_hz});
     c.events = std::move(wanted);
     c.levels_hz = rate;
     to.result(reply_json::object());

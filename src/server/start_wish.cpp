@@ -28,10 +28,10 @@ start_wish read_start(const net::json* start, std::int64_t now_ns)
     const std::string what = "start." + name;
     const double most_s = 9e9; // a time of day for centuries
     if (name == "delay_s")
-        return {false, now_ns + std::llround(number(value, what, 0.0, longest_wait_s) * 1e9)};
+        return {false, now_ns + std::llround(number(value, what, {0.0, longest_wait_s}) * 1e9)};
     if (name != "monotonic_s" && name != "unix_s")
         bad_param(what, "it is not known", forms);
-    std::int64_t at = std::llround(number(value, what, 0.0, most_s) * 1e9);
+    std::int64_t at = std::llround(number(value, what, {0.0, most_s}) * 1e9);
     if (name == "unix_s")
         at += now_ns - unix_ns();
     if (static_cast<double>(at - now_ns) * 1e-9 > longest_wait_s)

@@ -244,11 +244,11 @@ planned make_drive(const planning& with, const json& params)
 {
     only(params, {"tactor", "intensity", "duration_s", "start"});
     const auto count = static_cast<double>(with.tactors.tactors.size());
-    const double tactor = need_number(params, "tactor", 0, count - 1);
+    const double tactor = need_number(params, "tactor", {0, count - 1});
     if (tactor != std::floor(tactor))
         bad_param("tactor", fmt::format("{} is no whole number", tactor), "they count from 0");
     const json* given = member(params, "intensity");
-    const double intensity = given == nullptr ? 1.0 : number(*given, "intensity", 0, 1);
+    const double intensity = given == nullptr ? 1.0 : number(*given, "intensity", detail::bounds_of::part);
     given = member(params, "duration_s");
     constexpr double usual_s = 0.5;
     const double seconds =

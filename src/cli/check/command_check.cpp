@@ -71,7 +71,7 @@ std::vector<finding> check_all(const settings& s, const environment& e)
     if (!e.config.serve.empty()) {
         try {
             static_cast<void>(server::read_token(e.serve));
-            static_cast<void>(server::network_of(e.serve));
+            static_cast<void>(server::settle_network(e.serve));
             all.push_back(fine("service settings", "[serve] can be served"));
         } catch (const error& x) {
             all.push_back(failure("service settings", x));

@@ -32,7 +32,7 @@ using detail::comparison_choice;
 using detail::comparison_row;
 
 template <class Enum>
-std::string names_of()
+std::string join_names()
 {
     return fmt::format("{}", fmt::join(detail::names_of<Enum>(), ","));
 }
@@ -47,7 +47,7 @@ std::vector<Enum> parse_list(const char* option, std::string_view text)
         const auto v = std::find_if(known.begin(), known.end(), [&](Enum e) { return to_string(e) == name; });
         if (v == known.end())
             throw error(error_kind::bad_input, option, fmt::format("\"{}\" is not known", name),
-                        "one or more of " + names_of<Enum>());
+                        "one or more of " + join_names<Enum>());
         if (std::find(list.begin(), list.end(), *v) != list.end())
             throw error(error_kind::bad_input, option, fmt::format("\"{}\" is there twice", name),
                         "name each once");
@@ -69,12 +69,12 @@ void add_lists(CLI::App& c, const std::shared_ptr<compare_options>& o)
         "--algorithms",
         [o](const std::string& t) { o->choice.algorithms = parse_list<algorithm_kind>("--algorithms", t); },
         "what to compare (default all three)");
-    algorithms->type_name(names_of<algorithm_kind>());
+    algorithms->type_name(join_names<algorithm_kind>());
     auto* phantoms = c.add_option_function<std::string>(
         "--phantoms",
         [o](const std::string& t) { o->choice.phantoms = parse_list<phantom_kind>("--phantoms", t); },
         "with which phantom models (default that of --phantom)");
-    phantoms->type_name(names_of<phantom_kind>());
+    phantoms->type_name(join_names<phantom_kind>());
     c.get_option("--algorithm")->description("only this one; see --algorithms")->excludes(algorithms);
     c.get_option("--phantom")->excludes(phantoms);
     add_format_option(c, o->format, {"text", "json", "csv"}, "how to print it (default text)");
@@ -134,12 +134,11 @@ int run(settings& s, const compare_options& asked, bool one_algorithm)
 {
     const environment e = session::read_environment(s);
     comparison_choice choice = asked.choice;
-    if (choice.algorithms.empty()) {
-        const auto every = values_of<algorithm_kind>();
+    const auto every = values_of<algorithm_kind>();
+    if (one_algorithm)
+        choice.algorithms = {s.plan.algorithm};
+    else if (choice.algorithms.empty())
         choice.algorithms.assign(every.begin(), every.end());
-        if (one_algorithm)
-            choice.algorithms = {s.plan.algorithm};
-    }
     if (choice.phantoms.empty())
         choice.phantoms = {s.plan.phantom};
     choice.observer = {s.observer, s.low_speed};

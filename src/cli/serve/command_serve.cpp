@@ -173,11 +173,11 @@ int serve(settings& s, const serve_options& o)
     const session::stream_options& play = s.stream;
     const options::serve_settings serve = settle_serve(o, e.serve);
     const server::endpoint_options where = settle_endpoints(serve);
-    server::network_options network = server::network_of(serve);
+    server::network_options network = server::settle_network(serve);
     session::interrupt stop;
 
     server::service_options service;
-    service.limits = server::limits_of(serve);
+    service.limits = server::settle_limits(serve);
     provide_descriptors(service.limits);
     service.token = server::read_token(serve);
     service.version = version();

@@ -69,31 +69,29 @@ std::vector<json_value> json_value::list() const
     return all;
 }
 
-std::optional<double> json_value::number() const
+template <class T>
+std::optional<T> json_value::get(bool (ordered_json::*is_one)() const noexcept, std::string_view why) const
 {
     if (!there())
         return {};
-    if (!value_->is_number())
-        refuse("is no number");
-    return value_->get<double>();
+    if (!(value_->*is_one)())
+        refuse(why);
+    return value_->get<T>();
+}
+
+std::optional<double> json_value::number() const
+{
+    return get<double>(&ordered_json::is_number, "is no number");
 }
 
 std::optional<std::string> json_value::text() const
 {
-    if (!there())
-        return {};
-    if (!value_->is_string())
-        refuse("is no text");
-    return value_->get<std::string>();
+    return get<std::string>(&ordered_json::is_string, "is no text");
 }
 
 std::optional<bool> json_value::truth() const
 {
-    if (!there())
-        return {};
-    if (!value_->is_boolean())
-        refuse("is neither true nor false");
-    return value_->get<bool>();
+    return get<bool>(&ordered_json::is_boolean, "is neither true nor false");
 }
 
 int json_value::need_whole(int least, int most) const

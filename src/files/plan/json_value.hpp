@@ -82,6 +82,8 @@ private:
     }
 
     template <class T>
+    std::optional<T> get(bool (nlohmann::ordered_json::*is_one)() const noexcept, std::string_view why) const;
+    template <class T>
     T need(std::optional<T> v) const
     {
         if (!v)

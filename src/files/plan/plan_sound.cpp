@@ -144,7 +144,7 @@ void take_sound(const json_value& stroke, plan& p)
         if (c["bend"].there())
             take_bend(c, next);
         const bool ascends = p.course.empty() ? next.t_s >= 0.0 : next.t_s >= p.course.back().t_s;
-        if (!ascends || !(next.hz >= 0.0 && next.hz <= 384000.0))
+        if (!ascends || !(next.hz >= 0.0 && next.hz <= detail::bounds_of::carrier_hz.high))
             stroke["course"].refuse("has a point out of order, or with no frequency");
         p.course.push_back(next);
     }

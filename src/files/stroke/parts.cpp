@@ -41,7 +41,7 @@ void need_with(const toml_table& t, const char* key, bool used, const char* hint
 std::optional<waveform> read_waveform(const toml_table& t, const std::filesystem::path* folder)
 {
     const auto text = t.text("waveform");
-    const auto seed = t.number("noise_seed", {0.0, 9007199254740992.0});
+    const auto seed = t.number("noise_seed", bounds_of::seed);
     const auto texture = t.kind<texture_kind>("texture");
     const auto texture_mm = t.number("texture_mm", bounds_of::texture_mm);
     waveform w;
