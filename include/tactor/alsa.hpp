@@ -63,7 +63,7 @@ struct count_range {
     unsigned most = 0;
 };
 
-/// What a PCM takes. Each value counts by itself: on some devices not every combination works.
+/// The abilities of a PCM. Each value counts by itself: on some devices not every combination works.
 struct pcm_abilities {
     /// Channel counts, ascending, as ranges without gaps. A range that ends at 1024 may go on beyond.
     std::vector<count_range> channels = {};
@@ -88,9 +88,9 @@ struct pcm_info {
     bool hardware = false;        ///< a card's own device, without conversion
     bool wanted = false;          ///< list_pcms() was asked about this one
     bool opened = false;
-    /// Why it was not opened, and what to do. A PCM whose opening would empty a file or start a command is
-    /// never tried here. One whose opening would start a card (mixers such as dmix do) or a sound server is
-    /// tried only if it is the one that is wanted. open_alsa() tries them all.
+    /// The reason why it was not opened, and what to do. A PCM whose opening would empty a file or start a
+    /// command is never tried here. One whose opening would start a card (mixers such as dmix do) or a sound
+    /// server is tried only if it is the one that is wanted. open_alsa() tries them all.
     std::string error = {};
     bool tried = true;                      ///< false: see error
     std::vector<process_info> holders = {}; ///< who has a card's own device open
@@ -98,10 +98,10 @@ struct pcm_info {
     std::string misfit = {}; ///< why it cannot play what is wanted; empty: it can, or not known
 };
 
-/// All PCMs for playback: each device of each card, then those that ALSA's configuration names. They are
-/// opened and looked at, not configured: nothing sounds and no other program is disturbed. With `wanted` the
-/// list also says which of them take exactly its channels, rate and format, as open_alsa() would ask for; its
-/// PCM is listed even where nothing else lists it. Blocks for some milliseconds. Any thread, but one at a
+/// Lists the PCMs for playback: each device of each card, then those that ALSA's configuration names. They
+/// are opened and looked at, not configured: nothing sounds and no other program is disturbed. With `wanted`
+/// the list also says which of them take exactly its channels, rate and format, as open_alsa() would ask for;
+/// its PCM is listed even where nothing else lists it. Blocks for some milliseconds. Any thread, but one at a
 /// time.
 /// \throws error: bad_input for numbers in `wanted` that no PCM can have; runtime, as all below, when the
 ///         process has no descriptors left. PCMs that cannot be opened say so in the list.
@@ -119,7 +119,7 @@ struct pcm_route {
 /// some milliseconds (ALSA reads its configuration). Any thread, but one at a time.
 [[nodiscard]] TACTOR_API pcm_route route_of(const std::string& pcm);
 
-/// Which channels of the device a PCM would reach if it were opened with so many channels, as ALSA's
+/// Tells which channels of the device a PCM would reach if it were opened with so many channels, as ALSA's
 /// configuration says: through tables, bindings and everything else that hands channels on. As route_of(), it
 /// blocks for some milliseconds, opens nothing, and does not throw for names that are not defined. Any
 /// thread, but one at a time.
@@ -141,12 +141,12 @@ struct card_info {
     std::string name = {}; ///< for people
 };
 
-/// The card that the name of a PCM refers to, as in "hw:CARD=Tactor" or "plughw:1,0"; nothing where there is
-/// no such card. Blocks shortly (/proc). Any thread.
+/// Finds the card that the name of a PCM refers to, as in "hw:CARD=Tactor" or "plughw:1,0"; nothing where
+/// there is no such card. Blocks shortly (/proc). Any thread.
 [[nodiscard]] TACTOR_API std::optional<card_info> card_of(const std::string& pcm);
 
-/// Who has a playback device of this card open. Of other users' processes only those that the driver tells
-/// of. Blocks shortly (/proc). Any thread.
+/// Lists who has a playback device of this card open. Of other users' processes only those that the driver
+/// tells of. Blocks shortly (/proc). Any thread.
 [[nodiscard]] TACTOR_API std::vector<process_info> card_holders(unsigned card_index);
 
 } // namespace v0

@@ -83,7 +83,7 @@ private:
     std::shared_ptr<const data> data_; ///< never none: an error is not moved from
 };
 
-/// How much it matters.
+/// The importance of a message.
 enum class log_kind {
     debug,   ///< what was tried
     info,    ///< what was agreed on, begins, goes on or ends in order

@@ -103,7 +103,7 @@ public:
                                                                 double debounce_s = 0.001,
                                                                 pull_kind pull = pull_kind::as_is);
 
-/// One line of a GPIO chip, as the kernel describes it.
+/// A line of a GPIO chip, as the kernel describes it.
 struct gpio_line_info {
     unsigned offset = 0;
     std::string name = {};     ///< empty: none
@@ -118,7 +118,7 @@ struct gpio_chip_info {
     std::string error = {}; ///< why it could not be opened; empty: it could
 };
 
-/// All GPIO chips, by path. Does not throw for chips that cannot be opened. Blocks shortly.
+/// Lists the GPIO chips, by path. Does not throw for chips that cannot be opened. Blocks shortly.
 /// \throws error (runtime) when the process has no descriptors left.
 [[nodiscard]] TACTOR_API std::vector<gpio_chip_info> list_gpio();
 

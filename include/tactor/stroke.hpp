@@ -156,7 +156,7 @@ struct carrier_part {
     friend bool operator==(const carrier_part&, const carrier_part&) = default;
 };
 
-/// How a stroke sounds, in place of what all strokes have.
+/// The sound of a stroke, in place of what all strokes have.
 struct stroke_sound {
     std::optional<double> carrier_hz = {};
     /// The carrier along the path, linear between parts, which ascend; in place of carrier_hz. Its phase goes
@@ -175,7 +175,7 @@ struct stroke_fit {
     friend bool operator==(const stroke_fit&, const stroke_fit&) = default;
 };
 
-/// Where a file says parts of a stroke, for messages. Line 0: it is not in a file.
+/// The places of a stroke in its file, for messages. Line 0: it is not in a file.
 struct stroke_places {
     source_place choices = {}; ///< of choices.soa_s, or else of choices.burst_s
     source_place start = {};   ///< of a start_s below 0
