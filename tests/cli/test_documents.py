@@ -28,8 +28,9 @@ pcm.hw {
     type null
 }
 """
+GUIDE = sorted((ROOT / "man/guide").glob("*.md"))
 # What is run, by how it begins. What is neither here nor below fails.
-RUN = ("tactor ", "build/src/cli/tactor ", "man -l man/", "python3 -m jsonschema ")
+RUN = ("tactor ", "build/src/cli/tactor ", "man -l man/", "python3 -m jsonschema ", "printf ")
 # Commands, by how they begin, that are not run here, and why.
 NOT_RUN = {
     "sudo ": "needs root and changes the system",
@@ -39,6 +40,7 @@ NOT_RUN = {
     "tests/run": "would run this test",
     "meson compile -C build docs": "the suite docs does it",
     "meson compile -C build": "the lane tests/lanes/deb builds with the service",
+    "meson setup small": "the lane tests/lanes/small does it",
     "meson setup build -Dservice=true": "the lane tests/lanes/deb builds with the service",
     "c++ ": "the suite install compiles it against an installed library",
     "cp -r examples/debian": "the lane tests/lanes/deb does it",
@@ -60,8 +62,8 @@ NOT_RUN = {
 SOMEBODY = [(r"^((?:build/src/cli/)?tactor calibrate .*)-D hw:CARD=Tactor", r"\1--simulate threshold=-45", "there is nobody to answer"),
             (r"^((?:build/src/cli/)?tactor experiment (?!.*--check-noise).*)-D hw:CARD=Tactor", r"\1--simulate seed=1", "there is nobody to answer"),
             (r" --page 4004$", "", "and nobody to look at a page")]
-INSTEAD = {
-    "README.md": SOMEBODY + [(r"--(http|osc) 400\d", r"--\1 0", "the port may be somebody else's")],
+INSTEAD = dict.fromkeys(["README.md", *(f"man/guide/{page.name}" for page in GUIDE)],
+                        SOMEBODY + [(r"--(http|osc) 400\d", r"--\1 0", "the port may be somebody else's")]) | {
     "man/tactor-calibrate.1": [*SOMEBODY, (r" --array P07.toml(?= -o P07-again)", "", "P07.toml is made by a later example")],
     "man/tactor-experiment.1": SOMEBODY,
     "tactor calibrate --help": SOMEBODY,
@@ -95,7 +97,8 @@ class Documents(ToolTest):
         self.write("alsa.conf", ALSA_CONFIG + CARD)
         for place, program in (("bin/tactor", str(TOOL)), ("build/src/cli/tactor", str(TOOL)), ("bin/python3", sys.executable)):
             self.write(place, f'#!/bin/sh\nexec {shlex.quote(program)} "$@"\n').chmod(0o755)
-        (self.dir / "man").symlink_to(ROOT / "man")
+        for folder in ("man", "examples"):
+            (self.dir / folder).symlink_to(ROOT / folder)
         for study in ("study", "STUDY", "DIR"):  # as analyze's page and the README call a study's folder
             studies.simulated(self.dir / study)
         self.env |= {"PATH": f"{self.dir}/bin:{os.environ['PATH']}", "MANPAGER": "cat", "LC_ALL": "C.UTF-8"}
@@ -179,6 +182,31 @@ class Documents(ToolTest):
         self.follow("README.md", code_of_markdown((ROOT / "README.md").read_text(encoding="utf-8")))
         self.assertGreater(self.ran, 12)
 
+    def test_guide(self):
+        mine = {file.name for file in self.dir.iterdir()}
+        for page in GUIDE:
+            self.follow(f"man/guide/{page.name}", code_of_markdown(page.read_text(encoding="utf-8")))
+            for made in self.dir.iterdir():  # no page needs what another has made
+                if made.name not in mine:
+                    shutil.rmtree(made) if made.is_dir() else made.unlink()
+        self.assertGreater(self.ran, 30)
+
+    def test_links_lead_somewhere_and_the_guide_to_each_of_its_pages(self):
+        linked = set()
+        for file in [*(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "SECURITY.md", "NEWS.md")), *GUIDE]:
+            for link in re.findall(r"\]\(([^)#\s]+)", file.read_text(encoding="utf-8")):
+                if not re.match(r"[a-z]+:", link):
+                    self.assertTrue((file.parent / link).exists(), f"{file.name}: {link}")
+                    linked.add((file.parent / link).resolve())
+        self.assertEqual({page.name for page in GUIDE} - {file.name for file in linked}, set())
+
+    def test_readme_fits_a_screen_or_two_and_lines_fit_100_columns(self):
+        self.assertLessEqual(len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()), 130)
+        wide = [f"{file.name}:{number}" for file in [ROOT / "README.md", *GUIDE]
+                for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1)
+                if len(line) > 100 and not line.startswith(("|", "!", ">"))]
+        self.assertEqual(wide, [])
+
     def test_readmes_of_examples(self):
         for file in sorted((ROOT / "examples").rglob("README.md")):
             self.follow(file.relative_to(ROOT).as_posix(), code_of_markdown(file.read_text(encoding="utf-8")))
@@ -204,7 +232,7 @@ class Documents(ToolTest):
         self.assertGreaterEqual(self.ran, 5)
 
     def test_what_is_not_run_is_shown_somewhere(self):
-        shown = [block.text for file in [ROOT / "README.md", *(ROOT / "examples").rglob("README.md")]
+        shown = [block.text for file in [ROOT / "README.md", *GUIDE, *(ROOT / "examples").rglob("README.md")]
                  for block in code_of_markdown(file.read_text(encoding="utf-8"))]
         shown += [block.text for page in (ROOT / "man").glob("*.[1-8]") for block in code_of_man(page.read_text(encoding="utf-8"))]
         self.assertEqual([begin for begin in NOT_RUN if not any(text.startswith(begin) for text in shown)], [])
@@ -253,9 +281,14 @@ class OneName(ToolTest):
     TAKEN = {0, 1, 2, 3, *range(18, 28)}
 
     def texts(self):
-        files = [ROOT / "README.md", *(ROOT / "man").glob("*.[1-8]"), *(ROOT / "udev").iterdir(),
+        files = [ROOT / "README.md", *GUIDE, *(ROOT / "man").glob("*.[1-8]"), *(ROOT / "udev").iterdir(),
                  *(f for f in (ROOT / "examples").rglob("*") if f.is_file() and f.suffix not in (".svg", ".wav"))]
         return {f.relative_to(ROOT).as_posix(): f.read_text(encoding="utf-8") for f in files}
+
+    def test_the_version_is_the_same_everywhere(self):
+        version = re.search(r"version: '([\d.]+)'", (ROOT / "meson.build").read_text(encoding="utf-8"))[1]
+        self.assertIn(f"\nversion: {version}\n", (ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+        self.assertEqual(self.ok("--version").stdout.split()[1], version)
 
     def test_the_card_of_the_array(self):
         found = collections.Counter()

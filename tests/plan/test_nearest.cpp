@@ -204,7 +204,7 @@ TEST_CASE("on a 20 x 40 mm grid the three closest are in one line in 44 % of pla
     CHECK(make_plan(preset_array("palm-3x3"), preset_stroke("park2016-1"), o).warnings.empty());
 }
 
-TEST_CASE("on the example of scattered tactors README's shares hold")
+TEST_CASE("the guide's shares hold on the example of scattered tactors")
 {
     const setup s =
         load_setup(std::filesystem::path(TACTOR_SOURCE_ROOT) / "examples/arrays/scattered-12.toml");

@@ -42,12 +42,12 @@ def test_one_library_that_is_missing_is_named_alone(backend, monkeypatch, capsys
     backend.check({"setup-args": "-Dgpio=disabled"})
 
 
-def test_its_packages_are_those_of_the_list_and_of_the_readme(backend, root):
+def test_its_packages_are_those_of_the_list_and_of_the_guide(backend, root):
     listed = set(re.findall(r"\S+", (root / "tests/packages").read_text()))
     needed = {package for _, package, *_ in backend.LIBRARIES} | {"g++", "pkg-config", "python3-dev", "pybind11-dev", "python3-mesonpy"}
     assert needed <= listed
-    readme = (root / "README.md").read_text()
-    assert "--system-site-packages" in readme and all(f" {package}" in readme for package in needed)
+    guide = (root / "man/guide/python.md").read_text()
+    assert "--system-site-packages" in guide and all(f" {package}" in guide for package in needed)
 
 
 def test_what_plays_and_paints_is_required(root):

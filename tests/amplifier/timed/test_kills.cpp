@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A short session of player and holder, in which one, the other or both are killed at each system call of
-// either in turn. The line is off soon after, but for the exception that README states: both killed while it
-// is on.
+// either in turn. The line is off soon after, but for the exception that the guide's page on safety states:
+// both killed while it is on.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -155,7 +155,7 @@ TEST_CASE("both killed at any system call: off, or on as it was, which is the st
     std::printf("both killed at %u system calls: left on in %u, the stated exception; else off after %.1f ms "
                 "at worst\n",
                 t.kills, t.left_on, ms(t.worst_ns));
-    CHECK(t.left_on > 0); // else README promises too little
+    CHECK(t.left_on > 0); // else the guide promises too little
     CHECK(t.left_on < t.kills);
     CHECK(t.worst_ns < promised_off_ms * 1'000'000);
 }
