@@ -193,16 +193,21 @@ class Documents(ToolTest):
 
     def test_links_lead_somewhere_and_the_guide_to_each_of_its_pages(self):
         linked = set()
-        for file in [*(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "SECURITY.md", "NEWS.md")), *GUIDE]:
+        for file in [*(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "SECURITY.md", "NEWS.md", "tests/lanes/README.md")), *GUIDE]:
             for link in re.findall(r"\]\(([^)#\s]+)", file.read_text(encoding="utf-8")):
                 if not re.match(r"[a-z]+:", link):
                     self.assertTrue((file.parent / link).exists(), f"{file.name}: {link}")
                     linked.add((file.parent / link).resolve())
         self.assertEqual({page.name for page in GUIDE} - {file.name for file in linked}, set())
 
+    def test_the_files_that_the_architecture_names_are_there(self):
+        named = re.findall(r"`([\w/]+\.[ch]pp)`", (ROOT / "man/guide/architecture.md").read_text(encoding="utf-8"))
+        self.assertGreater(len(named), 30)
+        self.assertEqual([file for file in named if not (ROOT / "src" / file).exists()], [])
+
     def test_readme_fits_a_screen_or_two_and_lines_fit_100_columns(self):
         self.assertLessEqual(len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()), 130)
-        wide = [f"{file.name}:{number}" for file in [ROOT / "README.md", *GUIDE]
+        wide = [f"{file.name}:{number}" for file in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *GUIDE]
                 for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1)
                 if len(line) > 100 and not line.startswith(("|", "!", ">"))]
         self.assertEqual(wide, [])
