@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Export marker, and the words of enumerations. Names with TACTOR_API are the interface of libtactor;
-/// everything else in the shared library is hidden. Closed sets are enumerations, called ..._kind, so that
-/// fields can have the plain names. Any thread may call their functions; nothing blocks.
+/// Export marker, and names of the values of enumerations. Names with TACTOR_API are the interface of
+/// libtactor; everything else in the shared library is hidden. Closed sets are enumerations called ..._kind,
+/// so that fields can have the plain names. Any thread may call their functions; they do not block.
 #pragma once
 
 #include <span>
 #include <string_view>
 
-// Each header includes this one before all that needs it. CMake asks for the compiler's default, C++17.
+// Every header includes this one first. CMake requests the compiler's default, C++17.
 #if defined(__cplusplus) && __cplusplus < 202002L
 #error "tactor needs C++20: -std=c++20 (CMake: cxx_std_20)"
-#include "-std=c++20" // no such file: ends the compilation before a wall of errors that say less
+#include "-std=c++20" // no such file: ends the compilation before many errors that say less
 #endif
 
 #if defined(__GNUC__)
@@ -21,7 +21,7 @@
 #endif
 
 namespace tactor::detail {
-struct access; // the library's own way into its classes
+struct access; // gives the library access to the inside of its classes
 } // namespace tactor::detail
 
 namespace tactor {
@@ -39,8 +39,8 @@ template <typename Kind>
 } // namespace v0
 } // namespace tactor
 
-/// Declares the words of an enumeration, in its own namespace: to_string(), "unknown" for what is no value of
-/// it, from_string<>() and values_of<>().
+/// Declares the name functions of an enumeration, in its own namespace: to_string(), which returns "unknown"
+/// for a number that is no value of it, from_string<>() and values_of<>().
 #define TACTOR_KIND(Kind)                                                                                    \
     TACTOR_API std::string_view to_string(Kind k) noexcept;                                                  \
     template <>                                                                                              \

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The array of tactors: where each one is and how it is driven.
+/// The array of tactors: the place of each tactor and how it is driven.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@
 namespace tactor {
 inline namespace v0 {
 
-/// How a tactor works, which decides what bursts it can make.
+/// Working principle of a tactor. It decides which bursts the tactor can make.
 enum class actuator_kind {
     unknown,
     piezo,
@@ -26,7 +26,7 @@ enum class actuator_kind {
 };
 TACTOR_KIND(actuator_kind);
 
-/// A detection threshold at a frequency.
+/// Detection threshold at a frequency.
 struct threshold_point {
     double hz = 0.0; ///< above 0
     double dbfs = 0.0;
@@ -34,20 +34,19 @@ struct threshold_point {
     friend bool operator==(const threshold_point&, const threshold_point&) = default;
 };
 
-/// One vibrating actuator. Its index is its place in array::tactors.
+/// A vibrating actuator. Its index is its position in array::tactors.
 struct tactor_spec {
     point position = {};                       ///< centre, mm
     unsigned channel = 0;                      ///< PCM channel, from 0
-    double gain_db = 0.0;                      ///< added to the level in dBFS; not to a level in dB SL
+    double gain_db = 0.0;                      ///< added to the level in dBFS, but not to a level in dB SL
     double max_dbfs = 0.0;                     ///< hard limit of this channel, <= 0 dBFS
     std::optional<double> threshold_dbfs = {}; ///< measured detection threshold, dBFS
-    int polarity = 1;                          ///< 1, or -1 where the actuator is wired the other way round
+    int polarity = 1;                          ///< 1, or -1 if the actuator is wired with reversed polarity
     actuator_kind actuator = actuator_kind::unknown;
-    /// Thresholds at several frequencies, ascending. Between two of them the threshold is linear in dB over
-    /// the logarithm of the frequency; outside them it is that of the nearest one. They replace
-    /// threshold_dbfs.
+    /// Thresholds at several frequencies, ascending. They replace threshold_dbfs. Between two frequencies the
+    /// threshold in dB is linear in the logarithm of the frequency. Outside them the nearest one counts.
     std::vector<threshold_point> thresholds = {};
-    std::optional<double> rise_s = {}; ///< time until it moves with 1 - 1/e of its strength, s
+    std::optional<double> rise_s = {}; ///< time until the vibration reaches 1 - 1/e of its strength, s
     source_place where = {};           ///< place in the array file, for error messages
 };
 
@@ -57,40 +56,42 @@ struct array {
     std::vector<tactor_spec> tactors = {};
     source_place where = {};
 
-    /// Channels that the map needs: the highest channel + 1.
+    /// Returns the number of channels that the array needs: the highest channel + 1.
     TACTOR_API unsigned channels() const noexcept;
 };
 
-/// The threshold of a tactor at a frequency, dBFS; none where none was measured.
+/// Returns the threshold of a tactor at a frequency, dBFS, or nothing if none was measured.
 [[nodiscard]] TACTOR_API std::optional<double> threshold_at(const tactor_spec& t, double hz);
 
-/// The lines of a rectangular grid layout, each in ascending order, mm.
+/// Lines of a rectangular grid, each list in ascending order, mm.
 struct grid_lines {
     std::vector<double> x_mm = {}; ///< columns
     std::vector<double> y_mm = {}; ///< rows
 };
 
-/// The grid that the tactors form, if every column crosses every row in a tactor and there is no
-/// other tactor; nothing otherwise. Lines nearer than same_place_mm are one line. A single row or
-/// column is a grid too.
+/// Returns the grid that the tactors form. Returns nothing unless each column crosses each row in a tactor
+/// and there is no other tactor. Lines nearer than same_place_mm count as the same line. A single row or
+/// column is a grid, too.
 [[nodiscard]] TACTOR_API std::optional<grid_lines> find_grid(const array& a);
 
-/// rows x columns tactors, index = row * columns + column, channel = index, tactor 0 at (0, 0).
-/// \throws error (bad_input) for no rows or columns, more than 16384 tactors or a pitch that is not
-///         positive and finite.
+/// Makes an array of rows x columns tactors: index = row * columns + column, channel = index, tactor 0 at (0,
+/// 0).
+/// \throws error (bad_input) for no rows or columns, more than 16384 tactors, or a pitch that is not positive
+///         and finite.
 [[nodiscard]] TACTOR_API array make_grid(std::string name, unsigned rows, unsigned columns, double pitch_x_mm,
                                          double pitch_y_mm);
 
-/// Names of the built-in arrays: "palm-3x3" (Park et al. 2016), "palm-2x4".
+/// Returns the names of the built-in arrays: "palm-3x3" (Park et al. 2016), "palm-2x4".
 [[nodiscard]] TACTOR_API const std::vector<std::string>& array_presets();
 
-/// A built-in array by name. \throws error (bad_input) that lists the presets.
+/// Returns a built-in array by name.
+/// \throws error (bad_input) that lists the presets.
 [[nodiscard]] TACTOR_API array preset_array(std::string_view name);
 
-/// Checks what every array must satisfy: at least one tactor, finite places, no two tactors on one place or
-/// one channel, limits and gains in range (max_dbfs <= 0, polarity 1 or -1, channel < 16384). Channels in a
-/// file must be below 1024, which no PCM exceeds. O(n log n).
-/// \throws error (bad_input) naming the tactors and their line.
+/// Checks the rules for every array: at least one tactor, finite places, no two tactors on one place or one
+/// channel, limits and gains in range (max_dbfs <= 0, polarity 1 or -1, channel < 16384). Array files allow
+/// only channels below 1024, because no PCM has more. O(n log n).
+/// \throws error (bad_input) that names the tactors and their line.
 TACTOR_API void validate(const array& a);
 
 } // namespace v0

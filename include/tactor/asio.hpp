@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Playing as an asynchronous operation of Boost.Asio. Header-only, and not part of <tactor/tactor.hpp>: a
-/// program that does not use Asio needs none.
+/// Playback as an asynchronous operation of Boost.Asio. Header-only, and not part of <tactor/tactor.hpp>, so
+/// that other programs need no Asio.
 #pragma once
 
 #include <exception>
@@ -20,8 +20,8 @@
 
 namespace tactor::detail {
 
-/// A handler that waits for a stroke's end, and keeps its executor, and the one that the caller named, at
-/// work until then.
+/// A handler that waits for a stroke's end. Until then it gives work to two executors: its own, and the one
+/// that the caller named.
 template <typename Handler, typename Named>
 class stroke_waiter {
 public:
@@ -48,7 +48,7 @@ private:
     boost::asio::executor_work_guard<executor> work_;
 };
 
-/// An executor, or the one of an object that has one: a context, a socket, a timer.
+/// Returns an executor: `where` itself, or the one of a context, a socket or a timer.
 template <typename Where>
 auto executor_of(Where& where)
 {
@@ -58,16 +58,16 @@ auto executor_of(Where& where)
         return where;
 }
 
-/// Whether a completion token is a plain callback, which names no context to run in.
+/// True for a completion token that is a plain callback, which names no context to run in.
 template <typename Token>
 constexpr bool runs_nowhere = std::is_invocable_v<std::decay_t<Token>&, std::exception_ptr, stroke_report>&&
     std::is_same_v<boost::asio::associated_executor_t<std::decay_t<Token>>, boost::asio::system_executor>;
 
-/// Calls the handler when the stroke that `id_of` names or starts has ended.
+/// Calls the handler when a stroke has ended. `id_of` returns its id, and may start it.
 template <typename Named, typename Handler, typename Start>
 void wait_for_stroke(const Named& named, player& p, Handler&& h, Start id_of)
 {
-    // Shared, because std::function must be able to copy what it holds.
+    // Shared, because std::function needs a copyable target.
     auto w = std::make_shared<stroke_waiter<std::decay_t<Handler>, Named>>(std::forward<Handler>(h), named);
     stroke_report none;
     try {
@@ -87,12 +87,16 @@ namespace tactor {
 inline namespace v0 {
 
 /// Waits for a stroke's end, then calls handler(std::exception_ptr, stroke_report). `where` is an executor or
-/// an object that has one (an io_context, a socket). The handler runs there, or on its own associated
-/// executor if it has one (boost::asio::bind_executor); never in this call and never in a thread of the
-/// player. With use_future or use_awaitable the exception is rethrown there. Both executors are kept at work
-/// until then: io_context::run() does not return before. For a stroke that is not known the exception is an
-/// error (bad_input). A stroke that was cancelled or interrupted gives no exception: the report says so. The
-/// player must live until the handler was called, or be closed before: closing ends all strokes.
+/// an object that has one (an io_context, a socket).
+///
+/// The handler runs there, or on its own associated executor if it has one (boost::asio::bind_executor). It
+/// never runs in this call and never in a thread of the player. With use_future or use_awaitable the
+/// exception is rethrown there. Both executors have work until then, so io_context::run() does not return
+/// earlier.
+///
+/// For an unknown stroke the exception is an error (bad_input). A cancelled or interrupted stroke gives no
+/// exception: see the report. The player must live until the handler is called, or be closed earlier: closing
+/// ends all strokes.
 template <typename Where, typename Token>
 auto async_wait(Where&& where, player& p, stroke_id id, Token&& token)
 {
@@ -103,7 +107,7 @@ auto async_wait(Where&& where, player& p, stroke_id id, Token&& token)
         token);
 }
 
-/// The same for tokens that know where they run: use_awaitable, use_future, bind_executor().
+/// Waits as above, for tokens that have an executor: use_awaitable, use_future, bind_executor().
 template <typename Token>
 auto async_wait(player& p, stroke_id id, Token&& token)
 {
@@ -112,8 +116,8 @@ auto async_wait(player& p, stroke_id id, Token&& token)
     return async_wait(boost::asio::system_executor(), p, id, std::forward<Token>(token));
 }
 
-/// Submits a score and waits for its end, as async_wait() does. An exception from submit() is passed to the
-/// handler. The score is submitted when the operation is initiated: at once with callbacks and futures.
+/// Submits a score and waits for its end, as async_wait() does. The handler gets an exception from submit().
+/// The score is submitted when the operation starts: at once with callbacks and futures.
 template <typename Where, typename Token>
 auto async_play(Where&& where, player& p, score s, start_at start, Token&& token)
 {
@@ -125,7 +129,7 @@ auto async_play(Where&& where, player& p, score s, start_at start, Token&& token
         token);
 }
 
-/// The same for tokens that know where they run: use_awaitable, use_future, bind_executor().
+/// Plays as above, for tokens that have an executor: use_awaitable, use_future, bind_executor().
 template <typename Token>
 auto async_play(player& p, score s, start_at start, Token&& token)
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The closed sets that plans, their sound and their observers are chosen from; what a stroke may say of
-/// itself beside its movement: how it is planned, and from when its start counts.
+/// Closed sets from which a plan, its sound and its observer are chosen, and the choices that one stroke
+/// makes for itself: how it is planned and when it starts.
 #pragma once
 
 #include <cstddef>
@@ -14,6 +14,7 @@
 namespace tactor {
 inline namespace v0 {
 
+/// Planning algorithms.
 enum class algorithm_kind { park2016, tactile_brush, continuous };
 TACTOR_KIND(algorithm_kind);
 
@@ -27,84 +28,87 @@ enum class phantom_kind {
 };
 TACTOR_KIND(phantom_kind);
 
-/// Which three tactors inverse_distance takes.
+/// The three tactors that phantom_kind::inverse_distance uses.
 enum class faces_kind {
-    delaunay, ///< those of the Delaunay face round the point, whose triangle holds it
-    nearest,  ///< the three closest of the whole array, as Park et al. 2016 say; their triangle may miss it
+    delaunay, ///< three of the Delaunay face at the point, whose triangle holds it
+    nearest,  ///< the three nearest of the whole array, as in Park et al. 2016; their triangle may miss the
+              ///< point
 };
 TACTOR_KIND(faces_kind);
 
-/// The SOA as it is given, or shortened so that the last burst ends with the path.
+/// Treatment of the SOA: used as given, or shortened so that the last burst ends with the path.
 enum class timing_kind { fixed, fit };
 TACTOR_KIND(timing_kind);
 
-/// A path that leaves the array: refused, or moved to the edge.
+/// Treatment of a path that leaves the array: refused, or moved to the edge.
 enum class outside_kind { error, clamp };
 TACTOR_KIND(outside_kind);
 
-/// How bursts that overlap on one tactor are joined into one carrier's amplitude.
+/// Rule that joins bursts that overlap on one tactor into one amplitude.
 enum class overlap_kind { energy, max, sum };
 TACTOR_KIND(overlap_kind);
 
-/// What an intensity of one half means: half of the amplitude; half of the sensation level in dB; or half as
-/// strong as it is felt, by Stevens's law.
+/// Meaning of an intensity of one half: half the amplitude (linear), half the sensation level in dB (sl), or
+/// half the felt strength by Stevens's law (stevens).
 enum class scale_kind { linear, sl, stevens };
 TACTOR_KIND(scale_kind);
 
-/// Where the carrier's phase starts. With `stroke` one carrier runs from the stroke's first frame on, and
-/// bursts open and close it: a tactor that plays several in a row goes on without a break. With `burst` it
-/// starts again with each burst (where bursts overlap on a tactor, with the first). 70 ms at 250 Hz are 17.5
-/// cycles, so there the sign flips from burst to burst: the spectrum has lines at 242.9 and 257.1 Hz in place
-/// of 250, and the mean is above 0.
+/// Start of the carrier's phase.
+/// `stroke`: one carrier runs from the stroke's first frame, and bursts open and close it. A tactor that
+/// plays several bursts in a row goes on without a break.
+/// `burst`: the carrier starts again with each burst (where bursts overlap on a tactor, with the first). A
+/// burst of 70 ms at 250 Hz has 17.5 cycles, so the sign flips from burst to burst: the spectrum has lines at
+/// 242.9 and 257.1 Hz instead of 250 Hz, and the mean is above 0.
 enum class phase_kind { stroke, burst };
 TACTOR_KIND(phase_kind);
 
-/// Who is predicted to feel a plan.
+/// Model of the person who feels a plan.
 enum class observer_kind {
-    centroid,  ///< feels the centre of energy of what sounds
+    centroid,  ///< feels the centre of energy of the tactors that sound
     low_speed, ///< expects low speeds
 };
 TACTOR_KIND(observer_kind);
 
-/// One stroke's own values in place of those in plan_options. `phantom` also replaces a model of your own
-/// (plan_options::custom_phantom).
+/// Values of one stroke that replace those of plan_options. `phantom` also replaces
+/// plan_options::custom_phantom.
 struct stroke_choices {
     std::optional<algorithm_kind> algorithm = {};
     std::optional<phantom_kind> phantom = {};
     std::optional<double> soa_s = {};
     std::optional<double> burst_s = {};
-    double level_db = 0.0; ///< of its amplitudes, whatever plan_options::scale makes of its intensity
+    double level_db = 0.0; ///< added to its amplitudes, dB, after plan_options::scale
     std::optional<faces_kind> faces = {};
 
     friend bool operator==(const stroke_choices&, const stroke_choices&) = default;
 };
 
-/// The time that a start counts from.
+/// Time from which a start counts.
 enum class start_from_kind {
-    piece, ///< from the start of the piece
-    start, ///< from the start of a stroke before
-    end,   ///< from the end of strokes before
+    piece, ///< the start of the score
+    start, ///< the start of an earlier stroke
+    end,   ///< the end of earlier strokes
 };
 TACTOR_KIND(start_from_kind);
 
-/// What the start of a stroke counts from. Where there are fewer strokes before it, from the start of the
-/// piece.
+/// Reference time of a stroke's start. If fewer than `back` strokes come before it, the start counts from the
+/// start of the score.
 struct start_anchor {
     start_from_kind from = start_from_kind::piece;
-    /// A number of strokes. `start`: counts from the start of the stroke that is so many before this one.
-    /// `end`: from the time when the last so many before this one have all ended.
+    /// Number of strokes. `start`: counts from the start of the stroke that is `back` places before this one.
+    /// `end`: counts from the time when the last `back` strokes before this one have all ended.
     unsigned back = 1;
 
     friend bool operator==(const start_anchor&, const start_anchor&) = default;
 };
 
-/// When a stroke starts, in seconds from the start of the piece. `starts_s` and `ends_s` are those of the
-/// strokes before it, in order. Without `start_s` the stroke starts when the one before it ends.
-/// \throws error (bad_input) where the stroke would start before the piece.
+/// Returns the start of a stroke in seconds from the start of the score. `starts_s` and `ends_s` are those of
+/// the strokes before it, in order. Without `start_s` the stroke starts when the stroke before it ends.
+/// \throws error (bad_input) if the stroke would start before the score.
 [[nodiscard]] TACTOR_API double resolve_start_s(std::optional<double> start_s, const start_anchor& anchor,
                                                 std::span<const double> starts_s,
                                                 std::span<const double> ends_s);
 
+/// Formats of a sample. Names: "float", "s16", "s24" (s24_3), "s24-4", "s32".
 enum class format_kind {
     float32, ///< FLOAT_LE, full scale 1.0
     s16,     ///< S16_LE
@@ -113,10 +117,9 @@ enum class format_kind {
     s32,     ///< S32_LE
 };
 
-/// Bytes of one sample.
+/// Returns the number of bytes of one sample.
 [[nodiscard]] TACTOR_API std::size_t bytes_of(format_kind f) noexcept;
 
-/// "float", "s16", "s24" (s24_3), "s24-4", "s32".
 TACTOR_KIND(format_kind);
 
 } // namespace v0

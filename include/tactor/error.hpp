@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The one exception type that set-up code throws, and messages of the library about its own work.
+/// The exception type that set-up code throws, and messages of the library about its own work.
 #pragma once
 
 #include <functional>
@@ -15,14 +15,15 @@
 namespace tactor {
 inline namespace v0 {
 
-/// What kind of failure it was.
+/// Kind of a failure.
 enum class error_kind {
     bad_input = 1,     ///< wrong usage or bad input
     runtime = 2,       ///< failed while running (disk full, stream broken)
-    not_available = 3, ///< a device is missing, busy or cannot do what is asked
+    not_available = 3, ///< a device is missing, busy or cannot do what was requested
 };
 TACTOR_KIND(error_kind);
 
+/// Category of error codes made from error_kind.
 [[nodiscard]] TACTOR_API const std::error_category& error_category() noexcept;
 [[nodiscard]] TACTOR_API std::error_code make_error_code(error_kind e) noexcept;
 
@@ -32,44 +33,47 @@ struct source_place {
     unsigned line = 0;
     unsigned column = 0;
 
-    /// "file:line:column" with the unknown parts left out.
+    /// Returns "file:line:column" without the unknown parts.
     [[nodiscard]] TACTOR_API std::string text() const;
 };
 
-/// An error that says what failed, why, and what to do about it.
+/// An error with what failed, why, and what to do about it.
 ///
 /// what() reads "WHAT: WHY (HINT)", or "WHAT: WHY" without a hint.
 ///
-/// Where another failure was the cause, it is nested in this error (std::rethrow_if_nested()): the error of a
-/// file that another one names, or what the system said, as a std::system_error with its errno. Where memory
-/// runs out, std::bad_alloc comes through; while TOML is read, the process ends (toml++ 3 does so), and while
-/// ALSA is asked for PCMs, it may end (alsa-lib 1.2.8). Copies share the texts, and do not throw.
+/// If another failure was the cause, it is nested in this error (std::rethrow_if_nested()): the error of a
+/// file that another file names, or a std::system_error with the errno of a system call.
+///
+/// When memory runs out, std::bad_alloc passes through. Two cases differ: while TOML is read, the process
+/// ends (toml++ 3 does so); while ALSA lists or opens PCMs, the process may end (alsa-lib 1.2.8).
+///
+/// Copies share the texts and do not throw.
 class TACTOR_API error : public std::system_error {
 public:
     error(error_kind kind, std::string_view what, std::string_view why, std::string_view hint = {});
-    /// About a place: its text is WHAT.
+    /// Makes an error about a place; its text becomes WHAT.
     error(error_kind kind, const source_place& at, std::string_view why, std::string_view hint = {});
 
-    /// The kind of failure.
+    /// Returns the kind of failure.
     [[nodiscard]] error_kind kind() const noexcept;
     [[nodiscard]] const char* what() const noexcept override;
-    // The parts of what(), for programs that show them apart; valid while the error or a copy of it lives.
+    // Parts of what(), for programs that show them separately. Valid while this error or a copy of it lives.
     [[nodiscard]] std::string_view subject() const noexcept; ///< WHAT
     [[nodiscard]] std::string_view why() const noexcept;     ///< WHY
     [[nodiscard]] std::string_view hint() const noexcept;    ///< HINT; may be empty
-    /// The option or value that the error is about, under its name in this library or, with a place(), in the
-    /// file ("soa_s"). Empty where it is about none, or about several that do not go together.
+    /// Returns the option or value at fault, under its name in this library or, with a place(), in the file
+    /// ("soa_s"). Empty if the error is about none, or about several that do not go together.
     [[nodiscard]] std::string_view field() const noexcept;
-    /// The place in a file or text; without file and line where the error is about none.
+    /// Returns the place in a file or text, without file and line if the error is about none.
     [[nodiscard]] const source_place& place() const noexcept;
-    /// errno of the call that failed; 0 where none did.
+    /// Returns errno of the call that failed, or 0 if none did.
     [[nodiscard]] int os_code() const noexcept;
 
-    /// This error with a field, a place or an errno.
+    /// Returns a copy with this field, place or errno.
     [[nodiscard]] error with_field(std::string_view field) const;
     [[nodiscard]] error with_place(source_place at) const;
     [[nodiscard]] error with_os_code(int code) const;
-    /// This error in other words.
+    /// Returns a copy with other words.
     [[nodiscard]] error reworded(std::string_view what, std::string_view why, std::string_view hint) const;
 
     error(const error&) noexcept = default;
@@ -80,23 +84,24 @@ private:
     struct data;
     error(error_kind kind, data d);
 
-    std::shared_ptr<const data> data_; ///< never none: an error is not moved from
+    std::shared_ptr<const data> data_; ///< never null: an error is never moved from
 };
 
-/// The importance of a message.
+/// Importance of a message.
 enum class log_kind {
-    debug,   ///< what was tried
-    info,    ///< what was agreed on, begins, goes on or ends in order
-    warning, ///< what was felt wrongly, or may be: xruns, mutes, limits that acted
-    error,   ///< what ended the stream
+    debug,   ///< attempts
+    info,    ///< agreements with devices; begin, progress and orderly end
+    warning, ///< faults that are or may be felt: xruns, mutes, limits that acted
+    error,   ///< causes that ended the stream
 };
 TACTOR_KIND(log_kind);
 
-/// Takes one line without a line end, UTF-8, for people: its words may change with each version. An empty
-/// function turns it off. Called by the thread that opens a device or a player, then by the player's control
-/// thread, where no lock is held: it may call the player. The audio thread never calls it, but a slow
-/// function keeps drives waiting. Exceptions from it are dropped, and so are lines for which there is no
-/// memory.
+/// Receives one line for people, without a line end, in UTF-8. Its words may change with each version. An
+/// empty function turns messages off.
+///
+/// The thread that opens a device or a player calls it, then the player's control thread. No lock is held, so
+/// it may call the player. The audio thread never calls it, but a slow function delays drives. The caller
+/// drops exceptions from it, and lines for which there is no memory.
 using log_function = std::function<void(log_kind, std::string_view)>;
 
 } // namespace v0

@@ -15,7 +15,7 @@
 namespace tactor {
 inline namespace v0 {
 
-/// A place on the array in millimetres: x to the right, y down, as on a screen.
+/// A place on the array in mm: x to the right, y down, as on a screen.
 struct point {
     double x_mm = 0.0;
     double y_mm = 0.0;
@@ -23,49 +23,51 @@ struct point {
     friend bool operator==(const point&, const point&) = default;
 };
 
-/// Distance between two points in millimetres.
+/// Returns the distance between two points, mm.
 inline double distance_mm(point a, point b) noexcept
 {
     return std::hypot(a.x_mm - b.x_mm, a.y_mm - b.y_mm);
 }
 
-/// Two places nearer to each other than this are the same place (a nanometre).
+/// Two places nearer than this count as the same place (a nanometre).
 inline constexpr double same_place_mm = 1e-6;
 
-/// One open or closed curve of lines, arcs and Beziers, or one place, whose length is 0. Immutable; copies
-/// and moves share it, and a path that was moved from keeps its value. All members may be called from any
+/// An open or closed curve of lines, arcs and Bezier curves, or a single place of length 0. Immutable. Copies
+/// and moves share the curve, so a moved-from path keeps its value. All members are safe to call from any
 /// thread and do not block.
 class TACTOR_API path {
 public:
-    /// SVG path data in millimetres, e.g. "M 0 10 C 20 -5 20 45 40 30"; "M 20 20" is one place.
+    /// Reads SVG path data in mm, e.g. "M 0 10 C 20 -5 20 45 40 30". "M 20 20" is a single place.
     /// \throws error (bad_input) for a text that is not path data (with the column), for numbers that are not
     ///         finite or beyond 1e6 mm, and for more than one subpath.
     [[nodiscard]] static path from_svg(std::string_view data);
 
-    /// Straight lines from point to point, or one place. Throws like from_svg, and for no point.
+    /// Makes straight lines from point to point, or a single place. Throws like from_svg(), and for an empty
+    /// list.
     [[nodiscard]] static path polyline(std::span<const point> points);
 
-    /// Circular arc round `centre`; angles in degrees from the x axis towards the y axis (clockwise
-    /// on a screen), |sweep_deg| <= 360. Throws like from_svg.
+    /// Makes a circular arc round `centre`. Angles are in degrees from the x axis towards the y axis
+    /// (clockwise on a screen), |sweep_deg| <= 360. Throws like from_svg().
     [[nodiscard]] static path arc(point centre, double radius_mm, double from_deg, double sweep_deg);
 
-    /// Length in mm, to 1 um.
+    /// Returns the length in mm, accurate to 1 um.
     [[nodiscard]] double length_mm() const noexcept;
 
-    /// The point at arc length s (clamped to 0 ... length), to 1 um. O(log n) in the segments.
+    /// Returns the point at arc length s (clamped to 0 ... length), accurate to 1 um. O(log n) in the
+    /// segments.
     [[nodiscard]] point at(double s_mm) const noexcept;
 
-    /// Arc lengths, ascending, at which the path meets the line x = x_mm, touching included. A
-    /// stretch longer than 0.1 mm that runs along the line (within same_place_mm) gives nothing, its
-    /// ends included; a shorter one is a touch.
+    /// Returns the arc lengths, ascending, at which the path meets or touches the line x = x_mm. A stretch
+    /// longer than 0.1 mm that runs along the line (within same_place_mm) gives no result, not even at its
+    /// ends. A shorter one counts as a touch.
     [[nodiscard]] std::vector<double> meets_x(double x_mm) const;
-    /// The same for the line y = y_mm.
+    /// Returns the same for the line y = y_mm.
     [[nodiscard]] std::vector<double> meets_y(double y_mm) const;
 
-    /// SVG path data of the curve, for plots.
+    /// Returns SVG path data of the curve, for plots.
     [[nodiscard]] std::string svg() const;
 
-    path(const path&) noexcept = default; ///< for moves, too: a path always has its curve
+    path(const path&) noexcept = default; ///< also used for moves: a path always has its curve
     path& operator=(const path&) noexcept = default;
 
     struct impl;

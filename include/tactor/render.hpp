@@ -25,74 +25,79 @@
 namespace tactor {
 inline namespace v0 {
 
-/// What the array may be given at run time, besides each channel's own max_dbfs. Both limits act on the
-/// envelopes of the channels, after all strokes are summed. Samples of plans within these limits are not
-/// changed in a single bit. The defaults are safe guesses: know your actuators.
+/// Limits on what the array gets at run time, besides each channel's own max_dbfs. Both limits act on the
+/// envelopes of the channels, after all strokes are summed. If a score stays within them, not a single bit of
+/// its samples changes. The defaults are safe guesses: know your actuators.
 struct drive_limits {
-    /// Greatest power of all tactors together, in dB above one channel's sine at full scale: the sum of the
-    /// squared envelopes in every frame. Where carriers beat on a tactor, the crests of the beat count.
-    /// -120 to 60. Default: the power of three such sines. The gain of all tactors falls within some
-    /// 10 ms, without a click, and returns with a time constant of 50 ms; a drive that begins abruptly
-    /// meanwhile is faded in.
+    /// Greatest power of all tactors together: the sum of the squared envelopes in each frame, in dB above
+    /// one channel's sine at full scale. Where carriers beat on a tactor, the crests of the beat count. -120
+    /// to 60. Default: the power of three such sines.
+    /// Above it, the gain of all tactors falls within some 10 ms, without a click. It returns with a time
+    /// constant of 50 ms. A drive that begins abruptly meanwhile is faded in.
     double power_dbfs = 4.771212547196624;
-    /// Longest time that one tactor is driven (above -40 dBFS) within any window. Then its channel fades out,
-    /// and stays silent until half of that time has left the window. No window holds more than this and one
-    /// fade of 20 ms. Time is counted in steps of 1/256 of the window: a tactor that begins to be driven more
-    /// than once in a step may be cut up to one step too early. 0.1 to 3600 s; not below window_s: no limit.
+    /// Longest time that one tactor is driven (above -40 dBFS) within any window. Then its channel fades out
+    /// and stays silent until half of that time has left the window. No window holds more than this time and
+    /// one fade of 20 ms.
+    /// Time is counted in steps of 1/256 of the window. A tactor that starts more than once in a step may be
+    /// cut up to one step too early. 0.1 to 3600 s; not below window_s: no limit.
     double max_drive_s = 5.0;
     double window_s = 10.0; ///< 0.1 to 3600 s
 };
 
+/// Options of a score.
 struct render_options {
     unsigned rate = 48000; ///< Hz, 8000 to 768000
     phase_kind phase = phase_kind::stroke;
-    /// Raised-cosine ramp inside each burst, s, from 0. Default: 0 where the carrier crosses zero at the
-    /// burst's begin and at its end (both within 1 % of a half cycle), else 2 ms; burst by burst.
+    /// Raised-cosine ramp inside each burst, s, from 0. Default: 0 for each burst at whose start and end the
+    /// carrier crosses zero (both within 1 % of a half cycle), else 2 ms.
     std::optional<double> ramp_s = {};
-    double level_dbfs = -12.0;        ///< peak for amplitude 1, <= 0; a tactor's gain_db is added
-    std::optional<double> sl_db = {}; ///< instead of level_dbfs: dB above each tactor's threshold_dbfs, which
-                                      ///< must be there where it is driven
-    unsigned channels = 0;            ///< 0: as many as the array needs
-    /// Applied by the renderer; the player has its own. None: the piece as it was designed.
+    double level_dbfs = -12.0; ///< peak for amplitude 1, <= 0; a tactor's gain_db is added
+    /// Level above each tactor's threshold, dB, in place of level_dbfs. Driven tactors must have a
+    /// threshold_dbfs.
+    std::optional<double> sl_db = {};
+    unsigned channels = 0; ///< 0: as many as the array needs
+    /// Limits for the renderer; the player has its own. None: the score as it was designed.
     std::optional<drive_limits> limits = {};
-    /// A spare channel on which each stroke's first frames are marked, at full scale and to the frame: the
-    /// sync signal that no scheduler can delay.
+    /// Spare channel that marks the first frames of each stroke, at full scale and exact to the frame. No
+    /// scheduler can delay this sync signal.
     std::optional<unsigned> marker_channel = {};
     double marker_s = 0.005; ///< above 0, at most 10 s
     burst_envelope envelope = {};
 };
 
-/// Ramp of a burst (or of a continuous stroke, whose onset is 0) in seconds: o.ramp_s, or the default. A
-/// burst that is shorter than two ramps has a ramp of half its length at each end.
+/// Returns the ramp of a burst (or of a continuous stroke, whose onset is 0) in s: o.ramp_s, or the default.
+/// A burst shorter than two ramps has a ramp of half its length at each end.
 [[nodiscard]] TACTOR_API double burst_ramp_s(double onset_s, double duration_s, double carrier_hz,
                                              const render_options& o) noexcept;
 
-/// The same for a burst of a plan: its waveform and carrier count; they need not cross zero where a sine
-/// does.
+/// Returns the same for a burst of a plan. Counts with its waveform and carrier, which may cross zero at
+/// other times than a sine.
 [[nodiscard]] TACTOR_API double burst_ramp_s(double onset_s, double duration_s, const plan& p,
                                              const render_options& o) noexcept;
 
-/// A plan and when it starts.
+/// A plan and its start.
 struct placed_plan {
     tactor::plan plan = {};
-    /// Seconds from the start of the piece, or from the time that `anchor` says. None: at the end of the plan
-    /// before it (the first: 0).
+    /// Start in s, counted from the time that `anchor` names. None: the end of the plan before it (for the
+    /// first: 0).
     std::optional<double> start_s = {};
-    start_anchor anchor = {}; ///< what start_s counts from
+    start_anchor anchor = {}; ///< reference time of start_s
 };
 
-/// When each plan starts, in seconds. \throws error (bad_input) for one that would start before the piece.
+/// Returns the start of each plan in s.
+/// \throws error (bad_input) if one would start before the score.
 [[nodiscard]] TACTOR_API std::vector<double> starts_of(std::span<const placed_plan> plans);
 
-/// Plans at a sample rate and at levels: frames and channels. Immutable, cheap to copy; a move is a copy, so
-/// a score that was moved from keeps its value.
+/// Plans at a sample rate and at levels, in frames and channels. Immutable and cheap to copy. A move is a
+/// copy, so a moved-from score keeps its value.
 class TACTOR_API score {
 public:
-    /// \throws error (bad_input): carrier at or above half the rate, a level that a tactor may not
-    ///         have (above full scale or its max_dbfs; with its line in the array file), a tactor
-    ///         without a threshold where a sensation level is asked for, too few channels.
+    /// Makes a score of several plans.
+    /// \throws error (bad_input) for a carrier at or above half the rate, for a level above full scale or a
+    ///         tactor's max_dbfs (with its line in the array file), for a sensation level on a tactor
+    ///         without a threshold, and for too few channels.
     score(const array& a, std::vector<placed_plan> plans, const render_options& o = {});
-    /// One plan, from the start of the piece on. Throws as above.
+    /// Makes a score of one plan that starts with the score. Throws as above.
     template <std::same_as<plan> Plan>
     score(const array& a, Plan p, const render_options& o = {}) : score(a, alone(std::move(p)), o)
     {
@@ -100,12 +105,12 @@ public:
     score(const score&) noexcept = default;
     score& operator=(const score&) noexcept = default;
 
-    [[nodiscard]] std::uint64_t frames() const noexcept; ///< length of the piece
+    [[nodiscard]] std::uint64_t frames() const noexcept; ///< length of the score
     [[nodiscard]] unsigned channels() const noexcept;
     [[nodiscard]] unsigned rate() const noexcept; ///< Hz
-    /// Start of each plan in frames.
+    /// Returns the start of each plan in frames.
     [[nodiscard]] const std::vector<std::uint64_t>& starts() const noexcept;
-    /// The plans without their bursts, which are not kept twice.
+    /// Returns the plans without their bursts: the score stores those in another form.
     [[nodiscard]] const std::vector<placed_plan>& plans() const noexcept;
 
     struct impl;
@@ -118,28 +123,30 @@ private:
     std::shared_ptr<const impl> impl_;
 };
 
-/// Makes a score stroke by stroke. A plan that it makes itself is never in memory as a whole: an hour of
-/// park2016 takes 4 MB in place of 11. One thread at a time. Where an add() throws, a part of the stroke may
-/// be in the score: the builder cannot be used any more.
+/// Makes a score stroke by stroke. It never has a whole plan of its own in memory: an hour of park2016 takes
+/// 4 MB instead of 11. One thread at a time. If an add() throws, a part of the stroke may be in the score, so
+/// the builder is no longer usable.
 class TACTOR_API score_builder {
 public:
+    /// Starts an empty score.
     /// \throws error (bad_input) for impossible render_options or an impossible array.
     score_builder(const array& a, const render_options& o);
     ~score_builder();
     score_builder(const score_builder&) = delete;
     score_builder& operator=(const score_builder&) = delete;
 
-    /// Adds a plan; its start as in placed_plan. \throws error (bad_input) where it cannot be rendered.
+    /// Adds a plan, with a start as in placed_plan.
+    /// \throws error (bad_input) if it cannot be rendered.
     void add(plan p, std::optional<double> start_s = {}, const start_anchor& anchor = {});
 
-    /// Plans a stroke as make_plan() does and adds it at its start. `l` must be the layout of the array. The
-    /// bursts of park2016 are handed on as they come, the other algorithms plan as a whole.
-    /// \throws error (bad_input) as make_plan() does, and where the plan cannot be rendered.
+    /// Plans a stroke as make_plan() does and adds it at its start. `l` must be the layout of the array.
+    /// Bursts of park2016 go into the score one by one; the other algorithms plan the whole stroke first.
+    /// \throws error (bad_input) as make_plan() does, and if the plan cannot be rendered.
     void add(const layout& l, const stroke& s, const plan_options& o);
 
-    /// The score of all that was added: its samples are those of a score that is made of the plans. The
-    /// builder begins anew, where this throws, too.
-    /// \throws error (bad_input) for levels that a tactor may not have.
+    /// Returns the score of all that was added. Its samples equal those of a score made of the same plans.
+    /// The builder becomes empty, even if this throws.
+    /// \throws error (bad_input) for a level above a tactor's limit.
     [[nodiscard]] score take();
 
 private:
@@ -147,9 +154,9 @@ private:
     std::unique_ptr<impl> impl_;
 };
 
-/// Renders a score offline, block by block. The same mixer as in the player: same score, same samples,
-/// whatever the block sizes. One thread at a time. A renderer that was moved from can be destroyed and
-/// assigned to; its other members throw error (bad_input).
+/// Renders a score offline, block by block, with the mixer of the player. Samples do not depend on block
+/// sizes. One thread at a time. A moved-from renderer can be destroyed and assigned to; its other members
+/// throw error (bad_input).
 class TACTOR_API renderer {
 public:
     renderer(const score& s, format_kind f);
@@ -157,17 +164,17 @@ public:
     renderer(renderer&&) noexcept;
     renderer& operator=(renderer&&) noexcept;
 
-    /// Fills `out` with the next interleaved frames, as many as it has space for, and goes on; silence after
-    /// the end. Where a continuous stroke fails, all strokes fade out before that, within 10 ms, and silence
-    /// follows. Allocates nothing but the text of failure().
-    /// \throws error (bad_input) where `out` is no whole number of frames (channels * bytes_of(format)).
+    /// Fills `out` with the next interleaved frames, as many as fit, and with silence after the end. If a
+    /// continuous stroke fails, all strokes first fade out within 10 ms, and silence follows. Allocates only
+    /// the text of failure().
+    /// \throws error (bad_input) unless `out` is a whole number of frames (channels * bytes_of(format)).
     void process(std::span<std::byte> out);
 
-    /// Next frame to be rendered.
+    /// Returns the number of the next frame.
     [[nodiscard]] std::uint64_t position() const;
 
-    /// Why the rest is silence: a continuous stroke could not be followed further, for want of memory for
-    /// example, or it asked for more than its levels were checked with. Empty while all is well.
+    /// Returns why the rest is silence: the renderer could not follow a continuous stroke, for example
+    /// because memory ran out, or the stroke exceeded the levels that were checked. Empty while all is well.
     [[nodiscard]] const std::string& failure() const;
 
 private:
@@ -175,15 +182,15 @@ private:
     std::unique_ptr<impl> impl_;
 };
 
-/// Called between blocks with the frames done and in all; false gives up.
+/// Called between blocks with the finished and all frames. Returns false to give up.
 using wav_progress = std::function<bool(std::uint64_t done, std::uint64_t all)>;
 
-/// Renders a score to a WAV file (RF64 above 4 GB) in bounded memory. Writes to a temporary name in
-/// the same folder, which becomes `file` when complete; on failure, or when `progress` gives up,
-/// nothing is left behind and an existing `file` stays as it was. Blocks on the file system.
-/// \returns false when `progress` gave up.
-/// \throws error: bad_input for a format that WAV cannot hold (s24_4), a folder that does not exist, and a
-///         plan that fails in mid-stroke (renderer::failure()); runtime for what the file system refuses.
+/// Renders a score to a WAV file (RF64 above 4 GB) in bounded memory. Writes to a temporary name in the same
+/// folder and renames it to `file` when it is complete. On failure, or if `progress` gives up, it leaves
+/// nothing behind and an existing `file` unchanged. Blocks on the file system.
+/// \returns false if `progress` gave up.
+/// \throws error: bad_input for a format that WAV cannot hold (s24_4), for a folder that does not exist, and
+///         for a plan that fails in mid-stroke (renderer::failure()); runtime for errors of the file system.
 TACTOR_API bool write_wav(const score& s, format_kind f, const std::filesystem::path& file,
                           const wav_progress& progress = {});
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What an array file or a configuration file says: see tactor.toml(5).
+/// Contents of an array file or a configuration file, see tactor.toml(5).
 #pragma once
 
 #include <filesystem>
@@ -17,11 +17,11 @@
 namespace tactor {
 inline namespace v0 {
 
-/// [output]: the PCM. Anything not said is chosen by the program.
+/// [output]: the PCM. The program chooses values that are not given.
 struct output_settings {
-    std::optional<std::string> pcm = {};        ///< ALSA name; check others' by require_device_name()
-    source_place pcm_at = {};                   ///< where the file says it
-    bool pcm_included = false;                  ///< said in a file that the one read names under [array]
+    std::optional<std::string> pcm = {}; ///< ALSA name; check names from others with require_device_name()
+    source_place pcm_at = {};            ///< place of the name in its file
+    bool pcm_included = false; ///< the name comes from a file that the configuration names under [array]
     std::optional<unsigned> rate = {};          ///< Hz, 8000 to 768000
     std::optional<unsigned> channels = {};      ///< exact channel count
     std::optional<unsigned> period_frames = {}; ///< frames in a period, 50 us at least
@@ -39,19 +39,19 @@ struct sync_settings {
     pull_kind pull = pull_kind::as_is;
 };
 
-/// [limits]: see drive_limits. Values that are not given are the defaults there.
+/// [limits], see drive_limits. Missing values have the defaults there.
 struct limit_settings {
     std::optional<double> power_dbfs = {};
     std::optional<double> max_drive_s = {};
     std::optional<double> window_s = {};
 };
 
-/// A value of a table whose names only a program knows: [defaults], [serve]. The program checks names and
+/// A value of a table whose names only the program knows: [defaults], [serve]. The program checks names and
 /// values.
 struct said_value {
-    std::string name = {}; ///< as the file writes it
+    std::string name = {}; ///< as written in the file
     std::variant<std::monostate, bool, double, std::string> said = {};
-    bool in_list = false;      ///< an entry of a list; each entry is one of these
+    bool in_list = false;      ///< an entry of a list
     source_place at = {};      ///< of the value
     source_place name_at = {}; ///< of the name
 
@@ -61,34 +61,34 @@ struct said_value {
     }
 };
 
-/// [[calibration.tactor]]: how a threshold was found.
+/// [[calibration.tactor]]: result of measuring one threshold.
 struct calibrated_tactor {
     unsigned tactor = 0;
-    std::optional<double> threshold_dbfs = {}; ///< nothing: not felt
+    std::optional<double> threshold_dbfs = {}; ///< none: not felt
     std::optional<double> sd_db = {};
     unsigned trials = 0;
 
     friend bool operator==(const calibrated_tactor&, const calibrated_tactor&) = default;
 };
 
-/// [calibration] of an array file: whose thresholds it has, and how they were measured.
+/// [calibration] of an array file: the participant and the method of its thresholds.
 struct calibration_origin {
     std::string participant = {};
     double carrier_hz = 0.0;
     bool simulated = false;
     std::string method = {};                ///< "staircase" or "adjustment"
     std::optional<std::string> rule = {};   ///< "1up3down" or "1up2down", of a staircase
-    double interval_s = 0.0;                ///< how long each sounded
-    std::optional<bool> feedback = {};      ///< whether the participant was told what was right
-    std::optional<std::string> masker = {}; ///< the masking noise in words
-    std::optional<std::string> date = {};   ///< on which it began, UTC
+    double interval_s = 0.0;                ///< duration of each interval
+    std::optional<bool> feedback = {};      ///< the participant was told whether each answer was right
+    std::optional<std::string> masker = {}; ///< description of the masking noise
+    std::optional<std::string> date = {};   ///< start of the session, UTC
     std::optional<unsigned> seed = {};
     std::vector<calibrated_tactor> tactors = {};
 
     friend bool operator==(const calibration_origin&, const calibration_origin&) = default;
 };
 
-/// All that an array file or a configuration may say.
+/// Contents of an array file or a configuration.
 struct setup {
     std::optional<tactor::array> array = {};
     output_settings output = {};
@@ -96,18 +96,18 @@ struct setup {
     std::optional<sync_settings> sync = {};
     std::optional<limit_settings> limits = {};
     std::optional<calibration_origin> calibration = {};
-    /// [defaults]: each name once; what an included file says comes first.
+    /// [defaults]: each name once; values of an included file come first.
     std::vector<said_value> defaults = {};
-    /// [serve]: names in the order of the file.
+    /// [serve]: in the order of the file.
     std::vector<said_value> serve = {};
 };
 
 /// Reads an array or configuration file. May block on the file system.
-/// \throws error (bad_input) with file, line and column; an unknown key names the nearest known one.
+/// \throws error (bad_input) with file, line and column. For an unknown key it names the nearest known one.
 [[nodiscard]] TACTOR_API setup load_setup(const std::filesystem::path& file);
 
-/// The same from text; `name` stands for the file in messages, relative names in it are resolved
-/// against the current directory.
+/// Reads the same from text. `name` stands for the file in messages. Relative file names in the text count
+/// from the current directory.
 [[nodiscard]] TACTOR_API setup parse_setup(std::string_view toml, const std::string& name);
 
 } // namespace v0

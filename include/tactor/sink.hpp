@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Where the audio thread writes frames to: a PCM, a test device, or a class of your own.
+/// Sinks, to which the audio thread writes frames: a PCM, a test device, or a class of your own.
 #pragma once
 
 #include <cstddef>
@@ -19,66 +19,68 @@
 namespace tactor {
 inline namespace v0 {
 
-/// Which channels of the device the channels of a stream reach.
+/// Map from the channels of a stream to the channels of the device.
 struct stream_wiring {
     /// By channel of the stream: the device's channels that it reaches, ascending (those of a second device
-    /// count from 1024). A channel with none is lost. Empty: each channel reaches the one of its own number.
+    /// count from 1024). A channel that reaches none is lost. Empty: each channel reaches the one of the same
+    /// number.
     std::vector<std::vector<unsigned>> outputs = {};
-    /// The factor on the samples of each of `outputs`, in the same order; below 0 the polarity is reversed.
-    /// A gain below 0.001 (-60 dB) counts as not reached. Empty: all are 1.
+    /// Factor on the samples of each of `outputs`, in the same order; below 0 the polarity is reversed. A
+    /// gain below 0.001 (-60 dB) counts as not reached. Empty: all are 1.
     std::vector<std::vector<double>> gains = {};
-    /// The part in between that sets a level which cannot be known: "type softvol". Empty: none does.
+    /// Plugin on the route whose level is not known: "type softvol". Empty: none.
     std::string level_by = {};
-    /// The part in between that may give any channel any place, so that `outputs` cannot be known: "type
-    /// pulse". Empty: `outputs` is known.
+    /// Plugin on the route that may move channels, so that `outputs` is not known: "type pulse". Empty:
+    /// `outputs` is known.
     std::string hidden_by = {};
 };
 
-/// The stream as it was negotiated. While the sink lives, only has_clock may change.
+/// Negotiated stream. While the sink lives, only has_clock may change.
 struct stream_setup {
     std::string name; ///< as the user named it
     unsigned channels = 0;
-    unsigned device_channels = 0; ///< of the PCM; more than `channels`: the rest is silent; 0: as many
+    unsigned device_channels = 0; ///< of the PCM; those beyond `channels` are silent; 0: as many
     unsigned rate = 0;            ///< Hz
     format_kind format = format_kind::s32;
     unsigned period_frames = 0;
     unsigned buffer_frames = 0;
     bool batch = false;        ///< the position moves by whole periods
-    bool has_clock = true;     ///< false: null and file devices, which the sink paces; known after start()
-    stream_wiring wiring = {}; ///< behind this stream
+    bool has_clock = true;     ///< false for null and file devices, which the sink paces; known after start()
+    stream_wiring wiring = {}; ///< map behind this stream
 
-    /// Bytes of one frame.
+    /// Returns the number of bytes of one frame.
     [[nodiscard]] std::size_t frame_bytes() const noexcept { return channels * bytes_of(format); }
 };
 
-/// How a call on a sink ended. A plain value: the audio thread throws nothing.
+/// Outcome of a call on a sink. A plain value, because the audio thread does not throw.
 enum class io_kind {
     ok,
     again,     ///< no space now
     xrun,      ///< the device ran dry; the stream has stopped
     suspended, ///< the system sleeps or slept
     lost,      ///< unplugged, or its position stands still
-    failed,    ///< anything else; final
+    failed,    ///< any other failure; final
 };
 TACTOR_KIND(io_kind);
 
+/// Result of a call on a sink.
 struct io_result {
     io_kind status = io_kind::ok;
     std::size_t frames = 0; ///< frames taken
-    int code = 0;           ///< negative errno of the device where status is not ok
+    int code = 0;           ///< negative errno of the device if status is not ok
 };
 
 /// Position of the stream at one instant.
 struct stream_position {
-    std::uint64_t written = 0; ///< frames given in this epoch, the prefill included
-    std::uint64_t played = 0;  ///< of these, how many have reached the DAC
+    std::uint64_t written = 0; ///< frames written in this epoch, the prefill included
+    std::uint64_t played = 0;  ///< of these, frames that have reached the DAC
     std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC of the reading
-    bool valid = false;        ///< false for player_options::stall_s: the device stands still
+    bool valid = false;        ///< if it is false for player_options::stall_s, the device counts as lost
 };
 
-/// A stream of interleaved frames. Order of calls: write() silence (prefill), start(), then wait on
-/// the descriptors, write(). All `noexcept` members are called by the audio thread only: they
-/// must not block, lock, allocate or log.
+/// A stream of interleaved frames. Order of calls: prepare(), write() silence (prefill), start(); then wait
+/// on the descriptors and write(). Only the audio thread calls the `noexcept` members: they must not block,
+/// lock, allocate or log.
 class TACTOR_API sink {
 public:
     sink() = default;
@@ -88,40 +90,40 @@ public:
 
     [[nodiscard]] virtual const stream_setup& setup() const noexcept = 0;
 
-    /// Makes the stream ready to be filled: at first, and again after an xrun. Begins a new epoch.
+    /// Makes the stream ready to be filled: first, and after each xrun. Begins a new epoch.
     [[nodiscard]] virtual io_kind prepare() noexcept = 0;
     /// Starts the DAC explicitly, after the prefill.
     [[nodiscard]] virtual io_kind start() noexcept = 0;
-    /// Tries to come back from `suspended`; `again` while the device is not ready.
+    /// Tries to return from `suspended`. Returns `again` while the device is not ready.
     [[nodiscard]] virtual io_kind resume() noexcept = 0;
-    /// How long the stream has stood still since the xrun that was just reported, ns; 0 where that is not
-    /// known. Called before prepare().
+    /// Returns the time, ns, for which the stream stood still in the xrun that was just reported; 0 if it is
+    /// not known. Called before prepare().
     [[nodiscard]] virtual std::int64_t xrun_ns() noexcept;
 
-    /// Upper bound of the number of descriptors.
+    /// Returns an upper bound of the number of descriptors.
     [[nodiscard]] virtual std::size_t max_descriptors() const noexcept = 0;
-    /// Fills `fds` with what to poll; returns how many.
+    /// Fills `fds` with the descriptors to poll and returns their number.
     [[nodiscard]] virtual std::size_t descriptors(std::span<pollfd> fds) noexcept = 0;
-    /// Interprets the polled descriptors: `ok` space to write, `again` not yet, or an error.
+    /// Interprets the polled descriptors: `ok` if there is space to write, `again` if not, or an error.
     [[nodiscard]] virtual io_kind ready(std::span<pollfd> fds) noexcept = 0;
 
-    /// Frames that can be written now.
+    /// Returns the number of frames that can be written now.
     [[nodiscard]] virtual io_result available() noexcept = 0;
-    /// Writes whole interleaved frames; may take fewer than there are, also none.
+    /// Writes whole interleaved frames. May take fewer than given, even none.
     [[nodiscard]] virtual io_result write(std::span<const std::byte> frames) noexcept = 0;
     [[nodiscard]] virtual stream_position position() noexcept = 0;
-    /// Stops at once and discards what is queued.
+    /// Stops at once and discards the queued frames.
     virtual void drop() noexcept = 0;
 };
 
-/// A sink for a target without a clock of its own: a socket, a pipe, a simulation. Frames leave it at the
-/// sample rate by CLOCK_MONOTONIC. Where the writer comes too late, the sink's time waits for it, so that
-/// there are no xruns. Derive from it and implement take().
+/// A sink for a target without a clock: a socket, a pipe, a simulation. Frames leave it at the sample rate by
+/// CLOCK_MONOTONIC. If the writer is late, the sink's time waits for it, so there are no xruns. Derive from
+/// it and implement take().
 class TACTOR_API paced_sink : public sink {
 public:
-    /// Of `s`, name, channels (1 to 16384), rate (8000 to 768000 Hz) and format count; period_frames (50 us
-    /// at least) and buffer_frames (two periods at least) may be 0, which means 96 frames and three periods.
-    /// \throws error: bad_input for numbers out of range, runtime when no timer is available.
+    /// Uses name, channels (1 to 16384), rate (8000 to 768000 Hz) and format of `s`. period_frames (50 us at
+    /// least) and buffer_frames (two periods at least) may be 0, which means 96 frames and three periods.
+    /// \throws error: bad_input for numbers out of range, runtime if no timer is available.
     explicit paced_sink(stream_setup s);
     ~paced_sink() override;
 
@@ -138,9 +140,9 @@ public:
     void drop() noexcept final;
 
 protected:
-    /// Takes the next frames of the stream, at most a period of them, interleaved, up to buffer_frames
-    /// before their time; `first` counts from the epoch's start. Called by the audio thread: it must not
-    /// block, lock, allocate or log. `ok`, or `lost` or `failed`, which end the stream.
+    /// Takes the next frames of the stream, interleaved, at most a period of them, up to buffer_frames before
+    /// their time. `first` counts from the epoch's start. The audio thread calls this: it must not block,
+    /// lock, allocate or log. Returns `ok`, or `lost` or `failed`, which end the stream.
     [[nodiscard]] virtual io_kind take(std::uint64_t first, std::span<const std::byte> frames) noexcept = 0;
 
 private:

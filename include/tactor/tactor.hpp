@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Everything: include this, or the single headers.
+/// Includes every header but <tactor/asio.hpp> and <tactor/config.hpp>. Include this one, or single headers.
 #pragma once
 
 #include <tactor/alsa.hpp>
