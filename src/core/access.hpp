@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// How the library gets at what its public classes hold, and makes them from it.
+/// Access of the library to the contents of its public classes, and their construction from contents.
 #pragma once
 
 #include <utility>
@@ -10,7 +10,7 @@
 namespace tactor::detail {
 
 struct access {
-    /// What a path, trajectory, layout or score stands for.
+    /// Returns the contents of a path, trajectory, layout or score.
     template <typename T>
     static const auto& of(const T& t) noexcept
     {

@@ -14,7 +14,7 @@ namespace tactor {
 inline namespace v0 {
 namespace {
 
-// Ascending, without those that are one line.
+// Returns the coordinates in ascending order, with those nearer than same_place_mm merged.
 std::vector<double> lines_of(std::vector<double> at)
 {
     std::sort(at.begin(), at.end());
@@ -25,7 +25,7 @@ std::vector<double> lines_of(std::vector<double> at)
     return lines;
 }
 
-// The line that v was merged into.
+// Returns the index of the line into which v was merged.
 std::size_t line_of(const std::vector<double>& lines, double v)
 {
     return static_cast<std::size_t>(std::upper_bound(lines.begin(), lines.end(), v) - lines.begin()) - 1;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Bounds of the numbers that users may set, in every front end. The planner holds some numbers to closer
-/// bounds, which depend on others.
+/// Bounds of the numbers that users may set, the same in every front end. The planner has closer bounds for
+/// numbers that depend on others.
 #pragma once
 
 #include "core/limits.hpp"
@@ -23,17 +23,17 @@ namespace tactor::detail::bounds_of {
 
 inline constexpr bounds duration_s{0.001, longest_stroke_s};
 inline constexpr bounds speed_mm_s{0.001, 100000.0};
-inline constexpr bounds soa_s{-1e9, 1e9}; // the planner has the bounds, by the timing law
+inline constexpr bounds soa_s{-1e9, 1e9}; // the planner has closer bounds, by the timing law
 inline constexpr bounds burst_s{0.0001, 10.0};
 inline constexpr bounds min_duration_s{0.0001, 10.0};
 inline constexpr bounds slope{0.01, 0.99};
 inline constexpr bounds intercept_s{0.001, 10.0};
 inline constexpr bounds margin_mm{0.0, max_mm};
 inline constexpr bounds carrier_hz{1.0, 384000.0}; // half of the highest rate
-inline constexpr bounds seed{0.0, 0x1p53};         // JSON's numbers go so far
-inline constexpr bounds texture_mm{0.0, max_mm};   // 0: all of the path
+inline constexpr bounds seed{0.0, 0x1p53};         // the largest exact integer of a JSON number
+inline constexpr bounds texture_mm{0.0, max_mm};   // 0: the whole path
 inline constexpr bounds am_hz{0.0, 20000.0};
-inline constexpr bounds ramp_s{0.0, 10.0}; // attack and release, too
+inline constexpr bounds ramp_s{0.0, 10.0}; // also for attack and release
 inline constexpr bounds part{0.0, 1.0};
 inline constexpr bounds level_dbfs{min_db, 0.0};
 inline constexpr bounds sl_db{-60.0, 100.0};
@@ -53,13 +53,13 @@ inline constexpr bounds periods{2.0, 1024.0};
 inline constexpr bounds reopen_s{0.0, 1e9};
 inline constexpr bounds sync_delay_ms{0.0, 10000.0};
 inline constexpr bounds smooth_s{0.0, 1.0};
-inline constexpr bounds timeout_s{0.001, longest_stroke_s}; // how long a live stroke may last, too
+inline constexpr bounds timeout_s{0.001, longest_stroke_s}; // also for the longest time of a live stroke
 inline constexpr bounds masker_dbfs{-120.0, 0.0};
-inline constexpr bounds interval_s{0.05, 4.0}; // of a measured threshold
+inline constexpr bounds interval_s{0.05, 4.0}; // duration of an interval when a threshold is measured
 inline constexpr bounds marker_channel{0.0, max_channels - 1.0};
 inline constexpr bounds marker_s{1e-6, 10.0};
 
-// These guard people.
+// Bounds that protect people.
 inline constexpr bounds power_dbfs{-120.0, 60.0};
 inline constexpr bounds drive_s{0.1, 3600.0}; // longest drive, and the window in which it counts
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Loops compiled for any x86-64, for AVX2 and for AVX-512; the loader takes the best that the processor can
-/// do. All do the same operations on each sample, without contraction, so the samples are the same.
+/// Loops compiled for any x86-64, for AVX2 and for AVX-512. The loader chooses the best version that the
+/// processor supports. All versions do the same operations on each sample, without contraction, so the
+/// samples are equal.
 #pragma once
 
 #include <cstddef> // defines __GLIBC__ where it is glibc
 
-// Sanitizers are not ready yet when the loader chooses.
+// Sanitizers are not initialised yet when the loader chooses.
 #if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) &&    \
     !defined(__SANITIZE_THREAD__)
 #define TACTOR_HAS_CLONES

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Lengths, computed where they are needed: a call of std::hypot takes as long as the rest of a phantom.
+/// Inline lengths: a call of std::hypot takes as long as the rest of a phantom.
 #pragma once
 
 #include <cmath>
@@ -9,15 +9,15 @@
 
 namespace tactor::detail {
 
-/// std::hypot as the C library computes it without fused multiplications since glibc 2.35, bit for bit
-/// (Borges 2019, algorithm "fused" without the fusing), on every machine.
+/// Returns std::hypot(x, y) on every machine, bit for bit as the C library has computed it since glibc 2.35
+/// without fused multiplications (Borges 2019, algorithm "fused" without the fusing).
 [[gnu::always_inline]] inline double hypot_of(double x, double y) noexcept
 {
     const double u = std::abs(x);
     const double v = std::abs(y);
     const double a = u < v ? v : u;
     const double b = u < v ? u : v;
-    if (!(b >= 0x1p-459 && a <= 0x1p511)) // what squaring would lose, and what is not finite
+    if (!(b >= 0x1p-459 && a <= 0x1p511)) // numbers whose squares would lose digits, and infinite ones
         return std::hypot(x, y);
     if (b <= a * 0x1p-54)
         return a + b;
@@ -29,7 +29,7 @@ namespace tactor::detail {
     return h - (first + second) / (2.0 * h);
 }
 
-/// As tactor::distance_mm().
+/// Returns tactor::distance_mm().
 [[gnu::always_inline]] inline double length_mm(point a, point b) noexcept
 {
     return hypot_of(a.x_mm - b.x_mm, a.y_mm - b.y_mm);

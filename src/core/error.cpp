@@ -56,12 +56,12 @@ std::string source_place::text() const
 struct error::data {
     std::string text = {};
     std::size_t why_at = 0;
-    std::size_t hint_at = 0; ///< size of the text where there is none
+    std::size_t hint_at = 0; ///< size of the text if there is no hint
     std::string field = {};
     source_place place = {};
     int os_code = 0;
 
-    /// The same in these words.
+    /// Returns a copy with other words.
     data said(std::string_view what, std::string_view why, std::string_view hint) const
     {
         data d = *this;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What of fmt is not in its headers, for builds that load no library in C++ (meson_options.txt: static_cpp).
-// fmt has it compiled in a library of its own, or in each file (FMT_HEADER_ONLY), which takes four times as
-// long.
+// The parts of fmt that are not in its headers, for builds that load no C++ library (meson_options.txt:
+// static_cpp). fmt offers them in its own library, or in each file (FMT_HEADER_ONLY), which takes four times
+// as long to compile.
 #include <fmt/format-inl.h>
 
 FMT_BEGIN_NAMESPACE

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The names of a closed set's values, for readers that say in their own words what they do not know.
+/// Names of a closed set's values, for readers with their own messages about unknown names.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace tactor::detail {
 
-/// In the order of declaration.
+/// Returns the names in the order of declaration.
 template <typename Kind>
 std::vector<std::string_view> names_of()
 {
@@ -21,7 +21,7 @@ std::vector<std::string_view> names_of()
     return names;
 }
 
-/// Of that name, if there is one.
+/// Returns the value with that name, if any.
 template <typename Kind>
 std::optional<Kind> kind_named(std::string_view name)
 {

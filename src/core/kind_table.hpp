@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The definition of an enumeration's words, once.
+/// Definition of the name functions of an enumeration.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ struct kind_name {
     std::string_view name;
 };
 
-/// The names of an enumeration, in the order of declaration. `what` stands for it in messages.
+/// Names of an enumeration, in the order of declaration. `what` names the enumeration in messages.
 template <typename Kind, std::size_t N>
 class kind_table {
 public:
@@ -63,8 +63,8 @@ private:
 
 } // namespace tactor::detail
 
-/// Defines what TACTOR_KIND declares, inside namespace tactor::v0. `what` stands for the enumeration in
-/// messages; then each value with its name, in the order of declaration.
+/// Defines what TACTOR_KIND declares, inside namespace tactor::v0. `what` names the enumeration in messages.
+/// Each value with its name follows, in the order of declaration.
 #define TACTOR_KIND_NAMES(Kind, what, ...)                                                                   \
     namespace {                                                                                              \
     constexpr auto Kind##_names = [] {                                                                       \

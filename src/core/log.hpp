@@ -10,7 +10,8 @@
 
 namespace tactor::detail {
 
-/// Costs nothing where nobody listens. A log is no reason to fail.
+/// Formats a line and passes it to `to`. Costs nothing without a listener. Drops exceptions: a log must not
+/// make its caller fail.
 template <typename... T>
 void log(const log_function& to, log_kind k, fmt::format_string<T...> format, T&&... values) noexcept
 {
@@ -18,7 +19,7 @@ void log(const log_function& to, log_kind k, fmt::format_string<T...> format, T&
         return;
     try {
         to(k, fmt::format(format, std::forward<T>(values)...));
-    } catch (...) { // NOLINT(bugprone-empty-catch): there is nobody to tell
+    } catch (...) { // NOLINT(bugprone-empty-catch): there is no place to report it
     }
 }
 

@@ -23,7 +23,7 @@ outline outline_of(const path::impl& p)
     return o;
 }
 
-// Straight pieces only, which turn where the curves do as seen along a line.
+// Returns straight pieces only. They turn where the curves turn along the direction `line`.
 outline with_straight_pieces(const outline& o, point line)
 {
     const affine along_is_x{line.x_mm, -line.y_mm, line.y_mm, line.x_mm, 0.0, 0.0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A movement in another place and size.
+// A movement moved to another place and size.
 #pragma once
 
 #include <functional>
@@ -16,10 +16,11 @@ namespace tactor::detail {
 /// Adds all corners of a movement, its ends included, and its curves.
 void add_outline(const trajectory& t, std::vector<point>& corners, std::vector<shape>& curves);
 
-/// The same movement where `from` is the origin first, which keeps the digits of a small picture that is far
-/// away, and then `m` maps it. With `line`, the direction of the line to which `m` flattens all, curves
-/// become straight pieces between their turns. Time and intensity stay. `what` stands for it in messages.
-/// \throws error (bad_input) for coordinates beyond what a path may have.
+/// Returns the movement mapped by `m` after `from` became the origin, which keeps the digits of a small
+/// picture that is far away. If `m` flattens everything to a line, `line` gives its direction, and curves
+/// become straight pieces between their turns. Time and intensity stay. `what` names the movement in
+/// messages.
+/// \throws error (bad_input) for coordinates beyond the limit of a path.
 trajectory moved(const trajectory& t, point from, const affine& m, std::optional<point> line,
                  const std::function<std::string()>& what);
 

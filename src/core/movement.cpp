@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Trajectories along a path that do not move evenly, and those that are played backwards.
+// Trajectories along a path at changing speeds, and reversed trajectories.
 #include <tactor/stroke.hpp>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ double sum_of_rests(const movement& m)
     return all;
 }
 
-/// Time between the rests.
+/// Returns the time between the rests.
 double moving_time_s(const movement& m, double length_mm)
 {
     const double rests = sum_of_rests(m);
@@ -58,7 +58,7 @@ bool is_even(const movement& m)
     return m.easing == easing_kind::linear && m.speed_mm_s.empty() && m.intensity.empty() && m.rests.empty();
 }
 
-/// Forwards, the outline of a path that goes backwards.
+/// Returns the outline of a path in reverse.
 detail::outline backwards(const path::impl& p)
 {
     detail::outline o;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Owners of what C libraries and the system hand out.
+/// Owners of resources from C libraries and the system.
 #pragma once
 
 #include <utility>
@@ -10,7 +10,7 @@
 
 namespace tactor::detail {
 
-/// For std::unique_ptr<T, deleter<function>>.
+/// Deleter for std::unique_ptr<T, deleter<function>>.
 template <auto Free>
 struct deleter {
     template <typename T>
@@ -20,11 +20,11 @@ struct deleter {
     }
 };
 
-/// A descriptor that is closed with this.
+/// A descriptor that the destructor closes.
 class owned_fd {
 public:
     owned_fd() noexcept = default;
-    /// Takes it over; one below 0, which a call of the system gave with an errno, is none.
+    /// Takes over `fd`. A negative one, the result of a failed system call, means none.
     explicit owned_fd(int fd) noexcept : fd_(fd) {}
     owned_fd(owned_fd&& o) noexcept : fd_(o.release()) {}
     owned_fd& operator=(owned_fd&& o) noexcept
@@ -36,7 +36,7 @@ public:
 
     int get() const noexcept { return fd_; }
     int release() noexcept { return std::exchange(fd_, -1); }
-    /// What close(2) gives; 0 where there is none.
+    /// Closes the descriptor. Returns the result of close(2), or 0 if there is none.
     int close() noexcept { return fd_ >= 0 ? ::close(release()) : 0; }
     explicit operator bool() const noexcept { return fd_ >= 0; }
 
@@ -44,8 +44,8 @@ private:
     int fd_ = -1;
 };
 
-/// Locks a folder against others and waits for them, 5 ms at a time. Goes on without the lock where somebody
-/// holds it for longer: that one is at fault.
+/// Locks a folder against other processes. If another process holds the lock, tries again every 5 ms. After
+/// `tries` attempts it continues without the lock: the other process is at fault.
 inline void lock_folder(const owned_fd& folder, int tries) noexcept
 {
     constexpr useconds_t pause_us = 5000;

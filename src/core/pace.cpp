@@ -16,8 +16,8 @@
 namespace tactor::detail {
 namespace {
 
-/// Where g, which is convex and rises from 0 to 0.5 within 0 ... 0.5, is `way`: Newton's steps from the right
-/// only ever go left.
+/// Solves g(u) = way by Newton's method. g is convex and rises from 0 to 0.5 within 0 ... 0.5, so steps from
+/// the right only go left.
 template <typename G, typename Slope>
 double newton_from(double u, double way, G g, Slope slope) noexcept
 {
@@ -42,7 +42,7 @@ double half_uneased(easing_kind k, double way) noexcept
         [](double u) { return 30.0 * u * u * (1.0 - u) * (1.0 - u); });
 }
 
-/// log(1 + x) / x and (exp(x) - 1) / x, which are 1 at 0.
+/// Returns log(1 + x) / x; the next function returns (exp(x) - 1) / x. Both are 1 at 0.
 double log_part(double x) noexcept
 {
     return x == 0.0 ? 1.0 : std::log1p(x) / x;
@@ -53,7 +53,7 @@ double exp_part(double x) noexcept
     return x == 0.0 ? 1.0 : std::expm1(x) / x;
 }
 
-/// The speeds with one at either end of the path.
+/// Returns the speeds with one at either end of the path.
 std::vector<profile_point> whole(std::vector<profile_point> speeds)
 {
     if (speeds.empty())
@@ -182,7 +182,7 @@ const pace::phase& pace::at(double t_s) const noexcept
 {
     const auto after = std::upper_bound(phases_.begin(), phases_.end(), t_s,
                                         [](double v, const phase& p) noexcept { return v < p.begin_s; });
-    // What is no number is the start, as with all times.
+    // NaN counts as the start, as for all times.
     return after == phases_.begin() || !(t_s > 0.0) ? phases_.front() : *(after - 1);
 }
 

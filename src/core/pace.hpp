@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where on its path a target is when, and when it comes to a part of it: both ways in closed form.
+// Position of a target on its path over time, and the time at which it reaches a part of the path. Both are
+// closed forms.
 #pragma once
 
 #include <vector>
@@ -8,54 +9,56 @@
 
 namespace tactor::detail {
 
-/// The part of the way after a part u of the time (0 to 1), and its inverse to the last digits.
+/// Returns the part of the length that is covered after a part u of the time (0 to 1); uneased() inverts it
+/// to the last digits.
 double eased(easing_kind k, double u) noexcept;
 double uneased(easing_kind k, double way) noexcept;
 
-/// Time that a way takes at the speeds of a movement, s, without rests.
+/// Returns the time that a length takes at the speeds of a movement, s, without rests.
 double time_at_speeds_s(const movement& m, double length_mm);
 
-/// \throws error (bad_input) for what no target can do; durations apart, which depend on the path.
+/// Checks a movement, except durations, which depend on the path.
+/// \throws error (bad_input) for impossible values.
 void check_movement(const movement& m);
 
-/// A movement in its own time, whatever the path: seconds from 0 to total_s().
+/// A movement in its own time, for any path: seconds from 0 to total_s().
 class pace {
 public:
-    /// `m` as check_movement() takes it, with `moving_s` > 0 between its rests.
+    /// Takes a movement that passes check_movement(), with `moving_s` > 0 between its rests.
     pace(movement m, double moving_s);
 
     double total_s() const noexcept { return total_s_; }
     double moving_s() const noexcept { return moving_s_; }
     const movement& said() const noexcept { return said_; }
 
-    /// Part of the path at a time, clamped. O(log n).
+    /// Returns the part of the path at a time, clamped. O(log n).
     double part(double t_s) const noexcept;
-    /// Factor on the intensity at a time. O(log n).
+    /// Returns the factor on the intensity at a time. O(log n).
     double intensity(double t_s) const noexcept;
-    /// When the target comes to a part of the path. O(log n).
+    /// Returns the time at which the target reaches a part of the path. O(log n).
     double arrival_s(double part) const noexcept;
-    /// When a rest or a stretch between two speeds begins or ends, from 0 to total_s(), ascending. Between
-    /// two of these times part() is smooth.
+    /// Returns the times at which a rest or a stretch between two speeds begins or ends, from 0 to total_s(),
+    /// ascending. Between two of these times part() is smooth.
     std::vector<double> bends() const;
-    /// Upper bound of the intensity from one part to another.
+    /// Returns an upper bound of the intensity from one part to another.
     double greatest(double from_part, double to_part) const noexcept;
 
 private:
-    /// A stretch between two speeds.
+    /// Part of the path between two speeds.
     struct stretch {
         double part = 0.0;
         double width = 0.0;
-        double change = 0.0; ///< of the speed, as a part of the first
+        double change = 0.0; ///< of the speed, relative to the first
         double begin_s = 0.0;
-        double unit_s = 0.0; ///< in which it would be crossed at its first speed
+        double unit_s = 0.0; ///< time to cross it at its first speed
     };
-    /// From rest to rest, or a rest.
+    /// Movement from rest to rest, or a rest.
     struct phase {
         double begin_s = 0.0;
         double end_s = 0.0;
         double from = 0.0; ///< part of the path
         double to = 0.0;
-        double begin_moving_s = 0.0; ///< as if there were no rests and no easing
+        double begin_moving_s = 0.0; ///< without rests and easing
         double end_moving_s = 0.0;
         double intensity = 1.0;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Prefixes of addresses, as files write them.
+// Prefixes of network addresses as files write them.
 #pragma once
 
 #include <charconv>
@@ -13,13 +13,13 @@
 
 namespace tactor::detail {
 
-/// Of "192.168.1.0/24", "fd00::/8", or an address alone, such as fe80::1%eth0: how many of its bits count.
-/// None for what is neither.
+/// Returns the number of bits that count in "192.168.1.0/24", "fd00::/8", or an address alone, such as
+/// fe80::1%eth0. Returns nothing for other texts.
 inline std::optional<unsigned> prefix_bits(std::string_view text)
 {
     const auto slash = text.find('/');
     const std::string address(text.substr(0, slash));
-    in6_addr bytes{}; // large enough for either
+    in6_addr bytes{}; // large enough for either family
     const bool v4 = ::inet_pton(AF_INET, address.c_str(), &bytes) == 1;
     if (!v4 && ::inet_pton(AF_INET6, address.substr(0, address.find('%')).c_str(), &bytes) != 1)
         return {};

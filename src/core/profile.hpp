@@ -9,18 +9,19 @@
 
 namespace tactor::detail {
 
-/// \throws error (bad_input), about `what`, unless parts ascend within 0 to 1 and values are within
-///         low ... high, low itself being out with `above_low`.
+/// Checks a profile.
+/// \throws error (bad_input), about `what`, unless parts ascend within 0 to 1 and values are within low ...
+///         high; `above_low` excludes low itself.
 void check_profile_points(std::string_view what, const std::vector<profile_point>& points, double low,
                           double high, bool above_low);
 
-/// The value at a part; 1 without points. O(log n).
+/// Returns the value at a part; 1 without points. O(log n).
 double profile_at(const std::vector<profile_point>& points, double part) noexcept;
 
-/// The greatest value between two parts. O(log n + points between them).
+/// Returns the greatest value between two parts. O(log n + points between them).
 double greatest_between(const std::vector<profile_point>& points, double from, double to) noexcept;
 
-/// As seen from the other end.
+/// Returns the profile as seen from the other end.
 std::vector<profile_point> from_the_end(const std::vector<profile_point>& points);
 std::vector<carrier_part> from_the_end(const std::vector<carrier_part>& points);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What a recording is called in messages.
+/// Name of a recording in messages.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace tactor::detail {
 
-/// Its file, or what it is where it came from none.
+/// Returns the recording's file, or "recording" if it has none.
 inline std::string name_of(const recording& r)
 {
     return r.file.empty() ? "recording" : r.file;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Errors of wrong values of fields, and of what the system does not give: descriptors, threads, memory in
-/// the kernel.
+/// Errors of wrong values of fields, and of resources that the system refuses: descriptors, threads, memory
+/// in the kernel.
 #pragma once
 
 #include <string_view>
@@ -10,19 +10,19 @@
 
 namespace tactor::detail {
 
-/// About a field, which is its subject.
+/// Returns an error about a field, which is its subject.
 [[nodiscard]] error bad_field(std::string_view field, std::string_view why, std::string_view hint = {});
 
-/// Throws it; the exception that is being handled, if there is one, is nested in it as its cause, whose errno
-/// it has too unless it has one of its own.
+/// Throws `e`. If an exception is being handled, it becomes the nested cause, and `e` takes its errno unless
+/// it has one.
 [[noreturn]] void throw_caused(const error& e);
-/// Throws it; its cause is what the system said: a std::system_error of that errno, where it is not 0.
+/// Throws `e`. Unless `code` is 0, a std::system_error with that errno becomes the nested cause.
 [[noreturn]] void throw_caused(const error& e, int code);
 
-/// What to do about an errno of that kind; empty for others.
+/// Returns a hint for an errno of lacking resources; empty for others.
 std::string_view advice_for(int code) noexcept;
 
-/// `why` says what was asked for, and the errno in words.
+/// Throws for a refused resource. `why` describes the request; the errno is added in words.
 /// \throws error (runtime), always, with its cause.
 [[noreturn]] void refused_by_system(std::string_view what, int code, std::string_view why);
 

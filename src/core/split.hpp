@@ -10,7 +10,8 @@
 
 namespace tactor::detail {
 
-/// What stands between the separators, views of `text`: one more than there are of them, any may be empty.
+/// Returns the parts between separators as views of `text`. There is one part more than separators; parts may
+/// be empty.
 inline std::vector<std::string_view> split(std::string_view text, char separator)
 {
     std::vector<std::string_view> parts;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// When the strokes of a piece start, each as the ones before it allow.
+/// Starts of the strokes of a score, which may depend on earlier strokes.
 #pragma once
 
 #include <optional>
@@ -11,16 +11,17 @@
 
 namespace tactor::detail {
 
-/// Takes strokes in order: start() and lasts() of each; one that only started is none of them yet. Seconds
-/// from the start of the piece.
+/// Takes strokes in order: start() and then lasts() of each. A stroke counts as an earlier one only after
+/// lasts(). Seconds from the start of the score.
 class start_times {
 public:
-    /// When the next one starts. \throws error as resolve_start_s().
+    /// Returns the start of the next stroke.
+    /// \throws error as resolve_start_s().
     double start(std::optional<double> start_s, const start_anchor& anchor)
     {
         return next_s_ = resolve_start_s(start_s, anchor, starts_s_, ends_s_);
     }
-    /// How long it lasts; gives its end.
+    /// Sets the duration of that stroke and returns its end.
     double lasts(double duration_s)
     {
         starts_s_.push_back(next_s_);

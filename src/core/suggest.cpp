@@ -11,9 +11,9 @@
 namespace tactor::detail {
 namespace {
 
-constexpr std::size_t longest = 32; // no name of ours is longer
+constexpr std::size_t longest = 32; // longer than any name of tactor
 
-// Case, hyphen and underscore are not what tells names apart.
+// Returns the letter in lower case, and '_' for '-' and ' ': names are compared without these differences.
 char folded(char c) noexcept
 {
     if (c == '-' || c == ' ')
@@ -21,7 +21,7 @@ char folded(char c) noexcept
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
-// Edits from a to b, a swap of neighbours counting as one (Damerau-Levenshtein, restricted).
+// Counts the edits from a to b. A swap of neighbours counts once (Damerau-Levenshtein, restricted).
 std::size_t edits(std::string_view a, std::string_view b)
 {
     std::array<std::array<std::size_t, longest + 1>, longest + 1> d{};
@@ -41,7 +41,7 @@ std::size_t edits(std::string_view a, std::string_view b)
     return d[a.size()][b.size()];
 }
 
-// "pitch" for "pitch_mm", "gain" for "gain_db": the unit forgotten, or another one.
+// Returns true for "pitch" and "pitch_mm", "gain" and "gain_db": the unit is missing or differs.
 bool same_stem(std::string_view a, std::string_view b)
 {
     const std::size_t n = std::min(a.size(), b.size());
@@ -65,7 +65,7 @@ std::string_view nearest_name(std::string_view name, std::span<const std::string
         if (k.size() > longest)
             continue;
         const std::size_t e = same_stem(name, k) ? 1 : edits(name, k);
-        // A one-letter name is one edit from every other.
+        // A one-letter name is one edit away from every other.
         if (e < best_edits && e < std::max(name.size(), k.size())) {
             best = k;
             best_edits = e;
@@ -104,7 +104,7 @@ std::string quoted(std::string_view name)
     for (const char c : name.substr(0, shown))
         t += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
     if (name.size() > shown) {
-        // Not in the middle of a character of several bytes.
+        // Cuts at the start of a character of several bytes.
         while (!t.empty() && (static_cast<unsigned char>(t.back()) & 0xc0) == 0x80)
             t.pop_back();
         if (!t.empty() && static_cast<unsigned char>(t.back()) >= 0xc0)

@@ -28,7 +28,7 @@ using detail::max_mm;
     throw error(error_kind::bad_input, "array " + detail::quoted(a.name), what, hint).with_field(field);
 }
 
-// "tactor 3", with its line where that is another.
+// Returns "tactor 3", with its place in the file if it has one.
 std::string other(const array& a, std::size_t i)
 {
     const source_place& at = a.tactors[i].where;
@@ -66,10 +66,11 @@ void check_values(const array& a, std::size_t i)
                "1, or -1 where it is wired the other way round", "polarity");
 }
 
-// Tactors by cells of the size of the tolerance: whoever is too near is in a cell beside.
+// Tactors by cells of the size of the tolerance. Tactors that are too near are in the same or a neighbouring
+// cell.
 class places_seen {
 public:
-    // The tactor that is already at p, if any.
+    // Returns the tactor that is already at p, or null.
     const std::size_t* at(const array& a, point p) const
     {
         const auto [cx, cy] = cell(p);
@@ -95,7 +96,8 @@ private:
         return {std::llround(p.x_mm / same_place_mm), std::llround(p.y_mm / same_place_mm)};
     }
 
-    // Mixed well (constants of splitmix64), so that a regular grid does not fall into few buckets.
+    // Mixes the cell's coordinates (constants of splitmix64), so that a regular grid does not fall into few
+    // buckets.
     static std::uint64_t key(std::int64_t x, std::int64_t y) noexcept
     {
         std::uint64_t h = static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15u + static_cast<std::uint64_t>(y);

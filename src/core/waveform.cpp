@@ -27,7 +27,7 @@ constexpr double longest_texture_mm = 1e6;
 
 void check_noise(const waveform& w)
 {
-    // Not a number fails, too.
+    // NaN fails this test, too.
     if (!(w.low_hz >= least_noise_hz && w.high_hz >= w.low_hz + least_noise_hz && w.high_hz <= highest_hz))
         throw error(error_kind::bad_input, "waveform",
                     fmt::format("noise from {} to {} Hz cannot be made", w.low_hz, w.high_hz),
@@ -69,7 +69,7 @@ void check_recording(const waveform& w)
                                 "give above 0 to 1000000, or 0 for the whole path");
 }
 
-// A number that ends where the text does, or at `end`.
+// Reads a number that ends at the end of the text or at `end`.
 std::optional<double> number_until(std::string_view text, std::size_t& at, char end)
 {
     const auto v = detail::scan_number(text, at);

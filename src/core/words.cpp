@@ -10,8 +10,8 @@ namespace tactor {
 
 namespace {
 
-constexpr double no_time_s = 0.5e-9;  // less is what sums of rounded numbers leave
-constexpr double small_time_s = 1e-4; // less has too many zeros to read
+constexpr double no_time_s = 0.5e-9;  // sums of rounded numbers leave less than this
+constexpr double small_time_s = 1e-4; // below it, too many zeros to read
 constexpr int most_decimals = 12;
 
 } // namespace
@@ -27,7 +27,7 @@ std::string plain_number(double v, int digits)
 {
     if (!std::isfinite(v) || v == 0.0)
         return fmt::format("{}", v == 0.0 ? 0.0 : v);
-    // What precedes the point: rounding may carry into one digit more, which then is a zero too many.
+    // Number of digits before the point. Rounding may carry into one more digit; the surplus is then a zero.
     const auto magnitude = static_cast<int>(std::floor(std::log10(std::abs(v))));
     std::string s = fmt::format("{:.{}f}", v, std::clamp(digits - 1 - magnitude, 0, most_decimals));
     if (s.find('.') != std::string::npos) {

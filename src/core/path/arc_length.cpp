@@ -20,9 +20,9 @@ struct interval {
     unsigned depth = 0;
 };
 
-// Near a cusp the speed has a kink, or nearly one, in a stretch that may be narrower than the gaps between
-// the nodes, so comparing lengths does not find it. Cusps are ends of intervals: there, the speed must be
-// seen to be even before the interval is large enough to matter.
+// Returns true if the speed has a kink at an end of the interval. Near a cusp the kink, or near-kink, may be
+// narrower than the gaps between the nodes, so comparing lengths does not find it. Cusps are ends of
+// intervals: there, the speed must be even before the interval may be large enough to matter.
 bool kink_at_end(const shape& c, const interval& i)
 {
     constexpr double harmless_mm = 1e-6;
@@ -30,7 +30,7 @@ bool kink_at_end(const shape& c, const interval& i)
     return i.length > harmless_mm && std::min(speed(c, i.from), speed(c, i.to)) < 0.1 * mean;
 }
 
-/// Two entries, and how much less and more than what is looked for lies before them.
+/// Two entries of the table around the wanted length, and the distances of their lengths from it.
 struct bracket {
     double from;
     double to;
@@ -40,8 +40,8 @@ struct bracket {
     double last_speed;
 };
 
-/// A first guess between two entries: the cubic in s with the right slopes at both, or the chord where that
-/// leaves them.
+/// Returns a first guess between two entries: the cubic in s with the right slopes at both ends, or the chord
+/// if the cubic leaves the interval.
 double guess(const bracket& b)
 {
     const auto& [from, to, below, above, first_speed, last_speed] = b;
@@ -54,14 +54,14 @@ double guess(const bracket& b)
     return t > from && t < to ? t : chord;
 }
 
-/// Where the length from `from` on, less what is `below`, is nothing. Halley's steps, two or three of them;
-/// nothing where they do not settle, as beside cusps.
+/// Finds the parameter at which the length from `from` equals -below. Takes two or three of Halley's steps.
+/// Returns nothing if they do not converge, as near cusps.
 std::optional<double> newton(const shape& c, const bracket& b)
 {
     const double from = b.from;
     const double to = b.to;
     constexpr int most_steps = 5;
-    // The next step would be of its cube: beyond the last digit.
+    // Halley's method is cubic: the next step would be below the last digit.
     constexpr double settled = 1e-6;
     double t = guess(b);
     for (int i = 0; i < most_steps; ++i) {
@@ -80,7 +80,7 @@ std::optional<double> newton(const shape& c, const bracket& b)
 
 } // namespace
 
-// An interval is fine enough when its two halves give the same length.
+// Halves intervals until the two halves of each give the same length as the whole.
 arc_length::arc_length(const shape& c) : even_(is_even(c)), t_{0.0}, s_{0.0}
 {
     const double tolerance = std::max(1e-10, 1e-14 * rough_length(c));

@@ -14,11 +14,11 @@ namespace {
 
 using rule = boost::math::quadrature::gauss<double, 15>;
 
-/// As many as whole vectors have; the last one is not used.
+/// Nodes in whole vectors; the last one is not used.
 constexpr std::size_t lanes = 16;
 using nodes = std::array<double, lanes>;
 
-/// The coefficients of the derivative, less its binomials.
+/// Coefficients of the derivative, without their binomial factors.
 struct hodograph {
     point first;
     point second;
@@ -46,7 +46,7 @@ TACTOR_CLONES void speeds(const hodograph& h, const nodes& parameters, nodes& ou
 
 } // namespace
 
-// In the order of Boost's sum: the middle, then pairs from there outwards.
+// Adds in the order of Boost's sum: the middle node first, then pairs outwards.
 double cubic_length(const cubic& c, double from, double to) noexcept
 {
     const auto& x = rule::abscissa();

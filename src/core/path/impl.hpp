@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The contents of a path: its vertices and curves, and the arc length of each piece with its inverse.
+// Contents of a path: its vertices and curves, and the arc length of each piece with its inverse.
 #pragma once
 
 #include <cstddef>
@@ -14,23 +14,23 @@
 
 namespace tactor::detail {
 
-/// A table of (parameter, arc length) so fine that Gauss quadrature from one entry towards the next is good
-/// to about a nanometre, cusps included.
+/// A table of (parameter, arc length). It is so fine that Gauss quadrature from one entry towards the next is
+/// accurate to about a nanometre, even at cusps.
 class arc_length {
 public:
     explicit arc_length(const shape& c);
 
     double total() const noexcept { return s_.back(); }
-    /// Returns the arc length at a parameter from 0 to 1. `c` is the shape that the table was made of.
+    /// Returns the arc length at a parameter from 0 to 1. `c` is the shape from which the table was made.
     double at(const shape& c, double t) const noexcept;
     /// Returns the parameter at an arc length, clamped to 0 ... 1.
     double parameter(const shape& c, double s_mm) const noexcept;
 
 private:
-    bool even_; ///< the parameter goes with the length
+    bool even_; ///< the parameter is proportional to the length
     std::vector<double> t_;
     std::vector<double> s_;
-    std::vector<double> speed_; ///< at those; none where the parameter goes with the length
+    std::vector<double> speed_; ///< speed at each entry; empty if the parameter is proportional to the length
 };
 
 } // namespace tactor::detail
@@ -49,7 +49,7 @@ struct path::impl {
     std::vector<double> s; ///< arc length at each vertex; ascending
     std::vector<measured_curve> curves;
 
-    /// The curve of a segment; null where it is straight.
+    /// Returns the curve of a segment, or null if it is straight.
     const measured_curve* curve_of(std::size_t segment) const noexcept;
 };
 
@@ -58,7 +58,7 @@ struct path::impl {
 
 namespace tactor::detail {
 
-/// Measures an outline. What `what` gives stands for it in messages.
+/// Measures an outline. `what` returns its name for messages.
 /// \throws error (bad_input) for coordinates that are not finite or beyond max_mm.
 path make_path(outline o, const std::function<std::string()>& what);
 

@@ -14,7 +14,7 @@ namespace {
 
 using detail::axis;
 
-// The vertices of a path, and inside its curves the places where the coordinate turns round.
+// Nodes of a path: its vertices, and the turns of the coordinate inside its curves.
 class path_nodes {
 public:
     path_nodes(const path::impl& p, axis a, double line) : path_(p), axis_(a), line_(line)
@@ -55,7 +55,7 @@ private:
         double s;
     };
 
-    // The sum may end a rounding error beyond the curve.
+    // Clamps the sum, which may exceed the curve's end by a rounding error.
     double along(const path::impl::measured_curve& c, double t) const
     {
         return std::min(path_.s[c.segment] + c.measure.at(c.form, t), path_.s[c.segment + 1]);
@@ -68,7 +68,7 @@ private:
         const auto off = [&](double t) { return distance(detail::position(form, t)); };
         const double first = off(from);
         const double last = off(to);
-        // A curve's own ends may differ from its vertices in the last digits.
+        // Ends of a curve may differ from its vertices in the last digits.
         if (!((first < 0.0 && last > 0.0) || (first > 0.0 && last < 0.0)))
             return std::abs(first) < std::abs(last) ? from : to;
         std::uintmax_t steps = 100;

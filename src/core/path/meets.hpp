@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where a movement meets a line of the grid: crossings, touches, and stretches along the line.
+// Meetings of a movement with a line of the grid: crossings, touches, and stretches along the line.
 #pragma once
 
 #include <cmath>
@@ -10,16 +10,16 @@
 
 namespace tactor::detail {
 
-/// A stretch within same_place_mm of the line that is longer than this runs along it; a shorter one is a
-/// touch. A circle of 16 mm stays within a nanometre of its tangent for 0.01 mm.
+/// Longest touch. A longer stretch within same_place_mm of the line runs along the line. A circle of 16 mm
+/// stays within a nanometre of its tangent for 0.01 mm.
 inline constexpr double shortest_run_mm = 0.1;
 
-/// The movement as nodes between which its distance from the line is monotone. N has
+/// Meetings of a movement given as nodes. Between two nodes the distance from the line is monotone. N has
 ///   size()       number of nodes
 ///   off(i)       signed distance of node i from the line, mm
-///   when(i)      node i as the caller counts (arc length or time)
-///   length(i, j) way from node i to node j, mm
-///   root(i)      where between nodes i and i + 1, which are on different sides, the line is
+///   when(i)      arc length or time of node i
+///   length(i, j) length from node i to node j, mm
+///   root(i)      meeting between nodes i and i + 1, which lie on different sides
 template <class N>
 class line_meetings {
 public:
@@ -51,11 +51,11 @@ private:
 
     bool crosses(std::size_t i) const { return (nodes_.off(i) < 0.0) != (nodes_.off(i + 1) < 0.0); }
 
-    // One meeting for nodes first ... last, all on the line.
+    // Returns the single meeting of the nodes first ... last, which all lie on the line.
     double touch(std::size_t first, std::size_t last) const
     {
         if (last > first && nodes_.length(first, last) <= same_place_mm)
-            return nodes_.when(first); // it rests: the arrival
+            return nodes_.when(first); // a rest: the time of arrival
         std::size_t nearest = first;
         for (std::size_t i = first > 0 ? first - 1 : first; i <= last; ++i) {
             if (nodes_.off(i) == 0.0)

@@ -15,7 +15,7 @@ std::size_t digits_end(std::string_view text, std::size_t at) noexcept
     return at;
 }
 
-// std::from_chars says only "out of range" for too large and for too small.
+// Returns true if the number is too large. std::from_chars reports too large and too small as the same error.
 bool too_large(std::string_view number) noexcept
 {
     const std::size_t e = number.find_first_of("eE");

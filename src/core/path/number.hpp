@@ -9,24 +9,24 @@
 
 namespace tactor::detail {
 
-/// What is wrong with a value, and where in its text.
+/// A fault in a value, and its place in the text.
 struct value_fault {
     std::size_t offset = 0;
     std::string why;
     std::string hint;
 };
 
-/// Blank, tab, line feed, form feed, carriage return.
+/// Returns true for blank, tab, line feed, form feed and carriage return.
 bool blank(char c) noexcept;
 
 /// Returns the text without blanks at both ends.
 std::string_view without_blanks(std::string_view text) noexcept;
 
-/// Goes on behind blanks.
+/// Moves `at` behind blanks.
 void skip_blanks(std::string_view text, std::size_t& at) noexcept;
 
-/// The number that begins at `at`, which then is behind it; nothing, and `at` unmoved, if none does. Infinite
-/// where it is too large for a double. An 'e' without digits does not belong to it.
+/// Reads the number that begins at `at` and moves `at` behind it. Without a number returns nothing and leaves
+/// `at`. Returns infinity if it is too large for a double. An 'e' without digits is not part of it.
 std::optional<double> scan_number(std::string_view text, std::size_t& at) noexcept;
 
 } // namespace tactor::detail

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A path before it is measured. Straight segments are vertices only, so a million of them stay light.
+// A path before it is measured. Straight segments are vertices only, so a million of them need little memory.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,8 @@
 
 namespace tactor::detail {
 
-/// Segment i goes from vertex i to vertex i + 1. It is straight unless `curves` has it.
+/// Segments of a path. Segment i goes from vertex i to vertex i + 1. It is straight unless `curves` contains
+/// it.
 struct outline {
     struct curve {
         std::size_t segment = 0;
@@ -24,7 +25,7 @@ struct outline {
     std::vector<point> vertices;
     std::vector<curve> curves; ///< by ascending segment
 
-    // Segments without length are left out.
+    // These skip segments without length.
     void line(point to);
     void bezier(point c1, point c2, point to);
     void quadratic(point c, point to);
@@ -33,7 +34,7 @@ struct outline {
 
 outline mapped(outline o, const affine& m);
 
-/// A coordinate that is not finite or beyond max_mm, if there is one.
+/// Returns a coordinate that is not finite or beyond max_mm, if any.
 std::optional<double> absurd_coordinate(const outline& o);
 
 } // namespace tactor::detail

@@ -18,7 +18,7 @@ namespace tactor {
 inline namespace v0 {
 namespace {
 
-// Neumaier's sum: a million short segments keep all digits.
+// Neumaier's sum, which keeps all digits of a million short segments.
 class exact_sum {
 public:
     void add(double v) noexcept
@@ -42,7 +42,7 @@ private:
                 "coordinates are in millimetres");
 }
 
-// Exact at multiples of 90 degrees.
+// Returns a point of a circle, exact at multiples of 90 degrees.
 point on_circle(point centre, double radius_mm, double degrees)
 {
     return {centre.x_mm + radius_mm * boost::math::cos_pi(degrees / 180.0),
@@ -75,7 +75,7 @@ path make_path(outline o, const std::function<std::string()>& what)
         else if (i + 1 < made->vertices.size())
             length.add(distance_mm(made->vertices[i], made->vertices[i + 1]));
     }
-    if (!(made->s.back() > same_place_mm)) { // one place
+    if (!(made->s.back() > same_place_mm)) { // a single place
         made->vertices.resize(1);
         made->s.resize(1);
         made->curves.clear();

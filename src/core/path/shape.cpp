@@ -72,7 +72,7 @@ std::vector<double> turns_of(const cubic& c, axis a)
     return {t0, t1};
 }
 
-// Where the angle is `first` and every `period` from there.
+// Returns the parameters at which the angle is `first` plus a multiple of `period`.
 std::vector<double> at_angles(const elliptic& c, double first, double period)
 {
     const double low = std::min(c.from, c.from + c.sweep);
@@ -91,7 +91,7 @@ std::vector<double> turns_of(const elliptic& c, axis a)
     return at_angles(c, std::atan2(coordinate(c.v, a), coordinate(c.u, a)), std::numbers::pi);
 }
 
-// Roots of f . s, where f is the first derivative and s the second: a cubic with these Bernstein
+// Returns the roots of f . s, where f is the first derivative and s the second: a cubic with these Bernstein
 // coefficients. It is monotone between the roots of its own derivative.
 std::vector<double> speed_turns_of(const cubic& c)
 {
@@ -127,7 +127,7 @@ std::vector<double> speed_turns_of(const cubic& c)
     return roots;
 }
 
-// |derivative|^2 = |u|^2 sin^2 + |v|^2 cos^2 - u . v sin 2 angle
+// Uses |derivative|^2 = |u|^2 sin^2 + |v|^2 cos^2 - u . v sin 2 angle.
 std::vector<double> speed_turns_of(const elliptic& c)
 {
     return at_angles(c, 0.5 * std::atan2(2.0 * dot(c.u, c.v), dot(c.u, c.u) - dot(c.v, c.v)),
@@ -156,7 +156,7 @@ elliptic mapped_shape(const elliptic& c, const affine& m) noexcept
 
 point position(const shape& c, double t) noexcept
 {
-    // Once a millisecond of a continuous stroke: a visit is a call.
+    // Avoids std::visit, which is a call: a continuous stroke comes here each millisecond.
     const auto* e = std::get_if<elliptic>(&c);
     return e != nullptr ? position_on(*e, t) : position_on(*std::get_if<cubic>(&c), t);
 }
@@ -185,7 +185,7 @@ double length_between(const shape& c, double from, double to) noexcept
         [from, to](const auto& s) {
             return boost::math::quadrature::gauss<double, 15>::integrate(
                 [&s](double t) {
-                    // Not hypot: lengths are far from where squares overflow, and this is done most.
+                    // Not hypot: these lengths are far from overflow, and this line runs most often.
                     const point d = derivative(s, t);
                     return std::sqrt(dot(d, d));
                 },

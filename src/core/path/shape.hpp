@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Curved pieces of a path: cubic Beziers and arcs of ellipses, by a parameter from 0 to 1.
+// Curved pieces of a path: cubic Bezier curves and arcs of ellipses, by a parameter from 0 to 1.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ inline point operator*(double k, point a) noexcept
     return {k * a.x_mm, k * a.y_mm};
 }
 
-/// From a to b; exact at both ends and, for a whole binary fraction u, in between.
+/// Interpolates from a to b. Exact at both ends and, for a whole binary fraction u, in between.
 inline point between(point a, point b, double u) noexcept
 {
     return u < 1.0 ? a + u * (b - a) : b;
@@ -42,8 +42,8 @@ struct cubic {
     std::array<point, 4> p;
 };
 
-/// centre + u cos(angle) + v sin(angle), angle = from + sweep * t in radians. u and v are conjugate radii, so
-/// that an affine map of an arc is an arc.
+/// The arc centre + u cos(angle) + v sin(angle), angle = from + sweep * t in radians. u and v are conjugate
+/// radii, so an affine map of an arc is an arc.
 struct elliptic {
     point centre;
     point u;
@@ -56,35 +56,36 @@ using shape = std::variant<cubic, elliptic>;
 
 point position(const shape& c, double t) noexcept;
 
-/// Length of the derivative, mm per unit of t.
+/// Returns the length of the derivative, mm per unit of t.
 double speed(const shape& c, double t) noexcept;
 
-/// The speed at t, and how fast it changes there.
+/// Speed at t, and its derivative there.
 struct speed_change {
     double speed = 0.0;
-    double rate = 0.0; ///< no number where the speed is 0
+    double rate = 0.0; ///< NaN if the speed is 0
 };
 speed_change speed_and_rate(const shape& c, double t) noexcept;
 
-/// Length of the piece from one parameter to another, by Gauss-Legendre quadrature on fifteen nodes.
+/// Returns the length from one parameter to another, by Gauss-Legendre quadrature on fifteen nodes.
 double length_between(const shape& c, double from, double to) noexcept;
 
-/// Returns length_between() of a cubic, from < to, to the last bit: the same fifteen nodes, several at once.
+/// Returns length_between() of a cubic, from < to, equal to the last bit: the same fifteen nodes, several at
+/// once.
 double cubic_length(const cubic& c, double from, double to) noexcept;
 
-/// Whether the speed is the same everywhere, but for rounding: an arc of a circle.
+/// Returns true if the speed is constant but for rounding, as on an arc of a circle.
 bool is_even(const shape& c) noexcept;
 
-/// Where inside (0, 1) a coordinate turns round; ascending. Between them it is monotone.
+/// Returns the parameters inside (0, 1) at which a coordinate turns; ascending. Between them it is monotone.
 std::vector<double> turns(const shape& c, axis a);
 
-/// Where inside (0, 1) the speed is least or greatest; ascending. A cusp is among them.
+/// Returns the parameters inside (0, 1) at which the speed is least or greatest, cusps included; ascending.
 std::vector<double> speed_turns(const shape& c);
 
-/// Upper bound of the length, for tolerances.
+/// Returns an upper bound of the length, for tolerances.
 double rough_length(const shape& c) noexcept;
 
-/// x' = a x + c y + e, y' = b x + d y + f: the six numbers of SVG's matrix().
+/// The map x' = a x + c y + e, y' = b x + d y + f: the six numbers of SVG's matrix().
 struct affine {
     double a = 1.0;
     double b = 0.0;
@@ -100,7 +101,7 @@ struct affine {
     double determinant() const noexcept { return a * d - b * c; }
 };
 
-/// First `inner`, then `outer`.
+/// Returns the map that applies `inner` first, then `outer`.
 affine operator*(const affine& outer, const affine& inner) noexcept;
 
 shape mapped(const shape& c, const affine& m) noexcept;

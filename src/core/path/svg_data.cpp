@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The grammar of path data; what its commands draw: svg_pen.cpp.
+// Grammar of path data. svg_pen.cpp draws its commands.
 
 #include <cmath>
 #include <cstddef>
@@ -24,7 +24,7 @@ using detail::value_fault;
 
 constexpr const char* starts = "it starts with M x y";
 
-// What each command wants: n a number, f a flag.
+// Returns the arguments of a command: n is a number, f a flag.
 std::string_view arguments_of(char command) noexcept
 {
     switch (detail::upper(command)) {
@@ -66,7 +66,7 @@ public:
             detail::skip_blanks(data_, at_);
         }
         std::vector<detail::outline> drawn = pen_.take();
-        if (one_ && drawn.empty()) // a move alone: one place
+        if (one_ && drawn.empty()) // a move alone is a single place
             drawn.push_back({{pen_.start()}, {}});
         return drawn;
     }
@@ -91,7 +91,7 @@ private:
         groups(c, wanted);
     }
 
-    // One set of arguments after the other; after a move's first they are lines.
+    // Reads groups of arguments. Groups after a move's first one are lines.
     void groups(char c, std::string_view wanted)
     {
         for (char drawn = c;; drawn = c == 'M' ? 'L' : c == 'm' ? 'l' : c) {

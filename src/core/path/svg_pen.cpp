@@ -14,13 +14,14 @@
 namespace tactor::detail {
 namespace {
 
-// Returns the arc of A: the ellipse with radii rx and ry (signs do not matter) whose x axis is turned by
-// `turn_deg`, from point to point, the longer or the shorter way round. Radii that do not reach grow together
-// until they do. Nothing where it is a straight line, which it is with a radius of 0.
+// Returns the arc of command A: part of the ellipse with radii rx and ry (signs do not matter) whose x axis
+// is turned by `turn_deg`, from point to point, the longer or the shorter way round. If the radii do not
+// reach, they grow together until they do. Returns nothing for a straight line, for example with a radius of
+// 0.
 // https://www.w3.org/TR/SVG2/implnote.html#ArcImplementationNotes
 //
-// The ellipse is turned straight and stretched to a circle whose radius is its longer one; all between is
-// done there.
+// Turns the ellipse straight and stretches it to a circle with the longer radius. The computation works on
+// that circle.
 std::optional<elliptic> svg_arc(point from, double rx, double ry, double turn_deg, bool longer,
                                 bool clockwise, point to)
 {
@@ -30,14 +31,15 @@ std::optional<elliptic> svg_arc(point from, double rx, double ry, double turn_de
     const double c = boost::math::cos_pi(std::remainder(turn_deg, 360.0) / 180.0);
     const double s = boost::math::sin_pi(std::remainder(turn_deg, 360.0) / 180.0);
 
-    // From the middle of the chord to the start.
+    // Vector from the middle of the chord to the start.
     const point half = 0.5 * (from - to);
     const point h{(c * half.x_mm + s * half.y_mm) / kx, (c * half.y_mm - s * half.x_mm) / ky};
     const double reach = std::hypot(h.x_mm, h.y_mm);
     if (!(kx > 0.0 && ky > 0.0 && reach > 0.0))
         return std::nullopt;
 
-    // A half circle's reach is the radius but for rounding, of which a root would make a ten-millionth of it.
+    // A half circle's reach equals the radius but for rounding. A root would enlarge that error to a
+    // ten-millionth of the radius.
     constexpr double rounding = 8.0 * std::numeric_limits<double>::epsilon();
     const bool half_turn = reach >= radius * (1.0 - rounding);
     const double r = half_turn ? reach : radius;
@@ -115,7 +117,7 @@ void path_pen::arc(const path_arguments& v, point to)
 {
     if (to == at_) {
         cubic_handle_ = quadratic_handle_ = to;
-        return; // no arc at all, says SVG, where a line would be one without length
+        return; // SVG draws no arc here, where a line would have no length
     }
     if (const auto a = svg_arc(at_, v[0], v[1], v[2], v[3] != 0.0, v[4] != 0.0, to))
         open_.arc(*a, to);
@@ -136,7 +138,7 @@ std::vector<outline> path_pen::take()
     return std::exchange(drawn_, {});
 }
 
-// Every command but M draws, if only a point.
+// Records that something was drawn, if only a point. Every command but M does.
 void path_pen::arrive(point to)
 {
     draws_ = true;

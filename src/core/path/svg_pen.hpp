@@ -10,27 +10,27 @@
 
 namespace tactor::detail {
 
-/// 'm' as 'M'. What is no letter gives no letter.
+/// Returns 'M' for 'm'. A character that is not a letter never becomes one.
 constexpr char upper(char c) noexcept
 {
     return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
 }
 
-/// The arguments of one command, as many as it has; flags are 0 or 1.
+/// Arguments of one command, as many as it has. Flags are 0 or 1.
 using path_arguments = std::array<double, 7>;
 
 class path_pen {
 public:
-    /// One of M L H V C S Q T A; in lower case from where the pen is.
+    /// Draws one of M L H V C S Q T A. Lower case counts from the place of the pen.
     void draw(char command, const path_arguments& v);
 
-    /// Z: a line to where the subpath began. What follows without a move begins there too.
+    /// Draws Z: a line to the start of the subpath. A command that follows without a move begins there, too.
     void close();
 
-    /// The subpaths that were drawn; leaves none.
+    /// Returns the subpaths that were drawn, and forgets them.
     std::vector<outline> take();
 
-    /// The place of the last move.
+    /// Returns the place of the last move.
     point start() const { return start_; }
 
 private:
@@ -47,17 +47,17 @@ private:
     bool draws_ = false; ///< something was drawn since the last move
     point start_;
     point at_;
-    // The last handle mirrored, where the last command was of the kind that S or T goes on with.
+    // The mirrored last handle, if the last command was of the kind that S or T continues.
     point cubic_handle_;
     point quadratic_handle_;
 };
 
-/// A limit on the subpaths of path data: with `one`, a second is a fault.
+/// Allowed subpaths of path data: with `one`, a second is a fault.
 enum class subpaths { one, any };
 
-/// Returns the subpaths that draw something, in user units. Moves that nothing follows are left out. A number
-/// beyond `limit` is a fault.
-/// \throws value_fault at the first thing that is not path data.
+/// Returns the subpaths that draw something, in user units. Skips moves that nothing follows. A number beyond
+/// `limit` is a fault.
+/// \throws value_fault at the first place that is not path data.
 std::vector<outline> parse_path_data(std::string_view data, double limit, subpaths wanted);
 
 } // namespace tactor::detail

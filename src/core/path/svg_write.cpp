@@ -20,9 +20,9 @@ void write(out o, const detail::cubic& c, point to)
                    to.y_mm);
 }
 
-constexpr double flat_mm = 1e-6; // beside coordinates of up to a kilometre, less than this would be lost
+constexpr double flat_mm = 1e-6; // less would be lost in the digits of coordinates of up to a kilometre
 
-// An ellipse so flat goes to and fro on a line: by its ends that are passed.
+// Writes an ellipse that is so flat that it moves to and fro on a line: writes the ends that it reaches.
 void write_flat(out o, const detail::elliptic& e, double turn, point to)
 {
     const double end = e.from + e.sweep;
@@ -38,8 +38,8 @@ void write_flat(out o, const detail::elliptic& e, double turn, point to)
     fmt::format_to(o, " L {} {}", to.x_mm, to.y_mm);
 }
 
-// The principal axes from the conjugate ones: eigenvalues of u u' + v v'. In parts under a half turn, so that
-// no reader has to guess the centre.
+// Computes the principal axes from the conjugate radii: eigenvalues of u u' + v v'. Writes parts under a half
+// turn, so that no reader has to guess the centre.
 void write(out o, const detail::elliptic& e, point to)
 {
     const double xx = e.u.x_mm * e.u.x_mm + e.v.x_mm * e.v.x_mm;

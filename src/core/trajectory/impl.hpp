@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is inside a trajectory.
+// Contents of a trajectory.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ struct drawn_path {
     std::shared_ptr<const pace> moves = {}; ///< none: at constant speed
 };
 
-// Shared by all that with_duration() makes of it.
+// Points of a timed trajectory, shared by all copies that with_duration() makes.
 struct timed_points {
     std::shared_ptr<const std::vector<timed_point>> points;
     double length_mm;
@@ -29,10 +29,10 @@ struct timed_points {
     double duration_s() const noexcept { return points->back().t_s; }
 };
 
-/// \throws error (bad_input) for what no stroke can have; `what` stands for it in messages.
+/// Throw error (bad_input) for values that no stroke can have. `what` names the value in messages.
 void check_duration(double duration_s);
 void check_intensity(std::string_view what, double intensity);
-/// \throws error (bad_input) that asks for a duration: the path is one place.
+/// Throws error (bad_input) that requests a duration, because the path is a single place.
 [[noreturn]] void refuse_one_place();
 
 } // namespace tactor::detail
@@ -45,7 +45,7 @@ struct trajectory::impl {
     double duration_s = 0.0;
     double gain = 1.0;
 
-    /// Time of a timed law at time t of this trajectory, and the way back.
+    /// Convert a time t of this trajectory to the time of its timed points, and back.
     double own_time(const detail::timed_points& l, double t_s) const noexcept
     {
         const double own = l.duration_s();
@@ -58,7 +58,7 @@ struct trajectory::impl {
         return own == duration_s ? own_s : own_s / own * duration_s;
     }
 
-    /// Time of a pace at time t of this trajectory, and the way back.
+    /// Convert a time t of this trajectory to the time of its pace, and back.
     double pace_time(const detail::pace& p, double t_s) const noexcept
     {
         return p.total_s() == duration_s ? t_s : t_s / duration_s * p.total_s();
@@ -68,7 +68,7 @@ struct trajectory::impl {
         return p.total_s() == duration_s ? pace_s : std::min(pace_s / p.total_s() * duration_s, duration_s);
     }
 
-    /// When the target comes to an arc length of its path.
+    /// Returns the time at which the target reaches an arc length of its path.
     double arrival_s(const detail::drawn_path& l, double s_mm) const noexcept
     {
         const double length = l.way.length_mm();
@@ -76,7 +76,7 @@ struct trajectory::impl {
                        : s_mm / length * duration_s;
     }
 
-    /// The points before and after a time, and how far it is from one to the other (0 to 1).
+    /// The points before and after a time, and the position between them (0 to 1).
     struct bracket {
         const timed_point* before;
         const timed_point* after;
@@ -85,7 +85,8 @@ struct trajectory::impl {
 
     bracket find(const detail::timed_points& l, double t_s) const noexcept;
     std::vector<double> meets(detail::axis a, double line) const;
-    /// When the target is at the ends of its path's segments, or at its timed points, ascending.
+    /// Returns the times, ascending, at which the target is at the ends of its path's segments, or at its
+    /// timed points.
     std::vector<double> vertices() const;
 };
 

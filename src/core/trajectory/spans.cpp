@@ -60,16 +60,16 @@ void between_points(const timed_points& law, double duration_s, double gain, con
     }
 }
 
-/// Greatest error of a line between two points, as a part of the smooth piece that it lies in.
+/// Greatest error of a line between two points, as a part of the smooth piece around it.
 constexpr double straight_enough = 5e-5;
 
-/// Below it differences of parts are the last digits.
+/// Difference of parts that is within rounding.
 constexpr double last_digits = 1e-12;
 
-/// Pieces of a smooth piece are no shorter than this part of its time.
+/// Points of a smooth piece are at least 1/finest of its time apart.
 constexpr unsigned finest = 4096;
 
-/// Points as near to each other as two numbers can be are one: a frequency is a difference by a time.
+/// Adds a point. Points with equal times are joined, because a frequency is a difference divided by a time.
 void add(std::vector<way_point>& way, way_point p)
 {
     if (way.empty() || p.t_s > way.back().t_s)
@@ -78,7 +78,8 @@ void add(std::vector<way_point>& way, way_point p)
         way.back().part = p.part;
 }
 
-/// Points of a pace between two of its bends, the first excluded: as many as lines between them need.
+/// Adds points of a pace between two of its bends, the first excluded: as many as the error allows lines
+/// between them.
 void add_smooth(std::vector<way_point>& way, const pace& p, double from_s, double to_s)
 {
     const auto when = [&](unsigned i) { return std::lerp(from_s, to_s, static_cast<double>(i) / finest); };
@@ -86,7 +87,7 @@ void add_smooth(std::vector<way_point>& way, const pace& p, double from_s, doubl
     const auto is_straight = [&](double begin_s, double end_s) {
         const double begin = p.part(begin_s);
         const double end = p.part(end_s);
-        // In its middle an S is on the line, too.
+        // Checks the quarters, too: an S meets the line in its middle.
         for (const double along : {0.25, 0.5, 0.75})
             if (std::abs(p.part(std::lerp(begin_s, end_s, along)) - std::lerp(begin, end, along)) > error)
                 return false;
@@ -122,7 +123,7 @@ std::vector<way_point> way_of(const pace& p)
     return way;
 }
 
-/// With a point at each part of `at` that lies between two, at constant speed.
+/// Returns the points with one more at each part of `at` that lies between two, assuming constant speed.
 std::vector<way_point> with_points(const std::vector<way_point>& way, std::span<const double> at)
 {
     std::vector<way_point> out;
@@ -153,14 +154,14 @@ std::vector<way_point> way_of(const std::vector<timed_point>& points)
     return way;
 }
 
-/// Null for what moves at constant speeds.
+/// Returns the pace of a trajectory, or null if it moves at constant speeds.
 const pace* find_smooth_law(const trajectory& t)
 {
     const auto* drawn = std::get_if<drawn_path>(&access::of(t).law);
     return drawn != nullptr ? drawn->moves.get() : nullptr;
 }
 
-/// Made for another duration, it is as much faster or slower everywhere.
+/// Scales the times to the duration of this trajectory, which may differ from its pace's own.
 std::vector<way_point> scale_times(const trajectory& t, const std::vector<way_point>& own)
 {
     const double duration_s = access::of(t).duration_s;
