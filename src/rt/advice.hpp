@@ -7,8 +7,8 @@
 
 namespace tactor::rt {
 
-/// What to do where SCHED_FIFO at this priority, or memory of this size, is refused: one sentence for
-/// people.
+/// Returns a sentence for people: what to do if the system refuses SCHED_FIFO at this priority, or memory of
+/// this size.
 std::string realtime_advice(const realtime_rights& r, int priority);
 
 } // namespace tactor::rt

@@ -41,7 +41,7 @@ bool busy_watch::look(std::int64_t now_ns) noexcept
         return false;
     on_ = false;
     const sched_param none{};
-    // The flag cannot be taken back without a right that the thread may not have.
+    // The thread may lack the right to clear this flag.
     return sched_setscheduler(0, SCHED_OTHER | SCHED_RESET_ON_FORK, &none) == 0;
 }
 

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A real-time thread's own limit on the processor. Under SCHED_FIFO one that never waits keeps its processor
-/// from everybody else, and RLIMIT_RTTIME would end the process.
+/// Limit of a real-time thread on its own processor time. Under SCHED_FIFO a thread that never waits keeps
+/// its processor from all others, and RLIMIT_RTTIME would end the process.
 #pragma once
 
 #include <cstdint>
 
 namespace tactor::rt {
 
-/// How long a thread has worked since it last waited. Pure: readings in.
+/// Work of a thread since it last waited. Pure: it gets readings.
 class busy_time {
 public:
-    /// Longest that may be seen. What was worked before the first look is not in it, nor what comes until
-    /// the next: of pieces of work of up to 95 ms, with a look after each, less than 200 ms pass until it is
-    /// too long, which is RLIMIT_RTTIME where rtkit or the tool sets it.
+    /// Longest work that is allowed, ns, as far as it is seen: work before the first look and after the last
+    /// is not. With pieces of work of up to 95 ms and a look after each, less than 200 ms pass until the
+    /// limit acts. That is RLIMIT_RTTIME as rtkit and the tool set it.
     static constexpr std::int64_t most_ns = 60'000'000;
-    /// Whether it is too long now. `cpu_ns`: processor time of the thread; `waits`: how often it has waited.
+    /// Returns true if the work is too long now. `cpu_ns`: processor time of the thread; `waits`: number of
+    /// its waits.
     bool too_long(std::int64_t cpu_ns, long waits) noexcept
     {
         if (waits != waits_)
@@ -25,16 +26,16 @@ public:
     }
 
 private:
-    std::int64_t rested_ns_ = 0; ///< processor time at the first look since it waited
+    std::int64_t rested_ns_ = 0; ///< processor time at the first look after a wait
     long waits_ = -1;
 };
 
-/// Of the thread that makes it. Nothing allocates or waits.
+/// Watch on the thread that constructs it. Does not allocate or wait.
 class busy_watch {
 public:
     busy_watch() noexcept;
-    /// Between two pieces of work, at CLOCK_MONOTONIC `now_ns`. True when the thread has just given up real
-    /// time, once. A system call 50 times a second.
+    /// Looks between two pieces of work, at CLOCK_MONOTONIC `now_ns`. Returns true once, when it has just
+    /// given up real-time priority. Makes a system call 50 times a second.
     bool look(std::int64_t now_ns) noexcept;
 
 private:

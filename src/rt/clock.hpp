@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// CLOCK_MONOTONIC, the one clock that is used here. Async-signal-safe.
+/// CLOCK_MONOTONIC, the only clock in use here. Async-signal-safe.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// An eventfd: wakes a thread that polls.
+/// An eventfd, which wakes a thread that polls.
 #pragma once
 
 #include <cerrno>
@@ -33,12 +33,12 @@ public:
     {
         const permitted_call here{};
         const std::uint64_t one = 1;
-        // EAGAIN means 2^64 - 2 signals wait: readable anyway.
+        // EAGAIN means that 2^64 - 2 signals wait, so the descriptor is readable anyway.
         while (::write(fd_, &one, sizeof one) < 0 && errno == EINTR) {
         }
     }
 
-    /// Takes all signals; returns how many there were. Does not block.
+    /// Consumes all signals and returns their number. Does not block.
     std::uint64_t consume() noexcept
     {
         std::uint64_t n = 0;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What must not block, said in a way that a compiler can hold it to: clang 20 and later do at run time
-/// (RealtimeSanitizer, tests/lanes/realtime), others see nothing.
+/// Mark for code that must not block. clang 20 and later check it at run time (RealtimeSanitizer,
+/// tests/lanes/realtime); other compilers ignore it.
 #pragma once
 
 #if defined(__clang__) && __has_cpp_attribute(clang::nonblocking)
-/// Behind a function's noexcept: neither it nor what it calls may allocate, lock or wait.
+/// Follows a function's noexcept: neither the function nor its callees may allocate, lock or wait.
 #define TACTOR_NONBLOCKING [[clang::nonblocking]]
 #else
 #define TACTOR_NONBLOCKING
@@ -20,8 +20,8 @@
 
 namespace tactor::rt {
 
-/// While one lives, its thread may call the kernel, as the audio thread has to for the device and to wake
-/// others.
+/// Permission for the current thread to call the kernel while an object lives. The audio thread must call it
+/// for the device and to wake other threads.
 #ifdef TACTOR_CHECKS_NONBLOCKING
 using permitted_call = __rtsan::ScopedDisabler;
 #else

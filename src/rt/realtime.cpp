@@ -17,7 +17,7 @@ namespace {
 
 std::uint64_t effective_capabilities() noexcept
 {
-    // Not from /proc/self/status, for which there may be no descriptor.
+    // Does not read /proc/self/status, because there may be no descriptor left.
     __user_cap_header_struct version{.version = _LINUX_CAPABILITY_VERSION_3, .pid = 0};
     std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> sets{};
     if (::syscall(SYS_capget, &version, sets.data()) != 0)

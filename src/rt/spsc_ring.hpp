@@ -13,21 +13,21 @@
 
 namespace tactor::rt {
 
-/// std::hardware_destructive_interference_size is missing in clang 14; x86-64 and the Cortex-A cores
-/// of all Raspberry Pis have 64.
+/// Bytes of a cache line. clang 14 lacks std::hardware_destructive_interference_size; x86-64 and the Cortex-A
+/// cores of all Raspberry Pis have 64.
 inline constexpr std::size_t cache_line = 64;
 
-/// Each side reads its own index relaxed, the other's with acquire, and publishes with release. The
-/// indices run freely, so that no element is wasted to tell full from empty. Only the constructor
-/// allocates. A flush belongs to the consumer: pop until empty.
+/// Ring of trivially copyable elements. Each side reads its own index relaxed, the other's with acquire, and
+/// publishes with release. The indices run freely, so that no element is wasted to tell full from empty. Only
+/// the constructor allocates. The consumer flushes the ring: it pops until empty.
 template <typename T>
 class spsc_ring {
     static_assert(std::is_trivially_copyable_v<T>);
     static_assert(std::atomic<std::size_t>::is_always_lock_free);
 
 public:
-    /// Holds `at_least` elements, rounded up to a power of two. `first_index` lets tests come near
-    /// the wrap of the indices, which a 32-bit machine reaches.
+    /// Makes a ring for `at_least` elements, rounded up to a power of two. `first_index` lets tests start
+    /// near the wrap of the indices, which a 32-bit machine reaches.
     explicit spsc_ring(std::size_t at_least, std::size_t first_index = 0)
         : slots_(std::bit_ceil(std::max<std::size_t>(at_least, 1))),
           mask_(slots_.size() - 1),
@@ -40,7 +40,7 @@ public:
 
     std::size_t capacity() const noexcept { return slots_.size(); }
 
-    /// Producer: elements that fit now. Can only grow behind the producer's back.
+    /// Producer: returns the number of elements that fit now. The consumer can only increase it.
     std::size_t available() noexcept
     {
         read_seen_ = read_.load(std::memory_order_acquire);
@@ -61,7 +61,7 @@ public:
         return true;
     }
 
-    /// Producer: appends as many as fit, in order; returns how many.
+    /// Producer: appends as many as fit, in order, and returns their number.
     std::size_t push(std::span<const T> values) noexcept
     {
         const std::size_t n = std::min(values.size(), available());
@@ -72,14 +72,14 @@ public:
         return n;
     }
 
-    /// Consumer: elements that wait now. Can only grow behind the consumer's back.
+    /// Consumer: returns the number of elements that wait now. The producer can only increase it.
     std::size_t size() noexcept
     {
         write_seen_ = write_.load(std::memory_order_acquire);
         return write_seen_ - read_.load(std::memory_order_relaxed);
     }
 
-    /// Consumer: the oldest element, valid until drop_front(); null when empty.
+    /// Consumer: returns the oldest element, valid until drop_front(), or null when empty.
     const T* front() noexcept
     {
         const std::size_t r = read_.load(std::memory_order_relaxed);
@@ -91,7 +91,7 @@ public:
         return &slots_[r & mask_];
     }
 
-    /// Consumer: forgets the oldest element; there must be one.
+    /// Consumer: removes the oldest element; there must be one.
     void drop_front() noexcept
     {
         read_.store(read_.load(std::memory_order_relaxed) + 1, std::memory_order_release);

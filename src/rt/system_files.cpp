@@ -18,7 +18,7 @@
 namespace tactor::rt {
 namespace {
 
-/// Returns where it is the file that cannot be read, and not this process that has too little.
+/// Throws if this process lacks memory or descriptors. Returns if the file itself cannot be read.
 void refuse_if_lacking(const std::string& what, int code)
 {
     if (code == ENOMEM)
@@ -53,7 +53,7 @@ std::string text_of(const std::string& file)
         got = ::read(in.get(), part.data(), part.size());
         if (got > 0)
             text.append(part.data(), static_cast<std::size_t>(got));
-        else if (got < 0 && errno != EINTR) // of a process that has gone, say
+        else if (got < 0 && errno != EINTR) // for example of a process that has ended
             break;
     }
     return text;

@@ -33,11 +33,11 @@ int become_fifo(int priority) noexcept
     sched_param p{};
     p.sched_priority =
         std::clamp(priority, sched_get_priority_min(SCHED_FIFO), sched_get_priority_max(SCHED_FIFO));
-    // glibc's pthread attributes refuse the reset flag, so the thread does it itself.
+    // The thread sets its policy itself, because glibc's pthread attributes refuse the reset flag.
     if (sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &p) == 0)
         return 0;
     const int code = errno;
-    // A lower priority than was asked for is still far better than none.
+    // A lower priority than requested is still far better than none.
     rlimit most{};
     if (code != EPERM || getrlimit(RLIMIT_RTPRIO, &most) != 0 || most.rlim_cur == 0 ||
         most.rlim_cur >= static_cast<rlim_t>(p.sched_priority))
@@ -75,7 +75,7 @@ void* enter(void* argument) noexcept
         flush_denormals();
     }
     const std::function<void()> body = std::move(l.body);
-    l.settled.count_down(); // `l` is gone from here on
+    l.settled.count_down(); // `l` is destroyed from here on
     body();
     return nullptr;
 }
@@ -95,7 +95,7 @@ public:
     const pthread_attr_t* get() const noexcept { return &value_; }
 
 private:
-    // PTHREAD_STACK_MIN is a call to sysconf since glibc 2.34, and of type long.
+    // PTHREAD_STACK_MIN calls sysconf since glibc 2.34, and has type long.
     static long sysconf_stack_min() { return PTHREAD_STACK_MIN; }
 
     pthread_attr_t value_{};

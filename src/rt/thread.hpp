@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Threads with what std::thread cannot say: stack size, policy, name, signals.
+/// Threads with options that std::thread lacks: stack size, policy, name, signals.
 #pragma once
 
 #include <cstddef>
@@ -12,31 +12,31 @@
 namespace tactor::rt {
 
 struct thread_options {
-    std::string name;                                  ///< at most 15 characters are shown
+    std::string name;                                  ///< at most 15 characters are visible
     std::size_t stack_bytes = std::size_t{256} * 1024; ///< small: mlockall(MCL_FUTURE) charges all of it
-    bool fifo = false;                                 ///< ask for SCHED_FIFO, reset in children
-    int priority = 65; ///< of SCHED_FIFO; less where RLIMIT_RTPRIO allows no more
-    /// Denormals to zero and the finest timer slack.
+    bool fifo = false;                                 ///< request SCHED_FIFO, reset in children
+    int priority = 65;                                 ///< of SCHED_FIFO; lower if RLIMIT_RTPRIO allows less
+    /// Sets denormals to zero and uses the finest timer slack.
     bool audio = false;
 };
 
-/// A joined thread in which every signal is blocked, so that the host's own threads get them.
+/// A joined thread that blocks every signal, so that the host's own threads get them.
 class thread {
 public:
-    /// Starts `body` once the policy has been settled. SCHED_FIFO that is refused is not an error.
-    /// \throws std::system_error when there is no thread to be had.
+    /// Starts `body` after the policy is set. A refusal of SCHED_FIFO is not an error.
+    /// \throws std::system_error when the system has no thread left.
     thread(const thread_options& o, std::function<void()> body);
     ~thread();
     thread(const thread&) = delete;
     thread& operator=(const thread&) = delete;
 
     void join() noexcept;
-    /// Lets it go on by itself: for a thread that gives up what owns it.
+    /// Detaches the thread, for a thread that destroys its owner.
     void detach() noexcept;
 
-    /// Whether this is the calling thread.
+    /// Returns true if this is the calling thread.
     bool is_current() const noexcept;
-    /// 0 when SCHED_FIFO was granted, else why not (errno); -1 when it was not asked for.
+    /// Returns 0 if SCHED_FIFO was granted, errno if it was refused, -1 if it was not requested.
     int fifo_error() const noexcept { return fifo_error_; }
 
 private:

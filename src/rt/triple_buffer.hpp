@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The newest value from one writer to one reader; neither waits for the other, not even for one that lost
-/// its processor in the middle, and the value may be of any size. Several readers have a buffer each.
+/// The newest value from one writer to one reader, of any size. Neither waits for the other, not even if one
+/// loses its processor in the middle. Several readers have a buffer each.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace tactor::rt {
 
-/// Three values: one is written, one is read, and one lies between. What is not fetched in time is
-/// overwritten by what is newer.
+/// Three values: one is written, one is read, and one lies between. A newer value overwrites one that was not
+/// fetched.
 template <typename T>
 class triple_buffer {
     static_assert(std::atomic<std::uint32_t>::is_always_lock_free);
@@ -21,7 +21,7 @@ public:
     triple_buffer() = default;
     explicit triple_buffer(const T& value) : values_{value, value, value} {}
 
-    /// Writer: what publish() will hand over. Holds an older value.
+    /// Writer: returns the value that publish() will hand over. It contains an older value.
     T& draft() noexcept { return values_[write_]; }
     void publish() noexcept { write_ = between_.exchange(write_ | fresh, std::memory_order_acq_rel) & place; }
     void store(const T& value) noexcept(std::is_nothrow_copy_assignable_v<T>)
@@ -30,7 +30,7 @@ public:
         publish();
     }
 
-    /// Reader: takes the newest value; false when it has it already.
+    /// Reader: takes the newest value. Returns false if it already has it.
     bool fetch() noexcept
     {
         if (!has_news())
@@ -38,11 +38,11 @@ public:
         read_ = between_.exchange(read_, std::memory_order_acq_rel) & place;
         return true;
     }
-    /// Reader: whether fetch() would bring something.
+    /// Reader: returns true if fetch() would bring a newer value.
     bool has_news() const noexcept { return (between_.load(std::memory_order_relaxed) & fresh) != 0; }
-    /// Reader: valid until the next fetch().
+    /// Reader: returns the fetched value, valid until the next fetch().
     const T& value() const noexcept { return values_[read_]; }
-    /// Reader: the newest value; valid until the next load() or fetch().
+    /// Reader: returns the newest value, valid until the next load() or fetch().
     const T& load() noexcept
     {
         fetch();
