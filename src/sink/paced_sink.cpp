@@ -50,7 +50,7 @@ try {
 
 } // namespace
 
-// Here rather than in alsa/ or engine/: both stand on rt/.
+// These are here because alsa/ and engine/ both build on rt/.
 sink::~sink() = default;
 
 std::int64_t sink::xrun_ns() noexcept

@@ -33,11 +33,11 @@ void pacer::arm() noexcept
     const std::int64_t t = queue_.time_of_room(period_);
     itimerspec when{};
     when.it_value = rt::to_timespec(t);
-    // Forgets expirations, too: nobody needs to read them.
+    // This also clears expirations, so nobody needs to read them.
     ::timerfd_settime(fd_.get(), TFD_TIMER_ABSTIME, &when, nullptr);
 }
 
-// Rounded up, so that `frames` frames have left when it is over. Seconds apart from the rest: years fit.
+// Rounds up, so that `frames` frames have left at that time. Computes whole seconds apart, so that years fit.
 std::int64_t virtual_queue::duration(std::uint64_t frames) const noexcept
 {
     const std::uint64_t rest = frames % rate_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Real time for devices without a clock: null, file over null, and what is built on them.
+/// Real time for devices without a clock: null, file over null, and plugins on them.
 #pragma once
 
 #include <cstdint>
@@ -10,22 +10,21 @@
 
 namespace tactor::detail {
 
-/// The queue that a device without a clock does not have. Frames leave at the sample rate, in pure
-/// arithmetic: the time comes from outside. Deadlines are counted from one origin, so nothing drifts. Where
-/// the writer comes too late the clock waits for it (the origin moves): nothing is lost where there is no
-/// DAC. All times CLOCK_MONOTONIC ns.
+/// Queue of a device without a clock. Frames leave at the sample rate. Pure arithmetic: the caller passes the
+/// time. Deadlines count from one origin, so nothing drifts. If the writer is late the clock waits for it
+/// (the origin moves): without a DAC nothing is lost. All times are CLOCK_MONOTONIC, ns.
 class virtual_queue {
 public:
     virtual_queue(unsigned rate, unsigned buffer_frames) noexcept : rate_(rate), buffer_(buffer_frames) {}
 
-    /// Starts: frame 0 leaves at `now`.
+    /// Starts the queue: frame 0 leaves at `now`.
     void start(std::int64_t now, std::uint64_t written) noexcept;
     void wrote(std::uint64_t frames) noexcept { written_ += frames; }
 
     std::uint64_t written() const noexcept { return written_; }
-    /// Returns the frames that have left.
+    /// Returns the number of frames that have left.
     std::uint64_t played(std::int64_t now) noexcept;
-    /// Returns the frames that fit.
+    /// Returns the number of frames that fit.
     std::uint64_t available(std::int64_t now) noexcept;
     /// Returns the first time at which `frames` frames fit (frames <= the buffer).
     std::int64_t time_of_room(std::uint64_t frames) const noexcept;
@@ -52,10 +51,10 @@ public:
     std::uint64_t played(std::int64_t now) noexcept { return queue_.played(now); }
     std::uint64_t available() noexcept { return queue_.available(rt::monotonic_ns()); }
 
-    /// Sets the timer to when a period fits; a time in the past makes it readable at once. It stays readable
-    /// until it is set again.
+    /// Sets the timer to the time when a period fits; a past time makes it readable at once. It stays
+    /// readable until it is set again.
     void arm() noexcept;
-    /// Whether a period fits.
+    /// Returns true if a period fits.
     bool due() noexcept { return available() >= period_; }
 
 private:

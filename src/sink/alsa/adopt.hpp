@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Makes a sink of a PCM that is open already: for devices that live in the test itself.
+/// Sinks of PCMs that are already open, for devices that live in the test itself.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 namespace tactor::pcm {
 
 /// Configures `p` and owns it; closes it on failure, too. Throws as open_alsa() does; `o.pcm` is only a name.
-/// `as_card`: its clock is taken for a card's, which goes on whatever happens here.
+/// `as_card`: treats its clock as a card's, which never stops for this process.
 std::unique_ptr<sink> adopt(snd_pcm_t* p, const alsa_options& o, bool as_card = false);
 
 } // namespace tactor::pcm

@@ -15,8 +15,8 @@
 namespace tactor::pcm {
 namespace {
 
-// The negative errno for which no file could be opened; else 0. (One is enough: a file that is opened while
-// another is, and fails, makes libasound give the whole configuration up.)
+// Returns the negative errno if no file can be opened, else 0. Trying one is enough: if libasound has one
+// file open and fails to open another, it gives up the whole configuration.
 int lack_of_descriptors() noexcept
 {
     const detail::owned_fd one(::eventfd(0, EFD_CLOEXEC));
@@ -52,13 +52,13 @@ system_configuration::system_configuration() : refused_(lack_of_descriptors())
     snd_config_update_ref(&top_);
     if (defines_pcms(top_))
         return;
-    // Read when there were no descriptors, by another part of the program, or truly empty.
+    // The configuration was read without descriptors by another part of the program, or is really empty.
     if (top_ != nullptr)
         snd_config_unref(top_);
     top_ = nullptr;
     snd_config_update_free_global();
     const int code = snd_config_update_ref(&top_);
-    if (code == -EMFILE || code == -ENFILE) // the first file was opened, and one that it names was not
+    if (code == -EMFILE || code == -ENFILE) // the first file was opened, but not one that it includes
         refused_ = code;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// ALSA's configuration: the system's, or a text's.
+/// ALSA's configuration, from the system or from a text.
 #pragma once
 
 #include <memory>
@@ -14,11 +14,12 @@ namespace tactor::pcm {
 
 using configuration = std::unique_ptr<snd_config_t, detail::deleter<snd_config_delete>>;
 
-/// \throws error (bad_input) for what ALSA cannot read.
+/// Parses a configuration.
+/// \throws error (bad_input) for text that ALSA cannot read.
 configuration parse(const std::string& text);
 
-/// ALSA's configuration as snd_pcm_open() finds it; it is not reread while this object lives. Without a free
-/// descriptor it is not read at all: libasound would leave out the files that it cannot open, and keep this
+/// ALSA's configuration as snd_pcm_open() finds it. It is not read again while this object lives. Without a
+/// free descriptor it is not read at all: libasound would skip the files that it cannot open, and keep that
 /// configuration until one of them changes.
 class system_configuration {
 public:
@@ -27,11 +28,12 @@ public:
     system_configuration(const system_configuration&) = delete;
     system_configuration& operator=(const system_configuration&) = delete;
 
-    /// Null where there is none, or where it was not read.
+    /// Returns null if there is none, or if it was not read.
     snd_config_t* get() const noexcept { return top_; }
-    /// The same. \throws error (runtime) where it was not read: that is no answer.
+    /// Returns the same.
+    /// \throws error (runtime) if it was not read.
     snd_config_t* read() const;
-    /// The negative errno for which it was not read; else 0.
+    /// Returns the negative errno because of which it was not read, else 0.
     int refused() const noexcept { return refused_; }
 
 private:

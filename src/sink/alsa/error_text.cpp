@@ -68,8 +68,8 @@ std::string on_a_card(const surroundings& s)
                        cards.empty() ? "NAME" : cards.front().id);
 }
 
-// "pulse" of libasound's complaint about libasound_module_pcm_pulse.so, or the ..._conf_pulse.so of its
-// hooks.
+// Returns "pulse" from libasound's complaint about libasound_module_pcm_pulse.so, or about the
+// ..._conf_pulse.so of its hooks.
 std::string missing_plugin(const std::string& detail)
 {
     constexpr std::string_view before = "Cannot open shared library libasound_module_";
@@ -81,7 +81,7 @@ std::string missing_plugin(const std::string& detail)
     return kind_and_name.substr(kind_and_name.find('_') + 1);
 }
 
-// Debian's names.
+// Returns the error of a missing plugin. The hint names Debian's package.
 error no_plugin(const std::string& name, const std::string& type, const std::string& detail,
                 const surroundings& s)
 {
@@ -104,7 +104,7 @@ error no_jack(const std::string& name, const surroundings& s)
             "start it, as the user who is logged in: jackd, or QjackCtl; or " + on_a_card(s)};
 }
 
-// Whether it would end in a card, were there one; of what cannot be looked up that is likely.
+// Returns true if the route would end in a card, if there were one. An unknown route probably does.
 bool wants_card(const surroundings& s)
 {
     return s.route.empty() || among(s.route, "hw");
@@ -182,8 +182,8 @@ error forbidden(const std::string& name, const surroundings& s)
                         group.empty() ? "audio" : group)};
 }
 
-// "default" leads to a sound server where its plugin is installed; its refusal comes as an errno that says
-// nothing to people ("Host is down").
+// Returns the error of a sound server that does not run. "default" leads to a server if its plugin is
+// installed, and then fails with an errno that means nothing to people ("Host is down").
 error no_server(const std::string& name, const std::string& detail, const surroundings& s)
 {
     const std::string hint =

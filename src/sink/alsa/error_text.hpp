@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// ALSA's error numbers as advice.
+/// Explanations and hints for ALSA's error numbers.
 #pragma once
 
 #include <string>
@@ -12,20 +12,20 @@
 
 namespace tactor::pcm {
 
-/// "text (detail)", or "text" without a detail.
+/// Returns "text (detail)", or "text" without a detail.
 std::string with_detail(const std::string& text, const std::string& detail);
 
-/// What exists instead of the PCM that was asked for.
+/// The system around a PCM that cannot be opened.
 struct surroundings {
     std::vector<std::string> pcms = {}; ///< names that the configuration defines
     system_root root = "/";
-    std::vector<std::string> route = {}; ///< types of the plugins that the name leads through
+    std::vector<std::string> route = {}; ///< types of the plugins on the name's route
 };
 
-/// Why a PCM could not be opened (negative errno) and what to do. `detail`: libasound's own words.
+/// Returns why a PCM could not be opened (negative errno) and what to do. `detail`: libasound's own words.
 error open_error(const std::string& name, int code, const std::string& detail, const surroundings& s = {});
 
-/// The error of a call that should have worked.
+/// Returns the error of a call that should have succeeded.
 error call_error(const std::string& name, const char* call, int code);
 
 } // namespace tactor::pcm

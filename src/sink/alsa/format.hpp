@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Sample formats in ALSA's terms.
+/// Sample formats as ALSA names them.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace tactor::pcm {
 
-/// In the order in which they are tried: first those that I2S and USB devices carry without loss.
+/// Formats in the order in which they are tried: first those that I2S and USB devices carry without loss.
 inline constexpr std::array format_preference{format_kind::s32, format_kind::float32, format_kind::s24_3,
                                               format_kind::s24_4, format_kind::s16};
 

@@ -14,7 +14,7 @@
 namespace tactor::pcm {
 namespace {
 
-// Non-blocking makes a busy device an error at once instead of a wait without end.
+// With SND_PCM_NONBLOCK a busy device gives an error at once instead of an endless wait.
 constexpr int mode =
     SND_PCM_NONBLOCK | SND_PCM_NO_AUTO_RESAMPLE | SND_PCM_NO_AUTO_CHANNELS | SND_PCM_NO_AUTO_FORMAT;
 
@@ -78,7 +78,7 @@ handle open(const alsa_options& o)
     if (code < 0)
         tactor::detail::throw_caused(open_error(o.pcm, code, said.first(), there), -code);
     handle h(p);
-    // Plugins made from other plugins do not always take the flag of open().
+    // Plugins made from other plugins do not always obey the flag of open().
     if (code = snd_pcm_nonblock(h.get(), 1); code < 0)
         tactor::detail::throw_caused(open_error(o.pcm, code, said.first()), -code);
     return h;

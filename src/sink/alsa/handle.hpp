@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Owners of ALSA's objects, and the opening of a PCM by name.
+/// Owners of ALSA's objects, and opening a PCM by name.
 #pragma once
 
 #include <memory>
@@ -19,7 +19,7 @@ inline constexpr unsigned most_channels = max_pcm_channels;
 
 using detail::deleter;
 
-/// Silent: what a plugin says when it is closed is not for standard error.
+/// Closes a PCM and keeps a plugin's messages off standard error.
 struct closer {
     void operator()(snd_pcm_t* p) const noexcept
     {
@@ -38,7 +38,7 @@ hw_params copy(const hw_params& p);
 sw_params make_sw_params();
 status make_status();
 
-/// Opens for playback: non-blocking, nothing converted behind the user's back.
+/// Opens a PCM for playback: non-blocking, without hidden conversion.
 /// \throws error as open_alsa() does.
 handle open(const alsa_options& o);
 

@@ -2,7 +2,8 @@
 /// \file
 /// libasound's messages, for error messages instead of the user's standard error.
 ///
-/// libasound has one message handler for the process; it is the host program's business. The default one
+/// libasound has one message handler for the process, which belongs to the host program. The default one
+/// passes messages to a handler of each thread. That one is replaced during the calls, and then restored.
 /// passes messages to a handler of each thread: this one is replaced during the calls, and then put back.
 #pragma once
 
@@ -13,11 +14,11 @@
 
 namespace tactor::pcm {
 
-/// snd_lib_error_set_local(): alsa-lib 1.2.8 declares it without extern "C".
+/// Calls snd_lib_error_set_local(), which alsa-lib 1.2.8 declares without extern "C".
 snd_local_error_handler_t set_local_handler(snd_local_error_handler_t h) __asm__("snd_lib_error_set_local");
 
-/// Silences libasound on this thread while it lives, unless the host has a handler of its own. No lock and no
-/// allocation: the audio thread uses it.
+/// Silences libasound on this thread while an object lives, unless the host has its own handler. The audio
+/// thread uses it: no lock and no allocation.
 class quiet {
 public:
     quiet() noexcept : quiet(&ignore) {}
@@ -34,8 +35,8 @@ private:
     snd_local_error_handler_t before_;
 };
 
-/// Collects libasound's first message of this thread while it lives. Messages within the life of a second
-/// object belong to the second one.
+/// Collects libasound's first message on this thread while an object lives. A second object takes the
+/// messages of its own lifetime.
 class library_messages : quiet {
 public:
     library_messages() noexcept;
@@ -43,7 +44,8 @@ public:
     library_messages(const library_messages&) = delete;
     library_messages& operator=(const library_messages&) = delete;
 
-    /// The first message since construction, or nothing; nothing either where the host has its own handler.
+    /// Returns the first message since construction, or nothing. Always nothing if the host has its own
+    /// handler.
     std::string first() const;
 
 private:

@@ -19,7 +19,7 @@
 namespace tactor::pcm {
 namespace {
 
-// Software PCMs say 1073741823 channels or 4294967295 Hz, which means that they do not care.
+// Formats a range. Software PCMs report 1073741823 channels or 4294967295 Hz, which means no limit.
 std::string range(unsigned least, unsigned most, unsigned beyond)
 {
     if (least == most)
@@ -56,12 +56,12 @@ std::string describe(const hw_params& p)
     snd_pcm_hw_params_get_rate_min(p.get(), &least_hz, &direction);
     snd_pcm_hw_params_get_rate_max(p.get(), &most_hz, &direction);
     if (direction < 0)
-        --most_hz; // the bound itself is not in the range
+        --most_hz; // the bound itself is outside the range
     return fmt::format("channels {}, rates {} Hz, formats{}", range(first_channels, last_channels, 10000),
                        range(least_hz, most_hz, 10'000'000), formats(p));
 }
 
-// What a device can have at most without a mistake in the request: alsa-lib's own arithmetic is 32 bit.
+// Greatest numbers of a sensible request: alsa-lib computes with 32 bits.
 constexpr unsigned most_rate = 768'000;
 constexpr unsigned most_period_frames = 1U << 20;
 constexpr unsigned most_periods = 1024;
@@ -83,7 +83,7 @@ std::span<const format_kind> wanted_formats(const alsa_options& o)
     return o.format ? std::span<const format_kind>(&*o.format, 1) : std::span(format_preference);
 }
 
-// Whether one setting alone is within what the device can do.
+// Returns true if the device can do one of the formats, whatever the other settings.
 bool takes_format(snd_pcm_t* p, const hw_params& space, std::span<const format_kind> formats)
 {
     for (const format_kind f : formats)
@@ -92,7 +92,8 @@ bool takes_format(snd_pcm_t* p, const hw_params& space, std::span<const format_k
     return false;
 }
 
-// Restricts to the channels asked for, else, where more will do, to the fewest that hold them; 0: neither.
+// Restricts to the requested channels, or else, if more are allowed, to the fewest that hold them. Returns
+// their number; 0 if neither works.
 unsigned set_channels(snd_pcm_t* p, const hw_params& h, const alsa_options& o)
 {
     if (snd_pcm_hw_params_set_channels(p, h.get(), o.channels) == 0)
@@ -103,7 +104,7 @@ unsigned set_channels(snd_pcm_t* p, const hw_params& h, const alsa_options& o)
     return there && n <= most_channels ? n : 0;
 }
 
-// Names what the device does not take; of what it takes one by one only the combination fails.
+// Names each setting that the device cannot do. If it can do each alone, only the combination fails.
 error refused(snd_pcm_t* p, const hw_params& space, const alsa_options& o)
 {
     std::string s;
@@ -133,13 +134,13 @@ struct fixed {
     unsigned channels;
 };
 
-// Channels, rate and format are tied together on some devices, so each format gets a fresh start.
+// Fixes format, rate and channels. Each format starts anew, because some devices tie the three together.
 std::optional<fixed> fix(snd_pcm_t* p, const hw_params& space, const alsa_options& o, format_kind f)
 {
     hw_params h = copy(space);
     if (snd_pcm_hw_params_set_format(p, h.get(), to_alsa(f)) < 0)
         return std::nullopt;
-    // Exactly: a stroke at another rate is another stimulus.
+    // Exactly this rate: a stroke at another rate is another stimulus.
     if (snd_pcm_hw_params_set_rate(p, h.get(), o.rate, 0) < 0)
         return std::nullopt;
     const unsigned n = set_channels(p, h, o);
@@ -158,13 +159,13 @@ std::optional<fixed> find_fit(snd_pcm_t* p, const hw_params& space, const alsa_o
 
 void set_sizes(snd_pcm_t* p, const hw_params& h, const alsa_options& o)
 {
-    snd_pcm_hw_params_set_periods_integer(p, h.get()); // odd devices refuse, and work without
+    snd_pcm_hw_params_set_periods_integer(p, h.get()); // some devices refuse this, and work without it
     int direction = 0;
     snd_pcm_uframes_t period = o.period_frames;
     if (const int code = snd_pcm_hw_params_set_period_size_near(p, h.get(), &period, &direction); code < 0)
         tactor::detail::throw_caused(call_error(o.pcm, "snd_pcm_hw_params_set_period_size_near", code),
                                      -code);
-    // The buffer as well: left free, a software PCM takes hours of frames.
+    // Sets the buffer as well: otherwise a software PCM chooses hours of frames.
     unsigned periods = o.periods;
     direction = 0;
     if (snd_pcm_hw_params_set_periods_near(p, h.get(), &periods, &direction) == 0)
@@ -221,7 +222,7 @@ hw_params configuration_space(snd_pcm_t* p, const std::string& name)
     hw_params h = make_hw_params();
     if (const int code = snd_pcm_hw_params_any(p, h.get()); code < 0)
         tactor::detail::throw_caused(call_error(name, "snd_pcm_hw_params_any", code), -code);
-    // Nothing is resampled silently. Not every plugin knows the setting; open() said so already.
+    // Forbids resampling. Not every plugin knows the setting, but open() forbids it as well.
     snd_pcm_hw_params_set_rate_resample(p, h.get(), 0);
     if (const int code = snd_pcm_hw_params_set_access(p, h.get(), SND_PCM_ACCESS_RW_INTERLEAVED); code < 0)
         tactor::detail::throw_caused(call_error(name, "snd_pcm_hw_params_set_access (interleaved)", code),
@@ -257,7 +258,7 @@ void set_software(snd_pcm_t* p, const stream_setup& s)
     snd_pcm_uframes_t boundary = 0;
     must(snd_pcm_sw_params_get_boundary(w.get(), &boundary), "snd_pcm_sw_params_get_boundary");
 
-    // Only snd_pcm_start() starts: the instant is known, and the amplifier can follow it.
+    // Only snd_pcm_start() starts the DAC, so the instant is known, and the amplifier can follow it.
     must(snd_pcm_sw_params_set_start_threshold(p, w.get(), boundary),
          "snd_pcm_sw_params_set_start_threshold");
     // An underrun stops the DAC. A threshold beyond the buffer would replay old frames for ever.
@@ -268,7 +269,7 @@ void set_software(snd_pcm_t* p, const stream_setup& s)
          "snd_pcm_sw_params_set_tstamp_mode");
     must(snd_pcm_sw_params_set_tstamp_type(p, w.get(), SND_PCM_TSTAMP_TYPE_MONOTONIC),
          "snd_pcm_sw_params_set_tstamp_type");
-    // What has been played is overwritten by silence, for a device that runs on past the last frame.
+    // Overwrites played frames with silence, for a device that runs on past the last frame.
     must(snd_pcm_sw_params_set_silence_threshold(p, w.get(), 0), "snd_pcm_sw_params_set_silence_threshold");
     must(snd_pcm_sw_params_set_silence_size(p, w.get(), boundary), "snd_pcm_sw_params_set_silence_size");
     must(snd_pcm_sw_params(p, w.get()), "snd_pcm_sw_params");

@@ -13,24 +13,25 @@
 
 namespace tactor::pcm {
 
+/// Checks the options.
 /// \throws error (bad_input) for numbers that no PCM can have.
 void check(const alsa_options& o);
 
-/// The whole configuration space of the PCM with interleaved samples and without resampling; `name` is for
-/// errors.
+/// Returns the whole configuration space of the PCM with interleaved samples and without resampling. `name`
+/// is for errors.
 /// \throws error (not_available).
 hw_params configuration_space(snd_pcm_t* p, const std::string& name);
 
-/// Why the channels, rate and format asked for are not possible together; empty: they are.
+/// Returns why the requested channels, rate and format are not possible together; empty if they are.
 std::string misfit(snd_pcm_t* p, const hw_params& space, const alsa_options& o);
 
-/// Sets the channels and the rate asked for, the first format that fits, and the nearest period and buffer;
-/// returns the set-up that the device has then.
-/// \throws error (not_available) with the set asked for and what the device can do; of the field "channels"
-///         where it has not that many.
+/// Sets the requested channels and rate, the first format that fits, and the nearest period and buffer.
+/// Returns the set-up of the device.
+/// \throws error (not_available) with the request and what the device can do. It has the field "channels" if
+///         the device does not have as many.
 stream_setup negotiate(snd_pcm_t* p, const alsa_options& o);
 
-/// Explicit start, stop on the first missing frame, silence where nothing was written.
+/// Sets an explicit start, a stop on the first missing frame, and silence where nothing was written.
 /// \throws error (not_available).
 void set_software(snd_pcm_t* p, const stream_setup& s);
 

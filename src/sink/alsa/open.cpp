@@ -91,7 +91,7 @@ std::unique_ptr<sink> reopen_alsa(const alsa_options& o, const std::function<boo
             detail::log(o.log, log_kind::info, "PCM \"{}\" is back", o.pcm);
             return s;
         } catch (const error& e) {
-            // Not there yet, or udev has not given it to its group yet.
+            // The device is not back yet, or udev has not set its group yet.
             if (e.kind() != error_kind::not_available)
                 throw;
             detail::log(o.log, log_kind::debug, "not back yet: {}", e.what());

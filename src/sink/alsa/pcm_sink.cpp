@@ -26,7 +26,7 @@ pcm_sink::pcm_sink(handle h, stream_setup s, bool on_card)
 io_kind pcm_sink::prepare() noexcept
 {
     const quiet silent;
-    // The kernel does not prepare a stream that runs, as it may after a resume.
+    // The kernel does not prepare a running stream, which may exist after a resume.
     if (state() == SND_PCM_STATE_RUNNING)
         snd_pcm_drop(handle_.get());
     written_ = 0;
@@ -58,7 +58,8 @@ std::int64_t pcm_sink::ns_of(std::uint64_t frames) const noexcept
     return static_cast<std::int64_t>(frames) * rt::ns_per_s / setup_.rate;
 }
 
-// A DAC cannot have played all of a full buffer and still run: that would have been an xrun.
+// Returns true if all of a full buffer has been played and the stream still runs. A DAC would have had an
+// xrun.
 bool pcm_sink::runs_without_clock() noexcept
 {
     return written_ > 0 && snd_pcm_status(handle_.get(), status_.get()) == 0 &&
@@ -67,7 +68,7 @@ bool pcm_sink::runs_without_clock() noexcept
            snd_pcm_avail_update(handle_.get()) >= static_cast<snd_pcm_sframes_t>(setup_.buffer_frames);
 }
 
-// Never snd_pcm_recover(), which sleeps in steps of a second.
+// Does not call snd_pcm_recover(), which sleeps in steps of a second.
 io_kind pcm_sink::resume() noexcept
 {
     const quiet silent;
@@ -77,7 +78,8 @@ io_kind pcm_sink::resume() noexcept
     return code == -EAGAIN ? io_kind::again : io_kind::failed;
 }
 
-// Drivers stamp the stop; plugins leave the stamp of the start, and there the last position tells.
+// Uses the time of the stop, which drivers stamp. Plugins leave the stamp of the start; then the last
+// position gives the time.
 std::int64_t pcm_sink::xrun_ns() noexcept
 {
     const quiet silent;
@@ -101,7 +103,7 @@ std::size_t pcm_sink::descriptors(std::span<pollfd> fds) noexcept
         return 1;
     }
     const int n = snd_pcm_poll_descriptors(handle_.get(), fds.data(), static_cast<unsigned>(fds.size()));
-    poll_error_ = n < 0 ? n : 0; // dmix has nothing to poll while it stands in an xrun
+    poll_error_ = n < 0 ? n : 0; // dmix has no descriptors during an xrun
     return n < 0 ? 0 : static_cast<std::size_t>(n);
 }
 
@@ -149,7 +151,8 @@ void pcm_sink::look(std::int64_t now, snd_pcm_sframes_t available) noexcept
     at_ = at;
 }
 
-// A multi of nulls fills up before its start and breaks after it; a fresh one takes frames again.
+// Writes frames of a paced stream. A multi of nulls fills up before its start and breaks after it; after
+// prepare() it takes frames again.
 long pcm_sink::write_paced(const std::byte* data, std::size_t frames) noexcept
 {
     const long n = snd_pcm_writei(handle_.get(), data, frames);
@@ -160,7 +163,7 @@ long pcm_sink::write_paced(const std::byte* data, std::size_t frames) noexcept
     return snd_pcm_writei(handle_.get(), data, frames);
 }
 
-// The PCM's other channels have had nothing but silence since the sink was made.
+// Copies the frames into a buffer of the PCM's width. Its other channels have been silent since construction.
 const std::byte* pcm_sink::widen(std::span<const std::byte> frames) noexcept
 {
     if (wide_.empty())
@@ -190,7 +193,7 @@ io_result pcm_sink::write(std::span<const std::byte> frames) noexcept
     written_ += taken;
     if (paced_)
         pacer_.wrote(taken);
-    // A plugin that is full before its start says 0, not EAGAIN.
+    // A plugin that is full before its start returns 0, not EAGAIN.
     return {taken == 0 ? io_kind::again : io_kind::ok, taken, 0};
 }
 
@@ -207,14 +210,14 @@ stream_position pcm_sink::position() noexcept
         return {written_, played_, now, false};
     const auto queued =
         static_cast<std::uint64_t>(std::max<snd_pcm_sframes_t>(snd_pcm_status_get_delay(status_.get()), 0));
-    // The delay may include the DAC's own, which at the start is more than was written.
+    // The delay may include the DAC's own, which at the start exceeds the frames written.
     if (queued <= written_)
         played_ = std::max(played_, written_ - queued);
     look(now, static_cast<snd_pcm_sframes_t>(snd_pcm_status_get_avail(status_.get())));
     snd_htimestamp_t stamp{};
     snd_pcm_status_get_htstamp(status_.get(), &stamp);
     const std::int64_t at = rt::to_ns(stamp);
-    // Plugins may leave the stamp empty or in another clock. A card's is mostly that of the call itself.
+    // Plugins may leave the stamp empty or use another clock. A card's stamp is mostly that of this call.
     const bool sane = at <= rt::monotonic_ns() && now - at < rt::ns_per_s;
     seen_ns_ = sane ? at : now;
     dry_ns_ = seen_ns_ + ns_of(queued);
@@ -240,7 +243,7 @@ io_kind of_state(int state) noexcept
     case SND_PCM_STATE_DISCONNECTED:
         return io_kind::lost;
     default:
-        return io_kind::xrun; // stopped for whatever reason: only prepare() helps
+        return io_kind::xrun; // stopped for some reason: only prepare() helps
     }
 }
 
@@ -251,7 +254,7 @@ io_kind of_error(long code, int state) noexcept
     case EINTR:
         return io_kind::again;
     case EPIPE:
-        // An ioplug turns each failure into EPIPE, that of a device which is gone too.
+        // An ioplug turns each failure into EPIPE, also that of a device that is gone.
         return of_state(state) == io_kind::lost ? io_kind::lost : io_kind::xrun;
     case ESTRPIPE:
         return io_kind::suspended;

@@ -18,15 +18,16 @@
 
 namespace tactor::pcm {
 
-/// Frames go to snd_pcm_writei(). A device that turns out at start() to have no clock is paced by a timer.
+/// A sink that writes with snd_pcm_writei(). If start() shows that a device has no clock, a timer paces it.
 ///
-/// A card plays its buffer round and round, and tells the kernel the place in it. If nobody asks for this
-/// place during a whole round (interrupts were off, the processor or the machine stood still), the round is
-/// missing from the position, and no xrun is reported. So a stream that moved, and was not looked at during a
+/// A card plays its buffer round and round, and tells the kernel its place in the buffer. If nobody reads
+/// this place during a whole round (interrupts were off, the processor or the machine stood still), the round
+/// is missing from the position, and no xrun is reported. So this sink reports an xrun for a stream that
+/// moved and was not looked at during a whole round, whatever the kernel says.
 /// whole round, counts as run dry here, whatever the kernel says.
 class pcm_sink final : public sink {
 public:
-    /// `on_card`: the PCM plays on a card of the kernel's.
+    /// Takes over a PCM. `on_card`: it plays on a card of the kernel's.
     pcm_sink(handle h, stream_setup s, bool on_card);
 
     const stream_setup& setup() const noexcept override { return setup_; }
@@ -52,27 +53,27 @@ private:
 
     handle handle_;
     stream_setup setup_;
-    std::vector<std::byte> wide_; ///< a buffer of the PCM's frames, where these have more channels
+    std::vector<std::byte> wide_; ///< a buffer of the PCM's frames, if they have more channels
     status status_;
     detail::pacer pacer_;
     std::size_t max_descriptors_;
     std::uint64_t written_ = 0;
     std::uint64_t played_ = 0;
-    std::int64_t seen_ns_ = 0;   ///< when the stream was last seen running
-    std::int64_t dry_ns_ = 0;    ///< when it runs dry, as seen then
-    std::int64_t looked_ns_ = 0; ///< when its position was last asked for, ...
-    std::int64_t at_ = 0;        ///< ... which was this
+    std::int64_t seen_ns_ = 0;   ///< time when the stream was last seen running
+    std::int64_t dry_ns_ = 0;    ///< time when it runs dry, as predicted then
+    std::int64_t looked_ns_ = 0; ///< time when its position was last read, ...
+    std::int64_t at_ = 0;        ///< ... and that position
     bool went_round_ = false;    ///< since prepare()
     bool on_card_ = false;
     bool paced_ = false;
-    int poll_error_ = 0; ///< of the latest descriptors()
+    int poll_error_ = 0; ///< error of the latest descriptors()
 };
 
-/// Returns what a state alone means for the stream; a negative value is an error number (a device that is
+/// Returns the meaning of a PCM's state for the stream. A negative state is an error number (the device is
 /// gone).
 io_kind of_state(int state) noexcept;
 
-/// Returns what a negative return value in a state means for the stream.
+/// Returns the meaning of a negative return value in a state.
 io_kind of_error(long code, int state) noexcept;
 
 } // namespace tactor::pcm

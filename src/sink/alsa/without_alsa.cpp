@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The public functions of this folder in a library that was built without ALSA (-Dalsa=disabled).
+// Public functions of this folder in a library that was built without ALSA (-Dalsa=disabled).
 #include <fmt/format.h>
 
 #include <tactor/alsa.hpp>
@@ -44,7 +44,7 @@ stream_wiring wiring_of(const std::string&, unsigned)
     return {};
 }
 
-// No name leads to a device, so that only its form is left to look at.
+// Checks only the form of a name, because no name leads to a device.
 void require_device_name(const std::string& pcm)
 {
     if (const std::string why = pcm::not_plain(pcm); !why.empty())

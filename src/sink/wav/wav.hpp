@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// WAV files: the container, the chunks before the samples, the file. All sizes are known beforehand, so that
-/// a pipe can take the file.
+/// WAV files: the container, the chunks before the samples, the file. All sizes are known in advance, so a
+/// pipe can take the file.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,7 @@ namespace tactor::wav {
 
 enum class container { wave, rf64 };
 
-/// Returns rf64 where the 32-bit sizes of WAVE are too small; 4096 bytes are reserved for the chunks beside
-/// the samples.
+/// Returns rf64 if the 32-bit sizes of WAVE are too small. 4096 bytes are reserved for the other chunks.
 constexpr container container_for(std::uint64_t frames, std::uint64_t frame_bytes) noexcept
 {
     constexpr std::uint64_t most = 0xFFFFFFFFU - 4096U;
@@ -23,18 +22,18 @@ constexpr container container_for(std::uint64_t frames, std::uint64_t frame_byte
 }
 
 /// Returns RIFF's chunks up to the first sample: fmt (18 bytes and a fact chunk for float, as the format
-/// requires for everything but integer PCM), and ds64 where the container is RF64. No PEAK chunk: it holds
-/// the time of day, and the same stroke would not give the same bytes. \throws error (bad_input) for a format
-/// that WAV cannot hold (s24 in four bytes).
+/// requires for all but integer PCM), and ds64 if the container is RF64. No PEAK chunk: it contains the time
+/// of day, so the same stroke would give other bytes.
+/// \throws error (bad_input) for a format that WAV cannot hold (s24 in four bytes).
 std::string header(format_kind f, container c, unsigned channels, unsigned rate, std::uint64_t frames);
 
-/// Returns 1 where a byte of padding follows the samples, for a chunk has an even number of bytes; else 0.
+/// Returns the bytes of padding after the samples, 0 or 1: a chunk has an even number of bytes.
 constexpr unsigned padding(std::uint64_t data_bytes) noexcept
 {
     return data_bytes % 2 != 0 ? 1U : 0U;
 }
 
-/// Writes a file as write_wav() does, in the container given: tests make small RF64 files.
+/// Writes a file as write_wav() does, in the given container, so that tests can make small RF64 files.
 bool write(const score& s, format_kind f, const std::filesystem::path& file, container c,
            const wav_progress& progress);
 

@@ -16,12 +16,12 @@
 namespace tactor::wav {
 namespace {
 
-/// Between two calls of `progress`: short to wait for, long to write.
+/// Bytes between two calls of `progress`: short to wait for, long to write.
 constexpr std::size_t block_bytes = std::size_t{1} << 20;
 constexpr std::uint64_t most_block_frames = 65536;
 
-constexpr std::uint64_t elsewhere = 0xFFFFFFFFU;  ///< a size that ds64 has
-constexpr std::size_t most_frame_bytes = 0xFFFFU; ///< the header has two bytes for them
+constexpr std::uint64_t elsewhere = 0xFFFFFFFFU;  ///< marks a size that ds64 contains
+constexpr std::size_t most_frame_bytes = 0xFFFFU; ///< the header has two bytes for this number
 constexpr unsigned integer_tag = 1;
 constexpr unsigned float_tag = 3;
 
@@ -30,7 +30,7 @@ bool is_float(format_kind f)
     return f == format_kind::float32;
 }
 
-// Of the formats that a WAV file has, the best that holds them.
+// Returns a hint with the best WAV format whose frames fit.
 std::string fewer_bytes(format_kind f, unsigned channels)
 {
     for (const format_kind other : {format_kind::s24_3, format_kind::s16})
@@ -55,7 +55,7 @@ void check_format(format_kind f, unsigned channels)
     }
 }
 
-/// Little end first, on any machine.
+/// Returns the bytes of a number, lowest first, on any machine.
 std::string number(std::uint64_t value, unsigned bytes)
 {
     std::string s;

@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of "... ]: DRIVER - NAME"
+// Returns NAME of "... ]: DRIVER - NAME".
 std::string long_name(const std::string& line)
 {
     const auto dash = line.find(" - ");
@@ -24,7 +24,7 @@ struct listed_device {
 
 std::vector<listed_device> listed_devices(const fs::path& root, unsigned card_index)
 {
-    // "01-00: ID : NAME : playback 1 : capture 1"
+    // Lines read "01-00: ID : NAME : playback 1 : capture 1".
     std::vector<listed_device> devices;
     for (const std::string& line : lines_of(root / "proc/asound/pcm")) {
         const auto dash = line.find('-');
@@ -43,7 +43,8 @@ std::vector<listed_device> listed_devices(const fs::path& root, unsigned card_in
 
 std::vector<card> sound_cards(const system_root& root)
 {
-    // " 1 [DAC8x          ]: HifiberryDac8x - snd_rpi_hifiberry_dac8x", then a line with the long name.
+    // Lines read " 1 [DAC8x          ]: HifiberryDac8x - snd_rpi_hifiberry_dac8x", each followed by a line
+    // with the long name.
     std::vector<card> cards;
     for (const std::string& line : lines_of(root / "proc/asound/cards")) {
         const auto open = line.find('[');

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The sound cards that there are and who plays on them, as the kernel tells in files, and the list of PCMs;
-/// tests give it a system that is made of files.
+/// The sound cards and the processes that play on them, from the kernel's files; and the list of PCMs. Tests
+/// pass a folder with a system made of files.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@
 
 namespace tactor::pcm {
 
-/// Where /proc and /dev are looked for; another folder in tests.
+/// Folder that contains /proc and /dev; another one in tests.
 using system_root = std::filesystem::path;
 
 struct card {
@@ -25,23 +25,23 @@ struct card {
     std::string name = {}; ///< for people
 };
 
-/// By index; none where there is no sound driver.
+/// Returns the cards by index; none without a sound driver.
 std::vector<card> sound_cards(const system_root& root);
 
-/// Numbers of a card's playback devices.
+/// Returns the numbers of a card's playback devices.
 std::vector<unsigned> playback_devices(const system_root& root, unsigned card_index);
 
-/// What the driver calls a playback device; empty where it says nothing.
+/// Returns the driver's name of a playback device; empty if it gives none.
 std::string playback_device_name(const system_root& root, unsigned card_index, unsigned device);
 
-/// The card and the device that an ALSA name refers to, as in "hw:CARD=Tactor,DEV=1" or "plughw:0,1".
+/// Card and device to which an ALSA name refers, as in "hw:CARD=Tactor,DEV=1" or "plughw:0,1".
 struct device_name {
     std::string card = {}; ///< id or index
     unsigned device = 0;
 };
 std::optional<device_name> named_device(std::string_view pcm);
 
-/// The card of that id or index, if there is one.
+/// Returns the card with that id or index, if any.
 std::optional<card> find_card(const std::vector<card>& cards, const std::string& id_or_index);
 
 struct holder {
@@ -49,17 +49,17 @@ struct holder {
     std::string program = {};
 };
 
-/// One playback device of a card; without `device` any of the card, without both any of any card.
+/// A playback device of a card. Without `device`: any of the card. Without both: any of any card.
 struct which_device {
     std::optional<unsigned> card = {};
     std::optional<unsigned> device = {};
 };
 
-/// Processes that have such a playback device open, in order of pid. Of other users' processes only those are
-/// seen that the sound driver tells of.
+/// Returns the processes that have such a playback device open, in order of pid. Of other users' processes it
+/// sees only those that the sound driver reports.
 std::vector<holder> playback_holders(const system_root& root, const which_device& wanted);
 
-/// The group whose members may open the playback devices; empty where that cannot be told.
+/// Returns the group whose members may open the playback devices; empty if it is not known.
 std::string playback_group(const system_root& root);
 
 /// Lists the PCMs as list_pcms() does, with the cards of `root`.
@@ -68,7 +68,7 @@ std::vector<pcm_info> list(const system_root& root, const std::optional<alsa_opt
 /// Returns the processes that hold a device, as values of the interface.
 std::vector<process_info> processes(const std::vector<holder>& holders);
 
-/// Fills in the abilities of an open PCM, and whether they fit.
+/// Fills in the abilities of an open PCM, and the reason why it does not fit.
 void look_at(snd_pcm_t* p, const std::optional<alsa_options>& wanted, pcm_info& into);
 
 } // namespace tactor::pcm

@@ -22,7 +22,8 @@ namespace {
 constexpr unsigned usual_rates[] = {8000,  11025, 12000, 16000,  22050,  24000,  32000,  44100,  48000,
                                     64000, 88200, 96000, 176400, 192000, 352800, 384000, 705600, 768000};
 
-// Software PCMs say 1073741823 channels or 4294967295 Hz, and their buffers more still: they do not care.
+// Larger numbers mean no limit: software PCMs report 1073741823 channels or 4294967295 Hz, and still larger
+// buffers.
 constexpr snd_pcm_uframes_t beyond = 1U << 29;
 
 unsigned bounded(snd_pcm_uframes_t n)
@@ -33,7 +34,7 @@ unsigned bounded(snd_pcm_uframes_t n)
 using unsigned_bound = int (*)(const snd_pcm_hw_params_t*, unsigned*, int*);
 using frames_bound = int (*)(const snd_pcm_hw_params_t*, snd_pcm_uframes_t*, int*);
 
-// A bound that is not in the range itself is told by the direction.
+// Returns a range. The direction says whether a bound itself is outside it.
 count_range range(const hw_params& p, unsigned_bound least, unsigned_bound most)
 {
     unsigned low = 0;
@@ -66,7 +67,7 @@ int buffer_most(const snd_pcm_hw_params_t* p, snd_pcm_uframes_t* v, int*)
     return snd_pcm_hw_params_get_buffer_size_max(p, v);
 }
 
-// Cards may take 2, 4 and 8 channels and nothing between.
+// Returns the channel counts, which may have gaps: some cards can do 2, 4 and 8 channels only.
 std::vector<count_range> channels(snd_pcm_t* pcm, const hw_params& p)
 {
     unsigned least = 0;
@@ -85,7 +86,7 @@ std::vector<count_range> channels(snd_pcm_t* pcm, const hw_params& p)
     return ranges;
 }
 
-/// Returns all of a configuration space that open_alsa() would choose from. Configures nothing.
+/// Returns the abilities of a configuration space from which open_alsa() would choose. Configures nothing.
 pcm_abilities abilities_of(snd_pcm_t* p, const hw_params& space)
 {
     pcm_abilities a;
@@ -125,7 +126,7 @@ std::vector<pcm_info> card_devices(const system_root& root)
     return all;
 }
 
-// The name that a card's own device has in the list, however it is said: hw:1, hw:Tactor, hw:CARD=1,DEV=0.
+// Returns the name of a card's own device in the list, for any form of it: hw:1, hw:Tactor, hw:CARD=1,DEV=0.
 std::string listed_name(const system_root& root, const std::string& name)
 {
     if (const auto d = named_device(name); d && name.rfind("hw:", 0) == 0)
@@ -139,14 +140,15 @@ bool is_listed(const std::vector<pcm_info>& all, const std::string& name)
     return std::any_of(all.begin(), all.end(), [&](const pcm_info& p) { return p.name == name; });
 }
 
-// The list says the name already.
+// Removes the name, which the list shows anyway.
 std::string without_name(std::string text, const std::string& name)
 {
     const std::string prefix = fmt::format("PCM \"{}\": ", name);
     return text.rfind(prefix, 0) == 0 ? text.substr(prefix.size()) : text;
 }
 
-// Empty: it can be opened just to look at it. One that was asked for may start what it needs.
+// Returns why a PCM is not opened for the list. Empty: it can be opened without effect, or the user wants
+// this one, which may start what it needs.
 std::string why_not_tried(const std::vector<std::string>& route, bool wanted)
 {
     if (writes(route))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Who plays on the cards, and who may.
+// Processes that play on the cards, and the group that may.
 #include <map>
 
 #include <grp.h>
@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Card and device of "pcmC1D0p", if it is the name of a playback device.
+// Returns card and device of "pcmC1D0p", if it is the name of a playback device.
 std::optional<which_device> playback_node(const std::string& name)
 {
     const auto d = name.find('D');
@@ -52,7 +52,7 @@ bool holds_playback(const fs::path& process, const which_device& wanted)
     return false;
 }
 
-// What the sound driver says of a device: the thread that opened each busy substream.
+// Adds the thread that opened each busy substream, as the sound driver reports it.
 void add_owners(const fs::path& proc, const fs::path& device, std::map<int, std::string>& into)
 {
     for (const fs::path& sub : entries(device)) {
@@ -65,7 +65,7 @@ void add_owners(const fs::path& proc, const fs::path& device, std::map<int, std:
     }
 }
 
-// Of folders such as card1/pcm0p.
+// Adds the owners of all wanted devices, in folders such as card1/pcm0p.
 void add_all_owners(const fs::path& proc, const which_device& wanted, std::map<int, std::string>& into)
 {
     for (const fs::path& folder : entries(proc / "asound")) {

@@ -35,14 +35,15 @@ std::vector<known_name> hinted()
     for (void** h = first; *h != nullptr; ++h) {
         const c_text name(snd_device_name_get_hint(*h, "NAME"));
         const c_text description(snd_device_name_get_hint(*h, "DESC"));
-        const c_text direction(snd_device_name_get_hint(*h, "IOID")); // none: both
+        const c_text direction(snd_device_name_get_hint(*h, "IOID")); // null: both directions
         if (name != nullptr && (direction == nullptr || std::string_view(direction.get()) != "Input"))
             names.push_back({name.get(), description == nullptr ? "" : one_line(description.get())});
     }
     return names;
 }
 
-// Stock names such as front or dmix are strings that lead to a card's functions: the hints have them.
+// Returns false for stock names such as front or dmix: their definitions are strings that lead to a card's
+// functions. The hints list them.
 bool stands_alone(snd_config_t* definition)
 {
     snd_config_t* found = nullptr;
@@ -65,7 +66,8 @@ std::vector<std::string> defined_pcms(snd_config_t* top)
 std::vector<known_name> known_names()
 {
     const library_messages silent;
-    const system_configuration system; // before the hints, which read it whatever there is to read it with
+    // Comes before the hints, which read the configuration even without descriptors.
+    const system_configuration system;
     snd_config_t* pcms = nullptr;
     if (system.read() == nullptr || snd_config_search(system.get(), "pcm", &pcms) < 0)
         return {};

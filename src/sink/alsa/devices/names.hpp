@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The names of PCMs that ALSA's configuration knows.
+/// Names of the PCMs in ALSA's configuration.
 #pragma once
 
 #include <string>
@@ -15,12 +15,12 @@ struct known_name {
     std::string description = {}; ///< one line; may be empty
 };
 
-/// Every PCM for playback that the configuration names and that needs no argument: those with a hint as
-/// ALSA lists them, then the others.
+/// Returns every PCM for playback that the configuration names and that needs no argument: first those with a
+/// hint, as ALSA lists them, then the others.
 std::vector<known_name> known_names();
 
-/// All PCMs that a configuration defines under `pcm`, those that need arguments too; as hints for a mistyped
-/// name.
+/// Returns all PCMs that a configuration defines under `pcm`, also those that need arguments. For hints about
+/// a mistyped name.
 std::vector<std::string> defined_pcms(snd_config_t* top);
 
 } // namespace tactor::pcm

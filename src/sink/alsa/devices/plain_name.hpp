@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The grammar of PCM names that are names and nothing else.
+/// Grammar of PCM names that only name a device.
 #pragma once
 
 #include <string>
@@ -8,14 +8,15 @@
 
 namespace tactor::pcm {
 
-/// Why this text is more than the name of a device; empty: it is not. Names are
+/// Returns why this text is more than the name of a device; empty if it is not. Names are
+///
 ///
 ///     NAME = BASE [":" ARGUMENT {"," ARGUMENT}] | "plug:" ["SLAVE="] (INNER | "'" NAME "'")
 ///     ARGUMENT = [KEY "="] VALUE
 ///
-/// with letters, digits, "_" and "-" (in a VALUE "." too). INNER is a NAME without a comma, which would end
-/// it. A NAME within "plug:" does not begin with "plug:" again. ALSA itself takes far more: definitions in
-/// braces, quoted text, escapes. Looks at the text only; find_route() tells what a name stands for.
+/// with letters, digits, "_" and "-" (in a VALUE also "."). INNER is a NAME without a comma, which would end
+/// it. A NAME within "plug:" does not begin with "plug:" again. ALSA itself accepts much more: definitions in
+/// braces, quoted text, escapes. Looks only at the text; find_route() finds what a name leads to.
 std::string not_plain(std::string_view name);
 
 } // namespace tactor::pcm

@@ -16,12 +16,12 @@ namespace {
 
 using types = std::vector<std::string>;
 
-constexpr std::size_t most_types = 64; // of one PCM: definitions that double at each step end, too
+constexpr std::size_t most_types = 64; // of one PCM; also stops definitions that double at each step
 
-// They touch nothing beyond the device that they end in.
+// These affect only the device at their end.
 constexpr std::array harmless{"hw",    "null",  "plug", "linear", "lfloat", "copy",  "route", "rate",
                               "multi", "empty", "asym", "mulaw",  "alaw",   "adpcm", "iec958"};
-// These start or set a card's mixer ("ctl_elems" is what hooks do), or talk to a server.
+// These start a card's mixer, set it ("ctl_elems" is the type of hooks), or talk to a server.
 constexpr std::array lasting{"dmix", "dshare", "softvol", "hooks", "ctl_elems", "pulse", "pipewire", "jack"};
 
 class walker {
@@ -53,7 +53,7 @@ private:
         return true;
     }
 
-    // `slaves`: each member is a slave by a name of its own.
+    // Adds the plugins of a definition. `slaves`: each member names a slave.
     void definition_of(snd_config_t* definition, int depth, bool slaves)
     {
         each_member(definition, [&](const std::string& id, snd_config_t* member) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What the name of a PCM leads to, as ALSA's configuration defines it. Nothing is opened.
+/// Plugins between the name of a PCM and its device, from ALSA's configuration. Opens nothing.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace tactor::pcm {
 
-/// Calls `visit` for each member of a compound, with its name; for other nodes it calls nothing.
+/// Calls `visit` for each member of a compound, with its name. Does nothing for other nodes.
 template <typename Visit>
 void each_member(snd_config_t* compound, Visit visit)
 {
@@ -27,7 +27,7 @@ void each_member(snd_config_t* compound, Visit visit)
     }
 }
 
-/// Most plugins on plugins that are followed: a definition may name itself.
+/// Deepest nesting of plugins that is followed: a definition may name itself.
 inline constexpr int deepest = 8;
 
 template <typename Names>
@@ -36,27 +36,27 @@ bool among(const Names& names, std::string_view type)
     return std::find(names.begin(), names.end(), type) != names.end();
 }
 
-/// Stands for the type of a definition that leads to itself, or farther than any real one does.
+/// Type of a definition that leads to itself, or deeper than any real one.
 inline constexpr const char* endless = "?";
 
-/// The types of the plugins that a PCM plays through, as their definitions name them: "plug", "hw". A PCM
-/// that is not defined has none.
+/// Returns the types of the plugins through which a PCM plays, as their definitions name them: "plug", "hw".
+/// Empty for a PCM that is not defined.
 std::vector<std::string> find_route(snd_config_t* top, const std::string& name);
-/// By the system's configuration.
+/// Returns the same from the system's configuration.
 std::vector<std::string> find_route(const std::string& name);
 
-/// The first type that has other effects than sound: "file", which writes a file or starts a command, and any
-/// unknown type. Empty: there is none.
+/// Returns the first type with effects other than sound: "file", which writes a file or starts a command, or
+/// any unknown type. Empty if there is none.
 std::string unsafe_type(const std::vector<std::string>& route);
 
-/// The first type that starts something lasting when it is opened: a mixer starts its card, a client its
-/// server. An unknown type counts, too. Empty: opening changes nothing.
+/// Returns the first type that starts something lasting when it is opened: a mixer starts its card, a client
+/// its server. An unknown type counts, too. Empty if opening changes nothing.
 std::string lasting_type(const std::vector<std::string>& route);
 
-/// Whether opening the PCM empties a file or starts a command.
+/// Returns true if opening the PCM empties a file or starts a command.
 bool writes(const std::vector<std::string>& route);
 
-/// "PipeWire", "PulseAudio" or "JACK", where the route ends in one; else empty.
+/// Returns "PipeWire", "PulseAudio" or "JACK" if the route ends in one, else empty.
 std::string server_of(const std::vector<std::string>& route);
 
 } // namespace tactor::pcm

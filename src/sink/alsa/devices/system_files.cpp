@@ -20,7 +20,7 @@ std::vector<std::string> lines_of(const fs::path& file)
     std::vector<std::string> lines;
     for (const std::string_view line : tactor::detail::split(text, '\n'))
         lines.emplace_back(line);
-    if (lines.back().empty()) // after the last one's end
+    if (lines.back().empty()) // text after the last line end
         lines.pop_back();
     return lines;
 }

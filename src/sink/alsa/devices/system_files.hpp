@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Reading the small text files of /proc. What cannot be read is empty.
+/// Reads small text files of /proc. A file that cannot be read counts as empty.
 #pragma once
 
 #include <charconv>
@@ -13,7 +13,7 @@
 
 namespace tactor::pcm {
 
-/// The whole text as a number.
+/// Returns the whole text as a number, or nothing.
 template <typename T>
 std::optional<T> number(std::string_view text)
 {
@@ -24,16 +24,17 @@ std::optional<T> number(std::string_view text)
     return v;
 }
 
-/// Without blanks at both ends.
+/// Returns the text without blanks at both ends.
 std::string trimmed(std::string_view s);
 
-/// Empty where the file cannot be read. \throws error (runtime), here and below, without a descriptor.
+/// Returns the lines of a file; empty if it cannot be read.
+/// \throws error (runtime), here and below, without a descriptor.
 std::vector<std::string> lines_of(const std::filesystem::path& file);
 
-/// The value after "key:" in a file of such lines.
+/// Returns the value after "key:" in a file of such lines.
 std::string field(const std::filesystem::path& file, std::string_view key);
 
-/// What is in a folder, in no order.
+/// Returns the entries of a folder, in no order.
 std::vector<std::filesystem::path> entries(const std::filesystem::path& folder);
 
 } // namespace tactor::pcm

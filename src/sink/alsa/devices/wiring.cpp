@@ -22,13 +22,13 @@
 namespace tactor::pcm {
 namespace {
 
-constexpr int most_definitions = 64;         // of one PCM: those that double at each step end, too
-constexpr std::size_t most_links = 1U << 18; // a table may lead each channel to each
+constexpr int most_definitions = 64;         // of one PCM; also stops definitions that double at each step
+constexpr std::size_t most_links = 1U << 18; // a table may connect each channel to each
 
-// They hand each channel on as it is.
+// These pass each channel on unchanged.
 constexpr std::array straight{"plug",  "linear", "lfloat", "copy",  "rate",    "mulaw", "alaw",
                               "adpcm", "iec958", "empty",  "hooks", "softvol", "file",  "mmap_emul"};
-// They lead each channel to the slave's that their bindings say.
+// These map each channel to the slave's channel in their bindings.
 constexpr std::array binding{"dmix", "dshare", "share"};
 
 constexpr double least_gain = 1e-3; // -60 dB: less is not felt
@@ -55,8 +55,8 @@ std::string text(snd_config_t* value)
     return said;
 }
 
-// Numbers as libasound reads them: of any base, and nothing else beside them. Those that no device has are
-// most_channels.
+// Reads a number as libasound does: any base, and no other text. Returns most_channels for a number that no
+// device has.
 std::optional<unsigned> channel_number(const std::string& s)
 {
     char* end = nullptr;
@@ -66,7 +66,7 @@ std::optional<unsigned> channel_number(const std::string& s)
     return n < 0 || n > long{most_channels} ? most_channels : static_cast<unsigned>(n);
 }
 
-// What stands between and is not understood.
+// A plugin on the route that is not understood.
 struct hidden {
     std::string by;
 };
@@ -83,7 +83,7 @@ public:
         return at(definition.get(), channels, depth);
     }
 
-    /// The part that sets a level of its own; empty: none does.
+    /// Returns the plugin that sets a level; empty if none does.
     const std::string& level_by() const noexcept { return level_by_; }
 
 private:
@@ -95,7 +95,7 @@ private:
         return configuration(definition);
     }
 
-    // A definition, or the name of one.
+    // Returns the outputs of a definition, or of the name of one.
     outputs at(snd_config_t* definition, unsigned channels, int depth)
     {
         if (depth > deepest || ++definitions_ > most_definitions)
@@ -125,7 +125,7 @@ private:
         throw hidden{type.empty() ? "a definition without a type" : fmt::format("type {}", type)};
     }
 
-    // One that is reached on several ways is one.
+    // Returns the outputs of a device. A device that is reached in several ways is the same device.
     outputs device(const std::string& key, unsigned channels)
     {
         const unsigned first = devices_.try_emplace(key, devices_.size() * most_channels).first->second;
@@ -135,7 +135,7 @@ private:
         return all;
     }
 
-    // `channels`: where the slave's definition does not say how many.
+    // Returns the outputs of a slave. `channels` counts if its definition gives no number.
     outputs slave(snd_config_t* definition, unsigned channels, int depth)
     {
         configuration kept;
@@ -176,7 +176,7 @@ private:
             const auto from = channel_number(client);
             each_member(row, [&](const std::string& to, snd_config_t* gain) {
                 double value = 0.0;
-                if (!channel_number(to)) // FL, FR: the device says which these are
+                if (!channel_number(to)) // FL, FR: only the device knows their numbers
                     throw hidden{fmt::format("type route to a channel {}", to)};
                 if (from && *from < channels && snd_config_get_ireal(gain, &value) >= 0 && value != 0.0)
                     link(all[*from], inner, channel_number(to), value);
@@ -221,7 +221,7 @@ private:
     int definitions_ = 0;
     std::size_t links_ = 0;
     std::string level_by_ = {};
-    std::map<std::string, unsigned> devices_ = {}; ///< and the number of the first output of each
+    std::map<std::string, unsigned> devices_ = {}; ///< with the number of the first output of each
 };
 
 bool is_straight(const outputs& all)
