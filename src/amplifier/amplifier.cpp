@@ -53,7 +53,7 @@ void amplifier::handle(amplifier_event e, std::int64_t now, amplifier_frames at)
     look(now);
 }
 
-// Off, and on again when the DAC has shown that it runs.
+// Switches off; on again when the DAC has shown that it runs.
 void amplifier::prove() noexcept
 {
     if (state_ != state::stopped)
@@ -61,7 +61,7 @@ void amplifier::prove() noexcept
     proof_from_ = at_.played;
 }
 
-// Muting pops too: a single xrun, which is over in a few periods, is better left alone.
+// Counts an xrun and mutes after too many. A mute pops too, so a single xrun of a few periods does not mute.
 void amplifier::count_xrun(std::int64_t now) noexcept
 {
     if (xruns_ == 0 || now - first_xrun_ >= options_.calm_ns) {
@@ -71,7 +71,7 @@ void amplifier::count_xrun(std::int64_t now) noexcept
     ++xruns_;
     if (xruns_ >= options_.most_xruns || now < muted_until_) {
         muted_until_ = now + options_.calm_ns;
-        first_xrun_ = now; // the next one is one too many again
+        first_xrun_ = now; // the next xrun mutes again
         prove();
     }
 }

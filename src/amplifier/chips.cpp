@@ -48,7 +48,7 @@ chip read_with_group(const std::string& path)
     return c;
 }
 
-/// The file that a path means once its links are followed: an own name made by udev is as good as any.
+/// Returns the file behind a path's links: a name made by udev is as good as the kernel's.
 std::string real_path(const std::string& path)
 {
     std::error_code ec;
@@ -86,7 +86,7 @@ int not_a_chip(const std::string& path)
     const std::filesystem::path bus = std::filesystem::canonical(
         fmt::format("/sys/dev/char/{}:{}/subsystem", major(status.st_rdev), minor(status.st_rdev)), ec);
     if (ec)
-        return ENOENT; // as libgpiod says it where there is no /sys
+        return ENOENT; // libgpiod reports the same without /sys
     return bus.filename() == "gpio" ? 0 : ENODEV;
 }
 

@@ -24,7 +24,7 @@ std::string open_reason(const chip& c)
     case ENOTTY:
     case ENODEV:
         return fmt::format("{} is not a GPIO chip", path);
-    case ENOENT: // the node is there, but libgpiod asks sysfs what it is
+    case ENOENT: // the node exists, but libgpiod also reads sysfs
         return fmt::format("{} is not a GPIO chip, or /sys is not mounted", path);
     case ENOSYS:
         return fmt::format("{} cannot be opened: tactor was built without GPIO", path);

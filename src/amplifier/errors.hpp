@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// GPIO failures as advice.
+/// Explanations and hints for GPIO failures.
 #pragma once
 
 #include <string>
@@ -12,16 +12,16 @@
 
 namespace tactor::gpio {
 
-/// The thing that failed: "setup.toml:3:1: GPIO line 17 of pinctrl-rp1".
+/// Returns the name of the line that failed: "setup.toml:3:1: GPIO line 17 of pinctrl-rp1".
 std::string thing(const gpio_line_name& l);
 
-/// Why it cannot be opened and what to do, for a list of chips.
+/// Returns why a chip cannot be opened and what to do, for a list of chips.
 std::string advice(const chip& c);
 
-/// A chip that is there cannot be opened.
+/// Returns the error of an existing chip that cannot be opened.
 error open_error(const gpio_line_name& l, const chip& c);
 
-/// The kernel refused the line. `holder`: the consumer it names for it.
+/// Returns the error of a line that the kernel refused. `holder`: the consumer that the kernel names.
 error request_error(const gpio_line_name& l, int code, const std::string& holder);
 
 } // namespace tactor::gpio

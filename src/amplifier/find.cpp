@@ -46,7 +46,7 @@ std::string list_chips(std::span<const chip> chips)
     return list(items);
 }
 
-/// Chips that may not be opened may be what is looked for.
+/// Throws if a chip could not be opened, because it may have the wanted line.
 void fail_if_shut(std::span<const chip> chips, const gpio_line_name& wanted)
 {
     for (const chip& c : chips)

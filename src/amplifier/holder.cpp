@@ -34,7 +34,7 @@ void close_if_open(int fd) noexcept
         ::close(fd);
 }
 
-/// Whether one of the events came within the time.
+/// Returns true if one of the events came in time.
 bool wait_for(int fd, short events, int timeout_ms) noexcept
 {
     const std::int64_t until = rt::monotonic_ms() + timeout_ms;
@@ -70,7 +70,8 @@ private:
                          code);
 }
 
-/// Signals stay blocked in the holder for good: none of the player's handlers may run there.
+/// Blocks all signals. In the holder they stay blocked for good, because the player's handlers must not run
+/// there.
 class signals_blocked {
 public:
     signals_blocked()
@@ -87,7 +88,7 @@ private:
     sigset_t before_{};
 };
 
-/// errno of forking, 0 if it worked. Returns in the player only.
+/// Returns the errno of forking, or 0. Returns in the player only.
 int fork_holder(const holder_job& job) noexcept
 {
     const signals_blocked in_this_thread;
@@ -103,7 +104,7 @@ int fork_holder(const holder_job& job) noexcept
     int status = 0;
     while (::waitpid(between, &status, 0) < 0)
         if (errno != EINTR)
-            return 0; // the host reaps all children itself; the greeting will tell
+            return 0; // the host reaps all children itself; the greeting shows success
     return WIFEXITED(status) ? WEXITSTATUS(status) : EIO;
 }
 
@@ -129,12 +130,12 @@ holder_link::holder_link(int socket, std::int32_t pid, std::function<bool()> res
 
 holder_link::~holder_link()
 {
-    // By its answer: a holder that is killed now ends as one that has switched off does.
+    // Waits for the answer, because a holder that is killed now looks like one that has switched off.
     if (on_)
         set(false);
     if (!gone_) {
         ::shutdown(socket_, SHUT_WR);
-        if (!wait_for(socket_, 0, limits_.answer_ms)) // the end of the holder's side
+        if (!wait_for(socket_, 0, limits_.answer_ms)) // the holder closes its side
             give_up();
     }
     close_if_open(process_);
@@ -144,7 +145,7 @@ holder_link::~holder_link()
 bool holder_link::set(bool on) noexcept
 {
     const message_kind kind = on ? message_kind::on : message_kind::off;
-    on_ = true; // perhaps, until it is known to be off
+    on_ = true; // unknown until the answer comes
     if (!gone_ && send(kind) && await_answer(kind)) {
         on_ = on;
         return true;
@@ -192,7 +193,7 @@ bool holder_link::await_answer(message_kind kind) noexcept
     return false;
 }
 
-/// What the holder said next, if anything.
+/// Returns the next message of the holder, if any.
 std::optional<message> holder_link::receive() noexcept
 {
     message m;
@@ -211,7 +212,7 @@ std::optional<message> holder_link::receive() noexcept
     return m;
 }
 
-/// The holder is lost, or hangs with the line in its hands: take the line from it and switch off.
+/// Kills a holder that is lost or hangs with the line, takes the line over and switches it off.
 void holder_link::give_up() noexcept
 {
     gone_ = true;

@@ -21,10 +21,10 @@ namespace tactor::gpio {
 struct held_line {
     bool (*set)(void* line, bool on) noexcept = nullptr; ///< async-signal-safe
     void* line = nullptr;                                ///< must live until start_holder() has returned
-    std::vector<int> descriptors = {}; ///< what `set` needs; if one is -1, the holder closes none of ours
+    std::vector<int> descriptors = {}; ///< descriptors that `set` needs; if one is -1, the holder closes none
 };
 
-/// A line in the hands of a holder. One thread at a time.
+/// A line that a holder owns. One thread at a time.
 class holder_link final : public enable_line {
 public:
     holder_link(int socket, std::int32_t pid, std::function<bool()> rescue, const holder_limits& limits);
@@ -34,7 +34,7 @@ public:
 
     bool set(bool on) noexcept override;
     bool beat() noexcept override;
-    /// Of the holder.
+    /// Returns the holder's pid.
     pid_t pid() const noexcept { return pid_; }
 
 private:
@@ -52,14 +52,14 @@ private:
     std::uint8_t number_ = 0;
     unsigned unanswered_ = 0;
     bool lapsed_ = false;
-    bool on_ = false; ///< or may be
+    bool on_ = false; ///< true also if the state is not known
     bool gone_ = false;
     bool rescued_ = false;
 };
 
-/// Forks twice, so that the holder is not a child that a process has to wait for. The line must be off. When
-/// this returns, the line is in the holder's hands, and the caller gives up its own copy. `rescue` is called
-/// when the holder was lost: it switches the line off, and returns whether that worked.
+/// Starts the holder. Forks twice, so that no process has to wait for the holder as its child. The line must
+/// be off. On return the holder owns the line, and the caller must release its own copy. If the holder is
+/// lost, `rescue` is called: it switches the line off and returns true on success.
 /// \throws error (not_available).
 std::unique_ptr<holder_link> start_holder(const held_line& line, std::function<bool()> rescue,
                                           const holder_limits& limits = {});

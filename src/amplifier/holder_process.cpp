@@ -17,20 +17,21 @@
 namespace tactor::gpio {
 namespace {
 
-// Above the audio threads (65) and the kernel's interrupt threads (50): it sleeps but for its few ioctls.
+// Above the audio threads (65) and the kernel's interrupt threads (50). The holder sleeps except for a few
+// ioctls.
 constexpr int priority = 80;
 
-// A line that refuses to go off at the end is tried again for a second.
+// Attempts to switch the line off at the end, for a second.
 constexpr int last_tries = 100;
 constexpr int last_pause_ms = 10;
 
-// Its own session: neither the terminal's signals nor those to the player's process group reach it. What
-// is sent to it alone waits forever, for fork() left every signal blocked.
+// Starts a new session: signals of the terminal and of the player's process group do not reach the holder.
+// Signals to the holder alone stay pending, because fork() left every signal blocked.
 void leave_the_player() noexcept
 {
     ::setsid();
     ::prctl(PR_SET_NAME, "tactor-amp", 0UL, 0UL, 0UL);
-    if (::chdir("/") != 0) // only so that no file system is kept busy
+    if (::chdir("/") != 0) // only to keep no file system busy
         return;
 }
 
@@ -41,7 +42,8 @@ bool become_fifo(int level) noexcept
     return ::sched_setscheduler(0, SCHED_FIFO, &p) == 0;
 }
 
-// As prompt as the player may be, on any processor, whatever the player's thread had been given.
+// Takes a priority as high as the player's may be, on any processor, whatever settings the player's thread
+// has.
 void become_prompt() noexcept
 {
     cpu_set_t all;
@@ -63,7 +65,7 @@ void close_span(unsigned first, unsigned last) noexcept
 {
     if (first > last || ::syscall(SYS_close_range, first, last, 0U) == 0)
         return;
-    // Before Linux 5.9, or forbidden.
+    // close_range is missing (before Linux 5.9) or forbidden.
     rlimit limit{};
     ::getrlimit(RLIMIT_NOFILE, &limit);
     constexpr unsigned bound = 65536;
@@ -72,7 +74,8 @@ void close_span(unsigned first, unsigned last) noexcept
         ::close(static_cast<int>(fd));
 }
 
-// The player's pipes, devices and other lines must not stay open with us, nor its end of our socket.
+// Closes the player's pipes, devices and other lines, and its end of the socket: they must not stay open in
+// the holder.
 void close_others(const holder_job& job) noexcept
 {
     ::close(job.player_socket);
@@ -99,7 +102,7 @@ public:
         send(hello);
         while (!wait() && take_messages())
             check_silence();
-        // Nobody is left who could try again.
+        // Tries again, because no other process can.
         for (int tries = 0; !job_.set(job_.line, false) && tries < last_tries; ++tries)
             ::poll(nullptr, 0, last_pause_ms);
     }
@@ -107,7 +110,7 @@ public:
 private:
     void send(const message& m) noexcept { ::send(job_.socket, &m, sizeof m, MSG_NOSIGNAL | MSG_DONTWAIT); }
 
-    // Whether the player has ended. Its pidfd says so even while another process it started keeps our
+    // Returns true when the player has ended. Its pidfd shows this even if another of its children keeps the
     // socket open.
     bool wait() noexcept
     {
@@ -121,7 +124,7 @@ private:
         return n > 0 && fds[1].revents != 0;
     }
 
-    // False when there is nobody left to send any.
+    // Returns false if nobody is left to send messages.
     bool take_messages() noexcept
     {
         for (;;) {
@@ -152,7 +155,7 @@ private:
         if (!on_ || rt::monotonic_ms() - heard_ms_ < job_.limits.silence_ms)
             return;
         on_ = !job_.set(job_.line, false);
-        heard_ms_ = rt::monotonic_ms(); // when it failed: again after the same time
+        heard_ms_ = rt::monotonic_ms(); // after a failure it waits the same time again
         send({message_kind::lapsed, 0, !on_, 0});
     }
 
@@ -169,7 +172,8 @@ void run_holder(const holder_job& job) noexcept
     close_others(job);
     become_prompt();
     holder(job).run();
-    // The line is free before the player, which waits for the socket's end, can ask for it again.
+    // Releases the line before the socket closes, because the player waits for that and may then request the
+    // line again.
     for (unsigned i = 0; i < job.keep_count; ++i)
         if (job.keep[i] != job.socket)
             ::close(job.keep[i]);

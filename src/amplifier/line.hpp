@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What this folder needs of libgpiod, whichever version: line_v1.cpp or line_v2.cpp, chosen by Meson,
-/// or line_none.cpp where there is none.
+/// The part of libgpiod that this folder needs, for any version. Meson chooses line_v1.cpp, line_v2.cpp, or
+/// line_none.cpp without libgpiod.
 #pragma once
 
 #include <cerrno>
@@ -14,28 +14,28 @@
 
 namespace tactor::gpio {
 
-/// What other programs see as the holder of our lines.
+/// Consumer name of tactor's lines, which other programs see.
 inline constexpr const char* consumer = "tactor";
-/// Stands for the consumer of a line in use whose consumer has no name.
+/// Consumer of a line in use whose consumer gave no name.
 inline constexpr const char* nameless_consumer = "kernel";
 
-/// A name that the library gives; it gives null for none.
+/// Returns a name from the library as text; null becomes empty.
 inline std::string text(const char* s)
 {
     return s ? s : "";
 }
 
-/// Why libgpiod returned nothing: it sets errno wherever it does so.
+/// Returns why libgpiod failed. It sets errno on every failure.
 inline int failure() noexcept
 {
     return errno != 0 ? errno : EIO;
 }
 
-/// A chip and what is on it.
+/// A chip and its lines.
 struct chip {
     gpio_chip_info info = {};
-    int code = 0;           ///< errno of opening it; 0: it could be opened
-    std::string group = {}; ///< that its device node belongs to, said only where opening failed
+    int code = 0;           ///< errno of opening it; 0: opened
+    std::string group = {}; ///< group of its device node, set only if opening failed
 };
 
 struct output_request {
@@ -51,36 +51,37 @@ struct input_request {
     pull_kind bias = pull_kind::as_is;
 };
 
-/// An output of this process, off from the moment of the request. Released, but not switched, when
-/// destroyed.
+/// An output of this process, off from the moment of the request. The destructor releases it, but does not
+/// switch it.
 class output {
 public:
     virtual ~output() = default;
-    /// One ioctl; neither allocates nor locks, so a forked process may call it.
+    /// Switches by one ioctl. Does not allocate or lock, so a forked process may call it.
     virtual bool set(bool on) noexcept = 0;
-    /// Descriptor of the request; a process that has it open has the line. -1 when it could not be found out.
+    /// Returns the descriptor of the request, or -1 if it is not known. A process that has it open owns the
+    /// line.
     virtual int descriptor() const noexcept = 0;
 };
 
-/// A line, or the errno of why there is none.
+/// A line, or the errno of the refusal.
 template <typename T>
 struct requested {
     std::unique_ptr<T> line;
     int code = 0;
 };
 
-/// Whether this build has a libgpiod.
+/// Returns true if this build has a libgpiod.
 bool built_in() noexcept;
-/// All but the group. A chip that cannot be opened is not an error.
+/// Reads a chip, except its group. A chip that cannot be opened is not an error.
 chip read_chip(const std::string& path);
-/// Direction and value in one ioctl, so the line goes from what it was to off without a glitch.
+/// Requests an output. One ioctl sets direction and value, so the line goes off without a glitch.
 requested<output> request_output(const output_request& r);
-/// Every edge that the kernel saw, not debounced.
+/// Requests an input with every edge that the kernel saw, not debounced.
 requested<edge_input> request_input(const input_request& r);
 
-/// A filter of contact bounce by the edges' own time stamps. Drops every edge that follows another, dropped
-/// or not, within the window: the first edge of a burst passes at its own time and the rest of the burst does
-/// not, however long it lasts.
+/// A filter of contact bounce, by the edges' own time stamps. It drops each edge that follows another, even a
+/// dropped one, within the window. So the first edge of a burst passes at its own time and the rest does not,
+/// however long it lasts.
 class debounce {
 public:
     explicit debounce(std::int64_t window_ns) : window_ns_(window_ns) {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Without libgpiod: chips are seen, as files, but nothing of them can be opened.
+// Replacement without libgpiod: chips are visible as files, but cannot be opened.
 #include <cerrno>
 
 #include "amplifier/line.hpp"

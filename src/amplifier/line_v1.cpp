@@ -18,7 +18,7 @@
 namespace tactor::gpio {
 namespace {
 
-/// Releases its lines as well.
+/// Owner of a chip. Closing the chip also releases its lines.
 using chip_handle = std::unique_ptr<gpiod_chip, detail::deleter<gpiod_chip_close>>;
 
 gpio_line_info describe(gpiod_line* l)
@@ -33,7 +33,7 @@ gpio_line_info describe(gpiod_line* l)
     return out;
 }
 
-/// The descriptors of this process that are requests of outputs. Empty where /proc is not mounted.
+/// Returns the descriptors of this process that are requests of outputs. Empty if /proc is not mounted.
 std::vector<int> output_descriptors()
 {
     std::vector<int> found;
@@ -104,7 +104,7 @@ int event_type(edge_kind e) noexcept
     return GPIOD_LINE_REQUEST_EVENT_BOTH_EDGES;
 }
 
-/// Requests an output and finds its descriptor, which the library does not tell: the one that is new.
+/// Requests an output and finds its descriptor, which the library hides: the new one.
 int request_and_find(gpiod_line* l, int flags, int& fd)
 {
     static std::mutex one_at_a_time;
@@ -165,7 +165,7 @@ requested<edge_input> request_input(const input_request& r)
     const gpiod_line_request_config config{consumer, event_type(r.edge), bias_flag(r.bias)};
     if (!l || gpiod_line_request(l, &config, 0) != 0)
         return {nullptr, failure()};
-    // Stamped in CLOCK_MONOTONIC since Linux 5.7, CLOCK_REALTIME before.
+    // Edges have CLOCK_MONOTONIC since Linux 5.7, CLOCK_REALTIME before.
     const int fd = gpiod_line_event_get_fd(l);
     ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) | O_NONBLOCK);
     return {std::make_unique<input_line>(std::move(c), fd), 0};

@@ -55,7 +55,7 @@ class input_line final : public edge_input {
 public:
     input_line(request_handle r, event_buffer b) : request_(std::move(r)), buffer_(std::move(b)) {}
     int descriptor() const noexcept override { return gpiod_line_request_get_fd(request_.get()); }
-    // One event at a time: what waits must keep the descriptor readable.
+    // Reads one event at a time, because further events must keep the descriptor readable.
     std::optional<gpio_edge> read() noexcept override
     {
         if (gpiod_line_request_read_edge_events(request_.get(), buffer_.get(), 1) != 1)
@@ -98,7 +98,7 @@ gpiod_line_edge to_gpiod(edge_kind e) noexcept
     return GPIOD_LINE_EDGE_BOTH;
 }
 
-// Null with errno set when there is no such line or it cannot be had.
+// Returns null and sets errno if there is no such line or it is not available.
 request_handle request(const std::string& path, unsigned offset, gpiod_line_settings* s)
 {
     errno = 0;
@@ -167,7 +167,7 @@ requested<edge_input> request_input(const input_request& r)
     request_handle h = request(r.path, r.offset, s.get());
     if (!h)
         return {nullptr, failure()};
-    // The kernel's own debounce is left off: it stamps an edge when the line has settled, not when it came.
+    // Does not use the kernel's debounce: it stamps an edge when the line has settled, not when it came.
     const int fd = gpiod_line_request_get_fd(h.get());
     ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) | O_NONBLOCK);
     return {std::make_unique<input_line>(std::move(h), std::move(buffer)), 0};

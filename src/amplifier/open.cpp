@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The public functions of this folder, but for the list of chips.
+// Public functions of this folder, except the list of chips.
 #include <tactor/lines.hpp>
 
 #include <array>
@@ -87,8 +87,8 @@ std::unique_ptr<enable_line> open_amplifier(const amplifier_settings& s)
 {
     const located_line at = locate(s.line);
     const output_request request{at.path, at.offset, s.active_low};
-    // Requested here, where errors have words and libgpiod may allocate; the holder inherits the request and
-    // has it alone once this copy is given up.
+    // This process requests the line, because it can report errors and libgpiod may allocate here. The holder
+    // inherits the request, and owns it alone once this copy is released.
     const std::unique_ptr<output> line = take(request_output(request), s.line, at);
     const auto rescue = [request] { return request_output(request).line != nullptr; };
     return start_holder({&set_output, line.get(), {line->descriptor()}}, rescue);
