@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// All that the control side and the audio thread share.
+/// Data that the control side and the audio thread share.
 #pragma once
 
 #include <array>
@@ -18,34 +18,34 @@ namespace tactor::engine {
 
 enum class stream_stage : std::uint32_t { idle, running, suspended, closing, over };
 
-/// Where the stream is; frames of the stream run on over xruns.
+/// Position of the stream. Frames of the stream continue over xruns.
 struct stream_status {
-    std::uint64_t written = 0; ///< next frame that will be mixed
+    std::uint64_t written = 0; ///< next frame to be mixed
     std::uint64_t played = 0;
     std::uint64_t stroke_frame = 0;
     stroke_id stroke = {};
-    bool sounding = false; ///< whether `stroke` is set
+    bool sounding = false; ///< `stroke` is set
     bool running = false;
     stream_stage stage = stream_stage::idle;
     std::uint64_t epoch = 0;        ///< number of the start of the DAC, from 1
-    std::uint64_t epoch_played = 0; ///< frames played since that
-    std::uint32_t mutes = 0;        ///< amplifier_link's: those that the next one takes account of
-    std::uint64_t sounds_until = 0; ///< frame of the epoch where the last stroke that has begun is over
+    std::uint64_t epoch_played = 0; ///< frames played in that epoch
+    std::uint32_t mutes = 0;        ///< amplifier_link::mutes that the next frame takes account of
+    std::uint64_t sounds_until = 0; ///< frame of the epoch at which the last stroke that has begun is over
 };
 
-/// Shared by the audio thread and the one that drives the amplifier's line. As initialised: no amplifier.
+/// State that the audio thread and the amplifier's thread share. As initialised: no amplifier.
 struct amplifier_link {
     std::atomic<bool> ready{true};             ///< strokes may begin
     std::atomic<bool> off{true};               ///< the line is off; the DAC may stop
     std::atomic<bool> stuck{false};            ///< the line is given up: it may be on or off
-    std::atomic<bool> failed{false};           ///< the line cannot be switched: the stream has to end
-    std::atomic<std::uint32_t> mutes{0};       ///< how often it went off before its time
+    std::atomic<bool> failed{false};           ///< the line cannot be switched, so the stream must end
+    std::atomic<std::uint32_t> mutes{0};       ///< number of times that it went off early
     std::atomic<bool> ending{false};           ///< audio thread: the last sound is out, or the device is gone
     rt::event_fd wake;                         ///< audio thread: something has changed
-    rt::triple_buffer<stream_status> status{}; ///< for the thread that drives the line
+    rt::triple_buffer<stream_status> status{}; ///< for the amplifier's thread
 };
 
-/// Counters, each written by the audio thread only.
+/// Counters. Only the audio thread writes them, unless noted.
 struct counters {
     std::atomic<std::uint64_t> periods{0};
     std::atomic<std::uint64_t> frames{0};
@@ -58,10 +58,10 @@ struct counters {
     std::atomic<std::uint64_t> drives_cut{0};
     std::atomic<std::uint64_t> stalls{0};       ///< written by the amplifier's thread
     std::atomic<std::uint64_t> off_failures{0}; ///< written by the amplifier's thread
-    std::atomic<bool> realtime_given_up{false}; ///< it had worked for too long without a pause
+    std::atomic<bool> realtime_given_up{false}; ///< it worked for too long without a pause
     std::atomic<std::uint64_t> minor_faults{0};
     std::atomic<std::uint64_t> major_faults{0};
-    /// Length of xrun number n at n modulo the size: the newest are kept.
+    /// Length of xrun number n at index n modulo the size: the newest are kept.
     std::array<std::atomic<std::int64_t>, 64> xrun_ns{};
 
     void count_xrun(std::int64_t length_ns) noexcept
@@ -76,21 +76,22 @@ struct link {
     explicit link(std::size_t commands_in_ring = 2048) : commands(commands_in_ring) {}
 
     rt::spsc_ring<command> commands;
-    // This ring cannot overflow: between two readings of it by the audio thread each voice gets at most three
-    // requests (cancel, begin, cancel), and there are at most two stops.
+    // Cannot overflow: between two readings by the audio thread each voice gets at most three requests
+    // (cancel, begin, cancel), and there are at most two stops.
     rt::spsc_ring<request> requests{std::size_t{4} * voices};
-    // Nor can this one: a ticket has at most two reports, and is used again only when its last one was read.
+    // Cannot overflow: a ticket has at most two reports, and is reused only after its last one was read.
     rt::spsc_ring<report> reports{std::size_t{4} * voices};
     rt::event_fd to_audio;
     rt::event_fd to_control;
-    /// Set by the feeder when the command ring is full; the audio thread then says when it no longer is.
+    /// Set by the feeder when the command ring is full. The audio thread then signals when there is space.
     std::atomic<bool> feeder_waits{false};
-    /// Set by the feeder while it has strokes: it looks at the stream now and then. Without any it sleeps.
+    /// Set by the feeder while it has strokes, so that it looks at the stream now and then. Without strokes
+    /// it sleeps.
     std::atomic<bool> feeding{false};
-    /// For the control side, which reads under the player's mutex. No two readers share a buffer, so
-    /// that none ever waits for the audio thread, whatever their priorities are.
+    /// Stream status for the control side, which reads under the player's mutex. No two readers share a
+    /// buffer, so none ever waits for the audio thread, whatever their priorities are.
     rt::triple_buffer<stream_status> status;
-    rt::triple_buffer<clock_line> clock;      ///< what is known of the DAC's clock; for the control side
+    rt::triple_buffer<clock_line> clock;      ///< the DAC's clock as far as it is known, for the control side
     rt::triple_buffer<clock_line> sync_clock; ///< the same for the thread that sends sync pulses
     counters count;
     amplifier_link amplifier;

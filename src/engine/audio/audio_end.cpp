@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How the stream ends, with an amplifier behind it.
+// End of the stream, with an amplifier behind it.
 #include "engine/audio/audio_loop.hpp"
 
 namespace tactor::engine {
@@ -16,13 +16,13 @@ void audio_loop::finish_when_silent() noexcept
     if (!scores_.empty())
         return;
     if (stop_frame_ == 0)
-        stop_frame_ = played_ + setup_.period_frames; // beyond the delay of the DAC itself
+        stop_frame_ = played_ + setup_.period_frames; // also waits for the delay of the DAC itself
     if (played_ >= stop_frame_)
         finish(stop_why_, 0, true);
 }
 
-// A DAC that stops under an amplifier that is on pops: the line goes off first, as far as that can be
-// helped. `runs`: the stream is in order, so zeros are written meanwhile.
+// Ends the stream. A DAC that stops while the amplifier is on pops, so the line goes off first, if possible.
+// `runs`: the stream is in order, so zeros are written meanwhile.
 void audio_loop::finish(reason_kind why, int code, bool runs) noexcept
 {
     if (phase_ == phase::over)
@@ -37,7 +37,7 @@ void audio_loop::finish(reason_kind why, int code, bool runs) noexcept
     end_runs_ = runs;
     closing_ns_ = now_ns_;
     phase_ = phase::closing;
-    // See amplifier_driver::switch_on().
+    // Pairs with amplifier_driver::switch_on().
     link_.amplifier.ending.store(true, std::memory_order_seq_cst);
     if (link_.amplifier.off.load(std::memory_order_seq_cst))
         end();
@@ -61,7 +61,7 @@ void audio_loop::end() noexcept
     sink_.drop();
     tell_clock({});
     phase_ = phase::over;
-    // Whatever else it was: this is what somebody has to do something about.
+    // Replaces any other reason, because a person must act on this one.
     if (!link_.amplifier.off.load(std::memory_order_seq_cst)) {
         link_.amplifier.stuck.store(true, std::memory_order_seq_cst);
         end_why_ = reason_kind::left_on;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How the stream starts, breaks, comes back and ends.
+// Start, breaks, recovery and end of the stream.
 #include <algorithm>
 #include <cerrno>
 
@@ -9,7 +9,7 @@
 namespace tactor::engine {
 namespace {
 
-// snd_pcm_resume() may say "not yet" for ever; a device needs some seconds at most.
+// Limit, because snd_pcm_resume() may return "not yet" for ever; a device needs a few seconds at most.
 constexpr std::int64_t longest_resume = 10 * rt::ns_per_s;
 
 reason_kind to_reason(io_kind s) noexcept
@@ -51,7 +51,7 @@ io_result audio_loop::begin_epoch() noexcept
     mixer_.reset();
     pending_ = 0;
     played_ = 0;
-    // A device that sleeps on is asked in each period: none of that is a start.
+    // A device that still sleeps fails here in each period. That is not a start.
     if (const io_kind s = sink_.prepare(); s != io_kind::ok)
         return {s, 0, 0};
     clock_.begin_epoch(offset_);
@@ -74,7 +74,7 @@ void audio_loop::broken(io_kind s, int code, std::int64_t now) noexcept
 {
     if (phase_ == phase::closing) {
         end_runs_ = end_runs_ && (s == io_kind::ok || s == io_kind::again);
-        return; // nothing sounds any more: it only waits for the amplifier
+        return; // nothing sounds any more; the loop only waits for the amplifier
     }
     switch (s) {
     case io_kind::ok:
@@ -82,7 +82,7 @@ void audio_loop::broken(io_kind s, int code, std::int64_t now) noexcept
         return;
     case io_kind::xrun:
         link_.count.count_xrun(sink_.xrun_ns());
-        // It stopped because it had played everything.
+        // The DAC stopped because it had played everything.
         silence_all(reason_kind::xrun, code, mixer_.position() - pending_);
         return too_often(now) ? finish(reason_kind::lost, -EPIPE) : restart(now);
     case io_kind::suspended:
@@ -93,7 +93,8 @@ void audio_loop::broken(io_kind s, int code, std::int64_t now) noexcept
     }
 }
 
-// Nothing resumes in mid-burst: what had begun ends here, what had not is handed over again later.
+// Ends the strokes that had begun, because nothing resumes in mid-burst. Returns the others to be handed over
+// again.
 void audio_loop::silence_all(reason_kind why, int code, std::uint64_t played) noexcept
 {
     note_starts(played);
@@ -117,10 +118,10 @@ void audio_loop::try_resume(std::int64_t now) noexcept
 {
     if (stop_asked_)
         return finish(stop_why_, 0);
-    scores_.look_at_wishes(); // no mix does
+    scores_.look_at_wishes(); // this runs in the mix, and there is no mix now
     if (sink_.resume() == io_kind::again && now - suspended_ns_ < longest_resume)
         return;
-    // Resumed or not, a fresh epoch: what the buffer held belongs to strokes that were interrupted.
+    // Begins a new epoch, resumed or not: the buffer holds frames of strokes that were interrupted.
     restart(now);
 }
 
@@ -138,7 +139,7 @@ void audio_loop::restart(std::int64_t now) noexcept
     if (r.status == io_kind::ok)
         run_from(now);
     else if (r.status == io_kind::suspended)
-        fall_asleep(r.code, now); // not awake yet: once more in the next period
+        fall_asleep(r.code, now); // not awake yet: try again in the next period
     else
         finish(to_reason(r.status), r.code);
 }

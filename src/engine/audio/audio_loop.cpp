@@ -9,13 +9,14 @@
 namespace tactor::engine {
 namespace {
 
-// From the wish to stop: nobody waits longer for a fade.
+// Longest time from a stop to the end of its fade.
 constexpr std::int64_t longest_stop_ns = 400'000'000;
 
-// From so many wake-ups in vain on, descriptors are not trusted: the loop sleeps instead of spinning.
+// Number of idle wake-ups after which the loop sleeps instead of trusting the descriptors, so that it cannot
+// spin.
 constexpr unsigned many_idle_steps = 16;
 
-// Drives of the mixer that scores may not use up.
+// Returns the drives of the mixer that are reserved for live strokes.
 std::size_t live_reserve(const stream_setup& s) noexcept
 {
     return live_voices * live_drives(s.channels, s.period_frames, s.rate);
@@ -73,7 +74,8 @@ void audio_loop::step(io_kind ready, std::int64_t now) noexcept TACTOR_NONBLOCKI
         break;
     case phase::running:
         take_commands();
-        // Twice in vain: perhaps a wake-up was lost, or the state changed without one.
+        // After two idle wake-ups, write anyway: one may have been lost, or the state may have changed
+        // without one.
         if (ready == io_kind::ok || (ready == io_kind::again && idle_steps_ > 2))
             write_periods(now);
         else if (ready != io_kind::again)
@@ -86,11 +88,11 @@ void audio_loop::step(io_kind ready, std::int64_t now) noexcept TACTOR_NONBLOCKI
         if (stop_asked_)
             finish_when_silent();
     }
-    // In a long buffer the fade would be heard when all that was written before it is.
+    // In a long buffer the fade would come after everything that was written before it.
     if (phase_ == phase::running && stop_asked_ && now - stop_asked_ns_ >= longest_stop_ns)
         finish(stop_why_, 0, true);
-    // Both, so that a process that was stopped and goes on is not taken for a dead device. That frames are
-    // taken counts for nothing: a stroke whose end is never seen at the DAC would be waited for for ever.
+    // Checks both, so that a process that was stopped and continues does not count as a dead device. Accepted
+    // frames prove nothing: a stroke whose end never reaches the DAC would wait for ever.
     if (phase_ == phase::running && still_steps_ >= 4 && now - moved_ns_ > options_.stall_ns)
         finish(reason_kind::lost, -ETIMEDOUT);
     publish();
@@ -135,13 +137,13 @@ void audio_loop::take_requests() noexcept
 void audio_loop::take_commands() noexcept
 {
     const std::size_t waiting = link_.commands.size();
-    // The feeder was in time, but has more than the ring holds.
+    // The feeder was in time, but has more drives than the ring holds.
     if (link_.feeder_waits.load(std::memory_order_relaxed))
         scores_.crowd();
     std::size_t n = 0;
     for (; n < waiting && take(*link_.commands.front()); ++n)
         link_.commands.drop_front();
-    // The feeder is not woken for each bit of space: what it waits for is at most a quarter of the ring.
+    // Does not wake the feeder for every free place: it waits for a quarter of the ring at most.
     if (n == 0 || waiting - n > link_.commands.capacity() - link_.commands.capacity() / 4)
         return;
     // Either the feeder sees the space when it looks again, or this thread sees that it waits.
@@ -152,7 +154,7 @@ void audio_loop::take_commands() noexcept
 
 bool audio_loop::take(const command& c) noexcept
 {
-    // Nothing begins before the amplifier is on and settled; the ring waits with it.
+    // The amplifier must be on and settled before anything begins; the ring waits with it.
     const bool held = !stop_asked_ && !link_.amplifier.ready.load(std::memory_order_acquire);
     switch (c.what) {
     case command::kind::begin:
@@ -178,7 +180,7 @@ void audio_loop::mix_period() noexcept
 {
     scores_.render_live(setup_.period_frames, offset_, clock_.line());
     scores_.fade_what_failed(setup_.period_frames);
-    // Drives that wait for space in the mixer are there in time.
+    // Drives that wait for space in the mixer are in time.
     if (link_.commands.size() == 0)
         scores_.fade_what_runs_out(setup_.period_frames);
     mixer_.process(setup_.period_frames, block_.data());
@@ -210,7 +212,7 @@ void audio_loop::write_periods(std::int64_t now) noexcept
     if (left > setup_.period_frames)
         raise_to<std::uint64_t>(link_.count.late_frames, left - setup_.period_frames);
 
-    // Bounded also where a device claims more space than it has buffer.
+    // This is a bound even if a device claims more space than its buffer has.
     left = std::min<std::size_t>(left, setup_.buffer_frames);
     while (left > 0) {
         if (pending_ == 0) {
@@ -248,7 +250,7 @@ void audio_loop::note_starts(std::uint64_t played) noexcept
 {
     clock_line line = clock_.line();
     if (!line.valid()) {
-        // An xrun before the first look: all that is known is when the DAC was started.
+        // An xrun came before the first reading: only the start time of the DAC is known.
         line.frame = offset_;
         line.time_ns = epoch_ns_;
         line.ns_per_frame = 1e9 / std::max(setup_.rate, 1U);
@@ -263,7 +265,7 @@ void audio_loop::moved(std::int64_t now) noexcept
     idle_steps_ = 0;
 }
 
-// In this order: a pulse that the control side plans by the one is known to the sync thread by the other.
+// Stores in this order, so that a pulse planned with link::clock has its epoch in link::sync_clock.
 void audio_loop::tell_clock(const clock_line& line) noexcept
 {
     link_.sync_clock.store(line);
@@ -283,13 +285,13 @@ void audio_loop::publish() noexcept
     link_.status.store(s);
     link_.amplifier.status.store(s);
 
-    // Strokes that begin at a time wait for the clock of each epoch.
+    // Strokes that begin at a given time wait for the clock of each epoch.
     const bool clocked = clock_.line().valid();
     const bool news = s.stage != told_stage_ || s.epoch != told_epoch_ || clocked != told_clocked_;
     told_stage_ = s.stage;
     told_epoch_ = s.epoch;
     told_clocked_ = clocked;
-    // Until strokes may sound, every frame that is played counts.
+    // Until strokes may sound, every played frame counts.
     if (options_.amplifier && (news || !link_.amplifier.ready.load(std::memory_order_relaxed)))
         link_.amplifier.wake.signal();
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The audio thread's work, one step at a time: no threads and no clock of its own, so that tests can step
-/// it.
+/// The audio thread's work, one step at a time, without threads or a clock, so that tests can step it.
 #pragma once
 
 #include <array>
@@ -23,38 +22,38 @@ namespace tactor::engine {
 
 struct loop_options {
     std::uint32_t fade_frames = 480;
-    std::uint64_t horizon_frames = 24'000; ///< the control side is woken each eighth of it
-    std::int64_t stall_ns = 500'000'000;   ///< a device that stands still for so long is lost
+    std::uint64_t horizon_frames = 24'000; ///< the control side wakes after each eighth of it
+    std::int64_t stall_ns = 500'000'000;   ///< time after which a device that stands still counts as lost
     std::size_t drives = 8192;             ///< capacity of the mixer
-    bool amplifier = false;                ///< there is one, driven through link::amplifier
-    /// How long the end waits for the amplifier to be off: a holder that hangs takes a second, and a line
+    bool amplifier = false;                ///< true if link::amplifier drives an amplifier
+    /// Time that the end waits for the amplifier to go off: a holder that hangs takes a second, and a line
     /// that refuses is tried again for another.
     std::int64_t off_ns = 2'000'000'000;
     synth::guard_settings guards{};
-    synth::drive_history driven = {}; ///< how long channels were driven before, as of now
+    synth::drive_history driven = {}; ///< drive times of channels before, as of now
 };
 
-/// Owns the mixer and everything that happens to the stream. After the constructor no member but the
-/// destructor allocates, locks, throws or blocks. `now` is CLOCK_MONOTONIC in ns.
+/// Owner of the mixer; decides everything that happens to the stream. After the constructor, no member but
+/// the destructor allocates, locks, throws or blocks. `now` is CLOCK_MONOTONIC in ns.
 class audio_loop {
 public:
     audio_loop(sink& s, link& l, std::span<const double> limits, const loop_options& o);
 
-    /// First epoch: prepare, silence, start.
+    /// Begins the first epoch: prepare, silence, start.
     io_result start(std::int64_t now) noexcept;
 
-    /// One wake-up; `ready` is what sink::ready() returned, or `again` when it was not called.
+    /// Handles one wake-up. `ready`: result of sink::ready(), or `again` if it was not called.
     void step(io_kind ready, std::int64_t now) noexcept TACTOR_NONBLOCKING;
 
-    /// Whether the stream has ended; the last report is in the ring then.
+    /// Returns true if the stream has ended. Then the last report is in the ring.
     bool over() const noexcept { return phase_ == phase::over; }
-    /// Whether the sink's descriptors should be polled now.
+    /// Returns true if the sink's descriptors should be polled now.
     bool polls_sink() const noexcept;
-    /// How long channels were driven lately. Only once the audio thread has ended.
+    /// Returns the drive times of the channels. Call it only after the audio thread has ended.
     synth::drive_history driven() const { return mixer_.history(); }
-    /// Drives that wait or sound.
+    /// Returns the number of drives that wait or sound.
     std::size_t drives() const noexcept { return mixer_.size(); }
-    /// When to wake up at the latest, ns from now.
+    /// Returns the longest time until the next wake-up, ns.
     std::int64_t timeout_ns() const noexcept;
 
 private:
@@ -104,8 +103,8 @@ private:
     bool stop_asked_ = false;
     std::int64_t stop_asked_ns_ = 0;
     reason_kind stop_why_ = reason_kind::none;
-    std::uint32_t mutes_ = 0;                 ///< link::amplifier's, those obeyed so far
-    bool end_runs_ = false;                   ///< closing: the stream is fed with zeros meanwhile
+    std::uint32_t mutes_ = 0;                 ///< value of link::amplifier.mutes that was obeyed last
+    bool end_runs_ = false;                   ///< closing: zeros are written meanwhile
     reason_kind end_why_ = reason_kind::none; ///< closing
     int end_code_ = 0;
     std::int64_t now_ns_ = 0;
@@ -117,9 +116,9 @@ private:
     std::uint64_t offset_ = 0;     ///< stream frame at which this epoch began
     std::uint64_t played_ = 0;     ///< of this epoch
     std::uint64_t told_ = 0;       ///< stream frame at which the control side was last woken
-    std::int64_t epoch_ns_ = 0;    ///< when the DAC was started
-    std::int64_t moved_ns_ = 0;    ///< when the position last moved
-    bool fresh_ = false;           ///< it has just started, which may have taken longer than a stall
+    std::int64_t epoch_ns_ = 0;    ///< start time of the DAC
+    std::int64_t moved_ns_ = 0;    ///< time when the position last moved
+    bool fresh_ = false;           ///< the stream has just started, which may have taken longer than a stall
     unsigned still_steps_ = 0;     ///< wake-ups since then
     unsigned idle_steps_ = 0;      ///< wake-ups since the position moved or a frame was taken
     std::int64_t suspended_ns_ = 0;

@@ -11,7 +11,7 @@
 namespace tactor::engine {
 namespace {
 
-// Page faults of this thread once its first wake-ups have touched what it needs; one look a second.
+// Counter of this thread's page faults after its first wake-ups, which touch its memory. Reads once a second.
 class fault_watch {
 public:
     explicit fault_watch(counters& c) noexcept : count_(c) {}
@@ -53,8 +53,8 @@ audio_thread::audio_thread(audio_loop& loop, sink& s, link& l, const rt::thread_
     : loop_(loop), sink_(s), link_(l), fds_(s.max_descriptors() + 1)
 {
     std::latch begun(1);
-    // The thread itself starts the stream: ALSA's handle belongs to one thread, and between the start
-    // and the first period nothing may come in between.
+    // The thread itself starts the stream: ALSA's handle belongs to one thread, and nothing may delay the
+    // first period after the start.
     thread_ = std::make_unique<rt::thread>(o, [this, &begun] {
         started_ = loop_.start(rt::monotonic_ns());
         begun.count_down();

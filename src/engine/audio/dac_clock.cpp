@@ -10,11 +10,11 @@ namespace {
 
 constexpr double reading_error_ns = 0.5e6; // standard deviation
 constexpr double first_drift = 1e-3;       // crystals: 100 ppm at most; virtual sound cards: more
-// A crystal that warms up: 0.01 ppm after a second.
+// Variance of the drift of a crystal that warms up: 0.01 ppm after a second.
 constexpr double drift_walk_per_ns = 1e-8 * 1e-8 * 1e-9;
 constexpr double gate = 4.0; // standard deviations
 constexpr unsigned give_up_after = 8;
-constexpr double far = 9e18; // what an int64 can hold
+constexpr double far = 9e18; // range of int64
 
 double square(double x) noexcept
 {
@@ -59,7 +59,7 @@ std::uint64_t clock_line::frame_at(std::int64_t time) const noexcept
 
 dac_clock::dac_clock(unsigned rate, unsigned batch_frames) noexcept
     : nominal_(1e9 / std::max(rate, 1U)),
-      // A position that moves by whole periods is off by up to one of them.
+      // A position that moves by whole periods is off by up to one period.
       noise_(square(std::max(reading_error_ns, 0.25 * batch_frames * nominal_)))
 {
 }

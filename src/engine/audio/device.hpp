@@ -13,8 +13,8 @@
 
 namespace tactor::engine {
 
-/// These calls may enter the kernel. In them ALSA locks a mutex of the handle, which only the audio thread
-/// uses.
+/// Wrapper whose calls may enter the kernel. ALSA locks a mutex of the handle in them, which only the audio
+/// thread uses.
 class device {
 public:
     explicit device(sink& s) noexcept : sink_(s) {}

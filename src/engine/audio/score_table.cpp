@@ -7,7 +7,7 @@
 namespace tactor::engine {
 namespace {
 
-// Frames of a score that starts at `base` until frame `at`.
+// Returns the frames of a score that starts at `base`, until frame `at`.
 std::uint64_t frames_until(std::uint64_t at, std::uint64_t base, std::uint64_t length) noexcept
 {
     return at > base ? std::min(at - base, length) : 0;
@@ -46,7 +46,7 @@ void score_table::begin(const command& c, std::uint64_t offset) noexcept
     top_ = std::max(top_, place_of(c.score) + 1);
     link_.reports.push({.what = report::kind::begun, .score = c.score, .frame = offset + base});
     if (stopping_)
-        over(e, stop_state_, stop_reason_, 0, 0); // nothing is to begin any more
+        over(e, stop_state_, stop_reason_, 0, 0); // nothing may begin any more
 }
 
 bool score_table::add(const command& c) noexcept
@@ -57,7 +57,7 @@ bool score_table::add(const command& c) noexcept
     synth::drive_event d = c.drive;
     d.start += e->base;
     if (d.start < mixer_.position()) {
-        // Half a burst would be a step on the skin.
+        // The rest of a burst would be a step on the skin.
         want_fade(*e, state_kind::interrupted, why_late());
         return true;
     }
@@ -79,7 +79,8 @@ reason_kind score_table::why_late() const noexcept
     return mixer_.position() < full_until_ ? reason_kind::crowded : reason_kind::late;
 }
 
-// What ends before its window does is continued by another drive, unless it has come down to zero.
+// Records the end of a drive. If a drive ends before its window does, another one continues it, unless the
+// window has come down to zero.
 void score_table::cover(entry& e, const synth::drive_event& d) noexcept
 {
     const std::uint64_t end = d.start + d.length;
@@ -104,7 +105,8 @@ void score_table::fade_what_runs_out(std::uint64_t period) noexcept
         if (e.covered >= next + 2 * period) {
             e.ahead = true;
         } else if (e.ahead && e.base < next) {
-            // Between one and two periods are left, as the last look found two; or none, and it is silent.
+            // Between one and two periods are left, because the last look found two; or none, and it is
+            // silent.
             e.fade = static_cast<std::uint32_t>(std::min<std::uint64_t>(fade_, e.covered - next));
             want_fade(e, state_kind::interrupted, why_late());
         }
@@ -139,8 +141,9 @@ void score_table::cancel(ticket t) noexcept
 {
     entry* e = find(t);
     if (e == nullptr) {
-        // Over already, or still in the command ring: its place tells, for no ticket is used twice. The ring
-        // may stand still for seconds, so what is in it is reported here and dropped when it comes.
+        // The score is over, or still in the command ring. Its place shows which, because no ticket is used
+        // twice. The ring may stand still for seconds, so a score in it is reported here and dropped when it
+        // comes.
         entry& place = entries_[place_of(t)];
         if (place.score == t)
             return;
@@ -162,11 +165,11 @@ void score_table::want_fade(entry& e, state_kind s, reason_kind why) noexcept
         return;
     }
     if (e.live == nullptr && e.base >= next && e.length > 0 && mixer_.fade_out(e.score, 0)) {
-        over(e, s, why, 0, 0); // nothing of it has been mixed yet
+        over(e, s, why, 0, 0); // none of it has been mixed yet
         return;
     }
-    // All of it is on its way to the DAC: it finishes. Without its last command it would wait for ever, since
-    // of a score that is cancelled nothing more comes.
+    // The rest is on its way to the DAC, so it finishes. Needs `fed`: of a cancelled score no more commands
+    // come, and without its last one it would wait for ever.
     if (e.finish <= next && e.fed && why != reason_kind::late && why != reason_kind::crowded &&
         why != reason_kind::plan)
         return;
@@ -178,12 +181,12 @@ void score_table::want_fade(entry& e, state_kind s, reason_kind why) noexcept
 
 void score_table::fade(entry& e) noexcept
 {
-    // What follows its points has no drives beyond this period that the mixer could fade.
+    // A continuous live stroke has no drives beyond this period that the mixer could fade.
     const bool follows = e.live != nullptr && !e.live->is_bursts();
     if (follows)
         e.live->fade(mixer_, e.fade);
     else if (!mixer_.fade_out(e.score, e.fade))
-        return; // too many fades at once: again in the next period
+        return; // too many fades at once: try again in the next period
     close_live(e);
     e.fading = true;
     e.fade_wanted = false;
@@ -224,8 +227,8 @@ void score_table::mute() noexcept
     }
 }
 
-// The clock knows a frame best while it passes: before, it may not be known at all, and later the line may
-// be another one.
+// Notes start times while a frame passes, because the clock knows it best then. Before, the clock may not be
+// known; later, the line may be another one.
 void score_table::note_starts(std::uint64_t played, std::uint64_t offset, const clock_line& clock) noexcept
 {
     for (std::uint32_t i = 0; i < top_ && used_ != 0; ++i) {
@@ -256,13 +259,13 @@ void score_table::update(std::uint64_t played) noexcept
 
 void score_table::interrupt(reason_kind why, int code, std::uint64_t played, bool give_back) noexcept
 {
-    full_until_ = 0; // frames begin anew
+    full_until_ = 0; // frames count from 0 in the next epoch
     for (std::uint32_t i = 0; i < top_; ++i) {
         entry& e = entries_[i];
         if (!e.used)
             continue;
         if (give_back && e.base == never)
-            continue; // a live stroke that waits for its first point goes on waiting
+            continue; // a live stroke that waits for its first point continues to wait
         if (give_back && !e.fade_wanted && e.live == nullptr && e.base >= mixer_.position()) {
             link_.reports.push({.what = report::kind::returned, .score = e.score});
             e.used = false;
@@ -273,7 +276,7 @@ void score_table::interrupt(reason_kind why, int code, std::uint64_t played, boo
         if (!e.fading && e.fed && frames == e.length)
             over(e, state_kind::finished, reason_kind::none, 0, frames);
         else if ((e.fading || e.fade_wanted) && e.why == reason_kind::none)
-            over(e, e.state, e.why, 0, frames); // it was cancelled, and it is silent now
+            over(e, e.state, e.why, 0, frames); // it was cancelled, and is silent now
         else
             over(e, state_kind::interrupted, why == reason_kind::none ? e.why : why, code, frames);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The strokes among the scores that are fed while they sound.
+// Live strokes among the scores.
 #include <algorithm>
 
 #include "engine/audio/score_table.hpp"
@@ -28,7 +28,7 @@ void score_table::begin_live(const request& r) noexcept
 
 void score_table::look_at_wishes() noexcept
 {
-    // From the end, as those behind one that closes move up.
+    // Goes backwards, because entries behind one that closes move up.
     for (std::size_t i = live_count_; i-- > 0;)
         look_at_wishes(*live_[i]);
 }
@@ -36,7 +36,7 @@ void score_table::look_at_wishes() noexcept
 void score_table::render_live(std::uint64_t frames, std::uint64_t offset, const clock_line& clock) noexcept
 {
     look_at_wishes();
-    // In order, so that who began first sounds first; one that closes now makes way for the next.
+    // In order, so that the first to begin sounds first. A stroke that closes now makes way for the next.
     for (std::size_t i = 0; i < live_count_;) {
         entry& e = *live_[i];
         if (!e.fade_wanted)
@@ -56,7 +56,7 @@ void score_table::look_at_wishes(entry& e) noexcept
     case live_voice::wish::end:
         if (e.live->has_news() || (e.base == never && e.live->has_point()) ||
             e.live->moves(mixer_.position()))
-            return; // the last point before the end counts too
+            return; // the last point before the end counts, too
         break;
     case live_voice::wish::go_on:
         if (e.live->starved())
@@ -80,7 +80,7 @@ void score_table::render_live(entry& e, std::uint64_t frames, std::uint64_t offs
     if (e.base == never) {
         e.live->wait(frames);
         if (!link_.amplifier.ready.load(std::memory_order_acquire))
-            return; // not into an amplifier that is off
+            return; // the amplifier is off
         if (live_sounding_ == live_voices || !e.live->try_begin(e.score, mixer_.position()))
             return;
         e.sounds = true;

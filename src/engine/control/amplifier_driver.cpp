@@ -34,7 +34,7 @@ void amplifier_driver::update() noexcept
     updated_ns_ = now;
 }
 
-// For the log, which the control side writes.
+// Wakes the control side, which writes the log, after a change.
 void amplifier_driver::tell() noexcept
 {
     const bool ready = link_.amplifier.ready.load(std::memory_order_relaxed);
@@ -50,7 +50,8 @@ void amplifier_driver::hear(const stream_status& s, std::int64_t now) noexcept
     const std::uint64_t xruns = link_.count.xruns.load(std::memory_order_acquire);
     for (; xruns_ < xruns; ++xruns_)
         amplifier_.handle(amplifier_event::xrun, now);
-    // Also when it slept and woke up between two looks; and while it sleeps, whatever was heard before.
+    // Reports a suspend also if the system slept and woke between two looks, and while it sleeps, whatever
+    // came before.
     const std::uint64_t suspends = link_.count.suspends.load(std::memory_order_acquire);
     if (std::exchange(suspends_, suspends) != suspends || s.stage == stream_stage::suspended)
         amplifier_.handle(amplifier_event::suspended, now);
@@ -59,7 +60,7 @@ void amplifier_driver::hear(const stream_status& s, std::int64_t now) noexcept
         amplifier_.handle(amplifier_event::started, now);
     }
     if (s.stage == stream_stage::running) {
-        // What was written before the audio thread heard of the mute still sounds.
+        // Until the audio thread has seen the mute, frames that it wrote earlier still sound.
         const bool heard = s.mutes == link_.amplifier.mutes.load(std::memory_order_relaxed);
         amplifier_.handle(amplifier_event::moved, now,
                           {.played = s.epoch_played, .sounds_until = heard ? s.sounds_until : UINT64_MAX});
@@ -68,7 +69,8 @@ void amplifier_driver::hear(const stream_status& s, std::int64_t now) noexcept
         amplifier_.handle(amplifier_event::silent, now);
 }
 
-// Time in which this thread did not run either (SIGSTOP, a debugger) says nothing of the other.
+// Measures how long the audio thread stood still. Time in which this thread did not run either (SIGSTOP, a
+// debugger) does not count.
 void amplifier_driver::watch(const stream_status& s, std::int64_t now) noexcept
 {
     const std::uint64_t periods = link_.count.periods.load(std::memory_order_relaxed);
@@ -94,7 +96,7 @@ void amplifier_driver::beat(std::int64_t now) noexcept
     beaten_ns_ = now;
     if (line_.beat())
         return;
-    // It went off by itself, or was lost: then nobody has switched it off. apply() does, whichever it was.
+    // The line went off by itself or was lost. apply() switches it off in either case.
     link_.count.stalls.fetch_add(1, std::memory_order_relaxed);
     amplifier_.handle(amplifier_event::lapsed, now);
 }
@@ -116,8 +118,8 @@ void amplifier_driver::apply() noexcept
         link_.to_audio.signal();
 }
 
-// The audio thread may decide to stop the DAC at this very moment: either it sees that the line is (about to
-// be) on and waits, or this thread sees that it is ending.
+// Switches on, unless the stream ends. The audio thread may decide to stop the DAC at this moment: either it
+// sees that the line is (about to be) on and waits, or this thread sees that it is ending.
 void amplifier_driver::switch_on() noexcept
 {
     link_.amplifier.off.store(false, std::memory_order_seq_cst);
@@ -129,7 +131,7 @@ void amplifier_driver::switch_on() noexcept
     line_state_ = line_state::on;
     if (!line_.set(true)) {
         fail();
-        return try_off(); // what refuses may have switched all the same
+        return try_off(); // a line that reports a failure may have switched all the same
     }
     const std::int64_t now = clock_();
     beaten_ns_ = now;
@@ -139,12 +141,12 @@ void amplifier_driver::switch_on() noexcept
 void amplifier_driver::switch_off() noexcept
 {
     if (!link_.amplifier.ending.load(std::memory_order_relaxed))
-        // What sounds now would not be felt.
+        // The strokes that sound now are not felt any more.
         link_.amplifier.mutes.fetch_add(1, std::memory_order_release);
     try_off();
 }
 
-// A line behind a bus (an I2C expander) may refuse once and obey the next time.
+// Switches off. A line behind a bus (an I2C expander) may refuse once and obey the next time.
 void amplifier_driver::try_off() noexcept
 {
     const bool off = line_.set(false);
@@ -178,7 +180,7 @@ void amplifier_driver::close() noexcept
     amplifier_.handle(amplifier_event::silent, clock_());
     apply();
     if (stuck_)
-        try_off(); // a last time
+        try_off(); // for the last time
 }
 
 std::int64_t amplifier_driver::next_ns() const noexcept
@@ -187,7 +189,7 @@ std::int64_t amplifier_driver::next_ns() const noexcept
     const std::int64_t now = clock_();
     if (trying())
         return std::clamp<std::int64_t>(tried_ns_ + options_.retry_ns - now, 0, options_.retry_ns);
-    // One that had passed when it last looked waits for something else than time.
+    // A deadline that had passed at the last update waits for an event, not for time.
     return due && *due > updated_ns_ ? std::clamp<std::int64_t>(*due - now, 0, options_.beat_ns)
                                      : options_.beat_ns;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Drives the amplifier's line by what the audio thread says of the stream, and watches that thread.
+/// Drives the amplifier's line as the audio thread's reports require, and watches that thread.
 #pragma once
 
 #include <atomic>
@@ -17,27 +17,27 @@ namespace tactor::engine {
 
 struct driver_options {
     amplifier_options amplifier{};
-    std::int64_t beat_ns = 40'000'000;       ///< the holder waits for 150 ms
-    std::int64_t watchdog_ns = 100'000'000;  ///< an audio thread that writes nothing for so long is stalled
-    std::int64_t retry_ns = 10'000'000;      ///< between two tries to switch off
-    std::int64_t persist_ns = 1'000'000'000; ///< an "off" that is refused is tried again for so long
+    std::int64_t beat_ns = 40'000'000;      ///< the holder waits for 150 ms
+    std::int64_t watchdog_ns = 100'000'000; ///< time without a period after which the audio thread is stalled
+    std::int64_t retry_ns = 10'000'000;     ///< between two tries to switch off
+    std::int64_t persist_ns = 1'000'000'000; ///< time for which a refused "off" is tried again
 };
 
-/// Has no thread of its own; one caller at a time. The line's set() may block, so the caller is not the audio
-/// thread. It is not the thread of the program's handlers either: a slow handler could keep the holder
-/// waiting.
+/// Driver of the line, without a thread; one caller at a time. The line's set() may block, so the caller must
+/// not be the audio thread. Nor may it be the thread of the program's handlers: a slow handler could keep the
+/// holder waiting.
 class amplifier_driver {
 public:
-    /// `clock`: CLOCK_MONOTONIC, ns. The references must outlive it.
+    /// Starts with the line off. `clock`: CLOCK_MONOTONIC, ns. The references must outlive the driver.
     amplifier_driver(link& l, enable_line& line, const driver_options& o,
                      std::function<std::int64_t()> clock);
 
-    /// To be called after each wake-up, and at the latest next_ns() after the call before.
+    /// Handles events. Call it after each wake-up, at the latest next_ns() after the previous call.
     void update() noexcept;
     std::int64_t next_ns() const noexcept;
-    /// Off at once, for good. If the line refuses, update() tries again while trying() is true.
+    /// Switches off at once, for good. If the line refuses, update() tries again while trying() is true.
     void close() noexcept;
-    /// Whether an "off" was refused and is being tried again.
+    /// Returns true while a refused "off" is tried again.
     bool trying() const noexcept { return line_state_ == line_state::refused && !stuck_; }
 
 private:
@@ -56,11 +56,11 @@ private:
     driver_options options_;
     std::function<std::int64_t()> clock_;
     amplifier amplifier_;
-    enum class line_state { off, on, refused }; // refused: it was to go off, and may be on
+    enum class line_state { off, on, refused }; // refused: the line should be off, and may be on
     line_state line_state_ = line_state::off;
     bool stuck_ = false;          ///< refused for persist_ns
-    std::int64_t refused_ns_ = 0; ///< the first time
-    std::int64_t tried_ns_ = 0;   ///< the last time
+    std::int64_t refused_ns_ = 0; ///< time of the first refusal
+    std::int64_t tried_ns_ = 0;   ///< time of the last attempt
     std::uint64_t epoch_ = 0;
     std::uint64_t xruns_ = 0;
     std::uint64_t suspends_ = 0;
@@ -73,12 +73,12 @@ private:
     std::uint64_t told_events_ = 0;
 };
 
-/// The thread of an amplifier_driver. The audio thread and time wake it.
+/// Thread of an amplifier_driver. The audio thread and time wake it.
 class amplifier_thread {
 public:
     /// \throws std::system_error when no thread can be started.
     amplifier_thread(link& l, enable_line& line, const driver_options& o, const rt::thread_options& t);
-    /// Switches off, unless it is off already. Blocks while the line refuses and is tried again.
+    /// Switches off if the line is on. Blocks while the line refuses and is tried again.
     ~amplifier_thread();
     amplifier_thread(const amplifier_thread&) = delete;
     amplifier_thread& operator=(const amplifier_thread&) = delete;

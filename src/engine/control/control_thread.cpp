@@ -18,7 +18,8 @@ namespace {
 
 using boost::asio::posix::stream_descriptor;
 
-// Asio takes files and devices that are always readable, and says so only when it is to wait for one.
+// Throws if a descriptor cannot be polled. Asio accepts files and devices that are always readable, and fails
+// only when it waits for one.
 void check_waitable(int fd)
 {
     const detail::owned_fd set(::epoll_create1(EPOLL_CLOEXEC));
@@ -31,7 +32,7 @@ void check_waitable(int fd)
         throw std::system_error(code, std::generic_category());
 }
 
-// The descriptor would close what is not its own.
+// Releases the descriptor, which belongs to somebody else.
 void let_go(stream_descriptor& d) noexcept
 {
     boost::system::error_code ignored;
@@ -46,7 +47,7 @@ struct control_thread::state {
         : event(e), woken(std::move(w)), descriptor(context, e.fd())
     {
     }
-    ~state() { end(); } // also where the thread could not be made
+    ~state() { end(); } // also if the thread could not start
     state(const state&) = delete;
     state& operator=(const state&) = delete;
 
@@ -84,12 +85,12 @@ struct control_thread::state {
     boost::asio::io_context context;
     stream_descriptor descriptor;
     std::optional<stream_descriptor> watched;
-    bool over = false; ///< the thread's own
+    bool over = false; ///< used by the thread only
 };
 
 control_thread::control_thread(rt::event_fd& e, std::function<void()> woken)
     : state_(std::make_shared<state>(e, std::move(woken))),
-      // The handlers of the program run here, so the stack is not a small one.
+      // The program's handlers run here, so the stack is larger.
       thread_({.name = "tactor-control", .stack_bytes = std::size_t{512} * 1024}, [s = state_] {
           s->wait();
           s->context.run();

@@ -11,23 +11,25 @@
 
 namespace tactor::engine {
 
-/// Calls `woken` in its own thread for each signal of an eventfd. GPIO edges, sockets and timers get
-/// their place beside it in the same io_context.
+/// A thread that calls `woken` for each signal of an eventfd. GPIO edges, sockets and timers can join the
+/// same io_context.
 class control_thread {
 public:
-    /// \throws std::system_error or boost::system::system_error when descriptors or threads cannot be
-    ///         created.
+    /// Starts the thread.
+    /// \throws std::system_error or boost::system::system_error when the system refuses descriptors or
+    ///         threads.
     control_thread(rt::event_fd& e, std::function<void()> woken);
-    /// Ends the thread; `woken` and `readable` are not called any more. If one of these destroys this object,
-    /// in the thread itself, the destructor returns at once, and the thread ends when they have returned: the
-    /// event and the descriptor may be gone by then.
+    /// Ends the thread; it does not call `woken` and `readable` any more. If one of these destroys this
+    /// object in the thread itself, the destructor returns at once, and the thread ends when they have
+    /// returned. The event and the descriptor may be gone by then.
     ~control_thread();
     control_thread(const control_thread&) = delete;
     control_thread& operator=(const control_thread&) = delete;
 
     /// Calls `readable` in the control thread whenever a descriptor is readable, until it returns false. The
-    /// descriptor stays the caller's and must live as long as this object. Once, before the first signal.
-    /// \throws std::system_error when the descriptor cannot be waited for.
+    /// caller keeps the descriptor, which must live as long as this object. Call it once, before the first
+    /// signal.
+    /// \throws std::system_error when the descriptor cannot be polled.
     void watch(int fd, std::function<bool()> readable);
 
     bool is_current() const noexcept { return thread_.is_current(); }
@@ -35,7 +37,7 @@ public:
 private:
     struct state;
 
-    std::shared_ptr<state> state_; ///< the thread's too, which may outlive this object for a moment
+    std::shared_ptr<state> state_; ///< shared with the thread, which may outlive this object for a moment
     rt::thread thread_;
 };
 

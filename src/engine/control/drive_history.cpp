@@ -38,7 +38,7 @@ constexpr std::int64_t longest_ns = 4'000'000'000'000'000'000;
     throw error(error_kind::bad_input, "drive history", why, "begin with an empty one");
 }
 
-/// CLOCK_MONOTONIC counts from it.
+/// Returns the identifier of this boot, from which CLOCK_MONOTONIC counts.
 std::string this_boot()
 {
     const std::string text = rt::text_of("/proc/sys/kernel/random/boot_id");
@@ -94,7 +94,7 @@ synth::drive_history::channel channel_of(numbers& n)
         const synth::drive_history::stretch s{seconds(n.next()), seconds(n.next()), seconds(n.next())};
         if (c.stretches.size() == most_stretches)
             refuse("more stretches of time than a channel has");
-        // Rounding of ns to seconds leaves these a little apart.
+        // Rounding of ns to seconds leaves a small difference.
         if (s.begin_s < before_s || s.end_s < s.begin_s || s.driven_s < 0.0 ||
             s.driven_s > s.end_s - s.begin_s + 1e-6)
             refuse("times are not in order");

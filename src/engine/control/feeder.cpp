@@ -10,7 +10,7 @@
 namespace tactor::engine {
 namespace {
 
-// Strokes that begin together are given so many drives at once: the mixer has space for twice as many.
+// Drives that strokes get at once when they begin together. The mixer has space for twice as many.
 constexpr std::size_t drives_ahead = 4096;
 
 } // namespace
@@ -46,18 +46,19 @@ void feeder::pump(std::uint64_t written, const clock_line& clock)
     find_due(written);
     look_at_waiting_live(written);
     admit_live();
-    // While a score waits for space, the others may not use up the space that becomes free.
+    // While a score waits for space, the others must not use up the space that becomes free.
     feed(written, admit(written) ? horizon_ : horizon_ / 2);
     link_.feeding.store(has_strokes(), std::memory_order_relaxed);
 }
 
-// Those that wait for a trigger need nothing of the stream until it comes.
+// Returns true if a stroke needs the stream. Armed strokes do not until they are triggered.
 bool feeder::has_strokes() const noexcept
 {
     return !waiting_.empty() || !timed_.empty() || !waiting_live_.empty() || !in_use_.empty();
 }
 
-// Begins what is due within the horizon, the earliest first; false when the ring had too little space.
+// Begins the scores that are due within the horizon, the earliest first. Returns false if the ring had too
+// little space.
 bool feeder::admit(std::uint64_t written)
 {
     const auto due = waiting_.upper_bound(written + horizon_);
@@ -76,11 +77,11 @@ bool feeder::admit(std::uint64_t written)
                                                .at = at,
                                                .source = synth::event_source(t.music)});
         try {
-            // A score that begins later is fed in time, in the common order.
+            // A score that begins later gets its drives in time, in the common order.
             hand_over_beginning(*slots_[place].use, ticket_of(place),
                                 soon ? std::max<std::size_t>(share, 1) : 0);
         } catch (...) {
-            release(slots_[place]); // it still waits
+            release(slots_[place]); // the score still waits
             throw;
         }
         waiting_.erase(waiting_.begin());
@@ -97,8 +98,8 @@ std::uint32_t feeder::take_slot(active a)
     return place;
 }
 
-// The begin and its first drives become visible together: the audio thread starts the score as soon as it
-// sees the begin, and this thread may lose its processor at any point.
+// Makes the begin and its first drives visible together: the audio thread starts the score as soon as it sees
+// the begin, and this thread may lose its processor at any point.
 void feeder::hand_over_beginning(active& a, ticket t, std::size_t drives)
 {
     batch_.clear();
@@ -120,7 +121,7 @@ command feeder::next_command(active& a, ticket t)
 {
     const synth::drive_event* e = a.source->peek();
     if (e == nullptr) {
-        a.failure = a.source->failure(); // before all else: there may be no memory for it
+        a.failure = a.source->failure(); // comes first, because there may be no memory for it
         a.fed = true;
         if (!a.failure.empty())
             return {.what = command::kind::fail, .score = t, .at = a.source->failed_at()};
@@ -135,7 +136,7 @@ command feeder::next_command(active& a, ticket t)
 std::uint64_t feeder::next_start(active& a, std::uint64_t written) noexcept
 {
     const synth::drive_event* e = a.source->peek();
-    // Until the audio thread says where it begins, only this is certain: not before here.
+    // Until the audio thread reports where it begins, only this bound is certain.
     const std::uint64_t base = a.begun ? a.base : std::max(a.at, written);
     return e != nullptr ? base + e->start : 0;
 }
@@ -182,7 +183,7 @@ void feeder::release(slot& s) noexcept
     if (s.use->voice != nullptr)
         gone_live_.insert(playing_live_.extract(s.use->id));
     s.use.reset();
-    // Wraps after 16 million uses of one place; 0 stays out.
+    // Wraps after 16 million uses of one place; skips 0.
     s.generation = s.generation + 1 < UINT32_MAX / voices ? s.generation + 1 : 1;
 }
 
@@ -190,7 +191,7 @@ void feeder::handle(const report& r)
 {
     if (r.what == report::kind::stream_over)
         return end_all(r);
-    slot& s = slots_[place_of(r.score)]; // still this ticket's: only its last report releases it
+    slot& s = slots_[place_of(r.score)]; // still belongs to this ticket: only its last report releases it
     active& a = *s.use;
     if (r.what != report::kind::begun && ended_)
         ended_(a.id, r.what == report::kind::over && r.frame > 0);
@@ -231,7 +232,7 @@ void feeder::end_all(const report& r)
             s.use->voice->close();
         release(s);
     }
-    // One by one, so that it can be called again where memory has run out.
+    // Ends one after the other, so that the call can be repeated after memory ran out.
     const auto end_tasks = [&](auto& tasks) {
         for (auto t = tasks.begin(); t != tasks.end(); t = tasks.erase(t))
             end(t->second.id, false);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The control side's half of playing: hands scores over to the audio thread a horizon ahead.
+/// The control side of playback: it hands scores to the audio thread a horizon ahead.
 #pragma once
 
 #include <array>
@@ -24,26 +24,26 @@
 
 namespace tactor::engine {
 
-/// Merges the drives of the submitted scores by start frame and keeps the ring filled. A full ring or
-/// table makes scores wait here; nothing is lost, and memory does not grow with the length of a score. No
-/// threads of its own: one caller at a time.
+/// Merges the drives of the submitted scores by start frame and keeps the ring filled. A full ring or table
+/// makes scores wait here. Nothing is lost, and memory does not grow with the length of a score. No threads:
+/// one caller at a time.
 class feeder {
 public:
     feeder(link& l, std::uint64_t horizon_frames);
 
     void submit(stroke_id id, const score& s, start_at start);
-    /// A live stroke, to begin with its first point. `voice` is kept until it has ended.
+    /// Submits a live stroke, which begins with its first point. Keeps `voice` until it has ended.
     void submit(stroke_id id, std::shared_ptr<live_voice> voice);
 
-    /// Lets the armed ones start at a CLOCK_MONOTONIC time, ns; returns how many.
+    /// Starts the armed strokes at a CLOCK_MONOTONIC time, ns. Returns their number.
     std::size_t fire(std::int64_t time_ns);
 
-    /// False when the stroke has ended, or is not known, or is being cancelled already.
+    /// Cancels a stroke. Returns false if it has ended, is not known, or is being cancelled already.
     bool cancel(stroke_id id);
 
-    /// `begins` is called for each stroke that begins, with its first frame of the stream. `ended` is called
-    /// for each stroke that goes no further, with whether any of it was played: it ended, or an xrun came
-    /// before it had begun.
+    /// Sets two handlers. `begins` gets each stroke that begins, with its first frame of the stream. `ended`
+    /// gets each stroke that ends or that an xrun stopped before it had begun; its argument is true if a part
+    /// of it was played.
     void on_first_frames(std::function<void(stroke_id, std::uint64_t)> begins,
                          std::function<void(stroke_id, bool)> ended)
     {
@@ -52,68 +52,68 @@ public:
     }
 
     /// Hands over the drives within the horizon after stream frame `written`, as far as they fit. Strokes
-    /// that are to start at a time wait until the clock is known.
+    /// with a start time wait until the clock is known.
     void pump(std::uint64_t written, const clock_line& clock = {});
 
-    /// Whether the audio thread must be woken: since the last call, a stroke that begins was handed over.
-    /// Drives of strokes that sound are still in time with the next period.
+    /// Returns true if the audio thread must wake, because a stroke that begins was handed over since the
+    /// last call. Drives of strokes that sound are in time with the next period.
     bool take_urgent() noexcept { return std::exchange(urgent_, false); }
 
-    /// Takes in what the audio thread reports.
+    /// Handles a report of the audio thread.
     void handle(const report& r);
 
-    /// Reports of strokes that ended, in order of their ends; the caller takes them from the list.
+    /// Returns the reports of strokes that ended, in order of their ends. The caller removes them.
     std::list<stroke_report>& reports() noexcept { return reports_; }
 
-    /// A stroke that began: its first frame was written, as that frame of the stream.
+    /// A stroke that began, and the frame of the stream at which its first frame was written.
     struct first_frame {
         stroke_id id = {};
         std::uint64_t frame = 0;
     };
-    /// From now on beginnings are kept; the caller takes them from the list.
+    /// Keeps beginnings from now on; the caller removes them from the list.
     void keep_beginnings() noexcept { keeps_beginnings_ = true; }
     std::list<first_frame>& beginnings() noexcept { return beginnings_; }
 
     using live_map = std::map<stroke_id, std::shared_ptr<live_voice>>;
-    /// Live strokes that have ended. They are to be taken out and destroyed where no lock is held: the last
-    /// share of one destroys its phantom model, which may be the program's own.
+    /// Returns the live strokes that have ended. Take them out and destroy them without a lock: the last
+    /// owner of one destroys its phantom model, which may be the program's.
     live_map& gone_live() noexcept { return gone_live_; }
 
-    /// Whether there are reports.
+    /// Returns true if there are reports.
     bool has_reports() const noexcept { return !reports_.empty(); }
-    /// Whether the stroke has not ended, or its report has not been taken yet.
+    /// Returns true if the stroke has not ended, or its report has not been removed yet.
     bool knows(stroke_id id) const;
-    /// Whether the stream has ended; every stroke has been reported then.
+    /// Returns true if the stream has ended; then every stroke has been reported.
     bool stream_over() const noexcept { return stream_over_; }
-    /// How it ended; no reason when it was stopped.
+    /// Returns the end of the stream; without a reason if it was stopped.
     const stream_end& end() const noexcept { return end_; }
-    /// From now on, strokes that have not been handed over count as cut because the player was closed.
+    /// Marks the player as closed: strokes that have not been handed over then count as interrupted by that.
     void set_closing() noexcept { closing_ = true; }
 
 private:
     struct task {
         stroke_id id = {};
         score music;
-        std::optional<std::int64_t> due_ns{}; ///< CLOCK_MONOTONIC that was asked for
+        std::optional<std::int64_t> due_ns{}; ///< requested CLOCK_MONOTONIC
     };
     struct active {
         stroke_id id = {};
         std::optional<score> music{};
-        live_voice* voice = nullptr; ///< playing_live_ has it
+        live_voice* voice = nullptr; ///< owned by playing_live_
         std::optional<std::int64_t> due_ns{};
         std::uint64_t at = 0;
         std::uint64_t base = 0;         ///< stream frame of its start, once begun
         std::optional<double> late_s{}; ///< none: the clock was not known when it began
         std::optional<synth::event_source> source{};
-        std::string failure{}; ///< why its plan could not be followed to its end
+        std::string failure{}; ///< reason why its plan could not be followed to its end
         bool begun = false;
         bool fed = false;
         bool cancelled = false;
     };
-    /// The next drive of a score that is being fed.
+    /// Next drive of a score that gets drives.
     struct next_drive {
         std::uint64_t start = 0; ///< stream frame
-        std::uint32_t order = 0; ///< in in_use_
+        std::uint32_t order = 0; ///< position in in_use_
         bool operator>(const next_drive& o) const noexcept
         {
             return start != o.start ? start > o.start : order > o.order;
@@ -155,7 +155,7 @@ private:
     std::optional<std::uint64_t> seen_written_ = {}; ///< at the last look at waiting_live_
     clock_line clock_;
     std::array<slot, voices> slots_;
-    std::vector<std::uint32_t> in_use_; ///< places, in order of their beginning
+    std::vector<std::uint32_t> in_use_; ///< places, in the order in which they began
     std::vector<next_drive> next_;      ///< a heap, the earliest first; of fixed capacity
     std::vector<command> batch_;        ///< of fixed capacity
     std::list<stroke_report> reports_;
@@ -169,9 +169,9 @@ private:
     stream_end end_;
 };
 
-/// A reason for people, with the negative errno that is known of it; empty for `none`.
+/// Returns a reason for people, with its negative errno if known; empty for `none`.
 std::string text(reason_kind r, int code);
-/// The report of a stroke that was cut short before it began.
+/// Returns the report of a stroke that was cut short before it began.
 stroke_report interrupted(stroke_id id, reason_kind r, std::string why);
 
 } // namespace tactor::engine

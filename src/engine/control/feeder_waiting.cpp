@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What waits on the control side: for its frame, its time, a trigger or a free place.
+// Strokes that wait on the control side: for their frame, their time, a trigger or a free place.
 #include <algorithm>
 #include <utility>
 
@@ -25,10 +25,10 @@ bool erase_task(Tasks& tasks, stroke_id id)
     return true;
 }
 
-// What a line through the DAC's times may be off by, from one look to another.
+// Possible error of the DAC clock's line between two looks.
 constexpr double clock_right_s = 0.001;
 
-// Seconds; within a frame is as good as it gets. The time that was asked for can be any number.
+// Returns the delay in seconds, 0 within a frame. The requested time can be any number.
 double late(std::int64_t started_ns, std::int64_t due_ns, double ns_per_frame)
 {
     std::int64_t d = 0;
@@ -58,14 +58,14 @@ void feeder::submit(stroke_id id, const score& s, start_at start)
 void feeder::submit(stroke_id id, std::shared_ptr<live_voice> voice)
 {
     if (waiting_live_.empty())
-        seen_written_.reset(); // nobody has looked for long
+        seen_written_.reset(); // the last look was long ago
     waiting_live_.emplace(id, std::move(voice));
 }
 
 std::size_t feeder::fire(std::int64_t time_ns)
 {
     const std::size_t n = armed_.size();
-    decltype(timed_) fired; // all or none, should memory run out
+    decltype(timed_) fired; // all or none, if memory runs out
     for (const auto& [id, t] : armed_)
         fired.emplace(time_ns, task{t.id, t.music, time_ns});
     timed_.merge(fired);
@@ -73,7 +73,7 @@ std::size_t feeder::fire(std::int64_t time_ns)
     return n;
 }
 
-// Times become frames as late as that may be, when the clock knows best.
+// Converts times to frames as late as possible, when the clock knows best.
 void feeder::find_due(std::uint64_t written)
 {
     while (!timed_.empty() && clock_.valid()) {
@@ -86,7 +86,7 @@ void feeder::find_due(std::uint64_t written)
     }
 }
 
-// As the audio thread does for those that it has.
+// Counts waiting time, as the audio thread does for its live strokes.
 void feeder::look_at_waiting_live(std::uint64_t written)
 {
     const std::uint64_t frames = written - std::exchange(seen_written_, written).value_or(written);
@@ -128,7 +128,7 @@ bool feeder::cancel_waiting(stroke_id id)
 {
     if (!waits(id))
         return false;
-    // Before it is forgotten: there may be no memory for it.
+    // Reports first, because there may be no memory for it.
     tell({.id = id, .state = state_kind::cancelled, .frames = 0});
     const auto live = waiting_live_.find(id);
     if (live != waiting_live_.end()) {
@@ -160,7 +160,7 @@ void feeder::begun(active& a, std::uint64_t frame)
         a.late_s = static_cast<double>(frame - a.at) / a.music->rate();
     else if (!a.due_ns)
         a.late_s = 0.0;
-    // Last: without memory the report is handled once more, and nobody is told twice.
+    // Comes last: without memory the report is handled again, and no handler must hear it twice.
     if (keeps_beginnings_)
         beginnings_.push_back({a.id, frame});
 }

@@ -97,7 +97,7 @@ const std::vector<unsigned>& reached(const stream_wiring& w, const tactor_spec& 
     return t.channel < w.outputs.size() ? w.outputs[t.channel] : none;
 }
 
-// The first other tactor that reaches this output, too.
+// Returns the first other tactor that also reaches this output.
 std::size_t partner(const array& a, const stream_wiring& w, std::size_t i, unsigned output)
 {
     std::size_t k = 0;
@@ -124,7 +124,7 @@ std::string gain_text(double gain)
                        gain < 0.0 ? " with its polarity reversed" : "");
 }
 
-// Describes gains that a plan's levels do not know; empty if there are none.
+// Describes gains that a plan's levels do not include; empty if there are none.
 std::string remark(std::span<const double> gains)
 {
     const auto is_one = [](double g) { return std::abs(g - 1.0) <= rounding; };
@@ -162,7 +162,7 @@ std::string lost_tactor(const array& a, const stream_wiring& w)
             if (std::abs(g) > 1.0 + rounding)
                 return fmt::format("{}, which ALSA's configuration plays at {}: louder than its limit allows",
                                    place(a, i), gain_text(g));
-    std::map<unsigned, unsigned> users; // of each output
+    std::map<unsigned, unsigned> users; // number of tactors by output
     for (const tactor_spec& t : a.tactors)
         for (const unsigned output : reached(w, t))
             ++users[output];

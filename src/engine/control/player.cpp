@@ -80,7 +80,7 @@ void player::on_report(std::function<void(const stroke_report&)> handler)
 {
     auto shared = handler ? std::make_shared<const impl::report_handler>(std::move(handler)) : nullptr;
     const std::lock_guard lock(impl_->mutex);
-    impl_->handler.swap(shared); // the old one goes after the lock: it may own what calls the player
+    impl_->handler.swap(shared); // the old one is destroyed after the lock: it may call the player
 }
 
 void player::on_begin(std::function<void(stroke_id, std::optional<std::int64_t>)> handler)
@@ -89,7 +89,7 @@ void player::on_begin(std::function<void(stroke_id, std::optional<std::int64_t>)
     const std::lock_guard lock(impl_->mutex);
     if (shared != nullptr)
         impl_->feed.keep_beginnings();
-    impl_->on_begun.swap(shared); // as above
+    impl_->on_begun.swap(shared); // destroyed after the lock, as above
 }
 
 void player::stop()

@@ -18,10 +18,10 @@ namespace tactor {
 inline namespace v0 {
 namespace {
 
-// Reports that nobody asked for are kept for so long; a program that only uses the handler must not grow.
+// Number of unread reports that are kept. A program that only uses the handler must not grow.
 constexpr std::size_t most_unread_reports = 4096;
 
-// A wait of a century is one without end: the clock must not run over.
+// Returns the time of a time-out, at most a century from now, so that the clock cannot overflow.
 std::chrono::steady_clock::time_point deadline(double timeout_s)
 {
     constexpr double century_s = 100.0 * 365.0 * 86400.0;
@@ -35,7 +35,7 @@ void player::impl::close()
 {
     stop(true);
     if (control->is_current()) {
-        // A handler destroys the player: this thread has to do here what it would do after the handler.
+        // A handler destroys the player: this thread does here what it would do after the handler.
         if (telling != nullptr)
             tell_watchers(*telling);
         for (woken(); !all_delivered; woken()) {
@@ -57,7 +57,7 @@ std::shared_ptr<const drive_history::impl> player::impl::history()
     const std::lock_guard lock(mutex);
     if (!feed.stream_over())
         throw error(error_kind::runtime, "drive history", "the stream goes on", "stop() it first");
-    // The last that it says comes a little before its end; it never waits for this mutex.
+    // The audio thread reports a little before its end. It never waits for this mutex.
     audio.join();
     return std::make_shared<drive_history::impl>(drive_history::impl{loop.driven(), rt::monotonic_ns()});
 }
@@ -69,7 +69,7 @@ stroke_id player::impl::submit(const score& s, start_at start)
     check_open();
     const stroke_id id = next_id();
     feed.submit(id, s, start);
-    pump(); // without memory for that the control thread does it later
+    pump(); // if memory runs out here, the control thread does it later
     return id;
 }
 
@@ -95,13 +95,13 @@ bool player::impl::cancel(stroke_id id)
     const bool known = feed.cancel(id);
     if (known) {
         link.to_audio.signal();
-        link.to_control.signal(); // one that had not been handed over is reported at once
+        link.to_control.signal(); // a stroke that had not been handed over is reported at once
     }
     return known;
 }
 
-// Under the mutex. False when there was no memory to go on: nothing is lost, and the control thread tries
-// again.
+// Hands over drives, under the mutex. Returns false if memory ran out: nothing is lost, and the control
+// thread tries again.
 bool player::impl::pump()
 {
     bool done = true;
@@ -124,7 +124,7 @@ wait_result player::impl::wait(stroke_id id, std::optional<double> timeout_s)
 {
     std::unique_lock lock(mutex);
     const auto settled = [&] { return ended.contains(id) || !feed.knows(id); };
-    // The control thread would wait for itself.
+    // In the control thread it would wait for itself.
     if (!control->is_current()) {
         if (timeout_s)
             news.wait_until(lock, deadline(*timeout_s), settled);
@@ -175,7 +175,7 @@ void player::impl::woken()
     tell();
     if (!done) {
         constexpr timespec soon{.tv_sec = 0, .tv_nsec = 10'000'000};
-        ::nanosleep(&soon, nullptr); // somebody may give memory back
+        ::nanosleep(&soon, nullptr); // other code may free memory
         link.to_control.signal();
     }
     if (!last)
@@ -186,7 +186,8 @@ void player::impl::woken()
     news.notify_all();
 }
 
-// What the audio thread has said. False when there was no memory for all of it: the rest stays where it is.
+// Handles the audio thread's reports. Returns false if memory ran out; the remaining reports stay in the
+// ring.
 bool player::impl::take_reports()
 {
     try {
@@ -224,7 +225,7 @@ bool player::impl::take_reports()
     return true;
 }
 
-// Called again for the same report where memory ran out.
+// Keeps a report. Runs again for the same report if memory ran out.
 void player::impl::keep(const stroke_report& r)
 {
     if (ended.contains(r.id))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How a player's stream and threads come to run, from its options.
+// Start of a player's stream and threads, from its options.
 #include "engine/control/player_impl.hpp"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace tactor {
 inline namespace v0 {
 namespace {
 
-// At most ten minutes of any rate; also for what is not a number.
+// Returns the frames of a time, 0 to ten minutes. Refuses NaN, too.
 std::uint32_t frames_of(double seconds, unsigned rate, const char* name)
 {
     if (!(seconds >= 0.0 && seconds <= 600.0))
@@ -29,7 +29,7 @@ std::uint32_t frames_of(double seconds, unsigned rate, const char* name)
     return static_cast<std::uint32_t>(std::lround(seconds * rate));
 }
 
-// What is handed over later than this would be late.
+// Returns the horizon. Drives handed over later than the least one would be late.
 std::uint64_t horizon_frames(const player_options& o, const stream_setup& s)
 {
     const std::uint64_t least = 2 * std::uint64_t{s.buffer_frames} + 4 * std::uint64_t{s.period_frames};
@@ -52,7 +52,7 @@ engine::loop_options loop_options(const player_options& o, const drive_history::
     return l;
 }
 
-// Of SCHED_FIFO, as far as there are any.
+// Returns a SCHED_FIFO priority within its range.
 int priority(const player_options& o, int higher)
 {
     return std::clamp(std::clamp(o.priority, 1, 99) + higher, 1, 99);
@@ -77,14 +77,14 @@ engine::driver_options driver_options(const player_lines& l, const stream_setup&
     return d;
 }
 
-// Below the audio thread, which it looks after, but not behind everything else: the line's holder waits for
-// 150 ms only.
+// Returns the options of the amplifier's thread. Its priority is below the audio thread, which it watches,
+// but high, because the line's holder waits for 150 ms only.
 rt::thread_options amplifier_thread_options(const player_options& o)
 {
     return {.name = "tactor-amp", .fifo = o.realtime || o.require_realtime, .priority = priority(o, -5)};
 }
 
-// Before there are threads that an error would have to stop.
+// Checks the lines before there are threads that an error would have to stop.
 player_lines checked(player_lines l, unsigned rate)
 {
     frames_of(l.trigger_delay_s, rate, "trigger_delay_s");
@@ -161,7 +161,7 @@ void player::impl::start_lines(const player_options& o)
             link, *lines.amplifier, driver_options(lines, out->setup()), amplifier_thread_options(o));
     if (lines.sync_out == nullptr)
         return;
-    // Above the audio thread: it sleeps nearly always, and what it does takes microseconds.
+    // Above the audio thread: it sleeps nearly always, and its work takes microseconds.
     const rt::thread_options t{.name = "tactor-sync",
                                .fifo = o.realtime || o.require_realtime,
                                .priority = priority(o, 1),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Strokes that wait for a trigger or for points, and who is told of their ends.
+// Strokes that wait for a trigger or for points, and the calls of handlers.
 #include <exception>
 #include <limits>
 #include <list>
@@ -18,7 +18,7 @@ namespace tactor {
 inline namespace v0 {
 namespace {
 
-// A descriptor that stays readable without an edge is broken.
+// Number of reads without an edge after which a readable descriptor counts as broken.
 constexpr int most_empty_reads = 100;
 
 } // namespace
@@ -32,7 +32,7 @@ std::size_t player::impl::fire(std::int64_t time_ns)
     return n;
 }
 
-// Control thread: the trigger line is readable. False when it is not worth listening to any more.
+// Reads the trigger line in the control thread. Returns false if the line is broken.
 bool player::impl::edges()
 {
     const auto delay = static_cast<std::int64_t>(lines.trigger_delay_s * 1e9);
@@ -56,7 +56,7 @@ bool player::impl::edges()
 
 live_stroke player::impl::begin(const live_options& o)
 {
-    const stream_setup& setup = out->setup(); // a sink may be the program's own: not under the lock
+    const stream_setup& setup = out->setup(); // not under the lock, because a sink may be the program's own
     const std::unique_lock lock(mutex);
     check_open();
     if (!faces)
@@ -98,8 +98,8 @@ void player::impl::call(Call&& told) noexcept
     }
 }
 
-// Control thread, without the mutex: what is called may call the player, and may destroy it; then close()
-// tells the rest before it returns.
+// Calls the handlers, in the control thread and without the mutex. A handler may call the player, and may
+// destroy it; then close() makes the remaining calls before it returns.
 void player::impl::tell()
 {
     tell_beginnings();
@@ -113,7 +113,7 @@ void player::impl::tell()
     }
 }
 
-// Before the ends: what was taken in together may have begun and ended.
+// Reports beginnings before ends, because a stroke may have begun and ended since the last call.
 void player::impl::tell_beginnings()
 {
     std::unique_lock lock(mutex);
@@ -124,7 +124,7 @@ void player::impl::tell_beginnings()
         lock.unlock();
         if (f != nullptr)
             call([&, id = id, at_ns = at_ns] { (*f)(id, at_ns); });
-        f.reset(); // the last, where it was replaced: what it holds may call the player
+        f.reset(); // the last reference, if it was replaced: its contents may call the player
         lock.lock();
     }
 }
@@ -147,12 +147,12 @@ void player::impl::tell_watchers(const stroke_report& r)
     for (auto own = watchers.extract(r.id); own; own = watchers.extract(r.id)) {
         lock.unlock();
         call([&] { own.mapped()(r); });
-        own = {}; // what it holds may call the player
+        own = {}; // its contents may call the player
         lock.lock();
     }
 }
 
-// A program whose handler fails knows no more what is on the skin.
+// Ends the stream after a handler has failed: the program no longer knows what is on the skin.
 void player::impl::give_up(const char* what) noexcept
 {
     const std::lock_guard lock(mutex);

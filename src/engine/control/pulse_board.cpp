@@ -11,7 +11,7 @@ constexpr bool is_taken(std::uint32_t turn) noexcept
 
 } // namespace
 
-// Acquire and release: who sees one of a newer pulse's words sees the newer turn too.
+// Acquire and release: a reader that sees one word of a newer pulse also sees the newer turn.
 pulse pulse_board::read(const place& p) noexcept
 {
     return {.epoch = p.epoch.load(std::memory_order_acquire),
@@ -52,7 +52,7 @@ std::optional<pulse> pulse_board::offer(const pulse& p) noexcept
     if (last == places)
         return p;
     const bool made_way = end_turn(last, latest_turn);
-    // Free in either case: otherwise it has just been sent.
+    // The place is free in either case: otherwise its pulse has just been sent.
     fill(places_[last], p, latest_turn + 1);
     return made_way ? std::optional(latest) : std::nullopt;
 }

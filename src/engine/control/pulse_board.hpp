@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Sync pulses that are to come, between the control side, which plans them, and the thread that sends them.
+/// Planned sync pulses, between the control side, which plans them, and the thread that sends them.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace tactor::engine {
 
-/// A pulse that is to come: a stream frame of one epoch. After an xrun the frame is never heard.
+/// A planned pulse: a stream frame of one epoch. After an xrun that frame is never played.
 struct pulse {
     std::uint64_t epoch = 0;
     std::uint64_t frame = 0;
@@ -24,9 +24,9 @@ struct pulse {
     auto operator<=>(const pulse&) const = default;
 };
 
-/// A few places for pulses, without a lock: the thread that sends them has the highest priority of all, and
-/// must not wait for another. A place has a counter, `turn`: odd while a pulse waits there. Either side may
-/// take the pulse away, by a compare-and-swap that adds one to it; the side whose swap succeeds has it.
+/// A few places for pulses, without a lock, because the sending thread has the highest priority of all and
+/// must not wait for another. A place has a counter, `turn`, which is odd while a pulse waits there. Either
+/// side may take the pulse by a compare-and-swap that adds one; the side whose swap succeeds has it.
 class pulse_board {
 public:
     static constexpr std::size_t places = 256;
@@ -38,27 +38,28 @@ public:
         std::uint32_t turn = 0;
     };
 
-    // The planning side: one caller at a time.
+    // Planning side: one caller at a time.
 
-    /// Puts a pulse on the board, from where it can be sent. Returns the pulse that found no place: none, a
+    /// Puts a pulse on the board, from where it can be sent. Returns the pulse that has no place: none, a
     /// later one that made way, or `p` itself.
     std::optional<pulse> offer(const pulse& p) noexcept;
-    /// Removes a stroke's pulses that nobody has taken; returns how many there were.
+    /// Removes a stroke's pulses that the sender has not taken, and returns their number.
     std::size_t forget(stroke_id id) noexcept;
     void forget_other_epochs(std::uint64_t epoch) noexcept;
 
-    // The sending side.
+    // Sending side.
 
-    /// The first pulse that waits, of the clock's epoch.
+    /// Returns the first pulse that waits, of the clock's epoch.
     std::optional<seen> next(const clock_line& line) const noexcept;
-    /// Takes it, to be sent at once; false where it has been called off, or made way, since it was seen.
+    /// Takes a pulse in order to send it at once. Returns false if it was withdrawn or made way since it was
+    /// seen.
     bool take(const seen& s) noexcept { return end_turn(s.place, s.turn); }
 
 private:
     struct place {
         std::atomic<std::uint32_t> turn{0};
-        // Atomic because a place may change hands while the sender reads it; `turn` shows this, and the
-        // sender then throws away what it has read.
+        // Atomic, because a place may change hands while the sender reads it. `turn` shows this, and the
+        // sender then drops what it has read.
         std::atomic<stroke_id> id{};
         std::atomic<std::uint64_t> epoch{0};
         std::atomic<std::uint64_t> frame{0};

@@ -9,7 +9,7 @@
 namespace tactor::engine {
 namespace {
 
-// How much a counter has grown since the last look.
+// Returns the growth of a counter since the last look.
 std::uint64_t grown(const std::atomic<std::uint64_t>& counter, std::uint64_t& seen) noexcept
 {
     const std::uint64_t now = counter.load(std::memory_order_relaxed);
@@ -30,14 +30,14 @@ void stream_log::look(const stream_status& s, std::int64_t now_ns) noexcept
     try {
         look_at_stream(s);
         look_at_amplifier(s);
-        // They act in each period: one line a second says enough.
+        // Limits act in each period: one line a second is enough.
         if (now_ns - limits_told_ns_ < rt::ns_per_s && limits_told_ns_ != 0)
             return;
         const std::size_t before = lines_.size();
         look_at_limits();
         if (lines_.size() != before)
             limits_told_ns_ = now_ns;
-    } catch (...) { // NOLINT(bugprone-empty-catch): no memory, and no line
+    } catch (...) { // NOLINT(bugprone-empty-catch): no memory, no line
     }
 }
 
@@ -114,7 +114,7 @@ void stream_log::look_at_end(const stroke_report& r) noexcept
             fmt::format(
                 "live stroke {}: {} above intensity 1 sounded as 1: the level asked for is the ceiling",
                 r.id.number, counted(r.held_points, "point")));
-    } catch (...) { // NOLINT(bugprone-empty-catch): no memory, and no line
+    } catch (...) { // NOLINT(bugprone-empty-catch): no memory, no line
     }
 }
 
@@ -126,18 +126,18 @@ void stream_log::end(const std::string& why) noexcept
         look_at_limits();
         add(why.empty() ? log_kind::info : log_kind::error,
             why.empty() ? "the stream has ended" : fmt::format("the stream has ended: {}", why));
-    } catch (...) { // NOLINT(bugprone-empty-catch): no memory, and no line
+    } catch (...) { // NOLINT(bugprone-empty-catch): no memory, no line
     }
 }
 
-// What is called may destroy the player, which looks and tells a last time.
+// Writes the lines. The function may destroy the player, which then looks and writes for the last time.
 void stream_log::tell() noexcept
 {
     const auto lines = std::exchange(lines_, {});
     for (const auto& [kind, text] : lines) {
         try {
             to_(kind, text);
-        } catch (...) { // NOLINT(bugprone-empty-catch): a log is no reason to end the stream
+        } catch (...) { // NOLINT(bugprone-empty-catch): a log must not end the stream
         }
     }
 }

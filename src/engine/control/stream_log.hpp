@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Tells the program's log what the counters of the stream say: the audio thread itself tells nobody.
+/// Messages to the program's log about the counters of the stream. The audio thread itself writes none.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace tactor::engine {
 
-/// The control thread's. look() gathers under the player's mutex, tell() calls without it.
+/// Log of the control thread. look() collects under the player's mutex; tell() calls the function without it.
 class stream_log {
 public:
     stream_log(log_function to, const link& l, const drive_limits& limits)
@@ -24,15 +24,15 @@ public:
     {
     }
 
-    /// Whether there is a function to tell; without one the other members do nothing.
+    /// Returns true if there is a function. Without one the other members do nothing.
     bool on() const noexcept { return static_cast<bool>(to_); }
     const log_function& function() const noexcept { return to_; }
 
-    /// What has changed since the last look, at a CLOCK_MONOTONIC.
+    /// Collects changes since the last look, at a CLOCK_MONOTONIC time.
     void look(const stream_status& s, std::int64_t now_ns) noexcept;
-    /// Notes points of a live stroke that asked for more than its level.
+    /// Notes points of a live stroke above its level.
     void look_at_end(const stroke_report& r) noexcept;
-    /// Notes once that the stream is over, and why; empty: it was stopped in order.
+    /// Notes once that the stream is over, and why. Empty: it was stopped in order.
     void end(const std::string& why) noexcept;
     void tell() noexcept;
 

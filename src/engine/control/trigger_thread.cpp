@@ -14,7 +14,7 @@ namespace tactor::engine {
 namespace {
 
 constexpr std::int64_t idle_ns = 60 * rt::ns_per_s;
-// The clock's line gets better as time goes by, and an xrun ends it.
+// Longest wait on one line of the clock: the line improves with time, and an xrun ends it.
 constexpr std::int64_t longest_wait_ns = 100'000'000;
 constexpr std::int64_t no_clock_ns = 2'000'000;
 
@@ -75,7 +75,7 @@ void trigger_thread::run() noexcept
     line_.set(false);
 }
 
-// How long nothing is to be done.
+// Handles the next pulse. Returns the time without work, ns.
 std::int64_t trigger_thread::step() noexcept
 {
     const clock_line line = link_.sync_clock.load();
@@ -89,7 +89,7 @@ std::int64_t trigger_thread::step() noexcept
     if (left > 0)
         return std::min(left, longest_wait_ns);
     const bool in_time = emitter_.await(due);
-    // It may have been called off meanwhile, and an xrun may have ended its epoch.
+    // The pulse may have been withdrawn meanwhile, and an xrun may have ended its epoch.
     if (board_.take(*p)) {
         if (!in_time)
             emitter_.miss();
@@ -161,7 +161,7 @@ void pulse_emitter::send(std::int64_t due_ns) noexcept
         return;
     }
     const std::int64_t on = time_.now();
-    // The first call may have paid for pages that were not there yet.
+    // The first call may include page faults.
     cost_ns_ = stats_.sent < 2 ? on - before : cost_ns_ + (on - before - cost_ns_) / 8;
     const double late = static_cast<double>(on - due_ns) * 1e-9;
     ++stats_.sent;

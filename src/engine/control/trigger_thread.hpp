@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Sync pulses on a line at the moment a frame is at the DAC, and the thread that sends them. Plan and
-/// emitter are pure but for the clock and the line that they are given, so that tests run them on virtual
-/// time.
+/// Sync pulses on a line at the time when a frame is at the DAC, and the thread that sends them. Plan and
+/// emitter are pure except for the clock and the line that they get, so that tests run them on virtual time.
 #pragma once
 
 #include <atomic>
@@ -20,7 +19,7 @@
 
 namespace tactor::engine {
 
-/// Counts since the beginning.
+/// Counts since the start.
 struct pulse_stats {
     std::uint64_t sent = 0;
     std::uint64_t missed = 0; ///< too late, or the line failed
@@ -28,28 +27,28 @@ struct pulse_stats {
     double worst_late_s = 0.0;
 };
 
-/// The pulses that wait; a score of many strokes may have thousands. The first ones stand on the board. One
-/// caller at a time.
+/// Pulses that wait; a score of many strokes may have thousands. The first ones are on the board. One caller
+/// at a time.
 class pulse_plan {
 public:
     explicit pulse_plan(pulse_board& b) noexcept : board_(b) {}
 
-    /// Adds the pulse for a stroke's first sample, at a frame of the running epoch, which `line` names;
-    /// forgets the pulses of other epochs. False where this frame does not come in the epoch.
+    /// Adds the pulse of a stroke's first sample, at a frame of the running epoch, which `line` gives, and
+    /// forgets the pulses of other epochs. Returns false if this frame is not in the epoch.
     bool add(stroke_id id, std::uint64_t frame, const clock_line& line);
-    /// Drops the pulses of a stroke that has ended. Where its first frame was played, they count as missed.
+    /// Drops the pulses of a stroke that has ended. If its first frame was played, they count as missed.
     void forget(stroke_id id, bool was_played);
-    /// Moves pulses to the board as far as it has places. False where none was moved.
+    /// Moves pulses to the board as far as it has places. Returns false if none moved.
     bool hand_over();
     std::uint64_t missed() const noexcept { return missed_; }
 
 private:
     pulse_board& board_;
-    std::set<pulse> waiting_; ///< for a place
+    std::set<pulse> waiting_; ///< pulses without a place
     std::uint64_t missed_ = 0;
 };
 
-/// The clock that the emitter needs.
+/// Clock that the emitter uses.
 class pulse_time {
 public:
     virtual ~pulse_time() = default;
@@ -57,12 +56,12 @@ public:
     virtual void sleep_until(std::int64_t time_ns) noexcept = 0;
 };
 
-/// A pulse that is later than this is not sent any more: a wrong time is worse than none.
+/// Delay after which a pulse is not sent any more: a wrong time is worse than none.
 inline constexpr std::int64_t latest_pulse_ns = 20'000'000;
-/// Time before a pulse is due from which on the emitter sleeps for this pulse alone.
+/// Time before a pulse is due at which the emitter starts to sleep for this pulse alone.
 inline constexpr std::int64_t pulse_lead_ns = 2'000'000;
 
-/// A sender of pulses, one after the other.
+/// Sender of pulses, one after the other.
 class pulse_emitter {
 public:
     pulse_emitter(enable_line& line, std::int64_t pulse_ns, pulse_time& time) noexcept
@@ -70,9 +69,9 @@ public:
     {
     }
 
-    /// Sleeps until the line is to be switched for a pulse at `due_ns`. False when that was too long ago.
+    /// Sleeps until the line must switch for a pulse at `due_ns`. Returns false if that was too long ago.
     bool await(std::int64_t due_ns) noexcept;
-    /// Sends what was awaited. Blocks until the pulse is over.
+    /// Sends that pulse. Blocks until the pulse is over.
     void send(std::int64_t due_ns) noexcept;
     /// Counts a pulse that came too late.
     void miss() noexcept { ++stats_.missed; }
@@ -82,26 +81,28 @@ private:
     enable_line& line_;
     std::int64_t pulse_ns_;
     pulse_time& time_;
-    std::int64_t cost_ns_ = 0; ///< of switching, smoothed
+    std::int64_t cost_ns_ = 0; ///< time of switching, smoothed
     pulse_stats stats_;
 };
 
-/// Pulses are not sent by the audio thread, because its periods would be their jitter. This thread stands
-/// above it, so it may not wait for any other: it has neither mutex nor heap in common with another thread.
-/// The members are for the control side, one caller at a time.
+/// Thread that sends pulses. The audio thread does not send them, because its periods would be their jitter.
+/// This thread has a higher priority, so it must not wait for any other: it shares neither mutex nor heap
+/// with another thread. The members are for the control side, one caller at a time.
 class trigger_thread {
 public:
-    /// Reads link::sync_clock for the due times. \throws std::system_error when no thread can be started.
+    /// Starts the thread, which reads link::sync_clock for the due times.
+    /// \throws std::system_error when no thread can be started.
     trigger_thread(link& l, enable_line& line, std::int64_t pulse_ns, const rt::thread_options& t);
-    /// The line is off after it.
+    /// Ends the thread; the line is off afterwards.
     ~trigger_thread();
     trigger_thread(const trigger_thread&) = delete;
     trigger_thread& operator=(const trigger_thread&) = delete;
 
-    /// Plans a pulse for when this frame of the stream is at the DAC, in the running epoch of `clock`.
+    /// Plans a pulse for the time when this frame of the stream is at the DAC, in the running epoch of
+    /// `clock`.
     void add(stroke_id id, std::uint64_t frame, const clock_line& clock);
     void forget(stroke_id id, bool was_played) { plan_.forget(id, was_played); }
-    /// Called when link::to_control was signalled: there may be places now for pulses that had none.
+    /// Moves pulses to free places of the board. Called after link::to_control was signalled.
     void hand_over();
     pulse_stats stats() noexcept;
 
@@ -113,7 +114,7 @@ private:
     link& link_;
     enable_line& line_;
     pulse_board board_;
-    pulse_plan plan_{board_}; ///< the control side's
+    pulse_plan plan_{board_}; ///< used by the control side
     rt::triple_buffer<pulse_stats> stats_;
     pulse_emitter emitter_;
     rt::event_fd wake_;

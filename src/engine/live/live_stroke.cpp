@@ -54,7 +54,7 @@ void check(const live_options& o, unsigned rate)
         throw refused("ramp_s", fmt::format("a ramp of {} s", *o.render.ramp_s), "give 0 to 10 s");
 }
 
-/// What of a plan says how it sounds.
+/// Returns a plan with the members that determine its sound.
 plan heard_of(const plan_options& o)
 {
     if (o.wave.kind == waveform_kind::recording && o.wave.texture == texture_kind::length)
@@ -105,7 +105,7 @@ engine::live_setup live_setup(const stream_setup& s, const live_options& o)
     return l;
 }
 
-/// Says which thread is in a model, for as long as it lives.
+/// Mark of the thread that is in a model, while it lives.
 class asked_now {
 public:
     explicit asked_now(std::atomic<std::thread::id>& who) noexcept : who_(who)
@@ -120,7 +120,7 @@ private:
     std::atomic<std::thread::id>& who_;
 };
 
-/// Points may come anywhere: all must have a level.
+/// Returns all tactors' levels. A point may come anywhere, so all must have one.
 std::vector<synth::tactor_level> live_levels(const array& a, const render_options& o)
 {
     const std::vector<std::size_t> unmeasured = synth::unmeasured_tactors(a, o);
@@ -186,7 +186,8 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
     return true;
 }
 
-// A point may be refused; a model that fails says nothing any more of what is to be felt.
+// Writes the course to a place. A model may refuse a point; but after another failure nobody knows what
+// should be felt, so the stroke ends.
 bool live_stroke::impl::course_of(point p, double intensity)
 {
     const auto failed = [this](std::string_view what) {
@@ -220,14 +221,14 @@ bool live_stroke::impl::course_to(const engine::smoothing::place& p, engine::liv
     const std::span<double> all(course.amplitudes);
     if (window == 0)
         return amplitudes_at(p.at, p.intensity, all);
-    engine::smoothing next = smooth; // where it stays should a model throw
+    engine::smoothing next = smooth; // keeps `smooth` if a model throws
     next.to(course.start, p);
     course.length = next.settles_in();
     if (course.length != 0)
         course.knots = most_knots;
     bool limited = false;
     const std::size_t channels = limits.size();
-    // From the end, which has the intensity that was given: it is named should it be wrong.
+    // Begins at the end, which has the given intensity, so that an error names that one.
     for (std::size_t k = course.knots; k-- > 0;) {
         const std::uint64_t after = course.knots == 1 ? 0 : course.length * k / (course.knots - 1);
         const auto there = next.at(course.start + after);

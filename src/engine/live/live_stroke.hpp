@@ -26,16 +26,17 @@ namespace tactor {
 inline namespace v0 {
 
 struct live_stroke::impl {
-    /// \throws error (bad_input) for options that cannot be.
+    /// Prepares the stroke.
+    /// \throws error (bad_input) for impossible options.
     impl(stroke_id number, const array& a, const layout& l, const stream_setup& s, const live_options& o);
 
     bool to(point p, double intensity, std::optional<std::int64_t> at_ns = {});
-    /// Writes the amplitudes of a place, by channel; returns whether a limit held one. Where the model gives
-    /// more than it was asked for, `excess` says so.
+    /// Writes the amplitudes of a place, by channel. Returns true if a limit held one. If the model gives
+    /// more than the intensity, `excess` says so.
     bool amplitudes_at(point p, double intensity, std::span<double> by_channel);
-    /// The same for the course from where it is to a place; the stroke ends where the model fails.
+    /// Writes the amplitudes from the current place to another one. The stroke ends if the model fails.
     bool course_of(point p, double intensity);
-    /// The same for the course on the way to a place.
+    /// Writes the amplitudes from the current place to another one into `course`.
     bool course_to(const engine::smoothing::place& p, engine::live_course& course);
 
     stroke_id id;
@@ -50,12 +51,12 @@ struct live_stroke::impl {
     std::uint64_t window; ///< frames; 0: places are not smoothed
 
     std::mutex mutex; ///< between producers
-    /// Whose thread is in the model, which may be a program's own: there it would wait for itself.
+    /// Thread that is in the model, which may be the program's: it must not wait for itself there.
     std::atomic<std::thread::id> asking{};
     engine::smoothing smooth;
     std::size_t most_knots;
     std::vector<drive> drives;
-    std::string excess; ///< why the stroke is about to fail; handed on where it does
+    std::string excess; ///< reason why the stroke is about to fail
     std::atomic<std::uint64_t> points{0};
     std::atomic<std::uint64_t> outside_points{0};
     std::atomic<std::uint64_t> limited_points{0};

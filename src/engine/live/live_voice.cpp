@@ -10,7 +10,7 @@
 namespace tactor::engine {
 namespace {
 
-// One more point, which took so long.
+// Adds one more point with its delay.
 void count(live_delay& d, std::int64_t ns) noexcept
 {
     const double s = 1e-9 * static_cast<double>(ns);
@@ -24,7 +24,7 @@ void count(live_delay& d, std::int64_t ns) noexcept
 
 std::size_t live_drives(std::size_t channels, unsigned period_frames, unsigned rate) noexcept
 {
-    // Of one period: two lines and a fade, or the bursts that may begin in it and those that still sound.
+    // In one period: two lines and a fade, or the bursts that may begin in it and those that still sound.
     const double bursts = 2.0 + period_frames / (least_live_soa_s * rate);
     return static_cast<std::size_t>(std::ceil(std::max(3.0, bursts))) *
            ((channels + synth::drives_per_event - 1) / synth::drives_per_event);
@@ -41,8 +41,8 @@ live_voice::live_voice(const live_setup& s)
 
 void live_voice::ask(wish w) noexcept
 {
-    // The first counts, but for a cancel, which may still shorten an end, and a failure, which has to be
-    // told.
+    // The first request counts, with two exceptions: a cancel may still shorten an end, and a failure must be
+    // reported.
     wish now = asked_.load(std::memory_order_relaxed);
     while (now < w && !asked_.compare_exchange_weak(now, w, std::memory_order_release)) {
     }
@@ -60,7 +60,7 @@ void live_voice::wait(std::uint64_t frames) noexcept
         has_point_ = true;
         idle_ = 0;
     } else if (asked() == wish::go_on) {
-        idle_ += frames; // a producer that has ended it owes no more points
+        idle_ += frames; // after its end the producer owes no more points
     }
 }
 
@@ -94,13 +94,14 @@ bool live_voice::render(synth::mixer& m, std::uint64_t frames, std::uint64_t off
     } else {
         fits = follow(m, frames, t);
     }
-    // A burst takes the newest point; until then it waits.
+    // A burst takes the newest point; until then the point waits.
     idle_ = setup_.bursts && points_.has_news() ? 0 : idle_ + frames;
     rendered_.store(m.position() + frames - base_, std::memory_order_relaxed);
     return fits;
 }
 
-// Linear from the amplitudes of one point to those of the next, the carrier runs on.
+// Renders continuous strokes: linear from the amplitudes of one point to those of the next, while the carrier
+// runs on.
 bool live_voice::follow(synth::mixer& m, std::uint64_t frames, const dac_times& t) noexcept
 {
     const std::uint64_t end = m.position() + frames;
@@ -131,7 +132,7 @@ bool live_voice::follow(synth::mixer& m, std::uint64_t frames, const dac_times& 
     return fits;
 }
 
-// The newest point, if one has come: what is rendered from `at` on has it.
+// Takes the newest point, if one has come. Frames from `at` on have it.
 void live_voice::take(std::uint64_t at, const dac_times& t) noexcept
 {
     if (!points_.fetch())
@@ -149,7 +150,7 @@ live_delay live_voice::delay(std::int64_t started_ns) const noexcept
     return all;
 }
 
-// To what the newest course has at a frame of the stroke.
+// Sets the amplitudes that the newest course has at a frame of the stroke.
 void live_voice::aim(std::uint64_t frame) noexcept
 {
     const live_course& c = points_.value();
@@ -209,7 +210,7 @@ double live_voice::amplitude(std::size_t channel) const noexcept
     return from_[channel] + (to_[channel] - from_[channel]) * part;
 }
 
-// `part` gives the amplitudes of a channel at both ends of the event.
+// Adds an event by channels. `part` returns the amplitudes of a channel at both ends of the event.
 template <typename Part>
 bool live_voice::add(synth::mixer& m, synth::drive_event e, Part part) noexcept
 {

@@ -11,7 +11,7 @@ void smoothing::to(std::uint64_t frame, const place& p)
         given_.back().where = p;
     else
         given_.push_back({frame, p});
-    // The window reaches back into the last that is older than it, and no further.
+    // Keeps the newest place that is older than the window, and drops older ones.
     const auto counts = std::find_if(given_.begin() + 1, given_.end(),
                                      [&](const given& g) { return g.from + window_ > frame; });
     given_.erase(given_.begin(), counts - 1);
@@ -21,7 +21,7 @@ smoothing::place smoothing::at(std::uint64_t frame) const
 {
     place mean{{0.0, 0.0}, 0.0};
     point silent{0.0, 0.0};
-    double touched = 0.0; // part of the window
+    double touched = 0.0; // touched part of the window
     std::uint64_t left = window_;
     std::uint64_t end = frame;
     for (auto g = given_.rbegin(); g != given_.rend() && left != 0; ++g) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Points that come in bursts, as an even movement.
+/// Smoothing of points that come in bursts into an even movement.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace tactor::engine {
 
-/// The place of a stroke is the mean of the places that it was told, over a window that ends now. So a step
-/// becomes an even movement that takes one window, and an even movement is half a window late. Where the
-/// intensity is 0 nothing touches: such a place counts only while all places in the window are such.
+/// Place of a stroke as the mean of its given places over a window that ends now. So a step becomes an even
+/// movement that takes one window, and an even movement is half a window late. At intensity 0 nothing touches
+/// the skin: such a place counts only while all places in the window have it.
 class smoothing {
 public:
     struct place {
@@ -23,12 +23,12 @@ public:
     /// \param window frames, 1 or more
     explicit smoothing(std::uint64_t window) : window_(window) {}
 
-    /// From this frame on the stroke is told to be at `p`. Frames do not go back. For the same frame the
-    /// newest place counts; before the first frame it has always been at the first place.
+    /// Puts the stroke at `p` from this frame on. Frames do not go back. For the same frame the newest place
+    /// counts. Before the first frame it has always been at the first place.
     void to(std::uint64_t frame, const place& p);
-    /// Where the stroke is at a frame after the newest, if no other place comes.
+    /// Returns the place of the stroke at a frame after the newest, if no other place comes.
     place at(std::uint64_t frame) const;
-    /// Frames from the newest on until the stroke is at its place.
+    /// Returns the frames from the newest on until the stroke is at its place.
     std::uint64_t settles_in() const noexcept { return given_.size() < 2 ? 0 : window_; }
 
 private:
@@ -38,7 +38,7 @@ private:
     };
 
     std::uint64_t window_;
-    std::vector<given> given_; ///< those that still count, the oldest first
+    std::vector<given> given_; ///< places that still count, the oldest first
 };
 
 } // namespace tactor::engine

@@ -10,7 +10,6 @@ namespace tactor::pcm {
 
 /// Returns why this text is more than the name of a device; empty if it is not. Names are
 ///
-///
 ///     NAME = BASE [":" ARGUMENT {"," ARGUMENT}] | "plug:" ["SLAVE="] (INNER | "'" NAME "'")
 ///     ARGUMENT = [KEY "="] VALUE
 ///
