@@ -50,7 +50,7 @@ bool is_port(std::string_view text)
            std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-// "[::1]:4003" as "::1" and "4003"; the port is empty where none is said, both are where it is nonsense.
+// Splits "[::1]:4003" into "::1" and "4003". The port is empty if there is none; both are empty for nonsense.
 std::pair<std::string_view, std::string_view> split(std::string_view host)
 {
     const bool bracketed = host.starts_with('[');
@@ -60,7 +60,7 @@ std::pair<std::string_view, std::string_view> split(std::string_view host)
     const std::string_view name = bracketed ? host.substr(1, end - 1) : host.substr(0, end);
     const std::string_view rest = host.substr(bracketed ? end + 1 : end);
     if (bracketed && name.find(':') == std::string_view::npos)
-        return {}; // only an address of IPv6 is written so
+        return {}; // only IPv6 addresses have brackets
     if (rest.empty())
         return {name, {}};
     if (rest.front() != ':' || !is_port(rest.substr(1)))
@@ -70,7 +70,7 @@ std::pair<std::string_view, std::string_view> split(std::string_view host)
 
 bool same_address(std::string_view a, std::string_view b)
 {
-    // An address would be read up to a zero, and what follows be anything.
+    // make_address() reads up to a zero, so anything could follow.
     if (a.find('\0') != std::string_view::npos)
         return false;
     boost::system::error_code none;
@@ -81,7 +81,7 @@ bool same_address(std::string_view a, std::string_view b)
     return !none && plain(x) == plain(y);
 }
 
-// Browsers leave out the port of their scheme.
+// Port that browsers leave out: the default of their scheme.
 constexpr std::string_view usual_port = "80";
 
 bool listed(std::string_view host, std::string_view port, const std::vector<std::string>& allowed)

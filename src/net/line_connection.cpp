@@ -71,7 +71,7 @@ void line_connection::read()
                             });
 }
 
-// A Unix socket says when its other end is closed as a whole; one of TCP when it is written to.
+// Notices that the other end is gone. A Unix socket reports it when the peer closes, TCP when we write.
 void line_connection::watch()
 {
     socket_.async_wait(socket_type::wait_error,
@@ -93,7 +93,8 @@ bool line_connection::hold()
     return unfinished_.hold(partial_.capacity() + blocks_.size() * block_bytes);
 }
 
-// The end of the input ends a line, too: what was cut off is no JSON, and is told so.
+// Handles the end of the input, which also ends a line: an incomplete one is no JSON, so the peer gets an
+// error.
 void line_connection::all_read()
 {
     if (!reading_)
@@ -104,7 +105,7 @@ void line_connection::all_read()
     next_line();
 }
 
-// Handles one line, then lets others have their turn.
+// Handles one line, then gives others their turn.
 void line_connection::next_line()
 {
     if (closed_ || !reading_)
@@ -197,17 +198,17 @@ void line_connection::handled(std::size_t size, bool go_on)
                       [self = shared_from_this()] { self->within_memory([&] { self->next_line(); }); });
 }
 
-// Keeps the beginning of a line, if any.
+// Keeps the start of a line, if any.
 void line_connection::no_line()
 {
     partial_.erase(0, std::exchange(begin_, 0));
     if (blocks_.empty() && partial_.empty())
-        std::string().swap(partial_); // which gives its memory back
+        std::string().swap(partial_); // returns its memory
     std::size_t size = partial_.size();
     for (const std::string& b : blocks_)
         size += b.size();
     const bool may_end = !partial_.empty() && partial_.back() == '\r';
-    // Blocks, and no string that is copied as it grows: all peers' may grow in one turn.
+    // Stores blocks instead of one string that is copied as it grows: all peers' may grow in one turn.
     if (partial_.size() + chunk_bytes > block_bytes)
         blocks_.push_back(std::exchange(partial_, {}));
     scanned_ = partial_.size();
@@ -266,7 +267,7 @@ void line_connection::send(std::string line)
         write();
 }
 
-// Not here: whoever sends may be in the middle of going through all peers.
+// Does not close here, because the caller may be iterating over all peers.
 void line_connection::drop_unfinished()
 {
     blocks_ = {};
@@ -338,7 +339,7 @@ void line_connection::close()
     deadline_.cancel();
     linger_.cancel();
     boost::system::error_code ignored;
-    // What the peer sent and nobody read would turn our last words into a reset.
+    // Reads what is left: unread input would turn the last message into a reset.
     socket_.shutdown(boost::asio::socket_base::shutdown_send, ignored);
     for (std::size_t drained = 0; drained < block_bytes && socket_.available(ignored) != 0 && !ignored;)
         drained += socket_.read_some(boost::asio::buffer(chunk_), ignored);

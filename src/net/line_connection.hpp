@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// One peer on a stream socket that sends and is sent lines, within limits. One thread: the context's.
+/// A peer on a stream socket that exchanges lines with the server, within limits. One thread: the context's.
 #pragma once
 
 #include <chrono>
@@ -22,11 +22,11 @@ namespace tactor::net {
 
 struct line_limits {
     std::size_t message_bytes = 1U << 20;
-    double message_s = 10.0; ///< for the first message to come, and for each to be complete
+    double message_s = 10.0; ///< for the first message, and for each message to be complete
     std::size_t waiting_bytes = 4U << 20;
 };
 
-/// For timers.
+/// Converts seconds for timers.
 inline std::chrono::steady_clock::duration steady_seconds(double seconds)
 {
     return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
@@ -36,14 +36,14 @@ inline std::chrono::steady_clock::duration steady_seconds(double seconds)
 /// Bytes of a message that is handled at once. A larger one waits for its turn.
 constexpr std::size_t small_message = 2048;
 
-/// Why a peer is given up.
+/// Reason why a connection is given up.
 enum class line_fault {
     too_long, ///< a line beyond message_bytes
-    too_slow, ///< a line beyond message_s
+    too_slow, ///< unfinished messages of all peers are too many, and this peer has most
     crowded,  ///< unfinished messages of all peers are too many, and this one has most
-    unread,   ///< it does not read what it is sent
-    memory,   ///< there is not enough memory for what it sends
-    gone,     ///< the socket failed, or everything is said
+    unread,   ///< it does not read its messages
+    memory,   ///< there is not enough memory for its input
+    gone,     ///< the socket failed, or everything is written
 };
 
 class line_connection : public std::enable_shared_from_this<line_connection> {
@@ -51,20 +51,22 @@ public:
     using socket_type = boost::asio::generic::stream_protocol::socket;
 
     struct handlers {
-        /// A line without its end. False: nothing more is read.
+        /// Handles a line, without its end. Returns false to stop reading.
         std::function<bool(std::string_view)> line;
         /// The peer sends no more; it may still read.
         std::function<void()> input_ended;
         /// Called before the connection closes; send() still works for `too_long` and `too_slow`.
         std::function<void(line_fault)> fault;
-        /// Once, when the socket is closed. The connection may be forgotten.
+        /// Called once, when the socket is closed. The connection may be forgotten.
         std::function<void()> closed;
-        /// Whether what came was the first message that is owed; none: any that is not empty is.
+        /// Returns true once the first message, which the peer owes, has come. None: any message that is not
+        /// empty counts.
         std::function<bool()> met = {};
-        /// A line above `small_message`, on its turn; the next one is handled when `done` is called, with
-        /// what `line` would return. None: `line` has them all.
+        /// Handles a line above `small_message`, on its turn. The next line is handled when `done` is called
+        /// with the result that `line` would return. None: `line` handles all.
         std::function<void(std::string text, std::function<void(bool)> done)> large = {};
-        /// Tests for a small line that is handled at once, before those of others. None: none is.
+        /// Returns true for a small line that is handled at once, before those of others. None: no line is
+        /// urgent.
         std::function<bool(std::string_view)> urgent = {};
     };
 
@@ -74,12 +76,12 @@ public:
     line_connection& operator=(const line_connection&) = delete;
 
     void start(handlers h);
-    /// Queues one line; the end is added. A peer that lets too much wait is dropped.
+    /// Queues a line and adds its end. Drops a peer that lets too much wait.
     void send(std::string line);
-    /// Reads nothing more, closes when all is written, or after a second.
+    /// Stops reading, and closes when everything is written, or after a second.
     void finish();
     void close();
-    /// Bytes that the peer has not taken.
+    /// Returns the bytes that the peer has not read.
     std::size_t waiting() const noexcept { return unread_.held(); }
 
 private:
@@ -114,10 +116,10 @@ private:
     boost::asio::steady_timer deadline_;
     boost::asio::steady_timer linger_;
     std::vector<char> chunk_;
-    std::vector<std::string> blocks_; ///< the beginning of a line that is longer than one
+    std::vector<std::string> blocks_; ///< the start of a line that is longer than a block
     std::string partial_;             ///< the rest of it, or short lines
-    std::size_t begin_ = 0;           ///< of the next line in it
-    std::size_t scanned_ = 0;         ///< no line ends between begin_ and there
+    std::size_t begin_ = 0;           ///< start of the next line in it
+    std::size_t scanned_ = 0;         ///< no line ends between begin_ and this place
     std::deque<std::string> queue_;
     std::size_t in_flight_ = 0; ///< lines
     bool armed_ = false;

@@ -49,7 +49,8 @@ const sockaddr* generic(const sockaddr_un& a)
     return reinterpret_cast<const sockaddr*>(&a); // NOLINT(cppcoreguidelines-pro-type-reinterpret-cast)
 }
 
-// Nobody listens there any more, or there is nothing: then the name may be used. Else an error.
+// Removes a socket at which no process listens, so that its name is free. Throws if a process does, or for
+// other files.
 void make_free(const std::string& path)
 {
     struct stat s {};
@@ -63,7 +64,7 @@ void make_free(const std::string& path)
                     "choose another name, or remove it");
     const owned_fd probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     const sockaddr_un a = unix_address(path);
-    // EAGAIN: its queue is full, so somebody has it.
+    // EAGAIN: its queue is full, so a process listens.
     if (::connect(probe.get(), generic(a), sizeof a) == 0 || errno == EAGAIN) {
         ucred who{};
         socklen_t n = sizeof who;
@@ -98,7 +99,7 @@ struct bound_to {
 bound_to local(int fd)
 {
     bound_to b;
-    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): as sockets want it
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): the socket API requires it
     if (::getsockname(fd, reinterpret_cast<sockaddr*>(&b.at), &b.size) != 0)
         b.at.ss_family = AF_UNSPEC;
     return b;
@@ -117,7 +118,7 @@ bound_to local(int fd)
                          code);
 }
 
-// A stream listens.
+// Binds a socket; a stream also listens.
 owned_fd bind_internet(const host_and_port& at, const std::string& what, int type)
 {
     addrinfo hints{};
@@ -132,7 +133,7 @@ owned_fd bind_internet(const host_and_port& at, const std::string& what, int typ
     owned_fd fd(::socket(found->ai_family, type | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     const int yes = 1;
     const bool stream = type == SOCK_STREAM;
-    // Two that take datagrams at one port would take each other's.
+    // No SO_REUSEADDR for datagrams: two sockets at one port would take each other's.
     if (!fd || (stream && ::setsockopt(fd.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) != 0) ||
         ::bind(fd.get(), found->ai_addr, found->ai_addrlen) != 0 ||
         (stream && ::listen(fd.get(), SOMAXCONN) != 0))
@@ -169,7 +170,7 @@ owned_fd listen_unix(const std::string& path, mode_t mode, std::optional<gid_t> 
     const sockaddr_un a = unix_address(path);
     const auto slash = path.rfind('/');
     const std::string folder = slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
-    // Two servers that start at once look and bind one after the other.
+    // Servers that start at the same time look and bind one after the other.
     const owned_fd lock(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (!lock) {
         const int code = errno;
@@ -181,7 +182,7 @@ owned_fd listen_unix(const std::string& path, mode_t mode, std::optional<gid_t> 
     detail::lock_folder(lock, tries);
     make_free(path);
     owned_fd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-    // The name gets the socket's own mode, less what the umask takes: never more than this, not for a moment.
+    // The name gets the socket's own mode, less the umask: never more than this, not for a moment.
     if (!fd || ::fchmod(fd.get(), S_IRUSR | S_IWUSR) != 0 || ::bind(fd.get(), generic(a), sizeof a) != 0)
         refused(what, errno);
     const bool given = !group || ::lchown(path.c_str(), static_cast<uid_t>(-1), *group) == 0;
@@ -245,7 +246,7 @@ bool is_tcp_listener(int fd)
 bool is_bound_udp(int fd)
 {
     const bound_to b = local(fd);
-    sockaddr_in four{}; // the port stands at the same place in both families
+    sockaddr_in four{}; // the port is at the same place in both families
     std::memcpy(&four, &b.at, sizeof four);
     const bool internet = b.at.ss_family == AF_INET || b.at.ss_family == AF_INET6;
     return internet && option(fd, SO_TYPE) == SOCK_DGRAM && four.sin_port != 0;

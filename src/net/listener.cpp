@@ -75,7 +75,8 @@ void listener::take()
         return start();
     if ((errno == EMFILE || errno == ENFILE) && turn_away())
         return start();
-    // Out of memory, or somebody took the spare one: asking again at once would only take all time.
+    // Memory ran out, or another process took the spare descriptor. An attempt without a pause would only
+    // take time.
     pause_.expires_after(accept_pause);
     pause_.async_wait([this](const boost::system::error_code& e) {
         if (!e)
@@ -83,7 +84,7 @@ void listener::take()
     });
 }
 
-// Tells the next one why, as far as its socket takes it.
+// Accepts on the spare descriptor, sends the refusal as far as the socket takes it, and closes.
 bool listener::turn_away() noexcept
 {
     keep_spare();

@@ -15,13 +15,13 @@
 
 namespace tactor::net {
 
-/// A listening socket. Accepts one after the other. Whoever comes when no descriptors are left is told so,
-/// over one that is kept for that, and closed.
+/// A listening socket that accepts connections one after the other. When no descriptors are left, it accepts
+/// a client on a spare one, sends a refusal and closes.
 class listener {
 public:
     using socket_type = boost::asio::generic::stream_protocol::socket;
 
-    /// `fd` stays its owner's; `when_full` is what is said for want of descriptors.
+    /// Listens on `fd`, which stays its owner's. `when_full`: refusal when descriptors run out.
     listener(boost::asio::io_context& io, int fd, std::string when_full,
              std::function<void(socket_type)> taken);
     ~listener();

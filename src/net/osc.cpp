@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bundles, which liblo reads only in a server of its own, as it likes and when it likes.
+// Bundles. liblo reads them only in its own server, in its own order and time.
 #include "net/osc.hpp"
 
 #include <bit>
@@ -21,7 +21,7 @@ constexpr std::size_t size_bytes = 4;
     throw error(error_kind::bad_input, "packet", std::move(why), "OSC 1.0: a message or a bundle");
 }
 
-// Big endian.
+// Reads a big-endian number.
 std::uint64_t number(std::string_view bytes)
 {
     std::uint64_t n = 0;
@@ -30,8 +30,8 @@ std::uint64_t number(std::string_view bytes)
     return n;
 }
 
-// NTP's: seconds since 1900, or since 2036 where their first bit is not set, and a fraction. 1 is "at once",
-// and so is what some send instead.
+// Converts a time of NTP: seconds since 1900, or since 2036 if their first bit is not set, and a fraction. 1
+// means "at once", and so do the zeros that some send instead.
 std::optional<std::int64_t> unix_time(std::uint64_t tag)
 {
     constexpr std::uint64_t from_1900 = 2'208'988'800;

@@ -13,18 +13,18 @@
 
 namespace tactor::net {
 
-/// A value of a type that is not read, by its tag: a blob, a colour, nil.
+/// A value of a type that is not read, with its tag: a blob, a colour, nil.
 struct osc_other {
     char tag = '\0';
 };
 
-/// What i and h, f and d, s and S hold.
+/// Value of an argument: of types i and h, f and d, s and S.
 using osc_value = std::variant<std::int64_t, double, std::string, osc_other>;
 
 struct osc_message {
     std::string address;
     std::vector<osc_value> values = {};
-    /// Time tag of the innermost bundle that it is in, ns since 1970; none: at once.
+    /// Time tag of the innermost bundle around it, ns since 1970; none: at once.
     std::optional<std::int64_t> unix_ns = {};
 };
 
@@ -33,17 +33,18 @@ struct osc_limits {
     std::size_t messages = 256; ///< in one packet
 };
 
-/// Whether this build knows OSC: the functions below refuse where it does not.
+/// Returns true if this build has OSC. If not, the functions below throw.
 bool osc_is_built() noexcept;
 
-/// All messages of a packet, in order: of a broken one none.
-/// \throws error (bad_input): what is wrong with it.
+/// Returns all messages of a packet, in order.
+/// \throws error (bad_input) for a broken packet.
 std::vector<osc_message> parse_osc(std::string_view packet, const osc_limits& l = {});
 
-/// A packet of one message: numbers as i and f, without what does not fit in there, and s.
+/// Returns a packet of one message: numbers as i and f, without those that do not fit, and text as s.
 std::string osc_packet(const std::string& address, const std::vector<osc_value>& values);
 
-/// A message, not a bundle, as it stands in a packet, by liblo. \throws error (bad_input).
+/// Parses a message (not a bundle) of a packet by liblo.
+/// \throws error (bad_input).
 osc_message parse_osc_message(std::string_view bytes);
 
 } // namespace tactor::net

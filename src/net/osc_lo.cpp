@@ -25,7 +25,7 @@ using owned_message = std::unique_ptr<std::remove_pointer_t<lo_message>, freed>;
     throw error(error_kind::bad_input, "message", std::move(why), "OSC 1.0: an address, types, values");
 }
 
-// Values of 8 bytes stand at multiples of 4.
+// Reads a value at any address: values of 8 bytes are at multiples of 4.
 template <typename T>
 T read(const lo_arg* at)
 {
@@ -47,7 +47,7 @@ osc_value value_of(char tag, const lo_arg* at)
         return read<double>(at);
     case 's':
     case 'S':
-        return std::string(static_cast<const char*>(static_cast<const void*>(at))); // wherever it stands
+        return std::string(static_cast<const char*>(static_cast<const void*>(at))); // at any address
     default:
         return osc_other{tag};
     }
@@ -79,12 +79,12 @@ osc_message parse_osc_message(std::string_view bytes)
 {
     if (!bytes.starts_with('/'))
         refused("its address does not begin with /");
-    // What old senders say without values has no types either.
+    // Old senders send no types in a message without values.
     const std::size_t end = bytes.find('\0');
     if (end != std::string_view::npos && bytes.size() == (end / 4 + 1) * 4 &&
         bytes.find_first_not_of('\0', end) == std::string_view::npos)
         return {.address = std::string(bytes.substr(0, end))};
-    std::string copy(bytes); // which liblo may write to
+    std::string copy(bytes); // liblo may write to it
     int failed = 0;
     const owned_message m(lo_message_deserialise(copy.data(), copy.size(), &failed));
     if (!m)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Without liblo.
+// Replacement without liblo.
 #include <tactor/error.hpp>
 
 #include "net/osc.hpp"

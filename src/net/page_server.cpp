@@ -18,7 +18,7 @@ namespace {
 
 namespace asio = boost::asio;
 
-// A page, its reloads and some that look in by mistake.
+// WebSockets: a page, its reloads and a few visitors by mistake.
 constexpr std::size_t most_visitors = 16;
 constexpr std::size_t most_connections = 32;
 constexpr line_limits page_limits{.message_bytes = 4096, .message_s = 10.0, .waiting_bytes = 1U << 20};
@@ -54,7 +54,7 @@ struct page_server::state {
 void page_server::state::take(listener::socket_type s)
 {
     if (all.size() >= most_connections)
-        return turn_away(s.native_handle()); // and the socket closes
+        return turn_away(s.native_handle()); // then the socket closes
     auto stream = web_socket(io, std::move(s));
     if (!stream)
         return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// One document for browsers, and a WebSocket to each that shows it.
+/// A document for browsers, and a WebSocket to each that shows it.
 #pragma once
 
 #include <functional>
@@ -12,31 +12,32 @@
 
 namespace tactor::net {
 
-/// Serves on a thread of its own, which inherits the signals that its maker has blocked.
+/// Server on its own thread, which inherits the signals that its maker has blocked.
 class page_server {
 public:
-    /// A WebSocket; none has the number of another.
+    /// Number of a WebSocket. Numbers are not reused.
     using visitor = unsigned;
 
-    /// Called on the page's thread.
+    /// Handlers, called on the page's thread.
     struct handlers {
-        /// A text message. False: the connection is to be closed.
+        /// Handles a text message. Returns false to close the connection.
         std::function<bool(visitor, std::string_view)> said;
-        /// It is gone.
+        /// The visitor is gone.
         std::function<void(visitor)> left;
     };
 
-    /// `listening` is a TCP socket; the document is as make_page() wants it, and must live as long.
+    /// Starts the server. `listening` is a TCP socket. `document` is as make_page() needs it, and must live
+    /// as long.
     page_server(owned_fd listening, std::string_view document, handlers h);
-    /// Ends all connections, when what was sent is through, or after a second.
+    /// Ends all connections when everything is sent, or after a second.
     ~page_server();
     page_server(const page_server&) = delete;
     page_server& operator=(const page_server&) = delete;
 
-    /// Any thread. Messages to a visitor come in the order in which they were sent; to one that is gone they
-    /// are lost.
+    /// Sends a text. Any thread. Messages to a visitor keep their order; those to a visitor that is gone are
+    /// lost.
     void send(visitor to, std::string text);
-    /// Any thread: closes the connection behind what was sent.
+    /// Closes the connection after the sent messages. Any thread.
     void finish(visitor v);
 
     struct state;

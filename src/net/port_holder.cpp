@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Adds what the links in /proc/PID/fd of these sockets say.
+// Adds the names of these sockets as links in /proc/PID/fd show them.
 void add_sockets(const std::string& table, const std::string& port, bool stream, std::set<std::string>& to)
 {
     constexpr const char* listens = "0A";

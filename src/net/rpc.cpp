@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t most_id_bytes = 80;
 
-// Counted in the text, so that nothing is built of what is too deep.
+// Returns true if a text nests deeper than `most`. Counts in the text, so that nothing is built of a text
+// that is too deep.
 bool nests_deeper(std::string_view text, std::size_t most)
 {
     std::size_t depth = 0;
@@ -37,8 +38,8 @@ bool nests_deeper(std::string_view text, std::size_t most)
     return false;
 }
 
-// Numbers that no double holds become null, which is no number either: so the message can be answered by its
-// id.
+// Replaces numbers that no double holds with null. Null is no number either, but the message can be answered
+// by its id.
 std::string without_overflows(std::string_view text)
 {
     std::string out;
@@ -87,7 +88,7 @@ std::variant<rpc_request, rpc_refusal> read_request(json& j, std::string_view an
     rpc_request r;
     const auto id = j.find("id");
     r.wants_reply = id != j.end();
-    // A reply repeats it, whole.
+    // A reply repeats the whole id.
     const bool text =
         r.wants_reply && id->is_string() && id->get_ref<const std::string&>().size() <= most_id_bytes;
     const bool usable = text || (r.wants_reply && (id->is_number() || id->is_null()));
@@ -107,7 +108,7 @@ std::variant<rpc_request, rpc_refusal> read_request(json& j, std::string_view an
         return invalid(r.id, R"(its "method" is no text)");
     r.method = method->get<std::string>();
     const auto params = j.find("params");
-    if (params == j.end() || params->empty()) // null, too, is empty
+    if (params == j.end() || params->empty()) // null is empty, too
         return r;
     if (!params->is_structured())
         return invalid(r.id, R"(its "params" are no object)");
@@ -122,8 +123,8 @@ rpc_message alone(rpc_refusal r)
     return m;
 }
 
-// Looks for a request with this method where a message is refused; builds nothing of what it reads, and reads
-// no further than the first error.
+// Search for a request with this method in a message that is refused. Builds nothing, and stops at the first
+// error.
 class method_finder final : public nlohmann::json_sax<json> {
 public:
     explicit method_finder(std::string_view method) : method_(method) {}
@@ -176,7 +177,7 @@ private:
     std::string_view method_;
     std::size_t depth_ = 0;
     bool batch_ = false;
-    bool names_method_ = false; ///< the value that comes next
+    bool names_method_ = false; ///< the next value is the method
     bool found_ = false;
 };
 
@@ -211,7 +212,7 @@ rpc_message parse_rpc(std::string_view text, const rpc_limits& l)
     try {
         j = parsed(text);
     } catch (const json::exception& e) {
-        // Without the library's own name and number, which help nobody.
+        // Removes the library's own name and number.
         std::string_view why = e.what();
         why.remove_prefix(std::min(why.find("] ") + 2, why.size()));
         std::string plain;

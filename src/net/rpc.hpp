@@ -14,12 +14,12 @@
 
 namespace tactor::net {
 
-/// What was received: objects are maps, so that a message of many keys takes no quadratic time.
+/// A received message. Objects are maps, so that a message of many keys takes no quadratic time.
 using json = nlohmann::json;
-/// What is sent: in the order in which it is written.
+/// A message to send, in the order in which it is written.
 using reply_json = nlohmann::ordered_json;
 
-/// Those of the standard, and ours.
+/// Error codes of the standard and of tactor.
 enum rpc_code : int {
     code_parse_error = -32700,
     code_invalid_request = -32600,
@@ -32,11 +32,11 @@ enum rpc_code : int {
     code_no_token = -32003,
 };
 
-/// What becomes an error object, with data {kind what why hint}.
+/// An error, which becomes an error object with data {kind what why hint}.
 struct rpc_fault {
     int code = code_internal;
     std::string kind = {};
-    std::string what = {}; ///< the parameter that it is about
+    std::string what = {}; ///< parameter at fault
     std::string why = {};
     std::string hint = {};
 };
@@ -48,7 +48,7 @@ struct rpc_request {
     bool wants_reply = true; ///< false: a notification
 };
 
-/// One element of a message that is no request, and the id that its error goes to.
+/// An element of a message that is no request, and the id for its error.
 struct rpc_refusal {
     rpc_fault why;
     json id = nullptr;
@@ -57,7 +57,7 @@ struct rpc_refusal {
 struct rpc_message {
     std::vector<std::variant<rpc_request, rpc_refusal>> parts;
     bool batch = false;
-    /// It is refused as a whole, but a request in it has the method that is accepted in any form.
+    /// The message is refused as a whole, but a request in it has the method that is accepted in any form.
     bool refused_any_form = false;
 };
 
@@ -68,18 +68,19 @@ struct rpc_limits {
     std::string_view any_form = {};
 };
 
-/// Never throws for what the text says: what is wrong is in the parts.
+/// Parses a message. Never throws because of the text: faults are in the parts.
 rpc_message parse_rpc(std::string_view text, const rpc_limits& l);
 
 reply_json result_reply(const json& id, reply_json result);
-/// Cuts what a message repeats of a client's text: words and quoted pieces at 80 characters, all at 1,000.
+/// Shortens a text that a message repeats from a client: words and quoted pieces to 80 characters, all to
+/// 1,000.
 std::string cut_echo(std::string_view text);
-/// "what: why (hint)", with echoes cut.
+/// Returns "what: why (hint)", with repeated text shortened.
 std::string words_of(const rpc_fault& f);
 reply_json error_reply(const json& id, const rpc_fault& f);
 reply_json notification(std::string_view method, reply_json params);
 
-/// On one line, without its end; what is no UTF-8 is replaced.
+/// Returns the JSON on one line, without its end. Replaces bytes that are not UTF-8.
 std::string text_of(const reply_json& j);
 
 } // namespace tactor::net

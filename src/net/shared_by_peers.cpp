@@ -94,7 +94,7 @@ void short_turns::join(std::function<void()> on_turn)
         boost::asio::post(io_, [this] { run(); });
 }
 
-// One post lies between two looks of Asio at the sockets.
+// Runs turns for a millisecond, then posts the rest: Asio looks at the sockets between two posts.
 void short_turns::run()
 {
     using clock = std::chrono::steady_clock;

@@ -13,8 +13,8 @@
 
 namespace tactor::net {
 
-/// Bytes that all peers together may hold. Beyond that the peer that holds most is given up, not the one that
-/// comes next.
+/// Limit on the bytes that all peers hold together. Beyond it the peer that holds most is given up, not the
+/// one that comes next.
 class byte_budget {
 public:
     explicit byte_budget(std::size_t most) : all_(std::make_shared<sum>()) { all_->most = most; }
@@ -28,25 +28,26 @@ private:
         std::size_t held = 0;
         std::set<share*> shares = {}; ///< of peers that were not given up
     };
-    std::shared_ptr<sum> all_; ///< connections outlive their server: until its context ends
+    std::shared_ptr<sum> all_; ///< connections outlive their server until its context ends
 };
 
-/// Part of one peer.
+/// Part of one peer in the budget.
 class byte_budget::share {
 public:
-    /// `give_up` is called at most once, from within the add() of any peer: it must not end a share.
+    /// Makes a share. `give_up` is called at most once, from within the add() of any peer, so it must not end
+    /// a share.
     share(const byte_budget& all, std::function<void()> give_up);
     ~share();
     share(const share&) = delete;
     share& operator=(const share&) = delete;
 
-    /// Adds bytes. Returns false where this peer was given up instead.
+    /// Adds bytes. Returns false if this peer was given up instead.
     bool add(std::size_t n);
-    /// Gives bytes back.
+    /// Returns bytes to the budget.
     void take(std::size_t n) noexcept;
-    /// Holds exactly so many bytes. Returns false where this peer was given up instead.
+    /// Sets the held bytes. Returns false if this peer was given up instead.
     bool hold(std::size_t n);
-    /// Counts the bytes of this peer no more.
+    /// Stops counting the bytes of this peer.
     void give_up();
     std::size_t held() const noexcept { return held_; }
 
@@ -58,12 +59,12 @@ private:
     std::size_t held_ = 0;
 };
 
-/// Turns of large messages: one is read at a time, so that small ones of other peers pass them.
+/// Turns of large messages: one is read at a time, so that small ones of other peers can pass.
 class message_turns {
 public:
     explicit message_turns(boost::asio::io_context& io) : io_(io) {}
 
-    /// Calls `on_turn`, not from within, when all who joined before have passed.
+    /// Calls `on_turn` later, when all earlier ones have passed.
     void join(std::function<void()> on_turn);
     /// Ends a turn.
     void pass();
@@ -76,13 +77,13 @@ private:
     bool busy_ = false;
 };
 
-/// Turns of small messages: a few at a time, then sockets are looked at again, so that what is urgent waits
-/// for no more than these, however many peers have messages there.
+/// Turns of small messages: a few at a time, then Asio looks at the sockets again. So an urgent message waits
+/// for no more than these, however many peers have messages.
 class short_turns {
 public:
     explicit short_turns(boost::asio::io_context& io) : io_(io) {}
 
-    /// Calls `on_turn`, not from within, behind those who joined before.
+    /// Calls `on_turn` later, after all earlier ones.
     void join(std::function<void()> on_turn);
 
 private:
@@ -101,7 +102,7 @@ struct shared_by_peers {
     }
 
     byte_budget unread;     ///< answers that peers have not read
-    byte_budget unfinished; ///< messages that have not come whole, or wait for their turn
+    byte_budget unfinished; ///< messages that are incomplete, or wait for their turn
     message_turns turns;    ///< of large ones
     short_turns small;
 };

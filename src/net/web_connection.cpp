@@ -24,7 +24,7 @@ constexpr std::chrono::seconds to_hang_up{1};
 
 } // namespace
 
-// See line_connection::within_memory().
+// Works like line_connection::within_memory().
 template <typename F>
 void web_connection::session::within_memory(F f)
 {
@@ -44,7 +44,7 @@ void web_connection::session::read()
                             if (self->closed)
                                 return;
                             if (e)
-                                return self->close(); // Beast has said why, where somebody is there
+                                return self->close(); // Beast has sent the reason, if the peer is there
                             self->within_memory([&] { self->received(); });
                         });
 }
@@ -106,7 +106,7 @@ void web_connection::session::handled(bool empty, bool go_on)
     read();
 }
 
-// Beast tells of payload only: not of a head alone, nor of a fragment without any.
+// Notices frames that begin. Beast reports payload only: no head alone, and no fragment without payload.
 void web_connection::session::watch()
 {
     if (!met || closed || finishing)
@@ -139,7 +139,7 @@ void web_connection::session::send(std::string text)
         write();
 }
 
-// Not here: whoever sends may be in the middle of going through all peers.
+// Does not close here, because the caller may be iterating over all peers.
 void web_connection::session::give_up()
 {
     finishing = true;
@@ -207,7 +207,7 @@ void web_connection::session::arm(double seconds)
     armed = true;
     deadline.expires_after(steady_seconds(seconds));
     deadline.async_wait([self = shared_from_this()](const boost::system::error_code& e) {
-        // It may have been set anew while this was on its way.
+        // The timer may have been set again while this was queued.
         if (e || !self->armed || self->closed ||
             self->deadline.expiry() > asio::steady_timer::clock_type::now())
             return;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// One browser's connection: a request, or a WebSocket whose text messages go both ways, within limits. One
-/// thread: the context's.
+/// A browser's connection: a request, or a WebSocket with text messages in both directions, within limits.
+/// It runs in the context's thread.
 #pragma once
 
 #include <cstddef>
@@ -22,10 +22,11 @@ struct web_reply {
     unsigned status = 200;
     std::string type = "text/plain; charset=utf-8";
     std::string body = {};
-    std::string policy = {}; ///< Content-Security-Policy; empty: nothing may be loaded
+    std::string policy = {}; ///< Content-Security-Policy; empty: the page may load nothing
 };
 
-/// What a listener took, as a socket of TCP that does not hold small messages back; none where it is gone.
+/// Returns an accepted socket as a TCP socket that does not delay small messages; nothing if the peer is
+/// gone.
 std::optional<boost::asio::ip::tcp::socket> web_socket(boost::asio::io_context& io,
                                                        line_connection::socket_type taken);
 
@@ -34,15 +35,17 @@ public:
     using socket_type = boost::asio::ip::tcp::socket;
 
     struct handlers {
-        /// GET of a path; `host` as the browser calls us, `token` of "Authorization: Bearer".
+        /// Answers GET of a path. `host`: the server's name in the browser; `token`: of "Authorization:
+        /// Bearer".
         std::function<web_reply(std::string_view path, std::string_view host, std::string_view token)> get;
-        /// Whether there is a place for a WebSocket. From then on there is `text`, and `closed` is its end.
+        /// Returns true if there is a place for a WebSocket. From then on `text` is called, and `closed` is
+        /// its end.
         std::function<bool()> upgrade;
-        /// A text message. False: the connection is to be closed.
+        /// Handles a text message. Returns false to close the connection.
         std::function<bool(std::string_view)> text;
-        /// Once, when the socket is closed. The connection may be forgotten.
+        /// Called once, when the socket is closed. The connection may be forgotten.
         std::function<void()> closed;
-        /// Whether what came was the first message that is owed; none: any that is not empty is.
+        /// See line_connection::handlers::met.
         std::function<bool()> met = {};
         /// See line_connection::handlers::large.
         std::function<void(std::string text, std::function<void(bool)> done)> large = {};
@@ -57,13 +60,13 @@ public:
     web_connection& operator=(const web_connection&) = delete;
 
     void start(handlers h);
-    /// Queues a text message. A peer that lets too much wait is dropped.
+    /// Queues a text message. Drops a peer that lets too much wait.
     void send(std::string text);
-    /// Reads nothing more, closes when all is written, or after a second.
+    /// Stops reading, and closes when everything is written, or after a second.
     void finish();
-    /// The same, with 1008 and a reason of at most 123 bytes.
+    /// Closes in the same way, with status 1008 and a reason of at most 123 bytes.
     void turn_out(const char* why);
-    /// Bytes that the peer has not taken.
+    /// Returns the bytes that the peer has not read.
     std::size_t waiting() const noexcept;
 
     struct session;
@@ -72,11 +75,11 @@ private:
     std::shared_ptr<session> session_;
 };
 
-/// Makes a document for a browser that calls this server `host`: it may run its own script and style, which
-/// carry nonce="NONCE", and talk to that host only.
+/// Makes a document for a browser that calls this server `host`. The document may run its own script and
+/// style, which carry nonce="NONCE", and talk to that host only.
 web_reply make_page(std::string_view document, std::string_view host);
 
-/// Tells a browser on this socket that there is no place, as far as it takes it.
+/// Sends a browser on this socket the reply that there is no place, as far as the socket takes it.
 void turn_away(int socket);
 
 /// Returns the whole reply to a browser for which no descriptor is left.

@@ -16,7 +16,7 @@ constexpr std::byte length_bits{0x7f};
 constexpr std::byte kind_bits{0x0f};
 constexpr std::byte close_kind{0x08};
 
-// Bytes of the length behind the two that each head has.
+// Returns the bytes of the length after the two bytes that each head has.
 std::size_t more_length(std::byte second) noexcept
 {
     const auto said = std::to_integer<unsigned>(second & length_bits);
@@ -62,7 +62,7 @@ void web_frames::begin_payload() noexcept
     in_payload_ = true;
 }
 
-// Control frames come between those of a message, too.
+// Counts the message at its last frame. Control frames may come between the frames of a message.
 void web_frames::end_frame() noexcept
 {
     if ((head_[0] & control_bit) == std::byte{}) {
@@ -78,7 +78,7 @@ bool web_frames::is_close() const noexcept
     return (head_[0] & kind_bits) == close_kind;
 }
 
-// Beast refuses a close frame that is longer.
+// Stores the payload of a close frame. Beast refuses a longer one.
 void web_frames::take_farewell(std::span<const std::byte> bytes) noexcept
 {
     if (!is_close())

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Where a peer's messages end in the bytes of its WebSocket, and how it says goodbye (RFC 6455, sections 5.2
-/// and 5.5.1).
+/// Ends of messages in the bytes of a WebSocket, and the peer's close frame (RFC 6455, sections 5.2 and
+/// 5.5.1).
 #pragma once
 
 #include <array>
@@ -11,16 +11,16 @@
 
 namespace tactor::net {
 
-/// Reads heads of frames and the payload of close frames. Beast checks everything but what is asked for here.
+/// Parser of frame heads and the payload of close frames. Beast checks everything else.
 class web_frames {
 public:
-    /// The next bytes that have come.
+    /// Parses the next bytes.
     void take(std::span<const std::byte> bytes) noexcept;
-    /// Whether a message or a control frame has begun and is not there as a whole.
+    /// Returns true if a message or a control frame has begun and is incomplete.
     bool open() const noexcept { return within_ || continued_; }
-    /// Messages that were there as a whole: of the open one, its number.
+    /// Returns the number of complete messages, which is also the number of the open one.
     std::uint64_t whole() const noexcept { return whole_; }
-    /// Tests whether the peer has closed with a reason that is no UTF-8.
+    /// Returns true if the peer has closed with a reason that is not UTF-8.
     bool has_bad_reason() const;
 
 private:
@@ -31,11 +31,11 @@ private:
     void take_farewell(std::span<const std::byte> bytes) noexcept;
 
     std::array<std::byte, 14> head_{};
-    std::size_t have_ = 0;   ///< of the head
-    std::uint64_t left_ = 0; ///< of the payload, behind the head
+    std::size_t have_ = 0;   ///< bytes of the head
+    std::uint64_t left_ = 0; ///< bytes of the payload, after the head
     bool in_payload_ = false;
-    bool within_ = false;    ///< a frame
-    bool continued_ = false; ///< a message, by the next frame
+    bool within_ = false;    ///< within a frame
+    bool continued_ = false; ///< the next frame continues a message
     std::uint64_t whole_ = 0;
     std::array<char, 125> farewell_{}; ///< payload of the close frame
     std::size_t farewell_size_ = 0;

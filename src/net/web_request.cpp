@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A browser's request, and the answer that it gets: a page, why there is none, or a WebSocket.
+// A browser's request and its answer: a page, a refusal, or a WebSocket.
 #include <chrono>
 #include <cstddef>
 #include <limits>
@@ -31,14 +31,14 @@ std::string_view view(boost::string_view s)
 
 constexpr std::string_view place_of_nonce = "NONCE";
 
-// What a page that was slipped in between could not guess.
+// Returns a nonce that an injected script could not guess.
 std::string make_nonce()
 {
     std::random_device chance;
     return fmt::format("{:08x}{:08x}{:08x}{:08x}", chance(), chance(), chance(), chance());
 }
 
-// A whole reply.
+// Returns a whole reply.
 std::string unavailable(std::string_view why)
 {
     const std::string text = fmt::format("{}, try again later\n", why);
@@ -63,7 +63,7 @@ web_connection::session::session(socket_type s, const line_limits& l, shared_by_
       lingering(socket.get_executor())
 {
     parser.header_limit(most_header_bytes);
-    parser.body_limit(std::numeric_limits<std::uint64_t>::max()); // none is read
+    parser.body_limit(std::numeric_limits<std::uint64_t>::max()); // no body is read
 }
 
 void web_connection::session::read_request()
@@ -111,7 +111,7 @@ void web_connection::session::answer_request()
     respond(calls.get(to.path, to.host, bearer_of(view(request[http::field::authorization]))));
 }
 
-// One request a connection: a page asks for little.
+// Sends the reply and closes. One request for each connection, because a page asks for little.
 void web_connection::session::respond(web_reply r)
 {
     answered = true;
@@ -135,7 +135,7 @@ void web_connection::session::respond(web_reply r)
         response.keep_alive(false);
     response.prepare_payload();
     if (parser.get().method() == http::verb::head)
-        response.body().clear(); // how long it would be is said
+        response.body().clear(); // the header still gives its length
     arm(limits.message_s);
     http::async_write(socket, response,
                       [self = shared_from_this()](const beast::error_code&, std::size_t) { self->close(); });
@@ -155,7 +155,7 @@ void web_connection::session::upgrade()
         [this] { return frames.has_bad_reason(); });
     websocket::stream_base::timeout t{};
     t.handshake_timeout = steady_seconds(limits.message_s);
-    // A browser that is gone without a word is found by pings.
+    // Pings detect a browser that disappeared.
     t.idle_timeout = std::chrono::seconds(60);
     t.keep_alive_pings = true;
     ws->set_option(t);
@@ -163,7 +163,7 @@ void web_connection::session::upgrade()
     ws->auto_fragment(false);
     ws->set_option(websocket::stream_base::decorator(
         [](websocket::response_type& r) { r.set(http::field::server, "tactor"); }));
-    // Whoever says goodbye has a second to hang up.
+    // A peer that sends a close frame has a second to hang up.
     ws->control_callback([this](websocket::frame_type kind, boost::string_view) {
         if (kind == websocket::frame_type::close)
             hang_up_soon();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What a browser's connection consists of: the request (web_request.cpp), then, where it asks for one, the
-/// WebSocket (web_connection.cpp).
+/// Contents of a browser's connection: the request (web_request.cpp), then, if requested, the WebSocket
+/// (web_connection.cpp).
 #pragma once
 
 #include <algorithm>
@@ -31,7 +31,7 @@
 
 namespace tactor::net {
 
-/// A stream of Asio's, as much of one as Beast's WebSocket asks for.
+/// The part of an Asio stream that Beast's WebSocket needs.
 class watched_socket {
 public:
     using next_layer_type = boost::asio::ip::tcp::socket;
@@ -39,8 +39,8 @@ public:
     using sight = std::function<void(std::span<const std::byte>)>;
     using test = std::function<bool()>;
 
-    /// The socket must outlive it. `seen` is called before whoever reads has the bytes. `bad_reason` tests
-    /// whether the peer's close frame has a reason that is no UTF-8.
+    /// Wraps a socket, which must outlive it. `seen` gets the bytes before the reader does. `bad_reason`
+    /// returns true if the peer's close frame has a reason that is not UTF-8.
     watched_socket(next_layer_type& s, sight seen, test bad_reason)
         : socket_(s), seen_(std::move(seen)), bad_reason_(std::move(bad_reason))
     {
@@ -72,8 +72,8 @@ public:
     }
 
 private:
-    // Close frames, unmasked. Beast (1.74 to 1.83) answers a reason that is no UTF-8 with 1002; RFC 6455,
-    // section 8.1, asks for 1007.
+    // Close frames, unmasked. Beast (1.74 to 1.83) answers a reason that is not UTF-8 with 1002; RFC 6455,
+    // section 8.1, requires 1007.
     static constexpr std::array<unsigned char, 4> protocol_error{0x88, 2, 0x03, 0xea};
     static constexpr std::array<unsigned char, 4> bad_payload{0x88, 2, 0x03, 0xef};
 
@@ -115,12 +115,12 @@ struct web_connection::session : std::enable_shared_from_this<session> {
     session(const session&) = delete;
     session& operator=(const session&) = delete;
 
-    // The request.
+    // Request.
     void read_request();
     void answer_request();
     void respond(web_reply r);
     void upgrade();
-    // The WebSocket.
+    // WebSocket.
     void read();
     void received();
     void handle_large(std::string text);
@@ -150,7 +150,7 @@ struct web_connection::session : std::enable_shared_from_this<session> {
     socket_type socket;
     std::optional<boost::beast::websocket::stream<watched_socket>> ws;
     web_frames frames;
-    std::uint64_t waited_for = 0; ///< while `armed` and `met`: the number of that message
+    std::uint64_t waited_for = 0; ///< while `armed` and `met`: number of that message
     boost::beast::flat_buffer buffer;
     boost::beast::http::request_parser<boost::beast::http::empty_body> parser;
     boost::beast::http::response<boost::beast::http::string_body> response;
@@ -161,7 +161,7 @@ struct web_connection::session : std::enable_shared_from_this<session> {
     bool armed = false;
     bool met = false; ///< the first message has come
     bool accepted = false;
-    bool answered = false; ///< with a page, or why there is none
+    bool answered = false; ///< with a page or a refusal
     bool writing = false;
     bool reading = true;
     bool finishing = false;
