@@ -34,7 +34,7 @@ void predict_people(comparison_row& row, const stroke& s, const array& a, const 
     row.spread = predict_spread(people, a, s, *row.plan, taps, choice.keep_samples, choice.after_person);
 }
 
-// All rows at once, since they have the target in common.
+// Predicts all rows at once, since they share the target.
 void predict_centroids(comparison& c, const array& a, bool keep_samples)
 {
     std::vector<comparison_row*> rows;
@@ -52,7 +52,7 @@ void predict_centroids(comparison& c, const array& a, bool keep_samples)
                 rows[i]->samples = predict_percept(a, c.target, *plans[i]);
         }
     } catch (const error& e) {
-        // For its length, whatever the plan.
+        // The target is too long for any plan.
         if (e.kind() != error_kind::bad_input)
             throw;
         for (comparison_row* row : rows) {
@@ -80,7 +80,7 @@ bool comparison::playable() const
 comparison compare(const stroke& given, const array& a, const layout& faces, const plan_options& options,
                    const comparison_choice& choice)
 {
-    // Side by side: the caller chooses, not the stroke.
+    // The caller's choices count here, not the stroke's: plans are compared side by side.
     stroke s = given;
     s.choices.algorithm.reset();
     s.choices.phantom.reset();

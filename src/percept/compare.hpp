@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// One stroke by several algorithms and phantom models: what each is predicted to feel like.
+/// Comparison of one stroke by several algorithms and phantom models: the prediction of how each feels.
 #pragma once
 
 #include <functional>
@@ -18,27 +18,27 @@
 
 namespace tactor::detail {
 
-/// Who feels it.
+/// Observer who feels the plans.
 struct observer_choice {
     observer_kind kind = observer_kind::centroid;
     low_speed_observer low_speed = {};
 };
 
-/// Says in a sentence, to go with the numbers, what the prediction is.
+/// Returns a sentence that explains the prediction, to print with its numbers.
 std::string prediction_note(const observer_choice& o);
 
-/// One algorithm with one phantom model. Either a plan, or why there is none.
+/// An algorithm with a phantom model: a plan, or the reason why there is none.
 struct comparison_row {
     algorithm_kind algorithm = algorithm_kind::park2016;
     phantom_kind phantom = phantom_kind::inverse_distance;
     std::optional<tactor::plan> plan = {};
-    percept_summary felt = {};                ///< of the centroid; of low-speed the errors alone
-    std::vector<percept_sample> samples = {}; ///< of the centroid, only where asked for
-    tap_summary tapped = {};                  ///< of low-speed
-    std::vector<tap> taps = {};               ///< the same
-    std::string unpredicted = {};             ///< why low-speed has no prediction; empty where it has
-    std::optional<row_spread> spread = {};    ///< with people drawn, where there is a prediction
-    std::optional<error> refused = {};        ///< in the words of the library
+    percept_summary felt = {};                ///< by the centroid; by low_speed only the errors
+    std::vector<percept_sample> samples = {}; ///< by the centroid, only on request
+    tap_summary tapped = {};                  ///< by low_speed
+    std::vector<tap> taps = {};               ///< by low_speed
+    std::string unpredicted = {};             ///< reason why low_speed has no prediction; empty: it has one
+    std::optional<row_spread> spread = {};    ///< with drawn people, if there is a prediction
+    std::optional<error> refused = {};        ///< refusal, in the words of the library
 };
 
 struct comparison {
@@ -46,14 +46,14 @@ struct comparison {
     observer_choice observer = {};
     bool compensated = false;
     spread_choice spread = {};
-    faces_kind faces = faces_kind::delaunay; ///< of inverse-distance, but for tactile-brush
+    faces_kind faces = faces_kind::delaunay; ///< for inverse_distance, except tactile_brush
     std::vector<comparison_row> rows = {};
 
-    /// Whether any algorithm can play it.
+    /// Returns true if any algorithm can play the stroke.
     bool playable() const;
 };
 
-/// What is compared with what.
+/// Algorithms, models and observer of a comparison.
 struct comparison_choice {
     std::vector<algorithm_kind> algorithms = {};
     std::vector<phantom_kind> phantoms = {};
@@ -65,7 +65,8 @@ struct comparison_choice {
 };
 
 /// Plans and predicts with every algorithm and every model, in this order. An algorithm that cannot play the
-/// stroke becomes a row that says why. \throws what is not bad input.
+/// stroke becomes a row with the reason.
+/// \throws errors other than bad_input.
 comparison compare(const stroke& given, const array& a, const layout& faces, const plan_options& options,
                    const comparison_choice& choice);
 

@@ -25,7 +25,7 @@ inline namespace v0 {
 namespace {
 
 constexpr double on_edge_mm = 1e-6;
-// Beyond, sixteen digits do not tell a place from its neighbours'.
+// Least give: below it, sixteen digits do not distinguish a place from its neighbours'.
 constexpr double least_give = 1e-7;
 
 point middle_of(const std::vector<point>& corners)
@@ -37,7 +37,8 @@ point middle_of(const std::vector<point>& corners)
     return {sum.x_mm / n, sum.y_mm / n};
 }
 
-// What keeps taps on the array. Where all tactors are in one line its two ends; nothing for a single one.
+// Returns the limits of the array for taps: its sides, its two ends if all tactors are in one line, nothing
+// for a single one.
 std::vector<detail::beyond> ends_or_sides(const layout::impl& l)
 {
     if (!l.hull.empty())
@@ -48,7 +49,7 @@ std::vector<detail::beyond> ends_or_sides(const layout::impl& l)
         return {};
     const point along{(last.x_mm - first.x_mm) / length, (last.y_mm - first.y_mm) / length};
     const point back{-along.x_mm, -along.y_mm};
-    // The search needs a closed figure; nothing reaches the sides across.
+    // The search needs a closed figure. Nothing reaches the sides across.
     const point left{-along.y_mm, along.x_mm};
     const point right{along.y_mm, -along.x_mm};
     return {{along, detail::dot(along, last)},
@@ -57,7 +58,7 @@ std::vector<detail::beyond> ends_or_sides(const layout::impl& l)
             {right, detail::dot(right, first) + length}};
 }
 
-// Across a line there is nothing to choose.
+// Moves targets onto the line of the tactors, because there is no choice across it.
 std::vector<point> onto_line(const layout::impl& l, std::vector<point> targets)
 {
     const auto [first, last] = detail::ends_of(l.points);
@@ -93,7 +94,7 @@ void fit(const layout& l, std::span<const double> give, std::span<const point> t
         p = l.nearest(p); // rounding
 }
 
-// What every command that plans says of it.
+// Returns the notice that every command prints about a compensated plan.
 std::string notice(const compensated_plan& p)
 {
     if (p.taps.empty())
@@ -113,7 +114,8 @@ std::string notice(const compensated_plan& p)
     return text;
 }
 
-// The plan's warning of bursts that their three tactors do not surround; empty if there is none.
+// Returns the plan's warning about bursts outside the triangle of their three tactors; empty if there is
+// none.
 std::string missed_warning(const layout& l, const plan& p)
 {
     detail::missed_places missed;
@@ -129,7 +131,7 @@ compensated_places compensate(const layout& l, const low_speed_observer& o, std:
                               std::span<const point> targets)
 {
     compensated_places r;
-    static_cast<void>(felt_places(o, onsets_s, targets)); // checks them
+    static_cast<void>(felt_places(o, onsets_s, targets)); // checks the arguments
     const std::vector<double> give = detail::give_of(o, onsets_s);
     if (std::any_of(give.begin(), give.end(), [](double g) { return g < least_give; }))
         throw error(error_kind::bad_input, "compensation",
@@ -165,7 +167,7 @@ compensated_plan make_compensated_plan(const array& a, const layout& l, const st
             targets.push_back(s.motion.position(b.onset_s));
         }
     const compensated_places places = compensate(l, m, onsets_s, targets);
-    std::erase(r.plan.warnings, missed_warning(l, r.plan)); // counted anew where they are moved to
+    std::erase(r.plan.warnings, missed_warning(l, r.plan)); // counted again for the moved bursts
     const std::shared_ptr<const phantom_model> model = detail::model_of(l, chosen);
     for (std::size_t i = 0; i < felt.size(); ++i) {
         burst& b = *felt[i];

@@ -17,17 +17,17 @@ namespace tactor::detail {
 namespace {
 
 constexpr int most_steps = 200;
-constexpr double small_gap = 1e-16;    // of each tap; ends the search, in units of the array's size squared
-constexpr double bearable_gap = 1e-10; // of each tap, where rounding ends it before
-constexpr double nearly = 0.995;       // of the way to the next side
+constexpr double small_gap = 1e-16;    // for each tap; ends the search, in units of the array's size squared
+constexpr double bearable_gap = 1e-10; // for each tap, if rounding ends the search before
+constexpr double nearly = 0.995;       // part of the distance to the next side
 
-/// With m the places played, y the places felt, m = A y and A = I + K: minimise |y - x|^2 / 2 where each m_i
-/// keeps each side. Slack are the distances from the sides, push the forces that the sides push with; m is
-/// inside from the first step on.
+/// Search for the best places. With m the places played, y the places felt, m = A y and A = I + K: minimise
+/// |y - x|^2 / 2 while each m_i keeps each side. Slack are the distances from the sides, push the forces of
+/// the sides; m is inside from the first step on.
 ///
-/// Newton's step is solved for the force on each tap, f: (D^-1 + A A) f = D^-1 c - A r. Solved for y instead,
-/// I + A D A has to keep its 1 beside the weights of the sides that are reached, which grow without bound.
-/// Forces and steps of a tap are in its own frame.
+/// Newton's step is solved for the force f on each tap: (D^-1 + A A) f = D^-1 c - A r. Solved for y instead,
+/// I + A D A would have to keep its 1 next to the weights of the sides that are reached, which grow without
+/// bound. Forces and steps of a tap are in its own frame.
 class inner_search {
 public:
     inner_search(std::span<const double> give, std::vector<point> x, std::vector<beyond> sides)
@@ -50,7 +50,7 @@ public:
         }
     }
 
-    /// False: rounding ended it too early. The best places on the way count.
+    /// Searches. Returns false if rounding ended it too early. The best places on the way count.
     bool run()
     {
         const double taps = static_cast<double>(x_.size());
@@ -79,8 +79,8 @@ private:
         return sum;
     }
 
-    // How far |y - x|^2 / 2 may be from its least: from what the dual problem, of which push is a solution,
-    // is worth.
+    // Returns a bound on how far |y - x|^2 / 2 is from its minimum: the value of the dual problem, of which
+    // push is a solution, gives it.
     double gap() const
     {
         double squares = 0.0;
@@ -89,7 +89,7 @@ private:
         return sum_of_products() + squares / 2.0;
     }
 
-    // y - x + A sum_e out_e push_e.
+    // Computes y - x + A sum_e out_e push_e.
     void find_residual()
     {
         residual_.assign(x_.size(), {});
@@ -105,7 +105,7 @@ private:
                             residual_[i].y_mm + y[i].y_mm - x_[i].y_mm};
     }
 
-    // The three elements of A in row l, from column l - 1.
+    // Returns the three elements of A in row l, from column l - 1.
     std::array<double, 3> row_of(std::size_t l) const
     {
         const double before = l > 0 ? 1.0 / give_[l - 1] : 0.0;
@@ -113,7 +113,7 @@ private:
         return {-before, 1.0 + before + after, -after};
     }
 
-    // D^-1 + A A, D having blocks sum_e (push / slack) out out'.
+    // Builds D^-1 + A A, where D has the blocks sum_e (push / slack) out out'.
     bool build()
     {
         const std::size_t sides = sides_.size();
@@ -136,7 +136,7 @@ private:
         return matrix_.factor();
     }
 
-    // The same element for both axes, between two frames.
+    // Sets the same element for both axes, between two frames.
     void link(std::size_t l, std::size_t earlier, double v)
     {
         const point turned = frames_[l].into(frames_[earlier].axis());
@@ -146,7 +146,7 @@ private:
         matrix_.at(2 * l + 1, 2 * earlier + 1) = v * turned.x_mm;
     }
 
-    // Steps of m, slack and push for products slack * push that change by what `wanted` says.
+    // Computes steps of m, slack and push whose products slack * push change by `wanted`.
     template <class Wanted>
     void aim(Wanted&& wanted)
     {
@@ -171,7 +171,7 @@ private:
                 frames_[i].times_inverse({rhs_[2 * i] - force_[i].x_mm, rhs_[2 * i + 1] - force_[i].y_mm});
             for (std::size_t e = 0; e < sides; ++e) {
                 const std::size_t k = i * sides + e;
-                const double goal = wanted(k); // before the steps that it looks at change
+                const double goal = wanted(k); // before the steps that it reads change
                 slack_step_[k] = -dot(frames_[i].out(e), way_[i]);
                 push_step_[k] = (goal - push_[k] * slack_step_[k]) / slack_[k];
             }
@@ -243,7 +243,7 @@ std::vector<point> fit_inside(std::span<const double> give, std::span<const poin
                                 sides.size()),
                     fmt::format("at most {} times {}; make the stroke shorter",
                                 most_fit_constraints / sides.size(), sides.size()));
-    // About `inside`, in units of the array's size.
+    // Centred on `inside`, in units of the array's size.
     std::vector<beyond> around = sides;
     double size = 0.0;
     for (beyond& e : around) {

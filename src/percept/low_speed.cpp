@@ -15,7 +15,7 @@
 namespace tactor::detail {
 namespace {
 
-// A link that pulls nothing; infinite ones would divide infinity by itself.
+// Give of a link without pull. With infinity there would be infinity / infinity.
 constexpr double freest = 1e30;
 
 void check(const char* what, double v, double least, double most)
@@ -47,8 +47,8 @@ std::vector<double> give_of(const low_speed_observer& o, std::span<const double>
     return give;
 }
 
-// Thomas's elimination. Pivot i is k_i + q_i, and k / (k + q) is computed as 1 / (1 + q / k): then only
-// positive numbers are added. Nothing cancels, however strong a link is; a rigid one has give 0.
+// Solves by Thomas's elimination. Pivot i is k_i + q_i, and k / (k + q) is computed as 1 / (1 + q / k), so
+// only positive numbers are added. Nothing cancels, however strong a link is; a rigid one has give 0.
 std::vector<point> pulled(std::span<const double> give, std::span<const point> alone)
 {
     std::vector<point> x(alone.begin(), alone.end());

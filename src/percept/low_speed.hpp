@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The chain of taps that the low-speed observer pulls together: (I + K) x = m, K the Laplacian whose link i
-/// has the weight k_i = (sigma / (sigma_v (t_(i+1) - t_i)))^2.
+/// Chain of taps that the low-speed observer pulls together: (I + K) x = m, K the Laplacian whose link i has
+/// the weight k_i = (sigma / (sigma_v (t_(i+1) - t_i)))^2.
 #pragma once
 
 #include <optional>
@@ -12,20 +12,22 @@
 
 namespace tactor::detail {
 
-/// 1 / k of each link: 0 where two taps begin together. \throws error (bad_input) as felt_places() does.
+/// Returns 1 / k of each link: 0 if two taps begin together.
+/// \throws error (bad_input) as felt_places() does.
 std::vector<double> give_of(const low_speed_observer& o, std::span<const double> onsets_s);
 
 /// Solves for x. O(n).
 std::vector<point> pulled(std::span<const double> give, std::span<const point> alone);
 
-/// (I + K) x. No `give` may be 0.
+/// Returns (I + K) x. No `give` may be 0.
 std::vector<point> pushed(std::span<const double> give, std::span<const point> felt);
 
-/// \throws error (bad_input) for a plan without bursts of its own, which is what `continuous` makes.
+/// Throws error (bad_input) for a plan without separate bursts, as `continuous` makes it.
 void check_has_taps(const plan& p);
 
-/// Centre of energy of a burst's drives, times the gains of their tactors where there are any; none of a
-/// silent one. \throws error (bad_input) for a tactor that the array does not have.
+/// Returns the centre of energy of a burst's drives, multiplied by the gains of their tactors, if any;
+/// nothing for a silent burst.
+/// \throws error (bad_input) for a tactor that the array does not have.
 std::optional<point> centre_of(const array& a, const burst& b, std::span<const double> gains = {});
 
 } // namespace tactor::detail

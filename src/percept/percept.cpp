@@ -38,14 +38,14 @@ percept_sample target_at(const stroke& s, std::size_t i)
     return x;
 }
 
-/// The speed of what is felt, sample by sample. Takes the positions felt as they come, and knows the speed as
-/// soon as the window has passed. Where nothing is felt, the last position is held.
+/// Speed of the felt position, sample by sample. Takes the positions in order, and knows a speed as soon as
+/// the window has passed. In silence, the last position is held.
 class running_speed {
 public:
-    /// Samples on either side of the one in the middle of the window.
+    /// Samples on either side of the middle of the window.
     static constexpr std::size_t half_window = 50;
     static_assert(percept_window_s == 2 * half_window * percept_step_s);
-    /// Samples between the one whose speed next() returns and the newest.
+    /// Samples from the one whose speed next() returns to the newest.
     static constexpr std::size_t delay = half_window + 1;
 
     std::optional<double> next(const std::optional<point>& felt)
@@ -56,7 +56,7 @@ public:
             origin_ = *felt;
         }
         held_ = felt.value_or(held_);
-        // Relative to the first one, for the sake of precision.
+        // Relative to the first position, for precision.
         const std::size_t j = count_++;
         const point& before = sums_[j % capacity];
         sums_[(j + 1) % capacity] = {before.x_mm + (held_.x_mm - origin_.x_mm),
@@ -84,10 +84,10 @@ private:
         return {(after.x_mm - before.x_mm) / width, (after.y_mm - before.y_mm) / width};
     }
 
-    std::size_t count_ = 0; // from the first one felt on
+    std::size_t count_ = 0; // from the first felt one on
     point origin_;
     point held_;
-    std::array<point, capacity> sums_{}; // of the first so many
+    std::array<point, capacity> sums_{}; // of as many samples
     std::array<bool, capacity> felt_{};
     bool was_felt_ = false;
 };
@@ -116,10 +116,10 @@ private:
     double squares_ = 0.0;
 };
 
-/// The distance of a prediction from its target, summed up sample by sample.
+/// Distance of a prediction from its target, summed sample by sample.
 class summing {
 public:
-    /// Adds all but the speed, which may come later: speeds are added in their own order.
+    /// Adds a sample except its speed, which may come later. Speeds are added in their own order.
     void add(const percept_sample& x)
     {
         ++count_;
@@ -136,7 +136,7 @@ public:
     /// Adds the speed of a sample at which something is felt.
     void add_speed(double mm_s) { speed_.add(mm_s); }
 
-    /// Adds a sample whose speed is known where there is one.
+    /// Adds a sample with its speed, if known.
     void add_all(const percept_sample& x)
     {
         add(x);
@@ -170,7 +170,7 @@ private:
     double largest_ = 0.0;
 };
 
-/// One plan, summed up while it is followed.
+/// A plan, summed while it is followed.
 struct followed_plan {
     detail::sounding now;
     running_speed speed = {};
@@ -187,7 +187,7 @@ void follow_percept(const array& a, const stroke& s, const plan& p, const person
     const array felt = detail::felt_array(a, who);
     detail::sounding now(felt, p, s.motion.duration_s(), detail::gains_of(a, who));
     running_speed speed;
-    std::array<percept_sample, delay + 1> waiting; // for their speed
+    std::array<percept_sample, delay + 1> waiting; // samples that wait for their speed
     for (std::size_t i = 0; i < count + delay; ++i) {
         if (i < count) {
             percept_sample& x = waiting[i % waiting.size()];

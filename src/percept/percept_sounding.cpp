@@ -67,8 +67,8 @@ bool sounding::end_bursts(double t_s)
 {
     if (first_end_s_ > t_s + same_time_s)
         return false;
-    // The Tactile Brush's last burst ends with the movement, the one before it often later: what they did
-    // together is still felt at the last sample.
+    // The Tactile Brush's last burst ends with the movement, and the one before often later. Both still count
+    // at the last sample.
     const bool begun = next_ > 0 && plan_.bursts[next_ - 1].onset_s >= t_s - same_time_s;
     const bool closing = t_s > end_s_ - same_time_s && !begun;
     const double limit_s = closing ? t_s - same_time_s : t_s + same_time_s;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What sounds at one time, for the predicted percept.
+/// Tactors that sound at one time, for the predicted percept.
 #pragma once
 
 #include <cstddef>
@@ -11,18 +11,19 @@
 
 namespace tactor::detail {
 
-/// Follows a plan through time. Between the times at which a burst begins or ends nothing is computed.
+/// State of a plan that is followed through time. Computes only when a burst begins or ends.
 class sounding {
 public:
-    /// Both must live as long; `end_s` is where the movement ends. `gains`: of each tactor, or none.
+    /// Starts before the plan. Array and plan must live as long; `end_s` is the end of the movement. `gains`:
+    /// of each tactor, or empty.
     sounding(const array& a, const plan& p, double end_s, std::vector<double> gains);
 
     /// Fills in felt, intensity and shared. Times must ascend.
-    /// \throws error (bad_input) where the plan names a tactor that the array does not have.
+    /// \throws error (bad_input) if the plan names a tactor that the array does not have.
     void at(double t_s, percept_sample& out);
 
 private:
-    /// The bursts on one tactor.
+    /// Bursts on one tactor.
     struct part {
         unsigned bursts = 0;
         double energy = 0.0;
@@ -48,8 +49,8 @@ private:
     std::vector<double> gains_;       // empty: 1
     std::size_t next_ = 0;            // the first burst that has not begun
     std::vector<std::size_t> active_; // bursts that sound
-    double first_end_s_;              // of those
-    std::vector<part> parts_;         // by tactor; all zero but those touched
+    double first_end_s_;              // end of the first of them
+    std::vector<part> parts_;         // by tactor; zero except those in touched_
     std::vector<unsigned> touched_;
     burst sampled_; // `continuous`
     state now_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What a person feels instead of what was meant.
+/// Differences of a person from the person for whom a plan was made.
 #pragma once
 
 #include <vector>
@@ -9,11 +9,12 @@
 
 namespace tactor::detail {
 
-/// The array with its tactors where they are felt. \throws error (bad_input) as predict_percept() does.
+/// Returns the array with its tactors at the places where they are felt.
+/// \throws error (bad_input) as predict_percept() does.
 array felt_array(const array& a, const person& who);
 
-/// Factors of amplitudes by tactor; empty where all are 1. \throws error (bad_input) as predict_percept()
-/// does.
+/// Returns factors on amplitudes by tactor; empty if all are 1.
+/// \throws error (bad_input) as predict_percept() does.
 std::vector<double> gains_of(const array& a, const person& who);
 
 } // namespace tactor::detail

@@ -18,12 +18,12 @@ constexpr double high_part = 0.95;
 constexpr std::size_t most_tracks = 40;
 constexpr std::size_t most_kept = 20'000'000; // speeds of all people, for a picture
 
-// SplitMix64 (Steele, Lea and Flood 2014): the same on every machine.
+// SplitMix64 (Steele, Lea and Flood 2014), equal on every machine.
 class random_draws {
 public:
     explicit random_draws(std::uint64_t seed) : state_(seed) {}
 
-    // From 0 up to 1.
+    // Returns a number from 0 up to 1.
     double part()
     {
         state_ += 0x9e3779b97f4a7c15U;
@@ -33,14 +33,14 @@ public:
         return static_cast<double>((z ^ (z >> 31U)) >> 11U) * 0x1p-53;
     }
 
-    // Give or take 1.
+    // Returns a number from -1 up to 1.
     double either_way() { return 2.0 * part() - 1.0; }
 
 private:
     std::uint64_t state_;
 };
 
-// By figure, of each person.
+// Figures of each person.
 struct gathered {
     std::vector<std::optional<double>> rms = {};
     std::vector<std::optional<double>> largest = {};

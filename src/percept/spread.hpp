@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Where people differ: the same plans felt by many who are drawn at random, and intervals of what they feel.
+/// Differences between people: the same plans felt by many randomly drawn people, and intervals of what they
+/// feel.
 #pragma once
 
 #include <cstdint>
@@ -17,47 +18,47 @@
 
 namespace tactor::detail {
 
-/// How many are drawn, and how far they may differ; all evenly within these ranges.
+/// Number of drawn people, and ranges of their differences, which are evenly distributed.
 struct spread_choice {
-    unsigned people = 0; ///< 0: nobody
+    unsigned people = 0; ///< 0: none
     std::uint64_t seed = 1;
-    double sigma_factor = 2.0; ///< sigma of low-speed from 1 / this to this times what it is, evenly by ratio
-    double threshold_db = 6.0; ///< each tactor's threshold, give or take
+    double sigma_factor = 2.0; ///< factor on sigma of low_speed, from 1 / this to this, evenly by ratio
+    double threshold_db = 6.0; ///< each tactor's threshold, plus or minus
     double place_mm = 2.0;     ///< each tactor's place, anywhere within this distance
 };
 
-/// The ranges in a sentence.
+/// Returns a sentence about the ranges.
 std::string spread_note(const spread_choice& c, bool by_taps);
 
-/// One who was drawn.
+/// A drawn person.
 struct drawn_person {
     tactor::person who;
     double sigma_factor = 1.0;
 };
 
-/// The same for the same seed and number of tactors.
+/// Draws people: equal for the same seed and number of tactors.
 std::vector<drawn_person> draw_people(const spread_choice& c, std::size_t tactors);
 
-/// What lies between 5 and 95 % of the people.
+/// Range between 5 and 95 % of the people.
 struct interval {
     double low = 0.0;
     double high = 0.0;
 };
 
-/// Of a sorted list, linear between its members. \pre not empty.
+/// Returns a quantile of a sorted list, linear between its members. \pre not empty.
 double quantile(const std::vector<double>& sorted, double part);
 
-/// None where somebody has no value.
+/// Returns the interval of the values; nothing if one is missing.
 std::optional<interval> interval_of(std::vector<std::optional<double>> values);
 
-/// A band of a speed chart at one time.
+/// Band of a speed chart at one time.
 struct speed_range {
     double t_s = 0.0;
     double low = 0.0;
     double high = 0.0;
 };
 
-/// Intervals of a row's figures; those that its observer does not give are none.
+/// Intervals of a row's figures; none for figures that its observer does not give.
 struct row_spread {
     std::optional<interval> rms_error_mm = {};
     std::optional<interval> largest_error_mm = {};
@@ -65,12 +66,12 @@ struct row_spread {
     std::optional<interval> intensity_cv = {};
     std::optional<interval> felt_length_mm = {};
     std::optional<interval> length_ratio = {};
-    std::vector<speed_range> speeds = {};        ///< only where a picture asks
-    std::vector<std::vector<point>> tracks = {}; ///< of the first people, the same
+    std::vector<speed_range> speeds = {};        ///< only for a picture
+    std::vector<std::vector<point>> tracks = {}; ///< of the first people, only for a picture
 };
 
-/// Predicts what each person feels of a plan: as the low-speed observer, or without one by the centroid.
-/// Calls `after_person` after each.
+/// Predicts what each person feels of a plan: as the low-speed observer, or else by the centroid. Calls
+/// `after_person` after each.
 row_spread predict_spread(const std::vector<drawn_person>& people, const array& a, const stroke& s,
                           const plan& p, const std::optional<low_speed_observer>& low_speed, bool for_picture,
                           const std::function<void()>& after_person);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Several plans of a stroke summed up at once, however long it is.
+/// Summaries of several plans of a stroke in one pass, for any length.
 #pragma once
 
 #include <span>
@@ -10,8 +10,9 @@
 
 namespace tactor::detail {
 
-/// summarise() of predict_percept() for each plan, to the last bit; no samples are kept, and the target is
-/// looked up once for all. \throws error (bad_input) as predict_percept().
+/// Returns summarise() of predict_percept() for each plan, equal to the last bit. Stores no samples, and
+/// looks the target up once for all plans.
+/// \throws error (bad_input) as predict_percept().
 std::vector<percept_summary> predict_summaries(const array& a, const stroke& s,
                                                std::span<const plan* const> plans);
 
